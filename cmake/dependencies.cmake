@@ -1,0 +1,18 @@
+# Everything comes from Debian packages; scripts/install_dependencies.sh installs them.
+list(APPEND CMAKE_MODULE_PATH "${CMAKE_CURRENT_LIST_DIR}")
+
+# OpenVDB ships its find module outside of CMake's own search path.
+file(GLOB DELTASPLAT_OPENVDB_MODULES /usr/lib/*/cmake/OpenVDB /usr/lib/cmake/OpenVDB
+     /usr/local/lib*/cmake/OpenVDB)
+list(APPEND CMAKE_MODULE_PATH ${DELTASPLAT_OPENVDB_MODULES})
+
+find_package(OpenVDB 10 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(OpenImageIO REQUIRED)
+find_package(glm REQUIRED)
+find_package(hwy REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(nlohmann_json REQUIRED)
+if(NOT TARGET OpenVDB::openvdb OR NOT TARGET OpenImageIO::OpenImageIO)
+    message(FATAL_ERROR "OpenVDB or OpenImageIO not found; run scripts/install_dependencies.sh")
+endif()

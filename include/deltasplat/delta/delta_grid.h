@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "deltasplat/ingest/volume.h"
+
+namespace deltasplat {
+
+/// The OpenVDB Int32Grid of deltas; defined in src/delta/delta_tree.h for the stage that walks it.
+struct DeltaTree;
+
+/// What a voxel indexes tables by: 0 = empty (inactive or invisible), code + 1 otherwise.
+using Slot = std::int32_t;
+inline constexpr Slot kEmptySlot = 0;
+inline constexpr int kSlotCount = kCodeCount + 1;
+
+/// Returns the volume axes (0 = x, 1 = y, 2 = z) that become (slice, u, v): a cyclic permutation,
+/// so that handedness is kept.
+inline glm::ivec3 sliceOrder(int sliceAxis) {
+    return {sliceAxis, (sliceAxis + 1) % 3, (sliceAxis + 2) % 3};
+}
+
+/// Whether slices are stored whole or as their change from the slice before.
+enum class Encoding {
+    kChanges,  ///< one key slice a slab, then deltas (method `delta`)
+    kWhole,    ///< every slice is a key slice (methods `sparse` and `traditional`)
+    kSmaller   ///< for each slab whichever has fewer active voxels; ties: kChanges (method `auto`)
+};
+
+/// A run of slices that can be read on its own, because its first slice is a key slice.
+struct Slab {
+    int firstSlice = 0;  ///< index along the slice axis
+    int sliceCount = 0;
+    bool whole = false;         ///< every slice is stored whole
+    std::uint64_t visible = 0;  ///< voxels whose slot is not empty
+    std::uint64_t deltas =
+        0;  ///< active voxels if stored as changes, those of its key slice included
+};
+
+/// Slice-to-slice differences of a volume as a sparse grid in (slice, u, v) index space.
+struct DeltaGrid {
+    int sliceAxis = 2;        ///< volume axis along which slices are counted
+    int keyInterval = 8;      ///< slices a slab, a multiple of 8; slabs start at multiples of 8
+    IndexBox box;             ///< the volume's box in (slice, u, v) order
+    std::vector<Slab> slabs;  ///< in increasing order, covering `box`; none for an empty volume
+    std::shared_ptr<const DeltaTree> tree;
+
+    std::uint64_t visible() const;  ///< visible voxels, all slabs together
+    std::uint64_t deltas() const;   ///< deltas, all slabs together, however they are stored
+};
+
+/// How to take differences.
+struct DeltaOptions {
+    int sliceAxis = 2;
+    int keyInterval = 0;  ///< a multiple of 8; 0 = defaultKeyInterval of the volume's slices
+    Encoding encoding = Encoding::kChanges;
+    /// [kSlotCount] or empty: the slot to use in place of each slot, so that codes which look alike
+    /// make no deltas, and invisible ones are empty. Entry 0 must be 0.
+    std::span<const Slot> slotMap;
+};
+
+/// Returns the slices a slab gets by default: a function of the volume alone, so that pixels never
+/// depend on the machine. About 16 slabs a volume, at least 8 and at most 64 slices each.
+int defaultKeyInterval(int sliceCount);
+
+/// Takes the differences of consecutive slices. Linear in the active voxels; deterministic;
+/// multi-threaded.
+/// @throw Error(kUsage) if the key interval is not a positive multiple of 8
+DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options);
+
+/// Counts visible voxels and deltas without storing them (one slab over all slices).
+struct SliceCounts {
+    std::uint64_t visible = 0;
+    std::uint64_t deltas = 0;
+};
+SliceCounts countDeltas(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap = {});
+
+}  // namespace deltasplat

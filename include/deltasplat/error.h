@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace deltasplat {
+
+/// What kind of thing went wrong; the number is the program's exit code.
+enum class ErrorCode : int {
+    kFailed = 1,        ///< failed while working
+    kUsage = 2,         ///< an option or an argument is wrong
+    kInput = 3,         ///< an input cannot be read or is invalid
+    kOutput = 4,        ///< an output cannot be written
+    kInterrupted = 130  ///< stopped by the caller
+};
+
+/// The one exception the library throws on purpose. `what()` is one line without a final full stop:
+/// `<file or option>: got X; expected Y`.
+class Error : public std::runtime_error {
+  public:
+    Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    ErrorCode code() const noexcept { return code_; }
+
+  private:
+    ErrorCode code_;
+};
+
+/// Returns the line `where: got X; expected Y` used for every refused value.
+inline std::string gotExpected(std::string_view where, std::string_view got,
+                               std::string_view expected) {
+    std::string line(where);
+    line.append(": got ").append(got).append("; expected ").append(expected);
+    return line;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deltasplat/ingest/volume.h"
+#include "deltasplat/progress.h"
+
+namespace deltasplat {
+
+/// How a .raw or .raw.gz file is to be understood. Members left empty are read from the file's name
+/// (`engine_256x256x128_uint8.raw.gz`, `tooth_103x94x161_uint16be.raw`).
+struct RawFormat {
+    std::optional<glm::i64vec3> dims;  ///< voxels along x (fastest), y, z; each at least 1
+    std::optional<std::string> type;   ///< uint8 int8 uint16 int16 uint32 int32 float32 float64
+    std::optional<bool> bigEndian;     ///< default: little, or what the name says
+    glm::dvec3 spacing{1.0};           ///< world units per voxel, each finite and > 0
+    glm::dvec3 origin{0.0};            ///< world position of the centre of voxel (0,0,0)
+    std::uint64_t skipBytes = 0;       ///< header bytes to pass over (after decompression)
+};
+
+/// How to read a volume.
+struct ReadOptions {
+    std::string gridName;            ///< .vdb: which grid; empty: the first scalar one
+    bool levelSetToFog = true;       ///< .vdb: turn level sets into fog volumes
+    std::optional<double> nanValue;  ///< replaces NaN and infinities; empty: they are an error
+    RawFormat raw;                   ///< .raw: what the bytes are
+};
+
+/// Reads one scalar volume from `.raw`, `.raw.gz` or `.vdb` (by extension, in any case).
+/// Level sets, NaN and empty grids are treated as `options` says; an empty grid is a valid, empty
+/// volume. Deterministic; not affected by the number of threads.
+/// @throw Error(kInput) if the file is missing, truncated, of the wrong size or not what it claims;
+///        Error(kUsage) if the options cannot be meant (zero dims, an overflow, an unknown type)
+Volume readVolume(const std::filesystem::path& file, const ReadOptions& options = {},
+                  const Listener& listener = {});
+
+/// Reads every scalar grid of a file, as `info` lists them: one volume for raw; a .vdb's grids in
+/// file order, or only `options.gridName` if that is not empty.
+/// @throw as readVolume
+std::vector<Volume> readAllVolumes(const std::filesystem::path& file,
+                                   const ReadOptions& options = {}, const Listener& listener = {});
+
+}  // namespace deltasplat

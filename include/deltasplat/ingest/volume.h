@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "deltasplat/ingest/code_book.h"
+
+namespace deltasplat {
+
+/// The OpenVDB tree of codes; defined in src/ingest/code_tree.h for the stages that walk it.
+struct CodeTree;
+
+/// A box of voxel indices, both corners inclusive; empty when any max < min.
+struct IndexBox {
+    glm::ivec3 min{0};
+    glm::ivec3 max{-1};
+
+    bool empty() const { return max.x < min.x || max.y < min.y || max.z < min.z; }
+    glm::ivec3 dims() const { return empty() ? glm::ivec3(0) : max - min + 1; }
+    std::int64_t voxels() const {
+        const glm::ivec3 d = dims();
+        return std::int64_t{d.x} * d.y * d.z;
+    }
+    bool operator==(const IndexBox&) const = default;
+};
+
+/// One scalar volume in memory: codes on a sparse grid, what they mean, and where they are.
+///
+/// Every voxel of a raw volume is active; a .vdb brings its own active states. What is inactive is
+/// empty.
+struct Volume {
+    std::string name;       ///< grid name, or the file's name without folder and extensions
+    std::string type;       ///< value type of the source: "uint8", "float", "half", "bool", ...
+    std::string gridClass;  ///< "fog volume", "level set", "staggered" or "unknown"
+    double background = 0;  ///< value of inactive voxels (0 for raw volumes)
+    CodeBook codeBook;      ///< what the codes mean
+    std::shared_ptr<const CodeTree> codes;  ///< active voxels in the source's index space
+    IndexBox box;  ///< raw: all voxels; .vdb: bounding box of the active voxels
+    glm::dmat4 worldFromIndex{
+        1.0};                       ///< affine; maps (i, j, k) to the voxel's centre in world units
+    std::uint64_t activeCount = 0;  ///< active voxels, those in active tiles included
+    std::vector<std::uint64_t> histogram;  ///< [65536]: how many active voxels have each code
+    double valueMin = 0;  ///< smallest active value, as the code book gives it back; 0 if none
+    double valueMax = 0;  ///< largest active value, as the code book gives it back; 0 if none
+
+    bool empty() const { return activeCount == 0; }
+    /// World lengths of one index step along i, j and k.
+    glm::dvec3 voxelSize() const {
+        return {glm::length(glm::dvec3(worldFromIndex[0])),
+                glm::length(glm::dvec3(worldFromIndex[1])),
+                glm::length(glm::dvec3(worldFromIndex[2]))};
+    }
+};
+
+}  // namespace deltasplat

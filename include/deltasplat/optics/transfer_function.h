@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "deltasplat/ingest/volume.h"
+#include "deltasplat/progress.h"
+
+namespace deltasplat {
+
+/// Colour and opacity as functions of the data value, in the form ParaView saves them.
+struct TransferFunction {
+    struct ColorPoint {
+        double x = 0;
+        glm::dvec3 rgb{0.0};  ///< each 0..1, in the file's colour space
+    };
+    struct OpacityPoint {
+        double x = 0;
+        double opacity = 0;  ///< 0..1, over one unit distance
+        double midpoint =
+            0.5;  ///< 0..1, where between this point and the next the half-way value lies
+        double sharpness = 0;  ///< 0 = linear, 1 = a step
+    };
+    std::string name;
+    std::vector<ColorPoint> colors;       ///< at least one; x not decreasing
+    std::vector<OpacityPoint> opacities;  ///< at least one; x not decreasing
+    bool normalized = false;    ///< x runs over 0..1 of a data range instead of data values
+    bool linearColors = false;  ///< colours are scene-linear; otherwise sRGB
+
+    /// Returns the scene-linear, not premultiplied colour at x (sRGB points are interpolated as
+    /// sRGB).
+    glm::dvec3 colorAt(double x) const;
+    /// Returns the opacity 0..1 over one unit distance at x. Constant beyond the first and the last
+    /// point.
+    double opacityAt(double x) const;
+};
+
+/// Reads the first transfer function of a ParaView JSON file.
+/// @throw Error(kInput) naming file, line and what was expected, if it is missing or malformed
+TransferFunction readTransferFunction(const std::filesystem::path& file,
+                                      const Listener& listener = {});
+
+/// Returns the grey ramp used when none is given: black and clear at the 1st, white and
+/// `kRampOpacity` at the 99th percentile of the active values other than the background.
+TransferFunction defaultRamp(const Volume& volume);
+inline constexpr double kRampOpacity = 0.1;
+
+/// Returns the data values that 0 and 1 of a normalized transfer function stand for when nothing
+/// else is said: 0..255 for uint8 sources, otherwise the smallest and largest of the active values
+/// and, for .vdb grids, the background.
+glm::dvec2 defaultRange(const Volume& volume);
+
+}  // namespace deltasplat

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace deltasplat {
+
+/// Returns the names of the SIMD levels this machine can run, best first, for example
+/// `{"AVX3_DL", "AVX3", "AVX2", "SSE4", "SSSE3", "SSE2"}`.
+std::vector<std::string> simdLevels();
+
+/// Returns the name of the level in use.
+std::string simdLevel();
+
+/// Makes every kernel run at the level `name` (any case), or at the best one for "auto". Pixels
+/// never depend on it; meant for tests and for measuring. Not thread-safe: call it before
+/// rendering.
+/// @throw Error(kUsage) if the machine does not have that level
+void setSimdLevel(const std::string& name);
+
+}  // namespace deltasplat

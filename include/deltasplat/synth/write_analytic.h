@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
+
+#include "deltasplat/progress.h"
+#include "deltasplat/synth/analytic_volume.h"
+
+namespace deltasplat {
+
+struct AnalyticFileOptions {
+    glm::ivec3 dims{64};  ///< voxels along x, y, z, each at least 1
+    std::string type;  ///< .raw: uint8, uint16 or float32 (empty: uint8); .vdb: always a float grid
+    glm::dvec3 spacing{1.0};  ///< world units per voxel
+};
+
+/// Samples a volume at voxel centres, position = (2 * index + 1) / dims - 1 along each axis, and
+/// writes it to
+/// `.raw` (little endian; 0..1 becomes 0..255 or 0..65535, rounded to nearest) or `.vdb` (a fog
+/// volume named "density" with background 0; zeros are inactive). Needs memory for a few slices
+/// (.raw) or for what is not zero (.vdb).
+/// @throw Error(kUsage) for another extension, type or dims; Error(kOutput) if the file cannot be
+/// written
+void writeAnalytic(const AnalyticVolume& volume, const std::filesystem::path& file,
+                   const AnalyticFileOptions& options, const Listener& listener = {});
+
+}  // namespace deltasplat

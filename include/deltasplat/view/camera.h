@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+
+#include "deltasplat/ingest/volume.h"
+
+namespace deltasplat {
+
+/// What a person says about the camera. World space is right-handed with y up.
+struct CameraOptions {
+    /// front (looks along -z), back (+z), left (from -x along +x), right (-x), top (down -y, up is
+    /// -z), bottom (up +y, up is +z) or iso (along (-1,-1,-1)).
+    std::string view = "front";
+    double azimuthDegrees =
+        0;  ///< turns the camera about the up axis through the target, towards its right
+    double elevationDegrees = 0;  ///< then raises the camera over the target
+    double rollDegrees = 0;  ///< then turns it clockwise (seen from behind) about the line of sight
+    std::optional<glm::dvec3> direction;  ///< the way the line of sight travels; replaces `view`
+    std::optional<glm::dvec3> up;         ///< default +y; not parallel to the direction
+    std::optional<glm::dvec3>
+        targetWorld;  ///< falls on the middle of the picture; default: middle of the box
+    std::optional<double>
+        frameWidthWorld;  ///< world width of the picture; default: the box of voxel centres fits
+    glm::ivec2 sizePixels{512, 512};
+};
+
+/// An orthographic camera. `right`, `up` and `-direction` are a right-handed orthonormal basis.
+/// Pixel (0,0) is top left, pixel centres are at half-integers, `targetWorld` falls on (width/2,
+/// height/2).
+struct Camera {
+    glm::dvec3 direction{0, 0, -1};
+    glm::dvec3 right{1, 0, 0};
+    glm::dvec3 up{0, 1, 0};
+    glm::dvec3 targetWorld{0.0};
+    double frameWidthWorld = 1;
+    glm::ivec2 sizePixels{512, 512};
+
+    /// World units a pixel, the same both ways.
+    double pixelWorld() const { return frameWidthWorld / sizePixels.x; }
+    /// World position, on the plane through the target, of continuous pixel coordinates.
+    glm::dvec3 worldFromPixel(glm::dvec2 pixel) const;
+    /// Continuous pixel coordinates of a world position.
+    glm::dvec2 pixelFromWorld(const glm::dvec3& world) const;
+    /// Camera space: x right, y up, looking along -z, the target at the origin.
+    glm::dmat4 cameraFromWorld() const;
+    /// x and y run over -1..1 across the picture (y up); z is camera z over half the frame width.
+    glm::dmat4 ndcFromWorld() const;
+};
+
+/// Places the camera on a volume. A box of one point (or an empty one) is framed as one voxel.
+/// @throw Error(kUsage) if the view's name is unknown, the direction is zero or not finite or
+/// parallel to up, the frame width or
+///        the size is not positive
+Camera makeCamera(const CameraOptions& options, const IndexBox& box,
+                  const glm::dmat4& worldFromIndex);
+
+}  // namespace deltasplat

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <optional>
+
+#include "deltasplat/view/camera.h"
+
+namespace deltasplat {
+
+/// A parallel projection split into a shift for each slice and one affine warp (Lacroute and Levoy
+/// 1994). (slice, u, v) are the volume's axes in `sliceOrder(sliceAxis)`; base plane positions are
+/// (u, v) voxel indices on slice 0.
+struct Factorization {
+    int sliceAxis = 2;        ///< the volume axis most parallel to the line of sight
+    bool frontToBack = true;  ///< increasing slice index goes away from the camera
+    glm::dvec2 shiftPerSlice{
+        0.0};  ///< d: voxel (s, u, v) falls on base plane (u, v) + s * d; |d| <= 1 each
+    double sliceStepWorld =
+        1;               ///< world distance between consecutive slices along the line of sight
+    int resolution = 1;  ///< r: sheet pixels a voxel, the same along u and v
+    glm::dmat3 baseFromPixel{
+        1.0};  ///< (pixel x, pixel y, 1) -> (u, v, 1) on the base plane, in voxels
+};
+
+inline constexpr int kMaxResolution = 16;
+
+/// Factors the camera's projection of a volume.
+/// Ties between axes go to the later one (z before y before x), so that a diagonal view is well
+/// defined.
+/// @param resolution  1..kMaxResolution, or empty: the screen's pixels a voxel, rounded, between 1
+/// and 4
+/// @throw Error(kUsage) if the resolution is out of range
+Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
+                        std::optional<int> resolution = {});
+
+}  // namespace deltasplat

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace deltasplat {
+
+/// Returns the bytes of memory that this process may still take without swapping (cgroup limits
+/// included).
+std::uint64_t availableMemory();
+
+/// Returns "512 bytes", "1.5 MiB", "23.4 GiB", ...
+std::string humanBytes(double bytes);
+
+/// Throws unless `bytes` more fit into memory.
+/// @throw Error(kUsage) "<what>: needs 12.0 GiB of memory; expected at most 3.4 GiB, which is
+/// available"
+void requireMemory(const std::string& what, double bytes);
+
+}  // namespace deltasplat

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace deltasplat {
+
+/// Calls body(i) for every i in [0, count), on all threads, in no particular order; the one place
+/// that knows the threading library. Rethrows the first exception of a body after the others have
+/// stopped.
+void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body);
+
+}  // namespace deltasplat
