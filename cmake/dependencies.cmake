@@ -16,3 +16,13 @@ find_package(nlohmann_json REQUIRED)
 if(NOT TARGET OpenVDB::openvdb OR NOT TARGET OpenImageIO::OpenImageIO)
     message(FATAL_ERROR "OpenVDB or OpenImageIO not found; run scripts/install_dependencies.sh")
 endif()
+
+# Debian's OpenImageIO names a folder of OpenCV headers that only its optional parts need.
+get_target_property(DELTASPLAT_OIIO_INCLUDES OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+foreach(folder ${DELTASPLAT_OIIO_INCLUDES})
+    if(NOT EXISTS ${folder})
+        list(REMOVE_ITEM DELTASPLAT_OIIO_INCLUDES ${folder})
+    endif()
+endforeach()
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES
+    INTERFACE_INCLUDE_DIRECTORIES "${DELTASPLAT_OIIO_INCLUDES}")
