@@ -1,1 +1,68 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "memory.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "deltasplat/error.h"
+
+namespace deltasplat {
+namespace {
+
+// Reads one number from a file of the kernel; the largest number if there is none ("max", no such
+// file).
+std::uint64_t readNumber(const char* file) {
+    std::ifstream in(file);
+    std::uint64_t number = 0;
+    return in >> number ? number : std::numeric_limits<std::uint64_t>::max();
+}
+
+std::uint64_t systemAvailable() {
+    std::ifstream in("/proc/meminfo");
+    for (std::string line; std::getline(in, line);) {
+        unsigned long long kib = 0;
+        if (std::sscanf(line.c_str(), "MemAvailable: %llu kB", &kib) == 1) return kib * 1024;
+    }
+    return std::numeric_limits<std::uint64_t>::max();
+}
+
+std::uint64_t cgroupAvailable(const char* limitFile, const char* usedFile) {
+    const std::uint64_t limit = readNumber(limitFile);
+    const std::uint64_t used = readNumber(usedFile);
+    if (limit == std::numeric_limits<std::uint64_t>::max()) return limit;
+    return used < limit ? limit - used : 0;
+}
+
+}  // namespace
+
+std::uint64_t availableMemory() {
+    return std::min({systemAvailable(),
+                     cgroupAvailable("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
+                     cgroupAvailable("/sys/fs/cgroup/memory/memory.limit_in_bytes",
+                                     "/sys/fs/cgroup/memory/memory.usage_in_bytes")});
+}
+
+std::string humanBytes(double bytes) {
+    static const char* const kUnits[] = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
+    int unit = 0;
+    while (bytes >= 1024 && unit < 6) {
+        bytes /= 1024;
+        ++unit;
+    }
+    char text[64];
+    std::snprintf(text, sizeof text, unit == 0 ? "%.0f %s" : "%.1f %s", bytes, kUnits[unit]);
+    return text;
+}
+
+void requireMemory(const std::string& what, double bytes) {
+    const double available = double(availableMemory());
+    if (bytes <= available) return;
+    throw Error(ErrorCode::kUsage, what + ": needs " + humanBytes(bytes) +
+                                       " of memory; expected at most " + humanBytes(available) +
+                                       ", which is available");
+}
+
+}  // namespace deltasplat
