@@ -29,20 +29,12 @@ std::uint64_t systemAvailable() {
     return std::numeric_limits<std::uint64_t>::max();
 }
 
-std::uint64_t cgroupAvailable(const char* limitFile, const char* usedFile) {
-    const std::uint64_t limit = readNumber(limitFile);
-    const std::uint64_t used = readNumber(usedFile);
-    if (limit == std::numeric_limits<std::uint64_t>::max()) return limit;
-    return used < limit ? limit - used : 0;
-}
-
 }  // namespace
 
 std::uint64_t availableMemory() {
-    return std::min({systemAvailable(),
-                     cgroupAvailable("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
-                     cgroupAvailable("/sys/fs/cgroup/memory/memory.limit_in_bytes",
-                                     "/sys/fs/cgroup/memory/memory.usage_in_bytes")});
+    // What a cgroup has in use counts its page cache, so only its limit is a fact.
+    return std::min({systemAvailable(), readNumber("/sys/fs/cgroup/memory.max"),
+                     readNumber("/sys/fs/cgroup/memory/memory.limit_in_bytes")});
 }
 
 std::string humanBytes(double bytes) {
