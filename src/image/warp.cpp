@@ -7,9 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/geometric.hpp>
+#include <glm/common.hpp>
 #include <vector>
 
+#include "image/warp_kernels.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -22,50 +23,65 @@ double catmullRom(double x) {
     return 0;
 }
 
-// Filter weights along one axis for every position between two lattice points, in steps of
-// 1/kSteps.
-class FilterTable {
+// Filter weights along one axis for any position between two lattice points.
+class AxisFilter {
   public:
     // stretch: lattice points a picture pixel, at least 1.
-    explicit FilterTable(double stretch)
-        : taps_(2 * int(std::ceil(2 * stretch))), weights_(std::size_t(taps_) * (kSteps + 1)) {
-        for (int step = 0; step <= kSteps; ++step) {
-            float* weights = &weights_[std::size_t(taps_) * step];
-            std::vector<double> exact(taps_);
-            double sum = 0;
-            for (int tap = 0; tap < taps_; ++tap) {
-                exact[tap] = catmullRom((tap - (taps_ / 2 - 1) - double(step) / kSteps) / stretch);
-                sum += exact[tap];
-            }
-            for (int tap = 0; tap < taps_; ++tap) weights[tap] = float(exact[tap] / sum);
-        }
-    }
+    explicit AxisFilter(double stretch)
+        : stretch_(stretch), weights_(std::size_t(2 * int(std::ceil(2 * stretch)))) {}
 
-    int taps() const { return taps_; }
+    int taps() const { return int(weights_.size()); }
     // Splits a position into its first lattice point and the weights from there on.
-    const float* at(double position, int& first) const {
+    const std::vector<float>& at(double position, int& first) {
         const double whole = std::floor(position);
-        first = int(whole) - (taps_ / 2 - 1);
-        return &weights_[std::size_t(taps_) * std::size_t((position - whole) * kSteps + 0.5)];
+        first = int(whole) - (taps() / 2 - 1);
+        double sum = 0;
+        for (int tap = 0; tap < taps(); ++tap) {
+            sum += catmullRom((first + tap - position) / stretch_);
+        }
+        for (int tap = 0; tap < taps(); ++tap) {
+            weights_[tap] = float(catmullRom((first + tap - position) / stretch_) / sum);
+        }
+        return weights_;
     }
 
   private:
-    // Fine enough that rounding a position moves a value by less than 1/2000 of its slope.
-    static constexpr int kSteps = 1024;
-    int taps_;
+    double stretch_;
     std::vector<float> weights_;
 };
 
-// The picture columns [first, last) whose positions a + b * (column + 0.5) lie within [low, high].
-void clipColumns(double a, double b, double low, double high, double& first, double& last) {
-    if (b == 0) {
-        if (a < low || a > high) last = first;
-        return;
-    }
+const FourTapTable& fourTapTable() {
+    static const FourTapTable kTable = [] {
+        FourTapTable table;
+        for (int step = 0; step <= FourTapTable::kSteps; ++step) {
+            std::array<float, 4> plain;
+            for (int tap = 0; tap < 4; ++tap) {
+                plain[tap] = float(catmullRom(tap - 1 - double(step) / FourTapTable::kSteps));
+            }
+            table.plain.push_back(plain);
+            auto& repeated = table.repeated.emplace_back();
+            for (int i = 0; i < 16; ++i) repeated[i] = plain[i / 4];
+        }
+        return table;
+    }();
+    return kTable;
+}
+
+// Columns [first, last) of a picture row.
+struct Columns {
+    int first = 0;
+    int last = 0;
+};
+
+// Narrows columns to those whose position a + b * (column + 0.5) lies within [low, high].
+Columns clipColumns(const Columns& columns, double a, double b, double low, double high) {
+    if (b == 0) return a >= low && a <= high ? columns : Columns{};
     const double x0 = (low - a) / b - 0.5;
     const double x1 = (high - a) / b - 0.5;
-    first = std::max(first, std::ceil(std::min(x0, x1)));
-    last = std::min(last, std::floor(std::max(x0, x1)) + 1);
+    const double first = std::ceil(std::min(x0, x1));
+    const double last = std::floor(std::max(x0, x1)) + 1;
+    if (first >= columns.last || last <= columns.first) return {};
+    return {int(std::max<double>(first, columns.first)), int(std::min<double>(last, columns.last))};
 }
 
 class Warper {
@@ -74,8 +90,8 @@ class Warper {
         : raster_(raster),
           map_(rasterFromPixel),
           picture_(picture),
-          filterX_(std::max(1.0, stretchOf(map_[0].x, map_[1].x))),
-          filterY_(std::max(1.0, stretchOf(map_[0].y, map_[1].y))) {}
+          stretch_(std::max(1.0, stretchOf(map_[0].x, map_[1].x)),
+                   std::max(1.0, stretchOf(map_[0].y, map_[1].y))) {}
 
     void run() {
         parallelFor(std::size_t(picture_.size.y), [&](std::size_t y) { warpRow(int(y)); });
@@ -86,50 +102,68 @@ class Warper {
     // axis.
     static double stretchOf(double alongX, double alongY) { return std::hypot(alongX, alongY); }
 
+    glm::dvec2 step() const { return map_[0]; }
+    // Positions run relative to the raster's first pixel, so that large index offsets cost no
+    // precision.
+    glm::dvec2 rowStart(int y) const {
+        return glm::dvec2(map_[1]) * (y + 0.5) + glm::dvec2(map_[2]) - glm::dvec2(raster_.min);
+    }
+    glm::dvec2 positionOf(int x, int y) const { return rowStart(y) + step() * (x + 0.5); }
+
+    // The columns whose positions keep at least `margin` lattice points inside the raster's edge.
+    Columns columnsWithin(int y, glm::dvec2 margin) const {
+        const glm::dvec2 start = rowStart(y);
+        Columns columns{0, picture_.size.x};
+        for (int axis = 0; axis < 2; ++axis) {
+            columns = clipColumns(columns, start[axis], step()[axis], margin[axis],
+                                  raster_.size[axis] - 1 - margin[axis]);
+        }
+        return columns;
+    }
+
     void warpRow(int y) {
-        // Positions run relative to the raster's first pixel, so that large index offsets cost no
-        // precision.
-        const double x0 = map_[1].x * (y + 0.5) + map_[2].x - raster_.min.x;
-        const double y0 = map_[1].y * (y + 0.5) + map_[2].y - raster_.min.y;
-        double first = 0;
-        double last = picture_.size.x;
-        const double reachX = filterX_.taps() / 2;
-        const double reachY = filterY_.taps() / 2;
-        clipColumns(x0, map_[0].x, -reachX, raster_.size.x - 1 + reachX, first, last);
-        clipColumns(y0, map_[0].y, -reachY, raster_.size.y - 1 + reachY, first, last);
-        for (int x = int(first); x < last; ++x) {
-            sample(x0 + map_[0].x * (x + 0.5), y0 + map_[0].y * (x + 0.5), picture_.pixel(x, y));
+        const Columns reached = columnsWithin(y, -2.0 * stretch_);
+        Columns inner = stretch_ == glm::dvec2(1) ? columnsWithin(y, glm::dvec2(1.001)) : Columns{};
+        if (inner.first >= inner.last) inner = {reached.last, reached.last};
+        AxisFilter filterX(stretch_.x);
+        AxisFilter filterY(stretch_.y);
+        for (int x = reached.first; x < inner.first; ++x) sample(x, y, filterX, filterY);
+        if (inner.first < inner.last) {
+            sampleRun(raster_, fourTapTable(), positionOf(inner.first, y), step(),
+                      inner.last - inner.first, picture_.pixel(inner.first, y));
+        }
+        for (int x = inner.last; x < reached.last; ++x) sample(x, y, filterX, filterY);
+        for (int x = reached.first; x < reached.last; ++x) clamp(picture_.pixel(x, y));
+    }
+
+    // Any filter width, any place: what lies outside counts as transparent.
+    void sample(int x, int y, AxisFilter& filterX, AxisFilter& filterY) const {
+        const glm::dvec2 position = positionOf(x, y);
+        glm::ivec2 first;
+        const std::vector<float>& weightX = filterX.at(position.x, first.x);
+        const std::vector<float>& weightY = filterY.at(position.y, first.y);
+        const glm::ivec2 taps{filterX.taps(), filterY.taps()};
+        const glm::ivec2 begin = glm::max(glm::ivec2(0), -first);
+        const glm::ivec2 end = glm::min(taps, raster_.size - first);
+        float* out = picture_.pixel(x, y);
+        for (int j = begin.y; j < end.y; ++j) {
+            const float* row = raster_.rgba + 4 * std::size_t(first.y + j) * raster_.size.x;
+            for (int i = begin.x; i < end.x; ++i) {
+                const float* pixel = row + 4 * std::size_t(first.x + i);
+                for (int c = 0; c < 4; ++c) out[c] += weightY[j] * weightX[i] * pixel[c];
+            }
         }
     }
 
-    void sample(double x, double y, float* out) const {
-        int firstX = 0;
-        int firstY = 0;
-        const float* weightX = filterX_.at(x, firstX);
-        const float* weightY = filterY_.at(y, firstY);
-        const int beginX = std::max(0, -firstX);
-        const int endX = std::min(filterX_.taps(), raster_.size.x - firstX);
-        const int beginY = std::max(0, -firstY);
-        const int endY = std::min(filterY_.taps(), raster_.size.y - firstY);
-        std::array<float, 4> sum{};
-        for (int j = beginY; j < endY; ++j) {
-            const float* row = raster_.rgba + 4 * std::size_t(firstY + j) * raster_.size.x;
-            std::array<float, 4> rowSum{};
-            for (int i = beginX; i < endX; ++i) {
-                const float* pixel = row + 4 * std::size_t(firstX + i);
-                for (int c = 0; c < 4; ++c) rowSum[c] += weightX[i] * pixel[c];
-            }
-            for (int c = 0; c < 4; ++c) sum[c] += weightY[j] * rowSum[c];
-        }
-        for (int c = 0; c < 4; ++c) out[c] = std::max(sum[c], 0.0f);
-        out[3] = std::min(out[3], 1.0f);
+    static void clamp(float* pixel) {
+        for (int c = 0; c < 4; ++c) pixel[c] = std::max(pixel[c], 0.0f);
+        pixel[3] = std::min(pixel[3], 1.0f);
     }
 
     const Raster& raster_;
     const glm::dmat3& map_;
     Image& picture_;
-    FilterTable filterX_;
-    FilterTable filterY_;
+    glm::dvec2 stretch_;  // lattice points a picture pixel along each raster axis, at least 1
 };
 
 }  // namespace

@@ -126,11 +126,11 @@ class SlabSplatter {
         std::size_t count = list_.count;
         for (; word != 0; word &= word - 1) {
             const int n = std::countr_zero(word);
-            const Entry& before = entries_[slots[n]];
-            const Entry& after = entries_[slots[n] += values[n]];
+            const Entry before = entries_[slots[n]];
+            const Entry after = entries_[slots[n] += values[n]];
             list_.places[count] = place + placeInBlock_[n];
             for (int c = 0; c < 4; ++c) list_.colors[count][c] = after[c] - before[c];
-            count += after != before;
+            count += std::bit_cast<std::uint64_t>(after) != std::bit_cast<std::uint64_t>(before);
         }
         list_.count = count;
     }
