@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: K. Perlin, "Improving Noise", 2002 (fade curve and twelve gradients); F. K. Musgrave in
 // "Texturing and Modeling: A Procedural Approach", 2003, chapter 16 (octaves added up). Deviates in
-
+// that a hash of lattice coordinates and seed replaces the table, so that the noise never repeats.
 #include <algorithm>
 #include <array>
 #include <cmath>
