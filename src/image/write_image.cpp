@@ -80,9 +80,10 @@ std::string encodeExr(const std::filesystem::path& file, const Image& image,
     OIIO::ImageSpec spec = makeSpec(image, type, options);
     spec.attribute("compression", "zip");
     spec.attribute("oiio:ColorSpace", "Linear");
-    // These are OpenImageIO's names for OpenEXR's worldToCamera and worldToNDC.
-    setMatrix(spec, "worldtocamera", options.cameraFromWorld);
-    setMatrix(spec, "worldtoscreen", options.ndcFromWorld);
+    // Without a date OpenImageIO stores the clock time (as capDate).
+    spec.attribute("DateTime", "");
+    setMatrix(spec, "worldToCamera", options.cameraFromWorld);
+    setMatrix(spec, "worldToNDC", options.ndcFromWorld);
     return encode(file, "openexr", spec, OIIO::TypeFloat,
                   finiteValues(image, options.floatExr).data());
 }

@@ -22,12 +22,13 @@ ValueAt makeMarschnerLobb() {
 
 ValueAt makeHydrogen() {
     return [](const glm::dvec3& p) {
-        // |psi|^2 ~ (r^2 exp(-r/3) (3 cos^2 theta - 1))^2 with r in Bohr radii.
-        constexpr double kHalfEdge = 24;
+        // |psi|^2 ~ (r^2 exp(-r/3) (3 cos^2 theta - 1))^2 with r in Bohr radii and theta from
+        // the y axis, which is up.
+        constexpr double kHalfEdge = 20;
         const glm::dvec3 q = p * kHalfEdge;
         const double radius = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
-        const double psi = (2 * q.z * q.z - q.x * q.x - q.y * q.y) * std::exp(-radius / 3);
-        // On the z axis psi is 2 z^2 exp(-z/3), which is largest at z = 6.
+        const double psi = (2 * q.y * q.y - q.x * q.x - q.z * q.z) * std::exp(-radius / 3);
+        // On the y axis psi is 2 y^2 exp(-y/3), which is largest at y = 6.
         const double largest = 72 * std::exp(-2.0);
         return (psi / largest) * (psi / largest);
     };

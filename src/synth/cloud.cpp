@@ -45,32 +45,33 @@ double noiseAt(std::uint64_t seed, const glm::dvec3& p) {
     return lerp(w, low, high);
 }
 
-// Octaves of half the size and half the strength each; the strengths add up to less than 1.
-double fractalNoiseAt(std::uint64_t seed, glm::dvec3 p) {
+// Octaves of half the size and a little less than half the strength each, folded at 0 so that a
+// surface moved by them bulges between creases as a cumulus does. The result is 0..1 (clamped).
+double billowAt(std::uint64_t seed, glm::dvec3 p) {
     constexpr int kOctaves = 5;
     double sum = 0;
-    double strength = 0.5;
+    double strength = 1;
     for (int octave = 0; octave < kOctaves; ++octave) {
-        sum += strength * noiseAt(seed + std::uint64_t(octave), p);
+        sum += strength * std::abs(noiseAt(mixBits(seed) + std::uint64_t(octave), p));
         p *= 2.0;
-        strength /= 2;
+        strength *= 0.45;
     }
-    return sum;
+    return std::min(sum, 1.0);
 }
 
 }  // namespace
 
 ValueAt makeCloud(std::uint64_t seed) {
     return [seed](const glm::dvec3& p) {
-        // Noise pushes the surface of a ball in and out; density rises with depth below it.
-        constexpr double kRadius = 0.6;
-        constexpr double kReach = 0.36;
-        constexpr double kFrequency = 2.5;  // lattice cells per unit, largest octave
-        constexpr double kSkin = 0.3;       // depth of full density
-        const double radius = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
-        if (radius >= kRadius + kReach) return 0.0;
-        const double noise = std::clamp(2 * fractalNoiseAt(seed, p * kFrequency), -1.0, 1.0);
-        const double depth = kRadius - radius + kReach * noise;
+        // Bulges grow out of a flattened ball; density rises with the depth below their surface.
+        constexpr glm::dvec3 kHalfAxes(0.92, 0.7, 0.85);
+        constexpr double kCore = 0.42;      // share of the radius that the deepest crease leaves
+        constexpr double kFrequency = 2.2;  // lattice cells per unit, largest octave
+        constexpr double kSkin = 0.55;      // depth of full density, as a share of the radius
+        const glm::dvec3 q = p / kHalfAxes;
+        const double radius = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
+        if (radius >= 1) return 0.0;
+        const double depth = kCore + (1 - kCore) * billowAt(seed, p * kFrequency) - radius;
         return std::clamp(depth / kSkin, 0.0, 1.0);
     };
 }

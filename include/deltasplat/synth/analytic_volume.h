@@ -21,7 +21,7 @@ struct AnalyticVolume {
 /// - marschner-lobb: the reconstruction test signal of Marschner and Lobb (1994), with f_M = 6 and
 ///   alpha = 0.25; no empty space
 /// - hydrogen: probability density of hydrogen's 3d orbital with m = 0, its largest value being 1;
-///   the cube's half edge is 24 Bohr radii; two lobes along z and a ring
+///   the cube's half edge is 20 Bohr radii; two lobes along y and a ring; no empty space
 /// - shepp-logan: the head phantom as ellipsoids, with the contrasts of Toft (1996); the face looks
 ///   along +y, z goes up the neck; plateaus of 0, 0.2, 0.3, 0.4 and 1
 /// - engine: a two-cylinder engine of aluminium (0.45) and steel (0.9), cylinders along y, crank

@@ -1,0 +1,1 @@
+deltasplat_test(unit/atomic_file_test.cpp)

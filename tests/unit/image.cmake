@@ -1,0 +1,1 @@
+deltasplat_test(unit/image_test.cpp)

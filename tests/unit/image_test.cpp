@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "deltasplat/image/write_image.h"
+#include "deltasplat/threads.h"
+#include "unit/file_limits.h"
+#include "unit/temp_folder.h"
+
+namespace deltasplat {
+namespace {
+
+namespace fs = std::filesystem;
+using test::errorOf;
+using test::readBytes;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Image randomImage(glm::ivec2 size) {
+    std::mt19937 random(7);
+    const auto unit = [&] { return float(random() >> 8) / 16777216.0f; };
+    Image image(size);
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        const float alpha = unit();
+        for (int channel = 0; channel < 3; ++channel) image.rgba[i + channel] = alpha * unit();
+        image.rgba[i + 3] = alpha;
+    }
+    return image;
+}
+
+Image onePixel(float red, float green, float blue, float alpha) {
+    Image image({1, 1});
+    image.rgba = {red, green, blue, alpha};
+    return image;
+}
+
+// What OpenImageIO finds in a file, the samples as they are stored.
+template <typename Sample>
+struct Stored {
+    OIIO::ImageSpec spec;
+    std::vector<Sample> samples;
+};
+
+template <typename Sample>
+Stored<Sample> readBack(const fs::path& file, OIIO::TypeDesc type) {
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    const auto input = OIIO::ImageInput::open(file.string(), &config);
+    if (!input) throw std::runtime_error(OIIO::geterror());
+    Stored<Sample> stored{input->spec(), {}};
+    stored.samples.resize(std::size_t(stored.spec.image_pixels()) * 4);
+    if (!input->read_image(0, 0, 0, 4, type, stored.samples.data())) {
+        throw std::runtime_error(input->geterror());
+    }
+    return stored;
+}
+
+template <typename Sample>
+std::vector<Sample> writeAndRead(const Image& image, const char* name, OIIO::TypeDesc type,
+                                 const ImageFileOptions& options) {
+    const test::TempFolder folder;
+    writeImage(folder / name, image, options);
+    return readBack<Sample>(folder / name, type).samples;
+}
+
+TEST(WriteImage, FloatExrIsBitExact) {
+    ImageFileOptions options;
+    options.floatExr = true;
+    Image image = randomImage({37, 21});
+    image.rgba[0] = -2.5f;
+    image.rgba[1] = 1e30f;
+    image.rgba[2] = std::numeric_limits<float>::denorm_min();
+    EXPECT_EQ(writeAndRead<float>(image, "out.exr", OIIO::TypeFloat, options), image.rgba);
+}
+
+TEST(WriteImage, HalfExrIsWithinHalfAStep) {
+    const Image image = randomImage({64, 40});
+    const std::vector<float> stored = writeAndRead<float>(image, "out.EXR", OIIO::TypeFloat, {});
+    for (std::size_t i = 0; i < stored.size(); ++i) {
+        // A half has 11 significant bits, and steps of 2^-24 at the least.
+        const float step = std::max(std::ldexp(1.0f, std::ilogb(image.rgba[i]) - 10), 0x1p-24f);
+        ASSERT_LE(std::abs(stored[i] - image.rgba[i]), step / 2) << "sample " << i;
+    }
+}
+
+TEST(WriteImage, ExrKeepsChannelsAndSize) {
+    const test::TempFolder folder;
+    writeImage(folder / "out.exr", randomImage({5, 3}), {});
+    const OIIO::ImageSpec spec = readBack<float>(folder / "out.exr", OIIO::TypeFloat).spec;
+    EXPECT_EQ(spec.width, 5);
+    EXPECT_EQ(spec.height, 3);
+    EXPECT_EQ(spec.format, OIIO::TypeHalf);
+    EXPECT_EQ(spec.channelnames, (std::vector<std::string>{"R", "G", "B", "A"}));
+    EXPECT_EQ(spec.get_string_attribute("compression"), "zip");
+}
+
+// Reads the attributes of an OpenEXR header by its published layout, without any library.
+std::map<std::string, std::pair<std::string, std::string>> exrAttributes(const std::string& bytes) {
+    std::map<std::string, std::pair<std::string, std::string>> attributes;
+    std::size_t at = 8;  // behind magic number and version
+    while (bytes.at(at) != 0) {
+        const std::string name = bytes.c_str() + at;
+        at += name.size() + 1;
+        const std::string type = bytes.c_str() + at;
+        at += type.size() + 1;
+        std::int32_t size = 0;
+        std::memcpy(&size, &bytes.at(at), 4);
+        attributes[name] = {type, bytes.substr(at + 4, std::size_t(size))};
+        at += 4 + std::size_t(size);
+    }
+    return attributes;
+}
+
+// A view that is neither symmetric nor without translation, so that a wrong order shows.
+glm::dmat4 lopsidedMatrix() {
+    glm::dmat4 matrix(1.0);
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row) matrix[column][row] = 1 + 4 * column + row;
+    }
+    return matrix;
+}
+
+TEST(WriteImage, ExrStoresMatricesForRowVectors) {
+    const test::TempFolder folder;
+    ImageFileOptions options;
+    options.cameraFromWorld = lopsidedMatrix();
+    options.ndcFromWorld = lopsidedMatrix() * 0.5;
+    writeImage(folder / "out.exr", randomImage({4, 4}), options);
+    const auto attributes = exrAttributes(readBytes(folder / "out.exr"));
+
+    const auto& [type, bytes] = attributes.at("worldToCamera");
+    ASSERT_EQ(type, "m44f");
+    float stored[4][4];
+    ASSERT_EQ(bytes.size(), sizeof stored);
+    std::memcpy(stored, bytes.data(), sizeof stored);
+    const glm::dvec4 world(2, -3, 5, 1);
+    const glm::dvec4 camera = options.cameraFromWorld * world;
+    for (int column = 0; column < 4; ++column) {
+        double sum = 0;
+        for (int row = 0; row < 4; ++row) sum += world[row] * stored[row][column];
+        EXPECT_EQ(sum, camera[column]);
+    }
+    EXPECT_EQ(stored[3][0], 13);  // the translation is the last row
+
+    ASSERT_EQ(attributes.count("worldToNDC"), 1u);
+    ASSERT_EQ(attributes.at("worldToNDC").first, "m44f");
+    std::memcpy(stored, attributes.at("worldToNDC").second.data(), sizeof stored);
+    EXPECT_EQ(stored[3][1], 7);
+}
+
+TEST(WriteImage, OpenImageIoFindsTheMatrices) {
+    const test::TempFolder folder;
+    ImageFileOptions options;
+    options.cameraFromWorld = lopsidedMatrix();
+    writeImage(folder / "out.exr", randomImage({4, 4}), options);
+    const OIIO::ImageSpec spec = readBack<float>(folder / "out.exr", OIIO::TypeFloat).spec;
+    float stored[16] = {};
+    ASSERT_TRUE(spec.getattribute("worldtocamera", OIIO::TypeMatrix, stored));
+    for (int i = 0; i < 16; ++i) EXPECT_EQ(stored[i], options.cameraFromWorld[i / 4][i % 4]);
+}
+
+TEST(WriteImage, StoresMetadataAndNoClockTime) {
+    const test::TempFolder folder;
+    ImageFileOptions options;
+    options.metadata = {{"method", "delta"}, {"command", "render a.vdb -o \"b c.png\""}};
+    for (const char* name : {"out.exr", "out.png"}) {
+        writeImage(folder / name, randomImage({4, 4}), options);
+        const OIIO::ImageSpec spec = readBack<float>(folder / name, OIIO::TypeFloat).spec;
+        EXPECT_EQ(spec.get_string_attribute("deltasplat:method"), "delta") << name;
+        EXPECT_EQ(spec.get_string_attribute("deltasplat:command"), "render a.vdb -o \"b c.png\"");
+        EXPECT_EQ(spec.get_string_attribute("DateTime"), "") << name;
+        EXPECT_EQ(spec.find_attribute("Software"), nullptr) << name;
+    }
+}
+
+// The sample that IEC 61966-2-1 asks for.
+template <typename Sample>
+Sample expectedSample(double premultiplied, double alpha) {
+    const double linear = premultiplied / alpha;
+    const double srgb =
+        linear <= 0.0031308 ? linear * 12.92 : std::pow(linear, 1.0 / 2.4) * 1.055 - 0.055;
+    return Sample(std::floor(srgb * std::numeric_limits<Sample>::max() + 0.5));
+}
+
+template <typename Sample>
+void expectPngExact(int bits, OIIO::TypeDesc type) {
+    ImageFileOptions options;
+    options.bits = bits;
+    const Image image = randomImage({50, 30});
+    const auto stored = writeAndRead<Sample>(image, "out.png", type, options);
+    for (std::size_t i = 0; i < stored.size(); ++i) {
+        const double alpha = image.rgba[i | 3];
+        const Sample expected =
+            i % 4 == 3 ? Sample(std::floor(alpha * std::numeric_limits<Sample>::max() + 0.5))
+                       : expectedSample<Sample>(image.rgba[i], alpha);
+        ASSERT_EQ(stored[i], expected) << "sample " << i;
+    }
+}
+
+TEST(WriteImage, EightBitPngIsRoundedToNearest) {
+    expectPngExact<std::uint8_t>(8, OIIO::TypeUInt8);
+}
+
+TEST(WriteImage, SixteenBitPngIsRoundedToNearest) {
+    expectPngExact<std::uint16_t>(16, OIIO::TypeUInt16);
+}
+
+TEST(WriteImage, PngHasTheDepthAskedForAndIsTaggedSrgb) {
+    const test::TempFolder folder;
+    for (const int bits : {8, 16}) {
+        ImageFileOptions options;
+        options.bits = bits;
+        writeImage(folder / "out.png", randomImage({4, 4}), options);
+        const std::string bytes = readBytes(folder / "out.png");
+        EXPECT_EQ(bytes[24], bits);  // IHDR: bit depth
+        EXPECT_EQ(bytes[25], 6);     // IHDR: colour with alpha
+        EXPECT_NE(bytes.find("sRGB"), std::string::npos);
+    }
+}
+
+TEST(WriteImage, PngClampsAndIsClearWhereAlphaIsZero) {
+    using Samples = std::vector<std::uint8_t>;
+    const auto stored = [](const Image& image) {
+        return writeAndRead<std::uint8_t>(image, "out.png", OIIO::TypeUInt8, {});
+    };
+    EXPECT_EQ(stored(onePixel(0.9f, -1, kInfinity, 0.5f)), (Samples{255, 0, 255, 128}));
+    EXPECT_EQ(stored(onePixel(1, 1, 1, 0)), (Samples{0, 0, 0, 0}));
+    EXPECT_EQ(stored(onePixel(1, kNan, 0, 7)), (Samples{255, 0, 0, 255}));
+    EXPECT_EQ(stored(onePixel(1, 1, 1, kNan)), (Samples{0, 0, 0, 0}));
+}
+
+TEST(WriteImage, ExrNeverStoresNanOrInfinity) {
+    const Image image = onePixel(kNan, kInfinity, -kInfinity, 1e6f);
+    EXPECT_EQ(writeAndRead<float>(image, "out.exr", OIIO::TypeFloat, {}),
+              (std::vector<float>{0, 65504, -65504, 65504}));
+    ImageFileOptions options;
+    options.floatExr = true;
+    constexpr float kLargest = std::numeric_limits<float>::max();
+    EXPECT_EQ(writeAndRead<float>(image, "out.exr", OIIO::TypeFloat, options),
+              (std::vector<float>{0, kLargest, -kLargest, 1e6f}));
+}
+
+TEST(WriteImage, SamePictureGivesSameBytesOnAnyNumberOfThreads) {
+    const test::TempFolder folder;
+    const Image image = randomImage({300, 200});
+    for (const std::string extension : {".exr", ".png"}) {
+        for (const int threads : {1, 2, 8}) {
+            const ThreadLimit limit(threads);
+            OIIO::attribute("threads", threads);
+            OIIO::attribute("exr_threads", threads);
+            writeImage(folder / (std::to_string(threads) + extension), image, {});
+        }
+        const std::string bytes = readBytes(folder / ("1" + extension));
+        EXPECT_GT(bytes.size(), 1000u);
+        EXPECT_TRUE(bytes == readBytes(folder / ("2" + extension))) << extension;
+        EXPECT_TRUE(bytes == readBytes(folder / ("8" + extension))) << extension;
+    }
+}
+
+TEST(WriteImage, NoticesAFullDisk) {
+    const test::TempFolder folder;
+    for (const char* name : {"out.exr", "out.png"}) {
+        fs::create_symlink("/dev/full", folder / name);
+        EXPECT_EQ(
+            errorOf([&] {
+                writeImage(folder / name, randomImage({4, 4}), {});
+            }),
+            "4: " + (folder / name).string() + ": cannot be written: No space left on device");
+        EXPECT_TRUE(fs::is_symlink(folder / name));
+    }
+    EXPECT_EQ(folder.count(), 2);
+}
+
+TEST(CheckImageFile, AcceptsWhatCanBeWrittenAndLeavesNothing) {
+    const test::TempFolder folder;
+    for (const char* name : {"a.exr", "a.png", "a.PNG"}) checkImageFile(folder / name, {});
+    EXPECT_EQ(folder.count(), 0);
+}
+
+TEST(CheckImageFile, RefusesWhatCannot) {
+    const auto check = [](const fs::path& file, const ImageFileOptions& options) {
+        return errorOf([&] { checkImageFile(file, options); });
+    };
+    EXPECT_EQ(check("out.gif", {}), "2: out.gif: got extension \".gif\"; expected .exr or .png");
+    EXPECT_EQ(check("out", {}), "2: out: got extension \"\"; expected .exr or .png");
+    ImageFileOptions twelve;
+    twelve.bits = 12;
+    EXPECT_EQ(check("out.png", twelve), "2: --bits: got 12; expected 8 or 16");
+    ImageFileOptions floats;
+    floats.floatExr = true;
+    EXPECT_EQ(check("out.png", floats), "2: --float: got out.png; expected an .exr file");
+    EXPECT_EQ(check("no_such_folder/out.png", {}),
+              "4: no_such_folder/out.png: cannot be written: No such file or directory");
+}
+
+TEST(WriteImage, RefusesAPictureWithoutPixels) {
+    EXPECT_EQ(errorOf([] { writeImage("out.png", Image(), {}); }),
+              "2: out.png: got 0x0 pixels; expected at least 1x1");
+}
+
+TEST(CompositeOver, PutsAStraightColourBehind) {
+    Image image({2, 1});
+    image.rgba = {0.25f, 0.5f, 0, 0.5f, 0, 0, 0, 0};
+    compositeOver(image, {1, 0.5f, 0.25f, 0.5f});
+    EXPECT_EQ(image.rgba,
+              (std::vector<float>{0.5f, 0.625f, 0.0625f, 0.75f, 0.5f, 0.25f, 0.125f, 0.5f}));
+}
+
+TEST(CompositeOver, ClearBackgroundChangesNothing) {
+    Image image = randomImage({9, 9});
+    const std::vector<float> before = image.rgba;
+    compositeOver(image, {1, 1, 1, 0});
+    EXPECT_EQ(image.rgba, before);
+}
+
+}  // namespace
+}  // namespace deltasplat
