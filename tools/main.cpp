@@ -1,2 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-int main() {}
+#include "program.h"
+#include "subcommands.h"
+
+int main(int argc, char** argv) {
+    using namespace deltasplat;
+    return runProgram({argv, argv + argc}, {addInfo, addRender, addSynth});
+}

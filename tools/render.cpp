@@ -1,1 +1,102 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/render.h"
+
+#include <cstdio>
+#include <memory>
+
+#include "deltasplat/atomic_file.h"
+#include "interrupt.h"
+#include "listener.h"
+#include "render_options.h"
+#include "render_stats.h"
+#include "subcommands.h"
+#include "version.h"
+
+namespace deltasplat {
+namespace {
+
+// Shares of the progress that reading and rendering take, measured on the engine data set.
+constexpr double kReadShare = 0.3;
+constexpr double kRenderShare = 0.95;
+
+double secondsSince(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+ImageFileOptions imageOptions(const RenderCommand& command, const RenderResult& result,
+                              const Session& session) {
+    ImageFileOptions options = command.image;
+    options.cameraFromWorld = result.camera.cameraFromWorld();
+    options.ndcFromWorld = result.camera.ndcFromWorld();
+    options.metadata = {
+        {"Software", "deltasplat " + programVersion()},
+        {"deltasplat:version", programVersion()},
+        {"deltasplat:commandLine", session.commandLine},
+        {"deltasplat:input", command.input.string()},
+        {"deltasplat:method", methodName(command.render.method)},
+        {"deltasplat:tolerance", "0"},
+        {"deltasplat:errorBound", "color 0, alpha 0"},
+    };
+    return options;
+}
+
+// Everything from here on is reading; what can be refused without it has been.
+Volume readInput(const RenderCommand& command, RenderOptions& options, ProgressDisplay& display) {
+    const Listener listener = display.stage(0, kReadShare);
+    const bool ramp = command.transferFunction.empty();
+    if (!ramp)
+        options.optics.transferFunction = readTransferFunction(command.transferFunction, listener);
+    if (options.optics.range && (ramp || !options.optics.transferFunction.normalized))
+        display.warn("--range: has no effect without a normalized transfer function");
+
+    Volume volume = readVolume(command.input, command.read, listener);
+    if (volume.empty()) {
+        display.warn(command.input.string() + ": grid '" + volume.name +
+                     "' has no active voxels; the picture is empty");
+    }
+    if (ramp) options.optics.transferFunction = defaultRamp(volume);
+    return volume;
+}
+
+void runRender(const RenderCommand& command, const Session& session) {
+    validate(command);
+    RenderOptions options = command.render;
+    RenderTimes times;
+    RenderResult result;
+    {
+        ProgressDisplay display(session.common.quiet);
+        const auto beginRead = std::chrono::steady_clock::now();
+        const Volume volume = readInput(command, options, display);
+        times.read = secondsSince(beginRead);
+
+        result = render(volume, options, display.stage(kReadShare, kRenderShare));
+        if (command.background) compositeOver(result.image, *command.background);
+
+        const Listener writing = display.stage(kRenderShare, 1);
+        writing.report(0);
+        const auto beginWrite = std::chrono::steady_clock::now();
+        writeImage(command.output, result.image, imageOptions(command, result, session));
+        times.write = secondsSince(beginWrite);
+        times.total = secondsSince(session.begin);
+        if (!command.stats.empty())
+            writeFileAtomically(command.stats, statsJson(result.stats, times));
+        writing.report(1);
+    }
+    if (session.common.verbose) std::fputs(statsSummary(result.stats, times).c_str(), stderr);
+}
+
+}  // namespace
+
+Subcommand addRender(CLI::App& program) {
+    const auto command = std::make_shared<RenderCommand>();
+    CLI::App& app = addSubcommand(
+        program, "render", "Renders one picture of a volume.",
+        {"deltasplat render smoke.vdb -o smoke.png --view iso --size 1024x1024 "
+         "--background 0,0,0",
+         "deltasplat render engine_256x256x128_uint8.raw.gz -o engine.exr --tf ct.json "
+         "--direction=-1,0.8,-0.6 --up 0,0,1"});
+    addRenderOptions(app, *command);
+    return {&app, [command](const Session& session) { runRender(*command, session); }};
+}
+
+}  // namespace deltasplat

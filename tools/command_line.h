@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/App.hpp>
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "parse.h"
+
+namespace deltasplat {
+
+/// Options that every subcommand has.
+struct CommonOptions {
+    bool quiet = false;
+    bool verbose = false;
+    int threads = 0;
+    std::string simd = "auto";
+};
+
+/// What a subcommand knows about the run it is part of.
+struct Session {
+    CommonOptions common;
+    std::string commandLine;  ///< as typed, program name without its folder
+    std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
+};
+
+/// A subcommand that has declared its options; run() validates them and does the work.
+struct Subcommand {
+    CLI::App* app = nullptr;
+    std::function<void(const Session&)> run;
+};
+
+/// Options shown under one heading of the help.
+class OptionGroup {
+  public:
+    OptionGroup(CLI::App& app, std::string title) : app_(app), title_(std::move(title)) {}
+
+    /// Declares an option with a value, or (without leading dashes) a positional argument.
+    /// @param names        for example "-o,--output"; the last one stands in messages
+    /// @param placeholder  what the help shows in place of the value
+    /// @param target       receives what `parse` makes of the text; must outlive the parsing
+    template <class T, class Target>
+    void addValue(const std::string& names, const std::string& placeholder, Target& target,
+                  Parser<T> parse, const std::string& help) {
+        const std::string name = names.substr(names.rfind(',') + 1);
+        app_.add_option_function<std::string>(
+                names,
+                [&target, parse, name](const std::string& text) {
+                    target = static_cast<Target>(parse(name, text));
+                },
+                help)
+            ->type_name(placeholder)
+            ->take_last()
+            ->group(title_);
+    }
+    void addFlag(const std::string& names, bool& target, const std::string& help) {
+        app_.add_flag(names, target, help)->group(title_);
+    }
+
+  private:
+    CLI::App& app_;
+    std::string title_;
+};
+
+/// Returns `help` with the default as it stands in an options struct: "help (default 512x512)".
+std::string withDefault(const std::string& help, const std::string& value);
+
+/// Declares a subcommand with an empty set of options.
+/// @param examples  command lines, shown below the help
+CLI::App& addSubcommand(CLI::App& program, const std::string& name, const std::string& summary,
+                        const std::vector<std::string>& examples);
+
+/// Declares `-h`, `--version`, `-q`, `-v`, `--threads` and `--simd`.
+void addCommonOptions(CLI::App& app, CommonOptions& options);
+
+/// @throw Error(kUsage) if the argument was not given
+void requireArgument(bool given, const std::string& name, const std::string& expected);
+
+/// Writes text to standard output.
+/// @throw Error(kOutput) if that fails
+void printOut(const std::string& text);
+
+}  // namespace deltasplat

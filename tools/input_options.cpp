@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "input_options.h"
+
+#include "deltasplat/error.h"
+
+namespace deltasplat {
+namespace {
+
+const char* levelSetName(bool toFog) {
+    return toFog ? "fog" : "keep";
+}
+
+std::string vectorText(const glm::dvec3& v) {
+    return joinNumbers({v.x, v.y, v.z}, ",");
+}
+
+Parser<bool> levelSet() {
+    return [](const std::string& option, const std::string& text) {
+        return choice({"fog", "keep"})(option, text) == "fog";
+    };
+}
+
+Parser<bool> endian() {
+    return [](const std::string& option, const std::string& text) {
+        return choice({"little", "big"})(option, text) == "big";
+    };
+}
+
+}  // namespace
+
+void addInputOptions(CLI::App& app, ReadOptions& options) {
+    OptionGroup vdb(app, "Input, .vdb");
+    vdb.addValue("--grid", "NAME", options.gridName, anyText(),
+                 "Grid to read (default: the first scalar grid;\n"
+                 "vector and point grids are never read)");
+    vdb.addValue("--level-set", "fog|keep", options.levelSetToFog, levelSet(),
+                 withDefault("Turn level sets into fog, or keep their distances",
+                             levelSetName(options.levelSetToFog)));
+
+    RawFormat& raw = options.raw;
+    OptionGroup group(app, "Input, .raw and .raw.gz");
+    group.addValue("--dims", "AxBxC", raw.dims, dimensions(),
+                   "Voxels along x (fastest), y, z (default: as in a name such as\n"
+                   "engine_256x256x128_uint8.raw.gz)");
+    group.addValue("--type", "TYPE", raw.type, anyText(),
+                   "uint8 int8 uint16 int16 uint32 int32 float32 or float64\n"
+                   "(default: as in the name)");
+    group.addValue("--endian", "little|big", raw.bigEndian, endian(),
+                   "Byte order (default: as in the name, else little)");
+    group.addValue("--spacing", "X,Y,Z", raw.spacing, positiveVector3(),
+                   withDefault("World units per voxel", vectorText(raw.spacing)));
+    group.addValue(
+        "--origin", "X,Y,Z", raw.origin, vector3(),
+        withDefault("World position of the centre of voxel 0,0,0", vectorText(raw.origin)));
+    group.addValue("--skip-bytes", "N", raw.skipBytes, wholeNumber(),
+                   withDefault("Header bytes to pass over", std::to_string(raw.skipBytes)));
+
+    OptionGroup any(app, "Input");
+    any.addValue("--nan", "VALUE", options.nanValue, number(),
+                 "Replaces NaN and infinities (default: they are an error)");
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace deltasplat {
+
+/// Makes the first SIGINT or SIGTERM only remembered (a second one ends the program at once), and
+/// lets writing to a closed pipe or beyond a file size limit fail instead of ending the program.
+void handleSignals();
+
+/// @throw Error(kInterrupted) if SIGINT or SIGTERM has arrived
+void throwIfInterrupted();
+
+}  // namespace deltasplat

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "listener.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "interrupt.h"
+
+namespace deltasplat {
+
+ProgressDisplay::ProgressDisplay(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO)) {}
+
+ProgressDisplay::~ProgressDisplay() {
+    clearBar();
+}
+
+Listener ProgressDisplay::stage(double begin, double end) {
+    Listener listener;
+    listener.progress = [this, begin, end](double share) {
+        throwIfInterrupted();
+        show(begin + (end - begin) * share);
+    };
+    listener.warning = [this](const std::string& line) { warn(line); };
+    return listener;
+}
+
+void ProgressDisplay::warn(const std::string& line) {
+    if (quiet_) return;
+    clearBar();
+    std::fprintf(stderr, "deltasplat: warning: %s\n", line.c_str());
+}
+
+void ProgressDisplay::show(double share) {
+    if (quiet_) return;
+    const int percent = int(100 * std::clamp(share, 0.0, 1.0) + 1e-9);
+    const int shown = terminal_ ? percent : percent / 10 * 10;
+    if (shown <= shownPercent_) return;
+    shownPercent_ = shown;
+    if (terminal_) {
+        drawBar(percent);
+    } else {
+        // Standard error is not buffered, so a reader of the pipe sees the line at once.
+        std::fprintf(stderr, "Progress: %d%%\n", shown);
+    }
+}
+
+void ProgressDisplay::drawBar(int percent) {
+    constexpr int kWidth = 40;
+    const std::string bar(std::size_t(percent * kWidth / 100), '#');
+    const double elapsed =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    const int left = percent > 0 ? int(elapsed * (100 - percent) / percent + 0.5) : 0;
+    std::fprintf(stderr, "\r[%-*s] %3d%%  %d:%02d left \033[K", kWidth, bar.c_str(), percent,
+                 left / 60, left % 60);
+}
+
+void ProgressDisplay::clearBar() {
+    if (terminal_ && shownPercent_ >= 0) std::fputs("\r\033[K", stderr);
+    if (terminal_) shownPercent_ = -1;
+}
+
+}  // namespace deltasplat

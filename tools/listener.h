@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "deltasplat/progress.h"
+
+namespace deltasplat {
+
+/// Shows on standard error how far the work is: a bar with the time left on a terminal, lines
+/// `Progress: NN%` for every ten percent elsewhere. Quiet, it shows neither progress nor warnings.
+class ProgressDisplay {
+  public:
+    explicit ProgressDisplay(bool quiet);
+    ~ProgressDisplay();
+    ProgressDisplay(const ProgressDisplay&) = delete;
+    ProgressDisplay& operator=(const ProgressDisplay&) = delete;
+
+    /// Returns a listener for the stage whose work is the share from `begin` to `end` of the whole;
+    /// it stops the work when the user interrupts. The display must outlive it.
+    Listener stage(double begin, double end);
+
+    /// Shows a one-line remark.
+    void warn(const std::string& line);
+
+  private:
+    void show(double share);
+    void drawBar(int percent);
+    void clearBar();
+
+    bool quiet_;
+    bool terminal_;
+    int shownPercent_ = -1;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace deltasplat

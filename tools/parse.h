@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace deltasplat {
+
+/// Turns the text given to an option into a value. Numbers are taken whole, finite and in range.
+/// @throw Error(kUsage) "<option>: got <text>; expected ..."
+template <class T>
+using Parser = std::function<T(const std::string& option, const std::string& text)>;
+
+Parser<std::string> anyText();
+/// One of the words, spelt exactly.
+Parser<std::string> choice(std::vector<std::string> words);
+Parser<double> number(double min = -std::numeric_limits<double>::infinity(),
+                      double max = std::numeric_limits<double>::infinity());
+Parser<double> positiveNumber();
+Parser<std::int64_t> wholeNumber(std::int64_t min = 0,
+                                 std::int64_t max = std::numeric_limits<std::int64_t>::max());
+/// `X,Y,Z`, each finite.
+Parser<glm::dvec3> vector3();
+/// `X,Y,Z`, each finite and greater than 0.
+Parser<glm::dvec3> positiveVector3();
+/// `LO,HI` with LO < HI.
+Parser<glm::dvec2> interval();
+/// `R,G,B` or `R,G,B,A`; colours at least 0, A (default 1) within 0..1.
+Parser<glm::vec4> color();
+/// `WxH`, whole numbers of at least 1.
+Parser<glm::ivec2> pixelSize();
+/// `AxBxC`, whole numbers; whether they make a volume is for its reader to say.
+Parser<glm::i64vec3> dimensions();
+
+/// Returns the shortest text that reads back as the number.
+std::string shortText(double value);
+/// Returns the numbers' texts, joined by `separator`.
+std::string joinNumbers(const std::vector<double>& values, const std::string& separator);
+/// Returns the words as one text: "a, b or c".
+std::string joinWords(const std::vector<std::string>& words, const std::string& last);
+
+}  // namespace deltasplat

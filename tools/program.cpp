@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "program.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+
+#include "deltasplat/error.h"
+#include "deltasplat/simd.h"
+#include "deltasplat/threads.h"
+#include "interrupt.h"
+#include "suggest.h"
+
+namespace deltasplat {
+namespace {
+
+// Writes an argument so that a shell reads it back as one word.
+std::string quoted(const std::string& argument) {
+    const std::string plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+    if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos)
+        return argument;
+    std::string text = "'";
+    for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+std::string commandLine(const std::vector<std::string>& arguments) {
+    std::string line = quoted(std::filesystem::path(arguments.at(0)).filename().string());
+    for (std::size_t i = 1; i < arguments.size(); ++i) line += " " + quoted(arguments[i]);
+    return line;
+}
+
+bool looksLikeOption(const std::string& argument) {
+    return argument.size() > 1 && argument[0] == '-';
+}
+
+std::vector<std::string> longOptions(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+std::vector<std::string> subcommandNames(const std::vector<Subcommand>& subcommands) {
+    std::vector<std::string> names;
+    for (const Subcommand& subcommand : subcommands) names.push_back(subcommand.app->get_name());
+    return names;
+}
+
+// Refuses the first argument that the program or the subcommand does not know.
+void refuseExtras(const CLI::App& app, const std::vector<Subcommand>& subcommands) {
+    const std::vector<std::string> extras = app.remaining();
+    if (extras.empty()) return;
+    const auto option = std::find_if(extras.begin(), extras.end(), looksLikeOption);
+    const bool isProgram = app.get_parent() == nullptr;
+    if (isProgram && !looksLikeOption(extras.front())) {
+        throw Error(ErrorCode::kUsage,
+                    "Unknown subcommand '" + extras.front() + "'." +
+                        suggestion(extras.front(), subcommandNames(subcommands)) + " Expected " +
+                        joinWords(subcommandNames(subcommands), "or"));
+    }
+    if (option != extras.end()) {
+        const std::string name = option->substr(0, option->find('='));
+        throw Error(ErrorCode::kUsage,
+                    "Unknown option '" + name + "'." + suggestion(name, longOptions(app)));
+    }
+    throw Error(ErrorCode::kUsage, "Unexpected argument '" + extras.front() + "'; see '" +
+                                       (isProgram ? "deltasplat" : "deltasplat " + app.get_name()) +
+                                       " --help'");
+}
+
+// Puts what CLI11 has to say into our words.
+Error usageError(const CLI::App& app, const CLI::ParseError& problem) {
+    const std::string text = problem.what();
+    const std::string name = text.substr(0, text.find(": "));
+    const CLI::Option* option = name.empty() ? nullptr : app.get_option_no_throw(name);
+    if (problem.get_name() == "ArgumentMismatch" && option != nullptr) {
+        const std::string type = option->get_type_name();
+        return Error(ErrorCode::kUsage, type.empty()
+                                            ? gotExpected(name, "a value", "none, it is a flag")
+                                            : gotExpected(name, "nothing", type));
+    }
+    return Error(ErrorCode::kUsage, text.substr(0, text.find('\n')));
+}
+
+// Parses the arguments; returns the subcommand to run, or nullptr if help or versions were shown.
+const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcommands,
+                        const std::vector<std::string>& arguments) {
+    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend() - 1);
+    const auto parsed = [&] {
+        return std::find_if(subcommands.begin(), subcommands.end(),
+                            [](const Subcommand& s) { return s.app->parsed(); });
+    };
+    try {
+        program.parse(reversed);
+    } catch (const CLI::Success& shown) {
+        std::ostringstream text;
+        program.exit(shown, text, text);
+        printOut(text.str());
+        return nullptr;
+    } catch (const CLI::ParseError& problem) {
+        throw usageError(parsed() == subcommands.end() ? program : *parsed()->app, problem);
+    }
+    refuseExtras(program, subcommands);
+    if (parsed() == subcommands.end()) {
+        throw Error(ErrorCode::kUsage, gotExpected("subcommand", "nothing",
+                                                   joinWords(subcommandNames(subcommands), "or")) +
+                                           " (see 'deltasplat --help')");
+    }
+    refuseExtras(*parsed()->app, subcommands);
+    return &*parsed();
+}
+
+void execute(const std::vector<std::string>& arguments,
+             const std::vector<AddSubcommand>& addSubcommands) {
+    Session session;
+    session.commandLine = commandLine(arguments);
+
+    CLI::App program("Renders sparse volumes by splatting what changes from slice to slice.",
+                     "deltasplat");
+    program.get_formatter()->column_width(32);
+    program.require_subcommand(0, 1);
+    program.allow_extras();
+    program.footer("'deltasplat SUBCOMMAND --help' explains a subcommand.");
+    addCommonOptions(program, session.common);
+    std::vector<Subcommand> subcommands;
+    for (const AddSubcommand add : addSubcommands) {
+        subcommands.push_back(add(program));
+        addCommonOptions(*subcommands.back().app, session.common);
+    }
+
+    const Subcommand* const subcommand = parse(program, subcommands, arguments);
+    if (subcommand == nullptr) return;
+    setSimdLevel(session.common.simd);
+    const ThreadLimit limit(session.common.threads);
+    subcommand->run(session);
+}
+
+int complain(const std::vector<std::string>& arguments, const std::string& what, ErrorCode code) {
+    std::fprintf(stderr, "deltasplat: %s\n", what.c_str());
+    const auto asked = [](const std::string& a) { return a == "-v" || a == "--verbose"; };
+    // Looked up as typed, because what failed may be the parsing.
+    if (std::any_of(arguments.begin(), arguments.end(), asked))
+        std::fprintf(stderr, "  command line: %s\n", commandLine(arguments).c_str());
+    return int(code);
+}
+
+}  // namespace
+
+int runProgram(const std::vector<std::string>& arguments,
+               const std::vector<AddSubcommand>& addSubcommands) {
+    handleSignals();
+    try {
+        execute(arguments, addSubcommands);
+        return 0;
+    } catch (const Error& error) {
+        return complain(arguments, error.what(), error.code());
+    } catch (const std::bad_alloc&) {
+        return complain(arguments, "out of memory", ErrorCode::kFailed);
+    } catch (const std::exception& error) {
+        return complain(arguments, error.what(), ErrorCode::kFailed);
+    }
+}
+
+}  // namespace deltasplat

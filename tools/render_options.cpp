@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_options.h"
+
+#include "deltasplat/atomic_file.h"
+#include "deltasplat/error.h"
+#include "input_options.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr double kMinSigma = 0.2;
+constexpr double kMaxSigma = 4;
+
+Parser<Method> method() {
+    return [](const std::string& option, const std::string& text) {
+        const Method methods[] = {Method::kAuto, Method::kDelta, Method::kSparse,
+                                  Method::kTraditional};
+        std::vector<std::string> names;
+        for (const Method candidate : methods) {
+            if (methodName(candidate) == text) return candidate;
+            names.push_back(methodName(candidate));
+        }
+        throw Error(ErrorCode::kUsage, gotExpected(option, text, joinWords(names, "or")));
+    };
+}
+
+Parser<std::int64_t> bits() {
+    return [](const std::string& option, const std::string& text) {
+        return choice({"8", "16"})(option, text) == "8" ? 8 : 16;
+    };
+}
+
+std::string sizeText(const glm::ivec2& size) {
+    return joinNumbers({double(size.x), double(size.y)}, "x");
+}
+
+void addCameraOptions(CLI::App& app, RenderCommand& command) {
+    CameraOptions& camera = command.render.camera;
+    OptionGroup group(app, "Camera");
+    group.addValue("--projection", "ortho", command.projection, choice({"ortho"}),
+                   withDefault("Parallel lines of sight", command.projection));
+    group.addValue("--view", "NAME", camera.view, anyText(),
+                   withDefault("front back left right top bottom or iso; front looks\n"
+                               "along -z with y up",
+                               camera.view));
+    group.addValue("--azimuth", "DEG", camera.azimuthDegrees, number(),
+                   withDefault("Turns the camera to its right, about the up axis",
+                               shortText(camera.azimuthDegrees)));
+    group.addValue(
+        "--elevation", "DEG", camera.elevationDegrees, number(),
+        withDefault("Then raises it over the target", shortText(camera.elevationDegrees)));
+    group.addValue("--roll", "DEG", camera.rollDegrees, number(),
+                   withDefault("Then turns it clockwise about the line of sight",
+                               shortText(camera.rollDegrees)));
+    group.addValue("--direction", "X,Y,Z", camera.direction, vector3(),
+                   "The way the line of sight travels, in world space; replaces\n"
+                   "--view. A first number below 0 may need --direction=-1,0,0");
+    group.addValue("--up", "X,Y,Z", camera.up, vector3(),
+                   "What is up in the picture (default 0,1,0)");
+    group.addValue("--target", "X,Y,Z", camera.targetWorld, vector3(),
+                   "World position in the middle of the picture (default: the\n"
+                   "middle of the volume)");
+    group.addValue("--frame-width", "W", camera.frameWidthWorld, positiveNumber(),
+                   "Width of the picture in world units (default: the volume fits)");
+    group.addValue("--size", "WxH", camera.sizePixels, pixelSize(),
+                   withDefault("Width and height in pixels", sizeText(camera.sizePixels)));
+}
+
+void addOpticsOptions(CLI::App& app, RenderCommand& command) {
+    Optics& optics = command.render.optics;
+    OptionGroup group(app, "Optics");
+    group.addValue("--mode", "composite", command.mode, choice({"composite"}),
+                   withDefault("Emission and absorption, front to back", command.mode));
+    group.addValue("--tf", "FILE", command.transferFunction, anyText(),
+                   "Transfer function, a ParaView JSON file (default: a grey ramp\n"
+                   "over the 1st to 99th percentile of the values)");
+    group.addValue("--range", "LO,HI", optics.range, interval(),
+                   "Data values that 0 and 1 of a normalized transfer function\n"
+                   "stand for (default: 0,255 for uint8, else all values)");
+    group.addValue("--unit-distance", "U", optics.unitDistance, positiveNumber(),
+                   "World units over which a voxel has the transfer function's\n"
+                   "opacity (default: the smallest voxel size)");
+    group.addValue("--extinction", "S", optics.extinctionScale,
+                   number(0, std::numeric_limits<double>::max()),
+                   withDefault("Scales the extinction", shortText(optics.extinctionScale)));
+    group.addValue("--background", "R,G,B[,A]", command.background, color(),
+                   "Scene-linear colour behind the volume (default: transparent)");
+}
+
+void addSplattingOptions(CLI::App& app, RenderOptions& options) {
+    OptionGroup group(app, "Splatting");
+    group.addValue("--method", "NAME", options.method, method(),
+                   withDefault("auto, delta, sparse or traditional: the same picture, bit for\n"
+                               "bit, in different times",
+                               methodName(options.method)));
+    group.addValue("--sigma", "V", options.sigma, number(kMinSigma, kMaxSigma),
+                   withDefault("Standard deviation of the footprint in voxels, " +
+                                   shortText(kMinSigma) + " to " + shortText(kMaxSigma),
+                               shortText(options.sigma)));
+    group.addValue("--resolution", "R", options.resolution, wholeNumber(1, kMaxResolution),
+                   "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
+                       " (default: chosen from the screen)");
+}
+
+void addOutputOptions(CLI::App& app, RenderCommand& command) {
+    OptionGroup group(app, "Output");
+    group.addValue("-o,--output", "FILE", command.output, anyText(),
+                   "Picture to write: .exr (scene-linear, premultiplied) or\n"
+                   ".png (sRGB)");
+    group.addFlag("--float", command.image.floatExr, "Store 32-bit floats in an .exr, not halves");
+    group.addValue("--bits", "8|16", command.image.bits, bits(),
+                   withDefault("Bits per channel of a .png", std::to_string(command.image.bits)));
+    group.addValue("--stats", "FILE", command.stats, anyText(),
+                   "JSON file to write: what was done, how long it took in seconds");
+}
+
+// Two names of one file would make one output overwrite the other, or the input.
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code ignored;
+    return weakly_canonical(a, ignored) == weakly_canonical(b, ignored);
+}
+
+}  // namespace
+
+void addRenderOptions(CLI::App& app, RenderCommand& command) {
+    OptionGroup arguments(app, "Arguments");
+    arguments.addValue("INPUT", "", command.input, anyText(),
+                       "Volume to render: .vdb, .raw or .raw.gz");
+    addOutputOptions(app, command);
+    addCameraOptions(app, command);
+    addOpticsOptions(app, command);
+    addSplattingOptions(app, command.render);
+    addInputOptions(app, command.read);
+}
+
+void validate(const RenderCommand& command) {
+    requireArgument(!command.input.empty(), "INPUT", "the volume file to render");
+    requireArgument(!command.output.empty(), "--output", "the picture file to write");
+    checkImageFile(command.output, command.image);
+
+    // Any box will do to have the camera's own options checked.
+    makeCamera(command.render.camera, IndexBox{glm::ivec3(0), glm::ivec3(1)}, glm::dmat4(1));
+
+    if (command.stats.empty()) return;
+    if (sameFile(command.stats, command.output) || sameFile(command.stats, command.input)) {
+        throw Error(ErrorCode::kUsage, gotExpected("--stats", command.stats.string(),
+                                                   "another file than the input and the picture"));
+    }
+    // Asked now, rather than after hours of work.
+    const AtomicFile probe(command.stats);
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_stats.h"
+
+#include <sys/resource.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "deltasplat/simd.h"
+#include "deltasplat/threads.h"
+#include "json_text.h"
+
+namespace deltasplat {
+namespace {
+
+std::uint64_t peakBytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::uint64_t(usage.ru_maxrss) * 1024;
+}
+
+std::string axisName(int axis) {
+    return std::string(1, char('x' + axis));
+}
+
+}  // namespace
+
+std::string statsJson(const RenderStats& stats, const RenderTimes& times) {
+    const nlohmann::ordered_json seconds = {
+        {"read", times.read},
+        {"prepare", stats.prepareSeconds},
+        {"splat", stats.splatSeconds},
+        {"composite", stats.compositeSeconds},
+        {"warp", stats.warpSeconds},
+        {"write", times.write},
+        {"render", stats.renderSeconds},
+        {"total", times.total},
+    };
+    return dumpJson({
+        {"method", methodName(stats.method)},
+        {"mode", "composite"},
+        {"voxels", stats.voxels},
+        {"visible", stats.visible},
+        {"deltas", stats.deltas},
+        {"stamps", stats.stamps},
+        {"slices", stats.slices},
+        {"slabs", stats.slabs},
+        {"slice_axis", axisName(stats.sliceAxis)},
+        {"resolution", stats.resolution},
+        {"footprint", stats.footprint},
+        {"seconds", seconds},
+        {"peak_bytes", peakBytes()},
+        {"threads", threadCount()},
+        {"simd", simdLevel()},
+        {"tolerance", 0},
+        {"error_bound", {{"color", 0}, {"alpha", 0}}},
+    });
+}
+
+std::string statsSummary(const RenderStats& stats, const RenderTimes& times) {
+    char text[512];
+    std::snprintf(text, sizeof text,
+                  "method %s: %llu stamps (%llu of %llu voxels visible, %llu deltas)\n"
+                  "%d slices along %s in %d slabs, %d sheet pixels a voxel, footprint %dx%d\n"
+                  "seconds: read %.3f, prepare %.3f, render %.3f (splat %.3f, composite %.3f, "
+                  "warp %.3f), write %.3f, total %.3f\n",
+                  methodName(stats.method).c_str(), (unsigned long long)stats.stamps,
+                  (unsigned long long)stats.visible, (unsigned long long)stats.voxels,
+                  (unsigned long long)stats.deltas, stats.slices, axisName(stats.sliceAxis).c_str(),
+                  stats.slabs, stats.resolution, stats.footprint, stats.footprint, times.read,
+                  stats.prepareSeconds, stats.renderSeconds, stats.splatSeconds,
+                  stats.compositeSeconds, stats.warpSeconds, times.write, times.total);
+    return text;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "deltasplat/render.h"
+
+namespace deltasplat {
+
+/// Wall-clock seconds of what the program does around the rendering.
+struct RenderTimes {
+    double read = 0;
+    double write = 0;
+    double total = 0;
+};
+
+/// Returns the JSON object of `render --stats`.
+std::string statsJson(const RenderStats& stats, const RenderTimes& times);
+
+/// Returns a few lines for people.
+std::string statsSummary(const RenderStats& stats, const RenderTimes& times);
+
+}  // namespace deltasplat

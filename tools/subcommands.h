@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "command_line.h"
+
+namespace deltasplat {
+
+Subcommand addInfo(CLI::App& program);
+Subcommand addRender(CLI::App& program);
+Subcommand addSynth(CLI::App& program);
+
+}  // namespace deltasplat
