@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "deltasplat/error.h"
 #include "number_text.h"
@@ -100,19 +99,24 @@ ClassTable classify(const Volume& volume, const Optics& optics, double sliceStep
 }
 
 std::vector<Slot> mergeAlikeSlots(const ClassTable& table) {
-    // Most slots are empty, and those that are not are few or sorted cheaply; equal entries end up
-    // together with the smallest slot first.
-    std::vector<std::pair<std::uint64_t, Slot>> visible;
-    for (std::size_t slot = 0; slot < table.entries.size(); ++slot) {
-        const std::uint64_t key = packed(table.entries[slot]);
-        if (key != 0) visible.emplace_back(key, Slot(slot));
-    }
-    std::sort(visible.begin(), visible.end());
+    // An open hash table at most half full: each place holds the first slot that got there, so
+    // that the result does not depend on how keys are spread. Several times as fast as sorting.
+    constexpr int kPlaceBits = 17;
+    constexpr std::uint64_t kPlaces = 1 << kPlaceBits;
+    constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio (D. Knuth)
+    static_assert(kPlaces >= 2 * kCodeCount);
 
+    std::vector<Slot> firstSlots(kPlaces, kEmptySlot);
     std::vector<Slot> slotMap(table.entries.size(), kEmptySlot);
-    for (std::size_t i = 0; i < visible.size(); ++i) {
-        const bool alike = i > 0 && visible[i].first == visible[i - 1].first;
-        slotMap[visible[i].second] = alike ? slotMap[visible[i - 1].second] : visible[i].second;
+    for (std::size_t slot = 1; slot < table.entries.size(); ++slot) {
+        const std::uint64_t key = packed(table.entries[slot]);
+        if (key == 0) continue;
+        std::uint64_t place = key * kSpread >> (64 - kPlaceBits);
+        while (firstSlots[place] != kEmptySlot && packed(table.entries[firstSlots[place]]) != key) {
+            place = (place + 1) % kPlaces;
+        }
+        if (firstSlots[place] == kEmptySlot) firstSlots[place] = Slot(slot);
+        slotMap[slot] = firstSlots[place];
     }
     return slotMap;
 }

@@ -84,7 +84,8 @@ class TreeBuilder {
     bool parse_error(std::size_t, const std::string& token, const Json::exception& error) {
         constexpr int kNumberOverflow = 406;
         if (error.id == kNumberOverflow) fail(file_, line(), shortened(token), "a finite number");
-        const bool atEnd = token.empty() || token == "<EOF>";
+        const bool atEnd =
+            std::string_view(error.what()).find("unexpected end of input") != std::string::npos;
         fail(file_, line(), atEnd ? "the end of the file" : shortened(token), "valid JSON");
     }
 

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/view/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "deltasplat/error.h"
+
+namespace deltasplat {
+namespace {
+
+const IndexBox kBox{{-3, 2, 5}, {7, 10, 11}};
+const glm::dmat4 kUnit(1);
+
+void expectNear(const glm::dvec3& a, const glm::dvec3& b, double within = 1e-12) {
+    EXPECT_LE(glm::distance(a, b), within)
+        << a.x << ' ' << a.y << ' ' << a.z << " and " << b.x << ' ' << b.y << ' ' << b.z;
+}
+
+Camera cameraOf(const std::function<void(CameraOptions&)>& set, const IndexBox& box = kBox,
+                const glm::dmat4& worldFromIndex = kUnit) {
+    CameraOptions options;
+    set(options);
+    return makeCamera(options, box, worldFromIndex);
+}
+
+TEST(Camera, namedViewsLookWhereTheySay) {
+    const struct {
+        const char* name;
+        glm::dvec3 direction, right, up;
+    } views[] = {
+        {"front", {0, 0, -1}, {1, 0, 0}, {0, 1, 0}}, {"back", {0, 0, 1}, {-1, 0, 0}, {0, 1, 0}},
+        {"left", {1, 0, 0}, {0, 0, 1}, {0, 1, 0}},   {"right", {-1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
+        {"top", {0, -1, 0}, {1, 0, 0}, {0, 0, -1}},  {"bottom", {0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
+    };
+    for (const auto& view : views) {
+        SCOPED_TRACE(view.name);
+        const Camera camera = cameraOf([&](CameraOptions& o) { o.view = view.name; });
+        EXPECT_EQ(camera.direction, view.direction);
+        EXPECT_EQ(camera.right, view.right);
+        EXPECT_EQ(camera.up, view.up);
+    }
+    const Camera iso = cameraOf([](CameraOptions& o) { o.view = "iso"; });
+    expectNear(iso.direction, glm::dvec3(-1) / std::sqrt(3.0));
+    expectNear(iso.right, glm::dvec3(1, 0, -1) / std::sqrt(2.0));
+    expectNear(iso.up, glm::dvec3(-1, 2, -1) / std::sqrt(6.0));
+}
+
+TEST(Camera, quarterTurnsLeadExactlyToTheNamedViews) {
+    const struct {
+        double azimuth, elevation, roll;
+        const char* same;
+    } turns[] = {{90, 0, 0, "right"},  {180, 0, 0, "back"},  {-90, 0, 0, "left"},
+                 {270, 0, 0, "left"},  {360, 0, 0, "front"}, {0, 90, 0, "top"},
+                 {0, -90, 0, "bottom"}};
+    for (const auto& turn : turns) {
+        SCOPED_TRACE(turn.same);
+        const Camera turned = cameraOf([&](CameraOptions& o) {
+            o.azimuthDegrees = turn.azimuth;
+            o.elevationDegrees = turn.elevation;
+        });
+        const Camera named = cameraOf([&](CameraOptions& o) { o.view = turn.same; });
+        EXPECT_EQ(turned.direction, named.direction);
+        EXPECT_EQ(turned.right, named.right);
+        EXPECT_EQ(turned.up, named.up);
+    }
+}
+
+TEST(Camera, anglesTurnTheCameraAsVtkDoes) {
+    const double rest = std::sqrt(0.75);
+    const Camera azimuth = cameraOf([](CameraOptions& o) { o.azimuthDegrees = 30; });
+    expectNear(-azimuth.direction, {0.5, 0, rest});  // the camera moved to its right
+    expectNear(azimuth.up, {0, 1, 0});
+    const Camera elevation = cameraOf([](CameraOptions& o) { o.elevationDegrees = 30; });
+    expectNear(-elevation.direction, {0, 0.5, rest});  // the camera rose
+    expectNear(elevation.up, {0, rest, -0.5});
+    const Camera roll = cameraOf([](CameraOptions& o) { o.rollDegrees = 30; });
+    expectNear(roll.direction, {0, 0, -1});
+    expectNear(roll.up, {0.5, rest, 0});  // its head went to the right
+    expectNear(roll.right, {rest, -0.5, 0});
+}
+
+TEST(Camera, azimuthTurnsAboutTheUpThatWasGiven) {
+    const Camera camera = cameraOf([](CameraOptions& o) {
+        o.direction = glm::dvec3(0, -1, -1);
+        o.azimuthDegrees = 90;
+    });
+    expectNear(camera.direction, glm::dvec3(-1, -1, 0) / std::sqrt(2.0));
+    expectNear(camera.right, {0, 0, -1});
+}
+
+TEST(Camera, axesAreARightHandedOrthonormalBasis) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> number(-1, 1);
+    for (int i = 0; i < 200; ++i) {
+        const Camera camera = cameraOf([&](CameraOptions& o) {
+            o.direction = glm::dvec3(number(random), number(random), number(random)) * 1e200;
+            o.up = glm::dvec3(number(random), number(random), number(random)) * 1e-200;
+            o.azimuthDegrees = 400 * number(random);
+            o.elevationDegrees = 400 * number(random);
+            o.rollDegrees = 400 * number(random);
+        });
+        expectNear(glm::cross(camera.right, camera.up), -camera.direction, 1e-9);
+        EXPECT_NEAR(glm::length(camera.right), 1, 1e-9);
+        EXPECT_NEAR(glm::length(camera.up), 1, 1e-9);
+        EXPECT_NEAR(glm::dot(camera.right, camera.up), 0, 1e-9);
+    }
+}
+
+TEST(Camera, pixelsStartTopLeftAndTheTargetIsInTheMiddle) {
+    const Camera camera = cameraOf([](CameraOptions& o) {
+        o.targetWorld = glm::dvec3(10, 20, 30);
+        o.frameWidthWorld = 8;
+        o.sizePixels = {4, 2};
+    });
+    expectNear(camera.worldFromPixel({2, 1}), {10, 20, 30});
+    expectNear(camera.worldFromPixel({0, 0}), {6, 22, 30});
+    expectNear(camera.worldFromPixel({4, 2}), {14, 18, 30});
+    EXPECT_EQ(camera.pixelFromWorld({14, 18, -7}), glm::dvec2(4, 2));
+}
+
+TEST(Camera, pixelAndWorldAreEachOthersInverse) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> number(-1, 1);
+    for (int i = 0; i < 200; ++i) {
+        const Camera camera = cameraOf([&](CameraOptions& o) {
+            o.direction = glm::dvec3(number(random), number(random), number(random));
+            o.rollDegrees = 180 * number(random);
+            o.targetWorld = 100.0 * glm::dvec3(number(random), number(random), number(random));
+            o.sizePixels = {640, 480};
+        });
+        const glm::dvec2 pixel(640 * number(random), 480 * number(random));
+        const glm::dvec3 world = camera.worldFromPixel(pixel) + 9.0 * camera.direction;
+        EXPECT_LE(glm::distance(camera.pixelFromWorld(world), pixel), 1e-9);
+    }
+}
+
+TEST(Camera, matricesAgreeWithPixels) {
+    const Camera camera = cameraOf([](CameraOptions& o) {
+        o.view = "iso";
+        o.rollDegrees = 20;
+        o.sizePixels = {300, 200};
+    });
+    const glm::dvec3 world(3, -4, 5);
+    const glm::dvec4 inCamera = camera.cameraFromWorld() * glm::dvec4(world, 1);
+    const glm::dvec3 offset = world - camera.targetWorld;
+    expectNear(glm::dvec3(inCamera),
+               {glm::dot(offset, camera.right), glm::dot(offset, camera.up),
+                -glm::dot(offset, camera.direction)},
+               1e-11);
+    EXPECT_EQ(inCamera.w, 1);
+    const glm::dvec4 inNdc = camera.ndcFromWorld() * glm::dvec4(world, 1);
+    const glm::dvec2 pixel = camera.pixelFromWorld(world);
+    EXPECT_NEAR(inNdc.x, pixel.x / 150 - 1, 1e-12);
+    EXPECT_NEAR(inNdc.y, 1 - pixel.y / 100, 1e-12);
+    EXPECT_NEAR(inNdc.z, inCamera.z / (camera.frameWidthWorld / 2), 1e-12);
+}
+
+// How far the projected box reaches from the picture's edges: 0 = touches, negative = sticks out.
+glm::dvec2 marginOf(const Camera& camera, const IndexBox& box, const glm::dmat4& worldFromIndex) {
+    glm::dvec2 low(1e300), high(-1e300);
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 index(corner & 1 ? box.max.x : box.min.x,
+                               corner & 2 ? box.max.y : box.min.y,
+                               corner & 4 ? box.max.z : box.min.z, 1);
+        const glm::dvec2 pixel = camera.pixelFromWorld(glm::dvec3(worldFromIndex * index));
+        low = glm::min(low, pixel);
+        high = glm::max(high, pixel);
+    }
+    EXPECT_LE(glm::distance(low + high, glm::dvec2(camera.sizePixels)), 1e-6);
+    return low;
+}
+
+TEST(Camera, theDefaultFrameJustHoldsTheBox) {
+    glm::dmat4 sheared(1);
+    sheared[0] = {2, 0.5, 0, 0};
+    sheared[1] = {-0.25, 0.5, 1, 0};
+    sheared[2] = {0.5, 0.5, -3, 0};
+    sheared[3] = {100, -200, 300, 1};
+    for (const glm::ivec2 size :
+         {glm::ivec2(512, 512), glm::ivec2(640, 100), glm::ivec2(90, 400)}) {
+        for (const char* view : {"front", "left", "top", "iso"}) {
+            for (const glm::dmat4& worldFromIndex : {kUnit, sheared}) {
+                const auto set = [&](CameraOptions& o) {
+                    o.view = view;
+                    o.azimuthDegrees = 10;
+                    o.sizePixels = size;
+                };
+                const Camera camera = cameraOf(set, kBox, worldFromIndex);
+                const glm::dvec2 margin = marginOf(camera, kBox, worldFromIndex);
+                EXPECT_NEAR(std::min(margin.x, margin.y), 0, 1e-9) << view << ' ' << size.x;
+            }
+        }
+    }
+}
+
+TEST(Camera, theFrameOfASquarePictureIsTheLargerExtent) {
+    EXPECT_EQ(cameraOf([](CameraOptions&) {}).frameWidthWorld, 10);
+    EXPECT_EQ(cameraOf([](CameraOptions& o) { o.view = "left"; }).frameWidthWorld, 8);
+    EXPECT_EQ(cameraOf([](CameraOptions&) {}).targetWorld, glm::dvec3(2, 6, 8));
+}
+
+TEST(Camera, aTargetMovesThePictureAndKeepsItsFrame) {
+    const Camera camera = cameraOf([](CameraOptions& o) { o.targetWorld = glm::dvec3(1, 2, 3); });
+    EXPECT_EQ(camera.targetWorld, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(camera.frameWidthWorld, 10);
+}
+
+TEST(Camera, onePointIsFramedAsOneVoxel) {
+    glm::dmat4 worldFromIndex(1);
+    worldFromIndex[0][0] = 3;
+    worldFromIndex[1][1] = 0.5;
+    worldFromIndex[3] = {7, 8, 9, 1};
+    const auto front = [](CameraOptions&) {};
+    const Camera point = cameraOf(front, {{2, 2, 2}, {2, 2, 2}}, worldFromIndex);
+    EXPECT_EQ(point.frameWidthWorld, 0.5);
+    EXPECT_EQ(point.targetWorld, glm::dvec3(13, 9, 11));
+    EXPECT_EQ(cameraOf(front, {{2, 2, 2}, {2, 2, 9}}, worldFromIndex).frameWidthWorld, 0.5);
+    const Camera empty = cameraOf(front, IndexBox(), worldFromIndex);
+    EXPECT_EQ(empty.frameWidthWorld, 0.5);
+    EXPECT_EQ(empty.targetWorld, glm::dvec3(7, 8, 9));
+}
+
+TEST(Camera, holdsTheLargestSizesAndBoxes) {
+    const int most = std::numeric_limits<int>::max();
+    const int least = std::numeric_limits<int>::min();
+    const Camera camera = cameraOf([&](CameraOptions& o) { o.sizePixels = glm::ivec2(most); },
+                                   {glm::ivec3(least), glm::ivec3(most)});
+    EXPECT_EQ(camera.frameWidthWorld, 4294967295.0);
+    EXPECT_EQ(camera.targetWorld, glm::dvec3(-0.5));
+    EXPECT_EQ(camera.pixelFromWorld(camera.targetWorld), glm::dvec2(most / 2.0));
+}
+
+std::string messageOf(const std::function<void(CameraOptions&)>& set,
+                      ErrorCode code = ErrorCode::kUsage,
+                      const glm::dmat4& worldFromIndex = kUnit) {
+    try {
+        cameraOf(set, kBox, worldFromIndex);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), code);
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(Camera, refusesWhatCannotBeMeant) {
+    EXPECT_EQ(messageOf([](CameraOptions& o) { o.view = "frnt"; }),
+              "--view: got frnt; expected one of front, back, left, right, top, bottom, iso");
+    EXPECT_EQ(messageOf([](CameraOptions& o) { o.direction = glm::dvec3(0); }),
+              "--direction: got 0,0,0; expected three finite numbers, not all of them 0");
+    EXPECT_EQ(messageOf([](CameraOptions& o) { o.direction = glm::dvec3(1, NAN, 0); }),
+              "--direction: got 1,nan,0; expected three finite numbers, not all of them 0");
+    EXPECT_EQ(messageOf([](CameraOptions& o) { o.up = glm::dvec3(0); }),
+              "--up: got 0,0,0; expected three finite numbers, not all of them 0");
+    EXPECT_EQ(messageOf([](CameraOptions& o) { o.direction = glm::dvec3(0, 2, 0); }),
+              "--direction: got 0,2,0 as direction, parallel to up 0,1,0; expected directions that "
+              "differ");
+    EXPECT_EQ(
+        messageOf([](CameraOptions& o) { o.up = glm::dvec3(0, 0, 1); }),
+        "--up: got 0,0,-1 as direction, parallel to up 0,0,1; expected directions that differ");
+    EXPECT_EQ(messageOf([](CameraOptions& o) { o.frameWidthWorld = 0; }),
+              "--frame-width: got 0; expected a number > 0");
+    EXPECT_EQ(messageOf([](CameraOptions& o) {
+                  o.sizePixels = {512, 0};
+              }),
+              "--size: got 512x0; expected WxH, each at least 1");
+    EXPECT_EQ(messageOf([](CameraOptions& o) { o.azimuthDegrees = INFINITY; }),
+              "--azimuth: got inf; expected a finite number");
+    EXPECT_EQ(messageOf([](CameraOptions& o) { o.targetWorld = glm::dvec3(0, INFINITY, 0); }),
+              "--target: got 0,inf,0; expected three finite numbers");
+}
+
+TEST(Camera, refusesAFlatWorld) {
+    glm::dmat4 flat(1);
+    flat[2] = {1, 1, 0, 0};
+    EXPECT_EQ(messageOf([](CameraOptions&) {}, ErrorCode::kInput, flat),
+              "worldFromIndex: got voxels of volume 0; expected a finite transform that can be "
+              "inverted");
+}
+
+}  // namespace
+}  // namespace deltasplat

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/optics/class_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "deltasplat/error.h"
+
+namespace deltasplat {
+namespace {
+
+Volume volumeWithCodes(const std::vector<int>& codes) {
+    Volume volume;
+    volume.type = "uint16";
+    volume.codeBook = CodeBook::integer();
+    volume.histogram.assign(kCodeCount, 0);
+    for (const int code : codes) volume.histogram[code] = 1;
+    volume.activeCount = codes.size();
+    volume.box = {glm::ivec3(0), glm::ivec3(int(codes.size()) - 1, 0, 0)};
+    volume.valueMin = codes.front();
+    volume.valueMax = codes.back();
+    return volume;
+}
+
+// Opacity x / 100 and colour (x / 100, 0, 1), scene-linear.
+Optics ramp() {
+    Optics optics;
+    optics.transferFunction.linearColors = true;
+    optics.transferFunction.colors = {{0, {0, 0, 1}}, {100, {1, 0, 1}}};
+    optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {100, 1, 0.5, 0}};
+    return optics;
+}
+
+double channel(const ClassTable& table, int code, int c) {
+    return table.entries[code + 1][c] * table.scale[c];
+}
+
+TEST(Classify, followsTheFormulaWithinHalfAUnit) {
+    const Volume volume = volumeWithCodes({0, 10, 30, 60});
+    Optics optics = ramp();
+    optics.unitDistance = 2;
+    optics.extinctionScale = 3;
+    const double step = 1.25;
+    const ClassTable table = classify(volume, optics, step);
+    ASSERT_EQ(table.entries.size(), std::size_t(kSlotCount));
+    for (const int code : {0, 10, 30, 60}) {
+        const double extinction = -std::log(1 - code / 100.0) / 2 * 3;
+        const double alpha = 1 - std::exp(-extinction * step);
+        EXPECT_NEAR(channel(table, code, 3), alpha, table.scale.a * 0.501) << code;
+        EXPECT_NEAR(channel(table, code, 0), alpha * code / 100, table.scale.r * 0.501) << code;
+        EXPECT_NEAR(channel(table, code, 2), alpha, table.scale.b * 0.501) << code;
+        EXPECT_EQ(table.entries[code + 1][1], 0);
+    }
+    EXPECT_EQ(table.scale.g, 0);
+    for (const int c : {0, 2, 3}) EXPECT_EQ(table.entries[61][c], ClassTable::kMax) << c;
+}
+
+TEST(Classify, leavesCodesThatDoNotOccurEmpty) {
+    const ClassTable table = classify(volumeWithCodes({10, 30}), ramp(), 1);
+    for (int slot = 0; slot < kSlotCount; ++slot) {
+        const bool occurs = slot == 11 || slot == 31;
+        EXPECT_EQ(table.entries[slot][3] != 0, occurs) << slot;
+    }
+}
+
+TEST(Classify, takesTheSmallestVoxelSizeAsUnitDistance) {
+    Volume volume = volumeWithCodes({50});
+    volume.worldFromIndex[0] = {0.5, 0, 0, 0};
+    volume.worldFromIndex[2] = {0, 0, 4, 0};
+    const ClassTable table = classify(volume, ramp(), 0.5);
+    EXPECT_NEAR(table.scale.a * ClassTable::kMax, 0.5, 1e-12);
+}
+
+TEST(Classify, keepsOpacityOneAndZeroAtAnyStep) {
+    for (const double step : {1e-9, 1.0, 1e9}) {
+        const ClassTable table = classify(volumeWithCodes({0, 100}), ramp(), step);
+        EXPECT_EQ(channel(table, 100, 3), 1) << step;
+        EXPECT_EQ(table.entries[1][3], 0) << step;
+    }
+}
+
+TEST(Classify, isClearWithoutExtinction) {
+    Optics optics = ramp();
+    optics.extinctionScale = 0;
+    const ClassTable table = classify(volumeWithCodes({50, 100}), optics, 1);
+    EXPECT_EQ(table.scale, glm::dvec4(0));
+    for (const auto& entry : table.entries) EXPECT_EQ(entry, (std::array<std::uint16_t, 4>{}));
+}
+
+TEST(Classify, keepsPrecisionInThinFog) {
+    Optics optics = ramp();
+    optics.extinctionScale = 1e-12;
+    const ClassTable table = classify(volumeWithCodes({10, 50}), optics, 1);
+    const double alpha = -std::log(0.5) * 1e-12;
+    EXPECT_NEAR(channel(table, 50, 3), alpha, alpha * 1e-9);
+    EXPECT_NEAR(channel(table, 10, 3), -std::log(0.9) * 1e-12, alpha * 1e-5);
+}
+
+TEST(Classify, scalesNormalizedFunctionsToTheRange) {
+    const Volume volume = volumeWithCodes({200, 300, 400});
+    Optics optics = ramp();
+    optics.transferFunction.normalized = true;
+    optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {1, 0.8, 0.5, 0}};
+    EXPECT_NEAR(channel(classify(volume, optics, 1), 300, 3), 0.4, 1e-5);
+    optics.range = glm::dvec2(100, 500);
+    EXPECT_NEAR(channel(classify(volume, optics, 1), 400, 3), 0.6, 1e-12);
+}
+
+TEST(Classify, refusesOpticsOutOfRangeByTheFlagsName) {
+    const auto messageOf = [](const Optics& optics) -> std::string {
+        try {
+            classify(volumeWithCodes({1}), optics, 1);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::kUsage);
+            return error.what();
+        }
+        return "no error";
+    };
+    Optics optics = ramp();
+    optics.unitDistance = 0;
+    EXPECT_EQ(messageOf(optics), "--unit-distance: got 0; expected a number > 0");
+    optics.unitDistance = INFINITY;
+    EXPECT_EQ(messageOf(optics), "--unit-distance: got inf; expected a number > 0");
+    optics = ramp();
+    optics.extinctionScale = -1;
+    EXPECT_EQ(messageOf(optics), "--extinction: got -1; expected a number >= 0");
+    optics.extinctionScale = NAN;
+    EXPECT_EQ(messageOf(optics), "--extinction: got nan; expected a number >= 0");
+    optics = ramp();
+    optics.range = glm::dvec2(5, 2.5);
+    EXPECT_EQ(messageOf(optics), "--range: got 5,2.5; expected LO,HI with LO < HI");
+    optics.range = glm::dvec2(5, 5);
+    EXPECT_EQ(messageOf(optics), "--range: got 5,5; expected LO,HI with LO < HI");
+}
+
+TEST(MergeAlikeSlots, givesTheSmallestSlotWithTheSameEntry) {
+    std::mt19937 random(7);
+    ClassTable table;
+    table.entries.assign(kSlotCount, {});
+    for (int slot = 1; slot < kSlotCount; ++slot) {
+        for (auto& value : table.entries[slot]) value = std::uint16_t(random() % 12);
+    }
+    const std::vector<Slot> slotMap = mergeAlikeSlots(table);
+    ASSERT_EQ(slotMap.size(), std::size_t(kSlotCount));
+    std::map<std::array<std::uint16_t, 4>, Slot> first;
+    for (int slot = 0; slot < kSlotCount; ++slot) {
+        EXPECT_EQ(slotMap[slot], first.try_emplace(table.entries[slot], slot).first->second);
+    }
+    EXPECT_LE(first.size(), 12u * 12 * 12 * 12);  // so most slots were merged
+}
+
+TEST(MergeAlikeSlots, mapsInvisibleSlotsToEmpty) {
+    ClassTable table;
+    table.entries.assign(kSlotCount, {});
+    table.entries[5] = {0, 0, 0, 1};
+    table.entries[900] = {1, 0, 0, 0};
+    table.entries[65536] = {0, 0, 0, 1};
+    const std::vector<Slot> slotMap = mergeAlikeSlots(table);
+    for (int slot = 0; slot < kSlotCount; ++slot) {
+        const Slot expected = slot == 5 || slot == 65536 ? 5 : slot == 900 ? 900 : kEmptySlot;
+        EXPECT_EQ(slotMap[slot], expected);
+    }
+}
+
+}  // namespace
+}  // namespace deltasplat

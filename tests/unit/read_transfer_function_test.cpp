@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "deltasplat/error.h"
+#include "deltasplat/optics/transfer_function.h"
+
+namespace deltasplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ReadTransferFunction : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = fs::temp_directory_path() / (std::string("deltasplat_tf_") + test->name());
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    TransferFunction read(const std::string& text) {
+        std::ofstream(folder_ / "tf.json", std::ios::binary) << text;
+        Listener listener;
+        listener.warning = [this](const std::string& line) { warnings_.push_back(line); };
+        return readTransferFunction(folder_ / "tf.json", listener);
+    }
+
+    // The error's text without the folder.
+    std::string errorOf(const std::string& text) {
+        try {
+            read(text);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::kInput);
+            const std::string prefix = folder_.string() + "/";
+            const std::string what = error.what();
+            EXPECT_EQ(what.substr(0, prefix.size()), prefix);
+            return what.substr(prefix.size());
+        }
+        return "no error";
+    }
+
+    fs::path folder_;
+    std::vector<std::string> warnings_;
+};
+
+const char* const kPreset = R"([
+ {
+  "Name": "hot",
+  "NanColor": [0, 0, 1],
+  "RGBPoints": [
+   -1.5, 0.1, 0.2, 0.3,
+   2e1, 1, 1, 1
+  ],
+  "Points": [-1.5, 0, 0.25, 0.5, 20, 0.75, 0.5, 0]
+ },
+ { "Name": "second", "RGBPoints": "never looked at" }
+])";
+
+TEST_F(ReadTransferFunction, takesTheFirstPresetOfAnArray) {
+    const TransferFunction function = read(kPreset);
+    EXPECT_EQ(function.name, "hot");
+    ASSERT_EQ(function.colors.size(), 2u);
+    EXPECT_EQ(function.colors[0].x, -1.5);
+    EXPECT_EQ(function.colors[0].rgb, glm::dvec3(0.1, 0.2, 0.3));
+    EXPECT_EQ(function.colors[1].x, 20);
+    ASSERT_EQ(function.opacities.size(), 2u);
+    EXPECT_EQ(function.opacities[0].midpoint, 0.25);
+    EXPECT_EQ(function.opacities[0].sharpness, 0.5);
+    EXPECT_EQ(function.opacities[1].opacity, 0.75);
+    EXPECT_FALSE(function.normalized);
+    EXPECT_FALSE(function.linearColors);
+    EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(ReadTransferFunction, takesAPlainObjectWithAllItsSwitches) {
+    const TransferFunction function =
+        read(R"({"RGBPoints": [0,0,0,0], "Points": [0,0,0.5,0], "Normalized": true,
+                 "ColorSpaceOfPoints": "linear", "ColorSpace": "RGB"})");
+    EXPECT_EQ(function.name, "tf");
+    EXPECT_TRUE(function.normalized);
+    EXPECT_TRUE(function.linearColors);
+    EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(ReadTransferFunction, warnsOfAnotherColorSpace) {
+    read(R"({"RGBPoints": [0,0,0,0], "Points": [0,0,0.5,0], "ColorSpace": "Lab"})");
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_EQ(warnings_[0],
+              (folder_ / "tf.json").string() + ": ColorSpace Lab is interpolated as RGB");
+}
+
+TEST_F(ReadTransferFunction, stepHoldsTheColorOfTheRightEnd) {
+    const TransferFunction function =
+        read(R"({"RGBPoints": [0,0.1,0,0, 1,0.2,0,0, 2,0.3,0,0], "Points": [0,0,0.5,0],
+                 "ColorSpace": "Step", "ColorSpaceOfPoints": "linear"})");
+    EXPECT_EQ(function.colorAt(-1).r, 0.1);
+    EXPECT_EQ(function.colorAt(0.5).r, 0.2);
+    EXPECT_EQ(function.colorAt(1.5).r, 0.3);
+    EXPECT_EQ(function.colorAt(9).r, 0.3);
+    EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(ReadTransferFunction, ramps0To1WithoutPoints) {
+    const TransferFunction function = read(R"({"RGBPoints": [2,0,0,0, 6,1,1,1]})");
+    EXPECT_EQ(function.opacityAt(2), 0);
+    EXPECT_EQ(function.opacityAt(3), 0.25);
+    EXPECT_EQ(function.opacityAt(6), 1);
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_EQ(warnings_[0], (folder_ / "tf.json").string() +
+                                ": no Points (opacities); opacity rises from 0 at 2 to 1 at 6");
+}
+
+TEST_F(ReadTransferFunction, saysWhichLineHoldsNoNumber) {
+    EXPECT_EQ(errorOf("{\n\"RGBPoints\": [\n0,\n0,\n0,\n0,\n\"abc\", 0, 0, 0]}"),
+              "tf.json:7: got \"abc\"; expected a number in RGBPoints");
+    EXPECT_EQ(errorOf("{\"RGBPoints\": [0, 0, 0, 0],\n\"Points\": [0,\n null,\n0,0]}"),
+              "tf.json:3: got null; expected a number in Points");
+}
+
+TEST_F(ReadTransferFunction, countsTheLineOfANumberThatEndsIt) {
+    EXPECT_EQ(errorOf("{\"RGBPoints\": [\n0,\n0,\n0,\n1.5\n\n]}"),
+              "tf.json:5: got 1.5; expected a number within 0..1 in RGBPoints");
+}
+
+TEST_F(ReadTransferFunction, refusesWhatIsOutOfRange) {
+    const std::string colors = "{\"RGBPoints\": [0,0,0,0],\n\"Points\": ";
+    EXPECT_EQ(errorOf(colors + "[0, -0.1, 0.5, 0]}"),
+              "tf.json:2: got -0.1; expected a number within 0..1 in Points");
+    EXPECT_EQ(errorOf(colors + "[0, 0.1, 2, 0]}"),
+              "tf.json:2: got 2; expected a number within 0..1 in Points");
+    EXPECT_EQ(errorOf(colors + "[0, 0.1, 0.5, 1e999]}"),
+              "tf.json:2: got 1e999; expected a finite number");
+    EXPECT_EQ(errorOf(colors + "[5, 0.1, 0.5, 0, 4, 0.1, 0.5, 0]}"),
+              "tf.json:2: got 4; expected x not below the 5 before it in Points");
+}
+
+TEST_F(ReadTransferFunction, refusesAWrongNumberOfNumbers) {
+    const std::string expected =
+        "; expected RGBPoints with groups of four numbers (x, red, green, blue)";
+    EXPECT_EQ(errorOf("{\n\"RGBPoints\": [0,0,0,0, 1]}"), "tf.json:2: got 5 numbers" + expected);
+    EXPECT_EQ(errorOf("{\n\"RGBPoints\": []}"), "tf.json:2: got 0 numbers" + expected);
+    EXPECT_EQ(errorOf("{\n\"RGBPoints\": 3}"), "tf.json:2: got 3" + expected);
+    EXPECT_EQ(errorOf("\n{\n}"), "tf.json:2: got no RGBPoints" + expected);
+    EXPECT_EQ(errorOf("{\"RGBPoints\": [0,0,0,0], \"Points\": []}"),
+              "tf.json:1: got 0 numbers; expected Points with groups of four numbers (x, opacity, "
+              "midpoint, sharpness)");
+}
+
+TEST_F(ReadTransferFunction, refusesMembersOfAnotherKind) {
+    const std::string points = ", \"RGBPoints\": [0,0,0,0], \"Points\": [0,0,0,0]}";
+    EXPECT_EQ(errorOf("{\"Name\": 3" + points), "tf.json:1: got 3; expected text in Name");
+    EXPECT_EQ(errorOf("{\"Normalized\": 1" + points),
+              "tf.json:1: got 1; expected true or false in Normalized");
+    EXPECT_EQ(errorOf("{\"ColorSpace\": [1]" + points),
+              "tf.json:1: got an array; expected text in ColorSpace");
+}
+
+TEST_F(ReadTransferFunction, refusesWhatIsNoTransferFunction) {
+    const std::string expected = "; expected a transfer function, an object with RGBPoints";
+    EXPECT_EQ(errorOf("[]"), "tf.json:1: got an empty array" + expected);
+    EXPECT_EQ(errorOf("\n[\n7]"), "tf.json:3: got 7" + expected);
+    EXPECT_EQ(errorOf("[[]]"), "tf.json:1: got an array" + expected);
+    EXPECT_EQ(errorOf("\"abc\""), "tf.json:1: got \"abc\"" + expected);
+}
+
+TEST_F(ReadTransferFunction, refusesBrokenJson) {
+    EXPECT_EQ(errorOf(""), "tf.json:1: got the end of the file; expected valid JSON");
+    EXPECT_EQ(errorOf("{\"Name\":\n\n[1, 2"),
+              "tf.json:3: got the end of the file; expected valid JSON");
+    EXPECT_EQ(errorOf("{\n\"Name\" 5}"), "tf.json:2: got 5; expected valid JSON");
+    EXPECT_EQ(errorOf("{} {}"), "tf.json:1: got {} {; expected valid JSON");
+    const std::string unfinished = errorOf("{\n\"" + std::string(5000, 'x'));
+    EXPECT_EQ(unfinished.substr(0, 18), "tf.json:2: got \"xx");
+    EXPECT_LT(unfinished.size(), 100u);
+}
+
+TEST_F(ReadTransferFunction, survivesNestingAndForeignBytes) {
+    EXPECT_EQ(errorOf(std::string(1000000, '[')),
+              "tf.json:1: got more than 32 levels; expected a transfer function");
+    std::string bytes;
+    for (int i = 0; i < 4096; ++i) bytes.push_back(char((i * 2654435761u) >> 13));
+    EXPECT_NE(errorOf(bytes).find("expected valid JSON"), std::string::npos);
+}
+
+TEST_F(ReadTransferFunction, refusesMissingFilesAndFolders) {
+    for (const fs::path& path : {folder_ / "missing.json", folder_}) {
+        try {
+            readTransferFunction(path);
+            ADD_FAILURE() << path;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::kInput);
+            EXPECT_EQ(error.what(), path.string() +
+                                        ": got no file that can be read; expected a "
+                                        "transfer function (ParaView's JSON)");
+        }
+    }
+}
+
+}  // namespace
+}  // namespace deltasplat

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/optics/transfer_function.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace deltasplat {
+namespace {
+
+TransferFunction withOpacities(std::vector<TransferFunction::OpacityPoint> points) {
+    TransferFunction function;
+    function.colors = {{0, glm::dvec3(1)}};
+    function.opacities = std::move(points);
+    return function;
+}
+
+// A volume of integer codes; `counts` says how many voxels have each of the first codes.
+Volume volumeOf(const std::string& type, const std::vector<std::uint64_t>& counts) {
+    Volume volume;
+    volume.type = type;
+    volume.codeBook = CodeBook::integer();
+    volume.histogram.assign(kCodeCount, 0);
+    int least = -1;
+    for (std::size_t code = 0; code < counts.size(); ++code) {
+        volume.histogram[code] = counts[code];
+        volume.activeCount += counts[code];
+        if (counts[code] == 0) continue;
+        if (least < 0) least = int(code);
+        volume.valueMax = double(code);
+    }
+    volume.valueMin = std::max(least, 0);
+    volume.box = {glm::ivec3(0), glm::ivec3(int(volume.activeCount) - 1, 0, 0)};
+    return volume;
+}
+
+TEST(TransferFunction, opacityIsAnExactLerpBetweenPlainPoints) {
+    const TransferFunction function = withOpacities({{10, 0.125, 0.5, 0}, {14, 0.625, 0.5, 0}});
+    EXPECT_EQ(function.opacityAt(10), 0.125);
+    EXPECT_EQ(function.opacityAt(11), 0.25);
+    EXPECT_EQ(function.opacityAt(12), 0.375);
+    EXPECT_EQ(function.opacityAt(13.5), 0.5625);
+    EXPECT_EQ(function.opacityAt(14), 0.625);
+    for (double s = 0; s <= 1; s += 1.0 / 64) {
+        EXPECT_EQ(function.opacityAt(10 + 4 * s), std::lerp(0.125, 0.625, s)) << s;
+    }
+}
+
+TEST(TransferFunction, isConstantBeyondTheEnds) {
+    TransferFunction function = withOpacities({{1, 0.25, 0.5, 0}, {2, 0.75, 0.5, 0}});
+    function.linearColors = true;
+    function.colors = {{1, {0.1, 0.2, 0.3}}, {2, {0.4, 0.5, 0.6}}};
+    EXPECT_EQ(function.opacityAt(-1e300), 0.25);
+    EXPECT_EQ(function.opacityAt(1e300), 0.75);
+    EXPECT_EQ(function.colorAt(0.5), glm::dvec3(0.1, 0.2, 0.3));
+    EXPECT_EQ(function.colorAt(2.5), glm::dvec3(0.4, 0.5, 0.6));
+}
+
+TEST(TransferFunction, reachesHalfWayAtTheMidpoint) {
+    const TransferFunction function = withOpacities({{0, 0, 0.2, 0}, {1, 0.8, 0.5, 0}});
+    EXPECT_NEAR(function.opacityAt(0.1), 0.2, 1e-15);
+    EXPECT_NEAR(function.opacityAt(0.2), 0.4, 1e-15);
+    EXPECT_NEAR(function.opacityAt(0.6), 0.6, 1e-15);
+}
+
+TEST(TransferFunction, sharpnessOneIsAStepAtTheMidpoint) {
+    const TransferFunction function = withOpacities({{0, 0.1, 0.25, 1}, {1, 0.9, 0.5, 0}});
+    EXPECT_EQ(function.opacityAt(0.2499), 0.1);
+    EXPECT_EQ(function.opacityAt(0.25), 0.9);
+}
+
+TEST(TransferFunction, sharpnessBendsAsInVtk) {
+    // Sharpness 0.1 doubles the power (s = 0.25 goes to 0.5 * 0.5^2 = 0.125); the Hermite cubic
+    // with slopes of 0.9 at both ends then gives 0.04296875 + 0.9 * 0.08203125 there.
+    const TransferFunction function = withOpacities({{0, 0, 0.5, 0.1}, {1, 1, 0.5, 0}});
+    EXPECT_NEAR(function.opacityAt(0.25), 0.04296875 + 0.9 * 0.08203125, 1e-15);
+    EXPECT_NEAR(function.opacityAt(0.75), 1 - function.opacityAt(0.25), 1e-15);
+    EXPECT_NEAR(function.opacityAt(0.5), 0.5, 1e-15);
+}
+
+TEST(TransferFunction, sharpnessNeverOvershootsAndNeverFalls) {
+    for (const double sharpness : {0.02, 0.3, 0.5, 0.98}) {
+        const TransferFunction function =
+            withOpacities({{0, 0.2, 0.4, sharpness}, {1, 0.7, 0.5, 0}});
+        double last = 0.2;
+        for (double x = 0; x <= 1; x += 1.0 / 256) {
+            const double opacity = function.opacityAt(x);
+            EXPECT_GE(opacity, last) << sharpness << " at " << x;
+            last = opacity;
+        }
+        EXPECT_EQ(last, 0.7);
+    }
+}
+
+TEST(TransferFunction, twoPointsAtOneXAreAStepTheLastCountsThere) {
+    const TransferFunction function =
+        withOpacities({{0, 0, 0.5, 0}, {1, 0, 0.5, 0}, {1, 0.6, 0.5, 0}, {2, 0.6, 0.5, 0}});
+    EXPECT_EQ(function.opacityAt(std::nextafter(1.0, 0.0)), 0);
+    EXPECT_EQ(function.opacityAt(1), 0.6);
+}
+
+TEST(TransferFunction, spansAsWideAsDoublesDoNotOverflow) {
+    const TransferFunction function = withOpacities({{-1.7e308, 0, 0.5, 0}, {1.7e308, 1, 0.5, 0}});
+    EXPECT_EQ(function.opacityAt(0), 0.5);
+}
+
+TEST(TransferFunction, srgbColorsAreInterpolatedAsSrgbAndReturnedLinear) {
+    TransferFunction function = withOpacities({{0, 1, 0.5, 0}});
+    function.colors = {{0, {0, 0.04045, 0}}, {1, {1, 0.04045, 0.1}}};
+    EXPECT_NEAR(function.colorAt(0.5).r, std::pow(0.555 / 1.055, 2.4), 1e-12);
+    EXPECT_NEAR(function.colorAt(0.5).g, 0.04045 / 12.92, 1e-12);
+    EXPECT_EQ(function.colorAt(1).r, 1);
+    function.linearColors = true;
+    EXPECT_EQ(function.colorAt(0.5), glm::dvec3(0.5, 0.04045, 0.05));
+}
+
+TEST(DefaultRamp, spansThePercentilesOfWhatIsNotBackground) {
+    // A thousand voxels without the zeros: 9 of value 3, 981 of 5, 10 of 8. The 10th has value 5,
+    // the 990th too.
+    std::vector<std::uint64_t> counts = {5000, 0, 0, 9, 0, 981, 0, 0, 10};
+    TransferFunction ramp = defaultRamp(volumeOf("uint16", counts));
+    EXPECT_EQ(ramp.opacities.front().x, 5);
+    EXPECT_EQ(ramp.opacities.back().x, 5);
+
+    counts = {5000, 0, 0, 10, 0, 979, 0, 0, 11};
+    ramp = defaultRamp(volumeOf("uint16", counts));
+    ASSERT_EQ(ramp.opacities.size(), 2u);
+    EXPECT_EQ(ramp.opacities[0].x, 3);
+    EXPECT_EQ(ramp.opacities[0].opacity, 0);
+    EXPECT_EQ(ramp.opacities[1].x, 8);
+    EXPECT_EQ(ramp.opacities[1].opacity, kRampOpacity);
+    EXPECT_EQ(ramp.colorAt(3), glm::dvec3(0));
+    EXPECT_EQ(ramp.colorAt(8), glm::dvec3(1));
+    EXPECT_NEAR(ramp.colorAt(5.5).g, 0.5, 1e-15);
+}
+
+TEST(DefaultRamp, showsAVolumeOfOneValue) {
+    const TransferFunction ramp = defaultRamp(volumeOf("bool", {0, 40}));
+    EXPECT_EQ(ramp.opacityAt(1), kRampOpacity);
+    EXPECT_EQ(ramp.colorAt(1), glm::dvec3(1));
+    EXPECT_EQ(ramp.opacityAt(0), 0);
+}
+
+TEST(DefaultRamp, leavesNothingButBackgroundClear) {
+    EXPECT_EQ(defaultRamp(volumeOf("uint8", {100})).opacityAt(0), 0);
+    EXPECT_EQ(defaultRamp(Volume()).opacityAt(0), 0);
+}
+
+TEST(DefaultRange, isTheTypesRangeForBytesAndTheDatasOtherwise) {
+    EXPECT_EQ(defaultRange(volumeOf("uint8", {0, 0, 3, 4})), glm::dvec2(0, 255));
+    EXPECT_EQ(defaultRange(volumeOf("uint16", {0, 0, 3, 4})), glm::dvec2(2, 3));
+    EXPECT_EQ(defaultRange(volumeOf("float", {0, 0, 3, 4})), glm::dvec2(0, 3));
+    Volume dark = volumeOf("half", {0, 0, 3, 4});
+    dark.background = 9;
+    EXPECT_EQ(defaultRange(dark), glm::dvec2(2, 9));
+}
+
+TEST(DefaultRange, isNeverEmpty) {
+    EXPECT_EQ(defaultRange(volumeOf("uint16", {0, 0, 7})), glm::dvec2(0, 2));
+    EXPECT_EQ(defaultRange(volumeOf("uint16", {7})), glm::dvec2(0, 1));
+    Volume negative = volumeOf("int16", {7});
+    negative.valueMin = negative.valueMax = -4;
+    EXPECT_EQ(defaultRange(negative), glm::dvec2(-4, 0));
+}
+
+}  // namespace
+}  // namespace deltasplat
