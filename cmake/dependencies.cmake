@@ -6,7 +6,10 @@ file(GLOB DELTASPLAT_OPENVDB_MODULES /usr/lib/*/cmake/OpenVDB /usr/lib/cmake/Ope
      /usr/local/lib*/cmake/OpenVDB)
 list(APPEND CMAKE_MODULE_PATH ${DELTASPLAT_OPENVDB_MODULES})
 
+# The module sets BUILD_SHARED_LIBS for its own ends; ours is the caller's to choose.
+set(DELTASPLAT_BUILD_SHARED_LIBS ${BUILD_SHARED_LIBS})
 find_package(OpenVDB 10 REQUIRED)
+set(BUILD_SHARED_LIBS ${DELTASPLAT_BUILD_SHARED_LIBS})
 find_package(TBB REQUIRED)
 find_package(OpenImageIO REQUIRED)
 find_package(glm REQUIRED)

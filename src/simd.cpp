@@ -5,6 +5,9 @@
 #include <cctype>
 
 #include "deltasplat/error.h"
+// Before Highway.
+#include "simd_targets.h"
+
 #include "hwy/highway.h"
 
 namespace deltasplat {

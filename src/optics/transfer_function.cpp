@@ -1,1 +1,140 @@
 // SPDX-License-Identifier: Apache-2.0
+// Based on: VTK's documentation and behaviour of vtkPiecewiseFunction (midpoint and sharpness of an
+// opacity point) and IEC 61966-2-1, 1999 (the sRGB transfer curve).
+#include "deltasplat/optics/transfer_function.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace deltasplat {
+namespace {
+
+// Finds the points around x: `right` is the first point beyond x, so that of several points at the
+// same x the last one counts.
+template <typename Point>
+typename std::vector<Point>::const_iterator firstBeyond(const std::vector<Point>& points,
+                                                        double x) {
+    return std::upper_bound(points.begin(), points.end(), x,
+                            [](double value, const Point& point) { return value < point.x; });
+}
+
+// How far x is on the way from a to b, 0..1; halves, so that no difference overflows.
+double wayFrom(double a, double b, double x) {
+    return (0.5 * x - 0.5 * a) / (0.5 * b - 0.5 * a);
+}
+
+double linearFromSrgb(double v) {
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+// Bends the way from one point to the next so that its middle is reached at `midpoint`.
+double bendToMidpoint(double s, double midpoint) {
+    const double m = std::clamp(midpoint, 1e-5, 1 - 1e-5);
+    return s < m ? 0.5 * s / m : 0.5 + 0.5 * (s - m) / (1 - m);
+}
+
+// Blends with a cubic whose ends get flatter and whose middle gets steeper with sharpness.
+double sharpBlend(double from, double to, double s, double sharpness) {
+    const double power = 1 + 10 * sharpness;
+    const double t =
+        s < 0.5 ? 0.5 * std::pow(2 * s, power) : 1 - 0.5 * std::pow(2 * (1 - s), power);
+    const double rise = t * t * (3 - 2 * t);
+    const double slopes = t * (t - 1) * (2 * t - 1);
+    const double value = from + (to - from) * (rise + (1 - sharpness) * slopes);
+    return std::clamp(value, std::min(from, to), std::max(from, to));
+}
+
+// The smallest code whose codes up to it hold at least percent % of the counted voxels.
+int percentileCode(const std::vector<std::uint64_t>& counts, std::uint64_t total, int percent) {
+    const std::uint64_t rank = std::max<std::uint64_t>(1, (total * percent + 99) / 100);
+    std::uint64_t seen = 0;
+    int code = 0;
+    while (code + 1 < int(counts.size()) && (seen += counts[code]) < rank) ++code;
+    return code;
+}
+
+// How often each code occurs, the one that stands for the background left out.
+std::vector<std::uint64_t> countsWithoutBackground(const Volume& volume) {
+    const CodeBook& book = volume.codeBook;
+    const double within = book.kind == CodeBook::Kind::kLinear ? book.step / 2 : 0;
+    std::vector<std::uint64_t> counts = volume.histogram;
+    for (std::size_t code = 0; code < counts.size(); ++code) {
+        if (counts[code] == 0) continue;
+        const double value = book.valueOf(Code(code));
+        if (std::abs(value - volume.background) <= within) counts[code] = 0;
+    }
+    return counts;
+}
+
+TransferFunction greyRamp(double low, double high) {
+    TransferFunction ramp;
+    ramp.name = "grey ramp";
+    ramp.linearColors = true;
+    ramp.colors = {{low, glm::dvec3(0)}, {high, glm::dvec3(1)}};
+    ramp.opacities = {{low, 0, 0.5, 0}, {high, kRampOpacity, 0.5, 0}};
+    return ramp;
+}
+
+// Only grids of a .vdb have inactive voxels, which hold the background.
+bool isGrid(const Volume& volume) {
+    static const char* const kGridTypes[] = {"float", "half", "double", "int64", "bool", "mask"};
+    return volume.activeCount < std::uint64_t(volume.box.voxels()) ||
+           std::find(std::begin(kGridTypes), std::end(kGridTypes), volume.type) !=
+               std::end(kGridTypes);
+}
+
+}  // namespace
+
+glm::dvec3 TransferFunction::colorAt(double x) const {
+    const auto right = firstBeyond(colors, x);
+    glm::dvec3 rgb;
+    if (right == colors.begin()) {
+        rgb = colors.front().rgb;
+    } else if (right == colors.end()) {
+        rgb = colors.back().rgb;
+    } else {
+        const ColorPoint& left = right[-1];
+        const double s = wayFrom(left.x, right->x, x);
+        for (int i = 0; i < 3; ++i) rgb[i] = std::lerp(left.rgb[i], right->rgb[i], s);
+    }
+    if (linearColors) return rgb;
+    return {linearFromSrgb(rgb.r), linearFromSrgb(rgb.g), linearFromSrgb(rgb.b)};
+}
+
+double TransferFunction::opacityAt(double x) const {
+    const auto right = firstBeyond(opacities, x);
+    if (right == opacities.begin()) return opacities.front().opacity;
+    if (right == opacities.end()) return opacities.back().opacity;
+
+    // The left point's midpoint and sharpness shape the way to the right one; VTK takes the ends of
+    // the sharpness' range for a straight line and for a step.
+    const OpacityPoint& left = right[-1];
+    const double s = bendToMidpoint(wayFrom(left.x, right->x, x), left.midpoint);
+    if (left.sharpness < 0.01) return std::lerp(left.opacity, right->opacity, s);
+    if (left.sharpness > 0.99) return s < 0.5 ? left.opacity : right->opacity;
+    return sharpBlend(left.opacity, right->opacity, s, left.sharpness);
+}
+
+TransferFunction defaultRamp(const Volume& volume) {
+    const std::vector<std::uint64_t> counts = countsWithoutBackground(volume);
+    std::uint64_t total = 0;
+    for (const std::uint64_t count : counts) total += count;
+    if (total == 0) return greyRamp(volume.background, volume.background + 1);
+    return greyRamp(volume.codeBook.valueOf(Code(percentileCode(counts, total, 1))),
+                    volume.codeBook.valueOf(Code(percentileCode(counts, total, 99))));
+}
+
+glm::dvec2 defaultRange(const Volume& volume) {
+    if (volume.type == "uint8") return {0, 255};
+    glm::dvec2 range(volume.valueMin, volume.valueMax);
+    if (isGrid(volume)) {
+        range = {std::min(range.x, volume.background), std::max(range.y, volume.background)};
+    }
+
+    // One value only: nothing should be as clear as 0, and anything else as dense as the largest.
+    if (range.x == range.y) range = {std::min(range.x, 0.0), std::max(range.y, 0.0)};
+    return range.x < range.y ? range : glm::dvec2(0, 1);
+}
+
+}  // namespace deltasplat

@@ -1,1 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/synth/analytic_volume.h"
+
+#include <cmath>
+
+#include "deltasplat/error.h"
+#include "synth/volumes.h"
+
+namespace deltasplat {
+
+const std::vector<std::string>& analyticNames() {
+    static const std::vector<std::string> kNames = {"marschner-lobb", "hydrogen", "shepp-logan",
+                                                    "engine",         "cloud",    "slab"};
+    return kNames;
+}
+
+AnalyticVolume makeAnalytic(const std::string& name, std::uint64_t seed, double noise) {
+    if (!(noise >= 0) || !std::isfinite(noise)) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--noise", std::to_string(noise), "a number of at least 0"));
+    }
+    if (name == "marschner-lobb") return {name, makeMarschnerLobb()};
+    if (name == "hydrogen") return {name, makeHydrogen()};
+    if (name == "shepp-logan") return {name, makeSheppLogan()};
+    if (name == "engine") return {name, makeEngine(seed, noise)};
+    if (name == "cloud") return {name, makeCloud(seed)};
+    if (name == "slab") return {name, makeSlab()};
+
+    std::string names;
+    for (const std::string& known : analyticNames()) names += (names.empty() ? "" : ", ") + known;
+    throw Error(ErrorCode::kUsage, gotExpected("NAME", "\"" + name + "\"", "one of " + names));
+}
+
+}  // namespace deltasplat

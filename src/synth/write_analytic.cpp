@@ -1,1 +1,183 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/synth/write_analytic.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Prune.h>
+
+#include <bit>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "deltasplat/error.h"
+#include "memory.h"
+#include "output_file.h"
+#include "parallel.h"
+#include "write_vdb.h"
+
+namespace deltasplat {
+namespace {
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+glm::dvec3 positionOf(const glm::ivec3& index, const glm::ivec3& dims) {
+    return (2.0 * glm::dvec3(index) + 1.0) / glm::dvec3(dims) - 1.0;
+}
+
+// Stores a value 0..1 as one little-endian sample.
+template <typename Bits>
+void storeLittle(Bits bits, unsigned char* at) {
+    for (std::size_t i = 0; i < sizeof bits; ++i) at[i] = static_cast<unsigned char>(bits >> 8 * i);
+}
+void storeFloat(double value, unsigned char* at) {
+    storeLittle(std::bit_cast<std::uint32_t>(float(value)), at);
+}
+template <typename Whole>
+void storeWhole(double value, unsigned char* at) {
+    storeLittle(Whole(std::lround(value * std::numeric_limits<Whole>::max())), at);
+}
+
+struct SampleType {
+    std::size_t bytes;
+    void (*store)(double value, unsigned char* at);
+};
+
+SampleType sampleType(const std::string& name) {
+    if (name.empty() || name == "uint8") return {1, storeWhole<std::uint8_t>};
+    if (name == "uint16") return {2, storeWhole<std::uint16_t>};
+    if (name == "float32") return {4, storeFloat};
+    throw Error(ErrorCode::kUsage,
+                gotExpected("--type", "\"" + name + "\"", "uint8, uint16 or float32 for .raw"));
+}
+
+void writeRaw(const AnalyticVolume& volume, const std::filesystem::path& file,
+              const AnalyticFileOptions& options, const Listener& listener) {
+    const SampleType type = sampleType(options.type);
+    const glm::ivec3 dims = options.dims;
+    const std::size_t rowBytes = std::size_t(dims.x) * type.bytes;
+    requireMemory("--dims", double(rowBytes) * dims.y);
+
+    OutputFile out(file);
+    std::vector<unsigned char> slice(rowBytes * std::size_t(dims.y));
+    for (int z = 0; z < dims.z; ++z) {
+        parallelFor(std::size_t(dims.y), [&](std::size_t y) {
+            unsigned char* row = &slice[y * rowBytes];
+            for (int x = 0; x < dims.x; ++x, row += type.bytes) {
+                type.store(volume.valueAt(positionOf({x, int(y), z}, dims)), row);
+            }
+        });
+        out.write(slice.data(), slice.size());
+        listener.report(double(z + 1) / dims.z);
+    }
+    out.commit();
+}
+
+// Samples 8^3 voxels; null if all are zero. Voxels beyond the volume's dims stay inactive.
+std::unique_ptr<Leaf> sampleLeaf(const AnalyticVolume& volume, const openvdb::Coord& origin,
+                                 const glm::ivec3& dims) {
+    auto leaf = std::make_unique<Leaf>(origin, 0.0f);
+    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
+        const openvdb::Coord at = leaf->offsetToGlobalCoord(i);
+        if (at.x() >= dims.x || at.y() >= dims.y || at.z() >= dims.z) continue;
+        const float value = float(volume.valueAt(positionOf({at.x(), at.y(), at.z()}, dims)));
+        if (value != 0) leaf->setValueOn(i, value);
+    }
+    return leaf->isEmpty() ? nullptr : std::move(leaf);
+}
+
+// A leaf that is one value throughout takes no more memory than a tile.
+void addLeaf(openvdb::FloatTree& tree, std::unique_ptr<Leaf> leaf) {
+    float value = 0;
+    bool active = false;
+    if (!leaf) return;
+    if (leaf->isConstant(value, active)) {
+        tree.addTile(1, leaf->origin(), value, active);
+    } else {
+        tree.addLeaf(leaf.release());
+    }
+}
+
+openvdb::FloatGrid::Ptr sampleGrid(const AnalyticVolume& volume, const AnalyticFileOptions& options,
+                                   const Listener& listener) {
+    constexpr int kEdge = int(Leaf::DIM);
+    const glm::ivec3 leaves = (options.dims - 1) / kEdge + 1;
+    auto grid = openvdb::FloatGrid::create(0.0f);
+    // One layer of leaves at a time keeps the work in large pieces and the list of them short.
+    std::vector<std::unique_ptr<Leaf>> layer(std::size_t(leaves.y) * std::size_t(leaves.z));
+    for (int x = 0; x < leaves.x; ++x) {
+        parallelFor(layer.size(), [&](std::size_t i) {
+            const int y = int(i / std::size_t(leaves.z)), z = int(i % std::size_t(leaves.z));
+            layer[i] = sampleLeaf(volume, {x * kEdge, y * kEdge, z * kEdge}, options.dims);
+        });
+        for (std::unique_ptr<Leaf>& leaf : layer) addLeaf(grid->tree(), std::move(leaf));
+        listener.report(double(x + 1) / leaves.x);
+    }
+    openvdb::tools::prune(grid->tree());
+    return grid;
+}
+
+void writeGrid(const AnalyticVolume& volume, const std::filesystem::path& file,
+               const AnalyticFileOptions& options, const Listener& listener) {
+    if (!options.type.empty() && options.type != "float32") {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--type", "\"" + options.type + "\"", "float32 for .vdb"));
+    }
+    { const AtomicFile probe(file); }  // a bad name should fail before the work, not after
+    const openvdb::FloatGrid::Ptr grid = sampleGrid(volume, options, listener);
+    grid->setName("density");
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    grid->setCreator("deltasplat");
+    const openvdb::Vec3d spacing(options.spacing.x, options.spacing.y, options.spacing.z);
+    grid->setTransform(openvdb::math::Transform::Ptr(new openvdb::math::Transform(
+        openvdb::math::MapBase::Ptr(new openvdb::math::ScaleMap(spacing)))));
+    writeVdb(file, {grid});
+}
+
+template <typename Vec>
+std::string joined(const Vec& v, const char* separator) {
+    const auto text = [](auto number) {
+        std::string digits = std::to_string(number);
+        if (digits.find('.') == std::string::npos) return digits;
+        digits.erase(digits.find_last_not_of('0') + 1);
+        if (digits.back() == '.') digits.pop_back();
+        return digits;
+    };
+    return text(v.x) + separator + text(v.y) + separator + text(v.z);
+}
+
+void checkOptions(const AnalyticFileOptions& options) {
+    const glm::ivec3& dims = options.dims;
+    if (dims.x < 1 || dims.y < 1 || dims.z < 1) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--dims", joined(dims, "x"), "three numbers of at least 1"));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const double spacing = options.spacing[axis];
+        if (spacing > 0 && std::isfinite(spacing)) continue;
+        throw Error(ErrorCode::kUsage, gotExpected("--spacing", joined(options.spacing, ","),
+                                                   "three numbers above 0"));
+    }
+}
+
+}  // namespace
+
+void writeAnalytic(const AnalyticVolume& volume, const std::filesystem::path& file,
+                   const AnalyticFileOptions& options, const Listener& listener) {
+    checkOptions(options);
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    if (extension == ".raw") {
+        writeRaw(volume, file, options, listener);
+    } else if (extension == ".vdb") {
+        writeGrid(volume, file, options, listener);
+    } else {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(file.string(), "extension \"" + file.extension().string() + "\"",
+                                ".raw or .vdb"));
+    }
+}
+
+}  // namespace deltasplat

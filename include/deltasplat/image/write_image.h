@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,27 +14,34 @@ namespace deltasplat {
 
 /// How a picture is stored. No clock time goes into a file: the same picture gives the same bytes.
 struct ImageFileOptions {
-    bool floatExr = false;            ///< .exr: 32-bit float instead of half
-    int bits = 8;                     ///< .png: 8 or 16 a channel
-    glm::dmat4 cameraFromWorld{1.0};  ///< stored as worldToCamera (.exr)
-    glm::dmat4 ndcFromWorld{1.0};     ///< stored as worldToNDC (.exr)
-    std::vector<std::pair<std::string, std::string>>
-        metadata;  ///< name, text; stored in this order
+    bool floatExr = false;            ///< .exr: 32-bit float instead of half; not for .png
+    int bits = 8;                     ///< .png: 8 or 16 a channel; without effect on .exr
+    glm::dmat4 cameraFromWorld{1.0};  ///< stored as worldToCamera, rounded to float (.exr)
+    glm::dmat4 ndcFromWorld{1.0};     ///< stored as worldToNDC, rounded to float (.exr)
+    /// Name, text; each is stored as text named `deltasplat:<name>` (.exr sorts them by name).
+    std::vector<std::pair<std::string, std::string>> metadata;
 };
 
 /// Throws unless `writeImage` could write this file name with these options: asked before hours of
 /// work.
-/// @throw Error(kUsage) for an extension or a bit depth that is not supported;
+/// @throw Error(kUsage) for an extension or a bit depth that is not supported, or floats in a .png;
 ///        Error(kOutput) if the folder does not exist or cannot be written to
 void checkImageFile(const std::filesystem::path& file, const ImageFileOptions& options);
 
-/// Writes `.exr` (scene-linear, premultiplied) or `.png` (sRGB, straight alpha, rounded to
-/// nearest). The file appears under its final name only when it is whole.
-/// @throw Error(kUsage) as checkImageFile; Error(kOutput) if it cannot be written
+/// Writes `.exr` (scene-linear, premultiplied, ZIP compression) or `.png` (sRGB, straight alpha,
+/// rounded to nearest; clear where alpha is 0), by extension in any case. The file appears under
+/// its final name only when it is whole. Deterministic, whatever the number of threads.
+///
+/// NaN is never stored: it becomes 0. In .exr, values beyond the largest finite number of the pixel
+/// type (65504 for half) become that number; in .png, alpha and colour are clamped to 0..1 after
+/// colour is divided by alpha.
+/// @throw Error(kUsage) as checkImageFile, or if the picture has no pixels; Error(kOutput) if it
+/// cannot be written
 void writeImage(const std::filesystem::path& file, const Image& image,
                 const ImageFileOptions& options);
 
-/// Puts a background colour (scene-linear, straight alpha) behind the picture.
+/// Puts a background colour (scene-linear, straight alpha) behind the picture:
+/// C += (1 - A) * background.rgb * background.a; A += (1 - A) * background.a.
 void compositeOver(Image& image, const glm::vec4& background);
 
 }  // namespace deltasplat

@@ -27,16 +27,19 @@ struct ClassTable {
 /// What turns data values into light.
 struct Optics {
     TransferFunction transferFunction;
-    std::optional<glm::dvec2> range;  ///< for normalized transfer functions; empty: defaultRange
+    /// Data values of 0 and 1 of a normalized transfer function, the first the smaller; empty:
+    /// defaultRange.
+    std::optional<glm::dvec2> range;
     std::optional<double>
-        unitDistance;  ///< world units of one opacity step; empty: the smallest voxel size
-    double extinctionScale = 1;  ///< multiplies the extinction
+        unitDistance;  ///< world units of one opacity step, > 0; empty: the smallest voxel size
+    double extinctionScale = 1;  ///< >= 0; multiplies the extinction
 };
 
 /// Classifies every code that occurs in the volume (entries of the others are zero): extinction per
 /// world unit sigma_t = -ln(1 - opacity) / unitDistance * extinctionScale, alpha = 1 - exp(-sigma_t
-/// * sliceStepWorld).
+/// * sliceStepWorld). Opacity 1 stays 1 at any step, as long as the extinction is not scaled to 0.
 /// @param sliceStepWorld  world distance between consecutive slices along the line of sight, > 0
+/// @throw Error(kUsage) naming the option if unit distance, extinction or range is out of range
 ClassTable classify(const Volume& volume, const Optics& optics, double sliceStepWorld);
 
 /// Returns for every slot the smallest slot with the same entry (0 for those that are all zero),

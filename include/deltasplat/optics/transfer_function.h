@@ -13,6 +13,8 @@
 namespace deltasplat {
 
 /// Colour and opacity as functions of the data value, in the form ParaView saves them.
+///
+/// Of several points at the same x the last one counts at x itself, so that two make a step.
 struct TransferFunction {
     struct ColorPoint {
         double x = 0;
@@ -25,33 +27,40 @@ struct TransferFunction {
             0.5;  ///< 0..1, where between this point and the next the half-way value lies
         double sharpness = 0;  ///< 0 = linear, 1 = a step
     };
-    std::string name;
+    std::string name;                     ///< what the file calls it, or the file's stem
     std::vector<ColorPoint> colors;       ///< at least one; x not decreasing
     std::vector<OpacityPoint> opacities;  ///< at least one; x not decreasing
     bool normalized = false;    ///< x runs over 0..1 of a data range instead of data values
     bool linearColors = false;  ///< colours are scene-linear; otherwise sRGB
 
     /// Returns the scene-linear, not premultiplied colour at x (sRGB points are interpolated as
-    /// sRGB).
+    /// sRGB). Constant beyond the first and the last point.
     glm::dvec3 colorAt(double x) const;
-    /// Returns the opacity 0..1 over one unit distance at x. Constant beyond the first and the last
-    /// point.
+    /// Returns the opacity 0..1 over one unit distance at x, with midpoint and sharpness as VTK
+    /// understands them. Constant beyond the first and the last point.
     double opacityAt(double x) const;
 };
 
-/// Reads the first transfer function of a ParaView JSON file.
+/// Reads the first transfer function of a ParaView JSON file (an array of presets, or one object):
+/// `Name`, `RGBPoints`, `Points`, `Normalized`, `ColorSpaceOfPoints`, `ColorSpace`; other members
+/// are passed over. Colours are interpolated as RGB, or held for each interval where `ColorSpace`
+/// is "Step" (the colour of its right end); another colour space brings a warning. A file without
+/// `Points` gets opacities from 0 at the first colour's x to 1 at the last one's, with a warning.
 /// @throw Error(kInput) naming file, line and what was expected, if it is missing or malformed
 TransferFunction readTransferFunction(const std::filesystem::path& file,
                                       const Listener& listener = {});
 
 /// Returns the grey ramp used when none is given: black and clear at the 1st, white and
-/// `kRampOpacity` at the 99th percentile of the active values other than the background.
+/// `kRampOpacity` at the 99th percentile of the active values other than the background. Where both
+/// are the same value, it is black and clear below that value, white from there on. A volume with
+/// nothing but background is clear throughout.
 TransferFunction defaultRamp(const Volume& volume);
 inline constexpr double kRampOpacity = 0.1;
 
 /// Returns the data values that 0 and 1 of a normalized transfer function stand for when nothing
 /// else is said: 0..255 for uint8 sources, otherwise the smallest and largest of the active values
-/// and, for .vdb grids, the background.
+/// and, for .vdb grids, the background. A volume of one value only: from 0 to that value, or from
+/// that value to 0 if it is negative, or 0..1 if it is zero.
 glm::dvec2 defaultRange(const Volume& volume);
 
 }  // namespace deltasplat

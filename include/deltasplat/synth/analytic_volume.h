@@ -17,14 +17,25 @@ struct AnalyticVolume {
     std::function<double(const glm::dvec3& position)> valueAt;
 };
 
-/// Returns the names that makeAnalytic knows: marschner-lobb, hydrogen, shepp-logan, engine, cloud,
-/// slab.
+/// Returns the names that makeAnalytic knows:
+/// - marschner-lobb: the reconstruction test signal of Marschner and Lobb (1994), with f_M = 6 and
+///   alpha = 0.25; no empty space
+/// - hydrogen: probability density of hydrogen's 3d orbital with m = 0, its largest value being 1;
+///   the cube's half edge is 24 Bohr radii; two lobes along z and a ring
+/// - shepp-logan: the head phantom as ellipsoids, with the contrasts of Toft (1996); the face looks
+///   along +y, z goes up the neck; plateaus of 0, 0.2, 0.3, 0.4 and 1
+/// - engine: a two-cylinder engine of aluminium (0.45) and steel (0.9), cylinders along y, crank
+///   shaft along x; optional noise
+/// - cloud: seeded fractal fog of gradient noise; 0 outside a ball-like region
+/// - slab: 1 where |x| <= 0.8, |y| <= 0.8 and |z| <= 0.5, 0 elsewhere
 const std::vector<std::string>& analyticNames();
 
 /// Returns the volume called `name`.
 /// @param seed   chooses the cloud's shape and the engine's noise; without effect on the others
-/// @param noise  standard deviation of the engine's noise in units of the value range, 0 = none
-/// @throw Error(kUsage) if there is no such name (listing those there are)
+/// @param noise  standard deviation of the engine's noise in units of the value range, 0 = none;
+///               noisy values are clamped to 0..1; without effect on the others
+/// @throw Error(kUsage) if there is no such name (listing those there are), or if the noise is
+/// negative or not finite
 AnalyticVolume makeAnalytic(const std::string& name, std::uint64_t seed = 1, double noise = 0);
 
 }  // namespace deltasplat

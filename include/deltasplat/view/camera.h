@@ -11,21 +11,25 @@
 
 namespace deltasplat {
 
-/// What a person says about the camera. World space is right-handed with y up.
+/// What a person says about the camera. World space is right-handed with y up. Angles turn the way
+/// VTK's camera turns; quarter turns are exact.
 struct CameraOptions {
     /// front (looks along -z), back (+z), left (from -x along +x), right (-x), top (down -y, up is
     /// -z), bottom (up +y, up is +z) or iso (along (-1,-1,-1)).
     std::string view = "front";
     double azimuthDegrees =
         0;  ///< turns the camera about the up axis through the target, towards its right
-    double elevationDegrees = 0;  ///< then raises the camera over the target
+    /// Then raises the camera over the target; its up turns along, so that past 90 degrees it hangs
+    /// upside down.
+    double elevationDegrees = 0;
     double rollDegrees = 0;  ///< then turns it clockwise (seen from behind) about the line of sight
     std::optional<glm::dvec3> direction;  ///< the way the line of sight travels; replaces `view`
-    std::optional<glm::dvec3> up;         ///< default +y; not parallel to the direction
+    /// Default: the view's, or +y where `direction` is given; not parallel to the direction.
+    std::optional<glm::dvec3> up;
     std::optional<glm::dvec3>
         targetWorld;  ///< falls on the middle of the picture; default: middle of the box
-    std::optional<double>
-        frameWidthWorld;  ///< world width of the picture; default: the box of voxel centres fits
+    std::optional<double> frameWidthWorld;  ///< world width of the picture; default: the box of
+                                            ///< voxel centres just fits both ways
     glm::ivec2 sizePixels{512, 512};
 };
 
@@ -52,10 +56,11 @@ struct Camera {
     glm::dmat4 ndcFromWorld() const;
 };
 
-/// Places the camera on a volume. A box of one point (or an empty one) is framed as one voxel.
-/// @throw Error(kUsage) if the view's name is unknown, the direction is zero or not finite or
-/// parallel to up, the frame width or
-///        the size is not positive
+/// Places the camera on a volume. What projects to one point (one voxel, an empty box, a line seen
+/// end-on) is framed as one voxel of the smallest size.
+/// @throw Error(kUsage) naming the option if the view's name is unknown, a number is not finite,
+///        the direction is zero or parallel to up, or the frame width or the size is not positive;
+///        Error(kInput) if worldFromIndex is not finite or cannot be inverted
 Camera makeCamera(const CameraOptions& options, const IndexBox& box,
                   const glm::dmat4& worldFromIndex);
 

@@ -28,10 +28,12 @@ inline constexpr int kMaxResolution = 16;
 
 /// Factors the camera's projection of a volume.
 /// Ties between axes go to the later one (z before y before x), so that a diagonal view is well
-/// defined.
+/// defined; what is within 1e-9 of a tie is one, and shifts within 1e-9 of 0 or 1 are 0 or 1, so
+/// that rounding neither chooses an axis nor tilts a straight view.
 /// @param resolution  1..kMaxResolution, or empty: the screen's pixels a voxel, rounded, between 1
 /// and 4
-/// @throw Error(kUsage) if the resolution is out of range
+/// @throw Error(kUsage) if the resolution is out of range;
+///        Error(kInput) if worldFromIndex is not finite or cannot be inverted
 Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
                         std::optional<int> resolution = {});
 

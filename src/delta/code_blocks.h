@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "deltasplat/delta/delta_grid.h"
+#include "ingest/code_tree.h"
+
+namespace deltasplat {
+
+/// An 8x8x8 block of active voxels, in (slice, u, v) order: a leaf of the code tree, or a piece of
+/// a tile.
+struct CodeBlock {
+    glm::ivec3 position{0};                ///< of its first voxel, divided by 8
+    const CodeTree::Leaf* leaf = nullptr;  ///< null for a piece of a tile
+    Slot tileSlot = kEmptySlot;
+};
+
+/// Slots of a block, `[slice][u][v]`.
+using BlockSlots = std::array<Slot, 512>;
+
+/// Reads the blocks of a code tree as slots along one slice axis.
+class BlockReader {
+  public:
+    /// @param slotMap  as DeltaOptions::slotMap; must outlive the reader
+    BlockReader(const CodeTree& codes, int sliceAxis, std::span<const Slot> slotMap);
+
+    /// The blocks that may have slots other than empty, ordered by u, then v, then slice.
+    const std::vector<CodeBlock>& blocks() const { return blocks_; }
+    /// Returns the slots of a block.
+    void readBlock(const CodeBlock& block, BlockSlots& slots) const;
+    /// Returns the slots of a block's last slice, `[u][v]`.
+    void readLastSlice(const CodeBlock& block, std::span<Slot, 64> slots) const;
+
+  private:
+    void addTile(const openvdb::CoordBBox& box, Slot slot);
+    void readSlices(const CodeBlock& block, int firstSlice, Slot* slots) const;
+    Slot slotOf(Code code) const { return slotMap_.empty() ? code + 1 : slotMap_[code + 1]; }
+
+    std::span<const Slot> slotMap_;
+    glm::ivec3 order_;
+    std::vector<CodeBlock> blocks_;
+};
+
+}  // namespace deltasplat

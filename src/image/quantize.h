@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "deltasplat/image/image.h"
+
+namespace deltasplat {
+
+/// Returns the picture's values with NaN as 0 and the rest clamped to the finite numbers of float
+/// (`forFloat`) or half.
+std::vector<float> finiteValues(const Image& image, bool forFloat);
+
+/// Returns the picture as `[height][width][4]` samples with straight alpha and sRGB colour, rounded
+/// to nearest: 0 is 0 and 1 is the largest number of `Sample` (uint8_t or uint16_t).
+template <typename Sample>
+std::vector<Sample> straightSrgb(const Image& image);
+
+}  // namespace deltasplat

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/mat3x3.hpp>
+
+#include "deltasplat/image/image.h"
+
+namespace deltasplat {
+
+/// A float RGBA raster that lies somewhere on an integer lattice: `[size.y][size.x][4]`,
+/// transparent outside.
+struct Raster {
+    glm::ivec2 min{0};  ///< lattice position of the first pixel's centre
+    glm::ivec2 size{0};
+    const float* rgba = nullptr;
+};
+
+/// Resamples a raster under an affine map with a Catmull-Rom filter, widened where the picture is
+/// coarser than the raster. Colours are clamped to be not negative, alpha to 0..1: the filter's
+/// lobes may leave that range. Deterministic; multi-threaded.
+/// @param rasterFromPixel  continuous picture coordinates (pixel centres at half-integers) to
+/// lattice positions
+void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, Image& picture);
+
+}  // namespace deltasplat

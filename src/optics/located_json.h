@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace deltasplat {
+
+/// A JSON value that knows its line, so that an error about its meaning can say where it stands.
+struct LocatedJson {
+    enum class Kind { kNull, kBoolean, kNumber, kString, kArray, kObject };
+    Kind kind = Kind::kNull;
+    int line = 1;       ///< 1-based, where the value begins
+    bool flag = false;  ///< of a kBoolean
+    double number = 0;  ///< of a kNumber; always finite
+    std::string text;   ///< of a kString; of a kNumber as it is written out in errors
+    /// Elements of a kArray (names empty) or members of a kObject, in the file's order.
+    std::vector<std::pair<std::string, LocatedJson>> members;
+
+    /// Returns the last member of that name, as JSON readers usually take it; null if there is
+    /// none.
+    const LocatedJson* find(std::string_view name) const;
+    /// Returns the value as an error quotes it: `"abc"`, 3, true, null, an array or an object.
+    std::string quoted() const;
+};
+
+/// Reads a whole JSON file.
+/// @throw Error(kInput) `<file>:<line>: got X; expected Y` if it is missing, no JSON, longer than
+/// 16 MiB or nested deeper than 32 levels
+LocatedJson readLocatedJson(const std::filesystem::path& file);
+
+}  // namespace deltasplat

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <limits>
+#include <string>
+
+#include "deltasplat/error.h"
+#include "deltasplat/optics/transfer_function.h"
+#include "number_text.h"
+#include "optics/located_json.h"
+
+namespace deltasplat {
+namespace {
+
+using Kind = LocatedJson::Kind;
+
+// One preset of a file, with everything that turns its members into checked values.
+class PresetReader {
+  public:
+    PresetReader(const std::filesystem::path& file, const LocatedJson& preset)
+        : file_(file), preset_(preset) {}
+
+    std::string text(const char* name, const std::string& otherwise) const {
+        const LocatedJson* member = preset_.find(name);
+        if (!member) return otherwise;
+        if (member->kind != Kind::kString) fail(*member, std::string("text in ") + name);
+        return member->text;
+    }
+
+    bool flag(const char* name) const {
+        const LocatedJson* member = preset_.find(name);
+        if (!member) return false;
+        if (member->kind != Kind::kBoolean) fail(*member, std::string("true or false in ") + name);
+        return member->flag;
+    }
+
+    bool has(const char* name) const { return preset_.find(name) != nullptr; }
+
+    // Calls add(x, three shares) for each of the points, groups of four numbers.
+    template <typename Add>
+    void points(const char* name, const char* meaning, const Add& add) const {
+        const LocatedJson& list = array(name, meaning);
+        double last = -std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < list.members.size(); i += 4) {
+            const double x = numberIn(list, i, name);
+            if (x < last) {
+                fail(list.members[i].second,
+                     "x not below the " + numberText(last) + " before it in " + name);
+            }
+            last = x;
+            add(x, glm::dvec3(shareIn(list, i + 1, name), shareIn(list, i + 2, name),
+                              shareIn(list, i + 3, name)));
+        }
+    }
+
+  private:
+    [[noreturn]] void failAt(int line, const std::string& got, const std::string& expected) const {
+        throw Error(ErrorCode::kInput,
+                    gotExpected(file_.string() + ":" + std::to_string(line), got, expected));
+    }
+
+    [[noreturn]] void fail(const LocatedJson& json, const std::string& expected) const {
+        failAt(json.line, json.quoted(), expected);
+    }
+
+    const LocatedJson& array(const char* name, const char* meaning) const {
+        const std::string expected =
+            std::string(name) + " with groups of four numbers (" + meaning + ")";
+        const LocatedJson* list = preset_.find(name);
+        if (!list) failAt(preset_.line, std::string("no ") + name, expected);
+        if (list->kind != Kind::kArray) fail(*list, expected);
+        if (list->members.empty() || list->members.size() % 4 != 0) {
+            failAt(list->line, std::to_string(list->members.size()) + " numbers", expected);
+        }
+        return *list;
+    }
+
+    double numberIn(const LocatedJson& list, std::size_t i, const char* name) const {
+        const LocatedJson& element = list.members[i].second;
+        if (element.kind != Kind::kNumber) fail(element, std::string("a number in ") + name);
+        return element.number;
+    }
+
+    double shareIn(const LocatedJson& list, std::size_t i, const char* name) const {
+        const double share = numberIn(list, i, name);
+        if (share < 0 || share > 1) {
+            fail(list.members[i].second, std::string("a number within 0..1 in ") + name);
+        }
+        return share;
+    }
+
+    const std::filesystem::path& file_;
+    const LocatedJson& preset_;
+};
+
+const LocatedJson& firstPreset(const std::filesystem::path& file, const LocatedJson& root) {
+    const LocatedJson* preset = &root;
+    if (root.kind == Kind::kArray && !root.members.empty()) preset = &root.members[0].second;
+    if (preset->kind == Kind::kObject) return *preset;
+    const std::string got =
+        preset == &root && root.kind == Kind::kArray ? "an empty array" : preset->quoted();
+    throw Error(ErrorCode::kInput,
+                gotExpected(file.string() + ":" + std::to_string(preset->line), got,
+                            "a transfer function, an object with RGBPoints"));
+}
+
+// Gives every interval the colour of its right end, by points that share an x.
+void makeSteps(std::vector<TransferFunction::ColorPoint>& colors) {
+    std::vector<TransferFunction::ColorPoint> steps;
+    for (std::size_t i = 0; i < colors.size(); ++i) {
+        steps.push_back(colors[i]);
+        if (i + 1 < colors.size()) steps.push_back({colors[i].x, colors[i + 1].rgb});
+    }
+    colors = std::move(steps);
+}
+
+void readColors(const std::filesystem::path& file, const PresetReader& preset,
+                const Listener& listener, TransferFunction& function) {
+    preset.points("RGBPoints", "x, red, green, blue", [&](double x, const glm::dvec3& rgb) {
+        function.colors.push_back({x, rgb});
+    });
+    function.linearColors = preset.text("ColorSpaceOfPoints", "sRGB") == "linear";
+    const std::string space = preset.text("ColorSpace", "RGB");
+    if (space == "Step") {
+        makeSteps(function.colors);
+    } else if (space != "RGB") {
+        listener.warn(file.string() + ": ColorSpace " + space + " is interpolated as RGB");
+    }
+}
+
+// A colour map without opacities is common among ParaView's presets, whose opacity editor then
+// shows a straight ramp over the colours' range.
+void readOpacities(const std::filesystem::path& file, const PresetReader& preset,
+                   const Listener& listener, TransferFunction& function) {
+    if (preset.has("Points")) {
+        preset.points("Points", "x, opacity, midpoint, sharpness",
+                      [&](double x, const glm::dvec3& p) {
+                          function.opacities.push_back({x, p.x, p.y, p.z});
+                      });
+        return;
+    }
+    const double low = function.colors.front().x;
+    const double high = function.colors.back().x;
+    function.opacities = {{low, 0, 0.5, 0}, {high, 1, 0.5, 0}};
+    listener.warn(file.string() + ": no Points (opacities); opacity rises from 0 at " +
+                  numberText(low) + " to 1 at " + numberText(high));
+}
+
+}  // namespace
+
+TransferFunction readTransferFunction(const std::filesystem::path& file, const Listener& listener) {
+    const LocatedJson root = readLocatedJson(file);
+    const PresetReader preset(file, firstPreset(file, root));
+    TransferFunction function;
+    function.name = preset.text("Name", file.stem().string());
+    function.normalized = preset.flag("Normalized");
+    readColors(file, preset, listener, function);
+    readOpacities(file, preset, listener, function);
+    return function;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: S. Marschner, R. Lobb, "An Evaluation of Reconstruction Filters for Volume Rendering",
+// 1994, section 5 (marschner-lobb); D. Griffiths, "Introduction to Quantum Mechanics", 1995,
+// section 4.2 (hydrogen: radial function R_32 and spherical harmonic Y_20).
+#include <cmath>
+#include <numbers>
+
+#include "synth/volumes.h"
+
+namespace deltasplat {
+
+ValueAt makeMarschnerLobb() {
+    return [](const glm::dvec3& p) {
+        constexpr double kPi = std::numbers::pi;
+        constexpr double kFrequency = 6;  // f_M
+        constexpr double kAlpha = 0.25;
+        const double radius = std::sqrt(p.x * p.x + p.y * p.y);
+        const double ripple = std::cos(2 * kPi * kFrequency * std::cos(kPi * radius / 2));
+        return (1 - std::sin(kPi * p.z / 2) + kAlpha * (1 + ripple)) / (2 * (1 + kAlpha));
+    };
+}
+
+ValueAt makeHydrogen() {
+    return [](const glm::dvec3& p) {
+        // |psi|^2 ~ (r^2 exp(-r/3) (3 cos^2 theta - 1))^2 with r in Bohr radii.
+        constexpr double kHalfEdge = 24;
+        const glm::dvec3 q = p * kHalfEdge;
+        const double radius = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
+        const double psi = (2 * q.z * q.z - q.x * q.x - q.y * q.y) * std::exp(-radius / 3);
+        // On the z axis psi is 2 z^2 exp(-z/3), which is largest at z = 6.
+        const double largest = 72 * std::exp(-2.0);
+        return (psi / largest) * (psi / largest);
+    };
+}
+
+ValueAt makeSlab() {
+    return [](const glm::dvec3& p) {
+        const bool inside = std::abs(p.x) <= 0.8 && std::abs(p.y) <= 0.8 && std::abs(p.z) <= 0.5;
+        return inside ? 1.0 : 0.0;
+    };
+}
+
+}  // namespace deltasplat

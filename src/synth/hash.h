@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014: the
+// finalizer of SplitMix64.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+
+namespace deltasplat {
+
+/// Scrambles 64 bits, one to one.
+constexpr std::uint64_t mixBits(std::uint64_t bits) {
+    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+    return bits ^ (bits >> 31);
+}
+
+/// Returns a hash of three numbers and a seed.
+constexpr std::uint64_t hash3(std::uint64_t seed, std::uint64_t x, std::uint64_t y,
+                              std::uint64_t z) {
+    constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
+    std::uint64_t hash = mixBits(seed + kGolden);
+    for (const std::uint64_t part : {x, y, z}) hash = mixBits((hash ^ part) + kGolden);
+    return hash;
+}
+
+/// Returns a number from 0 (inclusive) to 1 (exclusive) made from the upper bits of `hash`.
+constexpr double unitFromBits(std::uint64_t hash) {
+    return double(hash >> 11) * 0x1p-53;
+}
+
+}  // namespace deltasplat

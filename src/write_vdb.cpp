@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "write_vdb.h"
+
+#include <openvdb/io/Archive.h>
+#include <openvdb/openvdb.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "output_file.h"
+
+namespace deltasplat {
+namespace {
+
+// Opens what io::Archive keeps for io::File: writing to any stream that can seek, offsets included.
+class SeekableArchive : public openvdb::io::Archive {
+  public:
+    void writeTo(std::ostream& out, const openvdb::GridCPtrVec& grids,
+                 const openvdb::MetaMap& metadata) const {
+        Archive::write(out, grids, /*seekable=*/true, metadata);
+    }
+};
+
+// Where a .vdb has its tag: after magic number (8 bytes), file version, library version (4 bytes
+// each of three numbers) and the flag for grid offsets (1 byte).
+constexpr std::streamoff kTagPosition = 21;
+
+// Returns the FNV-1a hash of all bytes of a file but the `skipped` ones from kTagPosition on.
+std::uint64_t hashContent(std::istream& in, std::size_t skipped) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    std::vector<char> block(std::size_t{1} << 20);
+    std::uint64_t position = 0;
+    while (in.read(block.data(), std::streamsize(block.size())), in.gcount() > 0) {
+        for (std::streamsize i = 0; i < in.gcount(); ++i, ++position) {
+            if (position - std::uint64_t(kTagPosition) < skipped) continue;
+            hash = (hash ^ static_cast<unsigned char>(block[std::size_t(i)])) * 0x100000001b3u;
+        }
+    }
+    return hash;
+}
+
+// Returns a UUID of version 8 (free use, RFC 9562) that stands for `hash`.
+std::string tagFrom(std::uint64_t hash) {
+    const std::uint64_t other = (hash ^ (hash >> 29)) * 0xbf58476d1ce4e5b9u;
+    char text[37];
+    std::snprintf(text, sizeof text, "%08x-%04x-8%03x-8%03x-%012llx", unsigned(hash >> 32),
+                  unsigned(hash >> 16 & 0xffff), unsigned(hash & 0xfff),
+                  unsigned(other >> 48 & 0xfff), (unsigned long long)(other & 0xffffffffffffu));
+    return text;
+}
+
+// Replaces the file's random tag, if it is where this program knows it to be.
+void makeTagReproducible(std::fstream& stream, const std::string& randomTag) {
+    std::string found(randomTag.size(), '\0');
+    stream.seekg(kTagPosition);
+    stream.read(found.data(), std::streamsize(found.size()));
+    if (found != randomTag) return;
+
+    stream.seekg(0);
+    stream.exceptions(std::ios::badbit);
+    const std::string tag = tagFrom(hashContent(stream, randomTag.size()));
+    stream.clear();
+    stream.exceptions(std::ios::badbit | std::ios::failbit);
+    stream.seekp(kTagPosition);
+    stream.write(tag.data(), std::streamsize(tag.size()));
+}
+
+void writeStream(const AtomicFile& file, const openvdb::GridCPtrVec& grids,
+                 const openvdb::MetaMap& metadata) {
+    std::fstream stream;
+    // With exceptions the first byte that cannot be written ends the work, and errno is still its.
+    stream.exceptions(std::ios::badbit | std::ios::failbit);
+    stream.open(file.path(), std::ios::in | std::ios::out | std::ios::binary | std::ios::trunc);
+    SeekableArchive archive;
+    archive.writeTo(stream, grids, metadata);
+    stream.flush();
+    // Only a regular file can be read back.
+    if (file.path() != file.finalPath()) makeTagReproducible(stream, archive.getUniqueTag());
+    stream.close();
+}
+
+}  // namespace
+
+void writeVdb(const std::filesystem::path& file, const openvdb::GridCPtrVec& grids,
+              const openvdb::MetaMap& fileMetadata) {
+    openvdb::initialize();
+    AtomicFile output(file);
+    try {
+        errno = 0;
+        writeStream(output, grids, fileMetadata);
+    } catch (const std::ios_base::failure&) {
+        throwCannotWrite(file, errno != 0 ? errno : EIO);
+    }
+    output.commit();
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/warp.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "deltasplat/threads.h"
+
+namespace deltasplat {
+namespace {
+
+struct OwnedRaster {
+    glm::ivec2 min;
+    glm::ivec2 size;
+    std::vector<float> rgba;
+
+    OwnedRaster(glm::ivec2 first, glm::ivec2 extent, const std::function<float(int, int)>& at)
+        : min(first), size(extent), rgba(std::size_t{4} * extent.x * extent.y) {
+        for (int y = 0; y < size.y; ++y) {
+            for (int x = 0; x < size.x; ++x) {
+                for (int c = 0; c < 4; ++c) {
+                    rgba[4 * (std::size_t(y) * size.x + x) + c] = at(min.x + x, min.y + y);
+                }
+            }
+        }
+    }
+    Raster raster() const { return {min, size, rgba.data()}; }
+};
+
+glm::dmat3 affine(double xx, double xy, double x0, double yx, double yy, double y0) {
+    return {xx, yx, 0, xy, yy, 0, x0, y0, 1};
+}
+
+TEST(Warp, PixelCentresOnLatticePointsCopyThem) {
+    const OwnedRaster raster({-3, 7}, {20, 20},
+                             [](int x, int y) { return (x * 7 + y * 13) % 11 / 11.0f + 0.01f; });
+    Image picture({20, 20});
+    // Pixel centre (0.5, 0.5) falls on lattice point (-3, 7).
+    warp(raster.raster(), affine(1, 0, -3.5, 0, 1, 6.5), picture);
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+        EXPECT_FLOAT_EQ(picture.rgba[i], raster.rgba[i]);
+    }
+}
+
+TEST(Warp, ReproducesLinearRampsUnderAnyAffineMap) {
+    const auto ramp = [](double x, double y) { return 0.3 + 0.002 * x - 0.003 * y; };
+    const OwnedRaster raster({-40, -40}, {80, 80}, [&](int x, int y) { return float(ramp(x, y)); });
+    for (const auto& map : {affine(0.7, 0.2, -20, -0.3, 0.8, -10), affine(-0.25, 0, 10, 0, -0.4, 5),
+                            affine(0, 1.0, -12, -1.0, 0, 12)}) {
+        Image picture({30, 30});
+        warp(raster.raster(), map, picture);
+        for (int y = 0; y < 30; ++y) {
+            for (int x = 0; x < 30; ++x) {
+                const glm::dvec3 p = map * glm::dvec3(x + 0.5, y + 0.5, 1);
+                EXPECT_NEAR(picture.pixel(x, y)[0], ramp(p.x, p.y), 1e-5);
+                EXPECT_NEAR(picture.pixel(x, y)[3], ramp(p.x, p.y), 1e-5);
+            }
+        }
+    }
+}
+
+// A picture coarser than the raster must average it, not sample it.
+TEST(Warp, MinificationAveragesFineStripes) {
+    const OwnedRaster stripes({0, 0}, {256, 256}, [](int x, int) { return x % 2 ? 1.0f : 0.0f; });
+    Image picture({32, 32});
+    warp(stripes.raster(), affine(8, 0, 0, 0, 8, 0), picture);
+    for (int x = 4; x < 28; ++x) EXPECT_NEAR(picture.pixel(x, 16)[1], 0.5, 0.005);
+}
+
+TEST(Warp, ClampsWhatTheFilterOvershoots) {
+    const OwnedRaster edge({0, 0}, {40, 40}, [](int x, int) { return x < 20 ? 0.0f : 1.0f; });
+    Image picture({160, 160});
+    warp(edge.raster(), affine(0.25, 0, 0, 0, 0.25, 0), picture);
+    float largestColor = 0;
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+        EXPECT_GE(picture.rgba[i], 0.0f);
+        EXPECT_LE(picture.rgba[i + 3], 1.0f);
+        largestColor = std::max(largestColor, picture.rgba[i]);
+    }
+    EXPECT_GT(largestColor, 1.02f);  // colours may exceed 1: emission has no upper bound
+}
+
+TEST(Warp, OutsideOfTheRasterIsTransparent) {
+    const OwnedRaster raster({0, 0}, {4, 4}, [](int, int) { return 1.0f; });
+    Image picture({64, 64});
+    warp(raster.raster(), affine(1, 0, -30, 0, 1, -30), picture);
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            const bool far = x < 26 || x > 37 || y < 26 || y > 37;
+            if (far) {
+                EXPECT_EQ(picture.pixel(x, y)[3], 0.0f);
+            }
+        }
+    }
+    EXPECT_GT(picture.pixel(31, 31)[3], 0.9f);
+}
+
+TEST(Warp, EmptyRasterLeavesThePictureAlone) {
+    Image picture({3, 2});
+    warp({}, glm::dmat3(1), picture);
+    for (const float value : picture.rgba) EXPECT_EQ(value, 0.0f);
+}
+
+TEST(Warp, SameBitsOnEveryNumberOfThreads) {
+    const OwnedRaster raster({0, 0}, {50, 50},
+                             [](int x, int y) { return float((x * x + 3 * y) % 17) / 17; });
+    Image one({90, 70});
+    Image two({90, 70});
+    {
+        const ThreadLimit limit(1);
+        warp(raster.raster(), affine(0.6, 0.1, -2, -0.2, 0.7, 4), one);
+    }
+    {
+        const ThreadLimit limit(2);
+        warp(raster.raster(), affine(0.6, 0.1, -2, -0.2, 0.7, 4), two);
+    }
+    EXPECT_EQ(one.rgba, two.rgba);
+}
+
+}  // namespace
+}  // namespace deltasplat
