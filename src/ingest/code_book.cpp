@@ -1,1 +1,78 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/ingest/code_book.h"
+
+#include <openvdb/Types.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ingest/code_math.h"
+
+namespace deltasplat {
+namespace {
+
+using Half = openvdb::math::half;
+
+double halfValue(Code code) {
+    Half half;
+    half.setBits(halfBitsOfCode(code));
+    return double(float(half));
+}
+
+Code nearestHalfCode(double value) {
+    if (std::isnan(value)) return codeOfHalfBits(0x7e00);
+    // Only an infinity becomes one: everything else has a nearest finite half.
+    const double largest = 65504;
+    if (std::isinf(value)) return codeOfHalfBits(value > 0 ? 0x7c00 : 0xfc00);
+    if (std::fabs(value) >= largest) return codeOfHalfBits(value > 0 ? 0x7bff : 0xfbff);
+
+    // A double rounded to float and then to half can miss the nearest half by one step.
+    const Code code = codeOfHalfBits(Half(float(value)).bits());
+    Code best = code;
+    for (const Code other : {Code(code - 1), Code(code + 1)}) {
+        const double otherValue = halfValue(other);
+        if (std::fabs(otherValue - value) < std::fabs(halfValue(best) - value)) best = other;
+    }
+    return best;
+}
+
+}  // namespace
+
+double CodeBook::valueOf(Code code) const {
+    return kind == Kind::kHalf ? halfValue(code) : offset + step * double(code);
+}
+
+Code CodeBook::codeOf(double value) const {
+    return kind == Kind::kHalf ? nearestHalfCode(value) : linearCode(value, offset, step);
+}
+
+std::string CodeBook::name() const {
+    switch (kind) {
+        case Kind::kInteger:
+            return "integer";
+        case Kind::kHalf:
+            return "half";
+        case Kind::kLinear:
+            break;
+    }
+    return "linear";
+}
+
+CodeBook CodeBook::integer(std::int64_t offset) {
+    return {Kind::kInteger, double(offset), 1};
+}
+
+CodeBook CodeBook::half() {
+    return {Kind::kHalf, 0, 1};
+}
+
+CodeBook CodeBook::linear(double low, double high) {
+    if (!(high > low)) return {Kind::kLinear, low, 0};
+    // A step below the spacing of doubles would give neighbouring codes the same value.
+    const double large = std::max(std::fabs(low), std::fabs(high));
+    const double spacing = large - std::nextafter(large, 0.0);
+    return {Kind::kLinear, low, std::max((high - low) / (kCodeCount - 1), spacing)};
+}
+
+}  // namespace deltasplat

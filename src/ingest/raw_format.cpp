@@ -1,1 +1,176 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ingest/raw_format.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <regex>
+
+#include "deltasplat/error.h"
+#include "ingest/file_name.h"
+
+namespace deltasplat {
+namespace {
+
+struct TypeInfo {
+    RawType type;
+    const char* name;
+    int bytes;
+};
+
+constexpr std::array<TypeInfo, 8> kTypes{{{RawType::kUint8, "uint8", 1},
+                                          {RawType::kInt8, "int8", 1},
+                                          {RawType::kUint16, "uint16", 2},
+                                          {RawType::kInt16, "int16", 2},
+                                          {RawType::kUint32, "uint32", 4},
+                                          {RawType::kInt32, "int32", 4},
+                                          {RawType::kFloat32, "float32", 4},
+                                          {RawType::kFloat64, "float64", 8}}};
+
+constexpr const char* kKnownTypes =
+    "one of uint8, int8, uint16, int16, uint32, int32, float32, float64";
+constexpr std::int64_t kMaxDim = std::int64_t{1} << 30;
+
+// What a name such as engine_256x256x128_uint8be.raw says; empty text where it says nothing.
+struct NameParts {
+    std::array<std::string, 3> dims;
+    std::string type;
+    std::optional<bool> bigEndian;
+};
+
+[[noreturn]] void refuse(const std::string& where, const std::string& got,
+                         const std::string& expected) {
+    throw Error(ErrorCode::kUsage, gotExpected(where, got, expected));
+}
+
+const TypeInfo* findType(const std::string& name) {
+    for (const TypeInfo& info : kTypes) {
+        if (name == info.name) return &info;
+    }
+    return nullptr;
+}
+
+NameParts parseName(const std::filesystem::path& file) {
+    static const std::regex kPattern("_([0-9]+)x([0-9]+)x([0-9]+)_([A-Za-z0-9]+)$");
+    NameParts parts;
+    std::smatch match;
+    const std::string stem = nameWithoutExtensions(file);
+    if (!std::regex_search(stem, match, kPattern)) return parts;
+    parts.dims = {match[1], match[2], match[3]};
+    parts.type = match[4];
+
+    // "uint16be" is a known type with a byte order behind it.
+    const std::size_t size = parts.type.size();
+    const std::string order = size > 2 ? parts.type.substr(size - 2) : "";
+    if ((order == "be" || order == "le") && findType(parts.type.substr(0, size - 2))) {
+        parts.type.resize(size - 2);
+        parts.bigEndian = order == "be";
+    }
+    return parts;
+}
+
+std::string dimsText(const glm::i64vec3& dims) {
+    return std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" + std::to_string(dims.z);
+}
+
+glm::i64vec3 dimsFromName(const std::string& file, const NameParts& parts) {
+    glm::i64vec3 dims{0};
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string& digits = parts.dims[std::size_t(axis)];
+        const auto result =
+            std::from_chars(digits.data(), digits.data() + digits.size(), dims[axis]);
+        if (result.ec != std::errc{}) {
+            refuse(file, "dims " + parts.dims[0] + "x" + parts.dims[1] + "x" + parts.dims[2],
+                   "each 1.." + std::to_string(kMaxDim));
+        }
+    }
+    return dims;
+}
+
+glm::i64vec3 resolveDims(const std::filesystem::path& file, const RawFormat& format,
+                         const NameParts& parts) {
+    if (!format.dims && parts.dims[0].empty()) {
+        refuse(file.string(), "no dimensions",
+               "--dims XxYxZ and --type TYPE, or a name such as volume_256x256x128_uint8.raw");
+    }
+    const std::string where = format.dims ? "--dims" : file.string();
+    const glm::i64vec3 dims = format.dims ? *format.dims : dimsFromName(where, parts);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (dims[axis] < 1 || dims[axis] > kMaxDim) {
+            refuse(where, (format.dims ? "" : "dims ") + dimsText(dims),
+                   "each 1.." + std::to_string(kMaxDim));
+        }
+    }
+    return dims;
+}
+
+const TypeInfo& resolveType(const std::filesystem::path& file, const RawFormat& format,
+                            const NameParts& parts) {
+    if (!format.type && parts.type.empty()) {
+        refuse(file.string(), "no value type",
+               "--type TYPE, or a name such as volume_256x256x128_uint8.raw");
+    }
+    const std::string& name = format.type ? *format.type : parts.type;
+    const TypeInfo* info = findType(name);
+    if (info == nullptr && format.type) refuse("--type", name, kKnownTypes);
+    if (info == nullptr) refuse(file.string(), "value type " + name, kKnownTypes);
+    return *info;
+}
+
+void checkGeometry(const RawFormat& format) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double spacing = format.spacing[axis];
+        if (!std::isfinite(spacing) || spacing <= 0) {
+            refuse("--spacing", numberText(spacing), "three finite numbers above 0");
+        }
+        if (!std::isfinite(format.origin[axis])) {
+            refuse("--origin", numberText(format.origin[axis]), "three finite numbers");
+        }
+    }
+}
+
+// Each dim is at most 2^30, so only the products can leave 63 bits.
+void checkSize(const std::string& where, const RawLayout& layout) {
+    const std::int64_t limit = std::numeric_limits<std::int64_t>::max();
+    const std::int64_t slice = layout.dims.x * layout.dims.y;
+    const std::int64_t bytes = rawTypeBytes(layout.type);
+    if (layout.dims.z > limit / slice / bytes) {
+        refuse(where, dimsText(layout.dims) + " " + rawTypeName(layout.type),
+               "at most 9223372036854775807 bytes");
+    }
+    if (layout.skipBytes > std::uint64_t(limit) - layout.dataBytes()) {
+        refuse("--skip-bytes", std::to_string(layout.skipBytes),
+               "less than 9223372036854775807 bytes together with the voxels");
+    }
+}
+
+}  // namespace
+
+const char* rawTypeName(RawType type) {
+    return kTypes[std::size_t(type)].name;
+}
+
+int rawTypeBytes(RawType type) {
+    return kTypes[std::size_t(type)].bytes;
+}
+
+std::string RawLayout::expectedSize() const {
+    const std::string skip = skipBytes == 0 ? "" : std::to_string(skipBytes) + " skipped + ";
+    return std::to_string(skipBytes + dataBytes()) + " (" + skip + dimsText(dims) + " " +
+           rawTypeName(type) + ")";
+}
+
+RawLayout resolveRawLayout(const std::filesystem::path& file, const RawFormat& format) {
+    const NameParts parts = parseName(file);
+    RawLayout layout;
+    layout.dims = resolveDims(file, format, parts);
+    layout.type = resolveType(file, format, parts).type;
+    layout.bigEndian = format.bigEndian.value_or(parts.bigEndian.value_or(false));
+    layout.skipBytes = format.skipBytes;
+    checkGeometry(format);
+    checkSize(format.dims ? "--dims" : file.string(), layout);
+    return layout;
+}
+
+}  // namespace deltasplat

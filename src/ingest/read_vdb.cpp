@@ -1,1 +1,128 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <openvdb/Grid.h>
+
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <utility>
+
+#include "deltasplat/error.h"
+#include "ingest/file_name.h"
+#include "ingest/grid_codes.h"
+#include "ingest/readers.h"
+#include "ingest/vdb_file.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr const char* kScalarGrid = "a scalar grid (float, double, int32, int64, bool or mask)";
+
+// Reading and unpacking the file is by far the longer part of the work on a grid.
+constexpr double kReadShare = 0.8;
+
+[[noreturn]] void fail(const std::string& where, const std::string& got,
+                       const std::string& expected) {
+    throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
+}
+
+std::string listOf(const std::vector<VdbGrid>& grids) {
+    std::string list;
+    for (const VdbGrid& grid : grids) list += (list.empty() ? "" : ", ") + grid.describe();
+    return list;
+}
+
+// Finds "density[1]" by its unique name, and "density" as the first of that name.
+const VdbGrid& findGrid(const std::string& file, const std::vector<VdbGrid>& grids,
+                        const std::string& name) {
+    const VdbGrid* found = nullptr;
+    for (const VdbGrid& grid : grids) {
+        const std::string plain = grid.uniqueName.substr(0, grid.uniqueName.find('\x1e'));
+        if (grid.name == name || (found == nullptr && plain == name)) found = &grid;
+        if (grid.name == name) break;
+    }
+    if (found == nullptr) {
+        fail(file, "no grid \"" + name + "\"",
+             grids.empty() ? "a file with grids" : "one of " + listOf(grids));
+    }
+    if (!found->isScalar()) {
+        fail(file, "grid \"" + name + "\" of type " + found->type, kScalarGrid);
+    }
+    return *found;
+}
+
+std::vector<const VdbGrid*> chooseGrids(const std::string& file, const std::vector<VdbGrid>& grids,
+                                        const std::string& name, bool all) {
+    if (!name.empty()) return {&findGrid(file, grids, name)};
+    std::vector<const VdbGrid*> chosen;
+    for (const VdbGrid& grid : grids) {
+        if (grid.isScalar() && (all || chosen.empty())) chosen.push_back(&grid);
+    }
+    if (chosen.empty()) {
+        fail(file, grids.empty() ? "no grids" : "only " + listOf(grids), kScalarGrid);
+    }
+    return chosen;
+}
+
+glm::dmat4 worldFromIndex(const openvdb::math::Transform& transform, const std::string& where) {
+    if (!transform.isLinear()) {
+        fail(where, "a " + transform.mapType() + " transform", "a linear one (no frustum)");
+    }
+    const openvdb::Vec3d origin = transform.indexToWorld(openvdb::Vec3d(0));
+    glm::dmat4 matrix(1.0);
+    matrix[3] = {origin.x(), origin.y(), origin.z(), 1};
+    bool finite = std::isfinite(origin.lengthSqr());
+    for (int axis = 0; axis < 3; ++axis) {
+        openvdb::Vec3d unit(0);
+        unit[axis] = 1;
+        const openvdb::Vec3d step = transform.indexToWorld(unit) - origin;
+        matrix[axis] = {step.x(), step.y(), step.z(), 0};
+        finite = finite && std::isfinite(step.lengthSqr());
+    }
+    if (!finite || glm::determinant(matrix) == 0) {
+        fail(where, "a transform that cannot be inverted", "a finite affine map");
+    }
+    return matrix;
+}
+
+void settleBackground(Volume& volume, const ReadOptions& options, const std::string& where,
+                      const Listener& listener) {
+    if (std::isfinite(volume.background)) return;
+    const double replacement = options.nanValue.value_or(0);
+    listener.warn(where + ": background " + numberText(volume.background) + " taken as " +
+                  numberText(replacement));
+    volume.background = replacement;
+}
+
+Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& where,
+                const ReadOptions& options, const Listener& listener) {
+    Listener reading;
+    reading.progress = [&](double share) { listener.report(kReadShare * share); };
+    const openvdb::GridBase::Ptr loaded = file.read(grid, reading);
+    Volume volume;
+    volume.name = grid.name;
+    volume.worldFromIndex = worldFromIndex(loaded->transform(), where);
+    fillFromGrid(*loaded, {where, grid.half, options.levelSetToFog, options.nanValue}, volume);
+    settleBackground(volume, options, where, listener);
+    if (volume.empty()) listener.warn(where + ": no active voxels");
+    return volume;
+}
+
+}  // namespace
+
+std::vector<Volume> readVdb(const std::filesystem::path& path, const ReadOptions& options, bool all,
+                            const Listener& listener) {
+    const VdbFile file(path, {});
+    const auto chosen = chooseGrids(path.string(), file.grids(), options.gridName, all);
+    std::vector<Volume> volumes;
+    for (const VdbGrid* grid : chosen) {
+        const double done = double(volumes.size()) / double(chosen.size());
+        Listener part = listener;
+        part.progress = [&, done](double share) {
+            listener.report(done + share / double(chosen.size()));
+        };
+        const std::string where = path.string() + ": grid \"" + grid->name + "\"";
+        volumes.push_back(readGrid(file, *grid, where, options, part));
+    }
+    return volumes;
+}
+
+}  // namespace deltasplat

@@ -15,7 +15,7 @@ inline constexpr int kTilePixels = 8;
 
 /// The sheet pixels reach at most this many past a stamp's last one when a vector is wider than
 /// what is left.
-inline constexpr int kMaxVectorPixels = 4;
+inline constexpr int kMaxVectorPixels = 2;
 
 /// Stamps that wait to be added: colours in units of the class table, and where they go. Fixed
 /// size, so that it stays in the first-level cache and nothing is allocated on the way.

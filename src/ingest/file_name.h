@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace deltasplat {
+
+/// Returns the file's extension in lower case, a ".gz" before it kept: ".raw", ".raw.gz", ".vdb".
+std::string lowerExtension(const std::filesystem::path& file);
+
+/// Returns the file's name without folder and without the extension that lowerExtension gives.
+std::string nameWithoutExtensions(const std::filesystem::path& file);
+
+/// Returns the shortest text that reads back as `value`.
+std::string numberText(double value);
+
+/// @throw Error(kInput) unless `file` exists and is a regular file
+void requireRegularFile(const std::filesystem::path& file);
+
+}  // namespace deltasplat

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/grid_codes.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetUtil.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "deltasplat/error.h"
+#include "ingest/code_math.h"
+#include "ingest/code_tree.h"
+#include "ingest/file_name.h"
+#include "ingest/grid_values.h"
+#include "ingest/readers.h"
+
+namespace deltasplat {
+namespace {
+
+[[noreturn]] void fail(const std::string& where, const std::string& got,
+                       const std::string& expected) {
+    throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
+}
+
+// A file can state nodes that OpenVDB's own writer never makes; walking those would go astray.
+template <typename Node>
+void checkNodes(const std::vector<Node*>& nodes, const std::string& where) {
+    for (const Node* node : nodes) {
+        auto both = node->getValueMask();
+        both &= node->getChildMask();
+        if (!both.isOff()) fail(where, "a node that is both tile and child", "a sound tree");
+    }
+}
+
+template <typename Tree>
+void checkTree(Tree& tree, const std::string& where) {
+    using Upper = typename Tree::RootNodeType::ChildNodeType;
+    using Lower = typename Upper::ChildNodeType;
+    const auto aligned = [](const openvdb::Coord& c) {
+        return ((c.x() | c.y() | c.z()) & openvdb::Int32(Upper::DIM - 1)) == 0;
+    };
+    for (auto entry = tree.root().cbeginValueAll(); entry; ++entry) {
+        if (!aligned(entry.getCoord())) fail(where, "a misplaced root tile", "a sound tree");
+    }
+    for (auto entry = tree.root().cbeginChildOn(); entry; ++entry) {
+        if (!aligned(entry.getCoord())) fail(where, "a misplaced root node", "a sound tree");
+    }
+    std::vector<Upper*> upper;
+    std::vector<Lower*> lower;
+    tree.getNodes(upper);
+    tree.getNodes(lower);
+    checkNodes(upper, where);
+    checkNodes(lower, where);
+}
+
+template <typename Grid>
+void settleNonFinite(Grid& grid, const GridCodesOptions& options) {
+    const auto range = rangeOfTree(grid.tree());
+    if (range.nonFinite == 0) return;
+    if (!options.nanValue) {
+        fail(options.where,
+             std::to_string(range.nonFinite) + " NaN or infinite active values, the first at (" +
+                 std::to_string(range.first.x()) + ", " + std::to_string(range.first.y()) + ", " +
+                 std::to_string(range.first.z()) + ")",
+             "finite values (--nan VALUE replaces them)");
+    }
+    replaceNonFinite(grid.tree(), typename Grid::ValueType(*options.nanValue));
+}
+
+template <typename Grid>
+void makeFog(Grid& grid, const GridCodesOptions& options) {
+    if (grid.getGridClass() != openvdb::GRID_LEVEL_SET || !options.levelSetToFog) return;
+    const double width = double(grid.background());
+    if (!(width > 0) || !std::isfinite(width)) {
+        fail(options.where, "a level set with background " + numberText(width),
+             "a finite background above 0");
+    }
+    openvdb::tools::sdfToFogVolume(grid);
+}
+
+template <typename T>
+CodeBook bookOfRange(const GridRange<T>& range, const std::string& where) {
+    if constexpr (std::is_same_v<T, bool>) {
+        return CodeBook::integer(0);
+    } else if constexpr (std::is_integral_v<T>) {
+        // Beyond 2^53 a double cannot be a book's offset.
+        constexpr std::int64_t kLargest = std::int64_t{1} << 53;
+        const std::int64_t low = range.min;
+        const std::int64_t high = range.max;
+        const bool exact = low >= -kLargest && high <= kLargest;
+        if (exact && high - low < kCodeCount) return CodeBook::integer(low);
+    } else {
+        if (range.half) return CodeBook::half();
+    }
+    requireFiniteSpan(where, double(range.min), double(range.max));
+    return CodeBook::linear(double(range.min), double(range.max));
+}
+
+template <typename T>
+Code encode(const CodeBook& book, T value) {
+    if (book.kind != CodeBook::Kind::kHalf) {
+        return linearCode(double(value), book.offset, book.step);
+    }
+    return codeOfHalfBits(openvdb::math::half(float(value)).bits());
+}
+
+template <typename Tree>
+std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book) {
+    using SourceLeaf = typename Tree::LeafNodeType;
+    // OpenVDB's trees cannot be assigned, only made in place.
+    const std::shared_ptr<CodeTree> codes(
+        new CodeTree{CodeTree::Tree(tree, Code{0}, openvdb::TopologyCopy())});
+    std::vector<SourceLeaf*> sources;
+    std::vector<CodeTree::Leaf*> targets;
+    tree.getNodes(sources);
+    codes->tree.getNodes(targets);
+    forLeafRuns(sources.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Code* out = targets[i]->buffer().data();
+            for (auto voxel = sources[i]->cbeginValueOn(); voxel; ++voxel) {
+                out[voxel.pos()] = encode(book, *voxel);
+            }
+        }
+    });
+    forActiveTiles(codes->tree, [&](const auto& tile) {
+        tile.setValue(encode(book, tree.getValue(tile.getCoord())));
+    });
+    return codes;
+}
+
+std::vector<std::uint64_t> histogramOf(CodeTree::Tree& tree) {
+    std::vector<std::uint64_t> counts(kCodeCount);
+    std::vector<const CodeTree::Leaf*> leaves;
+    tree.getNodes(leaves);
+    for (const CodeTree::Leaf* leaf : leaves) {
+        const Code* codes = leaf->buffer().data();
+        for (auto on = leaf->valueMask().beginOn(); on; ++on) ++counts[codes[on.pos()]];
+    }
+    forActiveTiles(tree, [&](const auto& tile) { counts[*tile] += tile.getVoxelCount(); });
+    return counts;
+}
+
+IndexBox boxOf(const CodeTree::Tree& tree, const std::string& where) {
+    openvdb::CoordBBox active;
+    if (!tree.evalActiveVoxelBoundingBox(active)) return {};
+    IndexBox box;
+    double voxels = 1;
+    bool fits = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        constexpr int kFarthest = 1 << 30;
+        box.min[axis] = active.min()[axis];
+        box.max[axis] = active.max()[axis];
+        fits = fits && box.min[axis] >= -kFarthest && box.max[axis] < kFarthest;
+        voxels *= double(box.max[axis]) - box.min[axis] + 1;
+    }
+    if (!fits || voxels > 0x1p62) {
+        fail(where, "active voxels spread over " + numberText(voxels) + " places",
+             "indices within 2^30 of 0 and a box of at most 2^62 voxels");
+    }
+    return box;
+}
+
+template <typename Grid>
+void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
+    using T = typename Grid::ValueType;
+    checkTree(grid.tree(), options.where);
+    if constexpr (std::is_floating_point_v<T>) {
+        settleNonFinite(grid, options);
+        makeFog(grid, options);
+    }
+    const auto range = rangeOfTree(grid.tree());
+    volume.codeBook = bookOfRange(range, options.where);
+    volume.background = double(grid.background());
+    auto codes = codesOfTree(grid.tree(), volume.codeBook);
+    volume.box = boxOf(codes->tree, options.where);
+    volume.histogram = histogramOf(codes->tree);
+    volume.codes = std::move(codes);
+}
+
+}  // namespace
+
+void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume) {
+    using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
+                                    openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid>;
+    const bool known = grid.apply<Types>([&](auto& typed) { fill(typed, options, volume); });
+    if (!known) fail(options.where, "type " + grid.valueType(), "a scalar grid");
+    volume.type = options.half ? "half" : grid.valueType();
+    volume.gridClass = openvdb::GridBase::gridClassToString(grid.getGridClass());
+    summarize(volume);
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
+
+#include "deltasplat/ingest/read_volume.h"
+
+namespace deltasplat {
+
+enum class RawType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kFloat32, kFloat64 };
+
+/// Returns "uint8", ..., "float64".
+const char* rawTypeName(RawType type);
+/// Returns 1, 2, 4 or 8.
+int rawTypeBytes(RawType type);
+
+/// What the bytes of a raw file are, complete and checked.
+struct RawLayout {
+    glm::i64vec3 dims{1};  ///< each 1..2^30; the product of dims and bytes fits into 63 bits
+    RawType type = RawType::kUint8;
+    bool bigEndian = false;
+    std::uint64_t skipBytes = 0;
+
+    std::uint64_t voxels() const { return std::uint64_t(dims.x * dims.y * dims.z); }
+    std::uint64_t dataBytes() const { return voxels() * std::uint64_t(rawTypeBytes(type)); }
+    /// Returns what a file of this layout must hold, for example "8388608 (256x256x128 uint8)".
+    std::string expectedSize() const;
+};
+
+/// Completes `format` from the name of `file`; what the options say wins over the name.
+/// @throw Error(kUsage) if dims or type are missing, unknown or out of range
+RawLayout resolveRawLayout(const std::filesystem::path& file, const RawFormat& format);
+
+}  // namespace deltasplat

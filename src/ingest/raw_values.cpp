@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/raw_values.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+#include "ingest/code_math.h"
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+template <typename T>
+inline T loadValue(const std::byte* from, bool swap) {
+    std::byte bytes[sizeof(T)];
+    std::memcpy(bytes, from, sizeof(T));
+    if (swap) std::reverse(bytes, bytes + sizeof(T));
+    T value;
+    std::memcpy(&value, bytes, sizeof(T));
+    return value;
+}
+
+constexpr bool mustSwap(bool bigEndian) {
+    return bigEndian != (std::endian::native == std::endian::big);
+}
+
+// Calls use(T{}) with the C++ type of `type`.
+template <typename Use>
+auto withType(RawType type, const Use& use) {
+    switch (type) {
+        case RawType::kUint8:
+            return use(std::uint8_t{});
+        case RawType::kInt8:
+            return use(std::int8_t{});
+        case RawType::kUint16:
+            return use(std::uint16_t{});
+        case RawType::kInt16:
+            return use(std::int16_t{});
+        case RawType::kUint32:
+            return use(std::uint32_t{});
+        case RawType::kInt32:
+            return use(std::int32_t{});
+        case RawType::kFloat32:
+            return use(float{});
+        case RawType::kFloat64:
+            break;
+    }
+    return use(double{});
+}
+
+template <typename T>
+RawRange scanRun(const std::byte* bytes, std::size_t count, bool swap) {
+    RawRange range;
+    T low{};
+    T high{};
+    for (std::size_t i = 0; i < count; ++i) {
+        const T value = loadValue<T>(bytes + i * sizeof(T), swap);
+        if constexpr (std::is_floating_point_v<T>) {
+            if (!std::isfinite(value)) {
+                if (range.nonFinite++ == 0) range.firstNonFinite = i;
+                continue;
+            }
+        }
+        low = range.finite == 0 ? value : std::min(low, value);
+        high = range.finite == 0 ? value : std::max(high, value);
+        ++range.finite;
+    }
+    range.min = double(low);
+    range.max = double(high);
+    return range;
+}
+
+// One code of a value whose book counts whole numbers: the low 16 bits say it all.
+template <typename T>
+struct IntegerCoder {
+    Code offset;
+    explicit IntegerCoder(const RawCoding& coding)
+        : offset(Code(std::uint64_t(std::int64_t(coding.book.offset)))) {}
+    Code operator()(T value) const { return Code(Code(value) - offset); }
+};
+
+template <typename T>
+struct LinearCoder {
+    double offset, step, nanValue;
+    explicit LinearCoder(const RawCoding& coding)
+        : offset(coding.book.offset), step(coding.book.step), nanValue(coding.nanValue) {}
+    Code operator()(T value) const {
+        double number = double(value);
+        if constexpr (std::is_floating_point_v<T>) {
+            if (!std::isfinite(number)) number = nanValue;
+        }
+        return linearCode(number, offset, step);
+    }
+};
+
+template <typename T, bool kSwap, typename Coder>
+inline void encodeBox(const RawBlock& block, const glm::ivec3& size, const Coder& coder,
+                      Code* codes) {
+    for (int z = 0; z < size.z; ++z) {
+        for (int y = 0; y < size.y; ++y) {
+            const std::byte* row = block.first + z * block.sliceBytes + y * block.rowBytes;
+            Code* column = codes + y * 8 + z;
+            for (int x = 0; x < size.x; ++x) {
+                column[x * 64] = coder(loadValue<T>(row + x * sizeof(T), kSwap));
+            }
+        }
+    }
+}
+
+template <typename T, bool kSwap, template <typename> typename Coder>
+void encode(const RawBlock& block, const RawCoding& coding, Code* codes) {
+    const Coder<T> coder(coding);
+    // Loops of known length let the compiler unroll; nearly all blocks are whole.
+    if (block.size == glm::ivec3(8)) {
+        encodeBox<T, kSwap>(block, {8, 8, 8}, coder, codes);
+    } else {
+        encodeBox<T, kSwap>(block, block.size, coder, codes);
+    }
+}
+
+template <typename T, template <typename> typename Coder>
+EncodeBlock encoderFor(bool swap) {
+    return swap && sizeof(T) > 1 ? &encode<T, (sizeof(T) > 1), Coder> : &encode<T, false, Coder>;
+}
+
+}  // namespace
+
+void RawRange::append(const RawRange& next) {
+    if (nonFinite == 0) firstNonFinite = finite + next.firstNonFinite;
+    nonFinite += next.nonFinite;
+    if (next.finite == 0) return;
+    min = finite == 0 ? next.min : std::min(min, next.min);
+    max = finite == 0 ? next.max : std::max(max, next.max);
+    finite += next.finite;
+}
+
+RawRange scanRawValues(const std::byte* bytes, std::size_t count, RawType type, bool bigEndian) {
+    constexpr std::size_t kRun = std::size_t{1} << 18;
+    std::vector<RawRange> ranges((count + kRun - 1) / kRun);
+    const bool swap = mustSwap(bigEndian);
+    parallelFor(ranges.size(), [&](std::size_t i) {
+        const std::size_t begin = i * kRun;
+        const std::size_t length = std::min(kRun, count - begin);
+        ranges[i] = withType(type, [&](auto zero) {
+            using T = decltype(zero);
+            return scanRun<T>(bytes + begin * sizeof(T), length, swap);
+        });
+    });
+
+    RawRange whole;
+    for (const RawRange& range : ranges) whole.append(range);
+    return whole;
+}
+
+EncodeBlock blockEncoder(const RawCoding& coding) {
+    const bool swap = mustSwap(coding.bigEndian);
+    const bool linear = coding.book.kind == CodeBook::Kind::kLinear;
+    return withType(coding.type, [&](auto zero) -> EncodeBlock {
+        using T = decltype(zero);
+        if constexpr (std::is_floating_point_v<T>) {
+            return encoderFor<T, LinearCoder>(swap);
+        } else {
+            return linear ? encoderFor<T, LinearCoder>(swap) : encoderFor<T, IntegerCoder>(swap);
+        }
+    });
+}
+
+}  // namespace deltasplat

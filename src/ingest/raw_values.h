@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "deltasplat/ingest/code_book.h"
+#include "ingest/raw_format.h"
+
+namespace deltasplat {
+
+/// What a run of raw values spans. Only finite values count for `min` and `max`.
+struct RawRange {
+    double min = 0;
+    double max = 0;
+    std::uint64_t finite = 0;
+    std::uint64_t nonFinite = 0;
+    std::uint64_t firstNonFinite = 0;  ///< position in the run; meaningless if there is none
+
+    /// Adds the run that follows this one.
+    void append(const RawRange& next);
+};
+
+/// Scans `count` values on all threads; the result does not depend on their number.
+RawRange scanRawValues(const std::byte* bytes, std::size_t count, RawType type, bool bigEndian);
+
+/// How raw values become codes.
+struct RawCoding {
+    RawType type = RawType::kUint8;
+    bool bigEndian = false;
+    CodeBook book;
+    double nanValue = 0;  ///< what NaN and infinities count as
+};
+
+/// A box of at most 8x8x8 voxels in memory, x contiguous.
+struct RawBlock {
+    const std::byte* first = nullptr;
+    std::size_t rowBytes = 0;    ///< from one y to the next
+    std::size_t sliceBytes = 0;  ///< from one z to the next
+    glm::ivec3 size{8};
+};
+
+/// Writes a block's codes into `codes` [512] at x * 64 + y * 8 + z, OpenVDB's order in a leaf;
+/// places outside of the block keep what they held.
+using EncodeBlock = void (*)(const RawBlock& block, const RawCoding& coding, Code* codes);
+
+/// Returns the function for this coding's type, byte order and kind of book.
+EncodeBlock blockEncoder(const RawCoding& coding);
+
+}  // namespace deltasplat

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Grid.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "deltasplat/progress.h"
+
+namespace deltasplat {
+
+/// One grid of a .vdb file as the file's directory lists it.
+struct VdbGrid {
+    std::string name;       ///< unique in the file: "density", or "density[1]" where names repeat
+    std::string type;       ///< value type: "float", "double", "int32", "vec3s", ...
+    bool half = false;      ///< real values are stored as binary16
+    bool supported = true;  ///< in OpenVDB's standard tree layout
+
+    std::string uniqueName;              ///< name as stored
+    std::string parentName;              ///< as stored, of the grid whose tree it shares; or empty
+    std::uint64_t begin = 0;             ///< where its directory entry starts
+    std::uint64_t data = 0;              ///< where the grid itself starts
+    std::uint64_t end = 0;               ///< one past its last byte
+    openvdb::GridBase::Ptr loaded = {};  ///< already read: files without offsets
+
+    bool isScalar() const;
+    /// Returns for example `density (float)`.
+    std::string describe() const { return name + " (" + (half ? "half" : type) + ")"; }
+};
+
+/// A .vdb file whose outer structure has been checked before OpenVDB sees any of it: sizes and
+/// offsets lie inside of the file, and OpenVDB is handed only the bytes of the grid asked for.
+/// Grids are in file order; types that OpenVDB does not know do no harm.
+class VdbFile {
+  public:
+    /// @throw Error(kInput) if this is no whole .vdb file
+    VdbFile(std::filesystem::path file, const Listener& listener);
+
+    const std::vector<VdbGrid>& grids() const { return grids_; }
+    /// Reads one grid of grids().
+    /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if the size that the
+    ///        file states does not fit into memory, whatever the listener throws
+    openvdb::GridBase::Ptr read(const VdbGrid& grid, const Listener& listener) const;
+
+  private:
+    void readDirectory();
+    void readWhole(const Listener& listener);
+    const VdbGrid& parentOf(const VdbGrid& grid) const;
+
+    std::filesystem::path file_;
+    std::uint64_t fileBytes_ = 0;
+    std::uint64_t headerEnd_ = 0;
+    bool hasOffsets_ = true;
+    std::uint32_t version_ = 0;
+    std::vector<VdbGrid> grids_;
+};
+
+}  // namespace deltasplat
