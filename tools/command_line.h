@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/App.hpp>
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <functional>
 #include <string>
@@ -42,18 +42,18 @@ class OptionGroup {
     /// @param placeholder  what the help shows in place of the value
     /// @param target       receives what `parse` makes of the text; must outlive the parsing
     template <class T, class Target>
-    void addValue(const std::string& names, const std::string& placeholder, Target& target,
-                  Parser<T> parse, const std::string& help) {
+    CLI::Option& addValue(const std::string& names, const std::string& placeholder, Target& target,
+                          Parser<T> parse, const std::string& help) {
         const std::string name = names.substr(names.rfind(',') + 1);
-        app_.add_option_function<std::string>(
-                names,
-                [&target, parse, name](const std::string& text) {
-                    target = static_cast<Target>(parse(name, text));
-                },
-                help)
-            ->type_name(placeholder)
-            ->take_last()
-            ->group(title_);
+        return *app_.add_option_function<std::string>(
+                        names,
+                        [&target, parse, name](const std::string& text) {
+                            target = static_cast<Target>(parse(name, text));
+                        },
+                        help)
+                    ->type_name(placeholder)
+                    ->take_last()
+                    ->group(title_);
     }
     void addFlag(const std::string& names, bool& target, const std::string& help) {
         app_.add_flag(names, target, help)->group(title_);

@@ -35,7 +35,6 @@ FileReport reportOf(const std::string& file, const ReadOptions& options, const L
 }
 
 void runInfo(const InfoOptions& options, const Session& session) {
-    requireArgument(!options.inputs.empty(), "INPUT", "the volume files to describe");
     std::vector<FileReport> reports;
     {
         ProgressDisplay display(session.common.quiet);
@@ -59,7 +58,8 @@ Subcommand addInfo(CLI::App& program) {
         program, "info", "Tells what is in volume files, and how alike their slices are.",
         {"deltasplat info smoke.vdb", "deltasplat info --json engine_256x256x128_uint8.raw.gz"});
     app.add_option("INPUT", options->inputs, "Files to describe: .vdb, .raw or .raw.gz")
-        ->type_name("")
+        ->type_name("FILE")
+        ->required()
         ->group("Arguments");
     OptionGroup(app, "Output").addFlag("--json", options->json, "Print one JSON object");
     addInputOptions(app, options->read);

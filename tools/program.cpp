@@ -75,15 +75,14 @@ void refuseExtras(const CLI::App& app, const std::vector<Subcommand>& subcommand
 // Puts what CLI11 has to say into our words.
 Error usageError(const CLI::App& app, const CLI::ParseError& problem) {
     const std::string text = problem.what();
-    const std::string name = text.substr(0, text.find(": "));
-    const CLI::Option* option = name.empty() ? nullptr : app.get_option_no_throw(name);
-    if (problem.get_name() == "ArgumentMismatch" && option != nullptr) {
-        const std::string type = option->get_type_name();
-        return Error(ErrorCode::kUsage, type.empty()
-                                            ? gotExpected(name, "a value", "none, it is a flag")
-                                            : gotExpected(name, "nothing", type));
-    }
-    return Error(ErrorCode::kUsage, text.substr(0, text.find('\n')));
+    const std::string line = text.substr(0, text.find('\n'));
+    const std::string name = line.substr(0, std::min(line.find(": "), line.find(" is required")));
+    const CLI::Option* const option = app.get_option_no_throw(name);
+    if (option == nullptr || name == line) return Error(ErrorCode::kUsage, line);
+    if (option->get_type_name().empty())
+        return Error(ErrorCode::kUsage, gotExpected(name, "a value", "none, it is a flag"));
+    return Error(ErrorCode::kUsage, gotExpected(name, "nothing", option->get_type_name()) +
+                                        " (see 'deltasplat " + app.get_name() + " --help')");
 }
 
 // Parses the arguments; returns the subcommand to run, or nullptr if help or versions were shown.
@@ -102,7 +101,10 @@ const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcom
         printOut(text.str());
         return nullptr;
     } catch (const CLI::ParseError& problem) {
-        throw usageError(parsed() == subcommands.end() ? program : *parsed()->app, problem);
+        const CLI::App& app = parsed() == subcommands.end() ? program : *parsed()->app;
+        // A misspelt option is why another one seems to be missing.
+        refuseExtras(app, subcommands);
+        throw usageError(app, problem);
     }
     refuseExtras(program, subcommands);
     if (parsed() == subcommands.end()) {

@@ -54,7 +54,7 @@ void addCameraOptions(CLI::App& app, RenderCommand& command) {
                                shortText(camera.rollDegrees)));
     group.addValue("--direction", "X,Y,Z", camera.direction, vector3(),
                    "The way the line of sight travels, in world space; replaces\n"
-                   "--view. A first number below 0 may need --direction=-1,0,0");
+                   "--view");
     group.addValue("--up", "X,Y,Z", camera.up, vector3(),
                    "What is up in the picture (default 0,1,0)");
     group.addValue("--target", "X,Y,Z", camera.targetWorld, vector3(),
@@ -104,9 +104,11 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
 
 void addOutputOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup group(app, "Output");
-    group.addValue("-o,--output", "FILE", command.output, anyText(),
-                   "Picture to write: .exr (scene-linear, premultiplied) or\n"
-                   ".png (sRGB)");
+    group
+        .addValue("-o,--output", "FILE", command.output, anyText(),
+                  "Picture to write: .exr (scene-linear, premultiplied) or\n"
+                  ".png (sRGB)")
+        .required();
     group.addFlag("--float", command.image.floatExr, "Store 32-bit floats in an .exr, not halves");
     group.addValue("--bits", "8|16", command.image.bits, bits(),
                    withDefault("Bits per channel of a .png", std::to_string(command.image.bits)));
@@ -124,8 +126,10 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
 
 void addRenderOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup arguments(app, "Arguments");
-    arguments.addValue("INPUT", "", command.input, anyText(),
-                       "Volume to render: .vdb, .raw or .raw.gz");
+    arguments
+        .addValue("INPUT", "FILE", command.input, anyText(),
+                  "Volume to render: .vdb, .raw or .raw.gz")
+        .required();
     addOutputOptions(app, command);
     addCameraOptions(app, command);
     addOpticsOptions(app, command);
@@ -134,8 +138,6 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
 }
 
 void validate(const RenderCommand& command) {
-    requireArgument(!command.input.empty(), "INPUT", "the volume file to render");
-    requireArgument(!command.output.empty(), "--output", "the picture file to write");
     checkImageFile(command.output, command.image);
 
     // Any box will do to have the camera's own options checked.

@@ -37,9 +37,9 @@ Parser<glm::ivec3> sampleDimensions() {
 
 void declareOptions(CLI::App& app, SynthOptions& options) {
     OptionGroup arguments(app, "Arguments");
-    arguments.addValue("NAME", "", options.name, anyText(),
+    arguments.addValue("NAME", "WORD", options.name, anyText(),
                        joinWords(analyticNames(), "or") + "; without it, lists them");
-    arguments.addValue("OUTPUT", "", options.output, anyText(),
+    arguments.addValue("OUTPUT", "FILE", options.output, anyText(),
                        "File to write, .raw (give the dims and the type in its name\n"
                        "and it can be read without options) or .vdb");
 
@@ -71,7 +71,7 @@ void runSynth(const SynthOptions& options, const Session& session) {
         return printOut(list);
     }
     const AnalyticVolume volume = makeAnalytic(options.name, options.seed, options.noise);
-    requireArgument(!options.output.empty(), "OUTPUT", "the .raw or .vdb file to write");
+    requireArgument(!options.output.empty(), "OUTPUT", "FILE (see 'deltasplat synth --help')");
     ProgressDisplay display(session.common.quiet);
     writeAnalytic(volume, options.output, options.file, display.stage(0, 1));
 }

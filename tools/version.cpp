@@ -29,7 +29,7 @@ std::string versionText() {
            "OpenVDB " + openvdb::getLibraryVersionString() + "\n" +       //
            "OpenImageIO " + dotted(OIIO::openimageio_version()) + "\n" +  //
            "TBB " + TBB_runtime_version() + "\n" +                        //
-           "SIMD level " + simdLevel() + " (of " + levels + ")\n";
+           "SIMD level " + simdLevel() + " (of " + levels + ")";
 }
 
 }  // namespace deltasplat

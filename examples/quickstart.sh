@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Builds deltasplat, makes a sample volume and renders it.
+# Usage: bash examples/quickstart.sh [FOLDER]   (default: out/quickstart)
+set -euo pipefail
+here=$(pwd)
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+folder=out/quickstart
+if [[ $# -gt 0 ]]; then folder=$(cd "$here" && realpath -m -- "$1"); fi
+
+bash scripts/install_dependencies.sh --to-build
+cmake --preset release </dev/null
+cmake --build --preset release --target deltasplat_tool
+
+deltasplat=build/release/bin/deltasplat
+volume=$folder/engine_128x128x128_uint8.raw
+mkdir -p "$folder"
+"$deltasplat" synth engine "$volume" --dims 128x128x128
+"$deltasplat" info "$volume"
+"$deltasplat" render "$volume" -o "$folder/engine.png" --size 800x800 \
+    --view iso --tf examples/engine.json --background 0.02,0.02,0.03
+
+echo "The picture is $(realpath "$folder/engine.png")"

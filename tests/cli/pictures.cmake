@@ -1,0 +1,60 @@
+# Tests that look at pictures and files that the program writes.
+find_program(DELTASPLAT_OIIOTOOL oiiotool)
+set(DELTASPLAT_CLI_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/scripts)
+
+function(deltasplat_script_test name script)
+    cmake_parse_arguments(PARSE_ARGV 2 ARG "" "" "ARGS;LABELS")
+    add_test(NAME cli.${name} COMMAND bash ${DELTASPLAT_CLI_SCRIPTS}/${script} ${ARG_ARGS})
+    set_tests_properties(cli.${name} PROPERTIES LABELS "cli;${ARG_LABELS}" TIMEOUT 600)
+endfunction()
+
+set(tool $<TARGET_FILE:deltasplat_tool>)
+set(scratch ${CMAKE_CURRENT_BINARY_DIR}/cli)
+foreach(extension exr png)
+    deltasplat_script_test(same_bytes.${extension} same_bytes.sh
+        ARGS ${tool} ${scratch}/same_bytes_${extension} ${extension})
+endforeach()
+foreach(signal INT TERM)
+    deltasplat_script_test(interrupt.${signal} interrupt.sh
+        ARGS ${tool} ${scratch}/interrupt_${signal} ${signal})
+endforeach()
+foreach(file full.exr full.png)
+    deltasplat_script_test(full_disk.${file} full_disk.sh
+        ARGS ${tool} ${scratch}/full_disk_${file} ${file}
+             render input_32x32x32_uint8.raw -o ${file} --size 400x400)
+endforeach()
+foreach(file full.vdb full_64x64x64_uint8.raw)
+    deltasplat_script_test(full_disk.${file} full_disk.sh
+        ARGS ${tool} ${scratch}/full_disk_${file} ${file} synth cloud ${file})
+endforeach()
+add_test(NAME cli.json_keys
+         COMMAND ${CMAKE_COMMAND} -DPROGRAM=${tool} -DSCRATCH=${scratch}/json_keys
+                 -P ${DELTASPLAT_CLI_SCRIPTS}/json_keys.cmake)
+set_tests_properties(cli.json_keys PROPERTIES LABELS cli TIMEOUT 600)
+
+deltasplat_script_test(identity.simd identity.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/identity_simd every synth --size 90x70)
+deltasplat_script_test(identity.fine identity.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/identity_fine every synth --size 90x70
+         --sigma 0.7 --resolution 3)
+
+# The promise on real data; without the data the tests are there and say that they were skipped.
+function(deltasplat_identity_test name file transfer_function)
+    set(test cli.identity.${name})
+    set(volume ${DELTASPLAT_SHARED_DATA}/${file})
+    add_test(NAME ${test}
+             COMMAND bash ${DELTASPLAT_CLI_SCRIPTS}/if_present.sh ${volume}
+                     bash ${DELTASPLAT_CLI_SCRIPTS}/identity.sh $<TARGET_FILE:deltasplat_tool>
+                     ${DELTASPLAT_OIIOTOOL} ${CMAKE_CURRENT_BINARY_DIR}/cli/identity_${name} best
+                     ${volume} --size 256x256
+                     --tf ${DELTASPLAT_SHARED_DATA}/../bench/${transfer_function})
+    set_tests_properties(${test} PROPERTIES LABELS "cli;data" TIMEOUT 600 SKIP_RETURN_CODE 77)
+endfunction()
+deltasplat_identity_test(engine engine/engine_256x256x128_uint8.raw.gz tf_ct.json)
+deltasplat_identity_test(head ct_head/cthead_256x256x225_uint8.raw.gz tf_ct.json)
+deltasplat_identity_test(fuel fuel/fuel_64x64x64_uint8.raw tf_ct.json)
+deltasplat_identity_test(aneurism aneurism/aneurism_256x256x256_uint8.raw.gz tf_ct.json)
+deltasplat_identity_test(lobster lobster/lobster_301x324x56_uint8.raw.gz tf_ct.json)
+deltasplat_identity_test(teapot boston_teapot/boston_teapot_256x256x178_uint8.raw.gz tf_ct.json)
+deltasplat_identity_test(smoke vdb_smoke/smoke.vdb tf_fog.json)
+deltasplat_identity_test(anisotropic_fog vdb_anisotropic_fog/test.vdb tf_fog.json)
