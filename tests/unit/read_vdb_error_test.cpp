@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointDataGrid.h>
 
@@ -149,7 +150,7 @@ TEST(ReadVdbError, TooFarApart) {
 
 TEST(ReadVdbError, Garbage) {
     const TempFolder folder;
-    for (const std::string bytes :
+    for (const std::string& bytes :
          {std::string(), std::string("x"), std::string(10000, 'x'), std::string(10000, '\0')}) {
         writeBytes("a.vdb", bytes);
         expectInput("a.vdb: got no OpenVDB data; expected a .vdb file", "a.vdb");
