@@ -27,15 +27,18 @@ constexpr int kBlocksPerTask = 64;
 struct SlabLayout {
     int firstBlock = 0;  // of the first slab
     int blocksPerSlab = 1;
-    int lastBlock = 0;  // of the last slab that has slices
+    int lastBlock = 0;  // that has slices
+    int lastSlice = 0;
 
     int slabOf(int block) const { return (block - firstBlock) / blocksPerSlab; }
     bool startsSlab(int block) const { return (block - firstBlock) % blocksPerSlab == 0; }
     int count() const { return slabOf(lastBlock) + 1; }
+    // Behind the last slice nothing needs to be taken away.
+    int slicesOf(int block) const { return std::min(8, lastSlice + 1 - 8 * block); }
 };
 
 SlabLayout layoutOf(const IndexBox& box, int keyInterval) {
-    return {box.min.x >> 3, keyInterval / 8, box.max.x >> 3};
+    return {box.min.x >> 3, keyInterval / 8, box.max.x >> 3, box.max.x};
 }
 
 // The bit 8 * u + v of word s is set where the slot is not empty.
@@ -121,7 +124,7 @@ std::vector<SliceCounts> countSlabs(const BlockWalk& walk, const SlabLayout& lay
         const int slab = layout.slabOf(position.x);
         std::uint64_t visibleHere = 0;
         std::uint64_t deltasHere = 0;
-        for (int s = 0; s < 8; ++s) {
+        for (int s = 0; s < layout.slicesOf(position.x); ++s) {
             visibleHere += std::popcount(visibleWord(window.slice(s)));
             deltasHere += std::popcount(changedWord(window.slice(s), window.sliceBefore(s)));
         }
@@ -152,10 +155,11 @@ std::vector<Slab> makeSlabs(const IndexBox& box, const SlabLayout& layout,
 
 // Returns the leaf of a block's deltas, or of its whole slices; none if it would have no active
 // voxel.
-std::unique_ptr<Leaf> makeLeaf(const glm::ivec3& position, const BlockWindow& window, bool whole) {
-    std::array<std::uint64_t, 8> words;
+std::unique_ptr<Leaf> makeLeaf(const glm::ivec3& position, const BlockWindow& window, int slices,
+                               bool whole) {
+    std::array<std::uint64_t, 8> words{};
     std::uint64_t any = 0;
-    for (int s = 0; s < 8; ++s) {
+    for (int s = 0; s < slices; ++s) {
         words[s] = whole ? visibleWord(window.slice(s))
                          : changedWord(window.slice(s), window.sliceBefore(s));
         any |= words[s];
@@ -165,7 +169,7 @@ std::unique_ptr<Leaf> makeLeaf(const glm::ivec3& position, const BlockWindow& wi
         openvdb::Coord(8 * position.x, 8 * position.y, 8 * position.z), 0, false);
     std::int32_t* values = leaf->buffer().data();
     Leaf::NodeMaskType mask;
-    for (int s = 0; s < 8; ++s) {
+    for (int s = 0; s < slices; ++s) {
         mask.getWord<std::uint64_t>(s) = words[s];
         const Slot* slice = window.slice(s);
         const Slot* before = window.sliceBefore(s);
@@ -180,7 +184,9 @@ std::shared_ptr<DeltaTree> makeTree(const BlockWalk& walk, const SlabLayout& lay
     std::vector<std::vector<std::unique_ptr<Leaf>>> made(walk.tasks());
     walk.run([&](std::size_t task, const glm::ivec3& position, const BlockWindow& window) {
         const bool whole = slabs[layout.slabOf(position.x)].whole;
-        if (auto leaf = makeLeaf(position, window, whole)) made[task].push_back(std::move(leaf));
+        if (auto leaf = makeLeaf(position, window, layout.slicesOf(position.x), whole)) {
+            made[task].push_back(std::move(leaf));
+        }
     });
     auto tree = std::make_shared<DeltaTree>();
     for (auto& leaves : made) {

@@ -185,8 +185,8 @@ void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volu
     using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
                                     openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid>;
     const bool known = grid.apply<Types>([&](auto& typed) { fill(typed, options, volume); });
-    if (!known) fail(options.where, "type " + grid.valueType(), "a scalar grid");
-    volume.type = options.half ? "half" : grid.valueType();
+    if (!known) fail(options.where, "type " + options.type, "a scalar grid");
+    volume.type = options.type;
     volume.gridClass = openvdb::GridBase::gridClassToString(grid.getGridClass());
     summarize(volume);
 }

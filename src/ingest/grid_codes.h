@@ -12,7 +12,7 @@ namespace deltasplat {
 
 struct GridCodesOptions {
     std::string where;               ///< file and grid, for messages
-    bool half = false;               ///< the file stores real values as binary16
+    std::string type;                ///< value type as the file stores it: "half", "float", ...
     bool levelSetToFog = true;       ///< turn level sets into fog volumes
     std::optional<double> nanValue;  ///< replaces NaN and infinities of active values
 };

@@ -14,14 +14,26 @@
 namespace deltasplat {
 namespace {
 
+template <std::size_t kBytes>
+using BitsOf = std::conditional_t<
+    kBytes == 1, std::uint8_t,
+    std::conditional_t<kBytes == 2, std::uint16_t,
+                       std::conditional_t<kBytes == 4, std::uint32_t, std::uint64_t>>>;
+
 template <typename T>
 inline T loadValue(const std::byte* from, bool swap) {
-    std::byte bytes[sizeof(T)];
-    std::memcpy(bytes, from, sizeof(T));
-    if (swap) std::reverse(bytes, bytes + sizeof(T));
-    T value;
-    std::memcpy(&value, bytes, sizeof(T));
-    return value;
+    using Bits = BitsOf<sizeof(T)>;
+    Bits bits;
+    std::memcpy(&bits, from, sizeof(T));
+    if (swap) {
+        // Compilers know this loop as one instruction.
+        Bits turned = 0;
+        for (std::size_t i = 0; i < sizeof(T); ++i) {
+            turned = Bits(turned | Bits(bits >> (8 * i) & 0xff) << (8 * (sizeof(T) - 1 - i)));
+        }
+        bits = turned;
+    }
+    return std::bit_cast<T>(bits);
 }
 
 constexpr bool mustSwap(bool bigEndian) {

@@ -133,7 +133,8 @@ void VdbFile::readWhole(const Listener& listener) {
     VdbStreamBuf buffer(file_);
     buffer.addRange(0, fileBytes_);
     buffer.onProgress([&](double share) { listener.report(share); });
-    for (const openvdb::GridBase::Ptr& loaded : *readGrids(buffer, file_.string())) {
+    const openvdb::GridPtrVecPtr all = readGrids(buffer, file_.string());
+    for (const openvdb::GridBase::Ptr& loaded : *all) {
         VdbGrid grid;
         grid.name = grid.uniqueName = loaded->getName();
         parseType(loaded->type(), grid);

@@ -27,8 +27,10 @@ struct VdbGrid {
     openvdb::GridBase::Ptr loaded = {};  ///< already read: files without offsets
 
     bool isScalar() const;
+    /// Returns `type`, or "half".
+    std::string valueType() const { return half ? "half" : type; }
     /// Returns for example `density (float)`.
-    std::string describe() const { return name + " (" + (half ? "half" : type) + ")"; }
+    std::string describe() const { return name + " (" + valueType() + ")"; }
 };
 
 /// A .vdb file whose outer structure has been checked before OpenVDB sees any of it: sizes and

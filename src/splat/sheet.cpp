@@ -24,9 +24,9 @@ void setBits(std::uint64_t* words, int first, int last) {
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint) {
     SheetLayout layout;
     layout.resolution = footprint.resolution;
-    // One pixel more than the footprint needs, because compositing reads a pixel and the one after
-    // it.
-    layout.marginPixels = roundUpToTile(footprint.radius + 1);
+    // One tile more than the footprint needs stays zero: compositing goes one pixel over the
+    // occupied ones.
+    layout.marginPixels = roundUpToTile(footprint.radius) + kTilePixels;
     const glm::ivec2 firstBlock{box.min.y >> 3, box.min.z >> 3};
     const glm::ivec2 blocks = glm::ivec2{box.max.y >> 3, box.max.z >> 3} - firstBlock + 1;
     layout.firstVoxel = 8 * firstBlock;

@@ -18,7 +18,8 @@ namespace deltasplat {
 struct SheetLayout {
     int resolution = 1;
     glm::ivec2 firstVoxel{0};  ///< (u, v), multiples of 8
-    int marginPixels = 0;      ///< a multiple of kTilePixels, more than the footprint's radius
+    int marginPixels =
+        0;  ///< a multiple of kTilePixels, at least one more than the footprint reaches
     glm::ivec2 sizePixels{0};  ///< multiples of kTilePixels
 
     glm::ivec2 tiles() const { return sizePixels / kTilePixels; }

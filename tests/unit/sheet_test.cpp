@@ -149,12 +149,11 @@ TEST(SheetLayout, EveryFootprintStaysWithinTheSheet) {
             const std::size_t pitch = layout.pitchPixels();
             const std::size_t first = layout.stampPlace({kBox.min.y, kBox.min.z}, footprint.radius);
             const std::size_t last = layout.stampPlace({kBox.max.y, kBox.max.z}, -footprint.radius);
-            // One pixel is kept free on the upper left side for bilinear reading, and a vector at
-            // the right.
-            EXPECT_GE(first % pitch, 1u);
-            EXPECT_GE(first / pitch, 1u);
-            EXPECT_LT(last % pitch + 1, std::size_t(layout.sizePixels.x));
-            EXPECT_LT(last / pitch + 1, std::size_t(layout.sizePixels.y));
+            // The outermost tiles stay free, for compositing goes one pixel over the occupied ones.
+            EXPECT_GE(first % pitch, std::size_t(kTilePixels));
+            EXPECT_GE(first / pitch, std::size_t(kTilePixels));
+            EXPECT_LT(last % pitch + kTilePixels, std::size_t(layout.sizePixels.x));
+            EXPECT_LT(last / pitch + kTilePixels, std::size_t(layout.sizePixels.y));
             EXPECT_GE(pitch, std::size_t(layout.sizePixels.x + kMaxVectorPixels));
         }
     }

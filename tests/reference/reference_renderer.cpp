@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: L. Westover, Footprint Evaluation for Volume Rendering, 1990, with slices parallel to
+// an index plane; T. Porter and T. Duff, Compositing Digital Images, 1984.
+#include "reference/reference_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace reference {
+namespace {
+
+double dot(const Vector& a, const Vector& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Vector cross(const Vector& a, const Vector& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+// The index components of a world vector, by Cramer's rule.
+Vector indexComponents(const std::array<Vector, 3>& axes, const Vector& world) {
+    const double determinant = dot(axes[0], cross(axes[1], axes[2]));
+    return {dot(world, cross(axes[1], axes[2])) / determinant,
+            dot(world, cross(axes[2], axes[0])) / determinant,
+            dot(world, cross(axes[0], axes[1])) / determinant};
+}
+
+// One volume seen along one direction: slices along axis `s`, the others are `u` and `v`.
+class SliceView {
+  public:
+    SliceView(const Volume& volume, const View& view, double sigma)
+        : volume_(volume), view_(view), sigma_(sigma) {
+        const Vector ray = indexComponents(volume.axes, view.direction);
+        for (int axis = 1; axis < 3; ++axis) {
+            if (std::abs(ray[axis]) >= std::abs(ray[s_]) * (1 - 1e-9)) s_ = axis;
+        }
+        u_ = s_ == 0 ? 1 : 0;
+        v_ = s_ == 2 ? 1 : 2;
+        forward_ = ray[s_] > 0;
+        du_ = ray[u_] / ray[s_];
+        dv_ = ray[v_] / ray[s_];
+        stepWorld_ = 1 / std::abs(ray[s_]);
+    }
+
+    int firstSlice() const { return volume_.first[s_]; }
+    int sliceCount() const { return volume_.dims[s_]; }
+    // The n-th slice that light comes from, counted from the camera.
+    int sliceFromFront(int n) const { return firstSlice() + (forward_ ? n : sliceCount() - 1 - n); }
+
+    // Where the ray of a pixel's centre goes through slice `slice`.
+    std::array<double, 2> crossing(int x, int y, double slice) const {
+        const double toRight = (x + 0.5 - 0.5 * view_.width) * view_.pixelWorld;
+        const double toTop = (0.5 * view_.height - (y + 0.5)) * view_.pixelWorld;
+        Vector world{};
+        for (int i = 0; i < 3; ++i) {
+            world[i] = view_.target[i] - volume_.origin[i] + toRight * view_.right[i] +
+                       toTop * view_.up[i];
+        }
+        const Vector index = indexComponents(volume_.axes, world);
+        return slid({index[u_], index[v_]}, slice - index[s_]);
+    }
+
+    // Follows the ray through (u, v) by a number of slices.
+    std::array<double, 2> slid(const std::array<double, 2>& p, double slices) const {
+        return {p[0] + slices * du_, p[1] + slices * dv_};
+    }
+
+    // What is seen of slice `slice` at (u, v): voxels weighted by the Gaussian, whose sum over all
+    // places of the lattice, voxels or not, is made 1.
+    Rgba seenAt(int slice, double u, double v) const {
+        const int reach = int(std::ceil(reachVoxels()));
+        Rgba sum{};
+        double weights = 0;
+        for (int j = int(std::floor(v)) - reach; j <= int(std::floor(v)) + reach + 1; ++j) {
+            for (int i = int(std::floor(u)) - reach; i <= int(std::floor(u)) + reach + 1; ++i) {
+                const double weight = gaussian(u - i, v - j);
+                weights += weight;
+                const Rgba rgba = classified(slice, i, j);
+                for (int c = 0; c < 4; ++c) sum[c] += weight * rgba[c];
+            }
+        }
+        for (double& value : sum) value /= weights;
+        return sum;
+    }
+
+    // Beyond five standard deviations nothing is left.
+    double reachVoxels() const { return 5 * sigma_ * std::sqrt(1 + du_ * du_ + dv_ * dv_); }
+
+    int first(int k) const { return volume_.first[k == 0 ? u_ : v_]; }
+    int count(int k) const { return volume_.dims[k == 0 ? u_ : v_]; }
+
+  private:
+    // exp(-q/2), q the square of the distance by the inverse of sigma^2 (I + d d^T), written out.
+    double gaussian(double x, double y) const {
+        const double a = 1 + du_ * du_;
+        const double b = du_ * dv_;
+        const double c = 1 + dv_ * dv_;
+        const double q = (c * x * x - 2 * b * x * y + a * y * y) / (a * c - b * b);
+        return std::exp(-0.5 * q / (sigma_ * sigma_));
+    }
+
+    Rgba classified(int slice, int i, int j) const {
+        std::array<int, 3> at{};
+        at[s_] = slice - volume_.first[s_];
+        at[u_] = i - volume_.first[u_];
+        at[v_] = j - volume_.first[v_];
+        for (int k = 0; k < 3; ++k) {
+            if (at[k] < 0 || at[k] >= volume_.dims[k]) return {};
+        }
+        const std::size_t place =
+            (std::size_t(at[2]) * volume_.dims[1] + at[1]) * volume_.dims[0] + at[0];
+        const Voxel& voxel = volume_.voxels[place];
+        const double alpha = 1 - std::exp(-voxel.extinction * stepWorld_);
+        return {alpha * voxel.color[0], alpha * voxel.color[1], alpha * voxel.color[2], alpha};
+    }
+
+    const Volume& volume_;
+    const View& view_;
+    double sigma_;
+    int s_ = 0, u_ = 0, v_ = 0;
+    bool forward_ = true;
+    double du_ = 0, dv_ = 0;  // what u and v gain along the ray from one slice index to the next
+    double stepWorld_ = 0;
+};
+
+void putBehind(Rgba& front, const Rgba& back) {
+    const double left = 1 - front[3];
+    for (int c = 0; c < 4; ++c) front[c] += left * back[c];
+}
+
+// Samples at (a, b) / resolution, for a and b from `first` on.
+struct Samples {
+    std::array<int, 2> first{}, count{};
+    std::vector<Rgba> values;
+
+    Samples(std::array<int, 2> low, std::array<int, 2> high)
+        : first(low), count{high[0] - low[0] + 1, high[1] - low[1] + 1} {
+        values.resize(std::size_t(count[0]) * count[1]);
+    }
+    Rgba at(int a, int b) const {
+        const int i = a - first[0];
+        const int j = b - first[1];
+        if (i < 0 || j < 0 || i >= count[0] || j >= count[1]) return {};
+        return values[std::size_t(j) * count[0] + i];
+    }
+    Rgba& at(int a, int b) { return values[std::size_t(b - first[1]) * count[0] + (a - first[0])]; }
+};
+
+// Sums samples around a place with weights kernel(distance) along both directions.
+template <typename Kernel>
+Rgba filtered(const Samples& samples, double a, double b, int reach, const Kernel& kernel) {
+    const int a0 = int(std::floor(a));
+    const int b0 = int(std::floor(b));
+    Rgba sum{};
+    for (int j = b0 - reach + 1; j <= b0 + reach; ++j) {
+        for (int i = a0 - reach + 1; i <= a0 + reach; ++i) {
+            const double weight = kernel(a - i) * kernel(b - j);
+            const Rgba value = samples.at(i, j);
+            for (int c = 0; c < 4; ++c) sum[c] += weight * value[c];
+        }
+    }
+    return sum;
+}
+
+double tent(double x) {
+    return std::abs(x) < 1 ? 1 - std::abs(x) : 0;
+}
+
+// E. Catmull and R. Rom, A Class of Local Interpolating Splines, 1974.
+double catmullRom(double x) {
+    const double t = std::abs(x);
+    if (t < 1) return (3 * t * t * t - 5 * t * t + 2) / 2;
+    if (t < 2) return (-t * t * t + 5 * t * t - 8 * t + 4) / 2;
+    return 0;
+}
+
+Samples sampledSlice(const SliceView& slices, int slice, int resolution) {
+    std::array<int, 2> low{}, high{};
+    for (int k = 0; k < 2; ++k) {
+        const int margin = int(std::ceil(slices.reachVoxels())) + 1;
+        low[k] = (slices.first(k) - margin) * resolution;
+        high[k] = (slices.first(k) + slices.count(k) - 1 + margin) * resolution;
+    }
+    Samples samples(low, high);
+    for (int b = low[1]; b <= high[1]; ++b) {
+        for (int a = low[0]; a <= high[0]; ++a) {
+            samples.at(a, b) = slices.seenAt(slice, double(a) / resolution, double(b) / resolution);
+        }
+    }
+    return samples;
+}
+
+// Composites all slices at the samples of the plane of slice 0 that any of them reaches.
+Samples compositedPlane(const SliceView& slices, int resolution) {
+    std::vector<Samples> sheets;
+    std::array<int, 2> low{1 << 30, 1 << 30}, high{-(1 << 30), -(1 << 30)};
+    for (int n = 0; n < slices.sliceCount(); ++n) {
+        const int slice = slices.sliceFromFront(n);
+        sheets.push_back(sampledSlice(slices, slice, resolution));
+        const std::array<double, 2> moved = slices.slid({0, 0}, -slice);
+        for (int k = 0; k < 2; ++k) {
+            const double first = sheets.back().first[k] + resolution * moved[k];
+            low[k] = std::min(low[k], int(std::floor(first)));
+            high[k] = std::max(high[k], int(std::ceil(first)) + sheets.back().count[k]);
+        }
+    }
+    Samples plane(low, high);
+    for (int b = low[1]; b <= high[1]; ++b) {
+        for (int a = low[0]; a <= high[0]; ++a) {
+            for (int n = 0; n < slices.sliceCount(); ++n) {
+                const std::array<double, 2> moved = slices.slid({0, 0}, slices.sliceFromFront(n));
+                putBehind(plane.at(a, b), filtered(sheets[n], a + resolution * moved[0],
+                                                   b + resolution * moved[1], 1, tent));
+            }
+        }
+    }
+    return plane;
+}
+
+}  // namespace
+
+Picture renderContinuous(const Volume& volume, const View& view, double sigma) {
+    const SliceView slices(volume, view, sigma);
+    Picture picture(std::size_t(view.width) * view.height);
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x) {
+            Rgba& pixel = picture[std::size_t(y) * view.width + x];
+            for (int n = 0; n < slices.sliceCount(); ++n) {
+                const int slice = slices.sliceFromFront(n);
+                const std::array<double, 2> p = slices.crossing(x, y, slice);
+                putBehind(pixel, slices.seenAt(slice, p[0], p[1]));
+            }
+        }
+    }
+    return picture;
+}
+
+Picture renderSampled(const Volume& volume, const View& view, double sigma, int resolution) {
+    const SliceView slices(volume, view, sigma);
+    const Samples plane = compositedPlane(slices, resolution);
+    Picture picture(std::size_t(view.width) * view.height);
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x) {
+            const std::array<double, 2> p = slices.crossing(x, y, 0);
+            Rgba rgba = filtered(plane, p[0] * resolution, p[1] * resolution, 2, catmullRom);
+            for (double& value : rgba) value = std::max(value, 0.0);
+            rgba[3] = std::min(rgba[3], 1.0);
+            picture[std::size_t(y) * view.width + x] = rgba;
+        }
+    }
+    return picture;
+}
+
+}  // namespace reference

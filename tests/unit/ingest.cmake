@@ -1,0 +1,7 @@
+deltasplat_test(unit/code_book_test.cpp)
+deltasplat_test(unit/raw_format_test.cpp)
+deltasplat_test(unit/read_raw_test.cpp)
+deltasplat_test(unit/read_raw_error_test.cpp)
+deltasplat_test(unit/read_vdb_test.cpp)
+deltasplat_test(unit/read_vdb_error_test.cpp)
+deltasplat_test(unit/ingest_data_test.cpp LABELS data)

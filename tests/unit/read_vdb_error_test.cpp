@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/points/PointDataGrid.h>
+
+#include <cmath>
+#include <limits>
+
+#include "deltasplat/ingest/read_volume.h"
+#include "unit/ingest_helpers.h"
+
+namespace deltasplat {
+namespace {
+
+using openvdb::Coord;
+using testing::expectError;
+using testing::readBytes;
+using testing::TempFolder;
+using testing::writeBytes;
+
+constexpr const char* kScalar = "a scalar grid (float, double, int32, int64, bool or mask)";
+
+void expectInput(const std::string& message, const std::string& file,
+                 const ReadOptions& options = {}) {
+    expectError(ErrorCode::kInput, message, [&] { readVolume(file, options); });
+    expectError(ErrorCode::kInput, message, [&] { readAllVolumes(file, options); });
+}
+
+void writeGrids(const std::string& file, const openvdb::GridCPtrVec& grids) {
+    openvdb::io::File(file).write(grids);
+}
+
+template <typename Grid>
+typename Grid::Ptr namedGrid(const std::string& name) {
+    openvdb::initialize();
+    auto grid = Grid::create();
+    grid->setName(name);
+    return grid;
+}
+
+openvdb::FloatGrid::Ptr noise(const std::string& name, int size) {
+    auto grid = namedGrid<openvdb::FloatGrid>(name);
+    for (int i = 0; i < size * size * size; ++i) {
+        const Coord place(i % size, i / size % size, i / size / size);
+        grid->tree().setValue(place, float(i * 7919 % 1000));
+    }
+    return grid;
+}
+
+TEST(ReadVdbError, NoGrids) {
+    const TempFolder folder;
+    openvdb::initialize();
+    writeGrids("a.vdb", {});
+    expectInput(std::string("a.vdb: got no grids; expected ") + kScalar, "a.vdb");
+    ReadOptions options;
+    options.gridName = "density";
+    expectInput("a.vdb: got no grid \"density\"; expected a file with grids", "a.vdb", options);
+}
+
+TEST(ReadVdbError, NoScalarGrid) {
+    const TempFolder folder;
+    writeGrids("a.vdb", {namedGrid<openvdb::Vec3SGrid>("v"),
+                         namedGrid<openvdb::points::PointDataGrid>("p")});
+    expectInput(std::string("a.vdb: got only v (vec3s), p (ptdataidx32); expected ") + kScalar,
+                "a.vdb");
+}
+
+TEST(ReadVdbError, NoSuchGrid) {
+    const TempFolder folder;
+    auto half = noise("h", 2);
+    half->setSaveFloatAsHalf(true);
+    writeGrids("a.vdb", {half, namedGrid<openvdb::Vec3SGrid>("v")});
+    ReadOptions options;
+    options.gridName = "density";
+    expectInput("a.vdb: got no grid \"density\"; expected one of h (half), v (vec3s)", "a.vdb",
+                options);
+    options.gridName = "v";
+    expectInput(std::string("a.vdb: got grid \"v\" of type vec3s; expected ") + kScalar, "a.vdb",
+                options);
+}
+
+// A program's own grid type that OpenVDB has never heard of does not make the rest unreadable.
+TEST(ReadVdbError, UnknownTypesDoNoHarm) {
+    const TempFolder folder;
+    writeGrids("a.vdb", {namedGrid<openvdb::Vec3SGrid>("v"), noise("d", 3)});
+    std::string bytes = readBytes("a.vdb");
+    bytes.replace(bytes.find("Tree_vec3s"), 10, "Tree_weird");
+    writeBytes("a.vdb", bytes);
+    EXPECT_EQ(readVolume("a.vdb").name, "d");
+    ReadOptions options;
+    options.gridName = "v";
+    expectInput(std::string("a.vdb: got grid \"v\" of type weird; expected ") + kScalar, "a.vdb",
+                options);
+}
+
+TEST(ReadVdbError, Frustum) {
+    const TempFolder folder;
+    auto grid = noise("g", 2);
+    grid->setTransform(openvdb::math::Transform::createFrustumTransform(
+        openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(10)), 0.5, 10));
+    writeGrids("a.vdb", {grid});
+    expectInput(
+        "a.vdb: grid \"g\": got a NonlinearFrustumMap transform; expected a linear one (no "
+        "frustum)",
+        "a.vdb");
+}
+
+TEST(ReadVdbError, NonFiniteValues) {
+    const TempFolder folder;
+    auto grid = noise("g", 20);
+    grid->tree().setValue(Coord(15, 3, 4), std::nanf(""));
+    grid->tree().setValue(Coord(1, 9, 4), INFINITY);
+    grid->tree().setValue(Coord(0, 0, 7), -INFINITY);
+    writeGrids("a.vdb", {grid});
+    expectInput(
+        "a.vdb: grid \"g\": got 3 NaN or infinite active values, the first at (15, 3, 4); "
+        "expected finite values (--nan VALUE replaces them)",
+        "a.vdb");
+    grid->tree().addTile(1, Coord(-8, -16, -24), std::nanf(""), true);
+    writeGrids("a.vdb", {grid});
+    expectInput(
+        "a.vdb: grid \"g\": got 515 NaN or infinite active values, the first at (-8, -16, -24); "
+        "expected finite values (--nan VALUE replaces them)",
+        "a.vdb");
+}
+
+TEST(ReadVdbError, LevelSetWithoutWidth) {
+    const TempFolder folder;
+    auto grid = noise("g", 2);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    writeGrids("a.vdb", {grid});
+    expectInput(
+        "a.vdb: grid \"g\": got a level set with background 0; expected a finite background above "
+        "0",
+        "a.vdb");
+}
+
+TEST(ReadVdbError, TooFarApart) {
+    const TempFolder folder;
+    auto grid = namedGrid<openvdb::FloatGrid>("g");
+    grid->tree().setValue(Coord(0), 1);
+    grid->tree().setValue(Coord(1 << 30, 0, 0), 1);
+    writeGrids("a.vdb", {grid});
+    expectInput(
+        "a.vdb: grid \"g\": got active voxels spread over 1073741825 places; expected indices "
+        "within 2^30 of 0 and a box of at most 2^62 voxels",
+        "a.vdb");
+}
+
+TEST(ReadVdbError, Garbage) {
+    const TempFolder folder;
+    for (const std::string& bytes :
+         {std::string(), std::string("x"), std::string(10000, 'x'), std::string(10000, '\0')}) {
+        writeBytes("a.vdb", bytes);
+        expectInput("a.vdb: got no OpenVDB data; expected a .vdb file", "a.vdb");
+    }
+}
+
+TEST(ReadVdbError, OtherVersions) {
+    const TempFolder folder;
+    writeGrids("a.vdb", {noise("g", 2)});
+    std::string bytes = readBytes("a.vdb");
+    for (const int version : {221, 225}) {
+        bytes[8] = char(version);
+        writeBytes("a.vdb", bytes);
+        expectInput(
+            "a.vdb: got OpenVDB file version " + std::to_string(version) + "; expected 222..224",
+            "a.vdb");
+    }
+}
+
+// Cut anywhere, the file is refused with a line that says so.
+TEST(ReadVdbError, CutShortAnywhere) {
+    const TempFolder folder;
+    writeGrids("whole.vdb", {noise("g", 20), noise("h", 4)});
+    const std::string whole = readBytes("whole.vdb");
+    for (std::size_t size = 8; size < whole.size(); size += 1 + size / 50) {
+        writeBytes("a.vdb", whole.substr(0, size));
+        try {
+            readVolume("a.vdb");
+            FAIL() << size << " of " << whole.size();
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::kInput);
+            const std::string line = error.what();
+            EXPECT_EQ(
+                line.rfind("a.vdb: got " + std::to_string(size) + " bytes; expected at least", 0),
+                0u)
+                << line;
+        }
+    }
+}
+
+// Cut in a way that the file's own sizes do not show, as a stream without offsets is.
+TEST(ReadVdbError, StreamCutShortAnywhere) {
+    const TempFolder folder;
+    {
+        std::ofstream out("whole.vdb", std::ios::binary);
+        openvdb::io::Stream(out).write(openvdb::GridCPtrVec{noise("g", 20)});
+    }
+    const std::string whole = readBytes("whole.vdb");
+    ASSERT_NO_THROW(readVolume("whole.vdb"));
+    for (std::size_t size = 8; size < whole.size(); size += 1 + size / 50) {
+        writeBytes("a.vdb", whole.substr(0, size));
+        EXPECT_THROW(readVolume("a.vdb"), Error) << size;
+    }
+    writeBytes("a.vdb", whole.substr(0, whole.size() - 1));
+    expectInput("a.vdb: got data that ends too early; expected a sound OpenVDB grid", "a.vdb");
+}
+
+// The Blosc decoder trusts the size that a chunk's own header states.
+TEST(ReadVdbError, BloscChunkOfWrongSize) {
+    const TempFolder folder;
+    openvdb::io::File file("a.vdb");
+    file.setCompression(openvdb::io::COMPRESS_BLOSC);
+    file.write(openvdb::GridCPtrVec{noise("g", 8)});
+    std::string bytes = readBytes("a.vdb");
+
+    // The one leaf's chunk: 8 bytes of size, then a header that ends with the same size.
+    std::size_t chunk = std::string::npos;
+    for (std::size_t i = bytes.size() - 24; i > 0 && chunk == std::string::npos; --i) {
+        std::int64_t size = 0;
+        std::int32_t inner = 0;
+        std::memcpy(&size, bytes.data() + i, 8);
+        std::memcpy(&inner, bytes.data() + i + 20, 4);
+        if (size == inner && size > 16 && i + 8 + std::size_t(size) == bytes.size()) chunk = i;
+    }
+    ASSERT_NE(chunk, std::string::npos);
+    bytes[chunk + 21] = char(bytes[chunk + 21] + 64);
+    writeBytes("a.vdb", bytes);
+    expectInput("a.vdb: grid \"g\": got corrupt compressed data; expected a sound OpenVDB grid",
+                "a.vdb");
+}
+
+TEST(ReadVdbError, ClaimsMoreThanMemoryHolds) {
+    const TempFolder folder;
+    writeGrids("a.vdb", {noise("g", 8)});
+    std::string bytes = readBytes("a.vdb");
+    const std::size_t entry = bytes.find("file_mem_bytes");
+    ASSERT_NE(entry, std::string::npos);
+    bytes[entry + 14 + 4 + 5 + 4 + 6] = 1;  // behind name, "int64" and size: 2^48 bytes
+    writeBytes("a.vdb", bytes);
+    try {
+        readVolume("a.vdb");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::kUsage);
+        EXPECT_EQ(std::string(error.what()).rfind("a.vdb: grid \"g\": needs ", 0), 0u)
+            << error.what();
+    }
+}
+
+TEST(ReadVdbError, TheListenerStopsTheWork) {
+    const TempFolder folder;
+    writeGrids("a.vdb", {noise("g", 20)});
+    Listener listener;
+    listener.progress = [](double) { throw Error(ErrorCode::kInterrupted, "stopped"); };
+    expectError(ErrorCode::kInterrupted, "stopped", [&] { readVolume("a.vdb", {}, listener); });
+}
+
+}  // namespace
+}  // namespace deltasplat

@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetSphere.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "deltasplat/ingest/read_volume.h"
+#include "deltasplat/threads.h"
+#include "unit/ingest_helpers.h"
+
+namespace deltasplat {
+namespace {
+
+using openvdb::Coord;
+using testing::TempFolder;
+
+void writeGrids(const std::string& file, const openvdb::GridCPtrVec& grids) {
+    openvdb::io::File(file).write(grids);
+}
+
+// Active voxels on both sides of 0, scattered over several nodes, and two active tiles.
+template <typename Grid>
+typename Grid::Ptr makeGrid(const std::string& name,
+                            const std::function<typename Grid::ValueType(int)>& value,
+                            typename Grid::ValueType background) {
+    openvdb::initialize();
+    auto grid = Grid::create(background);
+    grid->setName(name);
+    std::mt19937 random(17);
+    std::uniform_int_distribution<int> place(-150, 150);
+    for (int i = 0; i < 3000; ++i) {
+        grid->tree().setValue(Coord(place(random), place(random), place(random)), value(i));
+    }
+    grid->tree().addTile(1, Coord(-160, 8, 16), value(1), true);
+    grid->tree().addTile(2, Coord(256, -128, 0), value(2), true);
+    return grid;
+}
+
+// Compares codes with the grid in every active voxel, both ways, and the statistics.
+template <typename Grid>
+void expectSame(const Volume& volume, const Grid& grid, double tolerance) {
+    const auto& tree = volume.codes->tree;
+    std::map<int, std::uint64_t> counts;
+    for (auto it = grid.cbeginValueOn(); it; ++it) {
+        Code code = 0;
+        ASSERT_TRUE(tree.probeValue(it.getCoord(), code));
+        ASSERT_NEAR(volume.codeBook.valueOf(code), double(*it), tolerance);
+        counts[code] += it.getVoxelCount();
+    }
+    EXPECT_TRUE(tree.hasSameTopology(grid.tree()));
+    EXPECT_EQ(volume.activeCount, grid.activeVoxelCount());
+    EXPECT_EQ(tree.activeVoxelCount(), grid.activeVoxelCount());
+    EXPECT_EQ(tree.activeTileCount(), grid.tree().activeTileCount());
+    EXPECT_EQ(volume.background, double(grid.background()));
+    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(volume.box.min[axis], box.min()[axis]);
+        EXPECT_EQ(volume.box.max[axis], box.max()[axis]);
+    }
+    ASSERT_EQ(volume.histogram.size(), std::size_t(kCodeCount));
+    for (int code = 0; code < kCodeCount; ++code) {
+        const auto found = counts.find(code);
+        ASSERT_EQ(volume.histogram[std::size_t(code)], found == counts.end() ? 0 : found->second);
+    }
+    EXPECT_EQ(volume.valueMin, volume.codeBook.valueOf(Code(counts.begin()->first)));
+    EXPECT_EQ(volume.valueMax, volume.codeBook.valueOf(Code(counts.rbegin()->first)));
+}
+
+TEST(ReadVdb, FloatsAreSpreadOverTheirRange) {
+    const TempFolder folder;
+    const auto grid = makeGrid<openvdb::FloatGrid>(
+        "density", [](int i) { return -0.25f + 0.001f * float(i); }, 0.125f);
+    writeGrids("a.vdb", {grid});
+    const Volume volume = readVolume("a.vdb");
+    EXPECT_EQ(volume.name, "density");
+    EXPECT_EQ(volume.type, "float");
+    EXPECT_EQ(volume.gridClass, "unknown");
+    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kLinear);
+    EXPECT_EQ(volume.valueMin, -0.25);
+    expectSame(volume, *grid, volume.codeBook.step * 0.5000001);
+}
+
+TEST(ReadVdb, HalvesAreExact) {
+    const TempFolder folder;
+    auto grid = makeGrid<openvdb::FloatGrid>(
+        "density", [](int i) { return std::ldexp(float(i % 1000) - 500, i % 9 - 20); }, 0);
+    grid->setSaveFloatAsHalf(true);
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    writeGrids("a.vdb", {grid});
+    const Volume volume = readVolume("a.vdb");
+    EXPECT_EQ(volume.type, "half");
+    EXPECT_EQ(volume.gridClass, "fog volume");
+    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kHalf);
+    expectSame(volume, *grid, 0);
+}
+
+// Values that happen to be halves need not be stored as such; one more bit breaks it.
+TEST(ReadVdb, TheHalfBookNeedsEveryValueToBeAHalf) {
+    const TempFolder folder;
+    auto grid = makeGrid<openvdb::FloatGrid>(
+        "density", [](int i) { return float(i % 2048) / 2048; }, 0);
+    writeGrids("a.vdb", {grid});
+    EXPECT_EQ(readVolume("a.vdb").codeBook.kind, CodeBook::Kind::kHalf);
+    EXPECT_EQ(readVolume("a.vdb").type, "float");
+    grid->tree().setValue(Coord(0), 2049.0f / 4096);
+    writeGrids("a.vdb", {grid});
+    EXPECT_EQ(readVolume("a.vdb").codeBook.kind, CodeBook::Kind::kLinear);
+    grid->tree().setValue(Coord(0), 0.5f);
+    grid->tree().addTile(1, Coord(-160, 8, 16), 65536, true);
+    writeGrids("a.vdb", {grid});
+    EXPECT_EQ(readVolume("a.vdb").codeBook.kind, CodeBook::Kind::kLinear);
+}
+
+TEST(ReadVdb, Doubles) {
+    const TempFolder folder;
+    const auto grid = makeGrid<openvdb::DoubleGrid>(
+        "d", [](int i) { return 1e-30 * (1 + std::sin(i)); }, 0);
+    writeGrids("a.vdb", {grid});
+    const Volume volume = readVolume("a.vdb");
+    EXPECT_EQ(volume.type, "double");
+    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kLinear);
+    expectSame(volume, *grid, volume.codeBook.step * 0.5000001);
+}
+
+template <typename Grid>
+void expectIntegers(const std::string& type, std::int64_t low, std::int64_t high, bool exact) {
+    using T = typename Grid::ValueType;
+    const auto grid = makeGrid<Grid>(
+        "i", [&](int i) { return T(i == 0   ? low
+                                   : i == 5 ? high
+                                            : low + 7 * i % (high - low)); },
+        T(low));
+    writeGrids("a.vdb", {grid});
+    const Volume volume = readVolume("a.vdb");
+    EXPECT_EQ(volume.type, type);
+    ASSERT_EQ(volume.codeBook.kind, exact ? CodeBook::Kind::kInteger : CodeBook::Kind::kLinear);
+    EXPECT_EQ(volume.codeBook.offset, double(low));
+    expectSame(volume, *grid, exact ? 0 : volume.codeBook.step * 0.5000001);
+}
+
+TEST(ReadVdb, Integers) {
+    const TempFolder folder;
+    expectIntegers<openvdb::Int32Grid>("int32", -2147483648LL, -2147418113LL, true);
+    expectIntegers<openvdb::Int32Grid>("int32", -5, 65530, true);
+    expectIntegers<openvdb::Int32Grid>("int32", -5, 65531, false);
+    expectIntegers<openvdb::Int64Grid>("int64", 9007199254675457LL, 9007199254740992LL, true);
+    expectIntegers<openvdb::Int64Grid>("int64", -(1LL << 40), 1LL << 40, false);
+}
+
+// Beyond 2^53 neighbouring integers are one double: no integer book can hold them apart.
+TEST(ReadVdb, HugeIntegers) {
+    const TempFolder folder;
+    auto grid = openvdb::Int64Grid::create(0);
+    grid->tree().setValue(Coord(1, 2, 3), std::numeric_limits<std::int64_t>::max());
+    grid->tree().setValue(Coord(1, 2, 4), std::numeric_limits<std::int64_t>::min());
+    writeGrids("a.vdb", {grid});
+    const Volume volume = readVolume("a.vdb");
+    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kLinear);
+    EXPECT_EQ(volume.valueMin, -0x1p63);
+    EXPECT_NEAR(volume.valueMax, 0x1p63, 0x1p12);
+}
+
+TEST(ReadVdb, BoolsAndMasks) {
+    const TempFolder folder;
+    const auto bools = makeGrid<openvdb::BoolGrid>(
+        "b", [](int i) { return i % 3 == 0; }, false);
+    writeGrids("b.vdb", {bools});
+    const Volume volume = readVolume("b.vdb");
+    EXPECT_EQ(volume.type, "bool");
+    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kInteger);
+    expectSame(volume, *bools, 0);
+
+    auto masks = openvdb::MaskGrid::create();
+    masks->tree().setValueOn(Coord(-5, 6, 7));
+    masks->tree().setValueOn(Coord(5, 60, 7));
+    masks->tree().addTile(1, Coord(64, 0, 0), true, true);
+    writeGrids("m.vdb", {masks});
+    const Volume mask = readVolume("m.vdb");
+    EXPECT_EQ(mask.type, "mask");
+    EXPECT_EQ(mask.activeCount, 514u);
+    EXPECT_EQ(mask.histogram[1], 514u);
+    EXPECT_EQ(mask.valueMin, 1);
+    expectSame(mask, *masks, 0);
+}
+
+TEST(ReadVdb, PlacesVoxelsInTheWorld) {
+    const TempFolder folder;
+    auto grid = makeGrid<openvdb::FloatGrid>(
+        "g", [](int i) { return float(i); }, 0);
+    openvdb::Mat4d matrix = openvdb::Mat4d::identity();
+    matrix.setToRotation(openvdb::Vec3d(1, 2, 3).unit(), 0.7);
+    matrix.preScale(openvdb::Vec3d(0.5, 1, 2));
+    matrix.postTranslate(openvdb::Vec3d(-4, 5, 6));
+    const openvdb::math::Transform::Ptr transforms[] = {
+        openvdb::math::Transform::createLinearTransform(matrix),
+        openvdb::math::Transform::createLinearTransform(0.25),
+        openvdb::math::Transform::Ptr(new openvdb::math::Transform(
+            openvdb::math::MapBase::Ptr(new openvdb::math::ScaleTranslateMap(
+                openvdb::Vec3d(0.01, 0.02, -0.01), openvdb::Vec3d(1, 2, 3)))))};
+    for (const auto& transform : transforms) {
+        grid->setTransform(transform);
+        writeGrids("a.vdb", {grid});
+        const Volume volume = readVolume("a.vdb");
+        for (const Coord& c : {Coord(0), Coord(1, 0, 0), Coord(-7, 13, 29)}) {
+            const openvdb::Vec3d world = transform->indexToWorld(c);
+            const glm::dvec4 mapped = volume.worldFromIndex * glm::dvec4(c.x(), c.y(), c.z(), 1);
+            for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(mapped[axis], world[axis], 1e-12);
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_NEAR(volume.voxelSize()[axis], transform->voxelSize()[axis], 1e-12);
+        }
+    }
+}
+
+TEST(ReadVdb, LevelSetsBecomeFog) {
+    const TempFolder folder;
+    openvdb::initialize();
+    auto sphere = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(10, {0, 0, 0}, 0.5f);
+    sphere->setName("ls");
+    writeGrids("a.vdb", {sphere});
+    const Volume fog = readVolume("a.vdb");
+    EXPECT_EQ(fog.gridClass, "fog volume");
+    EXPECT_EQ(fog.background, 0);
+    EXPECT_GT(fog.valueMin, 0);
+    EXPECT_EQ(fog.codeBook.codeOf(1), 65535);
+    // All of the inside is active, none of the outside; deep inside is 1.
+    EXPECT_NEAR(double(fog.activeCount), 4.0 / 3 * M_PI * 20 * 20 * 20, 300);
+    Code code = 0;
+    EXPECT_TRUE(fog.codes->tree.probeValue(Coord(0), code));
+    EXPECT_NEAR(fog.codeBook.valueOf(code), 1, 1e-9);
+    EXPECT_FALSE(fog.codes->tree.isValueOn(Coord(21, 0, 0)));
+
+    ReadOptions options;
+    options.levelSetToFog = false;
+    const Volume kept = readVolume("a.vdb", options);
+    EXPECT_EQ(kept.gridClass, "level set");
+    EXPECT_EQ(kept.background, 1.5);
+    EXPECT_LT(kept.valueMin, -1.4);
+    expectSame(kept, *sphere, kept.codeBook.step * 0.5000001);
+}
+
+openvdb::FloatGrid::Ptr oneVoxel(const std::string& name, float value) {
+    openvdb::initialize();
+    auto grid = openvdb::FloatGrid::create();
+    grid->setName(name);
+    grid->tree().setValue(Coord(1, 2, 3), value);
+    return grid;
+}
+
+TEST(ReadVdb, TakesTheFirstScalarGridOfTheFile) {
+    const TempFolder folder;
+    auto velocity = openvdb::Vec3SGrid::create();
+    velocity->setName("a");
+    velocity->tree().setValue(Coord(0), openvdb::Vec3s(1, 2, 3));
+    writeGrids("a.vdb", {velocity, oneVoxel("z", 4), oneVoxel("b", 5)});
+    EXPECT_EQ(readVolume("a.vdb").name, "z");
+    EXPECT_EQ(readVolume("a.vdb").valueMax, 4);
+    const std::vector<Volume> all = readAllVolumes("a.vdb");
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_EQ(all[0].name, "z");
+    EXPECT_EQ(all[1].name, "b");
+    ReadOptions options;
+    options.gridName = "b";
+    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 5);
+    EXPECT_EQ(readAllVolumes("a.vdb", options).size(), 1u);
+}
+
+TEST(ReadVdb, NamesThatRepeat) {
+    const TempFolder folder;
+    writeGrids("a.vdb", {oneVoxel("d", 1), oneVoxel("d", 2), oneVoxel("", 3)});
+    const std::vector<Volume> all = readAllVolumes("a.vdb");
+    ASSERT_EQ(all.size(), 3u);
+    EXPECT_EQ(all[0].name, "d[0]");
+    EXPECT_EQ(all[1].name, "d[1]");
+    ReadOptions options;
+    options.gridName = "d[1]";
+    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 2);
+    options.gridName = "d";
+    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 1);
+}
+
+// Grids that share one tree are stored once; each must still be readable alone.
+TEST(ReadVdb, InstancesOfOneTree) {
+    const TempFolder folder;
+    auto first = oneVoxel("first", 1.5f);
+    auto second = openvdb::FloatGrid::create(first->treePtr());
+    second->setName("second");
+    second->setTransform(openvdb::math::Transform::createLinearTransform(3));
+    writeGrids("a.vdb", {first, oneVoxel("between", 7), second});
+    ReadOptions options;
+    options.gridName = "second";
+    const Volume volume = readVolume("a.vdb", options);
+    EXPECT_EQ(volume.valueMax, 1.5);
+    EXPECT_EQ(volume.voxelSize(), glm::dvec3(3));
+}
+
+// A stream has no offsets, so that everything must be read at once.
+TEST(ReadVdb, FilesWrittenAsAStream) {
+    const TempFolder folder;
+    auto half = oneVoxel("h", 2.5f);
+    half->setSaveFloatAsHalf(true);
+    {
+        std::ofstream out("a.vdb", std::ios::binary);
+        openvdb::io::Stream(out).write({openvdb::GridCPtrVec{oneVoxel("f", 1), half}});
+    }
+    const std::vector<Volume> all = readAllVolumes("a.vdb");
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_EQ(all[0].name, "f");
+    EXPECT_EQ(all[1].type, "half");
+    EXPECT_EQ(all[1].valueMax, 2.5);
+}
+
+TEST(ReadVdb, EveryCompression) {
+    const TempFolder folder;
+    const auto grid = makeGrid<openvdb::FloatGrid>(
+        "g", [](int i) { return float(i % 1000); }, 0);
+    constexpr std::uint32_t kMask = openvdb::io::COMPRESS_ACTIVE_MASK;
+    for (const std::uint32_t method :
+         {std::uint32_t(openvdb::io::COMPRESS_NONE), std::uint32_t(openvdb::io::COMPRESS_ZIP),
+          std::uint32_t(openvdb::io::COMPRESS_BLOSC)}) {
+        for (const std::uint32_t flags : {method, method | kMask}) {
+            openvdb::io::File file("a.vdb");
+            file.setCompression(flags);
+            file.write(openvdb::GridCPtrVec{grid});
+            expectSame(readVolume("a.vdb"), *grid, 0);
+        }
+    }
+}
+
+TEST(ReadVdb, EmptyGridsAreEmptyVolumes) {
+    const TempFolder folder;
+    openvdb::initialize();
+    auto grid = openvdb::FloatGrid::create(3);
+    grid->setName("nothing");
+    writeGrids("a.vdb", {grid});
+    std::vector<std::string> warnings;
+    Listener listener;
+    listener.warning = [&](const std::string& line) { warnings.push_back(line); };
+    const Volume volume = readVolume("a.vdb", {}, listener);
+    EXPECT_TRUE(volume.empty());
+    EXPECT_TRUE(volume.box.empty());
+    EXPECT_EQ(volume.background, 3);
+    EXPECT_EQ(volume.valueMax, 0);
+    EXPECT_TRUE(volume.codes->tree.empty());
+    EXPECT_EQ(volume.histogram, std::vector<std::uint64_t>(kCodeCount));
+    EXPECT_EQ(warnings, std::vector<std::string>{"a.vdb: grid \"nothing\": no active voxels"});
+}
+
+TEST(ReadVdb, ReplacesNonFiniteActiveValues) {
+    const TempFolder folder;
+    auto grid = makeGrid<openvdb::FloatGrid>(
+        "g", [](int i) { return float(i % 500); }, 0);
+    auto clean = grid->deepCopy();
+    grid->tree().setValue(Coord(3, 4, 5), std::nanf(""));
+    clean->tree().setValue(Coord(3, 4, 5), 1000);
+    grid->tree().addTile(1, Coord(-320, 0, 0), -std::numeric_limits<float>::infinity(), true);
+    clean->tree().addTile(1, Coord(-320, 0, 0), 1000, true);
+    // What is inactive is nobody's value.
+    grid->tree().setValueOff(Coord(6, 6, 6), std::nanf(""));
+    clean->tree().setValueOff(Coord(6, 6, 6), 0);
+    writeGrids("a.vdb", {grid});
+    ReadOptions options;
+    options.nanValue = 1000;
+    expectSame(readVolume("a.vdb", options), *clean, 0);
+}
+
+TEST(ReadVdb, NonFiniteBackgroundIsZeroWithAWarning) {
+    const TempFolder folder;
+    openvdb::initialize();
+    auto grid = openvdb::FloatGrid::create(std::nanf(""));
+    grid->setName("g");
+    grid->tree().setValue(Coord(1), 2);
+    writeGrids("a.vdb", {grid});
+    std::vector<std::string> warnings;
+    Listener listener;
+    listener.warning = [&](const std::string& line) { warnings.push_back(line); };
+    EXPECT_EQ(readVolume("a.vdb", {}, listener).background, 0);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0], "a.vdb: grid \"g\": background nan taken as 0");
+}
+
+TEST(ReadVdb, ThreadsDoNotMatter) {
+    const TempFolder folder;
+    writeGrids("a.vdb", {makeGrid<openvdb::FloatGrid>(
+                            "g", [](int i) { return std::sin(float(i)); }, 0)});
+    const auto read = [&](int threads) {
+        const ThreadLimit limit(threads);
+        return readVolume("a.vdb");
+    };
+    const Volume one = read(1);
+    const Volume many = read(4);
+    EXPECT_EQ(one.histogram, many.histogram);
+    EXPECT_EQ(one.codeBook.step, many.codeBook.step);
+    EXPECT_EQ(one.codeBook.offset, many.codeBook.offset);
+}
+
+}  // namespace
+}  // namespace deltasplat
