@@ -2,7 +2,6 @@
 add_executable(make_fixtures ${CMAKE_CURRENT_LIST_DIR}/make_fixtures.cpp)
 target_link_libraries(make_fixtures PRIVATE OpenVDB::openvdb TBB::tbb)
 deltasplat_compile_options(make_fixtures)
-set(DELTASPLAT_FIXTURES ${CMAKE_CURRENT_BINARY_DIR}/cli/fixtures)
 file(MAKE_DIRECTORY ${DELTASPLAT_FIXTURES})
 add_test(NAME cli.fixtures COMMAND make_fixtures WORKING_DIRECTORY ${DELTASPLAT_FIXTURES})
 set_tests_properties(cli.fixtures PROPERTIES FIXTURES_SETUP cli_files LABELS cli)
