@@ -50,10 +50,6 @@ Volume readInput(const RenderCommand& command, RenderOptions& options, ProgressD
         display.warn("--range: has no effect without a normalized transfer function");
 
     Volume volume = readVolume(command.input, command.read, listener);
-    if (volume.empty()) {
-        display.warn(command.input.string() + ": grid '" + volume.name +
-                     "' has no active voxels; the picture is empty");
-    }
     if (ramp) options.optics.transferFunction = defaultRamp(volume);
     return volume;
 }

@@ -80,8 +80,7 @@ void addOpticsOptions(CLI::App& app, RenderCommand& command) {
     group.addValue("--unit-distance", "U", optics.unitDistance, positiveNumber(),
                    "World units over which a voxel has the transfer function's\n"
                    "opacity (default: the smallest voxel size)");
-    group.addValue("--extinction", "S", optics.extinctionScale,
-                   number(0, std::numeric_limits<double>::max()),
+    group.addValue("--extinction", "S", optics.extinctionScale, number(0),
                    withDefault("Scales the extinction", shortText(optics.extinctionScale)));
     group.addValue("--background", "R,G,B[,A]", command.background, color(),
                    "Scene-linear colour behind the volume (default: transparent)");
@@ -119,7 +118,7 @@ void addOutputOptions(CLI::App& app, RenderCommand& command) {
 // Two names of one file would make one output overwrite the other, or the input.
 bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code ignored;
-    return weakly_canonical(a, ignored) == weakly_canonical(b, ignored);
+    return weakly_canonical(absolute(a), ignored) == weakly_canonical(absolute(b), ignored);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <openvdb/points/PointDataGrid.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -107,10 +108,20 @@ void writeRawFiles() {
                {reinterpret_cast<const char*>(values.data()), 4 * values.size()});
 }
 
+// Whatever is written to these is refused as by a full disk.
+void linkToFullDevice() {
+    for (const char* const name : {"full.exr", "full.png", "full.json", "full.raw", "full.vdb"}) {
+        std::filesystem::remove(name);
+        std::filesystem::create_symlink("/dev/full", name);
+    }
+    std::filesystem::create_directory("folder.exr");
+}
+
 }  // namespace
 
 int main() {
     openvdb::initialize();
+    linkToFullDevice();
     writeVdbFiles();
     writeRawFiles();
 }

@@ -9,7 +9,7 @@ function(run)
     set(text "${text}" PARENT_SCOPE)
 endfunction()
 
-# Fails unless the object at a path of the JSON text has exactly these keys, in this order.
+# Fails unless the object at a path of the JSON text has exactly these keys.
 function(expect_keys json where expected)
     string(JSON count LENGTH "${json}" ${where})
     set(keys)
@@ -18,6 +18,8 @@ function(expect_keys json where expected)
         string(JSON key MEMBER "${json}" ${where} ${i})
         list(APPEND keys ${key})
     endforeach()
+    list(SORT keys)
+    list(SORT expected)
     if(NOT "${keys}" STREQUAL "${expected}")
         message(FATAL_ERROR "keys of '${where}':\n  got ${keys}\n  expected ${expected}")
     endif()

@@ -1,0 +1,91 @@
+# Inputs that cannot be read or are invalid: exit code 3, whichever subcommand reads them.
+
+# Declares that info and render refuse a file: name, message, file and options.
+function(deltasplat_bad_input name message)
+    deltasplat_cli_test(input.${name}.info EXIT 3 STDERR "deltasplat: ${message}" ARGS info ${ARGN})
+    deltasplat_cli_test(input.${name}.render EXIT 3 STDERR "deltasplat: ${message}"
+                        ARGS render ${ARGN} -o out.exr --stats stats.json)
+endfunction()
+
+deltasplat_bad_input(missing "nowhere.vdb: got no such file; expected a readable file" nowhere.vdb)
+deltasplat_bad_input(missing_raw
+    "nowhere_8x8x8_uint8.raw: got no such file; expected a readable file" nowhere_8x8x8_uint8.raw)
+deltasplat_bad_input(folder ".: got a folder; expected a readable file" .)
+deltasplat_bad_input(format
+    "tf_good.json: got extension \".json\"; expected .raw, .raw.gz or .vdb" tf_good.json)
+
+deltasplat_bad_input(cut_raw
+    "cut_8x8x8_uint8.raw: got 500 bytes; expected 512 (8x8x8 uint8)" cut_8x8x8_uint8.raw)
+deltasplat_bad_input(long_raw
+    "long_8x8x8_uint8.raw: got 516 bytes; expected 512 (8x8x8 uint8)" long_8x8x8_uint8.raw)
+deltasplat_bad_input(other_dims
+    "plain.raw: got 512 bytes; expected 448 (8x8x7 uint8)" plain.raw --dims 8x8x7 --type uint8)
+deltasplat_bad_input(other_type
+    "plain.raw: got 512 bytes; expected 1024 (8x8x8 uint16)" plain.raw --dims 8x8x8 --type uint16)
+deltasplat_bad_input(header
+    "plain.raw: got 512 bytes; expected 513 (1 skipped + 8x8x8 uint8)"
+    plain.raw --dims 8x8x8 --type uint8 --skip-bytes 1)
+deltasplat_bad_input(no_gzip
+    "garbage_8x8x8_uint8.raw.gz: got no gzip stream; expected a gzip file"
+    garbage_8x8x8_uint8.raw.gz)
+deltasplat_bad_input(nan_raw
+    "nan_4x4x4_float32.raw: got 2 NaN or infinite values, the first at (1, 2, 3); expected finite values (--nan VALUE replaces them)"
+    nan_4x4x4_float32.raw)
+
+set(scalar "a scalar grid (float, double, int32, int64, bool or mask)")
+deltasplat_bad_input(garbage "garbage.vdb: got no OpenVDB data; expected a .vdb file" garbage.vdb)
+deltasplat_bad_input(no_bytes "zero.vdb: got no OpenVDB data; expected a .vdb file" zero.vdb)
+foreach(file cut head_only)
+    foreach(subcommand "info" "render;-o;out.exr")
+        list(GET subcommand 0 word)
+        deltasplat_cli_test(input.${file}.${word} EXIT 3 ARGS ${subcommand} ${file}.vdb
+            STDERR_MATCHES "deltasplat: ${file}.vdb: got [0-9]+ bytes; expected at least [0-9 +]+ .a .vdb file that is cut short or corrupt.")
+    endforeach()
+endforeach()
+deltasplat_bad_input(no_grids "none.vdb: got no grids; expected ${scalar}" none.vdb)
+deltasplat_bad_input(only_vectors
+    "vectors.vdb: got only velocity (vec3s); expected ${scalar}" vectors.vdb)
+deltasplat_bad_input(only_points
+    "points.vdb: got only points (ptdataidx32); expected ${scalar}" points.vdb)
+deltasplat_bad_input(frustum
+    "frustum.vdb: grid \"density\": got a NonlinearFrustumMap transform; expected a linear one (no frustum)"
+    frustum.vdb)
+deltasplat_bad_input(nan_vdb
+    "nan.vdb: grid \"density\": got 2 NaN or infinite active values, the first at (1, 2, 3); expected finite values (--nan VALUE replaces them)"
+    nan.vdb)
+deltasplat_bad_input(grid_name
+    "two.vdb: got no grid \"smoke\"; expected one of density (float), heat (float)"
+    two.vdb --grid smoke)
+deltasplat_bad_input(grid_type
+    "mixed.vdb: got grid \"velocity\" of type vec3s; expected ${scalar}"
+    mixed.vdb --grid velocity)
+
+# What looks alike and is fine.
+deltasplat_cli_test(input.fine.empty ARGS render empty.vdb -o out.exr CREATES out.exr
+    STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels")
+deltasplat_cli_test(input.fine.empty_quiet ARGS render empty.vdb -o out.exr -q CREATES out.exr)
+deltasplat_cli_test(input.fine.nan ARGS render nan.vdb -o out.exr --nan 0 CREATES out.exr)
+deltasplat_cli_test(input.fine.mixed ARGS render mixed.vdb -o out.exr CREATES out.exr)
+deltasplat_cli_test(input.fine.second_grid ARGS info two.vdb --grid heat STDOUT_MATCHES "grid +heat")
+deltasplat_cli_test(input.fine.plain ARGS info plain.raw --dims 8x4x8 --type uint16 --endian big
+    STDOUT_MATCHES "dims +8 x 4 x 8")
+deltasplat_cli_test(input.fine.two_files ARGS info ball.vdb cube_8x8x8_uint8.raw
+    STDOUT_MATCHES "ball.vdb.*cube_8x8x8_uint8.raw.*uint8")
+
+# Transfer functions: file, line, what was expected.
+function(deltasplat_bad_transfer_function name message)
+    deltasplat_cli_test(input.tf.${name} EXIT 3 STDERR "deltasplat: ${message}"
+                        ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_${name}.json)
+endfunction()
+deltasplat_bad_transfer_function(missing "tf_missing.json: got no file that can be read; expected a transfer function (ParaView's JSON)")
+deltasplat_cli_test(input.tf.no_json EXIT 3
+    ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_no_json.json
+    STDERR_MATCHES "deltasplat: tf_no_json.json:5: got .*; expected valid JSON")
+deltasplat_bad_transfer_function(no_colors "tf_no_colors.json:2: got no RGBPoints; expected RGBPoints with groups of four numbers (x, red, green, blue)")
+deltasplat_bad_transfer_function(odd_count "tf_odd_count.json:4: got 3 numbers; expected RGBPoints with groups of four numbers (x, red, green, blue)")
+deltasplat_bad_transfer_function(word "tf_word.json:5: got \"much\"; expected a number in Points")
+deltasplat_bad_transfer_function(opacity "tf_opacity.json:5: got 1.5; expected a number within 0..1 in Points")
+deltasplat_bad_transfer_function(falling "tf_falling.json:4: got 0; expected x not below the 1 before it in RGBPoints")
+deltasplat_cli_test(input.tf.range ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_good.json
+    --range 0,1 CREATES out.exr
+    STDERR "deltasplat: warning: --range: has no effect without a normalized transfer function")

@@ -1,0 +1,36 @@
+# Outputs that cannot be written: exit code 4, and nothing left.
+set(cube cube_8x8x8_uint8.raw)
+
+deltasplat_cli_test(output.no_folder EXIT 4 ARGS render ${cube} -o nowhere/out.exr
+    STDERR "deltasplat: nowhere/out.exr: cannot be written: No such file or directory")
+deltasplat_cli_test(output.is_folder EXIT 4 ARGS render ${cube} -o folder.exr
+    STDERR "deltasplat: folder.exr: cannot be written: Is a directory")
+deltasplat_cli_test(output.before_input EXIT 4 ARGS render nowhere.vdb -o nowhere/out.exr
+    STDERR "deltasplat: nowhere/out.exr: cannot be written: No such file or directory")
+foreach(file full.exr full.png)
+    deltasplat_cli_test(output.${file} EXIT 4 ARGS render ${cube} -o ${file}
+        STDERR "deltasplat: ${file}: cannot be written: No space left on device")
+endforeach()
+deltasplat_cli_test(output.stats_full EXIT 4 ARGS render ${cube} -o out.exr --stats full.json
+    STDERR "deltasplat: full.json: cannot be written: No space left on device" CREATES out.exr)
+deltasplat_cli_test(output.stats_no_folder EXIT 4
+    ARGS render ${cube} -o out.exr --stats nowhere/stats.json
+    STDERR "deltasplat: nowhere/stats.json: cannot be written: No such file or directory")
+deltasplat_cli_test(output.synth_no_folder EXIT 4 ARGS synth cloud nowhere/out.vdb
+    STDERR "deltasplat: nowhere/out.vdb: cannot be written: No such file or directory")
+foreach(file full.raw full.vdb)
+    deltasplat_cli_test(output.${file} EXIT 4 ARGS synth cloud ${file}
+        STDERR "deltasplat: ${file}: cannot be written: No space left on device")
+endforeach()
+
+# What is written, and only that.
+foreach(file out.exr out.png OUT.EXR)
+    deltasplat_cli_test(output.fine.${file} ARGS render ball.vdb -o ${file} CREATES ${file})
+endforeach()
+deltasplat_cli_test(output.fine.bits ARGS render ball.vdb -o out.png --bits 16 CREATES out.png)
+deltasplat_cli_test(output.fine.stats CREATES out.exr stats.json
+    ARGS render ball.vdb -o out.exr --float --stats stats.json --background 0.1,0.2,0.3,0.5)
+deltasplat_cli_test(output.fine.verbose CREATES out.exr ARGS render ball.vdb -o out.exr -v
+    STDERR_MATCHES "method auto: .* stamps.*slices along z.*seconds: read .*")
+deltasplat_cli_test(output.fine.synth ARGS synth slab out.vdb CREATES out.vdb)
+deltasplat_cli_test(output.json ARGS info ball.vdb --json -q STDOUT_MATCHES "\"comparability\": 0")

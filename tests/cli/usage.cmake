@@ -1,0 +1,171 @@
+# What the program says to those who call it: help, versions and everything that ends with 2.
+set(cube cube_8x8x8_uint8.raw)
+
+# Declares a rendering of the cube that has to be refused: name, message, options.
+function(deltasplat_refusal name message)
+    deltasplat_cli_test(usage.${name} EXIT 2 STDERR "deltasplat: ${message}"
+                        ARGS render cube_8x8x8_uint8.raw -o out.exr ${ARGN})
+endfunction()
+
+deltasplat_cli_test(help ARGS --help STDOUT_MATCHES "Subcommands:.*info.*render.*synth")
+deltasplat_cli_test(help_short ARGS -h STDOUT_MATCHES "Usage: deltasplat")
+deltasplat_cli_test(help_info ARGS info --help
+    STDOUT_MATCHES "--level-set.*default keep.*Examples:.*deltasplat info.*deltasplat info")
+deltasplat_cli_test(help_render ARGS render --help
+    STDOUT_MATCHES "default 512x512.*default 0.4.*Examples:.*deltasplat render.*deltasplat render")
+deltasplat_cli_test(help_synth ARGS synth -h
+    STDOUT_MATCHES "default 64x64x64.*Examples:.*deltasplat synth.*deltasplat synth")
+deltasplat_cli_test(version ARGS --version
+    STDOUT_MATCHES "deltasplat ${PROJECT_VERSION}.*OpenVDB 1.*OpenImageIO .*TBB .*SIMD level [A-Z]")
+deltasplat_cli_test(version_of_subcommand ARGS render --version STDOUT_MATCHES "OpenVDB")
+
+deltasplat_cli_test(usage.no_subcommand EXIT 2 ARGS -q
+    STDERR "deltasplat: subcommand: got nothing; expected info, render or synth (see 'deltasplat --help')")
+deltasplat_cli_test(usage.unknown_subcommand EXIT 2 ARGS rendr ${cube} -o out.exr
+    STDERR "deltasplat: Unknown subcommand 'rendr'. Did you mean 'render'? Expected info, render or synth")
+deltasplat_cli_test(usage.unlike_any_subcommand EXIT 2 ARGS compress
+    STDERR "deltasplat: Unknown subcommand 'compress'. Expected info, render or synth")
+deltasplat_cli_test(usage.unknown_option_before EXIT 2 ARGS --verbos info ${cube}
+    STDERR "deltasplat: Unknown option '--verbos'. Did you mean '--verbose'?")
+deltasplat_refusal(unknown_option "Unknown option '--sise'. Did you mean '--size'?" --sise 8x8)
+deltasplat_refusal(unknown_option_equals "Unknown option '--metod'. Did you mean '--method'?"
+    --metod=delta)
+deltasplat_refusal(unlike_any_option "Unknown option '--wireframe'." --wireframe)
+deltasplat_refusal(two_inputs "Unexpected argument 'ball.vdb'; see 'deltasplat render --help'"
+    ball.vdb)
+deltasplat_cli_test(usage.verbose EXIT 2 ARGS render ${cube} -o "a b.exr" --size 12x -v
+    STDERR "deltasplat: --size: got 12x; expected WxH, two whole numbers from 1 to 2147483647
+  command line: deltasplat render cube_8x8x8_uint8.raw -o 'a b.exr' --size 12x -v")
+
+deltasplat_cli_test(usage.render_no_input EXIT 2 ARGS render -o out.exr
+    STDERR "deltasplat: INPUT: got nothing; expected FILE (see 'deltasplat render --help')")
+deltasplat_cli_test(usage.render_no_output EXIT 2 ARGS render ${cube}
+    STDERR "deltasplat: --output: got nothing; expected FILE (see 'deltasplat render --help')")
+deltasplat_cli_test(usage.info_no_input EXIT 2 ARGS info --json
+    STDERR "deltasplat: INPUT: got nothing; expected FILE (see 'deltasplat info --help')")
+deltasplat_cli_test(usage.synth_no_output EXIT 2 ARGS synth cloud
+    STDERR "deltasplat: OUTPUT: got nothing; expected FILE (see 'deltasplat synth --help')")
+deltasplat_refusal(no_value "--size: got nothing; expected WxH (see 'deltasplat render --help')"
+    --size)
+
+# Numbers are taken whole, finite and in range.
+set(size_expected "expected WxH, two whole numbers from 1 to 2147483647")
+foreach(size 12x 8 8x 8x8x8 0x8 8x-8 8.5x8 3000000000x1 8X8)
+    deltasplat_refusal(size_${size} "--size: got ${size}; ${size_expected}" --size ${size})
+endforeach()
+deltasplat_cli_test(usage.size_absurd EXIT 2
+    ARGS render ${cube} -o out.exr --size 2147483647x2147483647
+    STDERR_MATCHES "deltasplat: --size 2147483647x2147483647: needs [0-9.]+ EiB of memory; expected at most [0-9.]+ .iB, which is available")
+foreach(sigma nan inf 0.1 5 1,0 0.4x 1e)
+    deltasplat_refusal(sigma_${sigma}
+        "--sigma: got ${sigma}; expected a finite number from 0.2 to 4" --sigma ${sigma})
+endforeach()
+foreach(resolution 0 17 1.5 -1)
+    deltasplat_refusal(resolution_${resolution}
+        "--resolution: got ${resolution}; expected a whole number from 1 to 16"
+        --resolution ${resolution})
+endforeach()
+deltasplat_refusal(azimuth "--azimuth: got 30deg; expected a finite number" --azimuth 30deg)
+deltasplat_refusal(frame_width "--frame-width: got 0; expected a finite number greater than 0"
+    --frame-width 0)
+deltasplat_refusal(unit_distance
+    "--unit-distance: got -1; expected a finite number greater than 0" --unit-distance -1)
+deltasplat_refusal(extinction "--extinction: got -1; expected a finite number of at least 0"
+    --extinction=-1)
+deltasplat_refusal(range "--range: got 5,5; expected LO,HI, two finite numbers with LO < HI"
+    --range 5,5)
+deltasplat_refusal(background
+    "--background: got 1,1; expected R,G,B or R,G,B,A, numbers of at least 0 and A at most 1"
+    --background 1,1)
+deltasplat_refusal(background_alpha
+    "--background: got 1,1,1,2; expected R,G,B or R,G,B,A, numbers of at least 0 and A at most 1"
+    --background 1,1,1,2)
+deltasplat_refusal(threads "--threads: got -1; expected a whole number from 0 to 1024" --threads -1)
+deltasplat_cli_test(usage.simd EXIT 2 ARGS render ${cube} -o out.exr --simd MMX
+    STDERR_MATCHES "deltasplat: SIMD level: got MMX; expected one of auto, .*")
+deltasplat_refusal(nan "--nan: got inf; expected a finite number" --nan inf)
+
+# Words.
+deltasplat_refusal(method "--method: got fast; expected auto, delta, sparse or traditional"
+    --method fast)
+deltasplat_refusal(mode "--mode: got mip; expected composite" --mode mip)
+deltasplat_refusal(projection "--projection: got perspective; expected ortho"
+    --projection perspective)
+deltasplat_refusal(level_set "--level-set: got maybe; expected fog or keep" --level-set maybe)
+deltasplat_refusal(endian "--endian: got middle; expected little or big" --endian middle)
+deltasplat_refusal(bits "--bits: got 12; expected 8 or 16" --bits 12)
+deltasplat_refusal(view
+    "--view: got side; expected one of front, back, left, right, top, bottom, iso" --view side)
+
+# Cameras that cannot be.
+deltasplat_refusal(direction_parallel_to_up
+    "--direction: got 0,1,0 as direction, parallel to up 0,1,0; expected directions that differ"
+    --direction 0,1,0)
+deltasplat_refusal(direction_against_up
+    "--direction: got 0,0,-1 as direction, parallel to up 0,0,2; expected directions that differ"
+    --direction 0,0,-1 --up 0,0,2)
+deltasplat_refusal(direction_zero
+    "--direction: got 0,0,0; expected three finite numbers, not all of them 0" --direction 0,0,0)
+deltasplat_refusal(direction_short "--direction: got 1,2; expected X,Y,Z, three finite numbers"
+    --direction 1,2)
+deltasplat_refusal(direction_nan
+    "--direction: got 1,nan,0; expected X,Y,Z, three finite numbers" --direction=1,nan,0)
+deltasplat_refusal(up_zero "--up: got 0,0,0; expected three finite numbers, not all of them 0"
+    --up 0,0,0)
+deltasplat_cli_test(negative_vectors CREATES out.exr
+    ARGS render ${cube} -o out.exr --direction -1,0.8,-0.6 --up=-.5,1,0 --target -1,2,-.25)
+deltasplat_cli_test(last_value_wins CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 0x0x0 --size 8x8)
+
+# Raw volumes that cannot be meant.
+set(raw info plain.raw --type uint8)
+deltasplat_cli_test(usage.no_dims EXIT 2 ARGS ${raw}
+    STDERR "deltasplat: plain.raw: got no dimensions; expected --dims XxYxZ and --type TYPE, or a name such as volume_256x256x128_uint8.raw")
+deltasplat_cli_test(usage.no_type EXIT 2 ARGS info plain.raw --dims 8x8x8
+    STDERR "deltasplat: plain.raw: got no value type; expected --type TYPE, or a name such as volume_256x256x128_uint8.raw")
+deltasplat_cli_test(usage.unknown_type EXIT 2 ARGS info plain.raw --dims 8x8x8 --type uint9
+    STDERR "deltasplat: --type: got uint9; expected one of uint8, int8, uint16, int16, uint32, int32, float32, float64")
+foreach(dims 0x8x8 -8x8x8 3000000000x3000000000x3000000000)
+    deltasplat_cli_test(usage.dims_${dims} EXIT 2 ARGS ${raw} --dims ${dims}
+        STDERR "deltasplat: --dims: got ${dims}; expected each 1..1073741824")
+endforeach()
+foreach(dims 8x8 8x8x8x8 8x8xy 8x8x99999999999999999999)
+    deltasplat_cli_test(usage.dims_${dims} EXIT 2 ARGS ${raw} --dims ${dims}
+        STDERR "deltasplat: --dims: got ${dims}; expected AxBxC, three whole numbers")
+endforeach()
+deltasplat_cli_test(usage.dims_product EXIT 2 ARGS ${raw} --dims 1000000000x1000000000x1000000000
+    STDERR "deltasplat: --dims: got 1000000000x1000000000x1000000000 uint8; expected at most 9223372036854775807 bytes")
+deltasplat_cli_test(usage.spacing EXIT 2 ARGS ${raw} --dims 8x8x8 --spacing 1,0,1
+    STDERR "deltasplat: --spacing: got 1,0,1; expected X,Y,Z, three finite numbers greater than 0")
+deltasplat_cli_test(usage.skip_bytes EXIT 2 ARGS ${raw} --dims 8x8x8 --skip-bytes -1
+    STDERR "deltasplat: --skip-bytes: got -1; expected a whole number of at least 0")
+
+# Outputs that cannot be meant.
+deltasplat_cli_test(usage.picture_format EXIT 2 ARGS render ${cube} -o out.jpg
+    STDERR "deltasplat: out.jpg: got extension \".jpg\"; expected .exr or .png")
+deltasplat_cli_test(usage.picture_no_format EXIT 2 ARGS render ${cube} -o out
+    STDERR "deltasplat: out: got extension \"\"; expected .exr or .png")
+deltasplat_cli_test(usage.float_png EXIT 2 ARGS render ${cube} -o out.png --float
+    STDERR "deltasplat: --float: got out.png; expected an .exr file")
+deltasplat_refusal(stats_is_picture
+    "--stats: got ./out.exr; expected another file than the input and the picture"
+    --stats ./out.exr)
+deltasplat_refusal(stats_is_input
+    "--stats: got ${cube}; expected another file than the input and the picture" --stats ${cube})
+
+deltasplat_cli_test(synth_names ARGS synth STDOUT_MATCHES "marschner-lobb.*engine.*cloud")
+deltasplat_cli_test(usage.synth_name EXIT 2 ARGS synth ghost out.vdb
+    STDERR "deltasplat: NAME: got \"ghost\"; expected one of marschner-lobb, hydrogen, shepp-logan, engine, cloud, slab")
+deltasplat_cli_test(usage.synth_format EXIT 2 ARGS synth cloud out.txt
+    STDERR "deltasplat: out.txt: got extension \".txt\"; expected .raw or .vdb")
+deltasplat_cli_test(usage.synth_dims EXIT 2 ARGS synth cloud out.raw --dims 0x1x1
+    STDERR "deltasplat: --dims: got 0x1x1; expected AxBxC, three whole numbers from 1 to 2147483647")
+deltasplat_cli_test(usage.synth_absurd EXIT 2
+    ARGS synth cloud out.raw --dims 2147483647x2147483647x2147483647
+    STDERR_MATCHES "deltasplat: --dims: needs [0-9.]+ .iB of memory; expected at most [0-9.]+ .iB, which is available")
+deltasplat_cli_test(usage.synth_type EXIT 2 ARGS synth cloud out.raw --type int8
+    STDERR "deltasplat: --type: got int8; expected uint8, uint16 or float32")
+deltasplat_cli_test(usage.synth_noise EXIT 2 ARGS synth engine out.raw --noise 2
+    STDERR "deltasplat: --noise: got 2; expected a finite number from 0 to 1")
+deltasplat_cli_test(usage.synth_seed EXIT 2 ARGS synth cloud out.raw --seed -1
+    STDERR "deltasplat: --seed: got -1; expected a whole number of at least 0")
