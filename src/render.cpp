@@ -144,7 +144,8 @@ void requireSheetMemory(const DeltaGrid& grid, const Factorization& view,
 void renderGrid(const DeltaGrid& grid, const ClassTable& classes, const Factorization& view,
                 const RenderOptions& options, const Listener& listener, RenderResult& result) {
     const Clock::time_point start = Clock::now();
-    const Footprint footprint = makeFootprint(options.sigma, view.shiftPerSlice, view.resolution);
+    const Footprint footprint = makeFootprint(options.sigma.value_or(defaultSigma(view.resolution)),
+                                              view.shiftPerSlice, view.resolution);
     const StampWeights weights(footprint);
     const SheetLayout layout = layoutSheet(grid.box, footprint);
     requireSheetMemory(grid, view, layout);

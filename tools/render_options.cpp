@@ -93,9 +93,10 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
                                "bit, in different times",
                                methodName(options.method)));
     group.addValue("--sigma", "V", options.sigma, number(kMinSigma, kMaxSigma),
-                   withDefault("Standard deviation of the footprint in voxels, " +
-                                   shortText(kMinSigma) + " to " + shortText(kMaxSigma),
-                               shortText(options.sigma)));
+                   "Standard deviation of the footprint in voxels, " + shortText(kMinSigma) +
+                       " to " + shortText(kMaxSigma) + "\n(default: " + shortText(defaultSigma(1)) +
+                       ", or " + shortText(defaultSigma(3)) +
+                       " from three sheet pixels per voxel on)");
     group.addValue("--resolution", "R", options.resolution, wholeNumber(1, kMaxResolution),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        " (default: chosen from the screen)");

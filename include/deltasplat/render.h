@@ -9,6 +9,7 @@
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/progress.h"
+#include "deltasplat/splat/footprint.h"
 #include "deltasplat/view/camera.h"
 #include "deltasplat/view/factorization.h"
 
@@ -25,13 +26,12 @@ enum class Method {
 /// Returns "auto", "delta", "sparse" or "traditional".
 std::string methodName(Method method);
 
-inline constexpr double kDefaultSigma = 0.4;
-
 struct RenderOptions {
     Method method = Method::kAuto;
     CameraOptions camera;
     Optics optics;
-    double sigma = kDefaultSigma;   ///< footprint's standard deviation in voxels, 0.2..4
+    /// Footprint's standard deviation in voxels, kMinSigma..kMaxSigma; empty: defaultSigma.
+    std::optional<double> sigma;
     std::optional<int> resolution;  ///< sheet pixels a voxel; empty: chosen from the screen
 };
 

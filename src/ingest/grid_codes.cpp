@@ -24,37 +24,6 @@ namespace {
     throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
 }
 
-// A file can state nodes that OpenVDB's own writer never makes; walking those would go astray.
-template <typename Node>
-void checkNodes(const std::vector<Node*>& nodes, const std::string& where) {
-    for (const Node* node : nodes) {
-        auto both = node->getValueMask();
-        both &= node->getChildMask();
-        if (!both.isOff()) fail(where, "a node that is both tile and child", "a sound tree");
-    }
-}
-
-template <typename Tree>
-void checkTree(Tree& tree, const std::string& where) {
-    using Upper = typename Tree::RootNodeType::ChildNodeType;
-    using Lower = typename Upper::ChildNodeType;
-    const auto aligned = [](const openvdb::Coord& c) {
-        return ((c.x() | c.y() | c.z()) & openvdb::Int32(Upper::DIM - 1)) == 0;
-    };
-    for (auto entry = tree.root().cbeginValueAll(); entry; ++entry) {
-        if (!aligned(entry.getCoord())) fail(where, "a misplaced root tile", "a sound tree");
-    }
-    for (auto entry = tree.root().cbeginChildOn(); entry; ++entry) {
-        if (!aligned(entry.getCoord())) fail(where, "a misplaced root node", "a sound tree");
-    }
-    std::vector<Upper*> upper;
-    std::vector<Lower*> lower;
-    tree.getNodes(upper);
-    tree.getNodes(lower);
-    checkNodes(upper, where);
-    checkNodes(lower, where);
-}
-
 template <typename Grid>
 void settleNonFinite(Grid& grid, const GridCodesOptions& options) {
     const auto range = rangeOfTree(grid.tree());
@@ -167,7 +136,6 @@ IndexBox boxOf(const CodeTree::Tree& tree, const std::string& where) {
 template <typename Grid>
 void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     using T = typename Grid::ValueType;
-    checkTree(grid.tree(), options.where);
     if constexpr (std::is_floating_point_v<T>) {
         settleNonFinite(grid, options);
         makeFog(grid, options);

@@ -112,7 +112,7 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
 
 std::vector<Volume> readVdb(const std::filesystem::path& path, const ReadOptions& options, bool all,
                             const Listener& listener) {
-    const VdbFile file(path, {});
+    const VdbFile file(path);
     const auto chosen = chooseGrids(path.string(), file.grids(), options.gridName, all);
     std::vector<Volume> volumes;
     for (const VdbGrid* grid : chosen) {

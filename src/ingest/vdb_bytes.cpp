@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/vdb_bytes.h"
 
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <string_view>
 
 #include "deltasplat/error.h"
@@ -40,14 +42,6 @@ bool isKnown(const std::string& type, std::uint32_t bytes) {
     return false;
 }
 
-std::uint64_t littleEndian(const std::string& bytes) {
-    std::uint64_t value = 0;
-    for (std::size_t i = bytes.size(); i-- > 0;) {
-        value = value * 256 + static_cast<unsigned char>(bytes[i]);
-    }
-    return value;
-}
-
 void appendText(std::string& to, const std::string& text) {
     appendU32(to, std::uint32_t(text.size()));
     to += text;
@@ -63,7 +57,6 @@ VdbBytes::VdbBytes(const std::filesystem::path& file)
     }
     file_.seekg(0, std::ios::end);
     size_ = std::uint64_t(file_.tellg());
-    file_.seekg(0);
 }
 
 void VdbBytes::failCorrupt(const std::string& got, const std::string& expected) const {
@@ -85,26 +78,57 @@ void VdbBytes::seek(std::uint64_t position) {
             "at least " + std::to_string(position) + " (a .vdb file that is cut short or corrupt)");
     }
     position_ = position;
-    file_.seekg(std::streamoff(position));
+}
+
+void VdbBytes::skip(std::uint64_t count) {
+    require(count);
+    position_ += count;
+}
+
+void VdbBytes::read(void* to, std::uint64_t count) {
+    require(count);
+    constexpr std::uint64_t kBufferBytes = std::uint64_t{1} << 18;
+    auto* out = static_cast<char*>(to);
+    while (count > 0) {
+        if (position_ < bufferBegin_ || position_ >= bufferBegin_ + buffer_.size()) {
+            bufferBegin_ = position_;
+            buffer_.resize(std::size_t(std::min(kBufferBytes, size_ - position_)));
+            file_.seekg(std::streamoff(position_));
+            file_.read(buffer_.data(), std::streamsize(buffer_.size()));
+            if (!file_) failCorrupt("a read error", "a readable file");
+        }
+        const std::uint64_t offset = position_ - bufferBegin_;
+        const std::uint64_t part = std::min(count, buffer_.size() - offset);
+        std::memcpy(out, buffer_.data() + offset, std::size_t(part));
+        out += part;
+        position_ += part;
+        count -= part;
+    }
 }
 
 std::string VdbBytes::bytes(std::uint64_t count) {
     require(count);
     std::string text(std::size_t(count), '\0');
-    file_.read(text.data(), std::streamsize(count));
-    if (!file_) failCorrupt("a read error", "a readable file");
-    position_ += count;
+    read(text.data(), count);
     return text;
 }
 
+// OpenVDB itself reads its files only on little endian machines.
+template <typename T>
+T VdbBytes::number() {
+    T value;
+    read(&value, sizeof value);
+    return value;
+}
+
 std::uint8_t VdbBytes::u8() {
-    return std::uint8_t(littleEndian(bytes(1)));
+    return number<std::uint8_t>();
 }
 std::uint32_t VdbBytes::u32() {
-    return std::uint32_t(littleEndian(bytes(4)));
+    return number<std::uint32_t>();
 }
 std::int64_t VdbBytes::i64() {
-    return std::int64_t(littleEndian(bytes(8)));
+    return number<std::int64_t>();
 }
 
 std::string VdbBytes::text(std::uint32_t most) {
@@ -116,31 +140,27 @@ std::string VdbBytes::text(std::uint32_t most) {
     return bytes(length);
 }
 
-VdbMetadata readMetadata(VdbBytes& bytes) {
+std::string readMetadata(VdbBytes& bytes) {
     const std::uint32_t count = bytes.u32();
     std::uint32_t kept = 0;
     std::string entries;
-    VdbMetadata metadata;
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::string name = bytes.text();
         const std::string type = bytes.text();
         const std::uint32_t size = bytes.u32();
         if (!isKnown(type, size)) {
-            bytes.seek(bytes.position() + size);
+            bytes.skip(size);
             continue;
         }
         const std::string value = bytes.bytes(size);
-        if (name == "file_mem_bytes" && type == "int64") {
-            metadata.memoryBytes = std::int64_t(littleEndian(value));
-        }
         appendText(entries, name);
         appendText(entries, type);
         appendText(entries, value);
         ++kept;
     }
-    appendU32(metadata.kept, kept);
-    metadata.kept += entries;
-    return metadata;
+    std::string metadata;
+    appendU32(metadata, kept);
+    return metadata + entries;
 }
 
 void appendU32(std::string& text, std::uint32_t value) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace deltasplat {
 
@@ -21,6 +22,8 @@ class VdbBytes {
     std::uint8_t u8();
     std::uint32_t u32();
     std::int64_t i64();
+    void read(void* to, std::uint64_t count);
+    void skip(std::uint64_t count);
     std::string bytes(std::uint64_t count);
     /// A 32-bit length and that many bytes, at most `most`.
     std::string text(std::uint32_t most = 65536);
@@ -29,21 +32,20 @@ class VdbBytes {
 
   private:
     void require(std::uint64_t count) const;
+    template <typename T>
+    T number();
 
     std::string name_;
     std::ifstream file_;
     std::uint64_t size_ = 0;
     std::uint64_t position_ = 0;
+    std::vector<char> buffer_;  // what the file holds from bufferBegin_ on
+    std::uint64_t bufferBegin_ = 0;
 };
 
-/// What matters of a grid's metadata.
-struct VdbMetadata {
-    std::string kept;              ///< in the file's form, entries of known types and sizes only
-    std::int64_t memoryBytes = 0;  ///< what the grid's tree takes in memory, where the file says so
-};
-
-/// Reads the metadata at the current position, which moves behind it.
-VdbMetadata readMetadata(VdbBytes& bytes);
+/// Reads the metadata at the current position, which moves behind it. Returns it in the file's
+/// form, reduced to entries whose types and sizes OpenVDB can be trusted with.
+std::string readMetadata(VdbBytes& bytes);
 
 /// Appends `value` to `text` as four bytes, little endian.
 void appendU32(std::string& text, std::uint32_t value);

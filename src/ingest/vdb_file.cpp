@@ -13,6 +13,7 @@
 #include "deltasplat/error.h"
 #include "ingest/vdb_bytes.h"
 #include "ingest/vdb_stream.h"
+#include "ingest/vdb_walk.h"
 #include "memory.h"
 
 namespace deltasplat {
@@ -63,14 +64,18 @@ std::string firstLine(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
-// Runs OpenVDB's reader on `buffer`, and turns whatever goes wrong there into one kind of error.
-openvdb::GridPtrVecPtr readGrids(VdbStreamBuf& buffer, const std::string& where) {
+// Calls read(stream of buffer), and turns whatever goes wrong in OpenVDB into one kind of error.
+template <typename Read>
+auto guarded(VdbStreamBuf& buffer, const std::string& where, const Read& read) {
     std::string got;
     try {
         std::istream stream(&buffer);
         // Without this OpenVDB goes on with zeros after the end, for as long as a count says.
         stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
-        return openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids();
+        openvdb::io::setCurrentVersion(stream);
+        return read(stream);
+    } catch (const Error&) {
+        throw;
     } catch (const std::ios_base::failure&) {
         got = "data that ends too early";
     } catch (const std::bad_alloc&) {
@@ -82,10 +87,34 @@ openvdb::GridPtrVecPtr readGrids(VdbStreamBuf& buffer, const std::string& where)
     throw Error(ErrorCode::kInput, gotExpected(where, got, "a sound OpenVDB grid"));
 }
 
-// Codes take two bytes where the grid has sizeof(value), and come on top of the grid.
-double memoryNeeded(const VdbGrid& grid, std::int64_t stated) {
-    const bool bits = grid.type == "bool" || grid.type == "mask";
-    return double(stated) * (bits ? 9.0 : 1.6);
+// What stands before a grid's tree.
+struct GridHead {
+    std::string metadata;         // as readMetadata returns it
+    std::uint64_t transform = 0;  // where it starts
+    VdbValueFormat format;
+};
+
+// Reads up to the tree. The transform's own fields have no sizes: OpenVDB must say where it ends.
+GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::path& file) {
+    GridHead head;
+    if (!head.format.setType(grid.type, grid.half)) {
+        bytes.failCorrupt("a grid of type " + grid.type + " in a file without offsets",
+                          "scalar and vector grids");
+    }
+    bytes.seek(grid.data);
+    head.format.compression = bytes.u32();
+    head.metadata = readMetadata(bytes);
+    head.transform = bytes.position();
+    bytes.text(256);  // the transform's type: a length that OpenVDB would trust
+    VdbStreamBuf buffer(file);
+    buffer.addRange(head.transform, bytes.size());
+    const std::string where = file.string() + ": grid \"" + grid.name + "\"";
+    guarded(buffer, where, [&](std::istream& stream) {
+        openvdb::math::Transform().read(stream);
+        bytes.seek(head.transform + std::uint64_t(stream.tellg()));
+        return 0;
+    });
+    return head;
 }
 
 }  // namespace
@@ -102,50 +131,42 @@ std::string VdbGrid::valueType() const {
     return half && (type == "float" || type == "double") ? "half" : type;
 }
 
-VdbFile::VdbFile(std::filesystem::path file, const Listener& listener) : file_(std::move(file)) {
+VdbFile::VdbFile(std::filesystem::path file) : file_(std::move(file)) {
     openvdb::initialize();
     readDirectory();
-    if (!hasOffsets_) readWhole(listener);
 }
 
 void VdbFile::readDirectory() {
     VdbBytes bytes(file_);
-    fileBytes_ = bytes.size();
     if (bytes.size() < 8 || bytes.i64() != openvdb::OPENVDB_MAGIC) {
         bytes.failCorrupt("no OpenVDB data", "a .vdb file");
     }
-    version_ = bytes.u32();
-    if (version_ < kOldestVersion || version_ > openvdb::OPENVDB_FILE_VERSION) {
+    const std::uint32_t version = bytes.u32();
+    if (version < kOldestVersion || version > openvdb::OPENVDB_FILE_VERSION) {
         bytes.failCorrupt(
-            "OpenVDB file version " + std::to_string(version_),
+            "OpenVDB file version " + std::to_string(version),
             std::to_string(kOldestVersion) + ".." + std::to_string(openvdb::OPENVDB_FILE_VERSION));
     }
-    bytes.seek(bytes.position() + 8);
-    hasOffsets_ = bytes.u8() != 0;
-    bytes.seek(bytes.position() + kUuidBytes);
+    bytes.skip(8);  // the version of the library that wrote it
+    const bool hasOffsets = bytes.u8() != 0;
+    bytes.skip(kUuidBytes);
     headerEnd_ = bytes.position();
     readMetadata(bytes);
 
     const auto count = std::int32_t(bytes.u32());
-    for (std::int32_t i = 0; hasOffsets_ && i < count; ++i) {
-        grids_.push_back(readDescriptor(bytes, hasOffsets_));
-        bytes.seek(grids_.back().end);
+    for (std::int32_t i = 0; i < count; ++i) {
+        VdbGrid grid = readDescriptor(bytes, hasOffsets);
+        if (!hasOffsets) findEnd(bytes, grid);
+        bytes.seek(grid.end);
+        grids_.push_back(std::move(grid));
     }
 }
 
-void VdbFile::readWhole(const Listener& listener) {
-    VdbStreamBuf buffer(file_);
-    buffer.addRange(0, fileBytes_);
-    buffer.onProgress([&](double share) { listener.report(share); });
-    const openvdb::GridPtrVecPtr all = readGrids(buffer, file_.string());
-    for (const openvdb::GridBase::Ptr& loaded : *all) {
-        VdbGrid grid;
-        grid.name = grid.uniqueName = loaded->getName();
-        parseType(loaded->type(), grid);
-        grid.half = loaded->saveFloatAsHalf();
-        grid.loaded = loaded;
-        grids_.push_back(std::move(grid));
-    }
+// A file written as a stream says nowhere how long its grids are.
+void VdbFile::findEnd(VdbBytes& bytes, VdbGrid& grid) const {
+    const GridHead head = readHead(bytes, grid, file_);
+    if (grid.parentName.empty()) walkTree(bytes, head.format);
+    grid.end = bytes.position();
 }
 
 const VdbGrid& VdbFile::parentOf(const VdbGrid& grid) const {
@@ -160,36 +181,35 @@ const VdbGrid& VdbFile::parentOf(const VdbGrid& grid) const {
 }
 
 openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listener) const {
-    if (grid.loaded) return grid.loaded;
     std::vector<const VdbGrid*> needed{&grid};
     if (!grid.parentName.empty()) needed.insert(needed.begin(), &parentOf(grid));
 
     // A file of the same header with no metadata of its own and just the grids needed.
-    const std::string where = file_.string() + ": grid \"" + grid.name + "\"";
     VdbStreamBuf buffer(file_);
     buffer.addRange(0, headerEnd_);
     std::string counts;
     appendU32(counts, 0);
     appendU32(counts, std::uint32_t(needed.size()));
     buffer.addText(counts);
+    const std::string where = file_.string() + ": grid \"" + grid.name + "\"";
     VdbBytes bytes(file_);
     for (const VdbGrid* part : needed) {
-        bytes.seek(part->data);
-        const std::uint32_t compression = bytes.u32();
-        if ((compression & openvdb::io::COMPRESS_BLOSC) != 0) buffer.guardBlosc();
-        const VdbMetadata metadata = readMetadata(bytes);
-        requireMemory(where, memoryNeeded(*part, metadata.memoryBytes));
-        buffer.addRange(part->begin, part->data + 4);
-        buffer.addText(metadata.kept);
-        const std::uint64_t rest = bytes.position();
-        bytes.text(256);  // the transform's type: a length that OpenVDB would trust
-        if (bytes.position() > part->end) {
-            bytes.failCorrupt("grid offsets that contradict each other", "a sound .vdb file");
+        const GridHead head = readHead(bytes, *part, file_);
+        if (part->parentName.empty()) {
+            requireMemory(where, walkTree(bytes, head.format).memoryBytes(head.format));
         }
-        buffer.addRange(rest, part->end);
+        if (bytes.position() != part->end) {
+            bytes.failCorrupt("a grid that ends at byte " + std::to_string(bytes.position()),
+                              std::to_string(part->end));
+        }
+        buffer.addRange(part->begin, part->data + sizeof(std::uint32_t));
+        buffer.addText(head.metadata);
+        buffer.addRange(head.transform, part->end);
     }
     buffer.onProgress([&](double share) { listener.report(share); });
-    return readGrids(buffer, where)->back();
+    return guarded(buffer, where, [](std::istream& stream) {
+        return openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids()->back();
+    });
 }
 
 }  // namespace deltasplat

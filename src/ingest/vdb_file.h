@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "deltasplat/progress.h"
+#include "ingest/vdb_bytes.h"
 
 namespace deltasplat {
 
@@ -19,12 +20,11 @@ struct VdbGrid {
     bool half = false;  ///< real values are stored as binary16 (writers set it for integers too)
     bool supported = true;  ///< in OpenVDB's standard tree layout
 
-    std::string uniqueName;              ///< name as stored
-    std::string parentName;              ///< as stored, of the grid whose tree it shares; or empty
-    std::uint64_t begin = 0;             ///< where its directory entry starts
-    std::uint64_t data = 0;              ///< where the grid itself starts
-    std::uint64_t end = 0;               ///< one past its last byte
-    openvdb::GridBase::Ptr loaded = {};  ///< already read: files without offsets
+    std::string uniqueName;   ///< name as stored
+    std::string parentName;   ///< as stored, of the grid whose tree it shares; or empty
+    std::uint64_t begin = 0;  ///< where its directory entry starts
+    std::uint64_t data = 0;   ///< where the grid itself starts
+    std::uint64_t end = 0;    ///< one past its last byte
 
     bool isScalar() const;
     /// Returns `type`, or "half" for real values stored so.
@@ -33,30 +33,28 @@ struct VdbGrid {
     std::string describe() const { return name + " (" + valueType() + ")"; }
 };
 
-/// A .vdb file whose outer structure has been checked before OpenVDB sees any of it: sizes and
-/// offsets lie inside of the file, and OpenVDB is handed only the bytes of the grid asked for.
-/// Grids are in file order; types that OpenVDB does not know do no harm.
+/// A .vdb file that is checked before OpenVDB sees any of it, since OpenVDB 10 crashes on damaged
+/// ones; then OpenVDB is handed only the bytes of the grid asked for. Grids are in file order;
+/// types that OpenVDB does not know do no harm.
 class VdbFile {
   public:
     /// @throw Error(kInput) if this is no whole .vdb file
-    VdbFile(std::filesystem::path file, const Listener& listener);
+    explicit VdbFile(std::filesystem::path file);
 
     const std::vector<VdbGrid>& grids() const { return grids_; }
     /// Reads one grid of grids().
-    /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if the size that the
-    ///        file states does not fit into memory, whatever the listener throws
+    /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if it does not fit
+    /// into
+    ///        memory, whatever the listener throws
     openvdb::GridBase::Ptr read(const VdbGrid& grid, const Listener& listener) const;
 
   private:
     void readDirectory();
-    void readWhole(const Listener& listener);
+    void findEnd(VdbBytes& bytes, VdbGrid& grid) const;
     const VdbGrid& parentOf(const VdbGrid& grid) const;
 
     std::filesystem::path file_;
-    std::uint64_t fileBytes_ = 0;
     std::uint64_t headerEnd_ = 0;
-    bool hasOffsets_ = true;
-    std::uint32_t version_ = 0;
     std::vector<VdbGrid> grids_;
 };
 

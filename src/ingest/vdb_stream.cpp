@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
 
 #include "deltasplat/error.h"
 
@@ -11,15 +10,6 @@ namespace deltasplat {
 namespace {
 
 constexpr std::uint64_t kStepBytes = std::uint64_t{4} << 20;
-
-// A Blosc chunk opens with 16 bytes; the last four of them are its size, little endian.
-constexpr std::streamsize kBloscHeader = 16;
-
-std::int64_t bloscSize(const char* header) {
-    std::int64_t size = 0;
-    for (int i = 3; i >= 0; --i) size = size * 256 + static_cast<unsigned char>(header[12 + i]);
-    return size;
-}
 
 }  // namespace
 
@@ -75,19 +65,8 @@ std::streamsize VdbStreamBuf::xsgetn(char* to, std::streamsize count) {
         done += part;
     }
     read_ += std::uint64_t(done);
-    if (guardBlosc_) checkChunk(to, done);
     tell();
     return done;
-}
-
-void VdbStreamBuf::checkChunk(const char* bytes, std::streamsize count) {
-    if (chunkBytes_ > 0 && chunkBytes_ == count) {
-        if (count < kBloscHeader || bloscSize(bytes) != count) {
-            throw std::runtime_error("corrupt compressed data");
-        }
-    }
-    chunkBytes_ = 0;
-    if (count == 8) std::memcpy(&chunkBytes_, bytes, 8);
 }
 
 void VdbStreamBuf::tell() {

@@ -15,9 +15,6 @@ namespace deltasplat {
 
 /// A read-only stream put together from texts in memory and ranges of one file, so that OpenVDB can
 /// be handed one grid of a file and not a byte more. Ranges must lie inside of the file.
-///
-/// Refuses Blosc chunks whose own header disagrees with their stored size: the decoder trusts that
-/// header and would read past the chunk.
 class VdbStreamBuf : public std::streambuf {
   public:
     /// @throw Error(kInput) if the file cannot be opened
@@ -26,8 +23,6 @@ class VdbStreamBuf : public std::streambuf {
     void addRange(std::uint64_t begin, std::uint64_t end);
     /// Calls `step` with the share read, every few megabytes; what it throws ends the reading.
     void onProgress(std::function<void(double)> step) { step_ = std::move(step); }
-    /// Checks Blosc chunks from now on.
-    void guardBlosc() { guardBlosc_ = true; }
     /// Returns what `step` threw, if it did.
     std::exception_ptr stopped() const { return stopped_; }
 
@@ -46,7 +41,6 @@ class VdbStreamBuf : public std::streambuf {
         bool inFile = false;
     };
     std::streamsize readPiece(char* to, std::streamsize count);
-    void checkChunk(const char* bytes, std::streamsize count);
     void tell();
 
     std::ifstream file_;
@@ -58,8 +52,6 @@ class VdbStreamBuf : public std::streambuf {
     std::uint64_t told_ = 0;
     std::function<void(double)> step_;
     std::exception_ptr stopped_;
-    bool guardBlosc_ = false;
-    std::int64_t chunkBytes_ = 0;  // what an eight byte read just announced, or 0
 };
 
 }  // namespace deltasplat

@@ -27,6 +27,13 @@ struct Footprint {
 inline constexpr double kMinSigma = 0.2;
 inline constexpr double kMaxSigma = 4.0;
 
+/// Returns the width used when none is asked for: 0.3 voxels, which is sharpest, or 0.4 where a
+/// voxel covers three pixels or more and would begin to show as a square.
+/// @param resolution  r, sheet pixels a voxel
+inline double defaultSigma(int resolution) {
+    return resolution <= 2 ? 0.3 : 0.4;
+}
+
 /// Makes the Gaussian footprint with covariance sigma^2 (I + d d^T) in slice units: a round kernel
 /// seen along the line of sight. Cut off where less than `kFootprintTail` of it is left outside.
 /// @param sigmaVoxels    kMinSigma..kMaxSigma
