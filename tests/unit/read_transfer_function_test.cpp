@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -18,7 +19,8 @@ class ReadTransferFunction : public ::testing::Test {
   protected:
     void SetUp() override {
         const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::temp_directory_path() / (std::string("deltasplat_tf_") + test->name());
+        folder_ = fs::temp_directory_path() /
+                  ("deltasplat_tf_" + std::to_string(getpid()) + test->name());
         fs::create_directories(folder_);
     }
     void TearDown() override { fs::remove_all(folder_); }
