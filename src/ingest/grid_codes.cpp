@@ -72,10 +72,12 @@ void settleNonFinite(Grid& grid, const GridCodesOptions& options) {
 template <typename Grid>
 void makeFog(Grid& grid, const GridCodesOptions& options) {
     if (grid.getGridClass() != openvdb::GRID_LEVEL_SET || !options.levelSetToFog) return;
+    // Simulation caches label whole fields of distances as level sets, with a background of 0.
     const double width = double(grid.background());
     if (!(width > 0) || !std::isfinite(width)) {
-        fail(options.where, "a level set with background " + numberText(width),
-             "a finite background above 0");
+        options.listener.warn(options.where + ": level set with background " + numberText(width) +
+                              " kept as it is, not made fog");
+        return;
     }
     openvdb::tools::sdfToFogVolume(grid);
 }

@@ -7,10 +7,12 @@
 #include <string>
 
 #include "deltasplat/ingest/volume.h"
+#include "deltasplat/progress.h"
 
 namespace deltasplat {
 
 struct GridCodesOptions {
+    const Listener& listener;        ///< hears of what was taken otherwise than the file says
     std::string where;               ///< file and grid, for messages
     std::string type;                ///< value type as the file stores it: "half", "float", ...
     bool levelSetToFog = true;       ///< turn level sets into fog volumes
@@ -18,7 +20,9 @@ struct GridCodesOptions {
 };
 
 /// Turns a scalar grid into codes and fills in everything of `volume` but its name and transform.
-/// The grid may be changed on the way. Active tiles stay tiles at their level. Deterministic.
+/// The grid may be changed on the way. A level set
+/// without a band (background not above 0) cannot become fog: it is kept, with a warning. Active
+/// tiles stay tiles at their level. Deterministic.
 /// @throw Error(kInput) if values are NaN or infinite and not replaced, or the tree is corrupt
 void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume);
 

@@ -100,7 +100,8 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
     Volume volume;
     volume.name = grid.name;
     volume.worldFromIndex = worldFromIndex(loaded->transform(), where);
-    fillFromGrid(*loaded, {where, grid.valueType(), options.levelSetToFog, options.nanValue},
+    fillFromGrid(*loaded,
+                 {listener, where, grid.valueType(), options.levelSetToFog, options.nanValue},
                  volume);
     settleBackground(volume, options, where, listener);
     if (volume.empty()) listener.warn(where + ": no active voxels");

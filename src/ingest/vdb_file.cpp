@@ -98,6 +98,10 @@ bool VdbGrid::isScalar() const {
     return false;
 }
 
+std::string VdbGrid::valueType() const {
+    return half && (type == "float" || type == "double") ? "half" : type;
+}
+
 VdbFile::VdbFile(std::filesystem::path file, const Listener& listener) : file_(std::move(file)) {
     openvdb::initialize();
     readDirectory();

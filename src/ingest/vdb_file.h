@@ -14,9 +14,9 @@ namespace deltasplat {
 
 /// One grid of a .vdb file as the file's directory lists it.
 struct VdbGrid {
-    std::string name;       ///< unique in the file: "density", or "density[1]" where names repeat
-    std::string type;       ///< value type: "float", "double", "int32", "vec3s", ...
-    bool half = false;      ///< real values are stored as binary16
+    std::string name;   ///< unique in the file: "density", or "density[1]" where names repeat
+    std::string type;   ///< value type: "float", "double", "int32", "vec3s", ...
+    bool half = false;  ///< real values are stored as binary16 (writers set it for integers too)
     bool supported = true;  ///< in OpenVDB's standard tree layout
 
     std::string uniqueName;              ///< name as stored
@@ -27,8 +27,8 @@ struct VdbGrid {
     openvdb::GridBase::Ptr loaded = {};  ///< already read: files without offsets
 
     bool isScalar() const;
-    /// Returns `type`, or "half".
-    std::string valueType() const { return half ? "half" : type; }
+    /// Returns `type`, or "half" for real values stored so.
+    std::string valueType() const;
     /// Returns for example `density (float)`.
     std::string describe() const { return name + " (" + valueType() + ")"; }
 };

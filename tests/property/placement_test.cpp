@@ -35,9 +35,9 @@ const HandView kHandViews[] = {
 
 const float kCornerValues[8] = {20, 50, 80, 110, 140, 170, 200, 230};
 
-// Each corner's value has a colour of its own.
+// Each corner's value has a hue of its own.
 glm::dvec3 cornerColor(int corner) {
-    return {corner & 1 ? 1 : 0.2, corner & 2 ? 1 : 0.2, corner & 4 ? 1 : 0.2};
+    return {corner & 1 ? 1 : 0.2, corner & 2 ? 1 : 0.2, corner & 4 ? 0.9 : 0.5};
 }
 
 glm::ivec3 cornerIndex(const TestVolume& volume, int corner) {

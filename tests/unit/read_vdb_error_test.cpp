@@ -125,17 +125,6 @@ TEST(ReadVdbError, NonFiniteValues) {
         "a.vdb");
 }
 
-TEST(ReadVdbError, LevelSetWithoutWidth) {
-    const TempFolder folder;
-    auto grid = noise("g", 2);
-    grid->setGridClass(openvdb::GRID_LEVEL_SET);
-    writeGrids("a.vdb", {grid});
-    expectInput(
-        "a.vdb: grid \"g\": got a level set with background 0; expected a finite background above "
-        "0",
-        "a.vdb");
-}
-
 TEST(ReadVdbError, TooFarApart) {
     const TempFolder folder;
     auto grid = namedGrid<openvdb::FloatGrid>("g");

@@ -245,6 +245,35 @@ TEST(ReadVdb, LevelSetsBecomeFog) {
     expectSame(kept, *sphere, kept.codeBook.step * 0.5000001);
 }
 
+// As the distance fields in a Blender cache are.
+TEST(ReadVdb, LevelSetsWithoutABandAreKept) {
+    const TempFolder folder;
+    auto grid = makeGrid<openvdb::FloatGrid>(
+        "phi", [](int i) { return float(i % 100 - 50); }, 0);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    writeGrids("a.vdb", {grid});
+    std::vector<std::string> warnings;
+    Listener listener;
+    listener.warning = [&](const std::string& line) { warnings.push_back(line); };
+    const Volume volume = readVolume("a.vdb", {}, listener);
+    EXPECT_EQ(volume.gridClass, "level set");
+    expectSame(volume, *grid, 0);
+    EXPECT_EQ(warnings, std::vector<std::string>{"a.vdb: grid \"phi\": level set with background 0 "
+                                                 "kept as it is, not made fog"});
+}
+
+// Blender marks its integer grids as half floats too; they are integers all the same.
+TEST(ReadVdb, IntegersMarkedAsHalf) {
+    const TempFolder folder;
+    auto grid = makeGrid<openvdb::Int32Grid>(
+        "flags", [](int i) { return i * 20; }, 0);
+    grid->setSaveFloatAsHalf(true);
+    writeGrids("a.vdb", {grid});
+    const Volume volume = readVolume("a.vdb");
+    EXPECT_EQ(volume.type, "int32");
+    expectSame(volume, *grid, 0);
+}
+
 openvdb::FloatGrid::Ptr oneVoxel(const std::string& name, float value) {
     openvdb::initialize();
     auto grid = openvdb::FloatGrid::create();

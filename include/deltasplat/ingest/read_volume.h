@@ -27,16 +27,19 @@ struct RawFormat {
 /// How to read a volume.
 struct ReadOptions {
     std::string gridName;            ///< .vdb: which grid; empty: the first scalar one
-    bool levelSetToFog = true;       ///< .vdb: turn level sets into fog volumes
+    bool levelSetToFog = true;       ///< .vdb: turn level sets into fog volumes; one whose
+                                     ///< background is not above 0 is kept, with a warning
     std::optional<double> nanValue;  ///< replaces NaN and infinities; empty: they are an error
     RawFormat raw;                   ///< .raw: what the bytes are
 };
 
 /// Reads one scalar volume from `.raw`, `.raw.gz` or `.vdb` (by extension, in any case).
-/// Level sets, NaN and empty grids are treated as `options` says; an empty grid is a valid, empty
-/// volume. Deterministic; not affected by the number of threads.
+/// Level sets and NaN are treated as `options` says; only active values of a .vdb count, a NaN
+/// background is taken as `nanValue` or 0, with a warning. An empty grid is a valid, empty volume,
+/// with a warning. Deterministic; not affected by the number of threads.
 /// @throw Error(kInput) if the file is missing, truncated, of the wrong size or not what it claims;
-///        Error(kUsage) if the options cannot be meant (zero dims, an overflow, an unknown type)
+///        Error(kUsage) if the options cannot be meant (zero dims, an overflow, an unknown type) or
+///        the volume does not fit into memory; whatever `listener.progress` throws
 Volume readVolume(const std::filesystem::path& file, const ReadOptions& options = {},
                   const Listener& listener = {});
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/fuzz_target.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "deltasplat/error.h"
+#include "ingest/code_tree.h"
+
+namespace deltasplat::fuzz {
+namespace {
+
+void require(bool holds, const char* what) {
+    if (holds) return;
+    std::fprintf(stderr, "broken promise: %s\n", what);
+    std::abort();
+}
+
+void check(const Volume& volume) {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t count : volume.histogram) sum += count;
+    require(volume.histogram.size() == std::size_t(kCodeCount), "histogram has 65536 places");
+    require(sum == volume.activeCount, "histogram adds up to activeCount");
+    require(volume.codes->tree.activeVoxelCount() == volume.activeCount, "tree has activeCount");
+    require(volume.valueMin <= volume.valueMax, "valueMin <= valueMax");
+    require(volume.empty() || std::uint64_t(volume.box.voxels()) >= volume.activeCount,
+            "box holds all active voxels");
+}
+
+}  // namespace
+
+std::string fileWith(const std::string& extension, const std::uint8_t* data, std::size_t size) {
+    const std::string path = (std::filesystem::temp_directory_path() /
+                              ("deltasplat_fuzz_" + std::to_string(getpid()) + extension))
+                                 .string();
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(data), std::streamsize(size));
+    return path;
+}
+
+void readAndCheck(const std::string& file, const ReadOptions& options) {
+    try {
+        for (const Volume& volume : readAllVolumes(file, options)) check(volume);
+    } catch (const Error& error) {
+        const std::string line = error.what();
+        require(!line.empty() && line.find('\n') == std::string::npos, "errors are one line");
+    } catch (const std::exception& error) {
+        require(false, error.what());
+    }
+    std::filesystem::remove(file);
+}
+
+}  // namespace deltasplat::fuzz

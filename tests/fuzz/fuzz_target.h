@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "deltasplat/ingest/read_volume.h"
+
+/// What every target defines, as libFuzzer wants it: takes any bytes, and aborts where the reader
+/// breaks a promise.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace deltasplat::fuzz {
+
+/// Sound inputs of this target, to be mutated; each target defines its own.
+std::vector<std::string> seeds();
+
+/// Writes the bytes to a file of this process, always the same, and returns its path.
+std::string fileWith(const std::string& extension, const std::uint8_t* data, std::size_t size);
+
+/// Reads every volume of the file; a refusal is fine. Aborts if a volume contradicts itself or if
+/// anything but an Error comes out.
+void readAndCheck(const std::string& file, const ReadOptions& options);
+
+}  // namespace deltasplat::fuzz
