@@ -36,7 +36,7 @@ void addStampsOfWidth(std::int32_t* HWY_RESTRICT sheet, std::size_t pitch,
         const std::int32_t* HWY_RESTRICT w = table;
         for (int y = 0; y < rows; ++y, row += pitch, w += rowLength) {
             for (int x = 0; x < (kVectors ? kVectors : vectors); ++x) {
-                const auto weight = hn::Load(tag, w + x * lanes);
+                const auto weight = hn::LoadU(tag, w + x * lanes);
                 const auto sum = hn::LoadU(tag, row + x * lanes);
                 hn::StoreU(hn::Add(sum, hn::Mul(color, weight)), tag, row + x * lanes);
             }
