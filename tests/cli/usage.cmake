@@ -12,7 +12,7 @@ deltasplat_cli_test(help_short ARGS -h STDOUT_MATCHES "Usage: deltasplat")
 deltasplat_cli_test(help_info ARGS info --help
     STDOUT_MATCHES "--level-set.*default keep.*Examples:.*deltasplat info.*deltasplat info")
 deltasplat_cli_test(help_render ARGS render --help
-    STDOUT_MATCHES "default 512x512.*default 0.4.*Examples:.*deltasplat render.*deltasplat render")
+    STDOUT_MATCHES "default 512x512.*default: 0.3.*Examples:.*deltasplat render.*deltasplat render")
 deltasplat_cli_test(help_synth ARGS synth -h
     STDOUT_MATCHES "default 64x64x64.*Examples:.*deltasplat synth.*deltasplat synth")
 deltasplat_cli_test(version ARGS --version

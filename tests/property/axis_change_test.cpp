@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the line of sight crosses 45 degrees the slice axis changes, and with it every sheet: the
+// two pictures must agree all the same.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "deltasplat/ingest/read_volume.h"
+#include "deltasplat/render.h"
+
+namespace deltasplat {
+namespace {
+
+const std::filesystem::path kData = DELTASPLAT_SHARED_DATA;
+
+struct Scene {
+    const char* file;
+    const char* transferFunction;
+};
+
+void PrintTo(const Scene& scene, std::ostream* out) {
+    *out << scene.file;
+}
+
+class AxisChange : public testing::TestWithParam<Scene> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Data, AxisChange,
+    testing::Values(Scene{"engine/engine_256x256x128_uint8.raw.gz", "tf_ct.json"},
+                    Scene{"boston_teapot/boston_teapot_256x256x178_uint8.raw.gz", "tf_ct.json"},
+                    Scene{"vdb_smoke/smoke.vdb", "tf_fog.json"}));
+
+RenderResult renderTurned(const Volume& volume, const Scene& scene, double azimuth,
+                          double elevation) {
+    RenderOptions options;
+    options.optics.transferFunction =
+        readTransferFunction(kData / "../bench" / scene.transferFunction);
+    options.camera.azimuthDegrees = azimuth;
+    options.camera.elevationDegrees = elevation;
+    return render(volume, options);
+}
+
+double psnr(const Image& a, const Image& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+        sum += std::pow(double(a.rgba[i]) - double(b.rgba[i]), 2);
+    }
+    return -10 * std::log10(sum / double(a.rgba.size()));
+}
+
+TEST_P(AxisChange, PicturesOnBothSidesOfFortyFiveDegreesAgree) {
+    if (!exists(kData)) GTEST_SKIP() << "no folder " << kData;
+    const Volume volume = readVolume(kData / GetParam().file);
+    for (const bool turn : {true, false}) {
+        const auto at = [&](double degrees) {
+            return renderTurned(volume, GetParam(), turn ? degrees : 0, turn ? 0 : degrees);
+        };
+        const RenderResult before = at(44.95);
+        const RenderResult behind = at(45.05);
+        ASSERT_NE(before.stats.sliceAxis, behind.stats.sliceAxis);
+        EXPECT_GE(psnr(before.image, behind.image), 45) << (turn ? "azimuth" : "elevation");
+    }
+}
+
+}  // namespace
+}  // namespace deltasplat

@@ -1,0 +1,1 @@
+deltasplat_test(property/axis_change_test.cpp LABELS data)
