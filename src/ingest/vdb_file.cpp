@@ -43,12 +43,20 @@ void parseType(const std::string& stored, VdbGrid& grid) {
     grid.type = type;
 }
 
+// Names go into messages, which are one line.
+std::string printable(std::string text) {
+    for (char& c : text) {
+        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
+    }
+    return text;
+}
+
 VdbGrid readDescriptor(VdbBytes& bytes, bool hasOffsets) {
     VdbGrid grid;
     grid.begin = bytes.position();
     grid.uniqueName = bytes.text();
-    grid.name = openvdb::io::GridDescriptor::nameAsString(grid.uniqueName);
-    parseType(bytes.text(), grid);
+    grid.name = printable(openvdb::io::GridDescriptor::nameAsString(grid.uniqueName));
+    parseType(printable(bytes.text()), grid);
     grid.parentName = bytes.text();
     const auto gridStart = std::uint64_t(bytes.i64());
     bytes.i64();
@@ -58,10 +66,6 @@ VdbGrid readDescriptor(VdbBytes& bytes, bool hasOffsets) {
         bytes.failCorrupt("grid offsets that contradict each other", "a sound .vdb file");
     }
     return grid;
-}
-
-std::string firstLine(const std::string& text) {
-    return text.substr(0, text.find('\n'));
 }
 
 // Calls read(stream of buffer), and turns whatever goes wrong in OpenVDB into one kind of error.
@@ -81,7 +85,7 @@ auto guarded(VdbStreamBuf& buffer, const std::string& where, const Read& read) {
     } catch (const std::bad_alloc&) {
         got = "sizes that memory cannot hold";
     } catch (const std::exception& error) {
-        got = firstLine(error.what());
+        got = printable(error.what());
     }
     if (buffer.stopped()) std::rethrow_exception(buffer.stopped());
     throw Error(ErrorCode::kInput, gotExpected(where, got, "a sound OpenVDB grid"));

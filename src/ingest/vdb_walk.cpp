@@ -31,7 +31,7 @@ class Walk {
     Walk(VdbBytes& bytes, const VdbValueFormat& format) : bytes_(bytes), format_(format) {}
 
     VdbTreeSize run() {
-        bytes_.u32();  // number of buffers, unused
+        if (bytes_.u32() != 1) fail("a tree of several buffers");
         bytes_.skip(format_.bytes);
         const std::uint32_t tiles = bytes_.u32();
         const std::uint32_t children = bytes_.u32();

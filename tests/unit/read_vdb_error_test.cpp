@@ -94,6 +94,12 @@ TEST(ReadVdbError, UnknownTypesDoNoHarm) {
                 options);
 }
 
+TEST(ReadVdbError, NamesStayOnOneLine) {
+    const TempFolder folder;
+    writeGrids("a.vdb", {namedGrid<openvdb::Vec3SGrid>("two\nlines\x7f")});
+    expectInput(std::string("a.vdb: got only two?lines? (vec3s); expected ") + kScalar, "a.vdb");
+}
+
 TEST(ReadVdbError, Frustum) {
     const TempFolder folder;
     auto grid = noise("g", 2);

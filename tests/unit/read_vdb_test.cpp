@@ -1,76 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <map>
-#include <random>
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
 #include "unit/ingest_helpers.h"
+#include "unit/vdb_helpers.h"
 
 namespace deltasplat {
 namespace {
 
 using openvdb::Coord;
+using testing::expectSame;
+using testing::makeGrid;
 using testing::TempFolder;
-
-void writeGrids(const std::string& file, const openvdb::GridCPtrVec& grids) {
-    openvdb::io::File(file).write(grids);
-}
-
-// Active voxels on both sides of 0, scattered over several nodes, and two active tiles.
-template <typename Grid>
-typename Grid::Ptr makeGrid(const std::string& name,
-                            const std::function<typename Grid::ValueType(int)>& value,
-                            typename Grid::ValueType background) {
-    openvdb::initialize();
-    auto grid = Grid::create(background);
-    grid->setName(name);
-    std::mt19937 random(17);
-    std::uniform_int_distribution<int> place(-150, 150);
-    for (int i = 0; i < 3000; ++i) {
-        grid->tree().setValue(Coord(place(random), place(random), place(random)), value(i));
-    }
-    grid->tree().addTile(1, Coord(-160, 8, 16), value(1), true);
-    grid->tree().addTile(2, Coord(256, -128, 0), value(2), true);
-    return grid;
-}
-
-// Compares codes with the grid in every active voxel, both ways, and the statistics.
-template <typename Grid>
-void expectSame(const Volume& volume, const Grid& grid, double tolerance) {
-    const auto& tree = volume.codes->tree;
-    std::map<int, std::uint64_t> counts;
-    for (auto it = grid.cbeginValueOn(); it; ++it) {
-        Code code = 0;
-        ASSERT_TRUE(tree.probeValue(it.getCoord(), code));
-        ASSERT_NEAR(volume.codeBook.valueOf(code), double(*it), tolerance);
-        counts[code] += it.getVoxelCount();
-    }
-    EXPECT_TRUE(tree.hasSameTopology(grid.tree()));
-    EXPECT_EQ(volume.activeCount, grid.activeVoxelCount());
-    EXPECT_EQ(tree.activeVoxelCount(), grid.activeVoxelCount());
-    EXPECT_EQ(tree.activeTileCount(), grid.tree().activeTileCount());
-    EXPECT_EQ(volume.background, double(grid.background()));
-    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-    for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_EQ(volume.box.min[axis], box.min()[axis]);
-        EXPECT_EQ(volume.box.max[axis], box.max()[axis]);
-    }
-    ASSERT_EQ(volume.histogram.size(), std::size_t(kCodeCount));
-    for (int code = 0; code < kCodeCount; ++code) {
-        const auto found = counts.find(code);
-        ASSERT_EQ(volume.histogram[std::size_t(code)], found == counts.end() ? 0 : found->second);
-    }
-    EXPECT_EQ(volume.valueMin, volume.codeBook.valueOf(Code(counts.begin()->first)));
-    EXPECT_EQ(volume.valueMax, volume.codeBook.valueOf(Code(counts.rbegin()->first)));
-}
+using testing::writeGrids;
 
 TEST(ReadVdb, FloatsAreSpreadOverTheirRange) {
     const TempFolder folder;
@@ -272,94 +220,6 @@ TEST(ReadVdb, IntegersMarkedAsHalf) {
     const Volume volume = readVolume("a.vdb");
     EXPECT_EQ(volume.type, "int32");
     expectSame(volume, *grid, 0);
-}
-
-openvdb::FloatGrid::Ptr oneVoxel(const std::string& name, float value) {
-    openvdb::initialize();
-    auto grid = openvdb::FloatGrid::create();
-    grid->setName(name);
-    grid->tree().setValue(Coord(1, 2, 3), value);
-    return grid;
-}
-
-TEST(ReadVdb, TakesTheFirstScalarGridOfTheFile) {
-    const TempFolder folder;
-    auto velocity = openvdb::Vec3SGrid::create();
-    velocity->setName("a");
-    velocity->tree().setValue(Coord(0), openvdb::Vec3s(1, 2, 3));
-    writeGrids("a.vdb", {velocity, oneVoxel("z", 4), oneVoxel("b", 5)});
-    EXPECT_EQ(readVolume("a.vdb").name, "z");
-    EXPECT_EQ(readVolume("a.vdb").valueMax, 4);
-    const std::vector<Volume> all = readAllVolumes("a.vdb");
-    ASSERT_EQ(all.size(), 2u);
-    EXPECT_EQ(all[0].name, "z");
-    EXPECT_EQ(all[1].name, "b");
-    ReadOptions options;
-    options.gridName = "b";
-    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 5);
-    EXPECT_EQ(readAllVolumes("a.vdb", options).size(), 1u);
-}
-
-TEST(ReadVdb, NamesThatRepeat) {
-    const TempFolder folder;
-    writeGrids("a.vdb", {oneVoxel("d", 1), oneVoxel("d", 2), oneVoxel("", 3)});
-    const std::vector<Volume> all = readAllVolumes("a.vdb");
-    ASSERT_EQ(all.size(), 3u);
-    EXPECT_EQ(all[0].name, "d[0]");
-    EXPECT_EQ(all[1].name, "d[1]");
-    ReadOptions options;
-    options.gridName = "d[1]";
-    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 2);
-    options.gridName = "d";
-    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 1);
-}
-
-// Grids that share one tree are stored once; each must still be readable alone.
-TEST(ReadVdb, InstancesOfOneTree) {
-    const TempFolder folder;
-    auto first = oneVoxel("first", 1.5f);
-    auto second = openvdb::FloatGrid::create(first->treePtr());
-    second->setName("second");
-    second->setTransform(openvdb::math::Transform::createLinearTransform(3));
-    writeGrids("a.vdb", {first, oneVoxel("between", 7), second});
-    ReadOptions options;
-    options.gridName = "second";
-    const Volume volume = readVolume("a.vdb", options);
-    EXPECT_EQ(volume.valueMax, 1.5);
-    EXPECT_EQ(volume.voxelSize(), glm::dvec3(3));
-}
-
-// A stream has no offsets, so that everything must be read at once.
-TEST(ReadVdb, FilesWrittenAsAStream) {
-    const TempFolder folder;
-    auto half = oneVoxel("h", 2.5f);
-    half->setSaveFloatAsHalf(true);
-    {
-        std::ofstream out("a.vdb", std::ios::binary);
-        openvdb::io::Stream(out).write({openvdb::GridCPtrVec{oneVoxel("f", 1), half}});
-    }
-    const std::vector<Volume> all = readAllVolumes("a.vdb");
-    ASSERT_EQ(all.size(), 2u);
-    EXPECT_EQ(all[0].name, "f");
-    EXPECT_EQ(all[1].type, "half");
-    EXPECT_EQ(all[1].valueMax, 2.5);
-}
-
-TEST(ReadVdb, EveryCompression) {
-    const TempFolder folder;
-    const auto grid = makeGrid<openvdb::FloatGrid>(
-        "g", [](int i) { return float(i % 1000); }, 0);
-    constexpr std::uint32_t kMask = openvdb::io::COMPRESS_ACTIVE_MASK;
-    for (const std::uint32_t method :
-         {std::uint32_t(openvdb::io::COMPRESS_NONE), std::uint32_t(openvdb::io::COMPRESS_ZIP),
-          std::uint32_t(openvdb::io::COMPRESS_BLOSC)}) {
-        for (const std::uint32_t flags : {method, method | kMask}) {
-            openvdb::io::File file("a.vdb");
-            file.setCompression(flags);
-            file.write(openvdb::GridCPtrVec{grid});
-            expectSame(readVolume("a.vdb"), *grid, 0);
-        }
-    }
 }
 
 TEST(ReadVdb, EmptyGridsAreEmptyVolumes) {
