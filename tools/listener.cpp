@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "interrupt.h"
@@ -51,7 +52,7 @@ void ProgressDisplay::drawBar(int percent) {
     const std::string bar(std::size_t(percent * kWidth / 100), '#');
     const double elapsed =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    const int left = percent > 0 ? int(elapsed * (100 - percent) / percent + 0.5) : 0;
+    const int left = percent > 0 ? int(std::lround(elapsed * (100 - percent) / percent)) : 0;
     std::fprintf(stderr, "\r[%-*s] %3d%%  %d:%02d left \033[K", kWidth, bar.c_str(), percent,
                  left / 60, left % 60);
 }

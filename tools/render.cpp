@@ -29,13 +29,12 @@ ImageFileOptions imageOptions(const RenderCommand& command, const RenderResult& 
     options.cameraFromWorld = result.camera.cameraFromWorld();
     options.ndcFromWorld = result.camera.ndcFromWorld();
     options.metadata = {
-        {"Software", "deltasplat " + programVersion()},
-        {"deltasplat:version", programVersion()},
-        {"deltasplat:commandLine", session.commandLine},
-        {"deltasplat:input", command.input.string()},
-        {"deltasplat:method", methodName(command.render.method)},
-        {"deltasplat:tolerance", "0"},
-        {"deltasplat:errorBound", "color 0, alpha 0"},
+        {"version", programVersion()},
+        {"commandLine", session.commandLine},
+        {"input", command.input.string()},
+        {"method", methodName(command.render.method)},
+        {"tolerance", "0"},
+        {"errorBound", "color 0, alpha 0"},
     };
     return options;
 }

@@ -105,7 +105,8 @@ class TreeBuilder {
         LocatedJson* slot = &root_;
         if (!open_.empty()) {
             auto& members = open_.back()->members;
-            slot = &members.emplace_back(std::move(key_), LocatedJson()).second;
+            members.push_back({std::move(key_), LocatedJson()});
+            slot = &members.back().value;
             key_.clear();
         }
         slot->kind = kind;
@@ -168,8 +169,8 @@ std::string readText(const std::filesystem::path& file) {
 
 const LocatedJson* LocatedJson::find(std::string_view name) const {
     const auto at = std::find_if(members.rbegin(), members.rend(),
-                                 [&](const auto& member) { return member.first == name; });
-    return at == members.rend() ? nullptr : &at->second;
+                                 [&](const auto& member) { return member.name == name; });
+    return at == members.rend() ? nullptr : &at->value;
 }
 
 std::string LocatedJson::quoted() const {

@@ -4,10 +4,11 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace deltasplat {
+
+struct LocatedMember;
 
 /// A JSON value that knows its line, so that an error about its meaning can say where it stands.
 struct LocatedJson {
@@ -18,13 +19,19 @@ struct LocatedJson {
     double number = 0;  ///< of a kNumber; always finite
     std::string text;   ///< of a kString; of a kNumber as it is written out in errors
     /// Elements of a kArray (names empty) or members of a kObject, in the file's order.
-    std::vector<std::pair<std::string, LocatedJson>> members;
+    std::vector<LocatedMember> members;
 
     /// Returns the last member of that name, as JSON readers usually take it; null if there is
     /// none.
     const LocatedJson* find(std::string_view name) const;
     /// Returns the value as an error quotes it: `"abc"`, 3, true, null, an array or an object.
     std::string quoted() const;
+};
+
+/// An element or a member: its name (empty in an array) and its value.
+struct LocatedMember {
+    std::string name;
+    LocatedJson value;
 };
 
 /// Reads a whole JSON file.

@@ -42,7 +42,7 @@ class PresetReader {
         for (std::size_t i = 0; i < list.members.size(); i += 4) {
             const double x = numberIn(list, i, name);
             if (x < last) {
-                fail(list.members[i].second,
+                fail(list.members[i].value,
                      "x not below the " + numberText(last) + " before it in " + name);
             }
             last = x;
@@ -74,7 +74,7 @@ class PresetReader {
     }
 
     double numberIn(const LocatedJson& list, std::size_t i, const char* name) const {
-        const LocatedJson& element = list.members[i].second;
+        const LocatedJson& element = list.members[i].value;
         if (element.kind != Kind::kNumber) fail(element, std::string("a number in ") + name);
         return element.number;
     }
@@ -82,7 +82,7 @@ class PresetReader {
     double shareIn(const LocatedJson& list, std::size_t i, const char* name) const {
         const double share = numberIn(list, i, name);
         if (share < 0 || share > 1) {
-            fail(list.members[i].second, std::string("a number within 0..1 in ") + name);
+            fail(list.members[i].value, std::string("a number within 0..1 in ") + name);
         }
         return share;
     }
@@ -93,7 +93,7 @@ class PresetReader {
 
 const LocatedJson& firstPreset(const std::filesystem::path& file, const LocatedJson& root) {
     const LocatedJson* preset = &root;
-    if (root.kind == Kind::kArray && !root.members.empty()) preset = &root.members[0].second;
+    if (root.kind == Kind::kArray && !root.members.empty()) preset = &root.members[0].value;
     if (preset->kind == Kind::kObject) return *preset;
     const std::string got =
         preset == &root && root.kind == Kind::kArray ? "an empty array" : preset->quoted();
