@@ -3,7 +3,7 @@ file(GLOB_RECURSE DELTASPLAT_DOCUMENTS CONFIGURE_DEPENDS
      ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/docs/*.md)
 foreach(document ${DELTASPLAT_DOCUMENTS})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${document})
-    file(STRINGS ${document} commands REGEX "^ *(build/release/bin/)?deltasplat ")
+    file(STRINGS ${document} commands REGEX "^ *```sh *$")
     if(NOT commands)
         continue()
     endif()
