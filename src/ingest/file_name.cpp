@@ -20,7 +20,7 @@ std::string lower(std::string text) {
 }  // namespace
 
 std::string lowerExtension(const std::filesystem::path& file) {
-    const std::string last = lower(file.extension().string());
+    std::string last = lower(file.extension().string());
     if (last != ".gz") return last;
     return lower(file.stem().extension().string()) + last;
 }

@@ -81,7 +81,7 @@ template <typename Tree>
 std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book) {
     using SourceLeaf = typename Tree::LeafNodeType;
     // OpenVDB's trees cannot be assigned, only made in place.
-    const std::shared_ptr<CodeTree> codes(
+    std::shared_ptr<CodeTree> codes(
         new CodeTree{CodeTree::Tree(tree, Code{0}, openvdb::TopologyCopy())});
     std::vector<SourceLeaf*> sources;
     std::vector<CodeTree::Leaf*> targets;
