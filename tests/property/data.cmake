@@ -1,1 +1,0 @@
-deltasplat_test(property/axis_change_test.cpp LABELS data)
