@@ -20,42 +20,63 @@ namespace hn = hwy::HWY_NAMESPACE;
 using RowTag = hn::CappedTag<float, 16>;
 using PixelTag = hn::FixedTag<float, 4>;
 
-// Returns the four taps of a row, weighted along y, in `columns`: [4 taps][RGBA].
-HWY_INLINE void sumRows(const float* corner, std::size_t pitch, const float* weightY,
+// Weighs four neighbouring taps by all rows, and leaves them in `columns`: [4 taps][RGBA].
+HWY_INLINE void sumRows(const float* corner, std::size_t pitch, const float* weightY, int rows,
                         float* HWY_RESTRICT columns) {
     const RowTag tag;
     for (std::size_t lane = 0; lane < 16; lane += hn::Lanes(tag)) {
         const float* row = corner + lane;
         auto sum = hn::Mul(hn::LoadU(tag, row), hn::Set(tag, weightY[0]));
-        for (int j = 1; j < 4; ++j) {
-            sum = hn::Add(sum, hn::Mul(hn::LoadU(tag, row + j * pitch), hn::Set(tag, weightY[j])));
+        for (int j = 1; j < rows; ++j) {
+            row += pitch;
+            sum = hn::Add(sum, hn::Mul(hn::LoadU(tag, row), hn::Set(tag, weightY[4 * j])));
         }
         hn::Store(sum, tag, columns + lane);
     }
 }
 
-void sampleRunKernel(const Raster& raster, const FourTapTable& table, glm::dvec2 position,
-                     glm::dvec2 step, int pixels, float* out) {
+// One pixel: rows first, then the columns that are left, four at a time. kRows is 0 where it is not
+// known.
+template <int kRows>
+HWY_INLINE void samplePixel(const float* corner, std::size_t pitch, const FilterTable& filterX,
+                            const float* weightX, const float* weightY, int rows, float* out) {
     const PixelTag tag;
-    const std::size_t pitch = std::size_t{4} * raster.size.x;
     HWY_ALIGN float columns[16];
-    for (int i = 0; i < pixels; ++i, out += 4) {
-        const double x = position.x + step.x * i;
-        const double y = position.y + step.y * i;
-        const double wholeX = std::floor(x);
-        const double wholeY = std::floor(y);
-        const auto& weightX =
-            table.repeated[std::size_t((x - wholeX) * FourTapTable::kSteps + 0.5)];
-        const auto& weightY = table.plain[std::size_t((y - wholeY) * FourTapTable::kSteps + 0.5)];
-        sumRows(
-            raster.rgba + (std::ptrdiff_t(wholeY) - 1) * pitch + 4 * (std::ptrdiff_t(wholeX) - 1),
-            pitch, weightY.data(), columns);
-        auto sum = hn::Mul(hn::Load(tag, columns), hn::LoadU(tag, &weightX[0]));
-        for (int tap = 1; tap < 4; ++tap) {
-            sum = hn::Add(
-                sum, hn::Mul(hn::Load(tag, columns + 4 * tap), hn::LoadU(tag, &weightX[4 * tap])));
+    auto sum = hn::Zero(tag);
+    for (int first = 0; first < filterX.paddedTaps(); first += 4) {
+        sumRows(corner + 4 * first, pitch, weightY, kRows ? kRows : rows, columns);
+        for (int tap = 0; tap < 4; ++tap) {
+            sum = hn::Add(sum, hn::Mul(hn::Load(tag, columns + 4 * tap),
+                                       hn::LoadU(tag, weightX + 4 * (first + tap))));
         }
-        hn::StoreU(sum, tag, out);
+    }
+    hn::StoreU(sum, tag, out);
+}
+
+template <int kRows>
+void sampleRunOf(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
+                 glm::dvec2 position, glm::dvec2 step, int pixels, float* out) {
+    const std::size_t pitch = std::size_t{4} * raster.size.x;
+    for (int i = 0; i < pixels; ++i, out += 4) {
+        const glm::dvec2 p(position.x + step.x * i, position.y + step.y * i);
+        const int wholeX = int(std::floor(p.x));
+        const int wholeY = int(std::floor(p.y));
+        const float* corner = raster.rgba + filterY.firstTap(wholeY) * pitch +
+                              std::size_t{4} * filterX.firstTap(wholeX);
+        samplePixel<kRows>(corner, pitch, filterX, filterX.weights(p.x - wholeX),
+                           filterY.weights(p.y - wholeY), filterY.taps(), out);
+    }
+}
+
+void sampleRunKernel(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
+                     glm::dvec2 position, glm::dvec2 step, int pixels, float* out) {
+    switch (filterY.taps()) {
+        case 4:
+            return sampleRunOf<4>(raster, filterX, filterY, position, step, pixels, out);
+        case 6:
+            return sampleRunOf<6>(raster, filterX, filterY, position, step, pixels, out);
+        default:
+            return sampleRunOf<0>(raster, filterX, filterY, position, step, pixels, out);
     }
 }
 
@@ -67,9 +88,10 @@ namespace deltasplat {
 
 HWY_EXPORT(sampleRunKernel);
 
-void sampleRun(const Raster& raster, const FourTapTable& table, glm::dvec2 position,
-               glm::dvec2 step, int pixels, float* out) {
-    HWY_DYNAMIC_DISPATCH(sampleRunKernel)(raster, table, position, step, pixels, out);
+void sampleRun(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
+               glm::dvec2 position, glm::dvec2 step, int pixels, float* out) {
+    HWY_DYNAMIC_DISPATCH(sampleRunKernel)
+    (raster, filterX, filterY, position, step, pixels, out);
 }
 
 }  // namespace deltasplat
