@@ -5,6 +5,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <string>
 
 #include "deltasplat/error.h"
@@ -38,6 +39,14 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
                       [&](const tbb::blocked_range<std::size_t>& range) {
                           for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
                       });
+}
+
+void parallelForChunks(std::size_t count,
+                       const std::function<void(std::size_t, std::size_t)>& body) {
+    constexpr std::size_t kChunk = 64;
+    parallelFor((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        body(chunk * kChunk, std::min((chunk + 1) * kChunk, count));
+    });
 }
 
 }  // namespace deltasplat

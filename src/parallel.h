@@ -11,4 +11,9 @@ namespace deltasplat {
 /// stopped.
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body);
 
+/// Calls body(begin, end) for short pieces that cover [0, count), as parallelFor does: for many
+/// small items.
+void parallelForChunks(std::size_t count,
+                       const std::function<void(std::size_t begin, std::size_t end)>& body);
+
 }  // namespace deltasplat

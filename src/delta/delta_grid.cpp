@@ -6,12 +6,13 @@
 #include "deltasplat/delta/delta_grid.h"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <bit>
+#include <memory>
 #include <numeric>
 #include <string>
 
-#include "delta/code_blocks.h"
+#include "delta/block_windows.h"
 #include "delta/delta_tree.h"
 #include "deltasplat/error.h"
 #include "parallel.h"
@@ -21,118 +22,26 @@ namespace {
 
 using Leaf = DeltaTree::Leaf;
 
-constexpr int kBlocksPerTask = 64;
-
-// Where slabs begin and end, in blocks of 8 slices.
-struct SlabLayout {
-    int firstBlock = 0;  // of the first slab
-    int blocksPerSlab = 1;
-    int lastBlock = 0;  // that has slices
-    int lastSlice = 0;
-
-    int slabOf(int block) const { return (block - firstBlock) / blocksPerSlab; }
-    bool startsSlab(int block) const { return (block - firstBlock) % blocksPerSlab == 0; }
-    int count() const { return slabOf(lastBlock) + 1; }
-    // Behind the last slice nothing needs to be taken away.
-    int slicesOf(int block) const { return std::min(8, lastSlice + 1 - 8 * block); }
-};
-
 SlabLayout layoutOf(const IndexBox& box, int keyInterval) {
     return {box.min.x >> 3, keyInterval / 8, box.max.x >> 3, box.max.x};
 }
 
-// The bit 8 * u + v of word s is set where the slot is not empty.
-std::uint64_t visibleWord(const Slot* slice) {
-    std::uint64_t word = 0;
-    for (int n = 0; n < 64; ++n) word |= std::uint64_t{slice[n] != kEmptySlot} << n;
-    return word;
+std::uint64_t countBits(const std::array<std::uint64_t, 8>& words) {
+    std::uint64_t count = 0;
+    for (const std::uint64_t word : words) count += std::popcount(word);
+    return count;
 }
-
-std::uint64_t changedWord(const Slot* slice, const Slot* before) {
-    std::uint64_t word = 0;
-    for (int n = 0; n < 64; ++n) word |= std::uint64_t{slice[n] != before[n]} << n;
-    return word;
-}
-
-// A block with the slice before it: everything that its deltas depend on.
-struct BlockWindow {
-    std::array<Slot, 64> before{};  // empty where a slab starts or nothing lies there
-    BlockSlots slots;
-
-    const Slot* slice(int s) const { return &slots[64 * s]; }
-    const Slot* sliceBefore(int s) const { return s == 0 ? before.data() : slice(s - 1); }
-};
-
-// Walks a volume's blocks in parallel, each with its neighbourhood along the slice axis.
-class BlockWalk {
-  public:
-    BlockWalk(const BlockReader& reader, const SlabLayout& layout)
-        : reader_(reader), layout_(layout) {}
-
-    // Calls visit(task, position, window) for every block that can hold deltas or visible voxels;
-    // calls of one task come one after the other, in the order of blocks.
-    template <typename Visit>
-    void run(const Visit& visit) const {
-        parallelFor(tasks(), [&](std::size_t task) {
-            const std::size_t end =
-                std::min<std::size_t>((task + 1) * kBlocksPerTask, reader_.blocks().size());
-            for (std::size_t i = task * kBlocksPerTask; i < end; ++i) visitBlock(task, i, visit);
-        });
-    }
-    std::size_t tasks() const {
-        return (reader_.blocks().size() + kBlocksPerTask - 1) / kBlocksPerTask;
-    }
-
-  private:
-    bool follows(std::size_t i, const glm::ivec3& position) const {
-        return i < reader_.blocks().size() &&
-               reader_.blocks()[i].position == position + glm::ivec3(1, 0, 0);
-    }
-
-    template <typename Visit>
-    void visitBlock(std::size_t task, std::size_t i, const Visit& visit) const {
-        const CodeBlock& block = reader_.blocks()[i];
-        BlockWindow window;
-        if (i > 0 && follows(i, reader_.blocks()[i - 1].position) &&
-            !layout_.startsSlab(block.position.x)) {
-            reader_.readLastSlice(reader_.blocks()[i - 1], window.before);
-        }
-        reader_.readBlock(block, window.slots);
-        visit(task, block.position, window);
-
-        // What ends with this block must be taken away in the next one, even if nothing else is
-        // there.
-        const glm::ivec3 next = block.position + glm::ivec3(1, 0, 0);
-        if (next.x > layout_.lastBlock || layout_.startsSlab(next.x) ||
-            follows(i + 1, block.position)) {
-            return;
-        }
-        std::copy_n(window.slice(7), 64, window.before.begin());
-        window.slots.fill(kEmptySlot);
-        visit(task, next, window);
-    }
-
-    const BlockReader& reader_;
-    SlabLayout layout_;
-};
 
 // Counts visible voxels and deltas of every slab.
-std::vector<SliceCounts> countSlabs(const BlockWalk& walk, const SlabLayout& layout) {
-    std::vector<std::atomic<std::uint64_t>> visible(layout.count());
-    std::vector<std::atomic<std::uint64_t>> deltas(layout.count());
-    walk.run([&](std::size_t, const glm::ivec3& position, const BlockWindow& window) {
-        const int slab = layout.slabOf(position.x);
-        std::uint64_t visibleHere = 0;
-        std::uint64_t deltasHere = 0;
-        for (int s = 0; s < layout.slicesOf(position.x); ++s) {
-            visibleHere += std::popcount(visibleWord(window.slice(s)));
-            deltasHere += std::popcount(changedWord(window.slice(s), window.sliceBefore(s)));
-        }
-        visible[slab].fetch_add(visibleHere, std::memory_order_relaxed);
-        deltas[slab].fetch_add(deltasHere, std::memory_order_relaxed);
-    });
+std::vector<SliceCounts> countSlabs(const BlockWindows& windows,
+                                    const std::vector<BlockChanges>& changes,
+                                    const SlabLayout& layout) {
     std::vector<SliceCounts> counts(layout.count());
-    for (int i = 0; i < layout.count(); ++i) counts[i] = {visible[i], deltas[i]};
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+        SliceCounts& slab = counts[layout.slabOf(windows.position(i).x)];
+        slab.visible += countBits(changes[i].visible);
+        slab.deltas += countBits(changes[i].changed);
+    }
     return counts;
 }
 
@@ -153,47 +62,43 @@ std::vector<Slab> makeSlabs(const IndexBox& box, const SlabLayout& layout,
     return slabs;
 }
 
-// Returns the leaf of a block's deltas, or of its whole slices; none if it would have no active
-// voxel.
-std::unique_ptr<Leaf> makeLeaf(const glm::ivec3& position, const BlockWindow& window, int slices,
-                               bool whole) {
-    std::array<std::uint64_t, 8> words{};
-    std::uint64_t any = 0;
-    for (int s = 0; s < slices; ++s) {
-        words[s] = whole ? visibleWord(window.slice(s))
-                         : changedWord(window.slice(s), window.sliceBefore(s));
-        any |= words[s];
-    }
-    if (any == 0) return nullptr;
+// Returns the leaf of a block's deltas, or of its whole slices, active where `words` says so.
+std::unique_ptr<Leaf> makeLeaf(const glm::ivec3& position, const BlockWindow& window,
+                               const std::array<std::uint64_t, 8>& words, bool whole) {
     auto leaf = std::make_unique<Leaf>(
         openvdb::Coord(8 * position.x, 8 * position.y, 8 * position.z), 0, false);
     std::int32_t* values = leaf->buffer().data();
     Leaf::NodeMaskType mask;
-    for (int s = 0; s < slices; ++s) {
+    for (int s = 0; s < 8; ++s, values += 64) {
         mask.getWord<std::uint64_t>(s) = words[s];
+        if (words[s] == 0) continue;
         const Slot* slice = window.slice(s);
         const Slot* before = window.sliceBefore(s);
-        for (int n = 0; n < 64; ++n) *values++ = whole ? slice[n] : slice[n] - before[n];
+        for (int n = 0; n < 64; ++n) values[n] = whole ? slice[n] : slice[n] - before[n];
     }
     leaf->setValueMask(mask);
     return leaf;
 }
 
-std::shared_ptr<DeltaTree> makeTree(const BlockWalk& walk, const SlabLayout& layout,
-                                    const std::vector<Slab>& slabs) {
-    std::vector<std::vector<std::unique_ptr<Leaf>>> made(walk.tasks());
-    walk.run([&](std::size_t task, const glm::ivec3& position, const BlockWindow& window) {
-        const bool whole = slabs[layout.slabOf(position.x)].whole;
-        if (auto leaf = makeLeaf(position, window, layout.slicesOf(position.x), whole)) {
-            made[task].push_back(std::move(leaf));
+std::shared_ptr<DeltaTree> makeTree(const BlockWindows& windows,
+                                    const std::vector<BlockChanges>& changes,
+                                    const SlabLayout& layout, const std::vector<Slab>& slabs) {
+    std::vector<std::unique_ptr<Leaf>> leaves(windows.count());
+    parallelForChunks(windows.count(), [&](std::size_t begin, std::size_t end) {
+        BlockWindow window;
+        for (std::size_t i = begin; i < end; ++i) {
+            const bool whole = slabs[layout.slabOf(windows.position(i).x)].whole;
+            const auto& words = whole ? changes[i].visible : changes[i].changed;
+            if (countBits(words) == 0) continue;
+            windows.read(i, window);
+            leaves[i] = makeLeaf(windows.position(i), window, words, whole);
         }
     });
     auto tree = std::make_shared<DeltaTree>();
-    for (auto& leaves : made) {
-        for (auto& leaf : leaves) {
-            tree->leaves.push_back(leaf.get());
-            tree->grid->tree().addLeaf(leaf.release());
-        }
+    for (auto& leaf : leaves) {
+        if (!leaf) continue;
+        tree->leaves.push_back(leaf.get());
+        tree->grid->tree().addLeaf(leaf.release());
     }
     std::sort(tree->leaves.begin(), tree->leaves.end(),
               [](const Leaf* a, const Leaf* b) { return a->origin() < b->origin(); });
@@ -237,9 +142,11 @@ DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options) {
 
     const SlabLayout layout = layoutOf(grid.box, grid.keyInterval);
     const BlockReader reader(*volume.codes, options.sliceAxis, options.slotMap);
-    const BlockWalk walk(reader, layout);
-    grid.slabs = makeSlabs(grid.box, layout, countSlabs(walk, layout), options.encoding);
-    grid.tree = makeTree(walk, layout, grid.slabs);
+    const BlockWindows windows(reader, layout);
+    const std::vector<BlockChanges> changes = findChanges(windows, layout);
+    grid.slabs =
+        makeSlabs(grid.box, layout, countSlabs(windows, changes, layout), options.encoding);
+    grid.tree = makeTree(windows, changes, layout, grid.slabs);
     return grid;
 }
 
@@ -249,7 +156,8 @@ SliceCounts countDeltas(const Volume& volume, int sliceAxis, std::span<const Slo
     SlabLayout layout = layoutOf(box, 8);
     layout.blocksPerSlab = layout.lastBlock - layout.firstBlock + 1;
     const BlockReader reader(*volume.codes, sliceAxis, slotMap);
-    return countSlabs(BlockWalk(reader, layout), layout)[0];
+    const BlockWindows windows(reader, layout);
+    return countSlabs(windows, findChanges(windows, layout), layout)[0];
 }
 
 }  // namespace deltasplat
