@@ -4,11 +4,16 @@
 #include <algorithm>
 #include <tuple>
 
+#include "memory.h"
+
 namespace deltasplat {
 namespace {
 
 // How far apart neighbours along x, y and z lie in a leaf's buffer.
 constexpr glm::ivec3 kLeafStride{64, 8, 1};
+
+// What the stage keeps for each block: itself, its place and its changes.
+constexpr double kBytesPerBlock = sizeof(CodeBlock) + 16 + 128;
 
 glm::ivec3 permuted(const openvdb::Coord& coord, const glm::ivec3& order) {
     return {coord[order[0]], coord[order[1]], coord[order[2]]};
@@ -18,18 +23,24 @@ glm::ivec3 permuted(const openvdb::Coord& coord, const glm::ivec3& order) {
 
 BlockReader::BlockReader(const CodeTree& codes, int sliceAxis, std::span<const Slot> slotMap)
     : slotMap_(slotMap), order_(sliceOrder(sliceAxis)) {
-    blocks_.reserve(codes.tree.leafCount());
+    // A tile may stand for any number of blocks: know how many before they are listed.
+    double blocks = codes.tree.leafCount();
+    const auto eachVisibleTile = [&](const auto& use) {
+        auto tile = codes.tree.cbeginValueOn();
+        tile.setMaxDepth(CodeTree::Tree::ValueOnCIter::LEAF_DEPTH - 1);
+        for (; tile; ++tile) {
+            if (slotOf(*tile) != kEmptySlot) use(tile.getBoundingBox(), slotOf(*tile));
+        }
+    };
+    eachVisibleTile([&](const openvdb::CoordBBox& box, Slot) { blocks += box.volume() / 512.0; });
+    requireMemory("list of voxel blocks", blocks * kBytesPerBlock);
+
+    blocks_.reserve(std::size_t(blocks));
     for (auto leaf = codes.tree.cbeginLeaf(); leaf; ++leaf) {
         // Shifting keeps the floor of negative positions.
-        const openvdb::Coord origin = leaf->origin();
-        blocks_.push_back({permuted(origin >> 3, order_), &*leaf, kEmptySlot});
+        blocks_.push_back({permuted(leaf->origin() >> 3, order_), &*leaf, kEmptySlot});
     }
-    auto tile = codes.tree.cbeginValueOn();
-    tile.setMaxDepth(CodeTree::Tree::ValueOnCIter::LEAF_DEPTH - 1);
-    for (; tile; ++tile) {
-        const Slot slot = slotOf(*tile);
-        if (slot != kEmptySlot) addTile(tile.getBoundingBox(), slot);
-    }
+    eachVisibleTile([&](const openvdb::CoordBBox& box, Slot slot) { addTile(box, slot); });
     std::sort(blocks_.begin(), blocks_.end(), [](const CodeBlock& a, const CodeBlock& b) {
         return std::tie(a.position.y, a.position.z, a.position.x) <
                std::tie(b.position.y, b.position.z, b.position.x);

@@ -15,6 +15,7 @@
 #include "delta/block_windows.h"
 #include "delta/delta_tree.h"
 #include "deltasplat/error.h"
+#include "memory.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -83,15 +84,22 @@ std::unique_ptr<Leaf> makeLeaf(const glm::ivec3& position, const BlockWindow& wi
 std::shared_ptr<DeltaTree> makeTree(const BlockWindows& windows,
                                     const std::vector<BlockChanges>& changes,
                                     const SlabLayout& layout, const std::vector<Slab>& slabs) {
+    const auto wordsOf = [&](std::size_t i) -> const std::array<std::uint64_t, 8>& {
+        return slabs[layout.slabOf(windows.position(i).x)].whole ? changes[i].visible
+                                                                 : changes[i].changed;
+    };
+    std::size_t needed = 0;
+    for (std::size_t i = 0; i < windows.count(); ++i) needed += countBits(wordsOf(i)) != 0;
+    requireMemory("delta grid", double(needed) * (sizeof(Leaf) + Leaf::NUM_VALUES * sizeof(Slot)));
+
     std::vector<std::unique_ptr<Leaf>> leaves(windows.count());
     parallelForChunks(windows.count(), [&](std::size_t begin, std::size_t end) {
         BlockWindow window;
         for (std::size_t i = begin; i < end; ++i) {
-            const bool whole = slabs[layout.slabOf(windows.position(i).x)].whole;
-            const auto& words = whole ? changes[i].visible : changes[i].changed;
-            if (countBits(words) == 0) continue;
+            if (countBits(wordsOf(i)) == 0) continue;
             windows.read(i, window);
-            leaves[i] = makeLeaf(windows.position(i), window, words, whole);
+            const bool whole = slabs[layout.slabOf(windows.position(i).x)].whole;
+            leaves[i] = makeLeaf(windows.position(i), window, wordsOf(i), whole);
         }
     });
     auto tree = std::make_shared<DeltaTree>();
