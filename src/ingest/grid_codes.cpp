@@ -142,6 +142,7 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     }
     const auto range = rangeOfTree(grid.tree());
     volume.codeBook = bookOfRange(range, options.where);
+    volume.hasBackground = true;
     volume.background = double(grid.background());
     auto codes = codesOfTree(grid.tree(), volume.codeBook);
     volume.box = boxOf(codes->tree, options.where);

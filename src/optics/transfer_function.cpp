@@ -76,14 +76,6 @@ TransferFunction greyRamp(double low, double high) {
     return ramp;
 }
 
-// Only grids of a .vdb have inactive voxels, which hold the background.
-bool isGrid(const Volume& volume) {
-    static const char* const kGridTypes[] = {"float", "half", "double", "int64", "bool", "mask"};
-    return volume.activeCount < std::uint64_t(volume.box.voxels()) ||
-           std::find(std::begin(kGridTypes), std::end(kGridTypes), volume.type) !=
-               std::end(kGridTypes);
-}
-
 }  // namespace
 
 glm::dvec3 TransferFunction::colorAt(double x) const {
@@ -128,7 +120,7 @@ TransferFunction defaultRamp(const Volume& volume) {
 glm::dvec2 defaultRange(const Volume& volume) {
     if (volume.type == "uint8") return {0, 255};
     glm::dvec2 range(volume.valueMin, volume.valueMax);
-    if (isGrid(volume)) {
+    if (volume.hasBackground) {
         range = {std::min(range.x, volume.background), std::max(range.y, volume.background)};
     }
 

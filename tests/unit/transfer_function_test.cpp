@@ -149,10 +149,15 @@ TEST(DefaultRamp, leavesNothingButBackgroundClear) {
 TEST(DefaultRange, isTheTypesRangeForBytesAndTheDatasOtherwise) {
     EXPECT_EQ(defaultRange(volumeOf("uint8", {0, 0, 3, 4})), glm::dvec2(0, 255));
     EXPECT_EQ(defaultRange(volumeOf("uint16", {0, 0, 3, 4})), glm::dvec2(2, 3));
-    EXPECT_EQ(defaultRange(volumeOf("float", {0, 0, 3, 4})), glm::dvec2(0, 3));
-    Volume dark = volumeOf("half", {0, 0, 3, 4});
-    dark.background = 9;
-    EXPECT_EQ(defaultRange(dark), glm::dvec2(2, 9));
+}
+
+TEST(DefaultRange, takesInTheBackgroundOfAGrid) {
+    Volume grid = volumeOf("int32", {0, 0, 3, 4});
+    EXPECT_EQ(defaultRange(grid), glm::dvec2(2, 3));
+    grid.hasBackground = true;
+    EXPECT_EQ(defaultRange(grid), glm::dvec2(0, 3));
+    grid.background = 9;
+    EXPECT_EQ(defaultRange(grid), glm::dvec2(2, 9));
 }
 
 TEST(DefaultRange, isNeverEmpty) {

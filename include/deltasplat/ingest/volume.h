@@ -38,8 +38,11 @@ struct Volume {
     std::string name;       ///< grid name, or the file's name without folder and extensions
     std::string type;       ///< value type of the source: "uint8", "float", "half", "bool", ...
     std::string gridClass;  ///< "fog volume", "level set", "staggered" or "unknown"
-    double background = 0;  ///< value of inactive voxels (0 for raw volumes)
-    CodeBook codeBook;      ///< what the codes mean
+    /// Whether voxels may be inactive and then hold `background`: true for .vdb, false for raw
+    /// volumes.
+    bool hasBackground = false;
+    double background = 0;                  ///< value of inactive voxels
+    CodeBook codeBook;                      ///< what the codes mean
     std::shared_ptr<const CodeTree> codes;  ///< active voxels in the source's index space
     IndexBox box;  ///< raw: all voxels; .vdb: bounding box of the active voxels
     glm::dmat4 worldFromIndex{
