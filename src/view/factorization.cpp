@@ -51,7 +51,9 @@ double largestSingularValue(const glm::dmat2& m) {
 
 int screenResolution(const glm::dmat3& baseFromPixel) {
     const double pixelsPerVoxel = largestSingularValue(glm::inverse(glm::dmat2(baseFromPixel)));
-    return int(std::lround(std::clamp(pixelsPerVoxel, 1.0, double(kMaxAutomaticResolution))));
+    // Asked this way round because a frame too narrow for double arithmetic stretches by NaN.
+    if (!(pixelsPerVoxel < kMaxAutomaticResolution)) return kMaxAutomaticResolution;
+    return int(std::lround(std::max(pixelsPerVoxel, 1.0)));
 }
 
 void checkResolution(int resolution) {

@@ -114,6 +114,10 @@ deltasplat_refusal(up_zero "--up: got 0,0,0; expected three finite numbers, not 
     --up 0,0,0)
 deltasplat_cli_test(negative_vectors CREATES out.exr
     ARGS render ${cube} -o out.exr --direction -1,0.8,-0.6 --up=-.5,1,0 --target -1,2,-.25)
+foreach(width 1e-300 1e300)
+    deltasplat_cli_test(frame_width_${width} CREATES out.exr
+        ARGS render ${cube} -o out.exr --size 8x8 --frame-width ${width})
+endforeach()
 deltasplat_cli_test(last_value_wins CREATES out.exr
     ARGS render ${cube} -o out.exr --size 0x0x0 --size 8x8)
 
