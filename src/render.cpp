@@ -36,9 +36,12 @@ Encoding encodingOf(Method method) {
     }
 }
 
+// The picture itself, and what encoding it takes besides (measured: 41 bytes for a float .exr).
+constexpr double kBytesPerPixel = 48;
+
 void requireImageMemory(glm::ivec2 size) {
     requireMemory("--size " + std::to_string(size.x) + "x" + std::to_string(size.y),
-                  2 * 16.0 * size.x * size.y);
+                  kBytesPerPixel * size.x * size.y);
 }
 
 // What the slabs share, and where their results go.
@@ -119,26 +122,36 @@ class SlabRenderer {
     int slicesDone_ = 0;
 };
 
-// Maps picture positions to base plane pixels, r a voxel.
-glm::dmat3 planeFromPixel(const Factorization& view) {
+// Maps picture positions to base plane pixels: r a voxel, counted from the layout's first voxel and
+// slice.
+glm::dmat3 planeFromPixel(const Factorization& view, const SheetLayout& layout) {
+    const glm::dvec2 origin =
+        glm::dvec2(layout.firstVoxel) + double(layout.firstSlice) * view.shiftPerSlice;
+    glm::dmat3 relative = view.baseFromPixel;
+    relative[2] -= glm::dvec3(origin, 0);
     const double r = view.resolution;
-    return glm::dmat3(r, 0, 0, 0, r, 0, 0, 0, 1) * view.baseFromPixel;
+    return glm::dmat3(r, 0, 0, 0, r, 0, 0, 0, 1) * relative;
 }
 
 Raster rasterOf(const Layer& layer) {
     return {layer.box.min, layer.box.size(), layer.rgba.data()};
 }
 
-// Sheets of all threads, layers of all slabs, and the merged one.
-void requireSheetMemory(const DeltaGrid& grid, const Factorization& view,
-                        const SheetLayout& layout) {
-    double bytes = double(layout.bytes()) * std::min<double>(threadCount(), grid.slabs.size());
-    for (const Slab& slab : grid.slabs) {
-        const glm::dvec2 size =
-            reachOf(layout, view.shiftPerSlice, slab.firstSlice, slab.sliceCount).size();
-        bytes += 2 * 16 * size.x * size.y;
-    }
-    requireMemory("--resolution " + std::to_string(view.resolution), bytes);
+// What all slabs together take: sheets and planes of slots for each thread, layers, and the merged
+// one.
+void requireSlabMemory(const DeltaGrid& grid, const Factorization& view,
+                       const SheetLayout& layout) {
+    const double blocks = double(layout.tiles().x) * layout.tiles().y / view.resolution;
+    double bytes = (double(layout.bytes()) + 64 * sizeof(Slot) * blocks) *
+                   std::min<double>(threadCount(), double(grid.slabs.size()));
+    const auto layerBytes = [&](int firstSlice, int sliceCount) {
+        const glm::dvec2 size = reachOf(layout, view.shiftPerSlice, firstSlice, sliceCount).size();
+        return 16 * size.x * size.y;
+    };
+    for (const Slab& slab : grid.slabs) bytes += layerBytes(slab.firstSlice, slab.sliceCount);
+    bytes += layerBytes(grid.box.min.x, grid.box.dims().x);
+    requireMemory("sheets and layers at " + std::to_string(view.resolution) + " pixels a voxel",
+                  bytes);
 }
 
 void renderGrid(const DeltaGrid& grid, const ClassTable& classes, const Factorization& view,
@@ -148,7 +161,7 @@ void renderGrid(const DeltaGrid& grid, const ClassTable& classes, const Factoriz
                                               view.shiftPerSlice, view.resolution);
     const StampWeights weights(footprint);
     const SheetLayout layout = layoutSheet(grid.box, footprint);
-    requireSheetMemory(grid, view, layout);
+    requireSlabMemory(grid, view, layout);
     const SplatInput input{grid, classes, weights, footprint.radius,
                            options.method == Method::kTraditional};
     SlabRenderer slabs(input, view, layout, listener);
@@ -159,7 +172,7 @@ void renderGrid(const DeltaGrid& grid, const ClassTable& classes, const Factoriz
     const double mergedSeconds = secondsSince(start);
     listener.report(0.95);
 
-    warp(rasterOf(merged), planeFromPixel(view), result.image);
+    warp(rasterOf(merged), planeFromPixel(view, layout), result.image);
 
     RenderStats& stats = result.stats;
     stats.stamps = slabs.stamps();

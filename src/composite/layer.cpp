@@ -83,9 +83,9 @@ class SheetCompositor {
 }  // namespace
 
 SheetShift shiftOf(const SheetLayout& layout, glm::dvec2 shiftPerSlice, int slice) {
+    const double slices = double(slice) - double(layout.firstSlice);
     const glm::dvec2 sheetOrigin =
-        glm::dvec2(layout.firstVoxel * layout.resolution - layout.marginPixels) +
-        shiftPerSlice * double(slice) * double(layout.resolution);
+        shiftPerSlice * slices * double(layout.resolution) - double(layout.marginPixels);
     const glm::dvec2 whole = glm::floor(-sheetOrigin);
     return {glm::ivec2(whole), -sheetOrigin - whole};
 }

@@ -10,7 +10,8 @@
 
 namespace deltasplat {
 
-/// Pixels [min, max) of the base plane; pixel b lies at (u, v) = b / resolution on slice 0.
+/// Pixels [min, max) of the base plane. Pixel (0, 0) lies at the sheet layout's first voxel on its
+/// first slice, so that numbers stay small however far from the index origin a volume is.
 struct PlaneBox {
     glm::ivec2 min{0};
     glm::ivec2 max{0};
@@ -41,7 +42,8 @@ struct SheetShift {
     glm::dvec2 fraction{0.0};  ///< 0 <= fraction < 1
 };
 
-/// Returns where slice `slice` lies, shifted by slice * shiftPerSlice voxels.
+/// Returns where slice `slice` lies: shifted by shiftPerSlice voxels for each slice since the
+/// layout's first.
 SheetShift shiftOf(const SheetLayout& layout, glm::dvec2 shiftPerSlice, int slice);
 
 /// Returns the base plane pixels that any of `sliceCount` slices from `firstSlice` on can reach.

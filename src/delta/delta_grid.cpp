@@ -132,7 +132,7 @@ std::uint64_t DeltaGrid::deltas() const {
 }
 
 int defaultKeyInterval(int sliceCount) {
-    return std::clamp((sliceCount + 127) / 128 * 8, 8, 64);
+    return std::max(8, (sliceCount + 127) / 128 * 8);
 }
 
 DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options) {

@@ -19,13 +19,17 @@ double catmullRom(double x) {
     return 0;
 }
 
+// A raster that is smaller than a pixel by more than this adds nothing to it that could be seen.
+constexpr double kMaxStretch = 16384;
+
 }  // namespace
 
-FilterTable::FilterTable(double stretch)
-    : taps_(2 * int(std::ceil(2 * stretch))),
-      paddedTaps_((taps_ + 3) / 4 * 4),
-      steps_(std::max(4, int(kStepsPerWidth / stretch))),
-      weights_(std::size_t(steps_ + 1) * paddedTaps_ * 4) {
+FilterTable::FilterTable(double wantedStretch) {
+    const double stretch = std::min(wantedStretch, kMaxStretch);
+    taps_ = 2 * int(std::ceil(2 * stretch));
+    paddedTaps_ = (taps_ + 3) / 4 * 4;
+    steps_ = std::max(4, int(kStepsPerWidth / stretch));
+    weights_.resize(std::size_t(steps_ + 1) * paddedTaps_ * 4);
     std::vector<double> exact(taps_);
     for (int step = 0; step <= steps_; ++step) {
         double sum = 0;

@@ -10,8 +10,10 @@ namespace deltasplat {
 /// small steps.
 class FilterTable {
   public:
-    /// @param stretch  lattice points a picture pixel, at least 1: the filter is that much wider
-    explicit FilterTable(double stretch);
+    /// @param wantedStretch  lattice points a picture pixel, at least 1: the filter is that much
+    /// wider, up to 16384
+    ///                       times
+    explicit FilterTable(double wantedStretch);
 
     int taps() const { return taps_; }
     /// Taps rounded up to a multiple of four; the weights of the added ones are zero.
@@ -25,9 +27,9 @@ class FilterTable {
     }
 
   private:
-    int taps_;
-    int paddedTaps_;
-    int steps_;
+    int taps_ = 0;
+    int paddedTaps_ = 0;
+    int steps_ = 0;
     std::vector<float> weights_;  // [steps_ + 1][paddedTaps_][4]
 };
 

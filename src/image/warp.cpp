@@ -22,6 +22,7 @@ struct Columns {
 
 // Narrows columns to those whose position a + b * (column + 0.5) lies within [low, high].
 Columns clipColumns(const Columns& columns, double a, double b, double low, double high) {
+    if (!(low <= high)) return {};
     if (b == 0) return a >= low && a <= high ? columns : Columns{};
     const double x0 = (low - a) / b - 0.5;
     const double x1 = (high - a) / b - 0.5;

@@ -123,7 +123,7 @@ IndexBox boxOf(const CodeTree::Tree& tree, const std::string& where) {
         constexpr int kFarthest = 1 << 30;
         box.min[axis] = active.min()[axis];
         box.max[axis] = active.max()[axis];
-        fits = fits && box.min[axis] >= -kFarthest && box.max[axis] < kFarthest;
+        fits = fits && box.min[axis] > -kFarthest && box.max[axis] < kFarthest;
         voxels *= double(box.max[axis]) - box.min[axis] + 1;
     }
     if (!fits || voxels > 0x1p62) {

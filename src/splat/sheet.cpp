@@ -1,13 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "splat/sheet.h"
 
+#include <algorithm>
 #include <bit>
+#include <limits>
+#include <string>
+
+#include "deltasplat/error.h"
+#include "memory.h"
 
 namespace deltasplat {
 namespace {
 
 int roundUpToTile(int pixels) {
     return (pixels + kTilePixels - 1) / kTilePixels * kTilePixels;
+}
+
+// Stamps name their place with 32 bits, and rows and columns are counted with 31.
+void requireCountable(const glm::i64vec2& size) {
+    const std::string text = std::to_string(size.x) + "x" + std::to_string(size.y);
+    requireMemory("sheet of " + text + " pixels", 16.0 * double(size.x) * double(size.y));
+    const double longest = std::numeric_limits<std::int32_t>::max() - 2 * kTilePixels;
+    const double most = std::numeric_limits<std::uint32_t>::max();
+    if (double(std::max(size.x, size.y)) <= longest &&
+        double(size.x + kTilePixels) * double(size.y) <= most) {
+        return;
+    }
+    throw Error(ErrorCode::kUsage, gotExpected("sheet", text + " pixels",
+                                               "at most 4294967295, a smaller --resolution"));
 }
 
 // Sets the bits [first, last], both inclusive, of a row of words.
@@ -27,10 +47,15 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint) {
     // One tile more than the footprint needs stays zero: compositing goes one pixel over the
     // occupied ones.
     layout.marginPixels = roundUpToTile(footprint.radius) + kTilePixels;
+    layout.firstSlice = box.min.x;
     const glm::ivec2 firstBlock{box.min.y >> 3, box.min.z >> 3};
-    const glm::ivec2 blocks = glm::ivec2{box.max.y >> 3, box.max.z >> 3} - firstBlock + 1;
+    const glm::i64vec2 blocks =
+        glm::i64vec2{box.max.y >> 3, box.max.z >> 3} - glm::i64vec2(firstBlock) + std::int64_t{1};
     layout.firstVoxel = 8 * firstBlock;
-    layout.sizePixels = 8 * footprint.resolution * blocks + 2 * layout.marginPixels;
+    const glm::i64vec2 size =
+        std::int64_t{8 * footprint.resolution} * blocks + std::int64_t{2 * layout.marginPixels};
+    requireCountable(size);
+    layout.sizePixels = glm::ivec2(size);
     return layout;
 }
 

@@ -17,6 +17,7 @@ namespace deltasplat {
 /// zero.
 struct SheetLayout {
     int resolution = 1;
+    int firstSlice = 0;        ///< of the volume: the slice that lies on the base plane unshifted
     glm::ivec2 firstVoxel{0};  ///< (u, v), multiples of 8
     int marginPixels =
         0;  ///< a multiple of kTilePixels, at least one more than the footprint reaches
@@ -34,6 +35,8 @@ struct SheetLayout {
 };
 
 /// Lays out a sheet for the voxels of a (slice, u, v) box.
+/// @throw Error(kUsage) if it would have more pixels than can be counted in 32 bits, or does not
+/// fit into memory
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint);
 
 /// The running splat of the current slice: 32-bit integer RGBA `[row][pitch][4]`, rows along v, in

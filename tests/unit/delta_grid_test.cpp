@@ -195,7 +195,8 @@ TEST(DeltaGrid, DefaultKeyIntervalDependsOnSlicesAlone) {
     EXPECT_EQ(defaultKeyInterval(128), 8);
     EXPECT_EQ(defaultKeyInterval(129), 16);
     EXPECT_EQ(defaultKeyInterval(512), 32);
-    EXPECT_EQ(defaultKeyInterval(100000), 64);
+    EXPECT_EQ(defaultKeyInterval(1024), 64);
+    EXPECT_EQ(defaultKeyInterval(100000), 6256);
 }
 
 }  // namespace

@@ -45,11 +45,10 @@ double sheetAt(const Sheet& sheet, int x, int y, int c) {
     return double(sheet.row(y)[4 * x + c]) * kScale;
 }
 
-// The sheet of a slice, read bilinearly where voxel (u, v) + slice * d = b / r.
+// The sheet of a slice, read bilinearly where base plane pixel b falls on it.
 double bilinearAt(const Sheet& sheet, glm::dvec2 d, int slice, glm::ivec2 b, int c) {
-    const glm::dvec2 voxel = glm::dvec2(b) - d * double(slice);
-    const glm::dvec2 p =
-        voxel - glm::dvec2(sheet.layout().firstVoxel) + double(sheet.layout().marginPixels);
+    // The box begins with slice 0.
+    const glm::dvec2 p = glm::dvec2(b) - d * double(slice) + double(sheet.layout().marginPixels);
     const int x = int(std::floor(p.x));
     const int y = int(std::floor(p.y));
     const double fx = p.x - x;

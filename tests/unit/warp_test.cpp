@@ -96,6 +96,27 @@ TEST(Warp, OutsideOfTheRasterIsTransparent) {
     EXPECT_GT(picture.pixel(31, 31)[3], 0.9f);
 }
 
+// A picture so coarse that the filter is wider than the raster, turned so that no column is empty.
+TEST(Warp, FilterWiderThanTheRasterReadsNothingOutside) {
+    const OwnedRaster raster({0, 0}, {48, 48}, [](int, int) { return 1.0f; });
+    for (const double stretch : {10.0, 22.0, 47.0, 500.0, 1e6, 1e12}) {
+        Image picture({16, 16});
+        const double c = 0.8 * stretch;
+        const double s = 0.6 * stretch;
+        warp(raster.raster(), affine(c, -s, 24 - 8 * (c - s), s, c, 24 - 8 * (c + s)), picture);
+        double sum = 0;
+        for (const float value : picture.rgba) {
+            EXPECT_TRUE(value >= 0 && value <= 1.2f) << stretch;
+            sum += value;
+        }
+        // The picture's sum is the raster's area in pixels, four channels deep.
+        const double area = 4 * 48 * 48 / (stretch * stretch);
+        if (stretch < 40) {
+            EXPECT_NEAR(sum / area, 1, 0.15) << stretch;
+        }
+    }
+}
+
 TEST(Warp, EmptyRasterLeavesThePictureAlone) {
     Image picture({3, 2});
     warp({}, glm::dmat3(1), picture);

@@ -64,7 +64,7 @@ struct DeltaOptions {
 };
 
 /// Returns the slices a slab gets by default: a function of the volume alone, so that pixels never
-/// depend on the machine. About 16 slabs a volume, at least 8 and at most 64 slices each.
+/// depend on the machine. At least 8, and never more than 16 slabs: each costs a layer.
 int defaultKeyInterval(int sliceCount);
 
 /// Takes the differences of consecutive slices. Linear in the active voxels; deterministic;

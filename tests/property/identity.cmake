@@ -1,0 +1,1 @@
+deltasplat_test(property/identity_test.cpp)

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// The promise: the same pixels, bit for bit, for every method, number of threads and SIMD level,
+// and wherever in index space a volume lies.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "deltasplat/error.h"
+#include "deltasplat/render.h"
+#include "deltasplat/simd.h"
+#include "deltasplat/threads.h"
+#include "support/make_volume.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr Method kMethods[] = {Method::kAuto, Method::kDelta, Method::kSparse,
+                               Method::kTraditional};
+
+RenderOptions optionsFor(const glm::dvec3& direction) {
+    RenderOptions options;
+    options.camera.direction = direction;
+    options.camera.up = glm::dvec3(0.1, 1, 0.2);
+    options.camera.sizePixels = {150, 110};
+    TransferFunction& function = options.optics.transferFunction;
+    function.colors = {{0, {1, 0, 0.5}}, {255, {0.2, 1, 0}}};
+    function.opacities = {{60, 0, 0.5, 0}, {200, 0.4, 0.5, 0}, {255, 1, 0.5, 0}};
+    return options;
+}
+
+const glm::dvec3 kDirections[] = {{0, 0, -1}, {1, 0.3, -0.2}, {-0.4, 1, 0.9}, {0.7, -0.2, 0.8}};
+
+double mean(const Image& image) {
+    double sum = 0;
+    for (const float value : image.rgba) sum += value;
+    return sum / double(image.rgba.size());
+}
+
+TEST(Identity, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
+    const IndexBox boxes[] = {{{0, 0, 0}, {40, 21, 33}}, {{-19, 5, -60}, {0, 70, 2}}};
+    for (const IndexBox& box : boxes) {
+        const Volume volume = test::randomVolume(box, 17, 0.5, {1, 1.5, 0.8});
+        for (const glm::dvec3& direction : kDirections) {
+            RenderOptions options = optionsFor(direction);
+            const Image expected = render(volume, options).image;
+            EXPECT_GT(mean(expected), 0.05);
+            for (const Method method : kMethods) {
+                options.method = method;
+                for (const int threads : {1, 2, 3, 8}) {
+                    const ThreadLimit limit(threads);
+                    ASSERT_EQ(threadCount(), threads);
+                    EXPECT_EQ(render(volume, options).image.rgba, expected.rgba)
+                        << methodName(method) << ", " << threads << " threads";
+                }
+                for (const std::string& level : simdLevels()) {
+                    setSimdLevel(level);
+                    EXPECT_EQ(render(volume, options).image.rgba, expected.rgba)
+                        << methodName(method) << ", " << level;
+                }
+                setSimdLevel("auto");
+            }
+        }
+    }
+}
+
+TEST(Identity, MethodsStampWhatTheySay) {
+    const Volume volume = test::randomVolume({{0, 0, 0}, {30, 30, 30}}, 5, 0.5);
+    RenderOptions options = optionsFor(kDirections[1]);
+    const auto statsOf = [&](Method method) {
+        options.method = method;
+        return render(volume, options).stats;
+    };
+    const RenderStats delta = statsOf(Method::kDelta);
+    EXPECT_EQ(statsOf(Method::kTraditional).stamps, delta.voxels);
+    EXPECT_EQ(statsOf(Method::kSparse).stamps, delta.visible);
+    EXPECT_EQ(delta.stamps, delta.deltas);
+    EXPECT_LE(statsOf(Method::kAuto).stamps, std::min(delta.visible, delta.deltas));
+}
+
+// Positions in a picture are rounded once in doubles, and the warp reads its filter from a table:
+// no more may differ.
+TEST(Identity, VolumesFarFromTheIndexOriginLookTheSame) {
+    const auto block = [](int offset) {
+        const IndexBox box{glm::ivec3(offset), glm::ivec3(offset + 11)};
+        return test::makeVolume(box, [&](int x, int y, int z) {
+            return ((x - offset) * 31 + (y - offset) * 17 + (z - offset) * 7) % 256;
+        });
+    };
+    for (const glm::dvec3& direction : kDirections) {
+        const RenderOptions options = optionsFor(direction);
+        const Image here = render(block(0), options).image;
+        EXPECT_GT(mean(here), 0.05);
+        for (const int offset : {1 << 20, 1 << 29, -(1 << 29)}) {
+            const Image there = render(block(offset), options).image;
+            for (std::size_t i = 0; i < here.rgba.size(); ++i) {
+                ASSERT_NEAR(there.rgba[i], here.rgba[i], 2e-3) << offset << ' ' << i;
+            }
+        }
+    }
+}
+
+TEST(Identity, SheetsTooLargeToCountAreRefused) {
+    const Volume apart =
+        test::makeVolume({{0, 0, 0}, {0, 0, 0}}, [](int, int, int) { return 200; });
+    Volume volume = apart;
+    volume.box = {glm::ivec3(-(1 << 29)), glm::ivec3(1 << 29)};
+    for (const int resolution : {1, 8, 16}) {
+        RenderOptions options = optionsFor(kDirections[0]);
+        options.resolution = resolution;
+        try {
+            render(volume, options);
+            FAIL() << resolution;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::kUsage) << error.what();
+        }
+    }
+}
+
+}  // namespace
+}  // namespace deltasplat
