@@ -1,4 +1,4 @@
-# ccache is used where it is found, unless another launcher or, with an empty one, none is asked for.
+# ccache is used where it is found, unless CMAKE_CXX_COMPILER_LAUNCHER is given, be it empty.
 if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
     find_program(DELTASPLAT_CCACHE ccache)
     if(DELTASPLAT_CCACHE)

@@ -1,5 +1,6 @@
 # find_package(deltasplat) gives the target deltasplat::deltasplat.
 include(CMakeFindDependencyMacro)
+set(deltasplat_FOUND TRUE)
 # What the search sets (module path, BUILD_SHARED_LIBS) is not for the caller to see.
 block(PROPAGATE deltasplat_FOUND deltasplat_NOT_FOUND_MESSAGE)
     macro(deltasplat_find)

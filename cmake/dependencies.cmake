@@ -1,5 +1,5 @@
-# Everything comes from Debian packages; scripts/install_dependencies.sh installs them. Whoever includes
-# this defines deltasplat_find, which is find_package or, for users of the package, find_dependency.
+# Everything comes from Debian packages; scripts/install_dependencies.sh installs them.
+# The includer defines deltasplat_find: find_package or, in the installed package, find_dependency.
 list(APPEND CMAKE_MODULE_PATH "${CMAKE_CURRENT_LIST_DIR}")
 
 # OpenVDB ships its find module outside of CMake's own search path.
