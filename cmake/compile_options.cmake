@@ -1,3 +1,11 @@
+# ccache is used where it is found, unless CMAKE_CXX_COMPILER_LAUNCHER is given, be it empty.
+if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+    find_program(DELTASPLAT_CCACHE ccache)
+    if(DELTASPLAT_CCACHE)
+        set(CMAKE_CXX_COMPILER_LAUNCHER ${DELTASPLAT_CCACHE})
+    endif()
+endif()
+
 # Applies the house's compiler settings to one target of ours.
 function(deltasplat_compile_options target)
     # Pixels must not depend on whether a compiler fuses a multiply and an add.

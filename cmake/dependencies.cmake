@@ -1,4 +1,5 @@
 # Everything comes from Debian packages; scripts/install_dependencies.sh installs them.
+# The includer defines deltasplat_find: find_package or, in the installed package, find_dependency.
 list(APPEND CMAKE_MODULE_PATH "${CMAKE_CURRENT_LIST_DIR}")
 
 # OpenVDB ships its find module outside of CMake's own search path.
@@ -8,14 +9,14 @@ list(APPEND CMAKE_MODULE_PATH ${DELTASPLAT_OPENVDB_MODULES})
 
 # The module sets BUILD_SHARED_LIBS for its own ends; ours is the caller's to choose.
 set(DELTASPLAT_BUILD_SHARED_LIBS ${BUILD_SHARED_LIBS})
-find_package(OpenVDB 10 REQUIRED)
+deltasplat_find(OpenVDB 10)
 set(BUILD_SHARED_LIBS ${DELTASPLAT_BUILD_SHARED_LIBS})
-find_package(TBB REQUIRED)
-find_package(OpenImageIO REQUIRED)
-find_package(glm REQUIRED)
-find_package(hwy REQUIRED)
-find_package(ZLIB REQUIRED)
-find_package(nlohmann_json REQUIRED)
+deltasplat_find(TBB)
+deltasplat_find(OpenImageIO)
+deltasplat_find(glm)
+deltasplat_find(hwy)
+deltasplat_find(ZLIB)
+deltasplat_find(nlohmann_json)
 if(NOT TARGET OpenVDB::openvdb OR NOT TARGET OpenImageIO::OpenImageIO)
     message(FATAL_ERROR "OpenVDB or OpenImageIO not found; run scripts/install_dependencies.sh")
 endif()

@@ -14,6 +14,10 @@ std::string withDefault(const std::string& help, const std::string& value) {
     return help + " (default " + value + ")";
 }
 
+bool isGiven(const CLI::App& app, const std::string& name) {
+    return app.get_option(name)->count() > 0;
+}
+
 CLI::App& addSubcommand(CLI::App& program, const std::string& name, const std::string& summary,
                         const std::vector<std::string>& examples) {
     CLI::App& app = *program.add_subcommand(name, summary);

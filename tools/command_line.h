@@ -67,6 +67,9 @@ class OptionGroup {
 /// Returns `help` with the default as it stands in an options struct: "help (default 512x512)".
 std::string withDefault(const std::string& help, const std::string& value);
 
+/// Returns whether the option stands on the command line; false while that is not yet parsed.
+bool isGiven(const CLI::App& app, const std::string& name);
+
 /// Declares a subcommand with an empty set of options.
 /// @param examples  command lines, shown below the help
 CLI::App& addSubcommand(CLI::App& program, const std::string& name, const std::string& summary,

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "info_report.h"
 #include "input_options.h"
@@ -26,26 +27,41 @@ GridReport reportOf(Volume volume) {
     return report;
 }
 
-FileReport reportOf(const std::string& file, const ReadOptions& options, const Listener& listener) {
+// What cannot be read; the rest is told all the same.
+using Failures = std::vector<Error>;
+
+FileReport reportOf(const std::string& file, const ReadOptions& options, const Listener& listener,
+                    Failures& failures) {
     FileReport report;
     report.file = file;
-    for (Volume& volume : readAllVolumes(file, options, listener))
-        report.grids.push_back(reportOf(std::move(volume)));
+    VolumeVisitor visitor;
+    visitor.volume = [&](Volume volume) { report.grids.push_back(reportOf(std::move(volume))); };
+    visitor.invalid = [&](const Error& error) { failures.push_back(error); };
+    visitor.other = [&](const std::string& name, const std::string& type) {
+        report.others.push_back(name + " (" + type + ")");
+    };
+    forEachVolume(file, options, visitor, listener);
     return report;
 }
 
-void runInfo(const InfoOptions& options, const Session& session) {
+void runInfo(const CLI::App& app, const InfoOptions& options, const Session& session) {
     std::vector<FileReport> reports;
+    Failures failures;
     {
         ProgressDisplay display(session.common.quiet);
+        warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()}, display);
         const double count = double(options.inputs.size());
         for (const std::string& file : options.inputs) {
             const double done = double(reports.size());
-            reports.push_back(
-                reportOf(file, options.read, display.stage(done / count, (done + 1) / count)));
+            reports.push_back(reportOf(file, options.read,
+                                       display.stage(done / count, (done + 1) / count), failures));
         }
     }
     printOut(options.json ? jsonText(reports) : plainText(reports));
+    if (failures.empty()) return;
+    // The last one ends the program, which shows it as it shows every error.
+    for (std::size_t i = 0; i + 1 < failures.size(); ++i) showError(failures[i].what());
+    throw failures.back();
 }
 
 }  // namespace
@@ -63,7 +79,7 @@ Subcommand addInfo(CLI::App& program) {
         ->group("Arguments");
     OptionGroup(app, "Output").addFlag("--json", options->json, "Print one JSON object");
     addInputOptions(app, options->read);
-    return {&app, [options](const Session& session) { runInfo(*options, session); }};
+    return {&app, [&app, options](const Session& session) { runInfo(app, *options, session); }};
 }
 
 }  // namespace deltasplat

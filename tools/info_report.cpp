@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "json_text.h"
+#include "number_text.h"
 #include "parse.h"
 
 namespace deltasplat {
@@ -74,9 +75,9 @@ std::string plainText(const GridReport& report) {
     text += line("voxel size", toText(v.voxelSize(), " x "));
     text += line("active", std::to_string(v.activeCount) + " (" +
                                percent(double(v.activeCount), double(v.box.voxels())) + ")");
-    text +=
-        line("range", v.empty() ? "none" : shortText(v.valueMin) + " to " + shortText(v.valueMax));
-    text += line("background", shortText(v.background)) + line("code book", v.codeBook.name());
+    text += line("range",
+                 v.empty() ? "none" : numberText(v.valueMin) + " to " + numberText(v.valueMax));
+    text += line("background", numberText(v.background)) + line("code book", v.codeBook.name());
     for (int axis = 0; axis < 3; ++axis)
         text += line(std::string("along ") + kAxisNames[axis], axisText(report, axis));
     return text;
@@ -105,6 +106,7 @@ std::string plainText(const std::vector<FileReport>& reports) {
         text += (text.empty() ? "" : "\n") + report.file + "\n";
         for (std::size_t i = 0; i < report.grids.size(); ++i)
             text += (i > 0 ? "\n" : "") + plainText(report.grids[i]);
+        for (const std::string& grid : report.others) text += line("not read", grid);
     }
     return text;
 }

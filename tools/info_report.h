@@ -19,6 +19,7 @@ struct GridReport {
 struct FileReport {
     std::string file;
     std::vector<GridReport> grids;
+    std::vector<std::string> others;  ///< grids that are not scalar, as "velocity (vec3s)"
 };
 
 /// Returns how alike consecutive slices are, 1 - deltas / voxels; 1 for an empty grid.
@@ -27,7 +28,7 @@ double comparability(const GridReport& report, int axis);
 /// Returns one JSON object, `{"files":[{"file":...,"grids":[...]}]}`, with a line end.
 std::string jsonText(const std::vector<FileReport>& reports);
 
-/// Returns one block of aligned lines for each grid.
+/// Returns one block of aligned lines for each grid, and names the grids that are not scalar.
 std::string plainText(const std::vector<FileReport>& reports);
 
 }  // namespace deltasplat

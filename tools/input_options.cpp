@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "input_options.h"
 
-#include "deltasplat/error.h"
+#include <algorithm>
+
+#include "lower_case.h"
 
 namespace deltasplat {
 namespace {
@@ -42,12 +44,14 @@ void addInputOptions(CLI::App& app, ReadOptions& options) {
     group.addValue("--dims", "AxBxC", raw.dims, dimensions(),
                    "Voxels along x (fastest), y, z (default: as in a name such as\n"
                    "engine_256x256x128_uint8.raw.gz)");
-    group.addValue("--type", "TYPE", raw.type, anyText(),
-                   "uint8 int8 uint16 int16 uint32 int32 float32 or float64\n"
-                   "(default: as in the name)");
+    group.addValue(
+        "--type", "TYPE", raw.type,
+        choice({"uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"}),
+        "uint8 int8 uint16 int16 uint32 int32 float32 or float64\n"
+        "(default: as in the name)");
     group.addValue("--endian", "little|big", raw.bigEndian, endian(),
                    "Byte order (default: as in the name, else little)");
-    group.addValue("--spacing", "X,Y,Z", raw.spacing, positiveVector3(),
+    group.addValue("--spacing", "X,Y,Z", raw.spacing, voxelSpacing(),
                    withDefault("World units per voxel", vectorText(raw.spacing)));
     group.addValue(
         "--origin", "X,Y,Z", raw.origin, vector3(),
@@ -58,6 +62,24 @@ void addInputOptions(CLI::App& app, ReadOptions& options) {
     OptionGroup any(app, "Input");
     any.addValue("--nan", "VALUE", options.nanValue, number(),
                  "Replaces NaN and infinities (default: they are an error)");
+}
+
+void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesystem::path>& inputs,
+                              ProgressDisplay& display) {
+    const auto isVdb = [](const std::filesystem::path& file) {
+        return lowerCase(file.extension().string()) == ".vdb";
+    };
+    const auto warnOf = [&](const std::vector<std::string>& options, const std::string& input) {
+        for (const std::string& option : options) {
+            if (isGiven(app, option)) display.warn(option + ": has no effect without " + input);
+        }
+    };
+    if (std::none_of(inputs.begin(), inputs.end(), isVdb))
+        warnOf({"--grid", "--level-set"}, "a .vdb input");
+    if (std::all_of(inputs.begin(), inputs.end(), isVdb)) {
+        warnOf({"--dims", "--type", "--endian", "--spacing", "--origin", "--skip-bytes"},
+               "a .raw or .raw.gz input");
+    }
 }
 
 }  // namespace deltasplat

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <vector>
+
 #include "command_line.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "listener.h"
 
 namespace deltasplat {
 
 /// Declares the options that say how an input is to be read.
 void addInputOptions(CLI::App& app, ReadOptions& options);
+
+/// Warns of options that were given and are for another kind of file than any of the inputs.
+void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesystem::path>& inputs,
+                              ProgressDisplay& display);
 
 }  // namespace deltasplat

@@ -21,7 +21,8 @@ void catchOnce(int signal) {
     if (before.sa_handler == SIG_IGN) return;
     struct sigaction action {};
     action.sa_handler = rememberInterrupt;
-    action.sa_flags = SA_RESETHAND | SA_RESTART;
+    // Without SA_RESTART what waits in a system call wakes up and sees the interrupt.
+    action.sa_flags = SA_RESETHAND;
     sigemptyset(&action.sa_mask);
     sigaction(signal, &action, nullptr);
 }
@@ -35,8 +36,12 @@ void handleSignals() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
+bool isInterrupted() {
+    return interrupted != 0;
+}
+
 void throwIfInterrupted() {
-    if (interrupted) throw Error(ErrorCode::kInterrupted, "interrupted");
+    if (isInterrupted()) throw Error(ErrorCode::kInterrupted, "interrupted");
 }
 
 }  // namespace deltasplat

@@ -7,6 +7,9 @@ namespace deltasplat {
 /// lets writing to a closed pipe or beyond a file size limit fail instead of ending the program.
 void handleSignals();
 
+/// Returns whether SIGINT or SIGTERM has arrived.
+bool isInterrupted();
+
 /// @throw Error(kInterrupted) if SIGINT or SIGTERM has arrived
 void throwIfInterrupted();
 

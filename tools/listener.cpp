@@ -8,8 +8,13 @@
 #include <cstdio>
 
 #include "interrupt.h"
+#include "printable.h"
 
 namespace deltasplat {
+
+void showError(const std::string& what) {
+    std::fprintf(stderr, "deltasplat: %s\n", printable(what).c_str());
+}
 
 ProgressDisplay::ProgressDisplay(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO)) {}
 
@@ -30,7 +35,7 @@ Listener ProgressDisplay::stage(double begin, double end) {
 void ProgressDisplay::warn(const std::string& line) {
     if (quiet_) return;
     clearBar();
-    std::fprintf(stderr, "deltasplat: warning: %s\n", line.c_str());
+    std::fprintf(stderr, "deltasplat: warning: %s\n", printable(line).c_str());
 }
 
 void ProgressDisplay::show(double share) {

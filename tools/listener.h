@@ -9,6 +9,9 @@
 
 namespace deltasplat {
 
+/// Shows on standard error, in one line, what went wrong.
+void showError(const std::string& what);
+
 /// Shows on standard error how far the work is: a bar with the time left on a terminal, lines
 /// `Progress: NN%` for every ten percent elsewhere. Quiet, it shows neither progress nor warnings.
 class ProgressDisplay {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "deltasplat/error.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {
@@ -47,16 +48,17 @@ std::vector<T> toNumbers(std::string_view text, char separator) {
 std::string rangeText(const std::string& kind, double min, double max) {
     const bool bounded[] = {std::isfinite(min), std::isfinite(max)};
     if (bounded[0] && bounded[1]) {
-        return kind + " from " + shortText(min) + " to " + shortText(max);
+        return kind + " from " + numberText(min) + " to " + numberText(max);
     }
-    if (bounded[0]) return kind + " of at least " + shortText(min);
+    if (bounded[0]) return kind + " of at least " + numberText(min);
     return kind;
 }
 
-Parser<glm::dvec3> threeNumbers(const std::string& expected, double above) {
+Parser<glm::dvec3> threeNumbers(double min, double max, const std::string& expected) {
     return [=](const std::string& option, const std::string& text) {
         const std::vector<double> v = toNumbers<double>(text, ',');
-        if (v.size() != 3 || !std::all_of(v.begin(), v.end(), [=](double x) { return x > above; }))
+        const auto inRange = [=](double x) { return x >= min && x <= max; };
+        if (v.size() != 3 || !std::all_of(v.begin(), v.end(), inRange))
             refuse(option, text, expected);
         return glm::dvec3(v[0], v[1], v[2]);
     };
@@ -64,15 +66,9 @@ Parser<glm::dvec3> threeNumbers(const std::string& expected, double above) {
 
 }  // namespace
 
-std::string shortText(double value) {
-    char buffer[64];
-    const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
-    return {buffer, result.ptr};
-}
-
 std::string joinNumbers(const std::vector<double>& values, const std::string& separator) {
     std::string text;
-    for (const double value : values) text += (text.empty() ? "" : separator) + shortText(value);
+    for (const double value : values) text += (text.empty() ? "" : separator) + numberText(value);
     return text;
 }
 
@@ -129,11 +125,12 @@ Parser<std::int64_t> wholeNumber(std::int64_t min, std::int64_t max) {
 }
 
 Parser<glm::dvec3> vector3() {
-    return threeNumbers("X,Y,Z, three finite numbers", -std::numeric_limits<double>::infinity());
+    return threeNumbers(std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max(),
+                        "X,Y,Z, three finite numbers");
 }
 
-Parser<glm::dvec3> positiveVector3() {
-    return threeNumbers("X,Y,Z, three finite numbers greater than 0", 0);
+Parser<glm::dvec3> voxelSpacing() {
+    return threeNumbers(1e-30, 1e30, "X,Y,Z, three numbers from 1e-30 to 1e+30");
 }
 
 Parser<glm::dvec2> interval() {

@@ -27,8 +27,8 @@ Parser<std::int64_t> wholeNumber(std::int64_t min = 0,
                                  std::int64_t max = std::numeric_limits<std::int64_t>::max());
 /// `X,Y,Z`, each finite.
 Parser<glm::dvec3> vector3();
-/// `X,Y,Z`, each finite and greater than 0.
-Parser<glm::dvec3> positiveVector3();
+/// `X,Y,Z`, world lengths of a voxel whose volume is still an ordinary number.
+Parser<glm::dvec3> voxelSpacing();
 /// `LO,HI` with LO < HI.
 Parser<glm::dvec2> interval();
 /// `R,G,B` or `R,G,B,A`; colours at least 0, A (default 1) within 0..1.
@@ -38,8 +38,6 @@ Parser<glm::ivec2> pixelSize();
 /// `AxBxC`, whole numbers; whether they make a volume is for its reader to say.
 Parser<glm::i64vec3> dimensions();
 
-/// Returns the shortest text that reads back as the number.
-std::string shortText(double value);
 /// Returns the numbers' texts, joined by `separator`.
 std::string joinNumbers(const std::vector<double>& values, const std::string& separator);
 /// Returns the words as one text: "a, b or c".

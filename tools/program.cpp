@@ -11,6 +11,8 @@
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
 #include "interrupt.h"
+#include "listener.h"
+#include "printable.h"
 #include "suggest.h"
 
 namespace deltasplat {
@@ -142,12 +144,18 @@ void execute(const std::vector<std::string>& arguments,
 }
 
 int complain(const std::vector<std::string>& arguments, const std::string& what, ErrorCode code) {
-    std::fprintf(stderr, "deltasplat: %s\n", what.c_str());
+    showError(what);
     const auto asked = [](const std::string& a) { return a == "-v" || a == "--verbose"; };
     // Looked up as typed, because what failed may be the parsing.
     if (std::any_of(arguments.begin(), arguments.end(), asked))
-        std::fprintf(stderr, "  command line: %s\n", commandLine(arguments).c_str());
+        std::fprintf(stderr, "  command line: %s\n", printable(commandLine(arguments)).c_str());
     return int(code);
+}
+
+// An interrupt also makes a blocked system call fail, which is then not what went wrong.
+int fail(const std::vector<std::string>& arguments, const std::string& what, ErrorCode code) {
+    if (isInterrupted()) return complain(arguments, "interrupted", ErrorCode::kInterrupted);
+    return complain(arguments, what, code);
 }
 
 }  // namespace
@@ -159,11 +167,11 @@ int runProgram(const std::vector<std::string>& arguments,
         execute(arguments, addSubcommands);
         return 0;
     } catch (const Error& error) {
-        return complain(arguments, error.what(), error.code());
+        return fail(arguments, error.what(), error.code());
     } catch (const std::bad_alloc&) {
-        return complain(arguments, "out of memory", ErrorCode::kFailed);
+        return fail(arguments, "out of memory", ErrorCode::kFailed);
     } catch (const std::exception& error) {
-        return complain(arguments, error.what(), ErrorCode::kFailed);
+        return fail(arguments, error.what(), ErrorCode::kFailed);
     }
 }
 

@@ -5,8 +5,10 @@
 #include <memory>
 
 #include "deltasplat/atomic_file.h"
+#include "input_options.h"
 #include "interrupt.h"
 #include "listener.h"
+#include "lower_case.h"
 #include "render_options.h"
 #include "render_stats.h"
 #include "subcommands.h"
@@ -53,13 +55,23 @@ Volume readInput(const RenderCommand& command, RenderOptions& options, ProgressD
     return volume;
 }
 
-void runRender(const RenderCommand& command, const Session& session) {
+void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
+                         ProgressDisplay& display) {
+    warnOfUnusedInputOptions(app, {command.input}, display);
+    if (isGiven(app, "--bits") && lowerCase(command.output.extension().string()) != ".png")
+        display.warn("--bits: has no effect without a .png picture");
+    if (isGiven(app, "--view") && isGiven(app, "--direction"))
+        display.warn("--view: has no effect with --direction");
+}
+
+void runRender(const CLI::App& app, const RenderCommand& command, const Session& session) {
     validate(command);
     RenderOptions options = command.render;
     RenderTimes times;
     RenderResult result;
     {
         ProgressDisplay display(session.common.quiet);
+        warnOfUnusedOptions(app, command, display);
         const auto beginRead = std::chrono::steady_clock::now();
         const Volume volume = readInput(command, options, display);
         times.read = secondsSince(beginRead);
@@ -91,7 +103,7 @@ Subcommand addRender(CLI::App& program) {
          "deltasplat render engine_256x256x128_uint8.raw.gz -o engine.exr --tf ct.json "
          "--direction=-1,0.8,-0.6 --up 0,0,1"});
     addRenderOptions(app, *command);
-    return {&app, [command](const Session& session) { runRender(*command, session); }};
+    return {&app, [&app, command](const Session& session) { runRender(app, *command, session); }};
 }
 
 }  // namespace deltasplat

@@ -3,13 +3,12 @@
 
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
+#include "deltasplat/splat/footprint.h"
 #include "input_options.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {
-
-constexpr double kMinSigma = 0.2;
-constexpr double kMaxSigma = 4;
 
 Parser<Method> method() {
     return [](const std::string& option, const std::string& text) {
@@ -45,13 +44,13 @@ void addCameraOptions(CLI::App& app, RenderCommand& command) {
                                camera.view));
     group.addValue("--azimuth", "DEG", camera.azimuthDegrees, number(),
                    withDefault("Turns the camera to its right, about the up axis",
-                               shortText(camera.azimuthDegrees)));
+                               numberText(camera.azimuthDegrees)));
     group.addValue(
         "--elevation", "DEG", camera.elevationDegrees, number(),
-        withDefault("Then raises it over the target", shortText(camera.elevationDegrees)));
+        withDefault("Then raises it over the target", numberText(camera.elevationDegrees)));
     group.addValue("--roll", "DEG", camera.rollDegrees, number(),
                    withDefault("Then turns it clockwise about the line of sight",
-                               shortText(camera.rollDegrees)));
+                               numberText(camera.rollDegrees)));
     group.addValue("--direction", "X,Y,Z", camera.direction, vector3(),
                    "The way the line of sight travels, in world space; replaces\n"
                    "--view");
@@ -81,7 +80,7 @@ void addOpticsOptions(CLI::App& app, RenderCommand& command) {
                    "World units over which a voxel has the transfer function's\n"
                    "opacity (default: the smallest voxel size)");
     group.addValue("--extinction", "S", optics.extinctionScale, number(0),
-                   withDefault("Scales the extinction", shortText(optics.extinctionScale)));
+                   withDefault("Scales the extinction", numberText(optics.extinctionScale)));
     group.addValue("--background", "R,G,B[,A]", command.background, color(),
                    "Scene-linear colour behind the volume (default: transparent)");
 }
@@ -93,10 +92,10 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
                                "bit, in different times",
                                methodName(options.method)));
     group.addValue("--sigma", "V", options.sigma, number(kMinSigma, kMaxSigma),
-                   "Standard deviation of the footprint in voxels, " + shortText(kMinSigma) +
-                       " to " + shortText(kMaxSigma) + "\n(default: " + shortText(defaultSigma(1)) +
-                       ", or " + shortText(defaultSigma(3)) +
-                       " from three sheet pixels per voxel on)");
+                   "Standard deviation of the footprint in voxels, " + numberText(kMinSigma) +
+                       " to " + numberText(kMaxSigma) +
+                       "\n(default: " + numberText(defaultSigma(1)) + ", or " +
+                       numberText(defaultSigma(3)) + " from three sheet pixels per voxel on)");
     group.addValue("--resolution", "R", options.resolution, wholeNumber(1, kMaxResolution),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        " (default: chosen from the screen)");
@@ -138,7 +137,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
 }
 
 void validate(const RenderCommand& command) {
-    checkImageFile(command.output, command.image);
+    checkImageFile(command.output, command.render.camera.sizePixels, command.image);
 
     // Any box will do to have the camera's own options checked.
     makeCamera(command.render.camera, IndexBox{glm::ivec3(0), glm::ivec3(1)}, glm::dmat4(1));

@@ -6,6 +6,8 @@
 #include "deltasplat/error.h"
 #include "deltasplat/synth/write_analytic.h"
 #include "listener.h"
+#include "lower_case.h"
+#include "number_text.h"
 #include "subcommands.h"
 
 namespace deltasplat {
@@ -54,17 +56,25 @@ void declareOptions(CLI::App& app, SynthOptions& options) {
                                 std::to_string(options.seed)));
     sample.addValue("--noise", "S", options.noise, number(0, 1),
                     withDefault("Standard deviation of the engine's noise, 1 = the value range",
-                                shortText(options.noise)));
+                                numberText(options.noise)));
     sample.addValue("--type", "TYPE", options.file.type, choice({"uint8", "uint16", "float32"}),
                     "Value type of a .raw: uint8, uint16 or float32 (default uint8);\n"
                     "a .vdb always holds floats");
     const glm::dvec3 spacing = options.file.spacing;
-    sample.addValue("--spacing", "X,Y,Z", options.file.spacing, positiveVector3(),
+    sample.addValue("--spacing", "X,Y,Z", options.file.spacing, voxelSpacing(),
                     withDefault("World units per voxel (.vdb)",
                                 joinNumbers({spacing.x, spacing.y, spacing.z}, ",")));
 }
 
-void runSynth(const SynthOptions& options, const Session& session) {
+void warnOfUnusedOptions(const CLI::App& app, const SynthOptions& options,
+                         ProgressDisplay& display) {
+    if (isGiven(app, "--noise") && options.name != "engine")
+        display.warn("--noise: has no effect on a volume other than engine");
+    if (isGiven(app, "--spacing") && lowerCase(options.output.extension().string()) != ".vdb")
+        display.warn("--spacing: has no effect without a .vdb output");
+}
+
+void runSynth(const CLI::App& app, const SynthOptions& options, const Session& session) {
     if (options.name.empty()) {
         std::string list;
         for (const std::string& name : analyticNames()) list += name + "\n";
@@ -73,6 +83,7 @@ void runSynth(const SynthOptions& options, const Session& session) {
     const AnalyticVolume volume = makeAnalytic(options.name, options.seed, options.noise);
     requireArgument(!options.output.empty(), "OUTPUT", "FILE (see 'deltasplat synth --help')");
     ProgressDisplay display(session.common.quiet);
+    warnOfUnusedOptions(app, options, display);
     writeAnalytic(volume, options.output, options.file, display.stage(0, 1));
 }
 
@@ -85,7 +96,7 @@ Subcommand addSynth(CLI::App& program) {
                                    "deltasplat synth engine engine_256x256x128_uint8.raw "
                                    "--dims 256x256x128 --noise 0.01"});
     declareOptions(app, *options);
-    return {&app, [options](const Session& session) { runSynth(*options, session); }};
+    return {&app, [&app, options](const Session& session) { runSynth(app, *options, session); }};
 }
 
 }  // namespace deltasplat

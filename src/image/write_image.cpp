@@ -5,7 +5,6 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <glm/gtc/type_ptr.hpp>
 #include <memory>
@@ -15,6 +14,8 @@
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "image/quantize.h"
+#include "lower_case.h"
+#include "printable.h"
 
 namespace deltasplat {
 namespace {
@@ -22,8 +23,7 @@ namespace {
 enum class Format { kExr, kPng };
 
 Format formatOf(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lowerCase(file.extension().string());
     if (extension == ".exr") return Format::kExr;
     if (extension == ".png") return Format::kPng;
     throw Error(ErrorCode::kUsage,
@@ -31,7 +31,8 @@ Format formatOf(const std::filesystem::path& file) {
                             ".exr or .png"));
 }
 
-void checkOptions(const std::filesystem::path& file, const ImageFileOptions& options) {
+void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
+                  const ImageFileOptions& options) {
     const Format format = formatOf(file);
     if (options.bits != 8 && options.bits != 16) {
         throw Error(ErrorCode::kUsage,
@@ -39,6 +40,12 @@ void checkOptions(const std::filesystem::path& file, const ImageFileOptions& opt
     }
     if (options.floatExr && format != Format::kExr) {
         throw Error(ErrorCode::kUsage, gotExpected("--float", file.string(), "an .exr file"));
+    }
+    if (format == Format::kPng && (size.x > kMaxPngSide || size.y > kMaxPngSide)) {
+        throw Error(
+            ErrorCode::kUsage,
+            gotExpected("--size", std::to_string(size.x) + "x" + std::to_string(size.y),
+                        "sides of at most " + std::to_string(kMaxPngSide) + " pixels in a .png"));
     }
 }
 
@@ -62,13 +69,14 @@ std::string encode(const std::filesystem::path& file, const char* formatName,
                    const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
     OIIO::Filesystem::IOVecOutput memory;
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(formatName);
-    if (!output) throw Error(ErrorCode::kOutput, file.string() + ": " + OIIO::geterror());
+    if (!output)
+        throw Error(ErrorCode::kOutput, file.string() + ": " + printable(OIIO::geterror()));
     output->threads(threadCount());
     const bool written = output->set_ioproxy(&memory) && output->open(file.string(), spec) &&
                          output->write_image(type, pixels) && output->close();
     if (!written) {
         throw Error(ErrorCode::kOutput,
-                    file.string() + ": cannot be encoded: " + output->geterror());
+                    file.string() + ": cannot be encoded: " + printable(output->geterror()));
     }
     const std::vector<unsigned char>& bytes = memory.buffer();
     return {bytes.begin(), bytes.end()};
@@ -100,14 +108,15 @@ std::string encodePng(const std::filesystem::path& file, const Image& image, OII
 
 }  // namespace
 
-void checkImageFile(const std::filesystem::path& file, const ImageFileOptions& options) {
-    checkOptions(file, options);
+void checkImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
+                    const ImageFileOptions& options) {
+    checkOptions(file, sizePixels, options);
     const AtomicFile probe(file);
 }
 
 void writeImage(const std::filesystem::path& file, const Image& image,
                 const ImageFileOptions& options) {
-    checkOptions(file, options);
+    checkOptions(file, image.size, options);
     if (image.size.x < 1 || image.size.y < 1) {
         const std::string got =
             std::to_string(image.size.x) + "x" + std::to_string(image.size.y) + " pixels";

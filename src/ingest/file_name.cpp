@@ -1,38 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/file_name.h"
 
-#include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <system_error>
 
 #include "deltasplat/error.h"
+#include "lower_case.h"
 
 namespace deltasplat {
-namespace {
-
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return text;
-}
-
-}  // namespace
 
 std::string lowerExtension(const std::filesystem::path& file) {
-    std::string last = lower(file.extension().string());
+    std::string last = lowerCase(file.extension().string());
     if (last != ".gz") return last;
-    return lower(file.stem().extension().string()) + last;
+    return lowerCase(file.stem().extension().string()) + last;
 }
 
 std::string nameWithoutExtensions(const std::filesystem::path& file) {
     const std::string name = file.filename().string();
     return name.substr(0, name.size() - lowerExtension(file).size());
-}
-
-std::string numberText(double value) {
-    char text[32];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 void requireRegularFile(const std::filesystem::path& file) {

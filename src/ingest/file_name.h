@@ -12,9 +12,6 @@ std::string lowerExtension(const std::filesystem::path& file);
 /// Returns the file's name without folder and without the extension that lowerExtension gives.
 std::string nameWithoutExtensions(const std::filesystem::path& file);
 
-/// Returns the shortest text that reads back as `value`.
-std::string numberText(double value);
-
 /// @throw Error(kInput) unless `file` exists and is a regular file
 void requireRegularFile(const std::filesystem::path& file);
 

@@ -12,9 +12,9 @@
 #include "deltasplat/error.h"
 #include "ingest/code_math.h"
 #include "ingest/code_tree.h"
-#include "ingest/file_name.h"
 #include "ingest/grid_values.h"
 #include "ingest/readers.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {
@@ -34,6 +34,9 @@ void settleNonFinite(Grid& grid, const GridCodesOptions& options) {
                  std::to_string(range.first.x()) + ", " + std::to_string(range.first.y()) + ", " +
                  std::to_string(range.first.z()) + ")",
              "finite values (--nan VALUE replaces them)");
+    }
+    if constexpr (std::is_same_v<typename Grid::ValueType, float>) {
+        requireFloatNan(*options.nanValue);
     }
     replaceNonFinite(grid.tree(), typename Grid::ValueType(*options.nanValue));
 }

@@ -57,12 +57,15 @@ bool isFinite(T value) {
     return true;
 }
 
-/// Calls body(begin, end) for runs of leaf numbers that together are 0..count, on all threads.
+/// How many leaves one thread takes at a time.
+inline constexpr std::size_t kLeafRun = 128;
+
+/// Calls body(run, begin, end) for runs of leaf numbers that together are 0..count, on all threads.
 template <typename Body>
 void forLeafRuns(std::size_t count, const Body& body) {
-    constexpr std::size_t kRun = 128;
-    parallelFor((count + kRun - 1) / kRun,
-                [&](std::size_t run) { body(run, run * kRun, std::min(count, (run + 1) * kRun)); });
+    parallelFor((count + kLeafRun - 1) / kLeafRun, [&](std::size_t run) {
+        body(run, run * kLeafRun, std::min(count, (run + 1) * kLeafRun));
+    });
 }
 
 /// Calls use(iterator) for every active tile of `tree`, of any level.
@@ -79,7 +82,7 @@ GridRange<typename Tree::ValueType> rangeOfTree(Tree& tree) {
     using Range = GridRange<typename Tree::ValueType>;
     std::vector<typename Tree::LeafNodeType*> leaves;
     tree.getNodes(leaves);
-    std::vector<Range> ranges(leaves.size() / 128 + 1);
+    std::vector<Range> ranges(leaves.size() / kLeafRun + 1);
     forLeafRuns(leaves.size(), [&](std::size_t run, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel) {

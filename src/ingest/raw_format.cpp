@@ -9,6 +9,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/file_name.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {

@@ -104,6 +104,7 @@ void settleNonFinite(const RawFile& file, RawRange& range, std::optional<double>
                             placeText(file.layout.dims, range.firstNonFinite),
                         "finite values (--nan VALUE replaces them)"));
     }
+    if (file.layout.type == RawType::kFloat32) requireFloatNan(*nanValue);
     RawRange replaced;
     replaced.min = replaced.max = *nanValue;
     replaced.finite = range.nonFinite;

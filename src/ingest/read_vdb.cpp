@@ -3,13 +3,14 @@
 
 #include <cmath>
 #include <glm/matrix.hpp>
+#include <optional>
 #include <utility>
 
 #include "deltasplat/error.h"
-#include "ingest/file_name.h"
 #include "ingest/grid_codes.h"
 #include "ingest/readers.h"
 #include "ingest/vdb_file.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {
@@ -108,23 +109,38 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
     return volume;
 }
 
+// Reads a grid, or tells the visitor why not.
+std::optional<Volume> tryGrid(const VdbFile& file, const VdbGrid& grid, const std::string& where,
+                              const ReadOptions& options, const VolumeVisitor& visitor,
+                              const Listener& listener) {
+    try {
+        return readGrid(file, grid, where, options, listener);
+    } catch (const Error& error) {
+        if (!visitor.invalid || error.code() != ErrorCode::kInput) throw;
+        visitor.invalid(error);
+        return {};
+    }
+}
+
 }  // namespace
 
-std::vector<Volume> readVdb(const std::filesystem::path& path, const ReadOptions& options, bool all,
-                            const Listener& listener) {
+void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool all,
+             const VolumeVisitor& visitor, const Listener& listener) {
     const VdbFile file(path);
     const auto chosen = chooseGrids(path.string(), file.grids(), options.gridName, all);
-    std::vector<Volume> volumes;
-    for (const VdbGrid* grid : chosen) {
-        const double done = double(volumes.size()) / double(chosen.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
         Listener part = listener;
-        part.progress = [&, done](double share) {
-            listener.report(done + share / double(chosen.size()));
+        part.progress = [&, i](double share) {
+            listener.report((double(i) + share) / double(chosen.size()));
         };
-        const std::string where = path.string() + ": grid \"" + grid->name + "\"";
-        volumes.push_back(readGrid(file, *grid, where, options, part));
+        const std::string where = path.string() + ": grid \"" + chosen[i]->name + "\"";
+        auto volume = tryGrid(file, *chosen[i], where, options, visitor, part);
+        if (volume && visitor.volume) visitor.volume(std::move(*volume));
     }
-    return volumes;
+    if (!all || !options.gridName.empty() || !visitor.other) return;
+    for (const VdbGrid& grid : file.grids()) {
+        if (!grid.isScalar()) visitor.other(grid.name, grid.type);
+    }
 }
 
 }  // namespace deltasplat

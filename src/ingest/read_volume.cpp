@@ -2,33 +2,43 @@
 #include "deltasplat/ingest/read_volume.h"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "deltasplat/error.h"
 #include "ingest/file_name.h"
 #include "ingest/readers.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {
 
-std::vector<Volume> read(const std::filesystem::path& file, const ReadOptions& options, bool all,
-                         const Listener& listener) {
+void read(const std::filesystem::path& file, const ReadOptions& options, bool all,
+          const VolumeVisitor& visitor, const Listener& listener) {
     if (options.nanValue && !std::isfinite(*options.nanValue)) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--nan", numberText(*options.nanValue), "a finite number"));
     }
     requireRegularFile(file);
     const std::string extension = lowerExtension(file);
-    std::vector<Volume> volumes;
     if (extension == ".vdb") {
-        volumes = readVdb(file, options, all, listener);
+        readVdb(file, options, all, visitor, listener);
     } else if (extension == ".raw" || extension == ".raw.gz") {
-        volumes.push_back(readRaw(file, options, listener));
+        Volume volume = readRaw(file, options, listener);
+        if (visitor.volume) visitor.volume(std::move(volume));
     } else {
         throw Error(ErrorCode::kInput, gotExpected(file.string(), "extension \"" + extension + "\"",
                                                    ".raw, .raw.gz or .vdb"));
     }
     listener.report(1);
+}
+
+std::vector<Volume> collect(const std::filesystem::path& file, const ReadOptions& options, bool all,
+                            const Listener& listener) {
+    std::vector<Volume> volumes;
+    VolumeVisitor visitor;
+    visitor.volume = [&](Volume volume) { volumes.push_back(std::move(volume)); };
+    read(file, options, all, visitor, listener);
     return volumes;
 }
 
@@ -36,12 +46,17 @@ std::vector<Volume> read(const std::filesystem::path& file, const ReadOptions& o
 
 Volume readVolume(const std::filesystem::path& file, const ReadOptions& options,
                   const Listener& listener) {
-    return std::move(read(file, options, false, listener).front());
+    return std::move(collect(file, options, false, listener).front());
 }
 
 std::vector<Volume> readAllVolumes(const std::filesystem::path& file, const ReadOptions& options,
                                    const Listener& listener) {
-    return read(file, options, true, listener);
+    return collect(file, options, true, listener);
+}
+
+void forEachVolume(const std::filesystem::path& file, const ReadOptions& options,
+                   const VolumeVisitor& visitor, const Listener& listener) {
+    read(file, options, true, visitor, listener);
 }
 
 void requireFiniteSpan(const std::string& where, double low, double high) {
@@ -49,6 +64,12 @@ void requireFiniteSpan(const std::string& where, double low, double high) {
     throw Error(ErrorCode::kInput,
                 gotExpected(where, "values from " + numberText(low) + " to " + numberText(high),
                             "a range that a double can hold"));
+}
+
+void requireFloatNan(double nanValue) {
+    if (std::abs(nanValue) <= double(std::numeric_limits<float>::max())) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("--nan", numberText(nanValue), "a value that is finite as float"));
 }
 
 void summarize(Volume& volume) {

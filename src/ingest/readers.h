@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "deltasplat/ingest/read_volume.h"
 
@@ -13,12 +12,16 @@ namespace deltasplat {
 Volume readRaw(const std::filesystem::path& file, const ReadOptions& options,
                const Listener& listener);
 
-/// Reads one scalar grid of a .vdb file, or with `all` (and no grid name) every one; as readVolume.
-std::vector<Volume> readVdb(const std::filesystem::path& file, const ReadOptions& options, bool all,
-                            const Listener& listener);
+/// Reads one scalar grid of a .vdb file, or with `all` (and no grid name) every one; as
+/// forEachVolume.
+void readVdb(const std::filesystem::path& file, const ReadOptions& options, bool all,
+             const VolumeVisitor& visitor, const Listener& listener);
 
 /// @throw Error(kInput) if `high - low` is no finite number: no code book spans it
 void requireFiniteSpan(const std::string& where, double low, double high);
+
+/// @throw Error(kUsage) if `nanValue`, which is to replace a value, is no finite float
+void requireFloatNan(double nanValue);
 
 /// Sets activeCount, valueMin and valueMax from the histogram and the code book.
 void summarize(Volume& volume);

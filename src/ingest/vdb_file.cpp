@@ -15,6 +15,7 @@
 #include "ingest/vdb_stream.h"
 #include "ingest/vdb_walk.h"
 #include "memory.h"
+#include "printable.h"
 
 namespace deltasplat {
 namespace {
@@ -41,14 +42,6 @@ void parseType(const std::string& stored, VdbGrid& grid) {
         type = type.substr(kFront.size(), type.size() - kFront.size() - kBack.size());
     }
     grid.type = type;
-}
-
-// Names go into messages, which are one line.
-std::string printable(std::string text) {
-    for (char& c : text) {
-        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
-    }
-    return text;
 }
 
 VdbGrid readDescriptor(VdbBytes& bytes, bool hasOffsets) {

@@ -150,8 +150,11 @@ class TreeBuilder {
 
 std::string readText(const std::filesystem::path& file) {
     std::error_code ignored;
-    std::ifstream in(file, std::ios::binary);
-    if (!in || std::filesystem::is_directory(file, ignored)) {
+    // Looked at first, because opening a pipe waits for who writes to it.
+    const bool regular = std::filesystem::is_regular_file(file, ignored);
+    std::ifstream in;
+    if (regular) in.open(file, std::ios::binary);
+    if (!in.is_open()) {
         throw Error(ErrorCode::kInput, gotExpected(file.string(), "no file that can be read",
                                                    "a transfer function (ParaView's JSON)"));
     }

@@ -5,7 +5,6 @@
 #include <openvdb/tools/Prune.h>
 
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -13,7 +12,9 @@
 #include <vector>
 
 #include "deltasplat/error.h"
+#include "lower_case.h"
 #include "memory.h"
+#include "number_text.h"
 #include "output_file.h"
 #include "parallel.h"
 #include "write_vdb.h"
@@ -106,8 +107,13 @@ openvdb::FloatGrid::Ptr sampleGrid(const AnalyticVolume& volume, const AnalyticF
     const glm::ivec3 leaves = (options.dims - 1) / kEdge + 1;
     auto grid = openvdb::FloatGrid::create(0.0f);
     // One layer of leaves at a time keeps the work in large pieces and the list of them short.
-    std::vector<std::unique_ptr<Leaf>> layer(std::size_t(leaves.y) * std::size_t(leaves.z));
+    const std::size_t layerLeaves = std::size_t(leaves.y) * std::size_t(leaves.z);
+    // What a layer takes is known only when it is there, so room is asked for one full layer more.
+    constexpr double kLeafBytes = sizeof(Leaf) + Leaf::SIZE * sizeof(float) + sizeof(void*);
+    requireMemory("--dims", kLeafBytes * double(layerLeaves));
+    std::vector<std::unique_ptr<Leaf>> layer(layerLeaves);
     for (int x = 0; x < leaves.x; ++x) {
+        requireMemory("--dims", kLeafBytes * double(layerLeaves));
         parallelFor(layer.size(), [&](std::size_t i) {
             const int y = int(i / std::size_t(leaves.z)), z = int(i % std::size_t(leaves.z));
             layer[i] = sampleLeaf(volume, {x * kEdge, y * kEdge, z * kEdge}, options.dims);
@@ -136,29 +142,20 @@ void writeGrid(const AnalyticVolume& volume, const std::filesystem::path& file,
     writeVdb(file, {grid});
 }
 
-template <typename Vec>
-std::string joined(const Vec& v, const char* separator) {
-    const auto text = [](auto number) {
-        std::string digits = std::to_string(number);
-        if (digits.find('.') == std::string::npos) return digits;
-        digits.erase(digits.find_last_not_of('0') + 1);
-        if (digits.back() == '.') digits.pop_back();
-        return digits;
-    };
-    return text(v.x) + separator + text(v.y) + separator + text(v.z);
-}
-
 void checkOptions(const AnalyticFileOptions& options) {
     const glm::ivec3& dims = options.dims;
     if (dims.x < 1 || dims.y < 1 || dims.z < 1) {
         throw Error(ErrorCode::kUsage,
-                    gotExpected("--dims", joined(dims, "x"), "three numbers of at least 1"));
+                    gotExpected("--dims",
+                                std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
+                                    std::to_string(dims.z),
+                                "three numbers of at least 1"));
     }
     for (int axis = 0; axis < 3; ++axis) {
         const double spacing = options.spacing[axis];
         if (spacing > 0 && std::isfinite(spacing)) continue;
-        throw Error(ErrorCode::kUsage, gotExpected("--spacing", joined(options.spacing, ","),
-                                                   "three numbers above 0"));
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--spacing", numberText(options.spacing), "three numbers above 0"));
     }
 }
 
@@ -167,8 +164,7 @@ void checkOptions(const AnalyticFileOptions& options) {
 void writeAnalytic(const AnalyticVolume& volume, const std::filesystem::path& file,
                    const AnalyticFileOptions& options, const Listener& listener) {
     checkOptions(options);
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lowerCase(file.extension().string());
     if (extension == ".raw") {
         writeRaw(volume, file, options, listener);
     } else if (extension == ".vdb") {

@@ -60,6 +60,16 @@ deltasplat_bad_input(grid_type
     "mixed.vdb: got grid \"velocity\" of type vec3s; expected ${scalar}"
     mixed.vdb --grid velocity)
 
+foreach(file nan.vdb nan_4x4x4_float32.raw)
+    deltasplat_cli_test(input.nan_beyond_float.${file} EXIT 2 ARGS info ${file} --nan 1e300
+        STDERR "deltasplat: --nan: got 1e+300; expected a value that is finite as float")
+endforeach()
+
+# One grid that is invalid does not keep the others from being told.
+deltasplat_cli_test(input.one_bad_grid EXIT 3 ARGS info one_bad.vdb
+    STDERR "deltasplat: one_bad.vdb: grid \"density\": got 2 NaN or infinite active values, the first at (1, 2, 3); expected finite values (--nan VALUE replaces them)"
+    STDOUT_MATCHES "grid +smoke.*not read +velocity .vec3s.")
+
 # What looks alike and is fine.
 deltasplat_cli_test(input.fine.empty ARGS render empty.vdb -o out.exr CREATES out.exr
     STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels")
@@ -78,6 +88,8 @@ function(deltasplat_bad_transfer_function name message)
                         ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_${name}.json)
 endfunction()
 deltasplat_bad_transfer_function(missing "tf_missing.json: got no file that can be read; expected a transfer function (ParaView's JSON)")
+deltasplat_cli_test(input.tf.device EXIT 3 ARGS render cube_8x8x8_uint8.raw -o out.exr --tf /dev/zero
+    STDERR "deltasplat: /dev/zero: got no file that can be read; expected a transfer function (ParaView's JSON)")
 deltasplat_cli_test(input.tf.no_json EXIT 3
     ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_no_json.json
     STDERR_MATCHES "deltasplat: tf_no_json.json:5: got .*; expected valid JSON")

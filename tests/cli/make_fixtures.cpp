@@ -86,6 +86,7 @@ void writeVdbFiles() {
     writeVdb("points.vdb", {points()});
     writeVdb("frustum.vdb", {frustum()});
     writeVdb("nan.vdb", {notNumbers()});
+    writeVdb("one_bad.vdb", {notNumbers(), vectors(), ball("smoke")});
     const std::string whole = readBytes("ball.vdb");
     writeBytes("cut.vdb", whole.substr(0, whole.size() / 2));
     writeBytes("head_only.vdb", whole.substr(0, 20));

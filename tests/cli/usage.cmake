@@ -83,6 +83,7 @@ deltasplat_refusal(background_alpha
 deltasplat_refusal(threads "--threads: got -1; expected a whole number from 0 to 1024" --threads -1)
 deltasplat_cli_test(usage.simd EXIT 2 ARGS render ${cube} -o out.exr --simd MMX
     STDERR_MATCHES "deltasplat: SIMD level: got MMX; expected one of auto, .*")
+deltasplat_refusal(control_characters "Unknown option '--a?b'." "--a\nb")
 deltasplat_refusal(nan "--nan: got inf; expected a finite number" --nan inf)
 
 # Words.
@@ -128,7 +129,9 @@ deltasplat_cli_test(usage.no_dims EXIT 2 ARGS ${raw}
 deltasplat_cli_test(usage.no_type EXIT 2 ARGS info plain.raw --dims 8x8x8
     STDERR "deltasplat: plain.raw: got no value type; expected --type TYPE, or a name such as volume_256x256x128_uint8.raw")
 deltasplat_cli_test(usage.unknown_type EXIT 2 ARGS info plain.raw --dims 8x8x8 --type uint9
-    STDERR "deltasplat: --type: got uint9; expected one of uint8, int8, uint16, int16, uint32, int32, float32, float64")
+    STDERR "deltasplat: --type: got uint9; expected uint8, int8, uint16, int16, uint32, int32, float32 or float64")
+deltasplat_cli_test(usage.unknown_type_of_vdb EXIT 2 ARGS info ball.vdb --type uint9
+    STDERR "deltasplat: --type: got uint9; expected uint8, int8, uint16, int16, uint32, int32, float32 or float64")
 foreach(dims 0x8x8 -8x8x8 3000000000x3000000000x3000000000)
     deltasplat_cli_test(usage.dims_${dims} EXIT 2 ARGS ${raw} --dims ${dims}
         STDERR "deltasplat: --dims: got ${dims}; expected each 1..1073741824")
@@ -139,12 +142,46 @@ foreach(dims 8x8 8x8x8x8 8x8xy 8x8x99999999999999999999)
 endforeach()
 deltasplat_cli_test(usage.dims_product EXIT 2 ARGS ${raw} --dims 1000000000x1000000000x1000000000
     STDERR "deltasplat: --dims: got 1000000000x1000000000x1000000000 uint8; expected at most 9223372036854775807 bytes")
-deltasplat_cli_test(usage.spacing EXIT 2 ARGS ${raw} --dims 8x8x8 --spacing 1,0,1
-    STDERR "deltasplat: --spacing: got 1,0,1; expected X,Y,Z, three finite numbers greater than 0")
+foreach(spacing 1,0,1 1e200,1e200,1e200 1,1e-110,1 1,1,-1)
+    deltasplat_cli_test(usage.spacing_${spacing} EXIT 2
+        ARGS ${raw} --dims 8x8x8 --spacing=${spacing}
+        STDERR "deltasplat: --spacing: got ${spacing}; expected X,Y,Z, three numbers from 1e-30 to 1e+30")
+endforeach()
+foreach(spacing 1e-30 1e30)
+    deltasplat_cli_test(spacing_${spacing} CREATES out.exr
+        ARGS render ${cube} -o out.exr --size 8x8 --spacing ${spacing},${spacing},${spacing})
+endforeach()
 deltasplat_cli_test(usage.skip_bytes EXIT 2 ARGS ${raw} --dims 8x8x8 --skip-bytes -1
     STDERR "deltasplat: --skip-bytes: got -1; expected a whole number of at least 0")
 
+# Options that have nothing to do here are said to have no effect.
+function(deltasplat_unused name option reason)
+    deltasplat_cli_test(unused.${name} STDERR "deltasplat: warning: ${option}: has no effect ${reason}"
+                        ${ARGN})
+endfunction()
+deltasplat_unused(grid --grid "without a .vdb input" ARGS info ${cube} --grid foo
+    STDOUT_MATCHES uint8)
+deltasplat_unused(level_set --level-set "without a .vdb input" ARGS info ${cube} --level-set fog
+    STDOUT_MATCHES uint8)
+foreach(option dims=8x8x8 type=uint8 endian=big spacing=1,1,2 origin=1,1,1 skip-bytes=8)
+    string(REGEX REPLACE "=.*" "" name ${option})
+    deltasplat_unused(${name} --${name} "without a .raw or .raw.gz input"
+        ARGS info ball.vdb --${option} STDOUT_MATCHES density)
+endforeach()
+deltasplat_cli_test(used.both ARGS info ball.vdb ${cube} --grid density --spacing 1,1,2
+    STDOUT_MATCHES "voxel size +1 x 1 x 2")
+deltasplat_unused(bits --bits "without a .png picture"
+    ARGS render ${cube} -o out.exr --size 8x8 --bits 16 CREATES out.exr)
+deltasplat_unused(view --view "with --direction" CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --view front --direction 1,0,0)
+deltasplat_unused(noise --noise "on a volume other than engine"
+    ARGS synth slab out.vdb --noise 0.1 CREATES out.vdb)
+deltasplat_unused(synth_spacing --spacing "without a .vdb output"
+    ARGS synth slab out.raw --spacing 1,1,2 CREATES out.raw)
+
 # Outputs that cannot be meant.
+deltasplat_cli_test(usage.png_side EXIT 2 ARGS render ${cube} -o out.png --size 1000001x1
+    STDERR "deltasplat: --size: got 1000001x1; expected sides of at most 1000000 pixels in a .png")
 deltasplat_cli_test(usage.picture_format EXIT 2 ARGS render ${cube} -o out.jpg
     STDERR "deltasplat: out.jpg: got extension \".jpg\"; expected .exr or .png")
 deltasplat_cli_test(usage.picture_no_format EXIT 2 ARGS render ${cube} -o out
@@ -167,6 +204,11 @@ deltasplat_cli_test(usage.synth_dims EXIT 2 ARGS synth cloud out.raw --dims 0x1x
 deltasplat_cli_test(usage.synth_absurd EXIT 2
     ARGS synth cloud out.raw --dims 2147483647x2147483647x2147483647
     STDERR_MATCHES "deltasplat: --dims: needs [0-9.]+ .iB of memory; expected at most [0-9.]+ .iB, which is available")
+deltasplat_cli_test(usage.synth_absurd_vdb EXIT 2
+    ARGS synth cloud out.vdb --dims 1x2147483647x2147483647
+    STDERR_MATCHES "deltasplat: --dims: needs [0-9.]+ .iB of memory; expected at most [0-9.]+ .iB, which is available")
+deltasplat_cli_test(usage.synth_spacing EXIT 2 ARGS synth cloud out.vdb --spacing 1,1,1e31
+    STDERR "deltasplat: --spacing: got 1,1,1e31; expected X,Y,Z, three numbers from 1e-30 to 1e+30")
 deltasplat_cli_test(usage.synth_type EXIT 2 ARGS synth cloud out.raw --type int8
     STDERR "deltasplat: --type: got int8; expected uint8, uint16 or float32")
 deltasplat_cli_test(usage.synth_noise EXIT 2 ARGS synth engine out.raw --noise 2

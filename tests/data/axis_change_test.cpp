@@ -13,6 +13,7 @@ namespace deltasplat {
 namespace {
 
 const std::filesystem::path kData = DELTASPLAT_SHARED_DATA;
+const std::filesystem::path kTransferFunctions = kData / "../bench";
 
 struct Scene {
     const char* file;
@@ -35,7 +36,7 @@ RenderResult renderTurned(const Volume& volume, const Scene& scene, double azimu
                           double elevation) {
     RenderOptions options;
     options.optics.transferFunction =
-        readTransferFunction(kData / "../bench" / scene.transferFunction);
+        readTransferFunction(kTransferFunctions / scene.transferFunction);
     options.camera.azimuthDegrees = azimuth;
     options.camera.elevationDegrees = elevation;
     return render(volume, options);
@@ -50,7 +51,9 @@ double psnr(const Image& a, const Image& b) {
 }
 
 TEST_P(AxisChange, PicturesOnBothSidesOfFortyFiveDegreesAgree) {
-    if (!exists(kData)) GTEST_SKIP() << "no folder " << kData;
+    for (const std::filesystem::path& folder : {kData, kTransferFunctions}) {
+        if (!exists(folder)) GTEST_SKIP() << "no folder " << folder;
+    }
     const Volume volume = readVolume(kData / GetParam().file);
     for (const bool turn : {true, false}) {
         const auto at = [&](double degrees) {

@@ -3,12 +3,15 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "deltasplat/error.h"
+#include "deltasplat/render.h"
 #include "ingest/code_tree.h"
 
 namespace deltasplat::fuzz {
@@ -31,6 +34,18 @@ void check(const Volume& volume) {
             "box holds all active voxels");
 }
 
+// Renders what is small enough to be done in a moment.
+void renderSmall(const Volume& volume) {
+    const glm::ivec3 dims = volume.box.dims();
+    const int longest = std::max({dims.x, dims.y, dims.z});
+    if (volume.activeCount >= 1'000'000 || longest >= 256) return;
+    RenderOptions options;
+    options.camera.sizePixels = {8, 8};
+    options.optics.transferFunction = defaultRamp(volume);
+    const RenderResult result = render(volume, options);
+    for (const float value : result.image.rgba) require(std::isfinite(value), "finite pixels");
+}
+
 }  // namespace
 
 std::string fileWith(const std::string& extension, const std::uint8_t* data, std::size_t size) {
@@ -44,7 +59,10 @@ std::string fileWith(const std::string& extension, const std::uint8_t* data, std
 
 void readAndCheck(const std::string& file, const ReadOptions& options) {
     try {
-        for (const Volume& volume : readAllVolumes(file, options)) check(volume);
+        for (const Volume& volume : readAllVolumes(file, options)) {
+            check(volume);
+            renderSmall(volume);
+        }
     } catch (const Error& error) {
         const std::string line = error.what();
         require(!line.empty() && line.find('\n') == std::string::npos, "errors are one line");

@@ -20,8 +20,8 @@ std::vector<std::string> seeds();
 /// Writes the bytes to a file of this process, always the same, and returns its path.
 std::string fileWith(const std::string& extension, const std::uint8_t* data, std::size_t size);
 
-/// Reads every volume of the file; a refusal is fine. Aborts if a volume contradicts itself or if
-/// anything but an Error comes out.
+/// Reads every volume of the file and renders the small ones; a refusal is fine. Aborts if a volume
+/// contradicts itself, if a pixel is no finite number or if anything but an Error comes out.
 void readAndCheck(const std::string& file, const ReadOptions& options);
 
 }  // namespace deltasplat::fuzz

@@ -281,13 +281,13 @@ TEST(WriteImage, NoticesAFullDisk) {
 
 TEST(CheckImageFile, AcceptsWhatCanBeWrittenAndLeavesNothing) {
     const test::TempFolder folder;
-    for (const char* name : {"a.exr", "a.png", "a.PNG"}) checkImageFile(folder / name, {});
+    for (const char* name : {"a.exr", "a.png", "a.PNG"}) checkImageFile(folder / name, {8, 8}, {});
     EXPECT_EQ(folder.count(), 0);
 }
 
 TEST(CheckImageFile, RefusesWhatCannot) {
     const auto check = [](const fs::path& file, const ImageFileOptions& options) {
-        return errorOf([&] { checkImageFile(file, options); });
+        return errorOf([&] { checkImageFile(file, {8, 8}, options); });
     };
     EXPECT_EQ(check("out.gif", {}), "2: out.gif: got extension \".gif\"; expected .exr or .png");
     EXPECT_EQ(check("out", {}), "2: out: got extension \"\"; expected .exr or .png");

@@ -22,11 +22,16 @@ struct ImageFileOptions {
     std::vector<std::pair<std::string, std::string>> metadata;
 };
 
-/// Throws unless `writeImage` could write this file name with these options: asked before hours of
-/// work.
-/// @throw Error(kUsage) for an extension or a bit depth that is not supported, or floats in a .png;
+/// The most pixels that a side of a .png may have.
+inline constexpr int kMaxPngSide = 1'000'000;
+
+/// Throws unless `writeImage` could write a picture of this size under this file name with these
+/// options: asked before hours of work.
+/// @throw Error(kUsage) for an extension, a size or a bit depth that is not supported, or floats in
+/// a .png;
 ///        Error(kOutput) if the folder does not exist or cannot be written to
-void checkImageFile(const std::filesystem::path& file, const ImageFileOptions& options);
+void checkImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
+                    const ImageFileOptions& options);
 
 /// Writes `.exr` (scene-linear, premultiplied, ZIP compression) or `.png` (sRGB, straight alpha,
 /// rounded to nearest; clear where alpha is 0), by extension in any case. The file appears under

@@ -10,7 +10,8 @@ namespace deltasplat {
 using Code = std::uint16_t;
 inline constexpr int kCodeCount = 65536;
 
-/// Maps codes to data values and back. Every kind is strictly increasing in the code.
+/// Maps codes to data values and back. Values never decrease as the code grows; two
+/// codes may have equal values: the half zeros, and all codes of a linear book with step 0.
 struct CodeBook {
     enum class Kind {
         kInteger,  ///< value = offset + code: exact for integers that span at most 65536 values

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "deltasplat/error.h"
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/progress.h"
 
@@ -43,8 +45,22 @@ struct ReadOptions {
 Volume readVolume(const std::filesystem::path& file, const ReadOptions& options = {},
                   const Listener& listener = {});
 
-/// Reads every scalar grid of a file, as `info` lists them: one volume for raw; a .vdb's grids in
-/// file order, or only `options.gridName` if that is not empty.
+/// What forEachVolume hands over. Each member may be left empty.
+struct VolumeVisitor {
+    std::function<void(Volume)> volume;  ///< a scalar grid
+    /// A scalar grid that is no valid volume; the others follow. Empty: the error is thrown.
+    std::function<void(const Error&)> invalid;
+    /// Name and value type of a grid that is not scalar.
+    std::function<void(const std::string& name, const std::string& type)> other;
+};
+
+/// Reads the scalar grids of a file one after the other, so that only one is in memory: one volume
+/// for raw; a .vdb's grids in file order, or only `options.gridName` if that is not empty.
+/// @throw as readVolume, for what concerns the whole file
+void forEachVolume(const std::filesystem::path& file, const ReadOptions& options,
+                   const VolumeVisitor& visitor, const Listener& listener = {});
+
+/// Reads every scalar grid of a file, as forEachVolume finds them.
 /// @throw as readVolume
 std::vector<Volume> readAllVolumes(const std::filesystem::path& file,
                                    const ReadOptions& options = {}, const Listener& listener = {});
