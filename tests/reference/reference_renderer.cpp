@@ -87,6 +87,7 @@ class SliceView {
     // Beyond five standard deviations nothing is left.
     double reachVoxels() const { return 5 * sigma_ * std::sqrt(1 + du_ * du_ + dv_ * dv_); }
 
+    int firstSlice() const { return volume_.first[s_]; }
     int first(int k) const { return volume_.first[k == 0 ? u_ : v_]; }
     int count(int k) const { return volume_.dims[k == 0 ? u_ : v_]; }
 
@@ -191,14 +192,14 @@ Samples sampledSlice(const SliceView& slices, int slice, int resolution) {
     return samples;
 }
 
-// Composites all slices at the samples of the plane of slice 0 that any of them reaches.
+// Composites all slices at the samples of the plane of the first slice that any of them reaches.
 Samples compositedPlane(const SliceView& slices, int resolution) {
     std::vector<Samples> sheets;
     std::array<int, 2> low{1 << 30, 1 << 30}, high{-(1 << 30), -(1 << 30)};
     for (int n = 0; n < slices.sliceCount(); ++n) {
         const int slice = slices.sliceFromFront(n);
         sheets.push_back(sampledSlice(slices, slice, resolution));
-        const std::array<double, 2> moved = slices.slid({0, 0}, -slice);
+        const std::array<double, 2> moved = slices.slid({0, 0}, slices.firstSlice() - slice);
         for (int k = 0; k < 2; ++k) {
             const double first = sheets.back().first[k] + resolution * moved[k];
             low[k] = std::min(low[k], int(std::floor(first)));
@@ -209,7 +210,8 @@ Samples compositedPlane(const SliceView& slices, int resolution) {
     for (int b = low[1]; b <= high[1]; ++b) {
         for (int a = low[0]; a <= high[0]; ++a) {
             for (int n = 0; n < slices.sliceCount(); ++n) {
-                const std::array<double, 2> moved = slices.slid({0, 0}, slices.sliceFromFront(n));
+                const std::array<double, 2> moved =
+                    slices.slid({0, 0}, slices.sliceFromFront(n) - slices.firstSlice());
                 putBehind(plane.at(a, b), filtered(sheets[n], a + resolution * moved[0],
                                                    b + resolution * moved[1], 1, tent));
             }
@@ -242,7 +244,7 @@ Picture renderSampled(const Volume& volume, const View& view, double sigma, int 
     Picture picture(std::size_t(view.width) * view.height);
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x) {
-            const std::array<double, 2> p = slices.crossing(x, y, 0);
+            const std::array<double, 2> p = slices.crossing(x, y, slices.firstSlice());
             Rgba rgba = filtered(plane, p[0] * resolution, p[1] * resolution, 2, catmullRom);
             for (double& value : rgba) value = std::max(value, 0.0);
             rgba[3] = std::min(rgba[3], 1.0);
