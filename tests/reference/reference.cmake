@@ -1,1 +1,1 @@
-deltasplat_test(reference / reference_renderer_test.cpp SOURCES reference / reference_renderer.cpp)
+deltasplat_test(reference/reference_renderer_test.cpp SOURCES reference/reference_renderer.cpp)
