@@ -87,7 +87,6 @@ class SliceView {
     // Beyond five standard deviations nothing is left.
     double reachVoxels() const { return 5 * sigma_ * std::sqrt(1 + du_ * du_ + dv_ * dv_); }
 
-    int firstSlice() const { return volume_.first[s_]; }
     int first(int k) const { return volume_.first[k == 0 ? u_ : v_]; }
     int count(int k) const { return volume_.dims[k == 0 ? u_ : v_]; }
 
