@@ -13,11 +13,11 @@ cmake --preset release </dev/null
 cmake --build --preset release --target deltasplat_tool
 
 deltasplat=build/release/bin/deltasplat
-volume=$folder/engine_128x128x128_uint8.raw
+volume=$folder/engine_256x256x256_uint8.raw
 mkdir -p "$folder"
-"$deltasplat" synth engine "$volume" --dims 128x128x128
+"$deltasplat" synth engine "$volume" --dims 256x256x256 -q
 "$deltasplat" info "$volume"
-"$deltasplat" render "$volume" -o "$folder/engine.png" --size 800x800 \
-    --view iso --tf examples/engine.json --background 0.02,0.02,0.03
+"$deltasplat" render "$volume" -o "$folder/engine.png" --size 800x800 --view iso \
+    --tf examples/engine.json --sigma 0.6 --resolution 2 --background 0.02,0.02,0.03 -q
 
 echo "The picture is $(realpath "$folder/engine.png")"

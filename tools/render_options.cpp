@@ -39,8 +39,8 @@ void addCameraOptions(CLI::App& app, RenderCommand& command) {
     group.addValue("--projection", "ortho", command.projection, choice({"ortho"}),
                    withDefault("Parallel lines of sight", command.projection));
     group.addValue("--view", "NAME", camera.view, anyText(),
-                   withDefault("front back left right top bottom or iso; front looks\n"
-                               "along -z with y up",
+                   withDefault("Where the camera is, y up: front (+z) back (-z) right (+x)\n"
+                               "left (-x) top (+y) bottom (-y) or iso (+x +y +z)",
                                camera.view));
     group.addValue("--azimuth", "DEG", camera.azimuthDegrees, number(),
                    withDefault("Turns the camera to its right, about the up axis",

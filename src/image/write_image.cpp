@@ -90,8 +90,8 @@ std::string encodeExr(const std::filesystem::path& file, const Image& image,
     spec.attribute("oiio:ColorSpace", "Linear");
     // Without a date OpenImageIO stores the clock time (as capDate).
     spec.attribute("DateTime", "");
-    setMatrix(spec, "worldToCamera", options.cameraFromWorld);
-    setMatrix(spec, "worldToNDC", options.ndcFromWorld);
+    if (options.cameraFromWorld) setMatrix(spec, "worldToCamera", *options.cameraFromWorld);
+    if (options.ndcFromWorld) setMatrix(spec, "worldToNDC", *options.ndcFromWorld);
     return encode(file, "openexr", spec, OIIO::TypeFloat,
                   finiteValues(image, options.floatExr).data());
 }

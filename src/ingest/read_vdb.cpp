@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <openvdb/Grid.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
 #include <optional>
@@ -128,6 +129,14 @@ void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool
              const VolumeVisitor& visitor, const Listener& listener) {
     const VdbFile file(path);
     const auto chosen = chooseGrids(path.string(), file.grids(), options.gridName, all);
+    if (!all && options.gridName.empty()) {
+        const auto scalars = std::count_if(file.grids().begin(), file.grids().end(),
+                                           [](const VdbGrid& grid) { return grid.isScalar(); });
+        if (scalars > 1) {
+            listener.warn(path.string() + ": reading grid \"" + chosen[0]->name +
+                          "\", the first of " + std::to_string(scalars) + " scalar grids");
+        }
+    }
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         Listener part = listener;
         part.progress = [&, i](double share) {

@@ -142,7 +142,7 @@ TEST(WriteImage, ExrStoresMatricesForRowVectors) {
     ASSERT_EQ(bytes.size(), sizeof stored);
     std::memcpy(stored, bytes.data(), sizeof stored);
     const glm::dvec4 world(2, -3, 5, 1);
-    const glm::dvec4 camera = options.cameraFromWorld * world;
+    const glm::dvec4 camera = *options.cameraFromWorld * world;
     for (int column = 0; column < 4; ++column) {
         double sum = 0;
         for (int row = 0; row < 4; ++row) sum += world[row] * stored[row][column];
@@ -156,6 +156,14 @@ TEST(WriteImage, ExrStoresMatricesForRowVectors) {
     EXPECT_EQ(stored[3][1], 7);
 }
 
+TEST(WriteImage, ExrWithoutACameraHasNoMatrices) {
+    const test::TempFolder folder;
+    writeImage(folder / "out.exr", randomImage({4, 4}), {});
+    const auto attributes = exrAttributes(readBytes(folder / "out.exr"));
+    EXPECT_EQ(attributes.count("worldToCamera"), 0u);
+    EXPECT_EQ(attributes.count("worldToNDC"), 0u);
+}
+
 TEST(WriteImage, OpenImageIoFindsTheMatrices) {
     const test::TempFolder folder;
     ImageFileOptions options;
@@ -164,7 +172,7 @@ TEST(WriteImage, OpenImageIoFindsTheMatrices) {
     const OIIO::ImageSpec spec = readBack<float>(folder / "out.exr", OIIO::TypeFloat).spec;
     float stored[16] = {};
     ASSERT_TRUE(spec.getattribute("worldtocamera", OIIO::TypeMatrix, stored));
-    for (int i = 0; i < 16; ++i) EXPECT_EQ(stored[i], options.cameraFromWorld[i / 4][i % 4]);
+    for (int i = 0; i < 16; ++i) EXPECT_EQ(stored[i], (*options.cameraFromWorld)[i / 4][i % 4]);
 }
 
 TEST(WriteImage, StoresMetadataAndNoClockTime) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,10 +15,11 @@ namespace deltasplat {
 
 /// How a picture is stored. No clock time goes into a file: the same picture gives the same bytes.
 struct ImageFileOptions {
-    bool floatExr = false;            ///< .exr: 32-bit float instead of half; not for .png
-    int bits = 8;                     ///< .png: 8 or 16 a channel; without effect on .exr
-    glm::dmat4 cameraFromWorld{1.0};  ///< stored as worldToCamera, rounded to float (.exr)
-    glm::dmat4 ndcFromWorld{1.0};     ///< stored as worldToNDC, rounded to float (.exr)
+    bool floatExr = false;  ///< .exr: 32-bit float instead of half; not for .png
+    int bits = 8;           ///< .png: 8 or 16 a channel; without effect on .exr
+    std::optional<glm::dmat4>
+        cameraFromWorld;                     ///< stored as worldToCamera, rounded to float (.exr)
+    std::optional<glm::dmat4> ndcFromWorld;  ///< stored as worldToNDC, rounded to float (.exr)
     /// Name, text; each is stored as text named `deltasplat:<name>` (.exr sorts them by name).
     std::vector<std::pair<std::string, std::string>> metadata;
 };

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Runs every command line of a document, in order, in a folder of its own: the lines of its ```sh
-# blocks that begin with `deltasplat ` or `build/release/bin/deltasplat `, continued lines included.
+# blocks that begin with `deltasplat `, `build/release/bin/deltasplat ` or `mkdir -p `, continued
+# lines included.
 # A document can use files that its earlier lines made, and the repository's examples/.
 # Usage: documentation.sh PROGRAM REPOSITORY SCRATCH DOCUMENT
 set -euo pipefail
@@ -17,7 +18,7 @@ awk '/^ *```/ { inside = !inside && /^ *```sh *$/; next }
      !inside { next }
      { sub(/^ */, ""); line = line $0 }
      /\\$/ { sub(/\\$/, "", line); next }
-     line ~ /^(build\/release\/bin\/)?deltasplat / { print line }
+     line ~ /^(mkdir -p |(build\/release\/bin\/)?deltasplat )/ { print line }
      { line = "" }' "$document" >commands
 
 [[ -s commands ]] || { echo "$document: no command lines found"; exit 1; }
