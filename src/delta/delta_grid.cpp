@@ -132,7 +132,7 @@ std::uint64_t DeltaGrid::deltas() const {
 }
 
 int defaultKeyInterval(int sliceCount) {
-    return std::max(8, (sliceCount + 127) / 128 * 8);
+    return 8 * std::max(1, sliceCount / 128 + (sliceCount % 128 != 0));
 }
 
 DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options) {
