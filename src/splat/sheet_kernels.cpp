@@ -3,6 +3,7 @@
 // so that every level gives the same bits.
 #include "splat/sheet_kernels.h"
 
+#include <bit>
 #include <cstring>
 
 #include "simd_targets.h"
@@ -62,6 +63,42 @@ void addStampsKernel(std::int32_t* HWY_RESTRICT sheet, std::size_t pitch,
     }
 }
 
+// One pixel's worth of integers, and as many of a class table's entries.
+using ColorTag = hn::FixedTag<std::int32_t, 4>;
+using EntryTag = hn::Rebind<std::uint16_t, ColorTag>;
+using Entry = std::array<std::uint16_t, 4>;
+
+HWY_INLINE auto loadColor(const Entry& entry) {
+    return hn::PromoteTo(ColorTag(), hn::LoadU(EntryTag(), entry.data()));
+}
+
+void listWholeKernel(const LeafSlice& slice, const Entry* HWY_RESTRICT entries, StampList& stamps) {
+    std::size_t count = stamps.count;
+    for (std::uint64_t rest = slice.active; rest != 0; rest &= rest - 1) {
+        const int n = std::countr_zero(rest);
+        stamps.places[count] = slice.place + slice.placeInBlock[n];
+        hn::Store(loadColor(entries[slice.values[n]]), ColorTag(), stamps.colors[count].data());
+        ++count;
+    }
+    stamps.count = count;
+}
+
+void listChangesKernel(const LeafSlice& slice, const Entry* HWY_RESTRICT entries,
+                       std::int32_t* HWY_RESTRICT slots, StampList& stamps) {
+    std::size_t count = stamps.count;
+    for (std::uint64_t rest = slice.active; rest != 0; rest &= rest - 1) {
+        const int n = std::countr_zero(rest);
+        const Entry& before = entries[slots[n]];
+        const Entry& after = entries[slots[n] += slice.values[n]];
+        stamps.places[count] = slice.place + slice.placeInBlock[n];
+        hn::Store(hn::Sub(loadColor(after), loadColor(before)), ColorTag(),
+                  stamps.colors[count].data());
+        // What does not change in colour is overwritten by the next one: no branch to guess.
+        count += std::bit_cast<std::uint64_t>(after) != std::bit_cast<std::uint64_t>(before);
+    }
+    stamps.count = count;
+}
+
 bool isTileZeroKernel(const std::int32_t* HWY_RESTRICT tile, std::size_t pitch) {
     const IntTag tag;
     const std::size_t lanes = hn::Lanes(tag);
@@ -81,6 +118,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace deltasplat {
 
+HWY_EXPORT(listWholeKernel);
+HWY_EXPORT(listChangesKernel);
 HWY_EXPORT(addStampsKernel);
 HWY_EXPORT(isTileZeroKernel);
 
@@ -95,6 +134,16 @@ StampWeights::StampWeights(const Footprint& footprint)
             for (int c = 0; c < 4; ++c) weights[v * rowLength + 4 * u + c] = footprint.at(u, v);
         }
     }
+}
+
+void listWhole(const LeafSlice& slice, const std::array<std::uint16_t, 4>* entries,
+               StampList& stamps) {
+    HWY_DYNAMIC_DISPATCH(listWholeKernel)(slice, entries, stamps);
+}
+
+void listChanges(const LeafSlice& slice, const std::array<std::uint16_t, 4>* entries,
+                 std::int32_t* slots, StampList& stamps) {
+    HWY_DYNAMIC_DISPATCH(listChangesKernel)(slice, entries, slots, stamps);
 }
 
 void addStamps(std::int32_t* sheet, std::size_t pitchPixels, const StampWeights& weights,

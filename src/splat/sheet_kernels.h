@@ -38,6 +38,24 @@ struct StampWeights {
     std::vector<std::int32_t> weights;  ///< [rows][rowLength]
 };
 
+/// The 64 voxels of one slice of a leaf, and where their stamps go.
+struct LeafSlice {
+    const std::int32_t* values;         ///< [64]: slots, or changes of slots
+    std::uint64_t active;               ///< bit n: voxel n counts
+    std::uint32_t place;                ///< of the first voxel's footprint
+    const std::uint32_t* placeInBlock;  ///< [64]: of each voxel's footprint, from the first one's
+};
+
+/// Lists a stamp for every active voxel, in the colour of its slot. The list must have room for 64.
+/// @param entries  the class table, [kSlotCount]
+void listWhole(const LeafSlice& slice, const std::array<std::uint16_t, 4>* entries,
+               StampList& stamps);
+
+/// Adds the changes to `slots` ([64]), and lists a stamp in the change of colour for every active
+/// voxel that has one.
+void listChanges(const LeafSlice& slice, const std::array<std::uint16_t, 4>* entries,
+                 std::int32_t* slots, StampList& stamps);
+
 /// Adds every stamp of the list to the sheet: sheet += colour * weight, in 32-bit integers, so that
 /// the order of stamps does not matter. Empties the list.
 /// @param sheet         int32 RGBA `[row][pitchPixels][4]`

@@ -60,11 +60,12 @@ class SlabSplatter {
             const glm::ivec2 block = blockOf(*leaf);
             makeRoom();
             touchBlock(block, word);
-            const std::int32_t* values = leaf->buffer().data() + 64 * s;
+            const LeafSlice leafSlice{leaf->buffer().data() + 64 * s, word, placeOf(block),
+                                      placeInBlock_.data()};
             if (slab_.whole) {
-                addWhole(values, word, placeOf(block));
+                listWhole(leafSlice, entries_, list_);
             } else {
-                addChanges(values, word, placeOf(block), slotsOf(block));
+                listChanges(leafSlice, entries_, slotsOf(block), list_);
             }
         }
     }
@@ -107,34 +108,6 @@ class SlabSplatter {
                      origin + layout.resolution * glm::ivec2(lastU, lastV) + radius);
     }
 
-    // Stamps the colour of every active voxel.
-    void addWhole(const std::int32_t* values, std::uint64_t word, std::uint32_t place) {
-        std::size_t count = list_.count;
-        for (; word != 0; word &= word - 1) {
-            const int n = std::countr_zero(word);
-            const Entry& entry = entries_[values[n]];
-            list_.places[count] = place + placeInBlock_[n];
-            for (int c = 0; c < 4; ++c) list_.colors[count][c] = entry[c];
-            ++count;
-        }
-        list_.count = count;
-    }
-
-    // Stamps the change of colour of every active voxel, unless it has none.
-    void addChanges(const std::int32_t* values, std::uint64_t word, std::uint32_t place,
-                    Slot* slots) {
-        std::size_t count = list_.count;
-        for (; word != 0; word &= word - 1) {
-            const int n = std::countr_zero(word);
-            const Entry before = entries_[slots[n]];
-            const Entry after = entries_[slots[n] += values[n]];
-            list_.places[count] = place + placeInBlock_[n];
-            for (int c = 0; c < 4; ++c) list_.colors[count][c] = after[c] - before[c];
-            count += std::bit_cast<std::uint64_t>(after) != std::bit_cast<std::uint64_t>(before);
-        }
-        list_.count = count;
-    }
-
     // Stamps all voxels of the slice that lie in the box, leaf or no leaf.
     void addEveryVoxel(std::span<const Leaf* const> leaves, int s) {
         static constexpr std::array<std::int32_t, 64> kNothing{};
@@ -149,7 +122,7 @@ class SlabSplatter {
                 const std::uint64_t word = voxelsInBox({u, v});
                 makeRoom();
                 touchBlock({u, v}, word);
-                addWhole(values, word, placeOf({u, v}));
+                listWhole({values, word, placeOf({u, v}), placeInBlock_.data()}, entries_, list_);
             }
         }
     }
