@@ -103,7 +103,8 @@ TEST(Identity, SheetsTooLargeToCountAreRefused) {
     const Volume apart =
         test::makeVolume({{0, 0, 0}, {0, 0, 0}}, [](int, int, int) { return 200; });
     Volume volume = apart;
-    volume.box = {glm::ivec3(-(1 << 29)), glm::ivec3(1 << 29)};
+    // A face of 2^60 voxels, seen squarely.
+    volume.box = {{-(1 << 29), -(1 << 29), 0}, {1 << 29, 1 << 29, 0}};
     for (const int resolution : {1, 8, 16}) {
         RenderOptions options = optionsFor(kDirections[0]);
         options.resolution = resolution;

@@ -23,6 +23,7 @@ struct IndexBox {
 
     bool empty() const { return max.x < min.x || max.y < min.y || max.z < min.z; }
     glm::ivec3 dims() const { return empty() ? glm::ivec3(0) : max - min + 1; }
+    /// Readers refuse boxes of more than 2^62 voxels.
     std::int64_t voxels() const {
         const glm::ivec3 d = dims();
         return std::int64_t{d.x} * d.y * d.z;
