@@ -70,12 +70,14 @@ void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesy
         return lowerCase(file.extension().string()) == ".vdb";
     };
     const auto warnOf = [&](const std::vector<std::string>& options, const std::string& input) {
+        const std::string remark = ": has no effect without " + input;
         for (const std::string& option : options) {
-            if (isGiven(app, option)) display.warn(option + ": has no effect without " + input);
+            if (isGiven(app, option)) display.warn(option + remark);
         }
     };
-    if (std::none_of(inputs.begin(), inputs.end(), isVdb))
+    if (std::none_of(inputs.begin(), inputs.end(), isVdb)) {
         warnOf({"--grid", "--level-set"}, "a .vdb input");
+    }
     if (std::all_of(inputs.begin(), inputs.end(), isVdb)) {
         warnOf({"--dims", "--type", "--endian", "--spacing", "--origin", "--skip-bytes"},
                "a .raw or .raw.gz input");
