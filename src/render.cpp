@@ -2,7 +2,6 @@
 #include "deltasplat/render.h"
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,15 +14,10 @@
 #include "memory.h"
 #include "parallel.h"
 #include "splat/splatter.h"
+#include "stopwatch.h"
 
 namespace deltasplat {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 Encoding encodingOf(Method method) {
     switch (method) {

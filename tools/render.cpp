@@ -11,6 +11,7 @@
 #include "lower_case.h"
 #include "render_options.h"
 #include "render_stats.h"
+#include "stopwatch.h"
 #include "subcommands.h"
 #include "version.h"
 
@@ -20,10 +21,6 @@ namespace {
 // Shares of the progress that reading and rendering take, measured on the engine data set.
 constexpr double kReadShare = 0.3;
 constexpr double kRenderShare = 0.95;
-
-double secondsSince(std::chrono::steady_clock::time_point begin) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 ImageFileOptions imageOptions(const RenderCommand& command, const RenderResult& result,
                               const Session& session) {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
-#include <sstream>
 
 #include "deltasplat/error.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {
@@ -73,10 +73,10 @@ void normalizePhase(const std::vector<double>& real, const std::vector<int>& pla
 
 Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolution) {
     if (!(sigmaVoxels >= kMinSigma && sigmaVoxels <= kMaxSigma)) {
-        std::ostringstream got;
-        got << sigmaVoxels;
         throw Error(ErrorCode::kUsage,
-                    gotExpected("--sigma", got.str(), "a number of voxels from 0.2 to 4"));
+                    gotExpected("--sigma", numberText(sigmaVoxels),
+                                "a number of voxels from " + numberText(kMinSigma) + " to " +
+                                    numberText(kMaxSigma)));
     }
     const SlicePlaneGaussian gaussian{sigmaVoxels, shiftPerSlice};
     Footprint footprint;

@@ -48,7 +48,7 @@ void addStampsOfWidth(std::int32_t* HWY_RESTRICT sheet, std::size_t pitch,
 void addStampsKernel(std::int32_t* HWY_RESTRICT sheet, std::size_t pitch,
                      const StampWeights& weights, const StampList& stamps) {
     const int lanes = int(hn::Lanes(IntTag()));
-    const int vectors = (4 * weights.rowPixels + lanes - 1) / lanes;
+    const int vectors = (4 * weights.rows + lanes - 1) / lanes;
     switch (vectors) {
         case 1:
             return addStampsOfWidth<1>(sheet, pitch, weights, stamps, 1);
@@ -127,7 +127,6 @@ StampWeights::StampWeights(const Footprint& footprint)
     : rows(footprint.width()),
       rowLength((footprint.width() + kMaxVectorPixels - 1) / kMaxVectorPixels * 4 *
                 kMaxVectorPixels),
-      rowPixels(footprint.width()),
       weights(rows * rowLength) {
     for (int v = 0; v < rows; ++v) {
         for (int u = 0; u < footprint.width(); ++u) {

@@ -32,9 +32,8 @@ struct StampList {
 struct StampWeights {
     explicit StampWeights(const Footprint& footprint);
 
-    int rows;
+    int rows;               ///< and pixels a row: footprints are square
     std::size_t rowLength;  ///< 32-bit integers a row, a multiple of 4 * kMaxVectorPixels
-    int rowPixels;          ///< pixels a row that may differ from zero
     std::vector<std::int32_t> weights;  ///< [rows][rowLength]
 };
 

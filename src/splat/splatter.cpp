@@ -16,7 +16,6 @@ namespace deltasplat {
 namespace {
 
 using Leaf = DeltaTree::Leaf;
-using Entry = std::array<std::uint16_t, 4>;
 
 // Splats the slices of one slab into one sheet.
 class SlabSplatter {
@@ -153,7 +152,7 @@ class SlabSplatter {
     const SplatInput& input_;
     const Slab& slab_;
     Sheet& sheet_;
-    const Entry* entries_;
+    const std::array<std::uint16_t, 4>* entries_;  // the class table
     std::span<const Leaf* const> leaves_;
     glm::ivec2 firstBlock_;
     glm::ivec2 blocks_;
