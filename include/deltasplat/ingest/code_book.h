@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace deltasplat {
 
@@ -16,23 +18,30 @@ struct CodeBook {
     enum class Kind {
         kInteger,  ///< value = offset + code: exact for integers that span at most 65536 values
         kHalf,     ///< order-preserving IEEE binary16 pattern: exact for every finite half float
-        kLinear    ///< value = offset + step * code: error at most step / 2 inside the range
+        kLinear,   ///< value = offset + step * code: error at most step / 2 inside the range
+        kTable     ///< value = table[code]: exact for at most 65536 different values
     };
     Kind kind = Kind::kInteger;
     double offset = 0;
     double step = 1;
+    /// kTable: [1..65536] increasing finite values, -0 before 0. Codes beyond stand for the last.
+    std::shared_ptr<const std::vector<double>> table;
 
     /// Returns the data value that `code` stands for (NaN for the half patterns of NaN).
     double valueOf(Code code) const;
     /// Returns the code whose value is nearest to `value`, clamped to the book's range.
     Code codeOf(double value) const;
-    /// Returns "integer", "half" or "linear".
+    /// Returns "integer", "half", "linear" or "table".
     std::string name() const;
+    /// Whether a source that was given this book by a reader comes back from it bit for bit.
+    bool isExact() const { return kind != Kind::kLinear; }
 
     static CodeBook integer(std::int64_t offset = 0);
     static CodeBook half();
-    /// Spreads all 65536 codes over [low, high]; a book with low == high has the one value `low`.
-    static CodeBook linear(double low, double high);
+    /// Spreads 2^bits codes over [low, high]; a book with low == high has the one value `low`.
+    static CodeBook linear(double low, double high, int bits = 16);
+    /// @param values  [1..65536] increasing, finite
+    static CodeBook ofTable(std::vector<double> values);
 };
 
 }  // namespace deltasplat

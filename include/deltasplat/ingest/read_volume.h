@@ -33,6 +33,10 @@ struct ReadOptions {
                                      ///< background is not above 0 is kept, with a warning
     std::optional<double> nanValue;  ///< replaces NaN and infinities; empty: they are an error
     RawFormat raw;                   ///< .raw: what the bytes are
+    /// Real values: a linear code book of 2^bits codes, 8..16. Empty: an exact book if there is
+    /// one (at most 65536 different values), otherwise a linear one of 16 bits.
+    std::optional<int> bits;
+    bool keepSource = false;  ///< fill Volume::source
 };
 
 /// Reads one scalar volume from `.raw`, `.raw.gz` or `.vdb` (by extension, in any case).

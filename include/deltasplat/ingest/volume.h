@@ -16,6 +16,9 @@ namespace deltasplat {
 /// The OpenVDB tree of codes; defined in src/ingest/code_tree.h for the stages that walk it.
 struct CodeTree;
 
+/// The source's own OpenVDB grid; defined in src/ingest/source_grid.h.
+struct SourceGrid;
+
 /// A box of voxel indices, both corners inclusive; empty when any max < min.
 struct IndexBox {
     glm::ivec3 min{0};
@@ -50,6 +53,12 @@ struct Volume {
         1.0};                       ///< affine; maps (i, j, k) to the voxel's centre in world units
     std::uint64_t activeCount = 0;  ///< active voxels, those in active tiles included
     std::vector<std::uint64_t> histogram;  ///< [65536]: how many active voxels have each code
+    /// Coordinate system of the patient that world space is: "RAS" (x to the right, y to the front,
+    /// z up), "LPS" (x to the left, y to the back, z up), or empty where the file names none.
+    std::string space;
+    /// What codes cannot tell, if ReadOptions::keepSource asked for it: for .vdb always, for other
+    /// formats only if the code book is not exact (then a grid of the file's value type).
+    std::shared_ptr<const SourceGrid> source;
     double valueMin = 0;  ///< smallest active value, as the code book gives it back; 0 if none
     double valueMax = 0;  ///< largest active value, as the code book gives it back; 0 if none
 
