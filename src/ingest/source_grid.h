@@ -2,6 +2,7 @@
 #pragma once
 
 #include <openvdb/Grid.h>
+#include <openvdb/MetaMap.h>
 
 #include "deltasplat/ingest/volume.h"
 
@@ -11,6 +12,7 @@ namespace deltasplat {
 /// transform, class and metadata.
 struct SourceGrid {
     openvdb::GridBase::ConstPtr grid;
+    openvdb::MetaMap fileMetadata;  ///< of the .vdb file, not of the grid
 };
 
 }  // namespace deltasplat

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <new>
+#include <sstream>
 #include <utility>
 
 #include "deltasplat/error.h"
@@ -148,7 +149,8 @@ void VdbFile::readDirectory() {
     const bool hasOffsets = bytes.u8() != 0;
     bytes.skip(kUuidBytes);
     headerEnd_ = bytes.position();
-    readMetadata(bytes);
+    std::istringstream metadata(readMetadata(bytes));
+    metadata_.readMeta(metadata);
 
     const auto count = std::int32_t(bytes.u32());
     for (std::int32_t i = 0; i < count; ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <openvdb/Grid.h>
+#include <openvdb/MetaMap.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -42,6 +43,8 @@ class VdbFile {
     explicit VdbFile(std::filesystem::path file);
 
     const std::vector<VdbGrid>& grids() const { return grids_; }
+    /// What the file says of itself; entries of unknown types are left out.
+    const openvdb::MetaMap& metadata() const { return metadata_; }
     /// Reads one grid of grids().
     /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if it does not fit
     /// into
@@ -55,6 +58,7 @@ class VdbFile {
 
     std::filesystem::path file_;
     std::uint64_t headerEnd_ = 0;
+    openvdb::MetaMap metadata_;
     std::vector<VdbGrid> grids_;
 };
 
