@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "ingest/delta_format.h"
 #include "ingest/grid_codes.h"
 #include "ingest/read_delta_grid.h"
 #include "ingest/readers.h"

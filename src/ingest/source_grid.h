@@ -12,7 +12,7 @@ namespace deltasplat {
 /// transform, class and metadata.
 struct SourceGrid {
     openvdb::GridBase::ConstPtr grid;
-    openvdb::MetaMap fileMetadata;  ///< of the .vdb file, not of the grid
+    openvdb::MetaMap fileMetadata{};  ///< of the .vdb file, not of the grid
 };
 
 }  // namespace deltasplat
