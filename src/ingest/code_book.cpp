@@ -37,14 +37,26 @@ Code nearestHalfCode(double value) {
     return best;
 }
 
+Code nearestTableCode(const std::vector<double>& table, double value) {
+    const auto above = std::lower_bound(table.begin(), table.end(), value);
+    if (above == table.begin()) return 0;
+    const auto index = std::size_t(above - table.begin());
+    if (above == table.end()) return Code(index - 1);
+    return Code(value - table[index - 1] < *above - value ? index - 1 : index);
+}
+
 }  // namespace
 
 double CodeBook::valueOf(Code code) const {
-    return kind == Kind::kHalf ? halfValue(code) : offset + step * double(code);
+    if (kind == Kind::kHalf) return halfValue(code);
+    if (kind == Kind::kTable) return (*table)[std::min<std::size_t>(code, table->size() - 1)];
+    return offset + step * double(code);
 }
 
 Code CodeBook::codeOf(double value) const {
-    return kind == Kind::kHalf ? nearestHalfCode(value) : linearCode(value, offset, step);
+    if (kind == Kind::kHalf) return nearestHalfCode(value);
+    if (kind == Kind::kTable) return nearestTableCode(*table, value);
+    return linearCode(value, offset, step);
 }
 
 std::string CodeBook::name() const {
@@ -53,6 +65,8 @@ std::string CodeBook::name() const {
             return "integer";
         case Kind::kHalf:
             return "half";
+        case Kind::kTable:
+            return "table";
         case Kind::kLinear:
             break;
     }
@@ -60,19 +74,24 @@ std::string CodeBook::name() const {
 }
 
 CodeBook CodeBook::integer(std::int64_t offset) {
-    return {Kind::kInteger, double(offset), 1};
+    return {Kind::kInteger, double(offset), 1, nullptr};
 }
 
 CodeBook CodeBook::half() {
-    return {Kind::kHalf, 0, 1};
+    return {Kind::kHalf, 0, 1, nullptr};
 }
 
-CodeBook CodeBook::linear(double low, double high) {
-    if (!(high > low)) return {Kind::kLinear, low, 0};
+CodeBook CodeBook::linear(double low, double high, int bits) {
+    if (!(high > low)) return {Kind::kLinear, low, 0, nullptr};
     // A step below the spacing of doubles would give neighbouring codes the same value.
     const double large = std::max(std::fabs(low), std::fabs(high));
     const double spacing = large - std::nextafter(large, 0.0);
-    return {Kind::kLinear, low, std::max((high - low) / (kCodeCount - 1), spacing)};
+    const double steps = double((1 << bits) - 1);
+    return {Kind::kLinear, low, std::max((high - low) / steps, spacing), nullptr};
+}
+
+CodeBook CodeBook::ofTable(std::vector<double> values) {
+    return {Kind::kTable, 0, 1, std::make_shared<const std::vector<double>>(std::move(values))};
 }
 
 }  // namespace deltasplat

@@ -5,12 +5,11 @@
 #include <openvdb/tools/LevelSetUtil.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <utility>
 
 #include "deltasplat/error.h"
-#include "ingest/code_math.h"
+#include "ingest/book_encoder.h"
 #include "ingest/code_tree.h"
 #include "ingest/grid_values.h"
 #include "ingest/readers.h"
@@ -26,7 +25,7 @@ namespace {
 
 template <typename Grid>
 void settleNonFinite(Grid& grid, const GridCodesOptions& options) {
-    const auto range = rangeOfTree(grid.tree());
+    const GridScan range = scanTree(grid.tree(), /*distinct=*/false);
     if (range.nonFinite == 0) return;
     if (!options.nanValue) {
         fail(options.where,
@@ -54,34 +53,9 @@ void makeFog(Grid& grid, const GridCodesOptions& options) {
     openvdb::tools::sdfToFogVolume(grid);
 }
 
-template <typename T>
-CodeBook bookOfRange(const GridRange<T>& range, const std::string& where) {
-    if constexpr (std::is_same_v<T, bool>) {
-        return CodeBook::integer(0);
-    } else if constexpr (std::is_integral_v<T>) {
-        // Beyond 2^53 a double cannot be a book's offset.
-        constexpr std::int64_t kLargest = std::int64_t{1} << 53;
-        const std::int64_t low = range.min;
-        const std::int64_t high = range.max;
-        const bool exact = low >= -kLargest && high <= kLargest;
-        if (exact && high - low < kCodeCount) return CodeBook::integer(low);
-    } else {
-        if (range.half) return CodeBook::half();
-    }
-    requireFiniteSpan(where, double(range.min), double(range.max));
-    return CodeBook::linear(double(range.min), double(range.max));
-}
-
-template <typename T>
-Code encode(const CodeBook& book, T value) {
-    if (book.kind != CodeBook::Kind::kHalf) {
-        return linearCode(double(value), book.offset, book.step);
-    }
-    return codeOfHalfBits(openvdb::math::half(float(value)).bits());
-}
-
 template <typename Tree>
 std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book) {
+    const BookEncoder encode(book);
     using SourceLeaf = typename Tree::LeafNodeType;
     // OpenVDB's trees cannot be assigned, only made in place.
     std::shared_ptr<CodeTree> codes(
@@ -94,12 +68,12 @@ std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book) {
         for (std::size_t i = begin; i < end; ++i) {
             Code* out = targets[i]->buffer().data();
             for (auto voxel = sources[i]->cbeginValueOn(); voxel; ++voxel) {
-                out[voxel.pos()] = encode(book, *voxel);
+                out[voxel.pos()] = encode(double(*voxel));
             }
         }
     });
     forActiveTiles(codes->tree, [&](const auto& tile) {
-        tile.setValue(encode(book, tree.getValue(tile.getCoord())));
+        tile.setValue(encode(double(tree.getValue(tile.getCoord()))));
     });
     return codes;
 }
@@ -143,8 +117,12 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
         settleNonFinite(grid, options);
         makeFog(grid, options);
     }
-    const auto range = rangeOfTree(grid.tree());
-    volume.codeBook = bookOfRange(range, options.where);
+    constexpr bool kReal = std::is_floating_point_v<T>;
+    const GridScan scan = scanTree(grid.tree(), !(kReal && options.bits));
+    // Masks have nothing but true, which stays 1.
+    volume.codeBook = std::is_same_v<T, bool>
+                          ? CodeBook::integer(0)
+                          : chooseBook(scan.census, kReal, options.bits, options.where);
     volume.hasBackground = true;
     volume.background = double(grid.background());
     auto codes = codesOfTree(grid.tree(), volume.codeBook);

@@ -17,6 +17,7 @@ struct GridCodesOptions {
     std::string type;                ///< value type as the file stores it: "half", "float", ...
     bool levelSetToFog = true;       ///< turn level sets into fog volumes
     std::optional<double> nanValue;  ///< replaces NaN and infinities of active values
+    std::optional<int> bits;         ///< as ReadOptions::bits
 };
 
 /// Turns a scalar grid into codes and fills in everything of `volume` but its name and transform.

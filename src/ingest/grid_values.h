@@ -10,39 +10,23 @@
 #include <type_traits>
 #include <vector>
 
+#include "ingest/value_census.h"
 #include "parallel.h"
 
 namespace deltasplat {
 
-/// What the active values of a grid span. Only finite values count for `min`, `max` and `half`.
-template <typename T>
-struct GridRange {
-    T min{};
-    T max{};
-    bool any = false;             ///< there is a finite value
-    bool half = true;             ///< every finite value is a binary16 number
+/// What the active values of a grid hold.
+struct GridScan {
+    ValueCensus census;           ///< of the finite values
     std::uint64_t nonFinite = 0;  ///< voxels
     openvdb::Coord first;         ///< the non-finite voxel with the smallest z, then y, then x
 
-    void add(T value) {
-        min = any ? std::min(min, value) : value;
-        max = any ? std::max(max, value) : value;
-        any = true;
-        if constexpr (std::is_floating_point_v<T>) {
-            half = half && T(float(openvdb::math::half(float(value)))) == value;
-        }
-    }
     void addNonFinite(const openvdb::Coord& place, std::uint64_t voxels) {
         if (nonFinite == 0 || isBefore(place, first)) first = place;
         nonFinite += voxels;
     }
-    void append(const GridRange& other) {
-        if (other.any) {
-            min = any ? std::min(min, other.min) : other.min;
-            max = any ? std::max(max, other.max) : other.max;
-            any = true;
-            half = half && other.half;
-        }
+    void append(const GridScan& other) {
+        census.append(other.census);
         if (other.nonFinite > 0) addNonFinite(other.first, other.nonFinite);
     }
     static bool isBefore(const openvdb::Coord& a, const openvdb::Coord& b) {
@@ -76,34 +60,29 @@ void forActiveTiles(Tree& tree, const Use& use) {
     for (; tile; ++tile) use(tile);
 }
 
-/// Returns what the active values of `tree` span; the result does not depend on the thread count.
+/// Returns what the active values of `tree` hold; the result does not depend on the thread count.
+/// @param distinct  whether to collect different values
 template <typename Tree>
-GridRange<typename Tree::ValueType> rangeOfTree(Tree& tree) {
-    using Range = GridRange<typename Tree::ValueType>;
+GridScan scanTree(Tree& tree, bool distinct) {
     std::vector<typename Tree::LeafNodeType*> leaves;
     tree.getNodes(leaves);
-    std::vector<Range> ranges(leaves.size() / kLeafRun + 1);
-    forLeafRuns(leaves.size(), [&](std::size_t run, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel) {
-                const auto value = *voxel;
-                if (isFinite(value)) {
-                    ranges[run].add(value);
-                } else {
-                    ranges[run].addNonFinite(voxel.getCoord(), 1);
-                }
-            }
-        }
-    });
-    Range whole;
-    for (const Range& range : ranges) whole.append(range);
-    forActiveTiles(tree, [&](const auto& tile) {
-        if (isFinite(*tile)) {
-            whole.add(*tile);
+    std::vector<GridScan> scans(leaves.size() / kLeafRun + 1);
+    const auto add = [](GridScan& scan, const auto& value, std::uint64_t voxels) {
+        if (isFinite(*value)) {
+            scan.census.add(*value);
         } else {
-            whole.addNonFinite(tile.getCoord(), tile.getVoxelCount());
+            scan.addNonFinite(value.getCoord(), voxels);
+        }
+    };
+    forLeafRuns(leaves.size(), [&](std::size_t run, std::size_t begin, std::size_t end) {
+        if (!distinct) scans[run].census.distinct.giveUp();
+        for (std::size_t i = begin; i < end; ++i) {
+            for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel) add(scans[run], voxel, 1);
         }
     });
+    GridScan whole;
+    for (const GridScan& scan : scans) whole.append(scan);
+    forActiveTiles(tree, [&](const auto& tile) { add(whole, tile, tile.getVoxelCount()); });
     return whole;
 }
 

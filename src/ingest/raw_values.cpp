@@ -65,25 +65,28 @@ auto withType(RawType type, const Use& use) {
 }
 
 template <typename T>
-RawRange scanRun(const std::byte* bytes, std::size_t count, bool swap) {
-    RawRange range;
-    T low{};
-    T high{};
+RawScan scanRun(const std::byte* bytes, std::size_t count, bool swap, bool distinct) {
+    RawScan scan;
+    if (!distinct) scan.census.distinct.giveUp();
     for (std::size_t i = 0; i < count; ++i) {
         const T value = loadValue<T>(bytes + i * sizeof(T), swap);
         if constexpr (std::is_floating_point_v<T>) {
             if (!std::isfinite(value)) {
-                if (range.nonFinite++ == 0) range.firstNonFinite = i;
+                if (scan.nonFinite++ == 0) scan.firstNonFinite = i;
                 continue;
             }
         }
-        low = range.finite == 0 ? value : std::min(low, value);
-        high = range.finite == 0 ? value : std::max(high, value);
-        ++range.finite;
+        scan.census.add(value);
     }
-    range.min = double(low);
-    range.max = double(high);
-    return range;
+    return scan;
+}
+
+// Replaces what is no finite number.
+template <typename T>
+double finiteOr(T value, double replacement) {
+    const auto number = double(value);
+    if constexpr (std::is_floating_point_v<T>) return std::isfinite(number) ? number : replacement;
+    return number;
 }
 
 // One code of a value whose book counts whole numbers: the low 16 bits say it all.
@@ -100,22 +103,25 @@ struct LinearCoder {
     double offset, step, nanValue;
     explicit LinearCoder(const RawCoding& coding)
         : offset(coding.book.offset), step(coding.book.step), nanValue(coding.nanValue) {}
-    Code operator()(T value) const {
-        double number = double(value);
-        if constexpr (std::is_floating_point_v<T>) {
-            if (!std::isfinite(number)) number = nanValue;
-        }
-        return linearCode(number, offset, step);
-    }
+    Code operator()(T value) const { return linearCode(finiteOr(value, nanValue), offset, step); }
+};
+
+template <typename T>
+struct BookCoder {
+    const BookEncoder& encoder;
+    double nanValue;
+    explicit BookCoder(const RawCoding& coding)
+        : encoder(coding.encoder), nanValue(coding.nanValue) {}
+    Code operator()(T value) const { return encoder(finiteOr(value, nanValue)); }
 };
 
 template <typename T, bool kSwap, typename Coder>
 inline void encodeBox(const RawBlock& block, const glm::ivec3& size, const Coder& coder,
-                      Code* codes) {
+                      decltype(coder(T{}))* codes) {
     for (int z = 0; z < size.z; ++z) {
         for (int y = 0; y < size.y; ++y) {
             const std::byte* row = block.first + z * block.sliceBytes + y * block.rowBytes;
-            Code* column = codes + y * 8 + z;
+            auto* column = codes + y * 8 + z;
             for (int x = 0; x < size.x; ++x) {
                 column[x * 64] = coder(loadValue<T>(row + x * sizeof(T), kSwap));
             }
@@ -141,44 +147,69 @@ EncodeBlock encoderFor(bool swap) {
 
 }  // namespace
 
-void RawRange::append(const RawRange& next) {
-    if (nonFinite == 0) firstNonFinite = finite + next.firstNonFinite;
+void RawScan::append(const RawScan& next) {
+    if (nonFinite == 0) firstNonFinite = census.count + next.firstNonFinite;
     nonFinite += next.nonFinite;
-    if (next.finite == 0) return;
-    min = finite == 0 ? next.min : std::min(min, next.min);
-    max = finite == 0 ? next.max : std::max(max, next.max);
-    finite += next.finite;
+    census.append(next.census);
 }
 
-RawRange scanRawValues(const std::byte* bytes, std::size_t count, RawType type, bool bigEndian) {
+RawScan scanRawValues(const std::byte* bytes, std::size_t count, RawType type, bool bigEndian,
+                      bool distinct) {
     constexpr std::size_t kRun = std::size_t{1} << 18;
-    std::vector<RawRange> ranges((count + kRun - 1) / kRun);
+    std::vector<RawScan> runs((count + kRun - 1) / kRun);
     const bool swap = mustSwap(bigEndian);
-    parallelFor(ranges.size(), [&](std::size_t i) {
+    parallelFor(runs.size(), [&](std::size_t i) {
         const std::size_t begin = i * kRun;
         const std::size_t length = std::min(kRun, count - begin);
-        ranges[i] = withType(type, [&](auto zero) {
+        runs[i] = withType(type, [&](auto zero) {
             using T = decltype(zero);
-            return scanRun<T>(bytes + begin * sizeof(T), length, swap);
+            return scanRun<T>(bytes + begin * sizeof(T), length, swap, distinct);
         });
     });
 
-    RawRange whole;
-    for (const RawRange& range : ranges) whole.append(range);
+    RawScan whole;
+    for (const RawScan& run : runs) whole.append(run);
     return whole;
 }
 
 EncodeBlock blockEncoder(const RawCoding& coding) {
     const bool swap = mustSwap(coding.bigEndian);
-    const bool linear = coding.book.kind == CodeBook::Kind::kLinear;
     return withType(coding.type, [&](auto zero) -> EncodeBlock {
         using T = decltype(zero);
-        if constexpr (std::is_floating_point_v<T>) {
-            return encoderFor<T, LinearCoder>(swap);
-        } else {
-            return linear ? encoderFor<T, LinearCoder>(swap) : encoderFor<T, IntegerCoder>(swap);
+        switch (coding.book.kind) {
+            case CodeBook::Kind::kLinear:
+                return encoderFor<T, LinearCoder>(swap);
+            case CodeBook::Kind::kInteger:
+                if constexpr (std::is_integral_v<T>) return encoderFor<T, IntegerCoder>(swap);
+                return encoderFor<T, LinearCoder>(swap);
+            default:
+                return encoderFor<T, BookCoder>(swap);
         }
     });
 }
+
+template <typename Out>
+void readValues(const RawBlock& block, RawType type, bool bigEndian, Out nanValue, Out* values) {
+    const bool swap = mustSwap(bigEndian);
+    withType(type, [&](auto zero) {
+        using T = decltype(zero);
+        const auto convert = [&](T value) {
+            if constexpr (std::is_floating_point_v<T>) {
+                if (!std::isfinite(value)) return nanValue;
+            }
+            return Out(value);
+        };
+        if (swap) {
+            encodeBox<T, true>(block, block.size, convert, values);
+        } else {
+            encodeBox<T, false>(block, block.size, convert, values);
+        }
+    });
+}
+
+template void readValues(const RawBlock&, RawType, bool, float, float*);
+template void readValues(const RawBlock&, RawType, bool, double, double*);
+template void readValues(const RawBlock&, RawType, bool, std::int32_t, std::int32_t*);
+template void readValues(const RawBlock&, RawType, bool, std::int64_t, std::int64_t*);
 
 }  // namespace deltasplat

@@ -6,31 +6,34 @@
 #include <glm/vec3.hpp>
 
 #include "deltasplat/ingest/code_book.h"
+#include "ingest/book_encoder.h"
 #include "ingest/raw_format.h"
+#include "ingest/value_census.h"
 
 namespace deltasplat {
 
-/// What a run of raw values spans. Only finite values count for `min` and `max`.
-struct RawRange {
-    double min = 0;
-    double max = 0;
-    std::uint64_t finite = 0;
-    std::uint64_t nonFinite = 0;
+/// What a run of raw values holds.
+struct RawScan {
+    ValueCensus census;                ///< of the finite values
+    std::uint64_t nonFinite = 0;       ///< NaN and infinities
     std::uint64_t firstNonFinite = 0;  ///< position in the run; meaningless if there is none
 
     /// Adds the run that follows this one.
-    void append(const RawRange& next);
+    void append(const RawScan& next);
 };
 
 /// Scans `count` values on all threads; the result does not depend on their number.
-RawRange scanRawValues(const std::byte* bytes, std::size_t count, RawType type, bool bigEndian);
+/// @param distinct  whether to collect different values
+RawScan scanRawValues(const std::byte* bytes, std::size_t count, RawType type, bool bigEndian,
+                      bool distinct);
 
 /// How raw values become codes.
 struct RawCoding {
     RawType type = RawType::kUint8;
     bool bigEndian = false;
-    CodeBook book;
-    double nanValue = 0;  ///< what NaN and infinities count as
+    const CodeBook& book;
+    const BookEncoder& encoder;  ///< of `book`
+    double nanValue = 0;         ///< what NaN and infinities count as
 };
 
 /// A box of at most 8x8x8 voxels in memory, x contiguous.
@@ -47,5 +50,10 @@ using EncodeBlock = void (*)(const RawBlock& block, const RawCoding& coding, Cod
 
 /// Returns the function for this coding's type, byte order and kind of book.
 EncodeBlock blockEncoder(const RawCoding& coding);
+
+/// Writes a block's values in the order of codes, as `T`; NaN and infinities as `nanValue`.
+/// Instantiated for float, double, std::int32_t and std::int64_t, from any raw type that T holds.
+template <typename T>
+void readValues(const RawBlock& block, RawType type, bool bigEndian, T nanValue, T* values);
 
 }  // namespace deltasplat

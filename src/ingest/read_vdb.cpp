@@ -3,14 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "deltasplat/error.h"
 #include "ingest/grid_codes.h"
 #include "ingest/readers.h"
+#include "ingest/source_grid.h"
 #include "ingest/vdb_file.h"
+#include "ingest/vdb_transform.h"
 #include "number_text.h"
 
 namespace deltasplat {
@@ -68,16 +72,10 @@ glm::dmat4 worldFromIndex(const openvdb::math::Transform& transform, const std::
     if (!transform.isLinear()) {
         fail(where, "a " + transform.mapType() + " transform", "a linear one (no frustum)");
     }
-    const openvdb::Vec3d origin = transform.indexToWorld(openvdb::Vec3d(0));
-    glm::dmat4 matrix(1.0);
-    matrix[3] = {origin.x(), origin.y(), origin.z(), 1};
-    bool finite = std::isfinite(origin.lengthSqr());
-    for (int axis = 0; axis < 3; ++axis) {
-        openvdb::Vec3d unit(0);
-        unit[axis] = 1;
-        const openvdb::Vec3d step = transform.indexToWorld(unit) - origin;
-        matrix[axis] = {step.x(), step.y(), step.z(), 0};
-        finite = finite && std::isfinite(step.lengthSqr());
+    const glm::dmat4 matrix = matrixOf(transform);
+    bool finite = true;
+    for (int axis = 0; axis < 4; ++axis) {
+        finite = finite && std::isfinite(glm::dot(matrix[axis], matrix[axis]));
     }
     if (!finite || glm::determinant(matrix) == 0) {
         fail(where, "a transform that cannot be inverted", "a finite affine map");
@@ -98,13 +96,16 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
                 const ReadOptions& options, const Listener& listener) {
     Listener reading;
     reading.progress = [&](double share) { listener.report(kReadShare * share); };
-    const openvdb::GridBase::Ptr loaded = file.read(grid, reading);
+    openvdb::GridBase::Ptr loaded = file.read(grid, reading);
     Volume volume;
     volume.name = grid.name;
     volume.worldFromIndex = worldFromIndex(loaded->transform(), where);
-    fillFromGrid(*loaded,
-                 {listener, where, grid.valueType(), options.levelSetToFog, options.nanValue},
-                 volume);
+    fillFromGrid(
+        *loaded,
+        {listener, where, grid.valueType(), options.levelSetToFog, options.nanValue, options.bits},
+        volume);
+    if (options.keepSource)
+        volume.source = std::make_shared<const SourceGrid>(SourceGrid{std::move(loaded)});
     settleBackground(volume, options, where, listener);
     if (volume.empty()) listener.warn(where + ": no active voxels");
     return volume;

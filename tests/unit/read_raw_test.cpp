@@ -107,11 +107,18 @@ TEST(ReadRaw, IntegersAreExactInBothByteOrders) {
 }
 
 template <typename T>
-void expectLinear(const std::string& type, double low, double high) {
-    SCOPED_TRACE(type);
-    Plain<T> plain = randomPlain<T>({19, 9, 30}, low, high, 4);
+Plain<T> widePlain(const glm::ivec3& dims, double low, double high) {
+    Plain<T> plain = randomPlain<T>(dims, low, high, 4);
     plain.values[100] = T(low);
     plain.values[4000] = T(high);
+    return plain;
+}
+
+// More than 65536 different values.
+template <typename T>
+void expectLinear(const std::string& type, double low, double high) {
+    SCOPED_TRACE(type);
+    Plain<T> plain = widePlain<T>({70, 61, 35}, low, high);
     for (const bool big : {false, true}) {
         const std::string file = plain.file(type + (big ? "be" : ""));
         writeBytes(file, bytesOf(plain.values, big));
@@ -130,6 +137,52 @@ TEST(ReadRaw, WideValuesAreSpreadOverTheirRange) {
     expectLinear<double>("float64", -1e-7, 4e-7);
     expectLinear<std::uint32_t>("uint32", 7, 4e9);
     expectLinear<std::int32_t>("int32", -2e9, 65536);
+}
+
+// At most 65536 different values, however far apart.
+template <typename T>
+void expectTable(const std::string& type, double low, double high) {
+    SCOPED_TRACE(type);
+    Plain<T> plain = widePlain<T>({19, 9, 30}, low, high);
+    for (const bool big : {false, true}) {
+        const std::string file = plain.file(type + (big ? "be" : ""));
+        writeBytes(file, bytesOf(plain.values, big));
+        const Volume volume = readVolume(file);
+        ASSERT_EQ(volume.codeBook.kind, CodeBook::Kind::kTable);
+        expectSame(volume, plain);
+    }
+}
+
+TEST(ReadRaw, FewWideValuesAreExact) {
+    const TempFolder folder;
+    expectTable<float>("float32", -3.5, 12.25);
+    expectTable<double>("float64", -1e-7, 4e-7);
+    expectTable<std::uint32_t>("uint32", 7, 4e9);
+    expectTable<std::int32_t>("int32", -2e9, 65536);
+}
+
+TEST(ReadRaw, BitsAskForALinearBook) {
+    const TempFolder folder;
+    Plain<float> plain = widePlain<float>({19, 9, 30}, -3.5, 12.25);
+    writeBytes(plain.file("float32"), bytesOf(plain.values));
+    ReadOptions options;
+    options.bits = 10;
+    const Volume volume = readVolume(plain.file("float32"), options);
+    EXPECT_DOUBLE_EQ(volume.codeBook.step, 15.75 / 1023);
+    expectSame(volume, plain, volume.codeBook.step * 0.5000001);
+}
+
+TEST(ReadRaw, WholeNumbersStoredAsRealsAreIntegers) {
+    const TempFolder folder;
+    Plain<float> plain = randomPlain<float>({19, 9, 30}, 0, 1, 4);
+    for (float& value : plain.values) value = std::floor(value * 5000) - 7;
+    writeBytes(plain.file("float32"), bytesOf(plain.values));
+    const Volume volume = readVolume(plain.file("float32"));
+    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kInteger);
+    expectSame(volume, plain);
+    plain.values[77] = -0.0f;
+    writeBytes(plain.file("float32"), bytesOf(plain.values));
+    EXPECT_EQ(readVolume(plain.file("float32")).codeBook.kind, CodeBook::Kind::kTable);
 }
 
 TEST(ReadRaw, OneValueOfEveryWideType) {

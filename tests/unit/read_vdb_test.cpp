@@ -25,7 +25,13 @@ TEST(ReadVdb, FloatsAreSpreadOverTheirRange) {
     const auto grid = makeGrid<openvdb::FloatGrid>(
         "density", [](int i) { return -0.25f + 0.001f * float(i); }, 0.125f);
     writeGrids("a.vdb", {grid});
-    const Volume volume = readVolume("a.vdb");
+    const Volume exact = readVolume("a.vdb");
+    EXPECT_EQ(exact.codeBook.kind, CodeBook::Kind::kTable);
+    expectSame(exact, *grid, 0);
+
+    ReadOptions options;
+    options.bits = 16;
+    const Volume volume = readVolume("a.vdb", options);
     EXPECT_EQ(volume.name, "density");
     EXPECT_EQ(volume.type, "float");
     EXPECT_EQ(volume.gridClass, "unknown");
@@ -58,11 +64,11 @@ TEST(ReadVdb, TheHalfBookNeedsEveryValueToBeAHalf) {
     EXPECT_EQ(readVolume("a.vdb").type, "float");
     grid->tree().setValue(Coord(0), 2049.0f / 4096);
     writeGrids("a.vdb", {grid});
-    EXPECT_EQ(readVolume("a.vdb").codeBook.kind, CodeBook::Kind::kLinear);
+    EXPECT_EQ(readVolume("a.vdb").codeBook.kind, CodeBook::Kind::kTable);
     grid->tree().setValue(Coord(0), 0.5f);
     grid->tree().addTile(1, Coord(-160, 8, 16), 65536, true);
     writeGrids("a.vdb", {grid});
-    EXPECT_EQ(readVolume("a.vdb").codeBook.kind, CodeBook::Kind::kLinear);
+    EXPECT_EQ(readVolume("a.vdb").codeBook.kind, CodeBook::Kind::kTable);
 }
 
 TEST(ReadVdb, Doubles) {
@@ -72,12 +78,18 @@ TEST(ReadVdb, Doubles) {
     writeGrids("a.vdb", {grid});
     const Volume volume = readVolume("a.vdb");
     EXPECT_EQ(volume.type, "double");
-    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kLinear);
-    expectSame(volume, *grid, volume.codeBook.step * 0.5000001);
+    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kTable);
+    expectSame(volume, *grid, 0);
+
+    ReadOptions options;
+    options.bits = 9;
+    const Volume coarse = readVolume("a.vdb", options);
+    EXPECT_EQ(coarse.codeBook.codeOf(coarse.valueMax), 511);
+    expectSame(coarse, *grid, coarse.codeBook.step * 0.5000001);
 }
 
 template <typename Grid>
-void expectIntegers(const std::string& type, std::int64_t low, std::int64_t high, bool exact) {
+void expectIntegers(const std::string& type, std::int64_t low, std::int64_t high, bool near) {
     using T = typename Grid::ValueType;
     const auto grid = makeGrid<Grid>(
         "i", [&](int i) { return T(i == 0   ? low
@@ -87,9 +99,9 @@ void expectIntegers(const std::string& type, std::int64_t low, std::int64_t high
     writeGrids("a.vdb", {grid});
     const Volume volume = readVolume("a.vdb");
     EXPECT_EQ(volume.type, type);
-    ASSERT_EQ(volume.codeBook.kind, exact ? CodeBook::Kind::kInteger : CodeBook::Kind::kLinear);
-    EXPECT_EQ(volume.codeBook.offset, double(low));
-    expectSame(volume, *grid, exact ? 0 : volume.codeBook.step * 0.5000001);
+    ASSERT_EQ(volume.codeBook.kind, near ? CodeBook::Kind::kInteger : CodeBook::Kind::kTable);
+    EXPECT_EQ(volume.valueMin, double(low));
+    expectSame(volume, *grid, 0);
 }
 
 TEST(ReadVdb, Integers) {
@@ -176,7 +188,7 @@ TEST(ReadVdb, LevelSetsBecomeFog) {
     EXPECT_EQ(fog.gridClass, "fog volume");
     EXPECT_EQ(fog.background, 0);
     EXPECT_GT(fog.valueMin, 0);
-    EXPECT_EQ(fog.codeBook.codeOf(1), 65535);
+    EXPECT_EQ(fog.valueMax, 1);
     // All of the inside is active, none of the outside; deep inside is 1.
     EXPECT_NEAR(double(fog.activeCount), 4.0 / 3 * M_PI * 20 * 20 * 20, 300);
     Code code = 0;

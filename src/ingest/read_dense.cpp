@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "deltasplat/error.h"
+#include "ingest/code_tree.h"
+#include "ingest/dense_source.h"
+#include "ingest/dense_tree_builder.h"
+#include "ingest/raw_values.h"
+#include "ingest/readers.h"
+#include "ingest/source_grid.h"
+#include "ingest/vdb_transform.h"
+#include "memory.h"
+
+namespace deltasplat {
+namespace {
+
+// Half of the progress for each of two readings, all of it for the only one.
+Listener partOf(const Listener& listener, double begin, double end) {
+    Listener part;
+    part.progress = [&listener, begin, end](double share) {
+        listener.report(begin + (end - begin) * share);
+    };
+    return part;
+}
+
+std::string placeText(const glm::i64vec3& dims, std::uint64_t position) {
+    const auto width = std::uint64_t(dims.x);
+    const auto height = std::uint64_t(dims.y);
+    return "(" + std::to_string(position % width) + ", " +
+           std::to_string(position / width % height) + ", " +
+           std::to_string(position / width / height) + ")";
+}
+
+RawScan scan(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
+    RawScan whole;
+    if (options.bits) whole.census.distinct.giveUp();
+    source.forEachLayer(
+        [&](int, int slices, const std::byte* bytes) {
+            const std::size_t count =
+                std::size_t(source.dims.x) * std::size_t(source.dims.y) * std::size_t(slices);
+            whole.append(scanRawValues(bytes, count, source.type, source.bigEndian,
+                                       !whole.census.distinct.tooMany()));
+        },
+        listener);
+    return whole;
+}
+
+void settleNonFinite(const DenseSource& source, RawScan& scan, std::optional<double> nanValue) {
+    if (scan.nonFinite == 0) return;
+    if (!nanValue) {
+        throw Error(ErrorCode::kInput, gotExpected(source.where,
+                                                   std::to_string(scan.nonFinite) +
+                                                       " NaN or infinite values, the first at " +
+                                                       placeText(source.dims, scan.firstNonFinite),
+                                                   "finite values (--nan VALUE replaces them)"));
+    }
+    if (source.type == RawType::kFloat32) {
+        requireFloatNan(*nanValue);
+        scan.census.add(float(*nanValue));
+    } else {
+        scan.census.add(*nanValue);
+    }
+}
+
+// Types that do not fit 16 bits are read twice: first for what their codes have to tell apart.
+bool needsScan(RawType type) {
+    return rawTypeBytes(type) > 2;
+}
+
+CodeBook bookOf(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
+    if (source.type == RawType::kInt8)
+        return CodeBook::integer(std::numeric_limits<std::int8_t>::min());
+    if (source.type == RawType::kInt16)
+        return CodeBook::integer(std::numeric_limits<std::int16_t>::min());
+    if (!needsScan(source.type)) return CodeBook::integer(0);
+
+    RawScan whole = scan(source, options, listener);
+    settleNonFinite(source, whole, options.nanValue);
+    const bool real = source.type == RawType::kFloat32 || source.type == RawType::kFloat64;
+    return chooseBook(whole.census, real, options.bits, source.where);
+}
+
+// Adds the layers of a source to a tree, block by block.
+template <typename Tree>
+class LayerAdder {
+  public:
+    using Value = typename Tree::ValueType;
+
+    LayerAdder(const DenseSource& source, Tree& tree)
+        : source_(source), builder_(tree, glm::ivec3(source.dims)) {
+        const int slices = std::min<int>(int(source.dims.z), DenseSource::kLayerSlices);
+        requireMemory(source.where,
+                      double(source.sliceBytes()) * slices + builder_.worstLayerBytes());
+    }
+
+    int strips() const { return builder_.strips(); }
+
+    /// Reads a block by fill(block, values).
+    template <typename Fill, typename Tally>
+    void add(int first, const std::byte* bytes, const Fill& fill, const Tally& tally) {
+        requireMemory(source_.where, builder_.worstLayerBytes());
+        const std::size_t valueBytes = std::size_t(rawTypeBytes(source_.type));
+        builder_.addLayer(
+            first,
+            [&](const glm::ivec2& corner, const glm::ivec3& size, Value* values) {
+                const std::size_t start =
+                    std::size_t(corner.y) * source_.rowBytes() + std::size_t(corner.x) * valueBytes;
+                fill(RawBlock{bytes + start, source_.rowBytes(), source_.sliceBytes(), size},
+                     values);
+            },
+            tally);
+    }
+
+  private:
+    const DenseSource& source_;
+    DenseTreeBuilder<Tree> builder_;
+};
+
+// Counts codes, strip by strip.
+class CodeCounter {
+  public:
+    explicit CodeCounter(int strips) : counts_(std::size_t(strips)) {}
+
+    void operator()(std::size_t strip, const glm::ivec3& size, const Code* codes, bool uniform) {
+        std::vector<std::uint64_t>& counts = counts_[strip];
+        counts.resize(kCodeCount);
+        constexpr int kVoxels = 512;
+        if (uniform) {
+            counts[codes[0]] += kVoxels;
+            return;
+        }
+        // Places beyond the volume's end hold 0.
+        for (int n = 0; n < kVoxels; ++n) ++counts[codes[n]];
+        counts[0] -= std::uint64_t(kVoxels - size.x * size.y * size.z);
+    }
+
+    std::vector<std::uint64_t> sum() const {
+        std::vector<std::uint64_t> sum(kCodeCount);
+        for (const std::vector<std::uint64_t>& counts : counts_) {
+            for (std::size_t code = 0; code < counts.size(); ++code) sum[code] += counts[code];
+        }
+        return sum;
+    }
+
+  private:
+    std::vector<std::vector<std::uint64_t>> counts_;
+};
+
+void readCodes(const DenseSource& source, const ReadOptions& options, const Listener& listener,
+               Volume& volume) {
+    auto codes = std::make_shared<CodeTree>();
+    LayerAdder<CodeTree::Tree> adder(source, codes->tree);
+    const BookEncoder encoder(volume.codeBook);
+    const RawCoding coding{source.type, source.bigEndian, volume.codeBook, encoder,
+                           options.nanValue.value_or(0)};
+    const EncodeBlock encode = blockEncoder(coding);
+    CodeCounter counter(adder.strips());
+    source.forEachLayer(
+        [&](int first, int, const std::byte* bytes) {
+            adder.add(
+                first, bytes,
+                [&](const RawBlock& block, Code* values) { encode(block, coding, values); },
+                [&](auto&&... block) { counter(block...); });
+        },
+        listener);
+    volume.histogram = counter.sum();
+    volume.codes = std::move(codes);
+}
+
+template <typename Grid>
+openvdb::GridBase::Ptr readGrid(const DenseSource& source, const ReadOptions& options,
+                                const Listener& listener) {
+    using Value = typename Grid::ValueType;
+    auto grid = Grid::create();
+    LayerAdder<typename Grid::TreeType> adder(source, grid->tree());
+    const auto nanValue = Value(options.nanValue.value_or(0));
+    source.forEachLayer(
+        [&](int first, int, const std::byte* bytes) {
+            adder.add(
+                first, bytes,
+                [&](const RawBlock& block, Value* values) {
+                    readValues(block, source.type, source.bigEndian, nanValue, values);
+                },
+                [](auto&&...) {});
+        },
+        listener);
+    grid->setTransform(makeTransform(source.worldFromIndex));
+    grid->setName(source.name);
+    return grid;
+}
+
+openvdb::GridBase::Ptr readSourceGrid(const DenseSource& source, const ReadOptions& options,
+                                      const Listener& listener) {
+    openvdb::initialize();
+    switch (source.type) {
+        case RawType::kFloat32:
+            return readGrid<openvdb::FloatGrid>(source, options, listener);
+        case RawType::kFloat64:
+            return readGrid<openvdb::DoubleGrid>(source, options, listener);
+        case RawType::kInt32:
+            return readGrid<openvdb::Int32Grid>(source, options, listener);
+        default:
+            return readGrid<openvdb::Int64Grid>(source, options, listener);
+    }
+}
+
+}  // namespace
+
+Volume readDense(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
+    const double scanned = needsScan(source.type) ? 0.5 : 0.0;
+    Volume volume;
+    volume.codeBook = bookOf(source, options, partOf(listener, 0, scanned));
+    const bool keep = options.keepSource && !volume.codeBook.isExact();
+    const double coded = keep ? 0.75 : 1;
+    readCodes(source, options, partOf(listener, scanned, coded), volume);
+    if (keep) {
+        auto grid = readSourceGrid(source, options, partOf(listener, coded, 1));
+        volume.source = std::make_shared<const SourceGrid>(SourceGrid{std::move(grid)});
+    }
+
+    volume.name = source.name;
+    volume.type = rawTypeName(source.type);
+    volume.gridClass = "unknown";
+    volume.space = source.space;
+    volume.box = {glm::ivec3(0), glm::ivec3(source.dims) - 1};
+    volume.worldFromIndex = source.worldFromIndex;
+    summarize(volume);
+    return volume;
+}
+
+}  // namespace deltasplat

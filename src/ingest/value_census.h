@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Types.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+
+#include "deltasplat/ingest/code_book.h"
+#include "ingest/distinct_values.h"
+
+namespace deltasplat {
+
+/// What finite values have in common: all that the choice of a code book depends on.
+struct ValueCensus {
+    double min = 0;
+    double max = 0;
+    std::uint64_t count = 0;
+    bool half = true;   ///< every value is a binary16 number
+    bool whole = true;  ///< every value is a whole number, and none is -0
+    bool exact = true;  ///< a double holds every value
+    DistinctValues distinct;
+
+    template <typename T>
+    void add(T value) {
+        const auto number = double(value);
+        min = count == 0 ? number : std::min(min, number);
+        max = count == 0 ? number : std::max(max, number);
+        ++count;
+        if constexpr (std::is_floating_point_v<T>) {
+            half = half && double(float(openvdb::math::half(float(number)))) == number;
+            whole = whole && number == std::floor(number) && (number != 0 || !std::signbit(number));
+        } else {
+            constexpr std::int64_t kMost = std::int64_t{1} << 53;
+            exact = exact && std::int64_t(value) >= -kMost && std::int64_t(value) <= kMost;
+        }
+        distinct.add(number);
+    }
+    void append(const ValueCensus& next);
+};
+
+/// Returns the code book for values of this census: exact if there is one. Real values that are
+/// all halves get `half`; whole numbers that span at most 65536 get `integer`; at most 65536
+/// different ones `table`; others `linear`.
+/// @param real   the source's type is real; whole numbers never get `half`
+/// @param bits   for real types: `linear` with that many bits instead of an exact book
+/// @param where  file, for messages
+/// @throw Error(kInput) if the values lie too far apart
+CodeBook chooseBook(const ValueCensus& census, bool real, std::optional<int> bits,
+                    const std::string& where);
+
+}  // namespace deltasplat

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/vdb_transform.h"
+
+#include <openvdb/math/Maps.h>
+
+#include <glm/vec3.hpp>
+#include <memory>
+
+namespace deltasplat {
+namespace {
+
+using namespace openvdb::math;
+
+bool isScaleAndTranslation(const glm::dmat4& matrix) {
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 others = matrix[axis];
+        others[axis] = 0;
+        if (others != glm::dvec3(0)) return false;
+    }
+    return true;
+}
+
+MapBase::Ptr scaleMap(const glm::dvec3& scale, const glm::dvec3& origin) {
+    const bool uniform = scale == glm::dvec3(scale.x);
+    const Vec3d scales(scale.x, scale.y, scale.z);
+    const Vec3d translation(origin.x, origin.y, origin.z);
+    if (origin != glm::dvec3(0)) {
+        if (uniform) return std::make_shared<UniformScaleTranslateMap>(scale.x, translation);
+        return std::make_shared<ScaleTranslateMap>(scales, translation);
+    }
+    if (uniform) return std::make_shared<UniformScaleMap>(scale.x);
+    return std::make_shared<ScaleMap>(scales);
+}
+
+MapBase::Ptr affineMap(const glm::dmat4& worldFromIndex) {
+    // OpenVDB multiplies row vectors: its rows are GLM's columns.
+    Mat4d matrix;
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 4; ++column)
+            matrix[row][column] = worldFromIndex[row][column];
+    }
+    return std::make_shared<AffineMap>(matrix);
+}
+
+}  // namespace
+
+// OpenVDB's own simplify() takes numbers for equal that are not.
+Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex) {
+    const glm::dmat4& m = worldFromIndex;
+    const MapBase::Ptr map = isScaleAndTranslation(m)
+                                 ? scaleMap({m[0].x, m[1].y, m[2].z}, glm::dvec3(m[3]))
+                                 : affineMap(m);
+    return std::make_shared<Transform>(map);
+}
+
+glm::dmat4 matrixOf(const Transform& transform) {
+    const Mat4d affine = transform.baseMap()->getAffineMap()->getMat4();
+    glm::dmat4 matrix;
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 4; ++column) matrix[row][column] = affine[row][column];
+    }
+    return matrix;
+}
+
+}  // namespace deltasplat
