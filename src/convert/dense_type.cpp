@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "convert/dense_type.h"
+
+#include <openvdb/openvdb.h>
+
+#include <optional>
+
+#include "convert/volume_grid.h"
+#include "ingest/source_grid.h"
+#include "number_text.h"
+
+namespace deltasplat {
+namespace {
+
+std::optional<RawType> typeNamed(const std::string& name) {
+    for (int i = 0; i <= int(RawType::kFloat64); ++i) {
+        if (name == rawTypeName(RawType(i))) return RawType(i);
+    }
+    return {};
+}
+
+std::string sourceType(const Volume& volume) {
+    if (!volume.source) return {};
+    const auto text = volume.source->grid->getMetadata<openvdb::StringMetadata>(kSourceTypeKey);
+    return text ? text->value() : "";
+}
+
+// Returns what OpenVDB's own types are called here.
+std::string denseName(const std::string& type) {
+    if (type == "float" || type == "half") return "float32";
+    if (type == "double") return "float64";
+    if (type == "int64") return "int32";
+    return type == "bool" || type == "mask" ? "uint8" : type;
+}
+
+RawType chooseType(const Volume& volume, const ValueFacts& facts) {
+    for (const std::string& name : {sourceType(volume), denseName(volume.type)}) {
+        const std::optional<RawType> type = typeNamed(name);
+        if (type && facts.fit(*type)) return *type;
+    }
+    return facts.fit(RawType::kFloat32) ? RawType::kFloat32 : RawType::kFloat64;
+}
+
+}  // namespace
+
+RawType denseType(const Volume& volume, const ValueFacts& facts, Notes& notes) {
+    const RawType type = chooseType(volume, facts);
+    const std::string name = rawTypeName(type);
+    const std::string before = sourceType(volume).empty() ? volume.type : sourceType(volume);
+    if (facts.doubleError > 0) {
+        notes.loss(before + " stored as " + name + ", which is off by up to " +
+                   numberText(facts.doubleError));
+    } else if (name != before && !(before == "float" && name == "float32") &&
+               !(before == "double" && name == "float64")) {
+        notes.remark(before + " stored as " + name + ", which holds every value");
+    }
+    return type;
+}
+
+}  // namespace deltasplat

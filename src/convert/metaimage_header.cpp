@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: MetaIO's "MetaImage" tag reference (itk.org/Wiki/ITK/MetaIO/Documentation). World space
+// is LPS, as in ITK and in what is built on it.
+#include "convert/dense_layout.h"
+#include "number_text.h"
+
+namespace deltasplat {
+namespace {
+
+std::string typeText(RawType type) {
+    switch (type) {
+        case RawType::kUint8:
+            return "MET_UCHAR";
+        case RawType::kInt8:
+            return "MET_CHAR";
+        case RawType::kUint16:
+            return "MET_USHORT";
+        case RawType::kInt16:
+            return "MET_SHORT";
+        case RawType::kUint32:
+            return "MET_UINT";
+        case RawType::kInt32:
+            return "MET_INT";
+        case RawType::kFloat32:
+            return "MET_FLOAT";
+        case RawType::kFloat64:
+            break;
+    }
+    return "MET_DOUBLE";
+}
+
+std::string vectorText(const glm::dvec3& v) {
+    return " " + numberText(v.x) + " " + numberText(v.y) + " " + numberText(v.z);
+}
+
+}  // namespace
+
+void settleMetaImage(DenseLayout& layout, const std::string&, Notes& notes) {
+    layout.turnTo("LPS");
+    if (!layout.isOrthogonal()) {
+        notes.loss(
+            "axes that are not at right angles: MetaImage has only rotations, and programs "
+            "that rely on it misplace the voxels");
+    }
+}
+
+std::string metaImageHeader(const DenseLayout& layout, const std::string& dataFile) {
+    const glm::dmat3 directions = layout.directions();
+    std::string text = "ObjectType = Image\nNDims = 3\nBinaryData = True\n";
+    text += "BinaryDataByteOrderMSB = False\nCompressedData = False\n";
+    text += "TransformMatrix =" + vectorText(directions[0]) + vectorText(directions[1]) +
+            vectorText(directions[2]) + "\n";
+    text += "Offset =" + vectorText(layout.origin()) + "\n";
+    text += "CenterOfRotation = 0 0 0\n";
+    text += "ElementSpacing =" + vectorText(layout.spacing()) + "\n";
+    text += "DimSize = " + std::to_string(layout.dims.x) + " " + std::to_string(layout.dims.y) +
+            " " + std::to_string(layout.dims.z) + "\n";
+    text += "ElementType = " + typeText(layout.type) + "\n";
+    return text + "ElementDataFile = " + (dataFile.empty() ? "LOCAL" : dataFile) + "\n";
+}
+
+}  // namespace deltasplat
