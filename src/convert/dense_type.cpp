@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/dense_type.h"
 
-#include <openvdb/openvdb.h>
-
 #include <optional>
 
-#include "convert/volume_grid.h"
+#include "ingest/grid_metadata.h"
 #include "ingest/source_grid.h"
 #include "number_text.h"
 
@@ -20,9 +18,7 @@ std::optional<RawType> typeNamed(const std::string& name) {
 }
 
 std::string sourceType(const Volume& volume) {
-    if (!volume.source) return {};
-    const auto text = volume.source->grid->getMetadata<openvdb::StringMetadata>(kSourceTypeKey);
-    return text ? text->value() : "";
+    return volume.source ? textMetadata(*volume.source->grid, kSourceTypeKey) : "";
 }
 
 // Returns what OpenVDB's own types are called here.

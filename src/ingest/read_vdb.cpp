@@ -11,6 +11,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/grid_codes.h"
+#include "ingest/grid_metadata.h"
 #include "ingest/readers.h"
 #include "ingest/source_grid.h"
 #include "ingest/vdb_file.h"
@@ -83,6 +84,11 @@ glm::dmat4 worldFromIndex(const openvdb::math::Transform& transform, const std::
     return matrix;
 }
 
+std::string spaceOf(const openvdb::GridBase& grid) {
+    const std::string space = textMetadata(grid, kSpaceKey);
+    return space == "RAS" || space == "LPS" ? space : "";
+}
+
 void settleBackground(Volume& volume, const ReadOptions& options, const std::string& where,
                       const Listener& listener) {
     if (std::isfinite(volume.background)) return;
@@ -96,7 +102,7 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
                 const ReadOptions& options, const Listener& listener) {
     Listener reading;
     reading.progress = [&](double share) { listener.report(kReadShare * share); };
-    openvdb::GridBase::Ptr loaded = file.read(grid, reading);
+    const openvdb::GridBase::Ptr loaded = file.read(grid, reading);
     Volume volume;
     volume.name = grid.name;
     volume.worldFromIndex = worldFromIndex(loaded->transform(), where);
@@ -105,7 +111,8 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
         {listener, where, grid.valueType(), options.levelSetToFog, options.nanValue, options.bits},
         volume);
     if (options.keepSource)
-        volume.source = std::make_shared<const SourceGrid>(SourceGrid{std::move(loaded)});
+        volume.source = std::make_shared<const SourceGrid>(SourceGrid{loaded, file.metadata()});
+    volume.space = spaceOf(*loaded);
     settleBackground(volume, options, where, listener);
     if (volume.empty()) listener.warn(where + ": no active voxels");
     return volume;
