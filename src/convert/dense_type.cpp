@@ -11,7 +11,7 @@ namespace deltasplat {
 namespace {
 
 std::optional<RawType> typeNamed(const std::string& name) {
-    for (int i = 0; i <= int(RawType::kFloat64); ++i) {
+    for (int i = 0; i <= int(RawType::kInt64); ++i) {
         if (name == rawTypeName(RawType(i))) return RawType(i);
     }
     return {};
@@ -25,22 +25,23 @@ std::string sourceType(const Volume& volume) {
 std::string denseName(const std::string& type) {
     if (type == "float" || type == "half") return "float32";
     if (type == "double") return "float64";
-    if (type == "int64") return "int32";
     return type == "bool" || type == "mask" ? "uint8" : type;
 }
 
-RawType chooseType(const Volume& volume, const ValueFacts& facts) {
+RawType chooseType(const Volume& volume, const ValueFacts& facts, bool wide) {
     for (const std::string& name : {sourceType(volume), denseName(volume.type)}) {
         const std::optional<RawType> type = typeNamed(name);
-        if (type && facts.fit(*type)) return *type;
+        const bool known = wide || (type != RawType::kInt64 && type != RawType::kUint64);
+        if (type && known && facts.fit(*type)) return *type;
     }
+    if (volume.type == "int64" && facts.fit(RawType::kInt32)) return RawType::kInt32;
     return facts.fit(RawType::kFloat32) ? RawType::kFloat32 : RawType::kFloat64;
 }
 
 }  // namespace
 
-RawType denseType(const Volume& volume, const ValueFacts& facts, Notes& notes) {
-    const RawType type = chooseType(volume, facts);
+RawType denseType(const Volume& volume, const ValueFacts& facts, bool wide, Notes& notes) {
+    const RawType type = chooseType(volume, facts, wide);
     const std::string name = rawTypeName(type);
     const std::string before = sourceType(volume).empty() ? volume.type : sourceType(volume);
     if (facts.doubleError > 0) {
