@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
-#include <cstdint>
-#include <type_traits>
+#include <cstring>
 
 namespace deltasplat {
 
 /// Stores a number as sizeof(T) bytes, least significant first, on any machine.
 template <typename T>
 inline void storeLittle(T value, std::byte* at) {
-    using Bits = std::conditional_t<
-        sizeof(T) == 1, std::uint8_t,
-        std::conditional_t<sizeof(T) == 2, std::uint16_t,
-                           std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
-    const Bits bits = std::bit_cast<Bits>(value);
-    // Compilers know this loop as one instruction.
-    for (std::size_t i = 0; i < sizeof bits; ++i) at[i] = std::byte(bits >> 8 * i & 0xff);
+    if constexpr (std::endian::native == std::endian::little) {
+        std::memcpy(at, &value, sizeof value);
+    } else {
+        std::array<std::byte, sizeof(T)> bytes;
+        std::memcpy(bytes.data(), &value, sizeof value);
+        std::reverse_copy(bytes.begin(), bytes.end(), at);
+    }
 }
 
 }  // namespace deltasplat

@@ -99,7 +99,9 @@ void warnOfUnusedOptions(const CLI::App& app, const ConvertCommand& command,
     }
 }
 
-std::vector<Volume> readInput(const ConvertCommand& command, const Listener& listener) {
+// Sets `complete` unless grids are left out.
+std::vector<Volume> readInput(const ConvertCommand& command, const Listener& listener,
+                              bool& complete) {
     std::vector<Volume> volumes;
     if (!command.toVdb()) {
         volumes.push_back(readVolume(command.input, command.read, listener));
@@ -122,7 +124,8 @@ void runConvert(const CLI::App& app, const ConvertCommand& command, const Sessio
     {
         ProgressDisplay display(session.common.quiet);
         warnOfUnusedOptions(app, command, display);
-        std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare));
+        bool complete = true;
+        std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare), complete);
         for (const Volume& volume : volumes) stats.add(volume);
         stats.inputBytes = bytesOf({command.input});
 
@@ -131,7 +134,7 @@ void runConvert(const CLI::App& app, const ConvertCommand& command, const Sessio
         for (const std::string& note : report.notes) display.warn(note);
         stats.outputBytes = bytesOf(report.files);
         stats.maxError = report.maxError;
-        stats.lossless = report.lossless;
+        stats.lossless = report.lossless && complete;
         stats.seconds = secondsSince(session.begin);
     }
     if (!command.stats.empty()) writeFileAtomically(command.stats, statsJson(stats));

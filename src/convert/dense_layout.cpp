@@ -13,14 +13,14 @@ std::string noHeader(const DenseLayout&, const std::string&) {
 }
 
 constexpr std::array<DenseFormat, 8> kFormats{{
-    {".raw", "", false, false, settleRaw, noHeader},
-    {".raw.gz", "", false, true, settleRaw, noHeader},
-    {".nrrd", "", false, true, settleNrrd, nrrdHeader},
-    {".nhdr", ".raw.gz", false, true, settleNrrd, nrrdHeader},
-    {".mhd", ".raw", false, false, settleMetaImage, metaImageHeader},
-    {".mha", "", false, false, settleMetaImage, metaImageHeader},
-    {".nii", "", false, false, settleNifti, niftiHeader},
-    {".nii.gz", "", true, true, settleNifti, niftiHeader},
+    {".raw", "", false, false, false, settleRaw, noHeader},
+    {".raw.gz", "", false, true, false, settleRaw, noHeader},
+    {".nrrd", "", false, true, true, settleNrrd, nrrdHeader},
+    {".nhdr", ".raw.gz", false, true, true, settleNrrd, nrrdHeader},
+    {".mhd", ".raw", false, false, true, settleMetaImage, metaImageHeader},
+    {".mha", "", false, false, true, settleMetaImage, metaImageHeader},
+    {".nii", "", false, false, true, settleNifti, niftiHeader},
+    {".nii.gz", "", true, true, true, settleNifti, niftiHeader},
 }};
 
 }  // namespace
@@ -41,11 +41,11 @@ glm::dmat3 DenseLayout::directions() const {
 }
 
 bool DenseLayout::isOrthogonal() const {
-    constexpr double kFloatPrecision = 1e-6;
+    constexpr double kNearly = 1e-5;
     const glm::dmat3 units = directions();
-    return std::abs(glm::dot(units[0], units[1])) < kFloatPrecision &&
-           std::abs(glm::dot(units[1], units[2])) < kFloatPrecision &&
-           std::abs(glm::dot(units[2], units[0])) < kFloatPrecision;
+    return std::abs(glm::dot(units[0], units[1])) < kNearly &&
+           std::abs(glm::dot(units[1], units[2])) < kNearly &&
+           std::abs(glm::dot(units[2], units[0])) < kNearly;
 }
 
 void DenseLayout::turnTo(const std::string& otherSpace) {

@@ -23,7 +23,7 @@ struct DenseLayout {
     glm::dvec3 spacing() const;
     /// Unit vectors along x, y and z, as columns.
     glm::dmat3 directions() const;
-    /// Whether the axes are at right angles, to the precision of a float.
+    /// Whether the axes are at right angles, to a hundredth of a voxel in a thousand.
     bool isOrthogonal() const;
     /// Turns world space from the patient's RAS to LPS or back; what has no space keeps its
     /// numbers.
@@ -38,6 +38,7 @@ struct DenseFormat {
     const char* dataExtension;  ///< of the file that holds the values; "" if it is the same
     bool gzipHeader;
     bool gzipData;
+    bool wideIntegers;  ///< it has integers of 64 bits
     /// Brings a layout into the format's terms, and says what the format does not hold.
     /// @throw Error(kFailed) if the format cannot hold it
     void (*settle)(DenseLayout& layout, const std::string& file, Notes& notes);

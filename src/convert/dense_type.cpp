@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/dense_type.h"
 
-#include <openvdb/openvdb.h>
-
 #include <optional>
 
-#include "convert/volume_grid.h"
+#include "ingest/grid_metadata.h"
 #include "ingest/source_grid.h"
 #include "number_text.h"
 
@@ -13,38 +11,37 @@ namespace deltasplat {
 namespace {
 
 std::optional<RawType> typeNamed(const std::string& name) {
-    for (int i = 0; i <= int(RawType::kFloat64); ++i) {
+    for (int i = 0; i <= int(RawType::kInt64); ++i) {
         if (name == rawTypeName(RawType(i))) return RawType(i);
     }
     return {};
 }
 
 std::string sourceType(const Volume& volume) {
-    if (!volume.source) return {};
-    const auto text = volume.source->grid->getMetadata<openvdb::StringMetadata>(kSourceTypeKey);
-    return text ? text->value() : "";
+    return volume.source ? textMetadata(*volume.source->grid, kSourceTypeKey) : "";
 }
 
 // Returns what OpenVDB's own types are called here.
 std::string denseName(const std::string& type) {
     if (type == "float" || type == "half") return "float32";
     if (type == "double") return "float64";
-    if (type == "int64") return "int32";
     return type == "bool" || type == "mask" ? "uint8" : type;
 }
 
-RawType chooseType(const Volume& volume, const ValueFacts& facts) {
+RawType chooseType(const Volume& volume, const ValueFacts& facts, bool wide) {
     for (const std::string& name : {sourceType(volume), denseName(volume.type)}) {
         const std::optional<RawType> type = typeNamed(name);
-        if (type && facts.fit(*type)) return *type;
+        const bool known = wide || (type != RawType::kInt64 && type != RawType::kUint64);
+        if (type && known && facts.fit(*type)) return *type;
     }
+    if (volume.type == "int64" && facts.fit(RawType::kInt32)) return RawType::kInt32;
     return facts.fit(RawType::kFloat32) ? RawType::kFloat32 : RawType::kFloat64;
 }
 
 }  // namespace
 
-RawType denseType(const Volume& volume, const ValueFacts& facts, Notes& notes) {
-    const RawType type = chooseType(volume, facts);
+RawType denseType(const Volume& volume, const ValueFacts& facts, bool wide, Notes& notes) {
+    const RawType type = chooseType(volume, facts, wide);
     const std::string name = rawTypeName(type);
     const std::string before = sourceType(volume).empty() ? volume.type : sourceType(volume);
     if (facts.doubleError > 0) {

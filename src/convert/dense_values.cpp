@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ingest/code_tree.h"
+#include "ingest/raw_load.h"
 #include "ingest/scalar_grids.h"
 #include "ingest/source_grid.h"
 #include "little_endian.h"
@@ -121,25 +122,7 @@ ReadBox boxReader(const Volume& volume) {
 }
 
 double storeValues(const double* values, std::size_t count, RawType type, std::byte* out) {
-    switch (type) {
-        case RawType::kUint8:
-            return store<std::uint8_t>(values, count, out);
-        case RawType::kInt8:
-            return store<std::int8_t>(values, count, out);
-        case RawType::kUint16:
-            return store<std::uint16_t>(values, count, out);
-        case RawType::kInt16:
-            return store<std::int16_t>(values, count, out);
-        case RawType::kUint32:
-            return store<std::uint32_t>(values, count, out);
-        case RawType::kInt32:
-            return store<std::int32_t>(values, count, out);
-        case RawType::kFloat32:
-            return store<float>(values, count, out);
-        case RawType::kFloat64:
-            break;
-    }
-    return store<double>(values, count, out);
+    return withRawType(type, [&](auto zero) { return store<decltype(zero)>(values, count, out); });
 }
 
 }  // namespace deltasplat

@@ -34,6 +34,10 @@ std::int16_t dataType(RawType type) {
             return 768;
         case RawType::kInt32:
             return 8;
+        case RawType::kUint64:
+            return 1280;
+        case RawType::kInt64:
+            return 1024;
         case RawType::kFloat32:
             return 16;
         case RawType::kFloat64:

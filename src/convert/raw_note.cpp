@@ -42,7 +42,7 @@ void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
     if (readBack != layout.worldFromIndex) dropped += " axis directions";
     if (!layout.space.empty())
         dropped += (dropped.empty() ? " " : " and ") + layout.space + " space";
-    if (!options.empty()) notes.loss("no header; read it with" + options);
+    if (!options.empty()) notes.remark("no header; read it with" + options);
     if (!dropped.empty()) notes.loss("no header, which drops" + dropped);
 }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/value_facts.h"
 
+#include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "ingest/grid_values.h"
+#include "ingest/raw_load.h"
 #include "ingest/scalar_grids.h"
 #include "ingest/source_grid.h"
 
@@ -13,8 +16,10 @@ namespace {
 
 template <typename T>
 bool within(const ValueFacts& facts) {
-    return facts.whole && facts.min >= double(std::numeric_limits<T>::min()) &&
-           facts.max <= double(std::numeric_limits<T>::max());
+    // What is whole is at most the largest if it is below the power of two that follows.
+    return facts.whole && facts.doubleError == 0 &&
+           facts.min >= double(std::numeric_limits<T>::min()) &&
+           facts.max < std::ldexp(1.0, std::numeric_limits<T>::digits);
 }
 
 template <typename Leaf>
@@ -62,25 +67,11 @@ void ValueFacts::append(const ValueFacts& other) {
 }
 
 bool ValueFacts::fit(RawType type) const {
-    switch (type) {
-        case RawType::kUint8:
-            return within<std::uint8_t>(*this);
-        case RawType::kInt8:
-            return within<std::int8_t>(*this);
-        case RawType::kUint16:
-            return within<std::uint16_t>(*this);
-        case RawType::kInt16:
-            return within<std::int16_t>(*this);
-        case RawType::kUint32:
-            return within<std::uint32_t>(*this);
-        case RawType::kInt32:
-            return within<std::int32_t>(*this);
-        case RawType::kFloat32:
-            return floats;
-        case RawType::kFloat64:
-            break;
-    }
-    return doubleError == 0;
+    return withRawType(type, [&](auto zero) {
+        using T = decltype(zero);
+        if constexpr (std::is_integral_v<T>) return within<T>(*this);
+        return doubleError == 0 && (floats || std::is_same_v<T, double>);
+    });
 }
 
 ValueFacts factsOf(const Volume& volume) {

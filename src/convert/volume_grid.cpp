@@ -8,6 +8,7 @@
 
 #include "convert/value_facts.h"
 #include "ingest/code_tree.h"
+#include "ingest/grid_metadata.h"
 #include "ingest/grid_values.h"
 #include "ingest/scalar_grids.h"
 #include "ingest/source_grid.h"

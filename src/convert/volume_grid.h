@@ -7,10 +7,6 @@
 
 namespace deltasplat {
 
-/// Metadata of grids that were made from formats of other types and places.
-inline constexpr const char* kSourceTypeKey = "deltasplat_source_type";  ///< "uint8", ...
-inline constexpr const char* kSpaceKey = "deltasplat_space";             ///< as Volume::space
-
 /// Returns the OpenVDB grid that a volume is. The grid of a .vdb source is that source itself.
 /// Otherwise: a volume that has a background (it was a .vdb once) gets a grid of its own type
 /// again, another one a float grid if floats hold every value, else int32 if that does, else

@@ -15,6 +15,8 @@
 #include "convert/value_facts.h"
 #include "deltasplat/error.h"
 #include "ingest/file_name.h"
+#include "ingest/grid_metadata.h"
+#include "ingest/source_grid.h"
 #include "memory.h"
 #include "number_text.h"
 #include "parallel.h"
@@ -53,14 +55,17 @@ void noteLostStates(const Volume& volume, Notes& notes) {
                    "(background " +
                    numberText(volume.background) + ")");
     }
+    // What was no grid before has no more than its file's name.
+    if (volume.source && !textMetadata(*volume.source->grid, kSourceTypeKey).empty()) return;
     notes.loss("the grid's name \"" + volume.name + "\", class \"" + volume.gridClass +
                "\" and other metadata are left out");
 }
 
-DenseLayout layoutOf(const Volume& volume, const ValueFacts& facts, Notes& notes) {
+DenseLayout layoutOf(const Volume& volume, const ValueFacts& facts, const DenseFormat& format,
+                     Notes& notes) {
     DenseLayout layout;
     layout.dims = volume.box.dims();
-    layout.type = denseType(volume, facts, notes);
+    layout.type = denseType(volume, facts, format.wideIntegers, notes);
     layout.worldFromIndex = volume.worldFromIndex;
     layout.worldFromIndex[3] = volume.worldFromIndex * glm::dvec4(volume.box.min, 1);
     layout.space = volume.space;
@@ -139,7 +144,7 @@ WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& for
     WriteReport report;
     Notes notes(report, file);
     const ValueFacts facts = factsOf(volume);
-    DenseLayout layout = layoutOf(volume, facts, notes);
+    DenseLayout layout = layoutOf(volume, facts, format, notes);
     format.settle(layout, file.string(), notes);
     noteLostStates(volume, notes);
     const double sliceBytes = double(layout.dims.x) * layout.dims.y * rawTypeBytes(layout.type);

@@ -12,6 +12,7 @@
 #include "convert/volume_grid.h"
 #include "convert/write_report.h"
 #include "deltasplat/error.h"
+#include "ingest/source_grid.h"
 #include "number_text.h"
 #include "write_vdb.h"
 
@@ -88,12 +89,26 @@ GridBase::ConstPtr storedGrid(Volume volume, const WriteOptions& options, Notes&
     return grid->copyGridReplacingMetadata(metadata);
 }
 
+// Volumes of several files share the metadata of all; where two have one key, the first wins.
+openvdb::MetaMap fileMetadata(const std::vector<Volume>& volumes) {
+    openvdb::MetaMap all;
+    for (const Volume& volume : volumes) {
+        if (!volume.source || !volume.source->fileMetadata) continue;
+        const openvdb::MetaMap& own = *volume.source->fileMetadata;
+        for (auto entry = own.beginMeta(); entry != own.endMeta(); ++entry) {
+            if (!all[entry->first]) all.insertMeta(entry->first, *entry->second);
+        }
+    }
+    return all;
+}
+
 }  // namespace
 
 WriteReport writeGrids(const std::filesystem::path& file, std::vector<Volume> volumes,
                        const WriteOptions& options, const Listener& listener) {
     WriteReport report;
     Notes notes(report, file);
+    const openvdb::MetaMap metadata = fileMetadata(volumes);
     openvdb::GridCPtrVec grids;
     for (std::size_t i = 0; i < volumes.size(); ++i) {
         grids.push_back(storedGrid(std::move(volumes[i]), options, notes));
@@ -103,7 +118,7 @@ WriteReport writeGrids(const std::filesystem::path& file, std::vector<Volume> vo
     writing.progress = [&](double share) {
         listener.report(kGridShare + (1 - kGridShare) * share);
     };
-    writeVdb(file, grids, {}, writing);
+    writeVdb(file, grids, metadata, writing);
     report.files = {file};
     return report;
 }

@@ -185,7 +185,8 @@ DeltaFileEntry DeltaFile::add(Volume volume, const DeltaFileOptions& options,
         header.sourceTree = treeTypeOf(*source);
         header.sourceMap = source->transform().mapType();
         putSourceMetadata(*source, *grid);
-        if (impl_->grids.empty()) impl_->fileMetadata = volume.source->fileMetadata;
+        if (impl_->grids.empty() && volume.source->fileMetadata)
+            impl_->fileMetadata = *volume.source->fileMetadata;
     }
     grid->setName(volume.name);
     grid->setCreator("deltasplat");
@@ -201,7 +202,7 @@ DeltaFileEntry DeltaFile::add(Volume volume, const DeltaFileOptions& options,
         ReadOptions reading;
         reading.levelSetToFog = false;
         reading.keepSource = true;
-        const Volume restored = readDeltaGrid(*grid, {}, volume.name, reading, {});
+        const Volume restored = readDeltaGrid(*grid, nullptr, volume.name, reading, {});
         entry.maxError = compareVolumes(restored, volume).maxError;
         header.maxError = entry.maxError;
         putDeltaHeader(header, *grid);

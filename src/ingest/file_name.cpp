@@ -19,6 +19,12 @@ std::string nameWithoutExtensions(const std::filesystem::path& file) {
     return name.substr(0, name.size() - lowerExtension(file).size());
 }
 
+std::string folderName(const std::filesystem::path& folder) {
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::weakly_canonical(folder, error);
+    return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
+}
+
 void requireRegularFile(const std::filesystem::path& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);

@@ -12,6 +12,9 @@ std::string lowerExtension(const std::filesystem::path& file);
 /// Returns the file's name without folder and without the extension that lowerExtension gives.
 std::string nameWithoutExtensions(const std::filesystem::path& file);
 
+/// Returns the name of a folder, whether or not its path ends with a slash.
+std::string folderName(const std::filesystem::path& folder);
+
 /// @throw Error(kInput) unless `file` exists and is a regular file
 void requireRegularFile(const std::filesystem::path& file);
 

@@ -14,6 +14,7 @@
 #include "ingest/code_tree.h"
 #include "ingest/grid_values.h"
 #include "ingest/readers.h"
+#include "ingest/scalar_grids.h"
 #include "number_text.h"
 
 namespace deltasplat {
@@ -123,9 +124,7 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
 }  // namespace
 
 void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume) {
-    using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                    openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid>;
-    const bool known = grid.apply<Types>([&](auto& typed) { fill(typed, options, volume); });
+    const bool known = grid.apply<ScalarGrids>([&](auto& typed) { fill(typed, options, volume); });
     if (!known) fail(options.where, "type " + options.type, "a scalar grid");
     volume.type = options.type;
     volume.gridClass = openvdb::GridBase::gridClassToString(grid.getGridClass());

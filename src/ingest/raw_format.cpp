@@ -20,14 +20,18 @@ struct TypeInfo {
     int bytes;
 };
 
-constexpr std::array<TypeInfo, 8> kTypes{{{RawType::kUint8, "uint8", 1},
-                                          {RawType::kInt8, "int8", 1},
-                                          {RawType::kUint16, "uint16", 2},
-                                          {RawType::kInt16, "int16", 2},
-                                          {RawType::kUint32, "uint32", 4},
-                                          {RawType::kInt32, "int32", 4},
-                                          {RawType::kFloat32, "float32", 4},
-                                          {RawType::kFloat64, "float64", 8}}};
+constexpr std::array<TypeInfo, 10> kTypes{{{RawType::kUint8, "uint8", 1},
+                                           {RawType::kInt8, "int8", 1},
+                                           {RawType::kUint16, "uint16", 2},
+                                           {RawType::kInt16, "int16", 2},
+                                           {RawType::kUint32, "uint32", 4},
+                                           {RawType::kInt32, "int32", 4},
+                                           {RawType::kFloat32, "float32", 4},
+                                           {RawType::kFloat64, "float64", 8},
+                                           {RawType::kUint64, "uint64", 8},
+                                           {RawType::kInt64, "int64", 8}}};
+// The others are not for .raw files.
+constexpr std::size_t kRawNames = 8;
 
 constexpr const char* kKnownTypes =
     "one of uint8, int8, uint16, int16, uint32, int32, float32, float64";
@@ -46,8 +50,8 @@ struct NameParts {
 }
 
 const TypeInfo* findType(const std::string& name) {
-    for (const TypeInfo& info : kTypes) {
-        if (name == info.name) return &info;
+    for (std::size_t i = 0; i < kRawNames; ++i) {
+        if (name == kTypes[i].name) return &kTypes[i];
     }
     return nullptr;
 }
@@ -119,18 +123,6 @@ const TypeInfo& resolveType(const std::filesystem::path& file, const RawFormat& 
     return *info;
 }
 
-void checkGeometry(const RawFormat& format) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const double spacing = format.spacing[axis];
-        if (!std::isfinite(spacing) || spacing <= 0) {
-            refuse("--spacing", numberText(spacing), "three finite numbers above 0");
-        }
-        if (!std::isfinite(format.origin[axis])) {
-            refuse("--origin", numberText(format.origin[axis]), "three finite numbers");
-        }
-    }
-}
-
 // Each dim is at most 2^30, so only the products can leave 63 bits.
 void checkSize(const std::string& where, const RawLayout& layout) {
     const std::int64_t limit = std::numeric_limits<std::int64_t>::max();
@@ -162,6 +154,18 @@ std::string RawLayout::expectedSize() const {
            rawTypeName(type) + ")";
 }
 
+void requireGeometry(const RawFormat& format) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double spacing = format.spacing[axis];
+        if (!std::isfinite(spacing) || spacing <= 0) {
+            refuse("--spacing", numberText(spacing), "three finite numbers above 0");
+        }
+        if (!std::isfinite(format.origin[axis])) {
+            refuse("--origin", numberText(format.origin[axis]), "three finite numbers");
+        }
+    }
+}
+
 RawLayout resolveRawLayout(const std::filesystem::path& file, const RawFormat& format) {
     const NameParts parts = parseName(file);
     RawLayout layout;
@@ -169,7 +173,7 @@ RawLayout resolveRawLayout(const std::filesystem::path& file, const RawFormat& f
     layout.type = resolveType(file, format, parts).type;
     layout.bigEndian = format.bigEndian.value_or(parts.bigEndian.value_or(false));
     layout.skipBytes = format.skipBytes;
-    checkGeometry(format);
+    requireGeometry(format);
     checkSize(format.dims ? "--dims" : file.string(), layout);
     return layout;
 }

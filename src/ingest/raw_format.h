@@ -10,7 +10,20 @@
 
 namespace deltasplat {
 
-enum class RawType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kFloat32, kFloat64 };
+/// The types of values in files without empty places. Those of 64 whole bits come only from files
+/// that name their type themselves, and not from .raw files.
+enum class RawType {
+    kUint8,
+    kInt8,
+    kUint16,
+    kInt16,
+    kUint32,
+    kInt32,
+    kFloat32,
+    kFloat64,
+    kUint64,
+    kInt64
+};
 
 /// Returns "uint8", ..., "float64".
 const char* rawTypeName(RawType type);
@@ -29,6 +42,9 @@ struct RawLayout {
     /// Returns what a file of this layout must hold, for example "8388608 (256x256x128 uint8)".
     std::string expectedSize() const;
 };
+
+/// @throw Error(kUsage) if the spacing or the origin cannot be meant
+void requireGeometry(const RawFormat& format);
 
 /// Completes `format` from the name of `file`; what the options say wins over the name.
 /// @throw Error(kUsage) if dims or type are missing, unknown or out of range

@@ -2,67 +2,16 @@
 #include "ingest/raw_values.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <type_traits>
 #include <vector>
 
 #include "ingest/code_math.h"
+#include "ingest/raw_load.h"
 #include "parallel.h"
 
 namespace deltasplat {
 namespace {
-
-template <std::size_t kBytes>
-using BitsOf = std::conditional_t<
-    kBytes == 1, std::uint8_t,
-    std::conditional_t<kBytes == 2, std::uint16_t,
-                       std::conditional_t<kBytes == 4, std::uint32_t, std::uint64_t>>>;
-
-template <typename T>
-inline T loadValue(const std::byte* from, bool swap) {
-    using Bits = BitsOf<sizeof(T)>;
-    Bits bits;
-    std::memcpy(&bits, from, sizeof(T));
-    if (swap) {
-        // Compilers know this loop as one instruction.
-        Bits turned = 0;
-        for (std::size_t i = 0; i < sizeof(T); ++i) {
-            turned = Bits(turned | Bits(bits >> (8 * i) & 0xff) << (8 * (sizeof(T) - 1 - i)));
-        }
-        bits = turned;
-    }
-    return std::bit_cast<T>(bits);
-}
-
-constexpr bool mustSwap(bool bigEndian) {
-    return bigEndian != (std::endian::native == std::endian::big);
-}
-
-// Calls use(T{}) with the C++ type of `type`.
-template <typename Use>
-auto withType(RawType type, const Use& use) {
-    switch (type) {
-        case RawType::kUint8:
-            return use(std::uint8_t{});
-        case RawType::kInt8:
-            return use(std::int8_t{});
-        case RawType::kUint16:
-            return use(std::uint16_t{});
-        case RawType::kInt16:
-            return use(std::int16_t{});
-        case RawType::kUint32:
-            return use(std::uint32_t{});
-        case RawType::kInt32:
-            return use(std::int32_t{});
-        case RawType::kFloat32:
-            return use(float{});
-        case RawType::kFloat64:
-            break;
-    }
-    return use(double{});
-}
 
 template <typename T>
 RawScan scanRun(const std::byte* bytes, std::size_t count, bool swap, bool distinct) {
@@ -161,7 +110,7 @@ RawScan scanRawValues(const std::byte* bytes, std::size_t count, RawType type, b
     parallelFor(runs.size(), [&](std::size_t i) {
         const std::size_t begin = i * kRun;
         const std::size_t length = std::min(kRun, count - begin);
-        runs[i] = withType(type, [&](auto zero) {
+        runs[i] = withRawType(type, [&](auto zero) {
             using T = decltype(zero);
             return scanRun<T>(bytes + begin * sizeof(T), length, swap, distinct);
         });
@@ -174,7 +123,7 @@ RawScan scanRawValues(const std::byte* bytes, std::size_t count, RawType type, b
 
 EncodeBlock blockEncoder(const RawCoding& coding) {
     const bool swap = mustSwap(coding.bigEndian);
-    return withType(coding.type, [&](auto zero) -> EncodeBlock {
+    return withRawType(coding.type, [&](auto zero) -> EncodeBlock {
         using T = decltype(zero);
         switch (coding.book.kind) {
             case CodeBook::Kind::kLinear:
@@ -191,7 +140,7 @@ EncodeBlock blockEncoder(const RawCoding& coding) {
 template <typename Out>
 void readValues(const RawBlock& block, RawType type, bool bigEndian, Out nanValue, Out* values) {
     const bool swap = mustSwap(bigEndian);
-    withType(type, [&](auto zero) {
+    withRawType(type, [&](auto zero) {
         using T = decltype(zero);
         const auto convert = [&](T value) {
             if constexpr (std::is_floating_point_v<T>) {

@@ -115,7 +115,7 @@ void fillVolume(const DeltaHeader& header, DecodedDeltas decoded, const std::str
 
 }  // namespace
 
-Volume readDeltaGrid(openvdb::Int32Grid& grid, const openvdb::MetaMap& fileMetadata,
+Volume readDeltaGrid(openvdb::Int32Grid& grid, const openvdb::MetaMap::ConstPtr& fileMetadata,
                      const std::string& where, const ReadOptions& options,
                      const Listener& listener) {
     const DeltaHeader header = takeDeltaHeader(grid, where);

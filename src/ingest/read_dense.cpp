@@ -202,6 +202,7 @@ openvdb::GridBase::Ptr readSourceGrid(const DenseSource& source, const ReadOptio
         case RawType::kFloat32:
             return readGrid<openvdb::FloatGrid>(source, options, listener);
         case RawType::kFloat64:
+        case RawType::kUint64:  // beyond what an Int64Grid holds
             return readGrid<openvdb::DoubleGrid>(source, options, listener);
         case RawType::kInt32:
             return readGrid<openvdb::Int32Grid>(source, options, listener);

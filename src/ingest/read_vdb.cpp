@@ -12,6 +12,7 @@
 #include "deltasplat/error.h"
 #include "ingest/delta_format.h"
 #include "ingest/grid_codes.h"
+#include "ingest/grid_metadata.h"
 #include "ingest/read_delta_grid.h"
 #include "ingest/readers.h"
 #include "ingest/source_grid.h"
@@ -85,6 +86,11 @@ glm::dmat4 worldFromIndex(const openvdb::math::Transform& transform, const std::
     return matrix;
 }
 
+std::string spaceOf(const openvdb::GridBase& grid) {
+    const std::string space = textMetadata(grid, kSpaceKey);
+    return space == "RAS" || space == "LPS" ? space : "";
+}
+
 void settleBackground(Volume& volume, const ReadOptions& options, const std::string& where,
                       const Listener& listener) {
     if (std::isfinite(volume.background)) return;
@@ -98,7 +104,7 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
                 const ReadOptions& options, const Listener& listener) {
     Listener reading;
     reading.progress = [&](double share) { listener.report(kReadShare * share); };
-    openvdb::GridBase::Ptr loaded = file.read(grid, reading);
+    const openvdb::GridBase::Ptr loaded = file.read(grid, reading);
     Volume volume;
     const glm::dmat4 matrix = worldFromIndex(loaded->transform(), where);
     if (isDeltaGrid(*loaded)) {
@@ -115,8 +121,8 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
                       options.bits},
                      volume);
         if (options.keepSource)
-            volume.source =
-                std::make_shared<const SourceGrid>(SourceGrid{std::move(loaded), file.metadata()});
+            volume.source = std::make_shared<const SourceGrid>(SourceGrid{loaded, file.metadata()});
+        volume.space = spaceOf(*loaded);
     }
     volume.name = grid.name;
     settleBackground(volume, options, where, listener);

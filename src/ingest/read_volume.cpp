@@ -6,12 +6,28 @@
 #include <utility>
 
 #include "deltasplat/error.h"
-#include "ingest/file_name.h"
+#include "ingest/input_kind.h"
 #include "ingest/readers.h"
 #include "number_text.h"
 
 namespace deltasplat {
 namespace {
+
+DenseSource openDense(const std::filesystem::path& input, const InputKind& kind,
+                      const ReadOptions& options, const Listener& listener) {
+    switch (kind.format) {
+        case InputKind::Format::kNifti:
+            return openNifti(input, listener);
+        case InputKind::Format::kItk:
+            return openItk(input);
+        case InputKind::Format::kDicom:
+            return openDicom(input, kind.name, kind.files);
+        case InputKind::Format::kImages:
+            return openImages(input, kind.name, kind.files, options.raw, listener);
+        default:
+            return openRaw(input, options.raw);
+    }
+}
 
 void read(const std::filesystem::path& file, const ReadOptions& options, bool all,
           const VolumeVisitor& visitor, const Listener& listener) {
@@ -19,16 +35,12 @@ void read(const std::filesystem::path& file, const ReadOptions& options, bool al
         throw Error(ErrorCode::kUsage,
                     gotExpected("--nan", numberText(*options.nanValue), "a finite number"));
     }
-    requireRegularFile(file);
-    const std::string extension = lowerExtension(file);
-    if (extension == ".vdb") {
+    const InputKind kind = findInput(file, listener);
+    if (kind.format == InputKind::Format::kVdb) {
         readVdb(file, options, all, visitor, listener);
-    } else if (extension == ".raw" || extension == ".raw.gz") {
-        Volume volume = readRaw(file, options, listener);
-        if (visitor.volume) visitor.volume(std::move(volume));
     } else {
-        throw Error(ErrorCode::kInput, gotExpected(file.string(), "extension \"" + extension + "\"",
-                                                   ".raw, .raw.gz or .vdb"));
+        Volume volume = readDense(openDense(file, kind, options, listener), options, listener);
+        if (visitor.volume) visitor.volume(std::move(volume));
     }
     listener.report(1);
 }

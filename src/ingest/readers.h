@@ -3,14 +3,37 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "deltasplat/ingest/read_volume.h"
+#include "ingest/dense_source.h"
 
 namespace deltasplat {
 
-/// Reads a .raw or .raw.gz file; as readVolume.
-Volume readRaw(const std::filesystem::path& file, const ReadOptions& options,
-               const Listener& listener);
+// Each of these looks at the headers only. All throw as readVolume.
+
+/// Opens a .raw or .raw.gz file.
+DenseSource openRaw(const std::filesystem::path& file, const RawFormat& format);
+
+/// Opens a .nii or .nii.gz file.
+DenseSource openNifti(const std::filesystem::path& file, const Listener& listener);
+
+/// Opens a .nrrd, .nhdr, .mhd or .mha file.
+DenseSource openItk(const std::filesystem::path& file);
+
+/// Opens the slices of a DICOM folder, or one of them.
+/// @param input  for messages
+/// @param files  in any order
+DenseSource openDicom(const std::filesystem::path& input, const std::string& name,
+                      const std::vector<std::filesystem::path>& files);
+
+/// Opens a stack of images, or the pages of one.
+/// @param input   for messages
+/// @param files   in order
+/// @param format  spacing and origin are taken from it
+DenseSource openImages(const std::filesystem::path& input, const std::string& name,
+                       const std::vector<std::filesystem::path>& files, const RawFormat& format,
+                       const Listener& listener);
 
 /// Reads one scalar grid of a .vdb file, or with `all` (and no grid name) every one; as
 /// forEachVolume.

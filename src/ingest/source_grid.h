@@ -2,7 +2,6 @@
 #pragma once
 
 #include <openvdb/Grid.h>
-#include <openvdb/MetaMap.h>
 
 #include "deltasplat/ingest/volume.h"
 
@@ -12,7 +11,8 @@ namespace deltasplat {
 /// transform, class and metadata.
 struct SourceGrid {
     openvdb::GridBase::ConstPtr grid;
-    openvdb::MetaMap fileMetadata{};  ///< of the .vdb file, not of the grid
+    /// .vdb: the metadata of the file itself, the same for all of its grids; otherwise null.
+    openvdb::MetaMap::ConstPtr fileMetadata = nullptr;
 };
 
 }  // namespace deltasplat

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <openvdb/Grid.h>
-#include <openvdb/MetaMap.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -43,8 +42,8 @@ class VdbFile {
     explicit VdbFile(std::filesystem::path file);
 
     const std::vector<VdbGrid>& grids() const { return grids_; }
-    /// What the file says of itself; entries of unknown types are left out.
-    const openvdb::MetaMap& metadata() const { return metadata_; }
+    /// Returns the metadata of the file itself.
+    openvdb::MetaMap::ConstPtr metadata() const;
     /// Reads one grid of grids().
     /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if it does not fit
     /// into
@@ -58,7 +57,7 @@ class VdbFile {
 
     std::filesystem::path file_;
     std::uint64_t headerEnd_ = 0;
-    openvdb::MetaMap metadata_;
+    std::string metadata_;  // as readMetadata returns it
     std::vector<VdbGrid> grids_;
 };
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/vdb_transform.h"
 
+#include <openvdb/io/Archive.h>
 #include <openvdb/math/Maps.h>
+#include <openvdb/openvdb.h>
 
 #include <glm/vec3.hpp>
 #include <memory>
+#include <sstream>
 
 namespace deltasplat {
 namespace {
@@ -44,13 +47,21 @@ MapBase::Ptr affineMap(const glm::dmat4& worldFromIndex) {
 
 }  // namespace
 
-// OpenVDB's own simplify() takes numbers for equal that are not.
+// Transform's constructor takes near numbers for equal and rounds when it simplifies a map. Reading
+// one leaves it as it is.
 Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex) {
     const glm::dmat4& m = worldFromIndex;
     const MapBase::Ptr map = isScaleAndTranslation(m)
                                  ? scaleMap({m[0].x, m[1].y, m[2].z}, glm::dvec3(m[3]))
                                  : affineMap(m);
-    return std::make_shared<Transform>(map);
+    openvdb::initialize();
+    std::stringstream stream;
+    openvdb::io::setCurrentVersion(stream);
+    openvdb::writeString(stream, map->type());
+    map->write(stream);
+    auto transform = std::make_shared<Transform>();
+    transform->read(stream);
+    return transform;
 }
 
 glm::dmat4 matrixOf(const Transform& transform) {

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/mat4x4.hpp>
+#include <string>
+#include <vector>
+
+#include "ingest/raw_format.h"
+
+namespace deltasplat {
+
+/// What the header of one DICOM slice says, checked.
+struct DicomSlice {
+    std::filesystem::path file;
+    std::string series;
+    int columns = 0;
+    int rows = 0;
+    RawType type = RawType::kUint8;  ///< of the values, rescale slope and intercept applied
+    glm::dvec3 position{0.0};        ///< of the centre of the first voxel; millimetres, LPS
+    glm::dvec3 alongRow{0.0};        ///< from one column to the next
+    glm::dvec3 alongColumn{0.0};     ///< from one row to the next
+    double thickness = 1;            ///< along the normal; what a single slice goes by
+
+    glm::dvec3 normal() const;
+    std::string name() const { return file.filename().string(); }
+};
+
+/// Reads the header of a slice, not its pixels.
+/// @throw Error(kInput) if it is no single grey image with a place in space
+DicomSlice readDicomSlice(const std::filesystem::path& file);
+
+/// The slices of one volume, in order, and where they lie.
+struct DicomVolume {
+    std::vector<DicomSlice> slices;  ///< along the normal
+    glm::dmat4 worldFromIndex{1.0};
+};
+
+/// Sorts slices by their places.
+/// @param folder  for messages
+/// @throw Error(kInput) if they are of several series, sizes or directions, or unevenly spaced
+DicomVolume arrangeSlices(const std::string& folder, std::vector<DicomSlice> slices);
+
+}  // namespace deltasplat

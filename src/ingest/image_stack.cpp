@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/image_stack.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <map>
+#include <regex>
+#include <system_error>
+
+#include "deltasplat/error.h"
+#include "ingest/file_name.h"
+#include "printable.h"
+
+namespace deltasplat {
+namespace {
+
+bool isDigit(char c) {
+    return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+// The end of the run of digits that begins at `begin`.
+std::size_t endOfDigits(const std::string& text, std::size_t begin) {
+    while (begin < text.size() && isDigit(text[begin])) ++begin;
+    return begin;
+}
+
+bool comesBefore(const std::string& a, const std::string& b) {
+    std::size_t i = 0;
+    std::size_t j = 0;
+    while (i < a.size() && j < b.size()) {
+        if (!isDigit(a[i]) || !isDigit(b[j])) {
+            if (a[i] != b[j]) return a[i] < b[j];
+            ++i, ++j;
+            continue;
+        }
+        while (i < a.size() && a[i] == '0') ++i;
+        while (j < b.size() && b[j] == '0') ++j;
+        const std::size_t digitsA = endOfDigits(a, i) - i;
+        const std::size_t digitsB = endOfDigits(b, j) - j;
+        if (digitsA != digitsB) return digitsA < digitsB;
+        const int order = a.compare(i, digitsA, b, j, digitsB);
+        if (order != 0) return order < 0;
+        i += digitsA, j += digitsB;
+    }
+    return a.size() - i < b.size() - j || (a.size() - i == b.size() - j && a < b);
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> StackPattern::numberOf(const std::string& fileName) const {
+    if (fileName.size() <= before.size() + after.size() || fileName.rfind(before, 0) != 0 ||
+        fileName.compare(fileName.size() - after.size(), std::string::npos, after) != 0) {
+        return std::nullopt;
+    }
+    const std::string middle =
+        fileName.substr(before.size(), fileName.size() - before.size() - after.size());
+    const bool filled = middle.size() == std::max<std::size_t>(digits, 1);
+    if (middle.size() < digits || (!filled && middle[0] == '0')) return std::nullopt;
+    std::uint64_t number = 0;
+    const char* const end = middle.data() + middle.size();
+    const auto result = std::from_chars(middle.data(), end, number);
+    if (result.ec != std::errc{} || result.ptr != end) return std::nullopt;
+    return number;
+}
+
+std::string StackPattern::nameOf(std::uint64_t number) const {
+    std::string middle = std::to_string(number);
+    if (middle.size() < digits) middle.insert(0, digits - middle.size(), '0');
+    return before + middle + after;
+}
+
+std::optional<StackPattern> stackPattern(const std::filesystem::path& input) {
+    const std::string name = input.filename().string();
+    const std::size_t last = name.rfind('#');
+    if (last != std::string::npos) {
+        const std::size_t before = name.find_last_not_of('#', last);
+        const std::size_t first = before == std::string::npos ? 0 : before + 1;
+        return StackPattern{input.parent_path(), name.substr(0, first), name.substr(last + 1),
+                            last + 1 - first};
+    }
+    static const std::regex kPercent("^(.*)%(?:0([1-9]))?d(.*)$");
+    std::smatch match;
+    if (!std::regex_match(name, match, kPercent)) return std::nullopt;
+    const std::size_t digits = match[2].matched ? std::size_t(match[2].str()[0] - '0') : 0;
+    return StackPattern{input.parent_path(), match[1], match[3], digits};
+}
+
+std::vector<std::filesystem::path> stackFiles(const std::filesystem::path& input,
+                                              const StackPattern& pattern) {
+    std::map<std::uint64_t, std::filesystem::path> found;
+    std::error_code error;
+    const std::filesystem::path folder = pattern.folder.empty() ? "." : pattern.folder;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        if (const auto number = pattern.numberOf(name)) found[*number] = pattern.folder / name;
+    }
+    if (found.empty()) {
+        throw Error(ErrorCode::kInput, gotExpected(input.string(), "no file of that name",
+                                                   "files such as " + pattern.nameOf(1)));
+    }
+    std::vector<std::filesystem::path> files;
+    const std::uint64_t first = found.begin()->first;
+    const std::uint64_t step = found.size() < 2 ? 1 : std::next(found.begin())->first - first;
+    for (const auto& [number, file] : found) {
+        const std::uint64_t wanted = first + files.size() * step;
+        if (number != wanted) {
+            throw Error(ErrorCode::kInput,
+                        gotExpected(input.string(), "no file " + printable(pattern.nameOf(wanted)),
+                                    std::to_string(found.size()) + " or more numbers in a row"));
+        }
+        files.push_back(file);
+    }
+    return files;
+}
+
+void sortByNumbers(std::vector<std::filesystem::path>& files) {
+    std::sort(files.begin(), files.end(),
+              [](const std::filesystem::path& a, const std::filesystem::path& b) {
+                  return comesBefore(a.filename().string(), b.filename().string());
+              });
+}
+
+}  // namespace deltasplat

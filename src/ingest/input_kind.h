@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "deltasplat/progress.h"
+
+namespace deltasplat {
+
+/// What an input's name leads to.
+struct InputKind {
+    enum class Format { kVdb, kRaw, kNifti, kItk, kDicom, kImages };
+    Format format = Format::kVdb;
+    std::string name;  ///< without folder, extensions and counter
+    /// The input itself, the slices of a DICOM folder in no order, or the images of a stack in the
+    /// order of their numbers.
+    std::vector<std::filesystem::path> files;
+};
+
+/// Finds out what an input is: a file by its extension, a folder by what lies in it, a name with
+/// `####` or `%04d` by the files that it stands for. Warns of files in a folder that are passed
+/// over.
+/// @throw Error(kInput) if there is no such file, or none that can be read
+InputKind findInput(const std::filesystem::path& input, const Listener& listener);
+
+}  // namespace deltasplat

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stands in for what reads through ITK, where the library is built without it.
+#include "deltasplat/error.h"
+#include "ingest/dense_source.h"
+#include "ingest/file_name.h"
+#include "ingest/readers.h"
+
+namespace deltasplat {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& input, const std::string& got) {
+    throw Error(ErrorCode::kInput,
+                gotExpected(input.string(), got,
+                            "a build with DELTASPLAT_ITK=ON to read NRRD, MetaImage and DICOM"));
+}
+
+}  // namespace
+
+DenseSource openItk(const std::filesystem::path& file) {
+    refuse(file, "extension \"" + lowerExtension(file) + "\"");
+}
+
+DenseSource openDicom(const std::filesystem::path& input, const std::string&,
+                      const std::vector<std::filesystem::path>&) {
+    refuse(input, "DICOM");
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/raw_file.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#include "deltasplat/error.h"
+#include "ingest/byte_source.h"
+#include "memory.h"
+
+namespace deltasplat {
+namespace {
+
+[[noreturn]] void throwSize(const RawFile& file, const std::string& got) {
+    const std::string least = file.mayGoOn ? "at least " : "";
+    throw Error(ErrorCode::kInput,
+                gotExpected(file.path.string(), got, least + file.layout.expectedSize()));
+}
+
+[[noreturn]] void throwSize(const RawFile& file, std::uint64_t bytes) {
+    throwSize(file, std::to_string(bytes) + (file.gzip ? " bytes unpacked" : " bytes"));
+}
+
+}  // namespace
+
+void requireRawSize(const RawFile& file) {
+    const std::uint64_t held = std::filesystem::file_size(file.path);
+    const std::uint64_t wanted = file.layout.skipBytes + file.layout.dataBytes();
+    if (!file.gzip) {
+        if (held < wanted || (held > wanted && !file.mayGoOn)) throwSize(file, held);
+        return;
+    }
+    // Deflate makes at most 1032 bytes of one.
+    constexpr double kMostRatio = 1032;
+    if (file.mayGoOn && double(held) * kMostRatio < double(wanted)) {
+        throwSize(file, std::to_string(held) + " bytes of gzip");
+    }
+}
+
+void readRawLayers(const RawFile& file, const DenseSource::LayerUse& use,
+                   const Listener& listener) {
+    ByteSource source(file.path, file.gzip);
+    const auto beat = [&](double share) { return [&listener, share] { listener.report(share); }; };
+    std::uint64_t done = source.skip(file.layout.skipBytes, beat(0));
+    const int slices = int(file.layout.dims.z);
+    const std::size_t sliceBytes = std::size_t(file.layout.dims.x) *
+                                   std::size_t(file.layout.dims.y) *
+                                   std::size_t(rawTypeBytes(file.layout.type));
+    const int most = std::min(slices, DenseSource::kLayerSlices);
+    requireMemory(file.path.string(), double(sliceBytes) * most);
+    const auto bytes = std::make_unique_for_overwrite<std::byte[]>(sliceBytes * std::size_t(most));
+    for (int first = 0; first < slices; first += DenseSource::kLayerSlices) {
+        const int count = std::min(DenseSource::kLayerSlices, slices - first);
+        const std::size_t wanted = sliceBytes * std::size_t(count);
+        const std::size_t got = source.read(bytes.get(), wanted);
+        done += got;
+        if (got != wanted) throwSize(file, done);
+        use(first, count, bytes.get());
+        listener.report(double(first + count) / slices);
+    }
+
+    // What follows the last voxel says that the dims are wrong: count it for the message. A gzip
+    // stream is known to be sound only at its end.
+    constexpr std::uint64_t kMostTail = std::uint64_t{1} << 24;
+    const std::uint64_t more =
+        source.skip(file.mayGoOn ? kMostTail : std::numeric_limits<std::uint64_t>::max(), beat(1));
+    if (more != 0 && !file.mayGoOn) throwSize(file, done + more);
+}
+
+}  // namespace deltasplat

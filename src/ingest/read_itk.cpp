@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+// NRRD and MetaImage through ITK's classes for these files, without its images and pipelines. ITK
+// takes a header at its word, so what it says is held against the size of the data first.
+#include <itkMetaImageIO.h>
+#include <itkNrrdImageIO.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "deltasplat/error.h"
+#include "ingest/dense_source.h"
+#include "ingest/file_name.h"
+#include "ingest/itk_calls.h"
+#include "ingest/itk_types.h"
+#include "ingest/readers.h"
+#include "ingest/text_header.h"
+#include "lower_case.h"
+#include "memory.h"
+#include "printable.h"
+
+namespace deltasplat {
+namespace {
+
+enum class Encoding { kRaw, kGzip, kText };
+
+// ITK writes an orientation wherever it takes world space for a patient's, which is then LPS.
+bool isOrientation(const std::string& text) {
+    return text.size() == 3 && text.find_first_not_of("RLAPSI") == std::string::npos;
+}
+
+// What a header says about its data, before ITK has seen it.
+struct Claim {
+    std::vector<std::int64_t> sizes;
+    std::filesystem::path dataFile;
+    std::uint64_t dataBytes = 0;  // as they lie in the file
+    Encoding encoding = Encoding::kRaw;
+    std::string space;
+};
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
+                         const std::string& expected) {
+    throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
+}
+
+// Data in a list or a numbered series of files, or on standard input, is not read.
+void setDetached(const std::filesystem::path& file, const std::string& name, Claim& claim) {
+    if (name.empty() || name == "-" || lowerCase(name).rfind("list", 0) == 0 ||
+        name.find('%') != std::string::npos) {
+        refuse(file, "data in \"" + printable(name) + "\"", "the name of one data file");
+    }
+    claim.dataFile = file.parent_path() / name;
+    requireRegularFile(claim.dataFile);
+    claim.dataBytes = std::filesystem::file_size(claim.dataFile);
+}
+
+void setAttached(const std::filesystem::path& file, const TextHeader& header, Claim& claim) {
+    claim.dataFile = file;
+    claim.dataBytes = std::filesystem::file_size(file) - header.dataStart;
+}
+
+const std::string& require(const std::filesystem::path& file, const TextHeader& header,
+                           const std::string& field) {
+    const std::string* value = header.find(field);
+    if (value == nullptr) refuse(file, "a header without " + field, "a whole one");
+    return *value;
+}
+
+std::string withoutBlanksAndDashes(const std::string& text) {
+    std::string letters;
+    for (const char c : lowerCase(text)) {
+        if (c != ' ' && c != '-') letters += c;
+    }
+    return letters;
+}
+
+Claim claimOfNrrd(const std::filesystem::path& file) {
+    const TextHeader header = readNrrdHeader(file);
+    Claim claim;
+    claim.sizes = parseSizes(file.string(), require(file, header, "sizes"));
+    const std::string* name = header.find("datafile");
+    if (name != nullptr) {
+        setDetached(file, *name, claim);
+    } else {
+        setAttached(file, header, claim);
+    }
+    const std::string encoding = lowerCase(require(file, header, "encoding"));
+    if (encoding == "gzip" || encoding == "gz") {
+        claim.encoding = Encoding::kGzip;
+    } else if (encoding != "raw") {
+        claim.encoding = Encoding::kText;
+    }
+    if (const std::string* space = header.find("space")) {
+        const std::string letters = withoutBlanksAndDashes(*space);
+        if (letters == "ras" || letters == "rightanteriorsuperior") claim.space = "RAS";
+        if (letters == "las" || letters == "leftanteriorsuperior") claim.space = "LAS";
+        if (letters == "lps" || letters == "leftposteriorsuperior") claim.space = "LPS";
+    }
+    return claim;
+}
+
+Claim claimOfMeta(const std::filesystem::path& file) {
+    const TextHeader header = readMetaHeader(file);
+    Claim claim;
+    claim.sizes = parseSizes(file.string(), require(file, header, "dimsize"));
+    const std::string name = header.fields.back().value;
+    if (lowerCase(name) == "local") {
+        setAttached(file, header, claim);
+    } else {
+        setDetached(file, name, claim);
+    }
+    const std::string* orientation = header.find("anatomicalorientation");
+    if (orientation != nullptr && isOrientation(*orientation)) claim.space = "LPS";
+    const auto isTrue = [&](const std::string& field) {
+        const std::string* value = header.find(field);
+        return value != nullptr && !value->empty() && std::strchr("Tt1", (*value)[0]) != nullptr;
+    };
+    const std::string* binary = header.find("binarydata");
+    if (isTrue("compresseddata")) {
+        claim.encoding = Encoding::kGzip;
+    } else if (binary != nullptr && !isTrue("binarydata")) {
+        claim.encoding = Encoding::kText;
+    }
+    return claim;
+}
+
+std::string sizesText(const std::vector<std::int64_t>& sizes) {
+    std::string text;
+    for (const std::int64_t size : sizes) text += (text.empty() ? "" : "x") + std::to_string(size);
+    return text;
+}
+
+// A file that ITK has opened, and which of its axes are the volume's.
+struct ItkFile {
+    std::filesystem::path path;
+    Claim claim;
+    itk::ImageIOBase::Pointer io;
+    std::vector<unsigned> axes;  // at most three; the others are one voxel long
+    RawType type = RawType::kUint8;
+    std::size_t sliceBytes = 0;
+    std::shared_ptr<std::byte[]> whole;  // once it has been read as a whole
+
+    std::int64_t size(std::size_t axis) const {
+        return axis < axes.size() ? std::int64_t(io->GetDimensions(axes[axis])) : 1;
+    }
+    glm::i64vec3 dims() const { return {size(0), size(1), size(2)}; }
+    double bytes() const { return double(sliceBytes) * double(size(2)); }
+};
+
+void requireOneScalar(const ItkFile& file) {
+    if (file.io->GetNumberOfComponents() == 1) return;
+    refuse(file.path,
+           std::to_string(file.io->GetNumberOfComponents()) + " values a voxel (" +
+               itk::ImageIOBase::GetPixelTypeAsString(file.io->GetPixelType()) + ")",
+           "one");
+}
+
+// Axes of one voxel give way, the last first, until three are left.
+void chooseAxes(ItkFile& file) {
+    for (unsigned axis = 0; axis < file.io->GetNumberOfDimensions(); ++axis) {
+        file.axes.push_back(axis);
+    }
+    while (file.axes.size() > 3) {
+        const auto single = std::find_if(file.axes.rbegin(), file.axes.rend(), [&](unsigned axis) {
+            return file.io->GetDimensions(axis) == 1;
+        });
+        if (single == file.axes.rend()) {
+            refuse(file.path, "sizes " + sizesText(file.claim.sizes), "one volume of three axes");
+        }
+        file.axes.erase(std::next(single).base());
+    }
+}
+
+// What ITK understood has to be what the claim was checked by.
+void requireSameSizes(const ItkFile& file) {
+    std::vector<std::int64_t> got;
+    for (unsigned axis = 0; axis < file.io->GetNumberOfDimensions(); ++axis) {
+        got.push_back(std::int64_t(file.io->GetDimensions(axis)));
+    }
+    if (got == file.claim.sizes) return;
+    refuse(file.path, "sizes " + sizesText(file.claim.sizes), "sizes that ITK reads alike");
+}
+
+void requireData(const ItkFile& file) {
+    constexpr double kMostGzipRatio = 1032;
+    const double held = double(file.claim.dataBytes);
+    const double values = file.bytes() / rawTypeBytes(file.type);
+    const bool gzip = file.claim.encoding == Encoding::kGzip;
+    const bool holds = file.claim.encoding == Encoding::kText ? (held + 1) / 2 >= values
+                       : gzip ? (held + 1) * kMostGzipRatio >= file.bytes()
+                              : held >= file.bytes();
+    if (holds) return;
+    refuse(file.claim.dataFile, std::to_string(file.claim.dataBytes) + " bytes of data",
+           (gzip ? "enough gzip for " : "enough for ") + sizesText(file.claim.sizes) + " " +
+               rawTypeName(file.type));
+}
+
+glm::dmat4 worldOf(const ItkFile& file) {
+    glm::dmat4 matrix(1);
+    for (std::size_t column = 0; column < file.axes.size(); ++column) {
+        const unsigned axis = file.axes[column];
+        const std::vector<double> direction = file.io->GetDirection(axis);
+        for (std::size_t row = 0; row < file.axes.size(); ++row) {
+            matrix[int(column)][int(row)] = file.io->GetSpacing(axis) * direction[file.axes[row]];
+        }
+        matrix[3][int(column)] = file.io->GetOrigin(axis);
+    }
+    // ITK turns RAS and LAS into LPS.
+    if (file.claim.space == "RAS" || file.claim.space == "LAS") {
+        for (int column = 0; column < 4; ++column) {
+            matrix[column].x = -matrix[column].x;
+            if (file.claim.space == "RAS") matrix[column].y = -matrix[column].y;
+        }
+    }
+    const double volume = glm::determinant(glm::dmat3(matrix));
+    const bool finite = std::isfinite(glm::dot(matrix[3], matrix[3]));
+    if (!finite || !std::isfinite(volume) || volume == 0) {
+        refuse(file.path, "spacing or directions that are singular or not finite",
+               "ones that give every voxel a place");
+    }
+    return matrix;
+}
+
+void readRegion(const ItkFile& file, int firstSlice, int slices, std::byte* to) {
+    itk::ImageIORegion region(file.io->GetNumberOfDimensions());
+    for (unsigned axis = 0; axis < region.GetImageDimension(); ++axis) {
+        region.SetIndex(axis, 0);
+        region.SetSize(axis, file.io->GetDimensions(axis));
+    }
+    if (file.axes.size() == 3) {
+        region.SetIndex(file.axes[2], firstSlice);
+        region.SetSize(file.axes[2], std::size_t(slices));
+    }
+    file.io->SetIORegion(region);
+    callItk(file.path, [&] { file.io->Read(to); });
+}
+
+void readLayers(ItkFile& file, const DenseSource::LayerUse& use, const Listener& listener) {
+    const int slices = int(file.size(2));
+    const bool inParts = file.io->CanStreamRead() && file.claim.encoding == Encoding::kRaw;
+    const int most = std::min(slices, DenseSource::kLayerSlices);
+    std::shared_ptr<std::byte[]> bytes = file.whole;
+    if (!bytes) {
+        const int held = inParts ? most : slices;
+        requireMemory(file.path.string(), double(file.sliceBytes) * held);
+        bytes = std::make_shared_for_overwrite<std::byte[]>(file.sliceBytes * std::size_t(held));
+        if (!inParts) {
+            readRegion(file, 0, slices, bytes.get());
+            file.whole = bytes;
+        }
+    }
+    for (int first = 0; first < slices; first += DenseSource::kLayerSlices) {
+        const int count = std::min(DenseSource::kLayerSlices, slices - first);
+        if (inParts) readRegion(file, first, count, bytes.get());
+        use(first, count, bytes.get() + (inParts ? 0 : file.sliceBytes * std::size_t(first)));
+        listener.report(double(first + count) / slices);
+    }
+}
+
+}  // namespace
+
+DenseSource openItk(const std::filesystem::path& path) {
+    auto file = std::make_shared<ItkFile>();
+    const std::string extension = lowerExtension(path);
+    const bool nrrd = extension == ".nrrd" || extension == ".nhdr";
+    file->path = path;
+    file->claim = nrrd ? claimOfNrrd(path) : claimOfMeta(path);
+    callItk(path, [&] {
+        if (nrrd) {
+            file->io = itk::NrrdImageIO::New();
+        } else {
+            file->io = itk::MetaImageIO::New();
+        }
+        file->io->SetFileName(path.string());
+        file->io->ReadImageInformation();
+    });
+    requireOneScalar(*file);
+    requireSameSizes(*file);
+    chooseAxes(*file);
+    const std::optional<RawType> type = rawTypeOfItk(file->io->GetComponentType());
+    if (!type) refuse(path, "values of an unknown type", "whole or real numbers");
+    file->type = *type;
+    file->sliceBytes =
+        std::size_t(file->size(0)) * std::size_t(file->size(1)) * std::size_t(rawTypeBytes(*type));
+    requireData(*file);
+
+    DenseSource source;
+    source.where = path.string();
+    source.name = nameWithoutExtensions(path);
+    source.dims = file->dims();
+    source.type = *type;
+    source.bigEndian = std::endian::native == std::endian::big;
+    source.worldFromIndex = worldOf(*file);
+    source.space = file->claim.space == "LAS" ? "" : file->claim.space;
+    source.forEachLayer = [file](const DenseSource::LayerUse& use, const Listener& listener) {
+        readLayers(*file, use, listener);
+    };
+    return source;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/dense_source.h"
+#include "ingest/file_name.h"
+#include "ingest/nifti_header.h"
+#include "ingest/raw_file.h"
+#include "ingest/readers.h"
+
+namespace deltasplat {
+
+DenseSource openNifti(const std::filesystem::path& path, const Listener& listener) {
+    const NiftiHeader header = readNiftiHeader(path, listener);
+    const RawFile file{path, header.layout, lowerExtension(path) == ".nii.gz", true};
+    requireRawSize(file);
+    DenseSource source;
+    source.where = path.string();
+    source.name = nameWithoutExtensions(path);
+    source.dims = header.layout.dims;
+    source.type = header.layout.type;
+    source.bigEndian = header.layout.bigEndian;
+    source.worldFromIndex = header.worldFromIndex;
+    source.space = header.space;
+    source.forEachLayer = [file](const DenseSource::LayerUse& use, const Listener& layers) {
+        readRawLayers(file, use, layers);
+    };
+    return rescaled(std::move(source), header.rescale);
+}
+
+}  // namespace deltasplat
