@@ -5,6 +5,7 @@
 
 namespace deltasplat {
 
+Subcommand addDiff(CLI::App& program);
 Subcommand addInfo(CLI::App& program);
 Subcommand addRender(CLI::App& program);
 Subcommand addSynth(CLI::App& program);
