@@ -116,6 +116,24 @@ TEST(SliceCounts, WhatEndsBetweenBlocksIsTakenAwayBehindIt) {
     }
 }
 
+TEST(SliceCounts, VoxelsFarApartTakeNoMemory) {
+    constexpr int kFar = (1 << 30) - 1;
+    auto tree = std::make_shared<CodeTree>();
+    tree->tree.setValueOn(openvdb::Coord(-kFar, 0, 0), Code{1});
+    tree->tree.setValueOn(openvdb::Coord(kFar, 0, 0), Code{1});
+    Volume volume;
+    volume.codes = tree;
+    volume.activeCount = 2;
+    volume.box = {{-kFar, 0, 0}, {kFar, 0, 0}};
+    const std::vector<SliceCounts> counts = countDeltasPerSlice(volume, 0, {}, 1 << 28);
+    ASSERT_EQ(counts.size(), 8u);
+    for (std::size_t i = 0; i < 8; ++i) {
+        EXPECT_EQ(counts[i].visible, i == 0 || i == 7 ? 1u : 0u) << i;
+        // The first voxel comes and goes, behind the last one there is no slice.
+        EXPECT_EQ(counts[i].deltas, i == 0 ? 2u : i == 7 ? 1u : 0u) << i;
+    }
+}
+
 TEST(SliceCounts, SameOnEveryNumberOfThreads) {
     const Volume volume = test::randomVolume({{-20, -20, -20}, {40, 40, 40}}, 11);
     const auto counts = [&](int threads) {
