@@ -53,13 +53,13 @@ std::string pathText(const std::vector<glm::dvec2>& points) {
         const std::string x = coordinate(point.x);
         const std::string y = coordinate(point.y);
         if (path.empty()) {
-            path = "M" + x + " " + y;
+            path.append("M").append(x).append(" ").append(y);
         } else if (y == lastY) {
-            path += "H" + x;
+            path.append("H").append(x);
         } else if (x == lastX) {
-            path += "V" + y;
+            path.append("V").append(y);
         } else {
-            path += "L" + x + " " + y;
+            path.append("L").append(x).append(" ").append(y);
         }
         lastX = x;
         lastY = y;
