@@ -182,7 +182,7 @@ glm::dmat4 requireUsable(const Fields& fields, const glm::dmat4& matrix, const c
     }
     const double volume = std::abs(glm::determinant(glm::dmat3(matrix)));
     if (!finite || !(volume > 0) || !std::isfinite(volume)) {
-        fields.refuse(std::string("a ") + name + " that is singular or not finite",
+        fields.refuse(std::string(name) + " that is singular or not finite",
                       "one that gives every voxel a place");
     }
     return matrix;
@@ -251,14 +251,14 @@ void place(const Fields& fields, const Listener& listener, NiftiHeader& header) 
     const bool hasQform = fields.code(fields.places().qformCode) > 0;
     header.space = hasSform || hasQform ? "RAS" : "";
     if (hasSform) {
-        header.worldFromIndex = requireUsable(fields, sform(fields), "sform");
+        header.worldFromIndex = requireUsable(fields, sform(fields), "an sform");
         if (hasQform && !(distance(header.worldFromIndex, qform(fields), header.layout.dims) < 1)) {
             listener.warn(fields.where + ": sform and qform differ; the sform is taken");
         }
     } else if (hasQform) {
-        header.worldFromIndex = requireUsable(fields, qform(fields), "qform");
+        header.worldFromIndex = requireUsable(fields, qform(fields), "a qform");
     } else {
-        header.worldFromIndex = requireUsable(fields, scaling(fields), "voxel size");
+        header.worldFromIndex = requireUsable(fields, scaling(fields), "a voxel size");
         listener.warn(fields.where +
                       ": neither sform nor qform: only the voxel size is known, not where the "
                       "volume lies or which side is left");
