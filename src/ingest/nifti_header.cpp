@@ -15,6 +15,7 @@
 #include "deltasplat/error.h"
 #include "ingest/byte_source.h"
 #include "ingest/file_name.h"
+#include "ingest/placement.h"
 #include "number_text.h"
 
 namespace deltasplat {
@@ -176,15 +177,7 @@ RawLayout readLayout(const Fields& fields) {
 }
 
 glm::dmat4 requireUsable(const Fields& fields, const glm::dmat4& matrix, const char* name) {
-    bool finite = true;
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 3; ++row) finite = finite && std::isfinite(matrix[column][row]);
-    }
-    const double volume = std::abs(glm::determinant(glm::dmat3(matrix)));
-    if (!finite || !(volume > 0) || !std::isfinite(volume)) {
-        fields.refuse(std::string(name) + " that is singular or not finite",
-                      "one that gives every voxel a place");
-    }
+    requirePlacement(fields.where, name, matrix);
     return matrix;
 }
 

@@ -20,6 +20,7 @@
 #include "ingest/file_name.h"
 #include "ingest/itk_calls.h"
 #include "ingest/itk_types.h"
+#include "ingest/placement.h"
 #include "ingest/readers.h"
 #include "ingest/rescale.h"
 #include "memory.h"
@@ -33,6 +34,8 @@ constexpr std::uint32_t kSpacingBetweenSlices = 0x00180088;
 constexpr std::uint32_t kSeries = 0x0020000e;
 constexpr std::uint32_t kPosition = 0x00200032;
 constexpr std::uint32_t kOrientation = 0x00200037;
+constexpr std::uint32_t kSamples = 0x00280002;
+constexpr std::uint32_t kPhotometric = 0x00280004;
 constexpr std::uint32_t kFrames = 0x00280008;
 constexpr std::uint32_t kRows = 0x00280010;
 constexpr std::uint32_t kColumns = 0x00280011;
@@ -102,11 +105,6 @@ std::optional<RawType> rawTypeOf(gdcm::PixelFormat::ScalarType type) {
 
 RawType typeOf(const std::filesystem::path& path, const gdcm::File& file) {
     const gdcm::PixelFormat format = gdcm::ImageHelper::GetPixelFormatValue(file);
-    const auto photometric = gdcm::ImageHelper::GetPhotometricInterpretationValue(file);
-    if (format.GetSamplesPerPixel() != 1 ||
-        photometric == gdcm::PhotometricInterpretation::PALETTE_COLOR) {
-        refuse(path, "a colour image", "one value a pixel");
-    }
     const std::vector<double> rescale = gdcm::ImageHelper::GetRescaleInterceptSlopeValue(file);
     gdcm::Rescaler rescaler;
     rescaler.SetIntercept(rescale.at(0));
@@ -149,6 +147,11 @@ void setSize(const DicomElements& elements, DicomSlice& slice) {
     slice.rows = elements.number(kRows, 0);
     if (slice.columns < 1 || slice.rows < 1) {
         refuse(slice.file, "no image", "a DICOM slice with rows and columns");
+    }
+    const std::string colors = elements.text(kPhotometric);
+    if (elements.number(kSamples, 1) != 1 || (colors != "MONOCHROME1" && colors != "MONOCHROME2")) {
+        refuse(slice.file, "pixels of kind " + (colors.empty() ? "unknown" : printable(colors)),
+               "one grey value a pixel");
     }
     const std::string frames = elements.text(kFrames);
     if (!frames.empty() && frames != "1") {
@@ -273,6 +276,7 @@ DenseSource openDicom(const std::filesystem::path& input, const std::string& nam
     source.type = files->type;
     source.bigEndian = kBigEndian;
     source.worldFromIndex = files->volume.worldFromIndex;
+    requirePlacement(source.where, "places of slices", source.worldFromIndex);
     source.space = "LPS";
     source.forEachLayer = [files](const DenseSource::LayerUse& use, const Listener& listener) {
         readLayers(*files, use, listener);

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "ingest/file_name.h"
 #include "ingest/itk_calls.h"
 #include "ingest/itk_types.h"
+#include "ingest/placement.h"
 #include "ingest/readers.h"
 #include "ingest/text_header.h"
 #include "ingest/zlib_check.h"
@@ -268,12 +268,7 @@ glm::dmat4 worldOf(const ItkFile& file) {
             if (file.claim.space == "RAS") matrix[column].y = -matrix[column].y;
         }
     }
-    const double volume = glm::determinant(glm::dmat3(matrix));
-    const bool finite = std::isfinite(glm::dot(matrix[3], matrix[3]));
-    if (!finite || !std::isfinite(volume) || volume == 0) {
-        refuse(file.path, "spacing or directions that are singular or not finite",
-               "ones that give every voxel a place");
-    }
+    requirePlacement(file.path.string(), "spacing and directions", matrix);
     return matrix;
 }
 

@@ -204,7 +204,7 @@ TEST(ReadDicomError, Headers) {
                       [](auto& files) { files[2].frames = "7"; });
     expectRefusedWith("scan/o.dcm: got no image; expected a DICOM slice with rows and columns",
                       [](auto& files) { files[2].rows = 0; });
-    expectRefusedWith("scan/o.dcm: got a colour image; expected one value a pixel",
+    expectRefusedWith("scan/o.dcm: got pixels of kind RGB; expected one grey value a pixel",
                       [](auto& files) {
                           files[2].samples = 3;
                           files[2].photometric = "RGB";

@@ -267,8 +267,8 @@ TEST(ReadMetaError, NoPlaceInTheWorld) {
     Meta meta;
     meta.spacing = "2 0 4";
     expectRefusedMeta(
-        "got spacing or directions that are singular or not finite; expected ones that give every "
-        "voxel a place",
+        "got spacing and directions that cannot be inverted; expected finite numbers that give "
+        "each voxel a place of its own",
         meta, data());
 }
 

@@ -126,21 +126,28 @@ TEST(ReadNiftiError, PlaceOfTheData) {
 TEST(ReadNiftiError, NoPlaceInTheWorld) {
     const TempFolder folder;
     expectRefusedWith(
-        "got an sform that is singular or not finite; expected one that gives every voxel a place",
+        "got an sform that cannot be inverted; expected finite numbers that give each voxel a "
+        "place of its "
+        "own",
         [](NiftiFile& file) { file.sform[0] = std::nan(""); });
     expectRefusedWith(
-        "got an sform that is singular or not finite; expected one that gives every voxel a place",
+        "got an sform that cannot be inverted; expected finite numbers that give each voxel a "
+        "place of its "
+        "own",
         [](NiftiFile& file) { file.sform.assign(12, 0); });
     expectRefusedWith(
-        "got a qform that is singular or not finite; expected one that gives every voxel a place",
+        "got a qform that cannot be inverted; expected finite numbers that give each voxel a place "
+        "of its "
+        "own",
         [](NiftiFile& file) {
             file.sformCode = 0;
             file.qformCode = 1;
             file.quaternion[1] = INFINITY;
         });
     expectRefusedWith(
-        "got a voxel size that is singular or not finite; expected one that gives every voxel a "
-        "place",
+        "got a voxel size that cannot be inverted; expected finite numbers that give each voxel a "
+        "place of its "
+        "own",
         [](NiftiFile& file) {
             file.sformCode = 0;
             file.pixelSizes[2] = 0;

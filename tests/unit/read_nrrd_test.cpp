@@ -261,8 +261,9 @@ TEST(ReadNrrdError, FlatDirections) {
     const TempFolder folder;
     writeBytes("a.nrrd", nrrd({{"space directions", "(1,0,0) (2,0,0) (0,0,1)"}}) + "\n" + data());
     expectRefused(
-        "a.nrrd: got spacing or directions that are singular or not finite; expected ones that "
-        "give every voxel a place",
+        "a.nrrd: got spacing and directions that cannot be inverted; expected finite numbers that "
+        "give "
+        "each voxel a place of its own",
         "a.nrrd");
 }
 
