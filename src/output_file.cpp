@@ -37,11 +37,16 @@ void OutputFile::write(const void* bytes, std::size_t size) {
     }
 }
 
-void OutputFile::commit() {
+void OutputFile::close() {
+    if (descriptor_ < 0) return;
     // Network file systems report a full disk only when the file is closed.
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) throwCannotWrite(file_.finalPath(), errno);
+}
+
+void OutputFile::commit() {
+    close();
     file_.commit();
 }
 

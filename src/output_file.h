@@ -23,6 +23,9 @@ class OutputFile {
 
     /// @throw Error(kOutput) if not all bytes can be written
     void write(const void* bytes, std::size_t size);
+    /// Ends writing, so that what is left to do in commit() is the renaming.
+    /// @throw Error(kOutput) if not all bytes could be written
+    void close();
     /// @throw Error(kOutput) if the file cannot be closed or renamed
     void commit();
 

@@ -4,6 +4,7 @@
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
@@ -23,6 +24,25 @@ class SeekableArchive : public openvdb::io::Archive {
                  const openvdb::MetaMap& metadata) const {
         Archive::write(out, grids, /*seekable=*/true, metadata);
     }
+};
+
+// A file that tells how far it is in filling up to the size expected.
+class ReportingFile : public std::filebuf {
+  public:
+    ReportingFile(const Listener& listener, double expectedBytes)
+        : listener_(listener), expectedBytes_(expectedBytes) {}
+
+  protected:
+    std::streamsize xsputn(const char* bytes, std::streamsize count) override {
+        written_ += double(count);
+        listener_.report(std::min(1.0, written_ / expectedBytes_));
+        return std::filebuf::xsputn(bytes, count);
+    }
+
+  private:
+    const Listener& listener_;
+    double expectedBytes_;
+    double written_ = 0;
 };
 
 // Where a .vdb has its tag: after magic number (8 bytes), file version, library version (4 bytes
@@ -54,7 +74,7 @@ std::string tagFrom(std::uint64_t hash) {
 }
 
 // Replaces the file's random tag, if it is where this program knows it to be.
-void makeTagReproducible(std::fstream& stream, const std::string& randomTag) {
+void makeTagReproducible(std::iostream& stream, const std::string& randomTag) {
     std::string found(randomTag.size(), '\0');
     stream.seekg(kTagPosition);
     stream.read(found.data(), std::streamsize(found.size()));
@@ -69,33 +89,43 @@ void makeTagReproducible(std::fstream& stream, const std::string& randomTag) {
     stream.write(tag.data(), std::streamsize(tag.size()));
 }
 
+// The size in memory: a file of all that would be as large without compression.
+double memoryBytes(const openvdb::GridCPtrVec& grids) {
+    double bytes = 1;
+    for (const openvdb::GridBase::ConstPtr& grid : grids) bytes += double(grid->memUsage());
+    return bytes;
+}
+
 void writeStream(const AtomicFile& file, const openvdb::GridCPtrVec& grids,
-                 const openvdb::MetaMap& metadata) {
-    std::fstream stream;
+                 const openvdb::MetaMap& metadata, const Listener& listener) {
+    ReportingFile buffer(listener, memoryBytes(grids));
+    std::iostream stream(&buffer);
     // With exceptions the first byte that cannot be written ends the work, and errno is still its.
     stream.exceptions(std::ios::badbit | std::ios::failbit);
-    stream.open(file.path(), std::ios::in | std::ios::out | std::ios::binary | std::ios::trunc);
+    const auto mode = std::ios::in | std::ios::out | std::ios::binary | std::ios::trunc;
+    if (!buffer.open(file.path(), mode)) stream.setstate(std::ios::failbit);
     SeekableArchive archive;
     archive.writeTo(stream, grids, metadata);
     stream.flush();
     // Only a regular file can be read back.
     if (file.path() != file.finalPath()) makeTagReproducible(stream, archive.getUniqueTag());
-    stream.close();
+    if (!buffer.close()) stream.setstate(std::ios::failbit);
 }
 
 }  // namespace
 
 void writeVdb(const std::filesystem::path& file, const openvdb::GridCPtrVec& grids,
-              const openvdb::MetaMap& fileMetadata) {
+              const openvdb::MetaMap& fileMetadata, const Listener& listener) {
     openvdb::initialize();
     AtomicFile output(file);
     try {
         errno = 0;
-        writeStream(output, grids, fileMetadata);
+        writeStream(output, grids, fileMetadata, listener);
     } catch (const std::ios_base::failure&) {
         throwCannotWrite(file, errno != 0 ? errno : EIO);
     }
     output.commit();
+    listener.report(1);
 }
 
 }  // namespace deltasplat

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_options.h"
 
-#include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/splat/footprint.h"
 #include "input_options.h"
 #include "number_text.h"
+#include "stats_file.h"
 
 namespace deltasplat {
 namespace {
@@ -115,12 +115,6 @@ void addOutputOptions(CLI::App& app, RenderCommand& command) {
                    "JSON file to write: what was done, how long it took in seconds");
 }
 
-// Two names of one file would make one output overwrite the other, or the input.
-bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
-    std::error_code ignored;
-    return weakly_canonical(absolute(a), ignored) == weakly_canonical(absolute(b), ignored);
-}
-
 }  // namespace
 
 void addRenderOptions(CLI::App& app, RenderCommand& command) {
@@ -142,13 +136,7 @@ void validate(const RenderCommand& command) {
     // Any box will do to have the camera's own options checked.
     makeCamera(command.render.camera, IndexBox{glm::ivec3(0), glm::ivec3(1)}, glm::dmat4(1));
 
-    if (command.stats.empty()) return;
-    if (sameFile(command.stats, command.output) || sameFile(command.stats, command.input)) {
-        throw Error(ErrorCode::kUsage, gotExpected("--stats", command.stats.string(),
-                                                   "another file than the input and the picture"));
-    }
-    // Asked now, rather than after hours of work.
-    const AtomicFile probe(command.stats);
+    checkStatsFile(command.stats, {command.input, command.output}, "the input and the picture");
 }
 
 }  // namespace deltasplat

@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_stats.h"
 
-#include <sys/resource.h>
-
-#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
 #include "json_text.h"
+#include "peak_bytes.h"
 
 namespace deltasplat {
 namespace {
-
-std::uint64_t peakBytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return std::uint64_t(usage.ru_maxrss) * 1024;
-}
 
 std::string axisName(int axis) {
     return std::string(1, char('x' + axis));

@@ -24,6 +24,16 @@ struct SlabLayout {
     int slicesOf(int block) const { return std::min(8, lastSlice + 1 - 8 * block); }
 };
 
+/// Returns the layout of a box in (slice, u, v) order that is not empty.
+inline SlabLayout layoutOf(const IndexBox& box, int keyInterval) {
+    return {box.min.x >> 3, keyInterval / 8, box.max.x >> 3, box.max.x};
+}
+
+/// Returns a volume's box in (slice, u, v) order.
+inline IndexBox permutedBox(const IndexBox& box, int sliceAxis) {
+    return {toSliceOrder(box.min, sliceAxis), toSliceOrder(box.max, sliceAxis)};
+}
+
 /// A block's slots with the slice before it: everything that its deltas depend on.
 struct BlockWindow {
     std::array<Slot, 64> before{};  ///< empty where a slab starts or nothing lies there

@@ -23,10 +23,6 @@ namespace {
 
 using Leaf = DeltaTree::Leaf;
 
-SlabLayout layoutOf(const IndexBox& box, int keyInterval) {
-    return {box.min.x >> 3, keyInterval / 8, box.max.x >> 3, box.max.x};
-}
-
 std::uint64_t countBits(const std::array<std::uint64_t, 8>& words) {
     std::uint64_t count = 0;
     for (const std::uint64_t word : words) count += std::popcount(word);
@@ -113,12 +109,6 @@ std::shared_ptr<DeltaTree> makeTree(const BlockWindows& windows,
     return tree;
 }
 
-IndexBox permutedBox(const IndexBox& box, int sliceAxis) {
-    const glm::ivec3 order = sliceOrder(sliceAxis);
-    return {{box.min[order[0]], box.min[order[1]], box.min[order[2]]},
-            {box.max[order[0]], box.max[order[1]], box.max[order[2]]}};
-}
-
 }  // namespace
 
 std::uint64_t DeltaGrid::visible() const {
@@ -146,10 +136,10 @@ DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options) {
                                                    "a positive multiple of 8"));
     }
     grid.tree = std::make_shared<DeltaTree>();
-    if (volume.empty()) return grid;
+    if (grid.box.empty()) return grid;
 
     const SlabLayout layout = layoutOf(grid.box, grid.keyInterval);
-    const BlockReader reader(*volume.codes, options.sliceAxis, options.slotMap);
+    const BlockReader reader(*volume.codes, options.inactive, options.sliceAxis, options.slotMap);
     const BlockWindows windows(reader, layout);
     const std::vector<BlockChanges> changes = findChanges(windows, layout);
     grid.slabs =
@@ -163,7 +153,7 @@ SliceCounts countDeltas(const Volume& volume, int sliceAxis, std::span<const Slo
     const IndexBox box = permutedBox(volume.box, sliceAxis);
     SlabLayout layout = layoutOf(box, 8);
     layout.blocksPerSlab = layout.lastBlock - layout.firstBlock + 1;
-    const BlockReader reader(*volume.codes, sliceAxis, slotMap);
+    const BlockReader reader(*volume.codes, nullptr, sliceAxis, slotMap);
     const BlockWindows windows(reader, layout);
     return countSlabs(windows, findChanges(windows, layout), layout)[0];
 }

@@ -10,9 +10,11 @@
 
 #include "deltasplat/error.h"
 #include "ingest/book_encoder.h"
+#include "ingest/code_statistics.h"
 #include "ingest/code_tree.h"
 #include "ingest/grid_values.h"
 #include "ingest/readers.h"
+#include "ingest/scalar_grids.h"
 #include "number_text.h"
 
 namespace deltasplat {
@@ -78,18 +80,6 @@ std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book) {
     return codes;
 }
 
-std::vector<std::uint64_t> histogramOf(CodeTree::Tree& tree) {
-    std::vector<std::uint64_t> counts(kCodeCount);
-    std::vector<const CodeTree::Leaf*> leaves;
-    tree.getNodes(leaves);
-    for (const CodeTree::Leaf* leaf : leaves) {
-        const Code* codes = leaf->buffer().data();
-        for (auto on = leaf->valueMask().beginOn(); on; ++on) ++counts[codes[on.pos()]];
-    }
-    forActiveTiles(tree, [&](const auto& tile) { counts[*tile] += tile.getVoxelCount(); });
-    return counts;
-}
-
 IndexBox boxOf(const CodeTree::Tree& tree, const std::string& where) {
     openvdb::CoordBBox active;
     if (!tree.evalActiveVoxelBoundingBox(active)) return {};
@@ -134,9 +124,7 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
 }  // namespace
 
 void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume) {
-    using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                    openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid>;
-    const bool known = grid.apply<Types>([&](auto& typed) { fill(typed, options, volume); });
+    const bool known = grid.apply<ScalarGrids>([&](auto& typed) { fill(typed, options, volume); });
     if (!known) fail(options.where, "type " + options.type, "a scalar grid");
     volume.type = options.type;
     volume.gridClass = openvdb::GridBase::gridClassToString(grid.getGridClass());

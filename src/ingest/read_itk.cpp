@@ -31,6 +31,11 @@ namespace {
 
 enum class Encoding { kRaw, kGzip, kText };
 
+// ITK writes an orientation wherever it takes world space for a patient's, which is then LPS.
+bool isOrientation(const std::string& text) {
+    return text.size() == 3 && text.find_first_not_of("RLAPSI") == std::string::npos;
+}
+
 // What a header says about its data, before ITK has seen it.
 struct Claim {
     std::vector<std::int64_t> sizes;
@@ -150,6 +155,8 @@ Claim claimOfMeta(const std::filesystem::path& file) {
     } else {
         setDetached(file, name, claim);
     }
+    const std::string* orientation = header.find("anatomicalorientation");
+    if (orientation != nullptr && isOrientation(*orientation)) claim.space = "LPS";
     const auto isTrue = [&](const std::string& field) {
         const std::string* value = header.find(field);
         return value != nullptr && !value->empty() && std::strchr("Tt1", (*value)[0]) != nullptr;

@@ -11,6 +11,8 @@ namespace deltasplat {
 /// transform, class and metadata.
 struct SourceGrid {
     openvdb::GridBase::ConstPtr grid;
+    /// .vdb: the metadata of the file itself, the same for all of its grids; otherwise null.
+    openvdb::MetaMap::ConstPtr fileMetadata = nullptr;
 };
 
 }  // namespace deltasplat

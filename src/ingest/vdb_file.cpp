@@ -7,7 +7,9 @@
 #include <openvdb/openvdb.h>
 
 #include <array>
+#include <memory>
 #include <new>
+#include <sstream>
 #include <utility>
 
 #include "deltasplat/error.h"
@@ -148,7 +150,7 @@ void VdbFile::readDirectory() {
     const bool hasOffsets = bytes.u8() != 0;
     bytes.skip(kUuidBytes);
     headerEnd_ = bytes.position();
-    readMetadata(bytes);
+    metadata_ = readMetadata(bytes);
 
     const auto count = std::int32_t(bytes.u32());
     for (std::int32_t i = 0; i < count; ++i) {
@@ -157,6 +159,13 @@ void VdbFile::readDirectory() {
         bytes.seek(grid.end);
         grids_.push_back(std::move(grid));
     }
+}
+
+openvdb::MetaMap::ConstPtr VdbFile::metadata() const {
+    std::istringstream stream(metadata_);
+    const auto metadata = std::make_shared<openvdb::MetaMap>();
+    metadata->readMeta(stream);
+    return metadata;
 }
 
 // A file written as a stream says nowhere how long its grids are.

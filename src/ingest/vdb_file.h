@@ -42,6 +42,8 @@ class VdbFile {
     explicit VdbFile(std::filesystem::path file);
 
     const std::vector<VdbGrid>& grids() const { return grids_; }
+    /// Returns the metadata of the file itself.
+    openvdb::MetaMap::ConstPtr metadata() const;
     /// Reads one grid of grids().
     /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if it does not fit
     /// into
@@ -55,6 +57,7 @@ class VdbFile {
 
     std::filesystem::path file_;
     std::uint64_t headerEnd_ = 0;
+    std::string metadata_;  // as readMetadata returns it
     std::vector<VdbGrid> grids_;
 };
 

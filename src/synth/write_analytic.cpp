@@ -4,7 +4,6 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "deltasplat/error.h"
+#include "little_endian.h"
 #include "lower_case.h"
 #include "memory.h"
 #include "number_text.h"
@@ -29,21 +29,17 @@ glm::dvec3 positionOf(const glm::ivec3& index, const glm::ivec3& dims) {
 }
 
 // Stores a value 0..1 as one little-endian sample.
-template <typename Bits>
-void storeLittle(Bits bits, unsigned char* at) {
-    for (std::size_t i = 0; i < sizeof bits; ++i) at[i] = static_cast<unsigned char>(bits >> 8 * i);
-}
-void storeFloat(double value, unsigned char* at) {
-    storeLittle(std::bit_cast<std::uint32_t>(float(value)), at);
+void storeFloat(double value, std::byte* at) {
+    storeLittle(float(value), at);
 }
 template <typename Whole>
-void storeWhole(double value, unsigned char* at) {
+void storeWhole(double value, std::byte* at) {
     storeLittle(Whole(std::lround(value * std::numeric_limits<Whole>::max())), at);
 }
 
 struct SampleType {
     std::size_t bytes;
-    void (*store)(double value, unsigned char* at);
+    void (*store)(double value, std::byte* at);
 };
 
 SampleType sampleType(const std::string& name) {
@@ -62,10 +58,10 @@ void writeRaw(const AnalyticVolume& volume, const std::filesystem::path& file,
     requireMemory("--dims", double(rowBytes) * dims.y);
 
     OutputFile out(file);
-    std::vector<unsigned char> slice(rowBytes * std::size_t(dims.y));
+    std::vector<std::byte> slice(rowBytes * std::size_t(dims.y));
     for (int z = 0; z < dims.z; ++z) {
         parallelFor(std::size_t(dims.y), [&](std::size_t y) {
-            unsigned char* row = &slice[y * rowBytes];
+            std::byte* row = &slice[y * rowBytes];
             for (int x = 0; x < dims.x; ++x, row += type.bytes) {
                 type.store(volume.valueAt(positionOf({x, int(y), z}, dims)), row);
             }

@@ -6,23 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "deltasplat/ingest/slot.h"
 #include "deltasplat/ingest/volume.h"
 
 namespace deltasplat {
 
 /// The OpenVDB Int32Grid of deltas; defined in src/delta/delta_tree.h for the stage that walks it.
 struct DeltaTree;
-
-/// What a voxel indexes tables by: 0 = empty (inactive or invisible), code + 1 otherwise.
-using Slot = std::int32_t;
-inline constexpr Slot kEmptySlot = 0;
-inline constexpr int kSlotCount = kCodeCount + 1;
-
-/// Returns the volume axes (0 = x, 1 = y, 2 = z) that become (slice, u, v): a cyclic permutation,
-/// so that handedness is kept.
-inline glm::ivec3 sliceOrder(int sliceAxis) {
-    return {sliceAxis, (sliceAxis + 1) % 3, (sliceAxis + 2) % 3};
-}
 
 /// Whether slices are stored whole or as their change from the slice before.
 enum class Encoding {
@@ -61,6 +51,8 @@ struct DeltaOptions {
     /// [kSlotCount] or empty: the slot to use in place of each slot, so that codes which look alike
     /// make no deltas, and invisible ones are empty. Entry 0 must be 0.
     std::span<const Slot> slotMap;
+    /// Null, or active where the volume is not: voxels that get the slot kSlotCount + their code.
+    const CodeTree* inactive = nullptr;
 };
 
 /// Returns the slices a slab gets by default: a function of the volume alone, so that pixels never

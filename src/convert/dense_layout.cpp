@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "convert/dense_layout.h"
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace deltasplat {
+namespace {
+
+std::string noHeader(const DenseLayout&, const std::string&) {
+    return {};
+}
+
+constexpr std::array<DenseFormat, 8> kFormats{{
+    {".raw", "", false, false, false, settleRaw, noHeader},
+    {".raw.gz", "", false, true, false, settleRaw, noHeader},
+    {".nrrd", "", false, true, true, settleNrrd, nrrdHeader},
+    {".nhdr", ".raw.gz", false, true, true, settleNrrd, nrrdHeader},
+    {".mhd", ".raw", false, false, true, settleMetaImage, metaImageHeader},
+    {".mha", "", false, false, true, settleMetaImage, metaImageHeader},
+    {".nii", "", false, false, true, settleNifti, niftiHeader},
+    {".nii.gz", "", true, true, true, settleNifti, niftiHeader},
+}};
+
+}  // namespace
+
+glm::dvec3 DenseLayout::spacing() const {
+    glm::dvec3 lengths;
+    for (int axis = 0; axis < 3; ++axis)
+        lengths[axis] = glm::length(glm::dvec3(worldFromIndex[axis]));
+    return lengths;
+}
+
+glm::dmat3 DenseLayout::directions() const {
+    glm::dmat3 units;
+    for (int axis = 0; axis < 3; ++axis) {
+        units[axis] = glm::dvec3(worldFromIndex[axis]) / spacing()[axis];
+    }
+    return units;
+}
+
+bool DenseLayout::isOrthogonal() const {
+    constexpr double kNearly = 1e-5;
+    const glm::dmat3 units = directions();
+    return std::abs(glm::dot(units[0], units[1])) < kNearly &&
+           std::abs(glm::dot(units[1], units[2])) < kNearly &&
+           std::abs(glm::dot(units[2], units[0])) < kNearly;
+}
+
+void DenseLayout::turnTo(const std::string& otherSpace) {
+    if (space.empty() || space == otherSpace) return;
+    for (int column = 0; column < 4; ++column) {
+        // Adding 0 keeps -0, which is no other place, out of the files.
+        worldFromIndex[column].x = -worldFromIndex[column].x + 0.0;
+        worldFromIndex[column].y = -worldFromIndex[column].y + 0.0;
+    }
+    space = otherSpace;
+}
+
+std::string DenseLayout::dimsText() const {
+    return std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" + std::to_string(dims.z);
+}
+
+const DenseFormat* findDenseFormat(const std::string& extension) {
+    for (const DenseFormat& format : kFormats) {
+        if (extension == format.extension) return &format;
+    }
+    return nullptr;
+}
+
+}  // namespace deltasplat

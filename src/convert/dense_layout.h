@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+
+#include "convert/write_report.h"
+#include "ingest/raw_format.h"
+
+namespace deltasplat {
+
+/// What a file of a dense format holds besides its values.
+struct DenseLayout {
+    glm::ivec3 dims{1};  ///< voxels along x, y, z
+    RawType type = RawType::kUint8;
+    glm::dmat4 worldFromIndex{1.0};  ///< maps the first voxel, (0, 0, 0), to its place
+    std::string space;               ///< as Volume::space
+
+    glm::dvec3 origin() const { return worldFromIndex[3]; }
+    /// World lengths of one step along each axis.
+    glm::dvec3 spacing() const;
+    /// Unit vectors along x, y and z, as columns.
+    glm::dmat3 directions() const;
+    /// Whether the axes are at right angles, to a hundredth of a voxel in a thousand.
+    bool isOrthogonal() const;
+    /// Turns world space from the patient's RAS to LPS or back; what has no space keeps its
+    /// numbers.
+    void turnTo(const std::string& otherSpace);
+    /// Returns "256x256x128".
+    std::string dimsText() const;
+};
+
+/// How files of one extension are written.
+struct DenseFormat {
+    const char* extension;      ///< ".nii.gz"
+    const char* dataExtension;  ///< of the file that holds the values; "" if it is the same
+    bool gzipHeader;
+    bool gzipData;
+    bool wideIntegers;  ///< it has integers of 64 bits
+    /// Brings a layout into the format's terms, and says what the format does not hold.
+    /// @throw Error(kFailed) if the format cannot hold it
+    void (*settle)(DenseLayout& layout, const std::string& file, Notes& notes);
+    /// Returns the bytes before the values. `dataFile` is the name of the other file.
+    std::string (*header)(const DenseLayout& layout, const std::string& dataFile);
+};
+
+/// Returns the format of a file, by its extension; nullptr if it has none.
+const DenseFormat* findDenseFormat(const std::string& extension);
+
+void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes);
+void settleNrrd(DenseLayout& layout, const std::string& file, Notes& notes);
+std::string nrrdHeader(const DenseLayout& layout, const std::string& dataFile);
+void settleMetaImage(DenseLayout& layout, const std::string& file, Notes& notes);
+std::string metaImageHeader(const DenseLayout& layout, const std::string& dataFile);
+void settleNifti(DenseLayout& layout, const std::string& file, Notes& notes);
+std::string niftiHeader(const DenseLayout& layout, const std::string& dataFile);
+
+}  // namespace deltasplat

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include "deltasplat/ingest/volume.h"
+#include "ingest/raw_format.h"
+
+namespace deltasplat {
+
+/// Writes the values of the voxels of a box into values[z][y][x]. To be called from any thread.
+using ReadBox = std::function<void(const IndexBox& box, double* values)>;
+
+/// Returns what reads the values of a volume: from its source if there is one, otherwise from its
+/// codes. Inactive voxels have the value they hold, or the volume's background if that is NaN or
+/// infinite. Integers beyond 2^53 become the nearest double. The volume must outlive it.
+ReadBox boxReader(const Volume& volume);
+
+/// Stores `count` values one after the other, little endian.
+/// @return the largest difference between a value and the one stored
+double storeValues(const double* values, std::size_t count, RawType type, std::byte* out);
+
+}  // namespace deltasplat

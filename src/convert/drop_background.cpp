@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "convert/drop_background.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "ingest/grid_values.h"
+#include "ingest/scalar_grids.h"
+#include "ingest/source_grid.h"
+
+namespace deltasplat {
+namespace {
+
+// Returns the most frequent of the values that the book gives the code `code`.
+template <typename Tree>
+double mostFrequentOf(const Tree& tree, const CodeBook& book, Code code) {
+    std::map<double, std::uint64_t> counts;
+    for (auto value = tree.cbeginValueOn(); value; ++value) {
+        const auto number = double(*value);
+        if (book.codeOf(number) == code) counts[number] += value.getVoxelCount();
+    }
+    const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+    return std::max_element(counts.begin(), counts.end(), fewer)->first;
+}
+
+// Takes the old background and the dropped value for the same thing.
+template <typename T>
+struct Dropped {
+    T oldBackground;
+    T value;
+
+    bool isActive(T voxel, bool active) const { return active && voxel != value; }
+    T valueOf(T voxel, bool active) const {
+        return !active && voxel == oldBackground ? value : voxel;
+    }
+    // Whether the new tree has to say it.
+    bool matters(T voxel, bool active) const {
+        return isActive(voxel, active) || valueOf(voxel, active) != value;
+    }
+};
+
+// Returns null for a leaf that the background says all about.
+template <typename Leaf, typename T>
+std::unique_ptr<Leaf> copyLeaf(const Leaf& leaf, const Dropped<T>& dropped) {
+    bool matters = false;
+    for (openvdb::Index i = 0; i < Leaf::SIZE && !matters; ++i) {
+        matters = dropped.matters(leaf.getValue(i), leaf.isValueOn(i));
+    }
+    if (!matters) return nullptr;
+    auto copy = std::make_unique<Leaf>(leaf);
+    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
+        const T voxel = leaf.getValue(i);
+        const bool active = leaf.isValueOn(i);
+        copy->setValueOnly(i, dropped.valueOf(voxel, active));
+        copy->setActiveState(i, dropped.isActive(voxel, active));
+    }
+    return copy;
+}
+
+template <typename Grid>
+openvdb::GridBase::Ptr drop(const Grid& grid, double value) {
+    using Tree = typename Grid::TreeType;
+    using Leaf = typename Tree::LeafNodeType;
+    using T = typename Tree::ValueType;
+    const Tree& tree = grid.constTree();
+    const Dropped<T> dropped{tree.background(), T(value)};
+    typename Tree::Ptr made(new Tree(T(value)));
+
+    auto tile = tree.cbeginValueAll();
+    tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
+        const bool active = tile.isValueOn();
+        if (!dropped.matters(*tile, active)) continue;
+        made->addTile(tile.getLevel(), tile.getCoord(), dropped.valueOf(*tile, active), active);
+    }
+
+    std::vector<const Leaf*> leaves;
+    tree.getNodes(leaves);
+    std::vector<std::unique_ptr<Leaf>> copies(leaves.size());
+    forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) copies[i] = copyLeaf(*leaves[i], dropped);
+    });
+    for (std::unique_ptr<Leaf>& leaf : copies) {
+        if (leaf) made->addLeaf(leaf.release());
+    }
+    typename Grid::Ptr result = Grid::create(made);
+    result->insertMeta(grid);
+    result->setTransform(grid.transform().copy());
+    return result;
+}
+
+}  // namespace
+
+double mostFrequentValue(const Volume& volume) {
+    const auto& counts = volume.histogram;
+    const auto code = Code(std::max_element(counts.begin(), counts.end()) - counts.begin());
+    double value = volume.empty() ? 0 : volume.codeBook.valueOf(code);
+    if (volume.empty() || volume.codeBook.isExact() || !volume.source) return value;
+    volume.source->grid->apply<ScalarGrids>(
+        [&](const auto& grid) { value = mostFrequentOf(grid.constTree(), volume.codeBook, code); });
+    return value;
+}
+
+openvdb::GridBase::Ptr dropBackground(const openvdb::GridBase& grid, double value) {
+    openvdb::GridBase::Ptr result;
+    grid.apply<ScalarGrids>([&](const auto& typed) { result = drop(typed, value); });
+    return result;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Grid.h>
+
+#include "deltasplat/ingest/volume.h"
+
+namespace deltasplat {
+
+/// Returns the most frequent active value of a volume, the smallest of several: exactly, if the
+/// code book is exact or there is no source; otherwise the most frequent one of those that share
+/// the fullest code. 0 for an empty volume.
+double mostFrequentValue(const Volume& volume);
+
+/// Returns a copy of a scalar grid with background `value`, in which no active voxel has this
+/// value: those, and what held the old background, are inactive and hold the new one. The active
+/// voxels keep their values, and so do inactive ones that hold neither.
+openvdb::GridBase::Ptr dropBackground(const openvdb::GridBase& grid, double value);
+
+}  // namespace deltasplat

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "convert/value_facts.h"
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+#include "ingest/grid_values.h"
+#include "ingest/raw_load.h"
+#include "ingest/scalar_grids.h"
+#include "ingest/source_grid.h"
+
+namespace deltasplat {
+namespace {
+
+template <typename T>
+bool within(const ValueFacts& facts) {
+    // What is whole is at most the largest if it is below the power of two that follows.
+    return facts.whole && facts.doubleError == 0 &&
+           facts.min >= double(std::numeric_limits<T>::min()) &&
+           facts.max < std::ldexp(1.0, std::numeric_limits<T>::digits);
+}
+
+template <typename Leaf>
+void addLeaf(const Leaf& leaf, ValueFacts& facts) {
+    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) facts.add(leaf.getValue(i));
+}
+
+template <typename Tree>
+ValueFacts factsOfTree(const Tree& tree) {
+    std::vector<const typename Tree::LeafNodeType*> leaves;
+    tree.getNodes(leaves);
+    std::vector<ValueFacts> parts(leaves.size() / kLeafRun + 1);
+    forLeafRuns(leaves.size(), [&](std::size_t run, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) addLeaf(*leaves[i], parts[run]);
+    });
+
+    ValueFacts whole;
+    whole.add(tree.background());
+    for (const ValueFacts& part : parts) whole.append(part);
+    auto tile = tree.cbeginValueAll();
+    tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) whole.add(*tile);
+    return whole;
+}
+
+ValueFacts factsOfCodes(const Volume& volume) {
+    ValueFacts facts;
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+        if (volume.histogram[code] != 0) facts.add(volume.codeBook.valueOf(Code(code)));
+    }
+    if (volume.hasBackground) facts.add(volume.background);
+    return facts;
+}
+
+}  // namespace
+
+void ValueFacts::append(const ValueFacts& other) {
+    if (!other.any) return;
+    min = any ? std::min(min, other.min) : other.min;
+    max = any ? std::max(max, other.max) : other.max;
+    any = true;
+    whole = whole && other.whole;
+    floats = floats && other.floats;
+    doubleError = std::max(doubleError, other.doubleError);
+}
+
+bool ValueFacts::fit(RawType type) const {
+    return withRawType(type, [&](auto zero) {
+        using T = decltype(zero);
+        if constexpr (std::is_integral_v<T>) return within<T>(*this);
+        return doubleError == 0 && (floats || std::is_same_v<T, double>);
+    });
+}
+
+ValueFacts factsOf(const Volume& volume) {
+    if (!volume.source) return factsOfCodes(volume);
+    ValueFacts facts;
+    volume.source->grid->apply<ScalarGrids>(
+        [&](const auto& grid) { facts = factsOfTree(grid.constTree()); });
+    return facts;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "convert/volume_grid.h"
+
+#include <openvdb/openvdb.h>
+
+#include <type_traits>
+#include <vector>
+
+#include "convert/value_facts.h"
+#include "ingest/code_tree.h"
+#include "ingest/grid_metadata.h"
+#include "ingest/grid_values.h"
+#include "ingest/scalar_grids.h"
+#include "ingest/source_grid.h"
+#include "ingest/vdb_transform.h"
+
+namespace deltasplat {
+namespace {
+
+using openvdb::GridBase;
+
+template <typename SourceLeaf, typename Leaf, typename ValueOf>
+void fillLeaf(const SourceLeaf& source, Leaf& leaf, const ValueOf& valueOf) {
+    using T = typename Leaf::ValueType;
+    for (auto voxel = source.cbeginValueOn(); voxel; ++voxel) {
+        const T value = T(valueOf(*voxel));
+        if constexpr (std::is_same_v<T, bool>) {
+            leaf.setValueOnly(voxel.pos(), value);
+        } else {
+            leaf.buffer().data()[voxel.pos()] = value;
+        }
+    }
+}
+
+// Makes a grid with the active voxels and tiles of `tree`, whose values `valueOf` translates.
+template <typename Grid, typename Tree, typename ValueOf>
+typename Grid::Ptr translate(const Tree& tree, const ValueOf& valueOf, double background) {
+    using T = typename Grid::ValueType;
+    // OpenVDB's trees cannot be assigned, only made in place.
+    typename Grid::TreePtrType made(
+        new typename Grid::TreeType(tree, T(background), openvdb::TopologyCopy()));
+    // The tree of a mask is all topology.
+    if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
+        std::vector<const typename Tree::LeafNodeType*> sources;
+        std::vector<typename Grid::TreeType::LeafNodeType*> leaves;
+        tree.getNodes(sources);
+        made->getNodes(leaves);
+        forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) fillLeaf(*sources[i], *leaves[i], valueOf);
+        });
+        forActiveTiles(*made, [&](const auto& tile) {
+            tile.setValue(T(valueOf(tree.getValue(tile.getCoord()))));
+        });
+    }
+    return Grid::create(made);
+}
+
+template <typename Grid>
+GridBase::Ptr fromCodes(const Volume& volume) {
+    std::vector<double> values(kCodeCount);
+    for (int code = 0; code < kCodeCount; ++code) {
+        values[std::size_t(code)] = volume.codeBook.valueOf(Code(code));
+    }
+    return translate<Grid>(
+        volume.codes->tree, [&](Code code) { return values[code]; },
+        volume.hasBackground ? volume.background : 0);
+}
+
+// What a volume without OpenVDB's types becomes.
+std::string smallestType(const ValueFacts& facts) {
+    if (facts.fit(RawType::kFloat32)) return "float";
+    return facts.fit(RawType::kInt32) ? "int32" : "double";
+}
+
+GridBase::Ptr fromCodes(const Volume& volume, const std::string& type) {
+    if (type == "double") return fromCodes<openvdb::DoubleGrid>(volume);
+    if (type == "int32") return fromCodes<openvdb::Int32Grid>(volume);
+    if (type == "int64") return fromCodes<openvdb::Int64Grid>(volume);
+    if (type == "bool") return fromCodes<openvdb::BoolGrid>(volume);
+    if (type == "mask") return fromCodes<openvdb::MaskGrid>(volume);
+    return fromCodes<openvdb::FloatGrid>(volume);
+}
+
+template <typename Grid>
+GridBase::Ptr fromSource(const GridBase& source) {
+    using Wide = openvdb::TypeList<openvdb::DoubleGrid, openvdb::Int64Grid, openvdb::Int32Grid>;
+    GridBase::Ptr made;
+    source.apply<Wide>([&](const auto& grid) {
+        made = translate<Grid>(
+            grid.constTree(), [](auto value) { return value; }, 0);
+    });
+    return made;
+}
+
+// The grid of a dense source may have a wider type than its values need.
+GridBase::ConstPtr fromSource(const GridBase::ConstPtr& source, const std::string& type) {
+    if (type == typeOf(*source)) return source;
+    if (type == "float") return fromSource<openvdb::FloatGrid>(*source);
+    if (type == "int32") return fromSource<openvdb::Int32Grid>(*source);
+    return fromSource<openvdb::DoubleGrid>(*source);
+}
+
+openvdb::MetaMap metadataOf(const Volume& volume) {
+    openvdb::MetaMap metadata;
+    const auto add = [&](const char* key, const std::string& text) {
+        metadata.insertMeta(key, openvdb::StringMetadata(text));
+    };
+    const openvdb::GridClass gridClass = GridBase::stringToGridClass(volume.gridClass);
+    add(GridBase::META_GRID_NAME, volume.name);
+    add(GridBase::META_GRID_CREATOR, "deltasplat " DELTASPLAT_VERSION);
+    add(GridBase::META_GRID_CLASS, GridBase::gridClassToString(gridClass));
+    if (!volume.hasBackground) add(kSourceTypeKey, volume.type);
+    if (!volume.space.empty()) add(kSpaceKey, volume.space);
+    return metadata;
+}
+
+}  // namespace
+
+std::string typeOf(const GridBase& grid) {
+    // Masks call their values bool.
+    return grid.isType<openvdb::MaskGrid>() ? "mask" : grid.valueType();
+}
+
+GridBase::ConstPtr gridOf(const Volume& volume) {
+    openvdb::initialize();
+    if (volume.source && volume.hasBackground) return volume.source->grid;
+    const std::string type = volume.hasBackground ? volume.type : smallestType(factsOf(volume));
+    const GridBase::ConstPtr grid =
+        volume.source ? fromSource(volume.source->grid, type) : fromCodes(volume, type);
+    return grid->copyGridReplacingMetadataAndTransform(metadataOf(volume),
+                                                       makeTransform(volume.worldFromIndex));
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "convert/write_dense.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <glm/gtc/matrix_transform.hpp>
+#include <memory>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include "convert/dense_type.h"
+#include "convert/dense_values.h"
+#include "convert/packed_output.h"
+#include "convert/value_facts.h"
+#include "deltasplat/error.h"
+#include "ingest/file_name.h"
+#include "ingest/grid_metadata.h"
+#include "ingest/source_grid.h"
+#include "memory.h"
+#include "number_text.h"
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr int kBlock = 8;
+
+void requireVoxels(const std::filesystem::path& file, const Volume& volume) {
+    if (!volume.empty()) return;
+    throw Error(ErrorCode::kInput,
+                gotExpected(file.string(), "\"" + volume.name + "\", which has no active voxels",
+                            "a volume with a bounding box (.vdb holds empty ones)"));
+}
+
+// Space on the disk is asked for before hours of work, as far as it can be known.
+void requireSpace(const std::filesystem::path& file, const DenseFormat& format, double bytes) {
+    constexpr double kMostPacking = 1032;  // zlib's best
+    const double least = format.gzipData ? bytes / kMostPacking : bytes;
+    std::error_code error;
+    const std::filesystem::path folder = absolute(file, error).parent_path();
+    const std::filesystem::space_info space = std::filesystem::space(folder, error);
+    if (error || least <= double(space.available)) return;
+    throw Error(ErrorCode::kOutput, file.string() + ": cannot be written: needs " +
+                                        humanBytes(least) + "; expected at most " +
+                                        humanBytes(double(space.available)) + ", which is free");
+}
+
+void noteLostStates(const Volume& volume, Notes& notes) {
+    if (!volume.hasBackground) return;
+    const std::uint64_t inactive = std::uint64_t(volume.box.voxels()) - volume.activeCount;
+    if (inactive != 0) {
+        notes.loss(std::to_string(inactive) +
+                   " inactive voxels become voxels like the others, with the value they hold "
+                   "(background " +
+                   numberText(volume.background) + ")");
+    }
+    // What was no grid before has no more than its file's name.
+    if (volume.source && !textMetadata(*volume.source->grid, kSourceTypeKey).empty()) return;
+    notes.loss("the grid's name \"" + volume.name + "\", class \"" + volume.gridClass +
+               "\" and other metadata are left out");
+}
+
+DenseLayout layoutOf(const Volume& volume, const ValueFacts& facts, const DenseFormat& format,
+                     Notes& notes) {
+    DenseLayout layout;
+    layout.dims = volume.box.dims();
+    layout.type = denseType(volume, facts, format.wideIntegers, notes);
+    layout.worldFromIndex = volume.worldFromIndex;
+    layout.worldFromIndex[3] = volume.worldFromIndex * glm::dvec4(volume.box.min, 1);
+    layout.space = volume.space;
+    return layout;
+}
+
+// A run of slices that lie in the same layer of 8x8x8 blocks, as bytes of the file.
+class Layer {
+  public:
+    Layer(const IndexBox& box, RawType type)
+        : box_(box), type_(type), rowBytes_(std::size_t(box.dims().x) * rawTypeBytes(type)) {}
+
+    double bytes() const { return double(rowBytes_) * box_.dims().y * box_.dims().z; }
+    const std::vector<std::byte>& data() const { return data_; }
+
+    /// Fills the layer on all threads; returns the largest error.
+    double fill(const ReadBox& read) {
+        data_.resize(rowBytes_ * std::size_t(box_.dims().y) * std::size_t(box_.dims().z));
+        const int firstStrip = box_.min.y & ~(kBlock - 1);
+        std::vector<double> errors(std::size_t((box_.max.y - firstStrip) / kBlock + 1));
+        parallelFor(errors.size(), [&](std::size_t strip) {
+            IndexBox part = box_;
+            part.min.y = std::max(box_.min.y, firstStrip + int(strip) * kBlock);
+            part.max.y = std::min(box_.max.y, firstStrip + int(strip) * kBlock + kBlock - 1);
+            errors[strip] = fillStrip(part, read);
+        });
+        return *std::max_element(errors.begin(), errors.end());
+    }
+
+  private:
+    double fillStrip(const IndexBox& part, const ReadBox& read) {
+        const auto width = std::size_t(part.dims().x);
+        const auto values = std::make_unique_for_overwrite<double[]>(std::size_t(part.voxels()));
+        read(part, values.get());
+        const double* row = values.get();
+        double error = 0;
+        for (int z = 0; z < part.dims().z; ++z) {
+            for (int y = part.min.y - box_.min.y; y <= part.max.y - box_.min.y; ++y, row += width) {
+                std::byte* out =
+                    data_.data() +
+                    (std::size_t(z) * std::size_t(box_.dims().y) + std::size_t(y)) * rowBytes_;
+                error = std::max(error, storeValues(row, width, type_, out));
+            }
+        }
+        return error;
+    }
+
+    IndexBox box_;
+    RawType type_;
+    std::size_t rowBytes_;
+    std::vector<std::byte> data_;
+};
+
+double writeValues(const Volume& volume, RawType type, PackedOutput& out,
+                   const Listener& listener) {
+    const ReadBox read = boxReader(volume);
+    const IndexBox& box = volume.box;
+    double error = 0;
+    for (int first = box.min.z; first <= box.max.z; first = (first & ~(kBlock - 1)) + kBlock) {
+        IndexBox slices = box;
+        slices.min.z = first;
+        slices.max.z = std::min(box.max.z, first | (kBlock - 1));
+        Layer layer(slices, type);
+        error = std::max(error, layer.fill(read));
+        out.write(layer.data().data(), layer.data().size());
+        listener.report(double(slices.max.z - box.min.z + 1) / box.dims().z);
+    }
+    return error;
+}
+
+}  // namespace
+
+WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& format,
+                       const Volume& volume, const Listener& listener) {
+    requireVoxels(file, volume);
+    WriteReport report;
+    Notes notes(report, file);
+    const ValueFacts facts = factsOf(volume);
+    DenseLayout layout = layoutOf(volume, facts, format, notes);
+    format.settle(layout, file.string(), notes);
+    noteLostStates(volume, notes);
+    const double sliceBytes = double(layout.dims.x) * layout.dims.y * rawTypeBytes(layout.type);
+    requireMemory(file.string(), 2 * kBlock * sliceBytes);
+    requireSpace(file, format, sliceBytes * layout.dims.z);
+
+    const std::filesystem::path dataFile = dataFileOf(file);
+    PackedOutput head(file);
+    std::optional<PackedOutput> separate;
+    if (!dataFile.empty()) separate.emplace(dataFile);
+    PackedOutput& data = separate ? *separate : head;
+
+    if (format.gzipHeader) head.beginGzip();
+    const std::string header = format.header(layout, dataFile.filename().string());
+    head.write(header.data(), header.size());
+    if (format.gzipData && !format.gzipHeader) data.beginGzip();
+    report.maxError = std::max(facts.doubleError, writeValues(volume, layout.type, data, listener));
+
+    // The header comes last: who finds it finds the values.
+    head.close();
+    data.close();
+    if (separate) separate->commit();
+    head.commit();
+    report.files = {file};
+    if (separate) report.files.push_back(dataFile);
+    if (report.maxError != 0) report.lossless = false;
+    return report;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "convert/write_grids.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "convert/drop_background.h"
+#include "convert/half_exact.h"
+#include "convert/volume_grid.h"
+#include "convert/write_report.h"
+#include "deltasplat/error.h"
+#include "ingest/source_grid.h"
+#include "number_text.h"
+#include "write_vdb.h"
+
+namespace deltasplat {
+namespace {
+
+using openvdb::GridBase;
+
+// Share of the progress that making the grids takes; compressing and writing is the longer part.
+constexpr double kGridShare = 0.3;
+
+std::string quoted(const std::string& name) {
+    return "grid \"" + name + "\"";
+}
+
+double droppedValue(const Volume& volume, const WriteOptions& options) {
+    if (options.background) return *options.background;
+    return volume.hasBackground ? volume.background : mostFrequentValue(volume);
+}
+
+// A background has to be a value of the grid's type.
+void requireValue(const GridBase& grid, double value) {
+    const std::string type = typeOf(grid);
+    bool holds = true;
+    if (type == "float") holds = std::abs(value) <= double(std::numeric_limits<float>::max());
+    if (type == "int32" || type == "int64") holds = value == std::floor(value);
+    if (type == "int32") holds = holds && value >= -0x1p31 && value < 0x1p31;
+    if (type == "int64") holds = holds && value >= -0x1p63 && value < 0x1p63;
+    if (type == "bool" || type == "mask") holds = value == 0 || value == 1;
+    if (holds) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("--background", numberText(value), "a value of type " + type));
+}
+
+GridBase::ConstPtr sparseGrid(const GridBase::ConstPtr& grid, const Volume& volume,
+                              const WriteOptions& options, Notes& notes) {
+    const double value = droppedValue(volume, options);
+    // Inactive voxels that are there already have a value, which another background would change.
+    if (volume.hasBackground && value != volume.background) {
+        notes.remark("--background: has no effect on " + quoted(volume.name) +
+                     ", whose background is " + numberText(volume.background));
+        return grid;
+    }
+    requireValue(*grid, value);
+    const GridBase::Ptr sparse = dropBackground(*grid, value);
+    if (volume.hasBackground && sparse->activeVoxelCount() != volume.activeCount) {
+        notes.loss(quoted(volume.name) + ": " +
+                   std::to_string(volume.activeCount - sparse->activeVoxelCount()) +
+                   " active voxels of value " + numberText(value) + " made inactive");
+    }
+    return sparse;
+}
+
+// Says what a volume without OpenVDB's types is stored as, if that has another name.
+void noteType(const Volume& volume, const GridBase& grid, bool half, Notes& notes) {
+    const std::string type = typeOf(grid);
+    const bool same = volume.type == type || (volume.type == "float32" && type == "float") ||
+                      (volume.type == "float64" && type == "double");
+    if (volume.hasBackground || same) return;
+    notes.remark(volume.type + " stored as " + (half ? "half" : type) +
+                 ", which holds every value");
+}
+
+// Returns the grid as it is to be stored: sparser if that is asked for, in half precision or not.
+GridBase::ConstPtr storedGrid(Volume volume, const WriteOptions& options, Notes& notes) {
+    GridBase::ConstPtr grid = gridOf(volume);
+    volume.codes.reset();
+    if (options.dropBackground) grid = sparseGrid(grid, volume, options, notes);
+
+    const bool half = !options.fullFloat && survivesHalf(*grid);
+    openvdb::MetaMap metadata = *grid;
+    metadata.insertMeta(GridBase::META_SAVE_HALF_FLOAT, openvdb::BoolMetadata(half));
+    noteType(volume, *grid, half, notes);
+    return grid->copyGridReplacingMetadata(metadata);
+}
+
+// Volumes of several files share the metadata of all; where two have one key, the first wins.
+openvdb::MetaMap fileMetadata(const std::vector<Volume>& volumes) {
+    openvdb::MetaMap all;
+    for (const Volume& volume : volumes) {
+        if (!volume.source || !volume.source->fileMetadata) continue;
+        const openvdb::MetaMap& own = *volume.source->fileMetadata;
+        for (auto entry = own.beginMeta(); entry != own.endMeta(); ++entry) {
+            if (!all[entry->first]) all.insertMeta(entry->first, *entry->second);
+        }
+    }
+    return all;
+}
+
+}  // namespace
+
+WriteReport writeGrids(const std::filesystem::path& file, std::vector<Volume> volumes,
+                       const WriteOptions& options, const Listener& listener) {
+    WriteReport report;
+    Notes notes(report, file);
+    const openvdb::MetaMap metadata = fileMetadata(volumes);
+    openvdb::GridCPtrVec grids;
+    for (std::size_t i = 0; i < volumes.size(); ++i) {
+        grids.push_back(storedGrid(std::move(volumes[i]), options, notes));
+        listener.report(kGridShare * double(i + 1) / double(volumes.size()));
+    }
+    Listener writing = listener;
+    writing.progress = [&](double share) {
+        listener.report(kGridShare + (1 - kGridShare) * share);
+    };
+    writeVdb(file, grids, metadata, writing);
+    report.files = {file};
+    return report;
+}
+
+}  // namespace deltasplat

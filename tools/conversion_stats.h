@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "deltasplat/ingest/volume.h"
+
+namespace deltasplat {
+
+/// What `--stats` of convert, delta and restore tells.
+struct ConversionStats {
+    std::uint64_t inputBytes = 0;
+    std::uint64_t outputBytes = 0;
+    std::uint64_t voxels = 0;  ///< in the boxes of all volumes
+    std::uint64_t active = 0;
+    std::uint64_t deltas = 0;
+    std::string codeBook;  ///< of all volumes; "half, integer" if they differ
+    double maxError = 0;   ///< over all voxels
+    bool lossless = true;
+    double seconds = 0;
+
+    /// Adds what there is to say of a volume.
+    void add(const Volume& volume);
+};
+
+/// Returns the bytes of files; of folders, those of the files in them.
+std::uint64_t bytesOf(const std::vector<std::filesystem::path>& files);
+
+/// Returns the JSON object of `--stats`.
+std::string statsJson(const ConversionStats& stats);
+
+/// Returns a few lines for people.
+std::string statsSummary(const ConversionStats& stats);
+
+}  // namespace deltasplat
