@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,7 @@ struct CommonOptions {
     bool quiet = false;
     bool verbose = false;
     int threads = 0;
+    std::uint64_t maxMemory = 0;  ///< bytes; 0: no limit
     std::string simd = "auto";
 };
 
@@ -30,6 +33,10 @@ struct Session {
 struct Subcommand {
     CLI::App* app = nullptr;
     std::function<void(const Session&)> run;
+    /// Asked after run(): the exit code, if it has more to say than that all went well.
+    std::function<int()> exitCode = {};
+    /// Exit code of everything that goes wrong but an interrupt; empty: the number of ErrorCode.
+    std::optional<int> errorExit = {};
 };
 
 /// Options shown under one heading of the help.

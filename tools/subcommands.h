@@ -7,6 +7,7 @@ namespace deltasplat {
 
 Subcommand addConvert(CLI::App& program);
 Subcommand addDelta(CLI::App& program);
+Subcommand addDiff(CLI::App& program);
 Subcommand addInfo(CLI::App& program);
 Subcommand addRender(CLI::App& program);
 Subcommand addRestore(CLI::App& program);

@@ -21,7 +21,7 @@ struct SlabLayout {
     bool startsSlab(int block) const { return (block - firstBlock) % blocksPerSlab == 0; }
     int count() const { return slabOf(lastBlock) + 1; }
     /// Slices of a block that exist: behind the last one nothing needs to be taken away.
-    int slicesOf(int block) const { return std::min(8, lastSlice + 1 - 8 * block); }
+    int slicesOf(int block) const { return std::min(7, lastSlice - 8 * block) + 1; }
 };
 
 /// Returns the layout of a box in (slice, u, v) order that is not empty.

@@ -5,7 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <tuple>
+
+#include "ingest/grid_values.h"
 
 namespace deltasplat {
 namespace {
@@ -16,10 +17,6 @@ constexpr int kVoxels = BlockSamples::kVoxels;
 constexpr double kLargest = std::numeric_limits<double>::max();
 
 using Errors = std::array<double, kVoxels>;
-
-bool isBefore(const Coord& a, const Coord& b) {
-    return std::make_tuple(a.z(), a.y(), a.x()) < std::make_tuple(b.z(), b.y(), b.x());
-}
 
 bool isCompared(const Sample& a, const Sample& b, const ErrorTerms& terms) {
     return a.active || b.active || a.value != terms.backgroundA || b.value != terms.backgroundB;
@@ -126,7 +123,7 @@ double errorOf(const WideValue& a, const WideValue& b) {
 }
 
 void ErrorSums::addMax(double error, const Coord& at, const WideValue& a, const WideValue& b) {
-    if (error < max || error == 0 || (error == max && !isBefore(at, maxAt))) return;
+    if (error < max || error == 0 || (error == max && !GridScan::isBefore(at, maxAt))) return;
     max = error;
     maxAt = at;
     maxA = a;

@@ -64,11 +64,23 @@ int defaultKeyInterval(int sliceCount);
 /// @throw Error(kUsage) if the key interval is not a positive multiple of 8
 DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options);
 
+/// Returns the slabs that makeDeltaGrid would give with the same options, without storing deltas.
+/// @throw as makeDeltaGrid
+std::vector<Slab> planSlabs(const Volume& volume, const DeltaOptions& options);
+
 /// Counts visible voxels and deltas without storing them (one slab over all slices).
 struct SliceCounts {
     std::uint64_t visible = 0;
     std::uint64_t deltas = 0;
 };
 SliceCounts countDeltas(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap = {});
+
+/// Returns what countDeltas counts, slice by slice of the volume's box: entry 0 is its first slice,
+/// whose visible voxels are all deltas. Empty for an empty volume.
+/// @param slicesEach  >= 1: each entry is the sum of so many slices, the last one of what is left
+/// @throw Error(kUsage) if the entries do not fit into memory
+std::vector<SliceCounts> countDeltasPerSlice(const Volume& volume, int sliceAxis,
+                                             std::span<const Slot> slotMap = {},
+                                             int slicesEach = 1);
 
 }  // namespace deltasplat

@@ -31,6 +31,9 @@ struct CodeBook {
     double valueOf(Code code) const;
     /// Returns the code whose value is nearest to `value`, clamped to the book's range.
     Code codeOf(double value) const;
+    /// Returns whether voxels of this value get the code: within half a step of a linear book,
+    /// exactly otherwise.
+    bool standsFor(Code code, double value) const;
     /// Returns "integer", "half", "linear" or "table".
     std::string name() const;
     /// Whether a source that was given this book by a reader comes back from it bit for bit.
@@ -38,7 +41,8 @@ struct CodeBook {
 
     static CodeBook integer(std::int64_t offset = 0);
     static CodeBook half();
-    /// Spreads 2^bits codes over [low, high]; a book with low == high has the one value `low`.
+    /// Spreads 2^bits codes over [low, high], so that 0 within is the value of a code (then the
+    /// ends may lie beyond by a step); a book with low == high has the one value `low`.
     static CodeBook linear(double low, double high, int bits = 16);
     /// @param values  [1..65536] increasing, finite
     static CodeBook ofTable(std::vector<double> values);
