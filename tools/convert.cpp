@@ -56,7 +56,7 @@ void declareOptions(CLI::App& app, ConvertCommand& command) {
     OptionGroup arguments(app, "Arguments");
     arguments
         .addValue("INPUT", "FILE", command.input, anyText(),
-                  "Volume to read: .vdb, .raw or .raw.gz")
+                  std::string("Volume to read: ") + kInputFormats)
         .required();
     arguments
         .addValue("OUTPUT", "FILE", command.output, anyText(),

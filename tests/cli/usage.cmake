@@ -163,9 +163,14 @@ deltasplat_unused(grid --grid "without a .vdb input" ARGS info ${cube} --grid fo
     STDOUT_MATCHES uint8)
 deltasplat_unused(level_set --level-set "without a .vdb input" ARGS info ${cube} --level-set fog
     STDOUT_MATCHES uint8)
-foreach(option dims=8x8x8 type=uint8 endian=big spacing=1,1,2 origin=1,1,1 skip-bytes=8)
+foreach(option dims=8x8x8 type=uint8 endian=big skip-bytes=8)
     string(REGEX REPLACE "=.*" "" name ${option})
     deltasplat_unused(${name} --${name} "without a .raw or .raw.gz input"
+        ARGS info ball.vdb --${option} STDOUT_MATCHES density)
+endforeach()
+foreach(option spacing=1,1,2 origin=1,1,1)
+    string(REGEX REPLACE "=.*" "" name ${option})
+    deltasplat_unused(${name} --${name} "without an input of raw values or images"
         ARGS info ball.vdb --${option} STDOUT_MATCHES density)
 endforeach()
 deltasplat_cli_test(used.both ARGS info ball.vdb ${cube} --grid density --spacing 1,1,2
