@@ -37,6 +37,14 @@ Code nearestHalfCode(double value) {
     return best;
 }
 
+// Rounds up to 8 significant bits: multiples by 16-bit numbers are then floats, so that values do
+// not lose anything when they come back as such.
+double roundedUp(double step) {
+    int exponent = 0;
+    const double mantissa = std::frexp(step, &exponent);
+    return std::ldexp(std::ceil(mantissa * 256) / 256, exponent);
+}
+
 Code nearestTableCode(const std::vector<double>& table, double value) {
     const auto above = std::lower_bound(table.begin(), table.end(), value);
     if (above == table.begin()) return 0;
@@ -92,12 +100,12 @@ CodeBook CodeBook::linear(double low, double high, int bits) {
     const double large = std::max(std::fabs(low), std::fabs(high));
     const double spacing = large - std::nextafter(large, 0.0);
     const double steps = double((1 << bits) - 1);
-    if (low >= 0 || high <= 0)
-        return {Kind::kLinear, low, std::max((high - low) / steps, spacing), nullptr};
-
-    // What is empty is 0 more often than not: one step more leaves room to move 0 onto a code.
-    const double step = std::max((high - low) / (steps - 1), spacing);
-    return {Kind::kLinear, -step * std::ceil(-low / step), step, nullptr};
+    for (const double parts : {steps, steps - 1}) {
+        const double step = std::max(roundedUp((high - low) / parts), spacing);
+        const double offset = step * std::floor(low / step);
+        if (offset + step * steps >= high) return {Kind::kLinear, offset, step, nullptr};
+    }
+    return {Kind::kLinear, low, std::max((high - low) / steps, spacing), nullptr};
 }
 
 CodeBook CodeBook::ofTable(std::vector<double> values) {

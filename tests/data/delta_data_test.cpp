@@ -72,7 +72,7 @@ void expectRestored(const Volume& source, const DeltaFileEntry& entry, const Vol
     EXPECT_EQ(same.backgroundError, 0);
     EXPECT_EQ(same.maxError, entry.maxError);
     EXPECT_EQ(entry.lossless, source.codeBook.isExact());
-    EXPECT_LE(same.maxError, source.codeBook.isExact() ? 0 : source.codeBook.step * 0.50001);
+    EXPECT_LE(same.maxError, source.codeBook.isExact() ? 0 : source.codeBook.step / 2);
     if (source.hasBackground) expectSameGrid(source, restored);
 }
 
@@ -80,7 +80,7 @@ TEST(DeltaData, EveryVolumeComesBack) {
     const auto files = inputs();
     if (files.empty()) GTEST_SKIP() << "no data sets at " << DELTASPLAT_SHARED_DATA;
     EXPECT_GE(files.size(), 55u);
-    int lossy = 0;
+    std::string lossy;
     for (const fs::path& file : files) {
         SCOPED_TRACE(file.string());
         const testing::TempFolder folder;
@@ -90,7 +90,7 @@ TEST(DeltaData, EveryVolumeComesBack) {
         VolumeVisitor visitor;
         visitor.volume = [&](Volume volume) {
             entries.push_back(deltas.add(volume, {}));
-            lossy += volume.codeBook.isExact() ? 0 : 1;
+            if (!volume.codeBook.isExact()) lossy += " " + file.filename().string();
             sources.push_back(std::move(volume));
         };
         forEachVolume(file, keeping(), visitor);
@@ -100,8 +100,8 @@ TEST(DeltaData, EveryVolumeComesBack) {
         for (std::size_t i = 0; i < sources.size(); ++i)
             expectRestored(sources[i], entries[i], restored[i]);
     }
-    // Two frames of smoke have more different 32-bit values than there are codes.
-    EXPECT_EQ(lossy, 2);
+    // Only these have more different 32-bit values than there are codes.
+    EXPECT_EQ(lossy, " smoke_000002.vdb smoke_000003.vdb");
 }
 
 // What a tolerance promises, on the real thing: scanner noise, smoke, a field that never ends.

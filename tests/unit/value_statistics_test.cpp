@@ -85,7 +85,7 @@ TEST(Histogram, OtherNumbersSpanTheirValues) {
     counts[16384] = 3;   // just above
     counts[65535] = 11;  // the upper edge belongs to the last bin
     const ValueHistogram histogram =
-        histogramOfValues(volumeOf(CodeBook::linear(-1, 3), counts), 4);
+        histogramOfValues(volumeOf({CodeBook::Kind::kLinear, -1, 4.0 / 65535, nullptr}, counts), 4);
     EXPECT_EQ(histogram.low, -1);
     EXPECT_NEAR(histogram.high, 3, 1e-12);
     EXPECT_EQ(histogram.counts, (std::vector<std::uint64_t>{7, 3, 0, 11}));

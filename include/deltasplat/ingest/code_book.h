@@ -41,8 +41,10 @@ struct CodeBook {
 
     static CodeBook integer(std::int64_t offset = 0);
     static CodeBook half();
-    /// Spreads 2^bits codes over [low, high], so that 0 within is the value of a code (then the
-    /// ends may lie beyond by a step); a book with low == high has the one value `low`.
+    /// Spreads 2^bits codes over [low, high], with a step of 8 significant bits (up to 1/128 wider
+    /// than need be) and an offset that is a multiple of it: so 0, if it lies within, is the value
+    /// of a code, and near 0 all values are floats. A book with low == high has the one value
+    /// `low`.
     static CodeBook linear(double low, double high, int bits = 16);
     /// @param values  [1..65536] increasing, finite
     static CodeBook ofTable(std::vector<double> values);
