@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,10 @@ struct Session {
 struct Subcommand {
     CLI::App* app = nullptr;
     std::function<void(const Session&)> run;
+    /// Asked after run(): the exit code, if it has more to say than that all went well.
+    std::function<int()> exitCode = {};
+    /// Exit code of everything that goes wrong but an interrupt; empty: the number of ErrorCode.
+    std::optional<int> errorExit = {};
 };
 
 /// Options shown under one heading of the help.

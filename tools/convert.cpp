@@ -11,6 +11,7 @@
 #include "input_options.h"
 #include "listener.h"
 #include "lower_case.h"
+#include "read_grids.h"
 #include "stats_file.h"
 #include "stopwatch.h"
 #include "subcommands.h"
@@ -106,19 +107,14 @@ std::vector<Volume> readInput(const ConvertCommand& command, const Listener& lis
         volumes.push_back(readVolume(command.input, command.read, listener));
         return volumes;
     }
-    std::string others;
-    VolumeVisitor visitor;
-    visitor.volume = [&](Volume volume) {
-        // The source says all that the codes do, and more.
-        if (volume.source) volume.codes.reset();
-        volumes.push_back(std::move(volume));
-    };
-    visitor.other = [&](const std::string& name, const std::string& type) {
-        others += (others.empty() ? "" : ", ") + name + " (" + type + ")";
-    };
-    forEachVolume(command.input, command.read, visitor, listener);
-    complete = others.empty();
-    if (!complete) listener.warn(command.input.string() + ": left out " + others);
+    complete = forEachScalarGrid(
+        command.input, command.read,
+        [&](Volume volume) {
+            // The source says all that the codes do, and more.
+            if (volume.source) volume.codes.reset();
+            volumes.push_back(std::move(volume));
+        },
+        listener);
     return volumes;
 }
 

@@ -4,64 +4,115 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "describe_volume.h"
 #include "info_report.h"
 #include "input_options.h"
 #include "listener.h"
+#include "plot_file.h"
+#include "slice_plot.h"
 #include "subcommands.h"
 
 namespace deltasplat {
 namespace {
 
+// A picture of more grids would be too large to look at.
+constexpr std::size_t kMaxPlots = 16;
+
 struct InfoOptions {
     std::vector<std::string> inputs;
     bool json = false;
+    std::filesystem::path plot;              // empty: none
+    std::filesystem::path transferFunction;  // empty: none
     ReadOptions read;
 };
 
-GridReport reportOf(Volume volume) {
-    GridReport report;
-    for (int axis = 0; axis < 3; ++axis) report.counts[axis] = countDeltas(volume, axis);
-    // The codes are counted, and the largest thing in memory.
-    volume.codes.reset();
-    report.volume = std::move(volume);
-    return report;
-}
+// What has been found out, and what could not be: the rest is told all the same.
+struct Findings {
+    std::vector<FileReport> reports;
+    std::vector<Error> failures;
+    std::size_t grids = 0;  // in all reports, the unfinished one included
+};
 
-// What cannot be read; the rest is told all the same.
-using Failures = std::vector<Error>;
-
-FileReport reportOf(const std::string& file, const ReadOptions& options, const Listener& listener,
-                    Failures& failures) {
+void addFile(const std::string& file, const InfoOptions& options, const DescribeOptions& describe,
+             const Listener& listener, Findings& found) {
     FileReport report;
     report.file = file;
     VolumeVisitor visitor;
-    visitor.volume = [&](Volume volume) { report.grids.push_back(reportOf(std::move(volume))); };
-    visitor.invalid = [&](const Error& error) { failures.push_back(error); };
+    visitor.volume = [&](Volume volume) {
+        const bool plot = !options.plot.empty() && found.grids < kMaxPlots;
+        if (++found.grids == kMaxPlots + 1 && !options.plot.empty())
+            listener.warn("--plot: shows the first " + std::to_string(kMaxPlots) + " grids only");
+        report.grids.push_back(describeVolume(std::move(volume), describe, plot));
+    };
+    visitor.invalid = [&](const Error& error) { found.failures.push_back(error); };
     visitor.other = [&](const std::string& name, const std::string& type) {
         report.others.push_back(name + " (" + type + ")");
     };
-    forEachVolume(file, options, visitor, listener);
-    return report;
+    try {
+        forEachVolume(file, options.read, visitor, listener);
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::kInterrupted) throw;
+        found.failures.push_back(error);
+    }
+    if (!report.grids.empty() || !report.others.empty()) found.reports.push_back(std::move(report));
+}
+
+DescribeOptions describeOptions(const InfoOptions& options, const Listener& listener) {
+    DescribeOptions describe;
+    if (options.transferFunction.empty()) return describe;
+    describe.transferFunction = readTransferFunction(options.transferFunction, listener);
+    describe.transferFunctionFile = options.transferFunction.filename().string();
+    return describe;
+}
+
+SlicePlot plotOf(const std::string& file, const GridReport& report) {
+    const Volume& volume = report.volume;
+    const glm::ivec3 dims = volume.box.dims();
+    SlicePlot plot;
+    plot.title = std::filesystem::path(file).filename().string();
+    // A raw volume has no name but its file's.
+    if (volume.hasBackground) plot.title += ", " + volume.name;
+    plot.title += ", " + joinNumbers({double(dims.x), double(dims.y), double(dims.z)}, " x ");
+    plot.visible = "visible: " + report.visible;
+    plot.box = volume.box;
+    plot.columns = report.columns;
+    return plot;
+}
+
+void writePlot(const std::filesystem::path& file, const Findings& found) {
+    std::vector<SlicePlot> plots;
+    for (const FileReport& report : found.reports) {
+        for (const GridReport& grid : report.grids) {
+            if (plots.size() < kMaxPlots) plots.push_back(plotOf(report.file, grid));
+        }
+    }
+    if (!plots.empty()) writeDrawing(file, drawSlicePlots(plots));
 }
 
 void runInfo(const CLI::App& app, const InfoOptions& options, const Session& session) {
-    std::vector<FileReport> reports;
-    Failures failures;
+    if (!options.plot.empty()) checkDrawingFile(options.plot);
+    Findings found;
     {
         ProgressDisplay display(session.common.quiet);
         warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()}, display);
+        const DescribeOptions describe = describeOptions(options, display.stage(0, 0));
         const double count = double(options.inputs.size());
+        double done = 0;
         for (const std::string& file : options.inputs) {
-            const double done = double(reports.size());
-            reports.push_back(reportOf(file, options.read,
-                                       display.stage(done / count, (done + 1) / count), failures));
+            addFile(file, options, describe, display.stage(done / count, (done + 1) / count),
+                    found);
+            ++done;
         }
     }
-    printOut(options.json ? jsonText(reports) : plainText(reports));
-    if (failures.empty()) return;
+    if (!found.reports.empty()) {
+        printOut(options.json ? jsonText(found.reports, options.transferFunction.string())
+                              : plainText(found.reports));
+    }
+    if (!options.plot.empty()) writePlot(options.plot, found);
+    if (found.failures.empty()) return;
     // The last one ends the program, which shows it as it shows every error.
-    for (std::size_t i = 0; i + 1 < failures.size(); ++i) showError(failures[i].what());
-    throw failures.back();
+    for (std::size_t i = 0; i + 1 < found.failures.size(); ++i) showError(found.failures[i].what());
+    throw found.failures.back();
 }
 
 }  // namespace
@@ -72,12 +123,23 @@ Subcommand addInfo(CLI::App& program) {
     options->read.levelSetToFog = false;
     CLI::App& app = addSubcommand(
         program, "info", "Tells what is in volume files, and how alike their slices are.",
-        {"deltasplat info smoke.vdb", "deltasplat info --json engine_256x256x128_uint8.raw.gz"});
+        {"deltasplat info smoke.vdb --plot smoke.svg",
+         "deltasplat info --json engine_256x256x128_uint8.raw.gz --tf ct.json"});
     app.add_option("INPUT", options->inputs, "Files to describe: .vdb, .raw or .raw.gz")
         ->type_name("FILE")
         ->required()
         ->group("Arguments");
-    OptionGroup(app, "Output").addFlag("--json", options->json, "Print one JSON object");
+    OptionGroup output(app, "Output");
+    output.addFlag("--json", options->json, "Print one JSON object");
+    output.addValue("--plot", "FILE", options->plot, anyText(),
+                    "Picture to write, .png or .svg: which share of every slice's\n"
+                    "voxels is visible and which changes, along x, y and z; a row\n"
+                    "for each grid, up to " +
+                        std::to_string(kMaxPlots));
+    OptionGroup(app, "Optics")
+        .addValue("--tf", "FILE", options->transferFunction, anyText(),
+                  "Transfer function, a ParaView JSON file, that stamps and picture\n"
+                  "are for (default: all voxels but the background are visible)");
     addInputOptions(app, options->read);
     return {&app, [&app, options](const Session& session) { runInfo(app, *options, session); }};
 }

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "deltasplat/delta/delta_grid.h"
+#include "deltasplat/delta/stamp_counts.h"
 #include "deltasplat/ingest/volume.h"
 
 namespace deltasplat {
@@ -13,7 +14,14 @@ namespace deltasplat {
 /// What `info` says about one grid.
 struct GridReport {
     Volume volume;                      ///< without its codes
-    std::array<SliceCounts, 3> counts;  ///< along x, y and z
+    std::array<SliceCounts, 3> counts;  ///< along x, y and z, every active voxel visible
+    std::optional<double> backgroundGuess;
+    /// Which voxels the stamps below take for visible: "not clear under ct", ...
+    std::string visible;
+    std::array<StampCounts, 3> stamps;  ///< predicted for a view along x, y and z
+    /// What a plot shows along x, y and z, visible as for the stamps (see SlicePlot); empty if not
+    /// asked for.
+    std::array<std::vector<SliceCounts>, 3> columns;
 };
 
 struct FileReport {
@@ -26,7 +34,8 @@ struct FileReport {
 double comparability(const GridReport& report, int axis);
 
 /// Returns one JSON object, `{"files":[{"file":...,"grids":[...]}]}`, with a line end.
-std::string jsonText(const std::vector<FileReport>& reports);
+/// @param transferFunction  its file, or empty
+std::string jsonText(const std::vector<FileReport>& reports, const std::string& transferFunction);
 
 /// Returns one block of aligned lines for each grid, and names the grids that are not scalar.
 std::string plainText(const std::vector<FileReport>& reports);

@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <optional>
 
 #include "deltasplat/error.h"
 #include "deltasplat/simd.h"
@@ -52,6 +53,22 @@ std::vector<std::string> subcommandNames(const std::vector<Subcommand>& subcomma
     return names;
 }
 
+// Spells a long option of the subcommand with two dashes where it was written with one, as users of
+// idiff and oiiotool do: "-fail" is no "-f ail".
+void spellWithTwoDashes(std::vector<std::string>& arguments,
+                        const std::vector<Subcommand>& subcommands) {
+    const CLI::App* app = nullptr;
+    for (std::string& argument : arguments) {
+        const auto named = std::find_if(subcommands.begin(), subcommands.end(), [&](const auto& s) {
+            return s.app->get_name() == argument;
+        });
+        if (app == nullptr && named != subcommands.end()) app = named->app;
+        if (app == nullptr || argument.size() < 3 || argument[0] != '-') continue;
+        const std::string name = "-" + argument.substr(0, argument.find('='));
+        if (app->get_option_no_throw(name) != nullptr) argument.insert(0, 1, '-');
+    }
+}
+
 // Refuses the first argument that the program or the subcommand does not know.
 void refuseExtras(const CLI::App& app, const std::vector<Subcommand>& subcommands) {
     const std::vector<std::string> extras = app.remaining();
@@ -90,7 +107,9 @@ Error usageError(const CLI::App& app, const CLI::ParseError& problem) {
 // Parses the arguments; returns the subcommand to run, or nullptr if help or versions were shown.
 const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcommands,
                         const std::vector<std::string>& arguments) {
-    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend() - 1);
+    std::vector<std::string> spelt(arguments.begin() + 1, arguments.end());
+    spellWithTwoDashes(spelt, subcommands);
+    std::vector<std::string> reversed(spelt.rbegin(), spelt.rend());
     const auto parsed = [&] {
         return std::find_if(subcommands.begin(), subcommands.end(),
                             [](const Subcommand& s) { return s.app->parsed(); });
@@ -118,8 +137,10 @@ const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcom
     return &*parsed();
 }
 
-void execute(const std::vector<std::string>& arguments,
-             const std::vector<AddSubcommand>& addSubcommands) {
+// Runs the program; returns its exit code. Sets `errorExit` as soon as there is a subcommand that
+// has one.
+int execute(const std::vector<std::string>& arguments,
+            const std::vector<AddSubcommand>& addSubcommands, std::optional<int>& errorExit) {
     Session session;
     session.commandLine = commandLine(arguments);
 
@@ -133,29 +154,34 @@ void execute(const std::vector<std::string>& arguments,
     std::vector<Subcommand> subcommands;
     for (const AddSubcommand add : addSubcommands) {
         subcommands.push_back(add(program));
-        addCommonOptions(*subcommands.back().app, session.common);
+        CLI::App& app = *subcommands.back().app;
+        addCommonOptions(app, session.common);
+        const auto code = subcommands.back().errorExit;
+        app.preparse_callback([&errorExit, code](std::size_t) { errorExit = code; });
     }
 
     const Subcommand* const subcommand = parse(program, subcommands, arguments);
-    if (subcommand == nullptr) return;
+    if (subcommand == nullptr) return 0;
     setSimdLevel(session.common.simd);
     const ThreadLimit limit(session.common.threads);
     subcommand->run(session);
+    return subcommand->exitCode ? subcommand->exitCode() : 0;
 }
 
-int complain(const std::vector<std::string>& arguments, const std::string& what, ErrorCode code) {
+int complain(const std::vector<std::string>& arguments, const std::string& what, int exitCode) {
     showError(what);
     const auto asked = [](const std::string& a) { return a == "-v" || a == "--verbose"; };
     // Looked up as typed, because what failed may be the parsing.
     if (std::any_of(arguments.begin(), arguments.end(), asked))
         std::fprintf(stderr, "  command line: %s\n", printable(commandLine(arguments)).c_str());
-    return int(code);
+    return exitCode;
 }
 
 // An interrupt also makes a blocked system call fail, which is then not what went wrong.
-int fail(const std::vector<std::string>& arguments, const std::string& what, ErrorCode code) {
-    if (isInterrupted()) return complain(arguments, "interrupted", ErrorCode::kInterrupted);
-    return complain(arguments, what, code);
+int fail(const std::vector<std::string>& arguments, const std::string& what, ErrorCode code,
+         std::optional<int> errorExit) {
+    if (isInterrupted()) return complain(arguments, "interrupted", int(ErrorCode::kInterrupted));
+    return complain(arguments, what, errorExit.value_or(int(code)));
 }
 
 }  // namespace
@@ -163,15 +189,15 @@ int fail(const std::vector<std::string>& arguments, const std::string& what, Err
 int runProgram(const std::vector<std::string>& arguments,
                const std::vector<AddSubcommand>& addSubcommands) {
     handleSignals();
+    std::optional<int> errorExit;
     try {
-        execute(arguments, addSubcommands);
-        return 0;
+        return execute(arguments, addSubcommands, errorExit);
     } catch (const Error& error) {
-        return fail(arguments, error.what(), error.code());
+        return fail(arguments, error.what(), error.code(), errorExit);
     } catch (const std::bad_alloc&) {
-        return fail(arguments, "out of memory", ErrorCode::kFailed);
+        return fail(arguments, "out of memory", ErrorCode::kFailed, errorExit);
     } catch (const std::exception& error) {
-        return fail(arguments, error.what(), ErrorCode::kFailed);
+        return fail(arguments, error.what(), ErrorCode::kFailed, errorExit);
     }
 }
 

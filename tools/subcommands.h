@@ -6,8 +6,11 @@
 namespace deltasplat {
 
 Subcommand addConvert(CLI::App& program);
+Subcommand addDelta(CLI::App& program);
+Subcommand addDiff(CLI::App& program);
 Subcommand addInfo(CLI::App& program);
 Subcommand addRender(CLI::App& program);
+Subcommand addRestore(CLI::App& program);
 Subcommand addSynth(CLI::App& program);
 
 }  // namespace deltasplat

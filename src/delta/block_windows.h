@@ -21,8 +21,18 @@ struct SlabLayout {
     bool startsSlab(int block) const { return (block - firstBlock) % blocksPerSlab == 0; }
     int count() const { return slabOf(lastBlock) + 1; }
     /// Slices of a block that exist: behind the last one nothing needs to be taken away.
-    int slicesOf(int block) const { return std::min(8, lastSlice + 1 - 8 * block); }
+    int slicesOf(int block) const { return std::min(7, lastSlice - 8 * block) + 1; }
 };
+
+/// Returns the layout of a box in (slice, u, v) order that is not empty.
+inline SlabLayout layoutOf(const IndexBox& box, int keyInterval) {
+    return {box.min.x >> 3, keyInterval / 8, box.max.x >> 3, box.max.x};
+}
+
+/// Returns a volume's box in (slice, u, v) order.
+inline IndexBox permutedBox(const IndexBox& box, int sliceAxis) {
+    return {toSliceOrder(box.min, sliceAxis), toSliceOrder(box.max, sliceAxis)};
+}
 
 /// A block's slots with the slice before it: everything that its deltas depend on.
 struct BlockWindow {

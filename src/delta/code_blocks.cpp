@@ -15,44 +15,82 @@ constexpr glm::ivec3 kLeafStride{64, 8, 1};
 // What the stage keeps for each block: itself, its place and its changes.
 constexpr double kBytesPerBlock = sizeof(CodeBlock) + 16 + 128;
 
-glm::ivec3 permuted(const openvdb::Coord& coord, const glm::ivec3& order) {
-    return {coord[order[0]], coord[order[1]], coord[order[2]]};
+// Calls use(box, slot) for every active tile whose slot is not empty.
+template <typename SlotOf, typename Use>
+void forVisibleTiles(const CodeTree& codes, const SlotOf& slotOf, const Use& use) {
+    auto tile = codes.tree.cbeginValueOn();
+    tile.setMaxDepth(CodeTree::Tree::ValueOnCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
+        if (slotOf(*tile) != kEmptySlot) use(tile.getBoundingBox(), slotOf(*tile));
+    }
+}
+
+Slot inactiveSlot(Code number) {
+    return kSlotCount + number;
 }
 
 }  // namespace
 
-BlockReader::BlockReader(const CodeTree& codes, int sliceAxis, std::span<const Slot> slotMap)
-    : slotMap_(slotMap), order_(sliceOrder(sliceAxis)) {
-    // A tile may stand for any number of blocks: know how many before they are listed.
-    double blocks = codes.tree.leafCount();
-    const auto eachVisibleTile = [&](const auto& use) {
-        auto tile = codes.tree.cbeginValueOn();
-        tile.setMaxDepth(CodeTree::Tree::ValueOnCIter::LEAF_DEPTH - 1);
-        for (; tile; ++tile) {
-            if (slotOf(*tile) != kEmptySlot) use(tile.getBoundingBox(), slotOf(*tile));
-        }
-    };
-    eachVisibleTile([&](const openvdb::CoordBBox& box, Slot) { blocks += box.volume() / 512.0; });
-    requireMemory("list of voxel blocks", blocks * kBytesPerBlock);
-
-    blocks_.reserve(std::size_t(blocks));
-    for (auto leaf = codes.tree.cbeginLeaf(); leaf; ++leaf) {
-        // Shifting keeps the floor of negative positions.
-        blocks_.push_back({permuted(leaf->origin() >> 3, order_), &*leaf, kEmptySlot});
-    }
-    eachVisibleTile([&](const openvdb::CoordBBox& box, Slot slot) { addTile(box, slot); });
+BlockReader::BlockReader(const CodeTree& codes, const CodeTree* inactive, int sliceAxis,
+                         std::span<const Slot> slotMap)
+    : slotMap_(slotMap), sliceAxis_(sliceAxis) {
+    listBlocks(codes, inactive);
     std::sort(blocks_.begin(), blocks_.end(), [](const CodeBlock& a, const CodeBlock& b) {
         return std::tie(a.position.y, a.position.z, a.position.x) <
                std::tie(b.position.y, b.position.z, b.position.x);
     });
+    if (inactive) mergeDoubles();
+}
+
+void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
+    // A tile may stand for any number of blocks: know how many before they are listed.
+    double blocks = codes.tree.leafCount();
+    const auto slotOfCode = [this](Code code) { return slotOf(code); };
+    const auto count = [&](const openvdb::CoordBBox& box, Slot) { blocks += box.volume() / 512.0; };
+    forVisibleTiles(codes, slotOfCode, count);
+    if (inactive) blocks += inactive->tree.leafCount();
+    if (inactive) forVisibleTiles(*inactive, inactiveSlot, count);
+    requireMemory("list of voxel blocks", blocks * kBytesPerBlock);
+
+    blocks_.reserve(std::size_t(blocks));
+    // Shifting keeps the floor of negative positions.
+    for (auto leaf = codes.tree.cbeginLeaf(); leaf; ++leaf) {
+        blocks_.push_back(
+            {toSliceOrder(leaf->origin() >> 3, sliceAxis_), &*leaf, kEmptySlot, nullptr});
+    }
+    const auto add = [&](const openvdb::CoordBBox& box, Slot slot) { addTile(box, slot); };
+    forVisibleTiles(codes, slotOfCode, add);
+    if (!inactive) return;
+    for (auto leaf = inactive->tree.cbeginLeaf(); leaf; ++leaf) {
+        blocks_.push_back(
+            {toSliceOrder(leaf->origin() >> 3, sliceAxis_), nullptr, kEmptySlot, &*leaf});
+    }
+    forVisibleTiles(*inactive, inactiveSlot, add);
+}
+
+// A block may have both active voxels and inactive ones with values: two entries become one.
+void BlockReader::mergeDoubles() {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+        if (kept > 0 && blocks_[kept - 1].position == blocks_[i].position) {
+            CodeBlock& block = blocks_[kept - 1];
+            if (!block.leaf) block.leaf = blocks_[i].leaf;
+            if (!block.inactive) block.inactive = blocks_[i].inactive;
+            if (block.tileSlot == kEmptySlot) block.tileSlot = blocks_[i].tileSlot;
+        } else {
+            blocks_[kept++] = blocks_[i];
+        }
+    }
+    blocks_.resize(kept);
 }
 
 void BlockReader::addTile(const openvdb::CoordBBox& box, Slot slot) {
-    const glm::ivec3 first = permuted(box.min() >> 3, order_);
-    const glm::ivec3 last = permuted(box.max() >> 3, order_);
+    const glm::ivec3 first = toSliceOrder(box.min() >> 3, sliceAxis_);
+    const glm::ivec3 last = toSliceOrder(box.max() >> 3, sliceAxis_);
     for (int u = first.y; u <= last.y; ++u) {
         for (int v = first.z; v <= last.z; ++v) {
-            for (int s = first.x; s <= last.x; ++s) blocks_.push_back({{s, u, v}, nullptr, slot});
+            for (int s = first.x; s <= last.x; ++s)
+                blocks_.push_back({{s, u, v}, nullptr, slot, nullptr});
         }
     }
 }
@@ -66,20 +104,34 @@ void BlockReader::readLastSlice(const CodeBlock& block, std::span<Slot, 64> slot
 }
 
 void BlockReader::readSlices(const CodeBlock& block, int firstSlice, Slot* slots) const {
-    if (!block.leaf) {
+    if (!block.leaf && !block.inactive) {
         std::fill_n(slots, 64 * (8 - firstSlice), block.tileSlot);
         return;
     }
-    const Code* codes = block.leaf->buffer().data();
-    const auto& active = block.leaf->getValueMask();
-    const int strideS = kLeafStride[order_[0]];
-    const int strideU = kLeafStride[order_[1]];
-    const int strideV = kLeafStride[order_[2]];
+    if (block.leaf) {
+        readLeaf(*block.leaf, firstSlice, slots, [&](Slot& slot, bool active, Code code) {
+            slot = active ? slotOf(code) : kEmptySlot;
+        });
+    } else {
+        std::fill_n(slots, 64 * (8 - firstSlice), kEmptySlot);
+    }
+    if (!block.inactive) return;
+    readLeaf(*block.inactive, firstSlice, slots, [](Slot& slot, bool active, Code number) {
+        if (active) slot = inactiveSlot(number);
+    });
+}
+
+template <typename Use>
+void BlockReader::readLeaf(const CodeTree::Leaf& leaf, int firstSlice, Slot* slots,
+                           const Use& use) const {
+    const Code* codes = leaf.buffer().data();
+    const auto& active = leaf.getValueMask();
+    const glm::ivec3 stride = toSliceOrder(kLeafStride, sliceAxis_);
     for (int s = firstSlice; s < 8; ++s) {
         for (int u = 0; u < 8; ++u) {
             for (int v = 0; v < 8; ++v) {
-                const int n = s * strideS + u * strideU + v * strideV;
-                *slots++ = active.isOn(n) ? slotOf(codes[n]) : kEmptySlot;
+                const int n = s * stride.x + u * stride.y + v * stride.z;
+                use(*slots++, active.isOn(openvdb::Index(n)), codes[n]);
             }
         }
     }

@@ -16,7 +16,9 @@ namespace deltasplat {
 struct CodeBlock {
     glm::ivec3 position{0};                ///< of its first voxel, divided by 8
     const CodeTree::Leaf* leaf = nullptr;  ///< null for a piece of a tile
-    Slot tileSlot = kEmptySlot;
+    Slot tileSlot = kEmptySlot;            ///< of all voxels, if there is no leaf
+    /// Leaf of inactive voxels that hold a value of their own; may be null.
+    const CodeTree::Leaf* inactive = nullptr;
 };
 
 /// Slots of a block, `[slice][u][v]`.
@@ -25,8 +27,11 @@ using BlockSlots = std::array<Slot, 512>;
 /// Reads the blocks of a code tree as slots along one slice axis.
 class BlockReader {
   public:
-    /// @param slotMap  as DeltaOptions::slotMap; must outlive the reader
-    BlockReader(const CodeTree& codes, int sliceAxis, std::span<const Slot> slotMap);
+    /// @param inactive  null, or a tree that is active where `codes` is not: voxels whose slot is
+    ///                  kSlotCount + its value
+    /// @param slotMap   as DeltaOptions::slotMap; must outlive the reader
+    BlockReader(const CodeTree& codes, const CodeTree* inactive, int sliceAxis,
+                std::span<const Slot> slotMap);
 
     /// The blocks that may have slots other than empty, ordered by u, then v, then slice.
     const std::vector<CodeBlock>& blocks() const { return blocks_; }
@@ -36,12 +41,16 @@ class BlockReader {
     void readLastSlice(const CodeBlock& block, std::span<Slot, 64> slots) const;
 
   private:
+    void listBlocks(const CodeTree& codes, const CodeTree* inactive);
     void addTile(const openvdb::CoordBBox& box, Slot slot);
+    void mergeDoubles();
     void readSlices(const CodeBlock& block, int firstSlice, Slot* slots) const;
+    template <typename Use>
+    void readLeaf(const CodeTree::Leaf& leaf, int firstSlice, Slot* slots, const Use& use) const;
     Slot slotOf(Code code) const { return slotMap_.empty() ? code + 1 : slotMap_[code + 1]; }
 
     std::span<const Slot> slotMap_;
-    glm::ivec3 order_;
+    int sliceAxis_;
     std::vector<CodeBlock> blocks_;
 };
 

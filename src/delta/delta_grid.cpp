@@ -23,8 +23,10 @@ namespace {
 
 using Leaf = DeltaTree::Leaf;
 
-SlabLayout layoutOf(const IndexBox& box, int keyInterval) {
-    return {box.min.x >> 3, keyInterval / 8, box.max.x >> 3, box.max.x};
+SlabLayout oneSlab(const IndexBox& box) {
+    SlabLayout layout = layoutOf(box, 8);
+    layout.blocksPerSlab = layout.lastBlock - layout.firstBlock + 1;
+    return layout;
 }
 
 std::uint64_t countBits(const std::array<std::uint64_t, 8>& words) {
@@ -33,21 +35,41 @@ std::uint64_t countBits(const std::array<std::uint64_t, 8>& words) {
     return count;
 }
 
+// What changes in a volume along one axis, block by block.
+struct Differences {
+    SlabLayout layout;
+    BlockReader reader;
+    BlockWindows windows;
+    std::vector<BlockChanges> changes;
+
+    Differences(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap,
+                const SlabLayout& slabs, const CodeTree* inactive = nullptr)
+        : layout(slabs),
+          reader(*volume.codes, inactive, sliceAxis, slotMap),
+          windows(reader, layout),
+          changes(findChanges(windows, layout)) {}
+    // The windows refer to the reader.
+    Differences(const Differences&) = delete;
+    Differences& operator=(const Differences&) = delete;
+
+    int slabOf(std::size_t i) const { return layout.slabOf(windows.position(i).x); }
+};
+
 // Counts visible voxels and deltas of every slab.
-std::vector<SliceCounts> countSlabs(const BlockWindows& windows,
-                                    const std::vector<BlockChanges>& changes,
-                                    const SlabLayout& layout) {
-    std::vector<SliceCounts> counts(layout.count());
-    for (std::size_t i = 0; i < changes.size(); ++i) {
-        SliceCounts& slab = counts[layout.slabOf(windows.position(i).x)];
-        slab.visible += countBits(changes[i].visible);
-        slab.deltas += countBits(changes[i].changed);
+std::vector<SliceCounts> countSlabs(const Differences& differences) {
+    std::vector<SliceCounts> counts(differences.layout.count());
+    for (std::size_t i = 0; i < differences.changes.size(); ++i) {
+        SliceCounts& slab = counts[differences.slabOf(i)];
+        slab.visible += countBits(differences.changes[i].visible);
+        slab.deltas += countBits(differences.changes[i].changed);
     }
     return counts;
 }
 
-std::vector<Slab> makeSlabs(const IndexBox& box, const SlabLayout& layout,
-                            const std::vector<SliceCounts>& counts, Encoding encoding) {
+std::vector<Slab> makeSlabs(const IndexBox& box, const Differences& differences,
+                            Encoding encoding) {
+    const SlabLayout& layout = differences.layout;
+    const std::vector<SliceCounts> counts = countSlabs(differences);
     std::vector<Slab> slabs(layout.count());
     for (int i = 0; i < layout.count(); ++i) {
         const int begin = 8 * (layout.firstBlock + i * layout.blocksPerSlab);
@@ -81,12 +103,12 @@ std::unique_ptr<Leaf> makeLeaf(const glm::ivec3& position, const BlockWindow& wi
     return leaf;
 }
 
-std::shared_ptr<DeltaTree> makeTree(const BlockWindows& windows,
-                                    const std::vector<BlockChanges>& changes,
-                                    const SlabLayout& layout, const std::vector<Slab>& slabs) {
+std::shared_ptr<DeltaTree> makeTree(const Differences& differences,
+                                    const std::vector<Slab>& slabs) {
+    const BlockWindows& windows = differences.windows;
     const auto wordsOf = [&](std::size_t i) -> const std::array<std::uint64_t, 8>& {
-        return slabs[layout.slabOf(windows.position(i).x)].whole ? changes[i].visible
-                                                                 : changes[i].changed;
+        const BlockChanges& changes = differences.changes[i];
+        return slabs[differences.slabOf(i)].whole ? changes.visible : changes.changed;
     };
     std::size_t needed = 0;
     for (std::size_t i = 0; i < windows.count(); ++i) needed += countBits(wordsOf(i)) != 0;
@@ -98,7 +120,7 @@ std::shared_ptr<DeltaTree> makeTree(const BlockWindows& windows,
         for (std::size_t i = begin; i < end; ++i) {
             if (countBits(wordsOf(i)) == 0) continue;
             windows.read(i, window);
-            const bool whole = slabs[layout.slabOf(windows.position(i).x)].whole;
+            const bool whole = slabs[differences.slabOf(i)].whole;
             leaves[i] = makeLeaf(windows.position(i), window, wordsOf(i), whole);
         }
     });
@@ -113,10 +135,19 @@ std::shared_ptr<DeltaTree> makeTree(const BlockWindows& windows,
     return tree;
 }
 
-IndexBox permutedBox(const IndexBox& box, int sliceAxis) {
-    const glm::ivec3 order = sliceOrder(sliceAxis);
-    return {{box.min[order[0]], box.min[order[1]], box.min[order[2]]},
-            {box.max[order[0]], box.max[order[1]], box.max[order[2]]}};
+// Everything that is known before the volume's voxels are looked at.
+DeltaGrid gridWithoutSlabs(const Volume& volume, const DeltaOptions& options) {
+    DeltaGrid grid;
+    grid.sliceAxis = options.sliceAxis;
+    grid.box = permutedBox(volume.box, options.sliceAxis);
+    grid.keyInterval =
+        options.keyInterval != 0 ? options.keyInterval : defaultKeyInterval(grid.box.dims().x);
+    if (grid.keyInterval < 8 || grid.keyInterval % 8 != 0) {
+        throw Error(ErrorCode::kUsage, gotExpected("key interval", std::to_string(grid.keyInterval),
+                                                   "a positive multiple of 8"));
+    }
+    grid.tree = std::make_shared<DeltaTree>();
+    return grid;
 }
 
 }  // namespace
@@ -136,36 +167,50 @@ int defaultKeyInterval(int sliceCount) {
 }
 
 DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options) {
-    DeltaGrid grid;
-    grid.sliceAxis = options.sliceAxis;
-    grid.box = permutedBox(volume.box, options.sliceAxis);
-    grid.keyInterval =
-        options.keyInterval != 0 ? options.keyInterval : defaultKeyInterval(grid.box.dims().x);
-    if (grid.keyInterval < 8 || grid.keyInterval % 8 != 0) {
-        throw Error(ErrorCode::kUsage, gotExpected("key interval", std::to_string(grid.keyInterval),
-                                                   "a positive multiple of 8"));
-    }
-    grid.tree = std::make_shared<DeltaTree>();
-    if (volume.empty()) return grid;
-
-    const SlabLayout layout = layoutOf(grid.box, grid.keyInterval);
-    const BlockReader reader(*volume.codes, options.sliceAxis, options.slotMap);
-    const BlockWindows windows(reader, layout);
-    const std::vector<BlockChanges> changes = findChanges(windows, layout);
-    grid.slabs =
-        makeSlabs(grid.box, layout, countSlabs(windows, changes, layout), options.encoding);
-    grid.tree = makeTree(windows, changes, layout, grid.slabs);
+    DeltaGrid grid = gridWithoutSlabs(volume, options);
+    // A volume without active voxels may have inactive ones with values of their own.
+    if (grid.box.empty()) return grid;
+    const Differences differences(volume, options.sliceAxis, options.slotMap,
+                                  layoutOf(grid.box, grid.keyInterval), options.inactive);
+    grid.slabs = makeSlabs(grid.box, differences, options.encoding);
+    grid.tree = makeTree(differences, grid.slabs);
     return grid;
 }
 
+std::vector<Slab> planSlabs(const Volume& volume, const DeltaOptions& options) {
+    const DeltaGrid grid = gridWithoutSlabs(volume, options);
+    if (volume.empty()) return {};
+    return makeSlabs(grid.box,
+                     Differences(volume, options.sliceAxis, options.slotMap,
+                                 layoutOf(grid.box, grid.keyInterval)),
+                     options.encoding);
+}
+
+// Not the sum over slices: a few voxels far apart make a box of more slices than memory holds.
 SliceCounts countDeltas(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap) {
     if (volume.empty()) return {};
     const IndexBox box = permutedBox(volume.box, sliceAxis);
-    SlabLayout layout = layoutOf(box, 8);
-    layout.blocksPerSlab = layout.lastBlock - layout.firstBlock + 1;
-    const BlockReader reader(*volume.codes, sliceAxis, slotMap);
-    const BlockWindows windows(reader, layout);
-    return countSlabs(windows, findChanges(windows, layout), layout)[0];
+    return countSlabs(Differences(volume, sliceAxis, slotMap, oneSlab(box)))[0];
+}
+
+std::vector<SliceCounts> countDeltasPerSlice(const Volume& volume, int sliceAxis,
+                                             std::span<const Slot> slotMap, int slicesEach) {
+    if (volume.empty()) return {};
+    const IndexBox box = permutedBox(volume.box, sliceAxis);
+    const std::size_t entries = std::size_t(box.dims().x - 1) / slicesEach + 1;
+    requireMemory("counts of every slice", double(entries) * sizeof(SliceCounts));
+    std::vector<SliceCounts> counts(entries);
+    const Differences differences(volume, sliceAxis, slotMap, oneSlab(box));
+    for (std::size_t i = 0; i < differences.changes.size(); ++i) {
+        const int block = differences.windows.position(i).x;
+        const int before = std::max(0, box.min.x - 8 * block);
+        for (int s = before; s < differences.layout.slicesOf(block); ++s) {
+            SliceCounts& entry = counts[(8 * block + s - box.min.x) / slicesEach];
+            entry.visible += std::popcount(differences.changes[i].visible[s]);
+            entry.deltas += std::popcount(differences.changes[i].changed[s]);
+        }
+    }
+    return counts;
 }
 
 }  // namespace deltasplat

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: IEC 61966-2-1:1999, the sRGB transfer function.
 #include "image/quantize.h"
 
 #include <algorithm>
@@ -8,13 +7,10 @@
 #include <limits>
 
 #include "parallel.h"
+#include "srgb.h"
 
 namespace deltasplat {
 namespace {
-
-double srgbFromLinear(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
 
 // Clamps to 0..1; NaN compares false and becomes 0.
 double clampUnit(double value) {

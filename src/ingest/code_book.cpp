@@ -59,6 +59,11 @@ Code CodeBook::codeOf(double value) const {
     return linearCode(value, offset, step);
 }
 
+bool CodeBook::standsFor(Code code, double value) const {
+    const double within = kind == Kind::kLinear ? step / 2 : 0;
+    return std::fabs(valueOf(code) - value) <= within;
+}
+
 std::string CodeBook::name() const {
     switch (kind) {
         case Kind::kInteger:

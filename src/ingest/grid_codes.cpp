@@ -10,6 +10,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/book_encoder.h"
+#include "ingest/code_statistics.h"
 #include "ingest/code_tree.h"
 #include "ingest/grid_values.h"
 #include "ingest/readers.h"
@@ -77,18 +78,6 @@ std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book) {
         tile.setValue(encode(double(tree.getValue(tile.getCoord()))));
     });
     return codes;
-}
-
-std::vector<std::uint64_t> histogramOf(CodeTree::Tree& tree) {
-    std::vector<std::uint64_t> counts(kCodeCount);
-    std::vector<const CodeTree::Leaf*> leaves;
-    tree.getNodes(leaves);
-    for (const CodeTree::Leaf* leaf : leaves) {
-        const Code* codes = leaf->buffer().data();
-        for (auto on = leaf->valueMask().beginOn(); on; ++on) ++counts[codes[on.pos()]];
-    }
-    forActiveTiles(tree, [&](const auto& tile) { counts[*tile] += tile.getVoxelCount(); });
-    return counts;
 }
 
 IndexBox boxOf(const CodeTree::Tree& tree, const std::string& where) {

@@ -55,8 +55,8 @@ void forLeafRuns(std::size_t count, const Body& body) {
 /// Calls use(iterator) for every active tile of `tree`, of any level.
 template <typename Tree, typename Use>
 void forActiveTiles(Tree& tree, const Use& use) {
-    auto tile = tree.beginValueOn();
-    tile.setMaxDepth(Tree::ValueOnIter::LEAF_DEPTH - 1);
+    auto tile = tree.beginValueOn();  // constant where the tree is
+    tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
     for (; tile; ++tile) use(tile);
 }
 

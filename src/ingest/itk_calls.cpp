@@ -17,11 +17,14 @@
 namespace deltasplat {
 namespace {
 
-// MetaIO reports what it dislikes on standard error and leaves it at that. While one of these
-// lives, what is written to the C++ streams is dropped.
+// MetaIO writes what it dislikes to standard error, and sometimes leaves it at that. While one of
+// these lives, the C++ streams write here.
 class Silence {
   public:
-    Silence() : lock_(mutex()), err_(std::cerr.rdbuf(nullptr)), out_(std::cout.rdbuf(nullptr)) {
+    Silence()
+        : lock_(mutex()),
+          err_(std::cerr.rdbuf(text_.rdbuf())),
+          out_(std::cout.rdbuf(text_.rdbuf())) {
         itk::Object::SetGlobalWarningDisplay(false);
         gdcm::Trace::DebugOff();
         gdcm::Trace::WarningOff();
@@ -34,12 +37,22 @@ class Silence {
     Silence(const Silence&) = delete;
     Silence& operator=(const Silence&) = delete;
 
+    /// Returns the first line that was written, or no text.
+    std::string complaint() const {
+        std::istringstream lines(text_.str());
+        for (std::string line; std::getline(lines, line);) {
+            if (line.find_first_not_of(" \t\r") != std::string::npos) return line;
+        }
+        return "";
+    }
+
   private:
     static std::mutex& mutex() {
         static std::mutex mutex;
         return mutex;
     }
     std::lock_guard<std::mutex> lock_;
+    std::ostringstream text_;
     std::streambuf* err_;
     std::streambuf* out_;
 };
@@ -53,10 +66,13 @@ std::string reasonOf(const std::string& text) {
         if (line.rfind("[nrrd] ", 0) == 0) line = line.substr(7);
         if (line.find_first_not_of(' ') != std::string::npos) reason = line;
     }
-    for (const char* const sign : {"): ", ": "}) {
+    for (const std::string sign : {"): ", ": "}) {
         const std::size_t end = reason.find(sign);
-        if (end != std::string::npos) return reason.substr(end + std::string(sign).size());
+        if (end == std::string::npos) continue;
+        reason = reason.substr(end + sign.size());
+        break;
     }
+    if (!reason.empty() && reason.back() == '.') reason.pop_back();
     return reason;
 }
 
@@ -68,12 +84,16 @@ std::string reasonOf(const std::string& text) {
 
 }  // namespace
 
-void callItk(const std::filesystem::path& file, const std::function<void()>& work) {
+void callItk(const std::filesystem::path& file, Printed printed,
+             const std::function<void()>& work) {
     const Silence silence;
     try {
         work();
     } catch (const itk::ExceptionObject& error) {
-        refuse(file, reasonOf(error.GetDescription()));
+        // The reason that ITK adds to MetaIO's failures is whatever the system said last.
+        const std::string complaint = silence.complaint();
+        const bool metaIo = printed == Printed::kIsError && !complaint.empty();
+        refuse(file, reasonOf(metaIo ? complaint : error.GetDescription()));
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {
@@ -81,6 +101,8 @@ void callItk(const std::filesystem::path& file, const std::function<void()>& wor
     } catch (const std::exception& error) {
         refuse(file, reasonOf(error.what()));
     }
+    const std::string complaint = silence.complaint();
+    if (printed == Printed::kIsError && !complaint.empty()) refuse(file, reasonOf(complaint));
 }
 
 }  // namespace deltasplat

@@ -15,6 +15,7 @@
 #include "deltasplat/error.h"
 #include "ingest/byte_source.h"
 #include "ingest/file_name.h"
+#include "ingest/placement.h"
 #include "number_text.h"
 
 namespace deltasplat {
@@ -176,15 +177,7 @@ RawLayout readLayout(const Fields& fields) {
 }
 
 glm::dmat4 requireUsable(const Fields& fields, const glm::dmat4& matrix, const char* name) {
-    bool finite = true;
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 3; ++row) finite = finite && std::isfinite(matrix[column][row]);
-    }
-    const double volume = std::abs(glm::determinant(glm::dmat3(matrix)));
-    if (!finite || !(volume > 0) || !std::isfinite(volume)) {
-        fields.refuse(std::string("a ") + name + " that is singular or not finite",
-                      "one that gives every voxel a place");
-    }
+    requirePlacement(fields.where, name, matrix);
     return matrix;
 }
 
@@ -251,14 +244,14 @@ void place(const Fields& fields, const Listener& listener, NiftiHeader& header) 
     const bool hasQform = fields.code(fields.places().qformCode) > 0;
     header.space = hasSform || hasQform ? "RAS" : "";
     if (hasSform) {
-        header.worldFromIndex = requireUsable(fields, sform(fields), "sform");
+        header.worldFromIndex = requireUsable(fields, sform(fields), "an sform");
         if (hasQform && !(distance(header.worldFromIndex, qform(fields), header.layout.dims) < 1)) {
             listener.warn(fields.where + ": sform and qform differ; the sform is taken");
         }
     } else if (hasQform) {
-        header.worldFromIndex = requireUsable(fields, qform(fields), "qform");
+        header.worldFromIndex = requireUsable(fields, qform(fields), "a qform");
     } else {
-        header.worldFromIndex = requireUsable(fields, scaling(fields), "voxel size");
+        header.worldFromIndex = requireUsable(fields, scaling(fields), "a voxel size");
         listener.warn(fields.where +
                       ": neither sform nor qform: only the voxel size is known, not where the "
                       "volume lies or which side is left");

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Headers by GDCM, pixels by ITK's class for DICOM, which applies rescale slope and intercept.
-#include <gdcmAttribute.h>
 #include <gdcmImageHelper.h>
 #include <gdcmReader.h>
 #include <gdcmRescaler.h>
 #include <itkGDCMImageIO.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <set>
+#include <sstream>
 
 #include "deltasplat/error.h"
 #include "ingest/dense_source.h"
 #include "ingest/dicom_slices.h"
+#include "ingest/dicom_walk.h"
 #include "ingest/file_name.h"
 #include "ingest/itk_calls.h"
 #include "ingest/itk_types.h"
+#include "ingest/placement.h"
 #include "ingest/readers.h"
 #include "ingest/rescale.h"
 #include "memory.h"
@@ -28,6 +29,22 @@
 namespace deltasplat {
 namespace {
 
+constexpr std::uint32_t kSliceThickness = 0x00180050;
+constexpr std::uint32_t kSpacingBetweenSlices = 0x00180088;
+constexpr std::uint32_t kSeries = 0x0020000e;
+constexpr std::uint32_t kPosition = 0x00200032;
+constexpr std::uint32_t kOrientation = 0x00200037;
+constexpr std::uint32_t kSamples = 0x00280002;
+constexpr std::uint32_t kPhotometric = 0x00280004;
+constexpr std::uint32_t kFrames = 0x00280008;
+constexpr std::uint32_t kRows = 0x00280010;
+constexpr std::uint32_t kColumns = 0x00280011;
+constexpr std::uint32_t kPixelSpacing = 0x00280030;
+constexpr std::uint32_t kBitsAllocated = 0x00280100;
+constexpr std::uint32_t kBitsStored = 0x00280101;
+constexpr std::uint32_t kHighBit = 0x00280102;
+constexpr std::uint32_t kSign = 0x00280103;
+
 constexpr bool kBigEndian = std::endian::native == std::endian::big;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
@@ -35,38 +52,30 @@ constexpr bool kBigEndian = std::endian::native == std::endian::big;
     throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
 }
 
-// The values of one attribute; none if the file does not have it.
-template <std::uint16_t kGroup, std::uint16_t kElement>
-auto valuesOf(const gdcm::File& file) {
-    using Attribute = gdcm::Attribute<kGroup, kElement>;
-    std::vector<typename Attribute::ArrayType> values;
-    const gdcm::DataSet& set = file.GetDataSet();
-    if (!set.FindDataElement(Attribute::GetTag()) ||
-        set.GetDataElement(Attribute::GetTag()).IsEmpty()) {
-        return values;
-    }
-    Attribute attribute;
-    attribute.SetFromDataSet(set);
-    const auto* first = attribute.GetValues();
-    values.assign(first, first + attribute.GetNumberOfValues());
-    return values;
-}
-
-template <std::uint16_t kGroup, std::uint16_t kElement, std::size_t kCount>
-std::array<double, kCount> numbersOf(const std::filesystem::path& path, const gdcm::File& file,
-                                     const char* name) {
-    const auto values = valuesOf<kGroup, kElement>(file);
-    std::array<double, kCount> numbers{};
-    bool finite = values.size() == kCount;
-    for (std::size_t i = 0; finite && i < kCount; ++i) {
-        numbers[i] = double(values[i]);
-        finite = std::isfinite(numbers[i]) && std::abs(numbers[i]) < 1e9;
-    }
-    if (!finite) {
-        refuse(path, std::string("no usable ") + name,
-               std::to_string(kCount) + " numbers that say where the slice lies");
+// The numbers of an attribute that is text, "1\0\0"; none if one of them is no usable number.
+// GDCM takes what is no number for 0.
+std::vector<double> numbersOf(const DicomElements& elements, std::uint32_t tag) {
+    std::vector<double> numbers;
+    std::istringstream parts(elements.text(tag));
+    for (std::string part; std::getline(parts, part, '\\');) {
+        part.erase(0, part.find_first_not_of(" +"));
+        part.erase(part.find_last_not_of(' ') + 1);
+        double number = 0;
+        const char* const end = part.data() + part.size();
+        const auto result = std::from_chars(part.data(), end, number);
+        const bool whole = result.ec == std::errc{} && result.ptr == end;
+        if (!whole || !std::isfinite(number) || std::abs(number) > 1e9) return {};
+        numbers.push_back(number);
     }
     return numbers;
+}
+
+std::vector<double> placeOf(const std::filesystem::path& path, const DicomElements& elements,
+                            std::uint32_t tag, const char* name, std::size_t count) {
+    std::vector<double> numbers = numbersOf(elements, tag);
+    if (numbers.size() == count) return numbers;
+    refuse(path, std::string("no usable ") + name,
+           std::to_string(count) + " numbers that say where the slice lies");
 }
 
 std::optional<RawType> rawTypeOf(gdcm::PixelFormat::ScalarType type) {
@@ -96,11 +105,6 @@ std::optional<RawType> rawTypeOf(gdcm::PixelFormat::ScalarType type) {
 
 RawType typeOf(const std::filesystem::path& path, const gdcm::File& file) {
     const gdcm::PixelFormat format = gdcm::ImageHelper::GetPixelFormatValue(file);
-    const auto photometric = gdcm::ImageHelper::GetPhotometricInterpretationValue(file);
-    if (format.GetSamplesPerPixel() != 1 ||
-        photometric == gdcm::PhotometricInterpretation::PALETTE_COLOR) {
-        refuse(path, "a colour image", "one value a pixel");
-    }
     const std::vector<double> rescale = gdcm::ImageHelper::GetRescaleInterceptSlopeValue(file);
     gdcm::Rescaler rescaler;
     rescaler.SetIntercept(rescale.at(0));
@@ -113,10 +117,10 @@ RawType typeOf(const std::filesystem::path& path, const gdcm::File& file) {
     return *type;
 }
 
-void setPlace(const gdcm::File& file, DicomSlice& slice) {
-    const auto at = numbersOf<0x20, 0x32, 3>(slice.file, file, "ImagePositionPatient");
-    const auto axes = numbersOf<0x20, 0x37, 6>(slice.file, file, "ImageOrientationPatient");
-    const auto pixel = numbersOf<0x28, 0x30, 2>(slice.file, file, "PixelSpacing");
+void setPlace(const DicomElements& elements, DicomSlice& slice) {
+    const auto at = placeOf(slice.file, elements, kPosition, "ImagePositionPatient", 3);
+    const auto axes = placeOf(slice.file, elements, kOrientation, "ImageOrientationPatient", 6);
+    const auto pixel = placeOf(slice.file, elements, kPixelSpacing, "PixelSpacing", 2);
     const glm::dvec3 row(axes[0], axes[1], axes[2]);
     const glm::dvec3 column(axes[3], axes[4], axes[5]);
     const bool square = std::abs(glm::length(row) - 1) < 1e-2 &&
@@ -130,38 +134,50 @@ void setPlace(const gdcm::File& file, DicomSlice& slice) {
     // The spacing's first number is from row to row.
     slice.alongRow = glm::normalize(row) * pixel[1];
     slice.alongColumn = glm::normalize(column) * pixel[0];
-    for (const auto& sizes : {valuesOf<0x18, 0x88>(file), valuesOf<0x18, 0x50>(file)}) {
-        if (sizes.empty() || !std::isfinite(sizes[0]) || !(sizes[0] > 0)) continue;
+    for (const std::uint32_t tag : {kSpacingBetweenSlices, kSliceThickness}) {
+        const std::vector<double> sizes = numbersOf(elements, tag);
+        if (sizes.empty() || !(sizes[0] > 0)) continue;
         slice.thickness = sizes[0];
         break;
     }
 }
 
-void setSize(const gdcm::File& file, DicomSlice& slice) {
-    const auto columns = valuesOf<0x28, 0x11>(file);
-    const auto rows = valuesOf<0x28, 0x10>(file);
-    if (columns.empty() || rows.empty() || columns[0] == 0 || rows[0] == 0) {
+void setSize(const DicomElements& elements, DicomSlice& slice) {
+    slice.columns = elements.number(kColumns, 0);
+    slice.rows = elements.number(kRows, 0);
+    if (slice.columns < 1 || slice.rows < 1) {
         refuse(slice.file, "no image", "a DICOM slice with rows and columns");
     }
-    const auto frames = valuesOf<0x28, 0x08>(file);
-    if (!frames.empty() && frames[0] != 1) {
-        refuse(slice.file, std::to_string(int(frames[0])) + " frames in one file",
-               "one slice in each file");
+    const std::string colors = elements.text(kPhotometric);
+    if (elements.number(kSamples, 1) != 1 || (colors != "MONOCHROME1" && colors != "MONOCHROME2")) {
+        refuse(slice.file, "pixels of kind " + (colors.empty() ? "unknown" : printable(colors)),
+               "one grey value a pixel");
     }
-    slice.columns = columns[0];
-    slice.rows = rows[0];
-    slice.type = typeOf(slice.file, file);
-    const gdcm::TransferSyntax& syntax = file.GetHeader().GetDataSetTransferSyntax();
-    const bool packed =
-        syntax.IsEncapsulated() || syntax == gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
-    const double bits = gdcm::ImageHelper::GetPixelFormatValue(file).GetBitsAllocated();
-    const double claimed = double(slice.columns) * slice.rows * bits / 8;
-    const double held = double(std::filesystem::file_size(slice.file));
+    const std::string frames = elements.text(kFrames);
+    if (!frames.empty() && frames != "1") {
+        refuse(slice.file, printable(frames) + " frames in one file", "one slice in each file");
+    }
+    const int bits = elements.number(kBitsAllocated, 0);
+    const int stored = elements.number(kBitsStored, 0);
+    const int high = elements.number(kHighBit, 0);
+    const int sign = elements.number(kSign, 0);
+    if ((bits != 8 && bits != 16 && bits != 32) || stored < 1 || stored > bits ||
+        high != stored - 1 || sign > 1) {
+        refuse(slice.file,
+               "pixels of " + std::to_string(stored) + " bits up to bit " + std::to_string(high) +
+                   " in " + std::to_string(bits),
+               "whole numbers of 8, 16 or 32 bits");
+    }
+}
+
+void requirePixels(const DicomElements& elements, const DicomSlice& slice) {
+    const double bytes =
+        double(slice.columns) * slice.rows * elements.number(kBitsAllocated, 0) / 8;
     // Lossless JPEG 2000 of one grey packs best; this much is beyond anything an image is.
-    if (claimed <= (packed ? 65536 * held : held)) return;
-    refuse(slice.file, std::to_string(std::uint64_t(held)) + " bytes",
-           "enough for " + std::to_string(slice.columns) + "x" + std::to_string(slice.rows) +
-               " pixels");
+    const double most = double(elements.pixelBytes) * (elements.packed ? 65536 : 1);
+    if (bytes <= most) return;
+    refuse(slice.file, std::to_string(elements.pixelBytes) + " bytes of pixels",
+           "enough for " + std::to_string(slice.columns) + "x" + std::to_string(slice.rows));
 }
 
 // The slices as ITK reads them, in values of one type.
@@ -175,7 +191,7 @@ struct DicomFiles {
 };
 
 void readPixels(const DicomFiles& files, const DicomSlice& slice, std::byte* to) {
-    callItk(slice.file, [&] {
+    callItk(slice.file, Printed::kIsNothing, [&] {
         auto io = itk::GDCMImageIO::New();
         io->SetFileName(slice.file.string());
         io->ReadImageInformation();
@@ -225,20 +241,21 @@ RawType commonType(const std::vector<DicomSlice>& slices) {
 
 DicomSlice readDicomSlice(const std::filesystem::path& path) {
     requireRegularFile(path);
+    const DicomElements elements = walkDicom(path);
     DicomSlice slice;
     slice.file = path;
-    callItk(path, [&] {
+    slice.series = elements.text(kSeries);
+    setSize(elements, slice);
+    requirePixels(elements, slice);
+    setPlace(elements, slice);
+    callItk(path, Printed::kIsNothing, [&] {
         gdcm::ImageHelper::SetForceRescaleInterceptSlope(true);
         gdcm::Reader reader;
         reader.SetFileName(path.c_str());
         if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0010))) {
             refuse(path, "what GDCM refuses", "a DICOM file");
         }
-        const gdcm::File& file = reader.GetFile();
-        const auto series = valuesOf<0x20, 0x0e>(file);
-        if (!series.empty()) slice.series = std::string(series[0]);
-        setSize(file, slice);
-        setPlace(file, slice);
+        slice.type = typeOf(path, reader.GetFile());
     });
     return slice;
 }
@@ -259,6 +276,7 @@ DenseSource openDicom(const std::filesystem::path& input, const std::string& nam
     source.type = files->type;
     source.bigEndian = kBigEndian;
     source.worldFromIndex = files->volume.worldFromIndex;
+    requirePlacement(source.where, "places of slices", source.worldFromIndex);
     source.space = "LPS";
     source.forEachLayer = [files](const DenseSource::LayerUse& use, const Listener& listener) {
         readLayers(*files, use, listener);

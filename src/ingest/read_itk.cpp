@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
+#include <charconv>
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "deltasplat/error.h"
@@ -17,8 +18,10 @@
 #include "ingest/file_name.h"
 #include "ingest/itk_calls.h"
 #include "ingest/itk_types.h"
+#include "ingest/placement.h"
 #include "ingest/readers.h"
 #include "ingest/text_header.h"
+#include "ingest/zlib_check.h"
 #include "lower_case.h"
 #include "memory.h"
 #include "printable.h"
@@ -37,7 +40,8 @@ bool isOrientation(const std::string& text) {
 struct Claim {
     std::vector<std::int64_t> sizes;
     std::filesystem::path dataFile;
-    std::uint64_t dataBytes = 0;  // as they lie in the file
+    std::uint64_t dataStart = 0;  // place in that file
+    std::uint64_t dataBytes = 0;  // as they lie there
     Encoding encoding = Encoding::kRaw;
     std::string space;
 };
@@ -54,12 +58,16 @@ void setDetached(const std::filesystem::path& file, const std::string& name, Cla
         refuse(file, "data in \"" + printable(name) + "\"", "the name of one data file");
     }
     claim.dataFile = file.parent_path() / name;
-    requireRegularFile(claim.dataFile);
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(claim.dataFile, error)) {
+        refuse(file, "no data file \"" + printable(name) + "\"", "a readable file");
+    }
     claim.dataBytes = std::filesystem::file_size(claim.dataFile);
 }
 
 void setAttached(const std::filesystem::path& file, const TextHeader& header, Claim& claim) {
     claim.dataFile = file;
+    claim.dataStart = header.dataStart;
     claim.dataBytes = std::filesystem::file_size(file) - header.dataStart;
 }
 
@@ -103,6 +111,40 @@ Claim claimOfNrrd(const std::filesystem::path& file) {
     return claim;
 }
 
+// Returns the whole number of a field, or `missing`.
+std::int64_t numberOf(const std::filesystem::path& file, const TextHeader& header,
+                      const std::string& field, std::int64_t missing) {
+    const std::string* value = header.find(field);
+    if (value == nullptr) return missing;
+    std::int64_t number = 0;
+    const char* const end = value->data() + value->size();
+    const auto result = std::from_chars(value->data(), end, number);
+    if (result.ec != std::errc{} || result.ptr != end) {
+        refuse(file, field + " " + printable(*value), "a whole number");
+    }
+    return number;
+}
+
+// Bytes to pass over in the data file, and of packed data: MetaIO allocates what they say.
+void checkMetaData(const std::filesystem::path& file, const TextHeader& header, Claim& claim) {
+    const std::int64_t skipped = numberOf(file, header, "headersize", 0);
+    const std::int64_t packed = numberOf(file, header, "compresseddatasize", 0);
+    const auto held = std::int64_t(claim.dataBytes);
+    if (skipped < -1 || skipped > held || packed < 0 ||
+        packed > held - std::max<std::int64_t>(skipped, 0)) {
+        refuse(file,
+               "HeaderSize " + std::to_string(skipped) + " and CompressedDataSize " +
+                   std::to_string(packed),
+               "at most the " + std::to_string(held) + " bytes of data");
+    }
+    if (skipped > 0 && claim.dataFile == file) {
+        refuse(file, "HeaderSize " + std::to_string(skipped) + " for data in the same file", "0");
+    }
+    if (skipped <= 0) return;
+    claim.dataStart += std::uint64_t(skipped);
+    claim.dataBytes -= std::uint64_t(skipped);
+}
+
 Claim claimOfMeta(const std::filesystem::path& file) {
     const TextHeader header = readMetaHeader(file);
     Claim claim;
@@ -119,6 +161,7 @@ Claim claimOfMeta(const std::filesystem::path& file) {
         const std::string* value = header.find(field);
         return value != nullptr && !value->empty() && std::strchr("Tt1", (*value)[0]) != nullptr;
     };
+    checkMetaData(file, header, claim);
     const std::string* binary = header.find("binarydata");
     if (isTrue("compresseddata")) {
         claim.encoding = Encoding::kGzip;
@@ -181,7 +224,11 @@ void requireSameSizes(const ItkFile& file) {
     for (unsigned axis = 0; axis < file.io->GetNumberOfDimensions(); ++axis) {
         got.push_back(std::int64_t(file.io->GetDimensions(axis)));
     }
-    if (got == file.claim.sizes) return;
+    // An axis of one value a voxel is none of ITK's.
+    std::vector<std::int64_t> claimed = file.claim.sizes;
+    std::erase(claimed, 1);
+    std::erase(got, 1);
+    if (got == claimed) return;
     refuse(file.path, "sizes " + sizesText(file.claim.sizes), "sizes that ITK reads alike");
 }
 
@@ -197,6 +244,18 @@ void requireData(const ItkFile& file) {
     refuse(file.claim.dataFile, std::to_string(file.claim.dataBytes) + " bytes of data",
            (gzip ? "enough gzip for " : "enough for ") + sizesText(file.claim.sizes) + " " +
                rawTypeName(file.type));
+}
+
+// MetaIO takes packed data that are corrupt or too short without a word.
+void requireUnpackedSize(const ItkFile& file) {
+    const auto wanted = std::uint64_t(file.bytes());
+    const std::uint64_t got = unpackedBytes(file.claim.dataFile, file.claim.dataStart, wanted);
+    if (got == wanted) return;
+    refuse(file.claim.dataFile,
+           (got > wanted ? "more than " : "") + std::to_string(std::min(got, wanted)) +
+               " bytes unpacked",
+           std::to_string(wanted) + " (" + sizesText(file.claim.sizes) + " " +
+               rawTypeName(file.type) + ")");
 }
 
 glm::dmat4 worldOf(const ItkFile& file) {
@@ -216,12 +275,7 @@ glm::dmat4 worldOf(const ItkFile& file) {
             if (file.claim.space == "RAS") matrix[column].y = -matrix[column].y;
         }
     }
-    const double volume = glm::determinant(glm::dmat3(matrix));
-    const bool finite = std::isfinite(glm::dot(matrix[3], matrix[3]));
-    if (!finite || !std::isfinite(volume) || volume == 0) {
-        refuse(file.path, "spacing or directions that are singular or not finite",
-               "ones that give every voxel a place");
-    }
+    requirePlacement(file.path.string(), "spacing and directions", matrix);
     return matrix;
 }
 
@@ -236,7 +290,7 @@ void readRegion(const ItkFile& file, int firstSlice, int slices, std::byte* to) 
         region.SetSize(file.axes[2], std::size_t(slices));
     }
     file.io->SetIORegion(region);
-    callItk(file.path, [&] { file.io->Read(to); });
+    callItk(file.path, Printed::kIsError, [&] { file.io->Read(to); });
 }
 
 void readLayers(ItkFile& file, const DenseSource::LayerUse& use, const Listener& listener) {
@@ -269,7 +323,7 @@ DenseSource openItk(const std::filesystem::path& path) {
     const bool nrrd = extension == ".nrrd" || extension == ".nhdr";
     file->path = path;
     file->claim = nrrd ? claimOfNrrd(path) : claimOfMeta(path);
-    callItk(path, [&] {
+    callItk(path, Printed::kIsError, [&] {
         if (nrrd) {
             file->io = itk::NrrdImageIO::New();
         } else {
@@ -287,6 +341,7 @@ DenseSource openItk(const std::filesystem::path& path) {
     file->sliceBytes =
         std::size_t(file->size(0)) * std::size_t(file->size(1)) * std::size_t(rawTypeBytes(*type));
     requireData(*file);
+    if (!nrrd && file->claim.encoding == Encoding::kGzip) requireUnpackedSize(*file);
 
     DenseSource source;
     source.where = path.string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <openvdb/Grid.h>
+#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,10 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "ingest/delta_format.h"
 #include "ingest/grid_codes.h"
 #include "ingest/grid_metadata.h"
+#include "ingest/read_delta_grid.h"
 #include "ingest/readers.h"
 #include "ingest/source_grid.h"
 #include "ingest/vdb_file.h"
@@ -104,15 +106,25 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
     reading.progress = [&](double share) { listener.report(kReadShare * share); };
     const openvdb::GridBase::Ptr loaded = file.read(grid, reading);
     Volume volume;
+    const glm::dmat4 matrix = worldFromIndex(loaded->transform(), where);
+    if (isDeltaGrid(*loaded)) {
+        Listener decoding = listener;
+        decoding.progress = [&](double share) {
+            listener.report(kReadShare + (1 - kReadShare) * share);
+        };
+        volume = readDeltaGrid(static_cast<openvdb::Int32Grid&>(*loaded), file.metadata(), where,
+                               options, decoding);
+    } else {
+        volume.worldFromIndex = matrix;
+        fillFromGrid(*loaded,
+                     {listener, where, grid.valueType(), options.levelSetToFog, options.nanValue,
+                      options.bits},
+                     volume);
+        if (options.keepSource)
+            volume.source = std::make_shared<const SourceGrid>(SourceGrid{loaded, file.metadata()});
+        volume.space = spaceOf(*loaded);
+    }
     volume.name = grid.name;
-    volume.worldFromIndex = worldFromIndex(loaded->transform(), where);
-    fillFromGrid(
-        *loaded,
-        {listener, where, grid.valueType(), options.levelSetToFog, options.nanValue, options.bits},
-        volume);
-    if (options.keepSource)
-        volume.source = std::make_shared<const SourceGrid>(SourceGrid{loaded, file.metadata()});
-    volume.space = spaceOf(*loaded);
     settleBackground(volume, options, where, listener);
     if (volume.empty()) listener.warn(where + ": no active voxels");
     return volume;

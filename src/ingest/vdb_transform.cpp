@@ -73,4 +73,29 @@ glm::dmat4 matrixOf(const Transform& transform) {
     return matrix;
 }
 
+namespace {
+
+// A map of the type named, or null if there is none of that type.
+MapBase::Ptr mapOfType(const std::string& type, const glm::dmat4& matrix) {
+    const Vec3d scale(matrix[0].x, matrix[1].y, matrix[2].z);
+    const Vec3d translation(matrix[3].x, matrix[3].y, matrix[3].z);
+    if (type == UniformScaleMap::mapType()) return std::make_shared<UniformScaleMap>(scale[0]);
+    if (type == ScaleMap::mapType()) return std::make_shared<ScaleMap>(scale);
+    if (type == TranslationMap::mapType()) return std::make_shared<TranslationMap>(translation);
+    if (type == UniformScaleTranslateMap::mapType())
+        return std::make_shared<UniformScaleTranslateMap>(scale[0], translation);
+    if (type == ScaleTranslateMap::mapType())
+        return std::make_shared<ScaleTranslateMap>(scale, translation);
+    return nullptr;
+}
+
+}  // namespace
+
+Transform::Ptr makeTransformOfType(const std::string& mapType, const glm::dmat4& worldFromIndex) {
+    const MapBase::Ptr affine = affineMap(worldFromIndex);
+    MapBase::Ptr map = mapOfType(mapType, worldFromIndex);
+    if (!map || map->getAffineMap()->getMat4() != affine->getAffineMap()->getMat4()) map = affine;
+    return std::make_shared<Transform>(map);
+}
+
 }  // namespace deltasplat

@@ -4,11 +4,17 @@
 #include <openvdb/math/Transform.h>
 
 #include <glm/mat4x4.hpp>
+#include <string>
 
 namespace deltasplat {
 
 /// Returns the simplest OpenVDB map that is exactly this affine matrix (uniform scale, scale, ...).
 openvdb::math::Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex);
+
+/// Returns a map of the type named ("UniformScaleMap", ...), if that can be this matrix, otherwise
+/// an "AffineMap".
+openvdb::math::Transform::Ptr makeTransformOfType(const std::string& mapType,
+                                                  const glm::dmat4& worldFromIndex);
 
 /// Returns the matrix of a linear map; makeTransform's comes back as it was.
 glm::dmat4 matrixOf(const openvdb::math::Transform& transform);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: VTK's documentation and behaviour of vtkPiecewiseFunction (midpoint and sharpness of an
-// opacity point) and IEC 61966-2-1, 1999 (the sRGB transfer curve).
+// opacity point).
 #include "deltasplat/optics/transfer_function.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+
+#include "deltasplat/ingest/value_statistics.h"
+#include "srgb.h"
 
 namespace deltasplat {
 namespace {
@@ -22,10 +25,6 @@ typename std::vector<Point>::const_iterator firstBeyond(const std::vector<Point>
 // How far x is on the way from a to b, 0..1; halves, so that no difference overflows.
 double wayFrom(double a, double b, double x) {
     return (0.5 * x - 0.5 * a) / (0.5 * b - 0.5 * a);
-}
-
-double linearFromSrgb(double v) {
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
 // Bends the way from one point to the next so that its middle is reached at `midpoint`.
@@ -45,24 +44,11 @@ double sharpBlend(double from, double to, double s, double sharpness) {
     return std::clamp(value, std::min(from, to), std::max(from, to));
 }
 
-// The smallest code whose codes up to it hold at least percent % of the counted voxels.
-int percentileCode(const std::vector<std::uint64_t>& counts, std::uint64_t total, int percent) {
-    const std::uint64_t rank = std::max<std::uint64_t>(1, (total * percent + 99) / 100);
-    std::uint64_t seen = 0;
-    int code = 0;
-    while (code + 1 < int(counts.size()) && (seen += counts[code]) < rank) ++code;
-    return code;
-}
-
 // How often each code occurs, the one that stands for the background left out.
 std::vector<std::uint64_t> countsWithoutBackground(const Volume& volume) {
-    const CodeBook& book = volume.codeBook;
-    const double within = book.kind == CodeBook::Kind::kLinear ? book.step / 2 : 0;
     std::vector<std::uint64_t> counts = volume.histogram;
     for (std::size_t code = 0; code < counts.size(); ++code) {
-        if (counts[code] == 0) continue;
-        const double value = book.valueOf(Code(code));
-        if (std::abs(value - volume.background) <= within) counts[code] = 0;
+        if (volume.codeBook.standsFor(Code(code), volume.background)) counts[code] = 0;
     }
     return counts;
 }
@@ -110,11 +96,11 @@ double TransferFunction::opacityAt(double x) const {
 
 TransferFunction defaultRamp(const Volume& volume) {
     const std::vector<std::uint64_t> counts = countsWithoutBackground(volume);
-    std::uint64_t total = 0;
-    for (const std::uint64_t count : counts) total += count;
-    if (total == 0) return greyRamp(volume.background, volume.background + 1);
-    return greyRamp(volume.codeBook.valueOf(Code(percentileCode(counts, total, 1))),
-                    volume.codeBook.valueOf(Code(percentileCode(counts, total, 99))));
+    if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t count) { return count == 0; })) {
+        return greyRamp(volume.background, volume.background + 1);
+    }
+    return greyRamp(volume.codeBook.valueOf(percentileCode(counts, 1)),
+                    volume.codeBook.valueOf(percentileCode(counts, 99)));
 }
 
 glm::dvec2 defaultRange(const Volume& volume) {

@@ -10,9 +10,11 @@ endfunction()
 deltasplat_bad_input(missing "nowhere.vdb: got no such file; expected a readable file" nowhere.vdb)
 deltasplat_bad_input(missing_raw
     "nowhere_8x8x8_uint8.raw: got no such file; expected a readable file" nowhere_8x8x8_uint8.raw)
-deltasplat_bad_input(folder ".: got a folder; expected a readable file" .)
+deltasplat_bad_input(folder
+    "folder.exr: got a folder without DICOM files and images; expected a DICOM folder, a folder of images, or a file"
+    folder.exr)
 deltasplat_bad_input(format
-    "tf_good.json: got extension \".json\"; expected .raw, .raw.gz or .vdb" tf_good.json)
+    "tf_good.json: got extension \".json\"; expected .vdb, .raw, .raw.gz, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .dcm, .tif, .png, .jpg, .bmp, .pgm or .exr" tf_good.json)
 
 deltasplat_bad_input(cut_raw
     "cut_8x8x8_uint8.raw: got 500 bytes; expected 512 (8x8x8 uint8)" cut_8x8x8_uint8.raw)

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -28,21 +29,23 @@ std::string readBytes(const std::string& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-openvdb::FloatGrid::Ptr floatGrid(const std::string& name) {
-    openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(0.0F);
+template <typename Grid>
+typename Grid::Ptr emptyFog(const std::string& name, double background = 0) {
+    auto grid = Grid::create(typename Grid::ValueType(background));
     grid->setName(name);
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     return grid;
 }
 
 // A ball of fog, 0.5 everywhere inside.
-openvdb::FloatGrid::Ptr ball(const std::string& name) {
-    openvdb::FloatGrid::Ptr grid = floatGrid(name);
+template <typename Grid = openvdb::FloatGrid>
+typename Grid::Ptr ball(const std::string& name, double background = 0) {
+    auto grid = emptyFog<Grid>(name, background);
     auto accessor = grid->getAccessor();
     for (int x = -6; x <= 6; ++x)
         for (int y = -6; y <= 6; ++y)
             for (int z = -6; z <= 6; ++z)
-                if (x * x + y * y + z * z <= 36) accessor.setValue({x, y, z}, 0.5F);
+                if (x * x + y * y + z * z <= 36) accessor.setValue({x, y, z}, 0.5);
     return grid;
 }
 
@@ -76,17 +79,41 @@ openvdb::GridBase::Ptr notNumbers() {
     return grid;
 }
 
+// Balls that differ from ball.vdb, each in one way.
+void writeOtherBalls() {
+    writeVdb("ball_named.vdb", {ball("smoke")});
+    writeVdb("ball_double.vdb", {ball<openvdb::DoubleGrid>("density")});
+    writeVdb("ball_background.vdb", {ball("density", -1)});
+    const auto classed = ball("density");
+    classed->setGridClass(openvdb::GRID_LEVEL_SET);
+    writeVdb("ball_class.vdb", {classed});
+    const auto active = ball("density");
+    active->getAccessor().setValueOn({0, 0, 7}, 0.0F);
+    writeVdb("ball_active.vdb", {active});
+    const auto moved = ball("density");
+    moved->transform().postTranslate({0.5, 0, 0});
+    writeVdb("ball_moved.vdb", {moved});
+    const auto changed = ball("heat");
+    changed->getAccessor().setValueOn({1, 2, 3}, 0.75F);
+    writeVdb("three.vdb", {ball("density"), changed, ball("smoke"), vectors()});
+    // OpenVDB numbers grids of the same name; not every writer has to.
+    writeVdb("same_names.vdb", {ball("density"), ball("densitx")});
+    writeBytes("same_names.vdb",
+               std::regex_replace(readBytes("same_names.vdb"), std::regex("densitx"), "density"));
+}
+
 void writeVdbFiles() {
     writeVdb("ball.vdb", {ball("density")});
     writeVdb("two.vdb", {ball("density"), ball("heat")});
     writeVdb("mixed.vdb", {vectors(), ball("density")});
     writeVdb("none.vdb", {});
-    writeVdb("empty.vdb", {floatGrid("density")});
+    writeVdb("empty.vdb", {emptyFog<openvdb::FloatGrid>("density")});
     writeVdb("vectors.vdb", {vectors()});
     writeVdb("points.vdb", {points()});
     writeVdb("frustum.vdb", {frustum()});
     writeVdb("nan.vdb", {notNumbers()});
     writeVdb("one_bad.vdb", {notNumbers(), vectors(), ball("smoke")});
+    writeOtherBalls();
     const std::string whole = readBytes("ball.vdb");
     writeBytes("cut.vdb", whole.substr(0, whole.size() / 2));
     writeBytes("head_only.vdb", whole.substr(0, 20));
@@ -99,6 +126,11 @@ void writeRawFiles() {
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = char(i % 97);
     writeBytes("cube_8x8x8_uint8.raw", bytes);
     writeBytes("plain.raw", bytes);
+    std::string changed = bytes;
+    changed[5 + 8 * 1 + 64 * 1] = 80;  // instead of 77
+    writeBytes("changed_8x8x8_uint8.raw", changed);
+    writeBytes("changed.raw", changed);
+    writeBytes("half_8x8x4_uint8.raw", bytes.substr(0, 256));
     writeBytes("cut_8x8x8_uint8.raw", bytes.substr(0, 500));
     writeBytes("long_8x8x8_uint8.raw", bytes + "more");
     writeBytes("garbage_8x8x8_uint8.raw.gz", "no gzip");
@@ -111,7 +143,7 @@ void writeRawFiles() {
 
 // Whatever is written to these is refused as by a full disk.
 void linkToFullDevice() {
-    for (const char* const name : {"full.exr", "full.png", "full.json", "full.raw", "full.vdb"}) {
+    for (const char* const name : {"full.exr", "full.png", "full.json", "full.raw", "full.svg", "full.vdb"}) {
         std::filesystem::remove(name);
         std::filesystem::create_symlink("/dev/full", name);
     }

@@ -14,10 +14,17 @@ function(deltasplat_fuzz name)
     foreach(program ${programs})
         target_include_directories(${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}
                                    ${PROJECT_SOURCE_DIR}/src)
-        target_link_libraries(${program} PRIVATE deltasplat::deltasplat OpenVDB::openvdb ZLIB::ZLIB)
+        target_link_libraries(${program} PRIVATE deltasplat::deltasplat OpenVDB::openvdb
+            OpenImageIO::OpenImageIO ZLIB::ZLIB GTest::gtest)
         deltasplat_compile_options(${program})
     endforeach()
 endfunction()
 
 deltasplat_fuzz(raw_fuzz)
 deltasplat_fuzz(vdb_fuzz)
+deltasplat_fuzz(image_fuzz)
+deltasplat_fuzz(nifti_fuzz)
+if(DELTASPLAT_ITK)
+    deltasplat_fuzz(dicom_fuzz)
+    deltasplat_fuzz(itk_fuzz)
+endif()

@@ -2,6 +2,7 @@
 #include "fuzz/fuzz_target.h"
 
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,6 +48,20 @@ void renderSmall(const Volume& volume) {
 }
 
 }  // namespace
+
+std::string gzipped(const std::string& bytes) {
+    std::string out(bytes.size() + 200, '\0');
+    z_stream stream{};
+    deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream.avail_in = uInt(bytes.size());
+    stream.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream.avail_out = uInt(out.size());
+    deflate(&stream, Z_FINISH);
+    out.resize(stream.total_out);
+    deflateEnd(&stream);
+    return out;
+}
 
 std::string fileWith(const std::string& extension, const std::uint8_t* data, std::size_t size) {
     const std::string path = (std::filesystem::temp_directory_path() /

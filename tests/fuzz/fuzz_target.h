@@ -17,6 +17,9 @@ namespace deltasplat::fuzz {
 /// Sound inputs of this target, to be mutated; each target defines its own.
 std::vector<std::string> seeds();
 
+/// Returns the bytes under gzip.
+std::string gzipped(const std::string& bytes);
+
 /// Writes the bytes to a file of this process, always the same, and returns its path.
 std::string fileWith(const std::string& extension, const std::uint8_t* data, std::size_t size);
 

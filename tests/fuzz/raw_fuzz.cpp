@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bytes 0..5 choose the options, the rest is the file, plain or gzip.
-#include <zlib.h>
-
 #include "fuzz/fuzz_target.h"
 
 namespace deltasplat::fuzz {
@@ -10,20 +8,6 @@ namespace {
 constexpr const char* kTypes[] = {"uint8",  "int8",  "uint16",  "int16",
                                   "uint32", "int32", "float32", "float64"};
 constexpr std::size_t kHeader = 6;
-
-std::string gzipped(const std::string& bytes) {
-    std::string out(bytes.size() + 200, '\0');
-    z_stream stream{};
-    deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-    stream.avail_in = uInt(bytes.size());
-    stream.next_out = reinterpret_cast<Bytef*>(out.data());
-    stream.avail_out = uInt(out.size());
-    deflate(&stream, Z_FINISH);
-    out.resize(stream.total_out);
-    deflateEnd(&stream);
-    return out;
-}
 
 }  // namespace
 

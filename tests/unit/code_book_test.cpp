@@ -144,5 +144,17 @@ TEST(CodeBook, LinearOfOneValueHasThatValue) {
     EXPECT_EQ(book.valueOf(0), 2.5);
 }
 
+TEST(CodeBook, CodesStandForTheValuesThatGetThem) {
+    const CodeBook linear = CodeBook::linear(0, 65535 * 0.5);
+    EXPECT_TRUE(linear.standsFor(10, 5.0));
+    EXPECT_TRUE(linear.standsFor(10, 5.2));
+    EXPECT_FALSE(linear.standsFor(10, 5.3));
+    EXPECT_TRUE(CodeBook::integer(-4).standsFor(1, -3));
+    EXPECT_FALSE(CodeBook::integer(-4).standsFor(1, -3.01));
+    const CodeBook half = CodeBook::half();
+    EXPECT_TRUE(half.standsFor(half.codeOf(0.0), 0.0));
+    EXPECT_FALSE(half.standsFor(half.codeOf(1.0), 1.0001));
+}
+
 }  // namespace
 }  // namespace deltasplat

@@ -1,4 +1,5 @@
 deltasplat_test(unit/delta_grid_test.cpp)
+deltasplat_test(unit/slice_counts_test.cpp)
 deltasplat_test(unit/footprint_test.cpp)
 deltasplat_test(unit/sheet_test.cpp)
 deltasplat_test(unit/layer_test.cpp)

@@ -33,7 +33,10 @@ TEST(ReadRawError, NoSuchFile) {
 TEST(ReadRawError, NoRegularFile) {
     const TempFolder folder;
     std::filesystem::create_directory("f_1x1x1_uint8.raw");
-    expectInput("f_1x1x1_uint8.raw: got a folder; expected a readable file", "f_1x1x1_uint8.raw");
+    expectInput(
+        "f_1x1x1_uint8.raw: got a folder without DICOM files and images; expected a DICOM folder, "
+        "a folder of images, or a file",
+        "f_1x1x1_uint8.raw");
     expectInput("/dev/null: got no regular file; expected a readable file", "/dev/null");
 }
 
@@ -42,9 +45,12 @@ TEST(ReadRawError, UnknownExtension) {
     writeBytes("a.xyz", "");
     writeBytes("a.tar.gz", "");
     writeBytes("a", "");
-    expectInput("a.xyz: got extension \".xyz\"; expected .raw, .raw.gz or .vdb", "a.xyz");
-    expectInput("a.tar.gz: got extension \".tar.gz\"; expected .raw, .raw.gz or .vdb", "a.tar.gz");
-    expectInput("a: got extension \"\"; expected .raw, .raw.gz or .vdb", "a");
+    const std::string readable =
+        "; expected .vdb, .raw, .raw.gz, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .dcm, .tif, "
+        ".png, .jpg, .bmp, .pgm or .exr";
+    expectInput("a.xyz: got extension \".xyz\"" + readable, "a.xyz");
+    expectInput("a.tar.gz: got extension \".tar.gz\"" + readable, "a.tar.gz");
+    expectInput("a: got extension \"\"" + readable, "a");
 }
 
 TEST(ReadRawError, WrongSize) {

@@ -6,23 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "deltasplat/ingest/slot.h"
 #include "deltasplat/ingest/volume.h"
 
 namespace deltasplat {
 
 /// The OpenVDB Int32Grid of deltas; defined in src/delta/delta_tree.h for the stage that walks it.
 struct DeltaTree;
-
-/// What a voxel indexes tables by: 0 = empty (inactive or invisible), code + 1 otherwise.
-using Slot = std::int32_t;
-inline constexpr Slot kEmptySlot = 0;
-inline constexpr int kSlotCount = kCodeCount + 1;
-
-/// Returns the volume axes (0 = x, 1 = y, 2 = z) that become (slice, u, v): a cyclic permutation,
-/// so that handedness is kept.
-inline glm::ivec3 sliceOrder(int sliceAxis) {
-    return {sliceAxis, (sliceAxis + 1) % 3, (sliceAxis + 2) % 3};
-}
 
 /// Whether slices are stored whole or as their change from the slice before.
 enum class Encoding {
@@ -61,6 +51,8 @@ struct DeltaOptions {
     /// [kSlotCount] or empty: the slot to use in place of each slot, so that codes which look alike
     /// make no deltas, and invisible ones are empty. Entry 0 must be 0.
     std::span<const Slot> slotMap;
+    /// Null, or active where the volume is not: voxels that get the slot kSlotCount + their code.
+    const CodeTree* inactive = nullptr;
 };
 
 /// Returns the slices a slab gets by default: a function of the volume alone, so that pixels never
@@ -72,11 +64,23 @@ int defaultKeyInterval(int sliceCount);
 /// @throw Error(kUsage) if the key interval is not a positive multiple of 8
 DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options);
 
+/// Returns the slabs that makeDeltaGrid would give with the same options, without storing deltas.
+/// @throw as makeDeltaGrid
+std::vector<Slab> planSlabs(const Volume& volume, const DeltaOptions& options);
+
 /// Counts visible voxels and deltas without storing them (one slab over all slices).
 struct SliceCounts {
     std::uint64_t visible = 0;
     std::uint64_t deltas = 0;
 };
 SliceCounts countDeltas(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap = {});
+
+/// Returns what countDeltas counts, slice by slice of the volume's box: entry 0 is its first slice,
+/// whose visible voxels are all deltas. Empty for an empty volume.
+/// @param slicesEach  >= 1: each entry is the sum of so many slices, the last one of what is left
+/// @throw Error(kUsage) if the entries do not fit into memory
+std::vector<SliceCounts> countDeltasPerSlice(const Volume& volume, int sliceAxis,
+                                             std::span<const Slot> slotMap = {},
+                                             int slicesEach = 1);
 
 }  // namespace deltasplat

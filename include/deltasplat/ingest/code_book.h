@@ -31,6 +31,9 @@ struct CodeBook {
     double valueOf(Code code) const;
     /// Returns the code whose value is nearest to `value`, clamped to the book's range.
     Code codeOf(double value) const;
+    /// Returns whether voxels of this value get the code: within half a step of a linear book,
+    /// exactly otherwise.
+    bool standsFor(Code code, double value) const;
     /// Returns "integer", "half", "linear" or "table".
     std::string name() const;
     /// Whether a source that was given this book by a reader comes back from it bit for bit.

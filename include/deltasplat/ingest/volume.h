@@ -6,6 +6,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,16 @@ struct IndexBox {
     bool operator==(const IndexBox&) const = default;
 };
 
+/// How the delta grid was made that a volume has been read from.
+struct DeltaOrigin {
+    int sliceAxis = 2;  ///< 0 = x, 1 = y, 2 = z
+    int keyInterval = 8;
+    std::uint64_t deltas = 0;
+    double tolerance = 0;       ///< relative
+    double toleranceValue = 0;  ///< in data units
+    double maxError = 0;  ///< largest distance of a value from its source's, measured at making
+};
+
 /// One scalar volume in memory: codes on a sparse grid, what they mean, and where they are.
 ///
 /// Every voxel of a raw volume is active; a .vdb brings its own active states. What is inactive is
@@ -59,6 +70,7 @@ struct Volume {
     /// What codes cannot tell, if ReadOptions::keepSource asked for it: for .vdb always, for other
     /// formats only if the code book is not exact (then a grid of the file's value type).
     std::shared_ptr<const SourceGrid> source;
+    std::optional<DeltaOrigin> origin;  ///< only of a volume read from a delta grid
     double valueMin = 0;  ///< smallest active value, as the code book gives it back; 0 if none
     double valueMax = 0;  ///< largest active value, as the code book gives it back; 0 if none
 

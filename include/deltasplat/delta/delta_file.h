@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "deltasplat/delta/tolerance.h"
+#include "deltasplat/ingest/volume.h"
+#include "deltasplat/progress.h"
+
+namespace deltasplat {
+
+/// How a volume becomes a delta grid in a file.
+struct DeltaFileOptions {
+    std::optional<int> sliceAxis;  ///< 0 = x, 1 = y, 2 = z; empty: the one with the fewest deltas
+    int keyInterval = 0;           ///< a multiple of 8; 0 = defaultKeyInterval
+    Tolerance tolerance;
+    /// The largest error that is let through, in data units; empty: any.
+    std::optional<double> maxError;
+};
+
+/// What became of a volume.
+struct DeltaFileEntry {
+    int sliceAxis = 2;
+    int keyInterval = 8;
+    std::uint64_t deltas = 0;
+    double maxError = 0;  ///< largest |restored - source|, measured over every voxel
+    bool lossless = true;
+};
+
+/// A .vdb of delta grids, the format of docs/delta-grid.md: grid by grid, so that only one volume
+/// is in memory besides what will be written.
+class DeltaFile {
+  public:
+    DeltaFile();
+    ~DeltaFile();
+    DeltaFile(const DeltaFile&) = delete;
+    DeltaFile& operator=(const DeltaFile&) = delete;
+
+    /// Takes the differences of a volume that was read with ReadOptions::keepSource, and measures
+    /// how far what comes back is from the source. Multi-threaded; deterministic.
+    /// @throw Error(kUsage) if the key interval is no multiple of 8, if a tolerance is negative or
+    ///        smaller than the code book's own error, or if memory does not suffice;
+    ///        Error(kFailed) if the error is larger than options.maxError
+    DeltaFileEntry add(Volume volume, const DeltaFileOptions& options,
+                       const Listener& listener = {});
+    /// Writes all grids added.
+    /// @throw Error(kOutput) if it cannot be written
+    void write(const std::filesystem::path& file) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace deltasplat

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "deltasplat/delta/delta_grid.h"
+
+namespace deltasplat {
+
+/// How many stamps a picture takes by each method.
+struct StampCounts {
+    std::uint64_t traditional = 0;  ///< voxels of the box
+    std::uint64_t sparse = 0;       ///< visible voxels
+    std::uint64_t delta = 0;        ///< deltas, key slices at their default interval included
+    std::uint64_t automatic = 0;    ///< for each slab the smaller of `sparse` and `delta`
+};
+
+/// Returns what `render` takes for a picture along a slice axis, without rendering or storing
+/// deltas: exact for the slot map of its transfer function (see mergeAlikeSlots).
+/// @param slotMap  as DeltaOptions::slotMap
+StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap = {});
+
+/// Returns the slot map that makes voxels of one value empty and keeps all others apart.
+std::vector<Slot> slotsWithout(const CodeBook& codeBook, double value);
+
+}  // namespace deltasplat

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace deltasplat {
+
+/// Names of the grids of a .vdb file, in file order.
+struct GridList {
+    std::vector<std::string> scalar;  ///< as ReadOptions::gridName takes them
+    std::vector<std::string> others;  ///< with their types, as "velocity (vec3s)"
+};
+
+/// Lists the grids of a .vdb file without reading them.
+/// @throw Error(kInput) if the file is missing or no whole .vdb file
+GridList listGrids(const std::filesystem::path& file);
+
+}  // namespace deltasplat

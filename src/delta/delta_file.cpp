@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/delta/delta_file.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "delta/delta_tree.h"
+#include "delta/hold_values.h"
+#include "delta/inactive_values.h"
+#include "deltasplat/diff/compare_volumes.h"
+#include "deltasplat/error.h"
+#include "ingest/delta_format.h"
+#include "ingest/read_delta_grid.h"
+#include "ingest/source_grid.h"
+#include "ingest/vdb_transform.h"
+#include "number_text.h"
+#include "write_vdb.h"
+
+namespace deltasplat {
+namespace {
+
+void checkTolerance(const std::string& flag, double tolerance) {
+    if (std::isfinite(tolerance) && tolerance >= 0) return;
+    throw Error(ErrorCode::kUsage, gotExpected(flag, numberText(tolerance), "a number >= 0"));
+}
+
+// What no delta speaks of: inactive voxels, or in a volume without any the most frequent code.
+struct Rest {
+    bool active = false;
+    double background = 0;
+    std::vector<Slot> slotMap;  // makes the resting code empty
+};
+
+Rest restOf(const Volume& volume) {
+    Rest rest;
+    rest.active = !volume.hasBackground;
+    rest.background = volume.background;
+    if (!rest.active || volume.empty()) return rest;
+    const auto most = std::max_element(volume.histogram.begin(), volume.histogram.end());
+    const auto code = Code(most - volume.histogram.begin());
+    rest.background = volume.codeBook.valueOf(code);
+    rest.slotMap.resize(kSlotCount);
+    for (Slot slot = 0; slot < kSlotCount; ++slot) rest.slotMap[std::size_t(slot)] = slot;
+    rest.slotMap[code + 1u] = kEmptySlot;
+    return rest;
+}
+
+int mostComparableAxis(const Volume& volume, std::span<const Slot> slotMap) {
+    int best = 2;
+    std::uint64_t fewest = countDeltas(volume, 2, slotMap).deltas;
+    for (const int axis : {1, 0}) {
+        const std::uint64_t deltas = countDeltas(volume, axis, slotMap).deltas;
+        if (deltas >= fewest) continue;
+        fewest = deltas;
+        best = axis;
+    }
+    return best;
+}
+
+// Nothing differs more from its code's value than this; the largest error itself is measured.
+double codeErrorBound(const Volume& volume) {
+    return volume.codeBook.isExact() ? 0 : volume.codeBook.step / 2 * (1 + 1e-9);
+}
+
+// The tolerance has to leave room for what the code book does to values.
+void requireRoom(const Tolerance& tolerance, const Volume& volume) {
+    const double codeError = codeErrorBound(volume);
+    const auto refuse = [&](const char* flag, double got, const std::string& expected) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(flag, numberText(got),
+                                expected + ": values are stored with errors up to " +
+                                    numberText(codeError) + " (linear code book)"));
+    };
+    if (codeError == 0) return;
+    if (tolerance.value > 0 && tolerance.value < codeError)
+        refuse("--tolerance-value", tolerance.value, "at least " + numberText(codeError));
+    if (tolerance.relative > 0)
+        refuse("--tolerance", tolerance.relative,
+               "--tolerance-value for real values of more than 65536 kinds");
+}
+
+int codeCountOf(const Volume& volume) {
+    const CodeBook& book = volume.codeBook;
+    return book.table ? int(book.table->size()) : kCodeCount;
+}
+
+IndexBox united(IndexBox box, const InactiveValues& inactive) {
+    openvdb::CoordBBox more;
+    if (!inactive.numbers || !inactive.numbers->tree.evalActiveVoxelBoundingBox(more)) return box;
+    const glm::ivec3 low(more.min().x(), more.min().y(), more.min().z());
+    const glm::ivec3 high(more.max().x(), more.max().y(), more.max().z());
+    if (box.empty()) return {low, high};
+    return {glm::min(box.min, low), glm::max(box.max, high)};
+}
+
+// Copies what the source says of itself, under names of its own.
+void putSourceMetadata(const openvdb::GridBase& source, openvdb::MetaMap& metadata) {
+    for (auto entry = source.beginMeta(); entry != source.endMeta(); ++entry)
+        metadata.insertMeta(kSourcePrefix + entry->first, *entry->second);
+}
+
+openvdb::math::Transform::Ptr permutedTransform(const glm::dmat4& worldFromIndex, int sliceAxis) {
+    const glm::ivec3 order = sliceOrder(sliceAxis);
+    glm::dmat4 permuted = worldFromIndex;
+    for (int axis = 0; axis < 3; ++axis) permuted[axis] = worldFromIndex[order[axis]];
+    return makeTransformOfType("AffineMap", permuted);
+}
+
+DeltaHeader headerOf(const Volume& volume, const DeltaGrid& deltas, const Rest& rest,
+                     const InactiveValues& inactive, const Tolerance& tolerance) {
+    DeltaHeader header;
+    header.sliceAxis = deltas.sliceAxis;
+    header.keyInterval = deltas.keyInterval;
+    header.book = volume.codeBook;
+    header.codeCount = codeCountOf(volume);
+    header.sourceType = volume.type;
+    header.space = volume.space;
+    header.background = rest.background;
+    header.restActive = rest.active;
+    header.inactiveValues = inactive.values;
+    header.active = volume.activeCount;
+    for (const Slab& slab : deltas.slabs) header.slabDeltas.push_back(slab.deltas);
+    header.tolerance = tolerance.relative;
+    header.toleranceValue = tolerance.value;
+    return header;
+}
+
+std::string treeTypeOf(const openvdb::GridBase& grid) {
+    return grid.isType<openvdb::MaskGrid>() ? "mask" : grid.valueType();
+}
+
+}  // namespace
+
+struct DeltaFile::Impl {
+    openvdb::GridCPtrVec grids;
+    openvdb::MetaMap fileMetadata;
+};
+
+DeltaFile::DeltaFile() : impl_(std::make_unique<Impl>()) {
+    openvdb::initialize();
+}
+
+DeltaFile::~DeltaFile() = default;
+
+DeltaFileEntry DeltaFile::add(Volume volume, const DeltaFileOptions& options,
+                              const Listener& listener) {
+    checkTolerance("--tolerance", options.tolerance.relative);
+    checkTolerance("--tolerance-value", options.tolerance.value);
+    requireRoom(options.tolerance, volume);
+
+    const openvdb::GridBase::ConstPtr source = volume.source ? volume.source->grid : nullptr;
+    const InactiveValues inactive =
+        source && volume.hasBackground ? findInactiveValues(*source) : InactiveValues();
+    Rest rest = restOf(volume);
+    // A background that is no number has been replaced in `volume`, but not in its own grid.
+    if (volume.hasBackground && source) rest.background = backgroundOf(*source);
+    listener.report(0.1);
+
+    DeltaOptions taking;
+    taking.slotMap = rest.slotMap;
+    taking.inactive = inactive.numbers.get();
+    taking.sliceAxis =
+        options.sliceAxis ? *options.sliceAxis : mostComparableAxis(volume, rest.slotMap);
+    Volume held = volume;
+    held.box = united(volume.box, inactive);
+    taking.keyInterval = options.keyInterval != 0
+                             ? options.keyInterval
+                             : defaultKeyInterval(held.box.dims()[taking.sliceAxis]);
+    listener.report(0.3);
+    holdValues(held, taking.sliceAxis, taking.keyInterval, options.tolerance,
+               codeErrorBound(volume), rest.slotMap);
+    const DeltaGrid deltas = makeDeltaGrid(held, taking);
+    listener.report(0.7);
+
+    const openvdb::Int32Grid::Ptr& grid = deltas.tree->grid;
+    DeltaHeader header = headerOf(held, deltas, rest, inactive, options.tolerance);
+    header.box = held.box;
+    if (source && volume.hasBackground) {
+        header.sourceTree = treeTypeOf(*source);
+        header.sourceMap = source->transform().mapType();
+        putSourceMetadata(*source, *grid);
+        if (impl_->grids.empty() && volume.source->fileMetadata)
+            impl_->fileMetadata = *volume.source->fileMetadata;
+    }
+    grid->setName(volume.name);
+    grid->setCreator("deltasplat");
+    grid->setTransform(permutedTransform(volume.worldFromIndex, deltas.sliceAxis));
+    putDeltaHeader(header, *grid);
+
+    DeltaFileEntry entry;
+    entry.sliceAxis = deltas.sliceAxis;
+    entry.keyInterval = deltas.keyInterval;
+    entry.deltas = deltas.deltas();
+    if (!volume.codeBook.isExact() || !options.tolerance.isExact()) {
+        // The real thing is measured: the deltas, added up again, against the source.
+        ReadOptions reading;
+        reading.levelSetToFog = false;
+        reading.keepSource = true;
+        const Volume restored = readDeltaGrid(*grid, nullptr, volume.name, reading, {});
+        entry.maxError = compareVolumes(restored, volume).maxError;
+        header.maxError = entry.maxError;
+        putDeltaHeader(header, *grid);
+    }
+    entry.lossless = entry.maxError == 0 && !inactive.tooMany;
+    if (inactive.tooMany)
+        listener.warn("grid \"" + volume.name +
+                      "\": more than 65536 different values of inactive voxels; they become the "
+                      "background");
+    if (options.maxError && entry.maxError > *options.maxError) {
+        throw Error(ErrorCode::kFailed,
+                    gotExpected("grid \"" + volume.name + "\"",
+                                "a largest error of " + numberText(entry.maxError),
+                                "at most " + numberText(*options.maxError) + " (--max-error)"));
+    }
+    impl_->grids.push_back(grid);
+    listener.report(1);
+    return entry;
+}
+
+void DeltaFile::write(const std::filesystem::path& file) const {
+    writeVdb(file, impl_->grids, impl_->fileMetadata);
+}
+
+}  // namespace deltasplat

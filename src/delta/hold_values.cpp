@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/hold_values.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "delta/block_windows.h"
+#include "delta/code_blocks.h"
+#include "ingest/code_statistics.h"
+#include "ingest/readers.h"
+#include "memory.h"
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+// Says which values stand for which, in terms of slots.
+class HoldRule {
+  public:
+    HoldRule(const Volume& volume, const Tolerance& tolerance, double codeError)
+        : values_(kSlotCount), allowed_(kSlotCount, -1) {
+        for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+            if (volume.histogram[code] == 0) continue;
+            const double value = volume.codeBook.valueOf(Code(code));
+            values_[code + 1] = value;
+            allowed_[code + 1] = allowance(value, tolerance, codeError);
+        }
+    }
+
+    bool holds(Slot held, Slot slot) const {
+        if (held == slot || held == kEmptySlot || slot == kEmptySlot) return held == slot;
+        return std::fabs(values_[std::size_t(held)] - values_[std::size_t(slot)]) <=
+               allowed_[std::size_t(slot)];
+    }
+
+  private:
+    // Of the code book's error the true value may be nearer to 0, and the code's farther off.
+    static double allowance(double value, const Tolerance& tolerance, double codeError) {
+        double allowed = std::numeric_limits<double>::infinity();
+        if (tolerance.value > 0) allowed = tolerance.value;
+        if (tolerance.relative > 0) {
+            const double nearest = std::max(0.0, std::fabs(value) - codeError);
+            allowed = std::min(allowed, tolerance.relative * nearest);
+        }
+        return allowed - codeError;
+    }
+
+    std::vector<double> values_;
+    std::vector<double> allowed_;
+};
+
+// A block whose codes changed, and its new leaf.
+struct Changed {
+    openvdb::Coord origin;
+    std::unique_ptr<CodeTree::Leaf> leaf;
+};
+
+// Holds values along one column of blocks (same u and v), in place where there are leaves.
+class ColumnHolder {
+  public:
+    ColumnHolder(const BlockReader& reader, const SlabLayout& layout, const HoldRule& rule,
+                 int sliceAxis)
+        : reader_(reader), layout_(layout), rule_(rule), sliceAxis_(sliceAxis) {
+        stride_ = toSliceOrder(glm::ivec3(64, 8, 1), sliceAxis);
+    }
+
+    void run(const CodeBlock* begin, const CodeBlock* end, std::vector<Changed>& changed) const {
+        std::array<Slot, 64> held{};
+        BlockSlots slots;
+        for (const CodeBlock* block = begin; block != end; ++block) {
+            const bool follows = block != begin && block[-1].position.x + 1 == block->position.x;
+            if (!follows || layout_.startsSlab(block->position.x)) held.fill(kEmptySlot);
+            reader_.readBlock(*block, slots);
+            if (hold(slots, held)) changed.push_back(replaced(*block, slots));
+        }
+    }
+
+  private:
+    // Returns whether any slot was replaced by the one held.
+    bool hold(BlockSlots& slots, std::array<Slot, 64>& held) const {
+        bool any = false;
+        for (std::size_t i = 0; i < slots.size(); ++i) {
+            Slot& before = held[i & 63];
+            if (before != slots[i] && rule_.holds(before, slots[i])) {
+                slots[i] = before;
+                any = true;
+            }
+            before = slots[i];
+        }
+        return any;
+    }
+
+    Changed replaced(const CodeBlock& block, const BlockSlots& slots) const {
+        const glm::ivec3 xyz = 8 * fromSliceOrder(block.position, sliceAxis_);
+        Changed changed{{xyz.x, xyz.y, xyz.z}, nullptr};
+        changed.leaf = block.leaf ? std::make_unique<CodeTree::Leaf>(*block.leaf)
+                                  : std::make_unique<CodeTree::Leaf>(changed.origin, Code(0), true);
+        Code* codes = changed.leaf->buffer().data();
+        for (int s = 0, i = 0; s < 8; ++s) {
+            for (int u = 0; u < 8; ++u) {
+                for (int v = 0; v < 8; ++v, ++i) {
+                    // What is empty keeps its code.
+                    if (slots[std::size_t(i)] != kEmptySlot)
+                        codes[s * stride_.x + u * stride_.y + v * stride_.z] =
+                            Code(slots[std::size_t(i)] - 1);
+                }
+            }
+        }
+        return changed;
+    }
+
+    const BlockReader& reader_;
+    const SlabLayout& layout_;
+    const HoldRule& rule_;
+    int sliceAxis_;
+    glm::ivec3 stride_{1};
+};
+
+// Returns where each column of blocks begins, and at the end their number.
+std::vector<std::size_t> columnsOf(const std::vector<CodeBlock>& blocks) {
+    std::vector<std::size_t> begins;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const bool begins_here = i == 0 || blocks[i].position.y != blocks[i - 1].position.y ||
+                                 blocks[i].position.z != blocks[i - 1].position.z;
+        if (begins_here) begins.push_back(i);
+    }
+    begins.push_back(blocks.size());
+    return begins;
+}
+
+}  // namespace
+
+void holdValues(Volume& volume, int sliceAxis, int keyInterval, const Tolerance& tolerance,
+                double codeError, std::span<const Slot> slotMap) {
+    if (volume.empty() || tolerance.isExact()) return;
+    const SlabLayout layout = layoutOf(permutedBox(volume.box, sliceAxis), keyInterval);
+    const BlockReader reader(*volume.codes, nullptr, sliceAxis, slotMap);
+    const HoldRule rule(volume, tolerance, codeError);
+    const ColumnHolder holder(reader, layout, rule, sliceAxis);
+    requireMemory("tolerance", double(reader.blocks().size()) * (sizeof(Changed) + 1200));
+
+    const std::vector<std::size_t> columns = columnsOf(reader.blocks());
+    std::vector<std::vector<Changed>> changed(columns.size() - 1);
+    parallelForChunks(changed.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const CodeBlock* blocks = reader.blocks().data();
+            holder.run(blocks + columns[i], blocks + columns[i + 1], changed[i]);
+        }
+    });
+
+    auto codes = std::shared_ptr<CodeTree>(new CodeTree{CodeTree::Tree(volume.codes->tree)});
+    openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(codes->tree);
+    for (auto& column : changed) {
+        for (Changed& block : column) accessor.addLeaf(block.leaf.release());
+    }
+    volume.histogram = histogramOf(codes->tree);
+    volume.codes = std::move(codes);
+    summarize(volume);
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/inactive_values.h"
+
+#include <openvdb/openvdb.h>
+
+#include <bit>
+#include <type_traits>
+
+#include "ingest/book_encoder.h"
+#include "ingest/distinct_values.h"
+#include "ingest/grid_values.h"
+
+namespace deltasplat {
+namespace {
+
+bool sameBits(double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+// Calls use(iterator) for all inactive voxels and tiles that do not hold the background.
+template <typename Tree, typename Use>
+void forInactive(const Tree& tree, const Use& use) {
+    const auto background = double(tree.background());
+    for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
+        if (leaf->isDense()) continue;
+        for (auto voxel = leaf->cbeginValueOff(); voxel; ++voxel) {
+            if (!sameBits(double(*voxel), background))
+                use(voxel.getCoord(), double(*voxel), nullptr);
+        }
+    }
+    auto tile = tree.cbeginValueOff();
+    tile.setMaxDepth(Tree::ValueOffCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
+        if (sameBits(double(*tile), background)) continue;
+        const openvdb::CoordBBox box = tile.getBoundingBox();
+        use(box.min(), double(*tile), &box);
+    }
+}
+
+template <typename Tree>
+InactiveValues find(const Tree& tree) {
+    InactiveValues found;
+    DistinctValues distinct;
+    forInactive(tree,
+                [&](const auto&, double value, const openvdb::CoordBBox*) { distinct.add(value); });
+    found.tooMany = distinct.tooMany();
+    if (!found.tooMany) found.values = distinct.sorted();
+    if (found.values.empty()) return found;
+
+    const BookEncoder encoder(CodeBook::ofTable(found.values));
+    auto numbers = std::make_shared<CodeTree>();
+    openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(numbers->tree);
+    forInactive(tree, [&](const openvdb::Coord& at, double value, const openvdb::CoordBBox* box) {
+        if (box) {
+            numbers->tree.fill(*box, encoder(value), true);
+        } else {
+            accessor.setValueOn(at, encoder(value));
+        }
+    });
+    found.numbers = std::move(numbers);
+    return found;
+}
+
+// Masks have no values but their active states.
+using ValueGrids = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
+                                     openvdb::Int64Grid, openvdb::BoolGrid>;
+
+}  // namespace
+
+double backgroundOf(const openvdb::GridBase& grid) {
+    double background = 0;
+    grid.apply<ValueGrids>([&](const auto& typed) { background = double(typed.background()); });
+    return background;
+}
+
+InactiveValues findInactiveValues(const openvdb::GridBase& grid) {
+    InactiveValues found;
+    grid.apply<ValueGrids>([&](const auto& typed) { found = find(typed.tree()); });
+    return found;
+}
+
+}  // namespace deltasplat

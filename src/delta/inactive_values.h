@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Grid.h>
+
+#include <memory>
+#include <vector>
+
+#include "ingest/code_tree.h"
+
+namespace deltasplat {
+
+/// The inactive voxels of a grid that hold another value than the background, as the inside of
+/// level sets does.
+struct InactiveValues {
+    std::vector<double> values;  ///< increasing
+    std::shared_ptr<const CodeTree>
+        numbers;           ///< active at those voxels: the value's number; may be null
+    bool tooMany = false;  ///< more than 65536 different ones: none is kept
+};
+
+/// Returns a scalar grid's background as a double; 0 for masks.
+double backgroundOf(const openvdb::GridBase& grid);
+
+/// Collects the inactive values of a scalar grid.
+InactiveValues findInactiveValues(const openvdb::GridBase& grid);
+
+}  // namespace deltasplat

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/diff/compare_volumes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+
+#include "diff/compare_trees.h"
+#include "diff/error_sums.h"
+#include "diff/voxel_source.h"
+
+namespace deltasplat {
+namespace {
+
+// Turns a patient's coordinates from one system into the other: both have z up, and x and y run
+// against each other.
+glm::dmat4 inSpaceOf(const Volume& other, const Volume& volume) {
+    const bool turned =
+        !volume.space.empty() && !other.space.empty() && volume.space != other.space;
+    if (!turned) return volume.worldFromIndex;
+    glm::dmat4 turn(1.0);
+    turn[0][0] = turn[1][1] = -1;
+    return turn * volume.worldFromIndex;
+}
+
+IndexBox boxOfBoth(const IndexBox& a, const IndexBox& b) {
+    // Without any voxels, a transform is where its first ones would be.
+    if (a.empty() && b.empty()) return {glm::ivec3(0), glm::ivec3(1)};
+    if (a.empty()) return b;
+    if (b.empty()) return a;
+    return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
+}
+
+double smallest(const glm::dvec3& v) {
+    return std::min({v.x, v.y, v.z});
+}
+
+// The map between both places is affine, so the corners move farthest.
+double shiftOf(const Volume& a, const Volume& b) {
+    const glm::dmat4 placeB = inSpaceOf(a, b);
+    if (a.worldFromIndex == placeB) return 0;
+    const glm::dmat4 moved = placeB - a.worldFromIndex;
+    const IndexBox box = boxOfBoth(a.box, b.box);
+    double farthest = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 index((corner & 1) != 0 ? box.max.x : box.min.x,
+                               (corner & 2) != 0 ? box.max.y : box.min.y,
+                               (corner & 4) != 0 ? box.max.z : box.min.z, 1);
+        farthest = std::max(farthest, glm::length(glm::dvec3(moved * index)));
+    }
+    const double voxel = std::min(smallest(a.voxelSize()), smallest(b.voxelSize()));
+    return std::min(farthest / voxel, std::numeric_limits<double>::max());
+}
+
+void takeSums(const ErrorSums& sums, VolumeComparison& result) {
+    result.voxels = sums.voxels;
+    if (sums.voxels > 0) {
+        // Rounding must not make a mean larger than the largest.
+        const long double count = static_cast<long double>(sums.voxels);
+        result.meanError = std::min(double(sums.sum / count), sums.max);
+        result.rmsError = std::min(double(std::sqrt(sums.sumOfSquares / count)), sums.max);
+    }
+    result.maxError = sums.max;
+    result.maxAt = {sums.maxAt.x(), sums.maxAt.y(), sums.maxAt.z()};
+    result.valueA = sums.maxA.rounded();
+    result.valueB = sums.maxB.rounded();
+    result.overFail = sums.overFail;
+    result.overWarn = sums.overWarn;
+    result.activeMismatch = sums.activeMismatch;
+}
+
+}  // namespace
+
+VolumeComparison compareVolumes(const Volume& a, const Volume& b, const CompareOptions& options,
+                                const Listener& listener) {
+    const bool wide = holdsInt64(a) || holdsInt64(b);
+    // A dense volume says nothing about a background, so it takes the other's.
+    const WideValue backgroundA = backgroundOf(a.hasBackground ? a : b, wide);
+    const WideValue backgroundB = backgroundOf(b.hasBackground ? b : a, wide);
+    const ErrorTerms terms{backgroundA, backgroundB, options.fail, options.warn, wide};
+
+    VolumeComparison result;
+    takeSums(compareTrees({a, wide, backgroundA}, {b, wide, backgroundB}, terms, listener), result);
+    result.backgroundError = errorOf(backgroundA, backgroundB);
+    result.shift = shiftOf(a, b);
+    result.transformEqual = result.shift <= options.shift;
+    result.sizeEqual = a.hasBackground || b.hasBackground || a.box == b.box;
+    result.typeEqual = a.type == b.type;
+    result.classEqual = a.gridClass == b.gridClass;
+    result.nameEqual = a.name == b.name;
+    return result;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diff/voxel_source.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tree/ValueAccessor.h>
+
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "deltasplat/error.h"
+#include "ingest/code_tree.h"
+#include "ingest/source_grid.h"
+
+namespace deltasplat {
+namespace {
+
+using openvdb::Coord;
+
+constexpr double kWideStep = 0x1p32;
+
+// Cuts towards 0, so that both parts have the value's sign: their differences then cannot cancel
+// to 0 unless both are 0.
+WideValue split(double value) {
+    if (!std::isfinite(value)) return {value, 0};
+    const double high = std::trunc(value / kWideStep) * kWideStep;
+    return {high, value - high};
+}
+
+WideValue split(std::int64_t value) {
+    constexpr std::int64_t kStep = std::int64_t{1} << 32;
+    return {double(value / kStep) * kWideStep, double(value % kStep)};
+}
+
+// Turns what a tree stores into values.
+struct Decoder {
+    std::shared_ptr<const std::vector<double>> table;  // [65536] what codes stand for; or null
+    bool wide = false;
+
+    template <typename T>
+    WideValue operator()(T stored) const {
+        if constexpr (std::is_same_v<T, Code>) {
+            const double value = (*table)[stored];
+            return wide ? split(value) : WideValue{value, 0};
+        } else if constexpr (std::is_same_v<T, std::int64_t>) {
+            return split(stored);
+        } else {
+            return wide ? split(double(stored)) : WideValue{double(stored), 0};
+        }
+    }
+};
+
+template <typename Tree>
+class TreeReader : public VoxelReader {
+  public:
+    TreeReader(const Tree& tree, Decoder decode, std::optional<WideValue> inactive)
+        : accessor_(tree), decode_(std::move(decode)), inactive_(inactive) {}
+
+    int depthAt(const Coord& at) override { return accessor_.getValueDepth(at); }
+
+    Sample sampleAt(const Coord& at) override {
+        const bool active = accessor_.isValueOn(at);
+        if (!active && inactive_) return {*inactive_, false};
+        return {decode_(Stored(accessor_.getValue(at))), active};
+    }
+
+    bool readLeaf(const Coord& origin, BlockSamples& block) override {
+        const auto* leaf = accessor_.probeConstLeaf(origin);
+        if (leaf == nullptr) return false;
+        const auto& mask = leaf->getValueMask();
+        for (int word = 0; word < 8; ++word) {
+            block.active[word] = mask.template getWord<std::uint64_t>(openvdb::Index(word));
+        }
+        if (decode_.wide) {
+            decodeValues<true>(*leaf, block);
+        } else {
+            decodeValues<false>(*leaf, block);
+        }
+        if (inactive_ && !mask.isOn()) setInactive(block);
+        return true;
+    }
+
+  private:
+    using Leaf = typename Tree::LeafNodeType;
+    // Mask grids hold their states as values.
+    using Stored = std::conditional_t<std::is_same_v<typename Tree::ValueType, openvdb::ValueMask>,
+                                      bool, typename Tree::ValueType>;
+
+    static auto valuesOf(const Leaf& leaf) {
+        if constexpr (std::is_same_v<Stored, bool>) {
+            return [&leaf](int i) -> Stored { return leaf.getValue(openvdb::Index(i)); };
+        } else {
+            const Stored* values = leaf.buffer().data();
+            return [values](int i) { return values[i]; };
+        }
+    }
+
+    // The decision to split is taken once a block, so that the common loop stays a short one.
+    template <bool kWide>
+    void decodeValues(const Leaf& leaf, BlockSamples& block) const {
+        const auto stored = valuesOf(leaf);
+        for (int i = 0; i < BlockSamples::kVoxels; ++i) {
+            if constexpr (kWide) {
+                const WideValue value = decode_(stored(i));
+                block.high[i] = value.high;
+                block.low[i] = value.low;
+            } else if constexpr (std::is_same_v<Stored, Code>) {
+                block.high[i] = (*decode_.table)[stored(i)];
+            } else {
+                block.high[i] = double(stored(i));
+            }
+        }
+    }
+
+    void setInactive(BlockSamples& block) const {
+        for (int i = 0; i < BlockSamples::kVoxels; ++i) {
+            if ((block.active[i >> 6] >> (i & 63) & 1) != 0) continue;
+            block.high[i] = inactive_->high;
+            block.low[i] = inactive_->low;
+        }
+    }
+
+    openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false> accessor_;
+    Decoder decode_;
+    std::optional<WideValue> inactive_;
+};
+
+template <typename Tree>
+std::vector<Coord> regionsOf(const Tree& tree) {
+    std::vector<Coord> regions;
+    for (auto entry = tree.root().cbeginChildAll(); entry; ++entry) {
+        regions.push_back(entry.getCoord());
+    }
+    return regions;
+}
+
+std::shared_ptr<const std::vector<double>> tableOf(const CodeBook& book) {
+    auto table = std::make_shared<std::vector<double>>(kCodeCount);
+    for (int code = 0; code < kCodeCount; ++code) (*table)[code] = book.valueOf(Code(code));
+    return table;
+}
+
+// Calls use(typed grid) for the volume's own grid.
+template <typename Use>
+void withSource(const Volume& volume, const Use& use) {
+    using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
+                                    openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid>;
+    const openvdb::GridBase& grid = *volume.source->grid;
+    if (grid.apply<Types>(use)) return;
+    throw Error(ErrorCode::kInput, gotExpected("grid \"" + volume.name + "\"",
+                                               "type " + grid.valueType(), "a scalar grid"));
+}
+
+}  // namespace
+
+void BlockSamples::fill(const Sample& sample, bool wide) {
+    high.fill(sample.value.high);
+    if (wide) low.fill(sample.value.low);
+    active.fill(sample.active ? ~std::uint64_t{0} : 0);
+}
+
+VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background)
+    : background_(background) {
+    // Only a source with inactive values of its own tells them apart.
+    std::optional<WideValue> inactive;
+    if (!volume.source || !volume.hasBackground) inactive = background;
+    const auto readTree = [&](const auto& tree, Decoder decode) {
+        regions_ = regionsOf(tree);
+        makeReader_ = [&tree, decode = std::move(decode), inactive] {
+            return std::make_unique<TreeReader<std::decay_t<decltype(tree)>>>(tree, decode,
+                                                                              inactive);
+        };
+    };
+    if (volume.source) {
+        withSource(volume, [&](const auto& grid) { readTree(grid.tree(), {nullptr, wide}); });
+    } else {
+        readTree(volume.codes->tree, {tableOf(volume.codeBook), wide});
+    }
+}
+
+bool holdsInt64(const Volume& volume) {
+    return volume.source && volume.source->grid->isType<openvdb::Int64Grid>();
+}
+
+WideValue backgroundOf(const Volume& volume, bool wide) {
+    // A double cannot hold every 64-bit integer.
+    if (volume.hasBackground && holdsInt64(volume)) {
+        return split(
+            openvdb::gridConstPtrCast<openvdb::Int64Grid>(volume.source->grid)->background());
+    }
+    return Decoder{nullptr, wide}(volume.background);
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Types.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "deltasplat/ingest/volume.h"
+
+namespace deltasplat {
+
+/// A value, exactly: the sum of both parts. `low` is used only if a 64-bit integer takes part in
+/// the comparison; then `high` is a multiple of 2^32 and |low| < 2^32, both with the value's sign.
+struct WideValue {
+    double high = 0;
+    double low = 0;
+
+    double rounded() const { return high + low; }
+    bool operator==(const WideValue&) const = default;
+};
+
+/// One voxel, or many alike.
+struct Sample {
+    WideValue value;
+    bool active = false;
+};
+
+/// 8x8x8 voxels in the order of a leaf (x slowest, z fastest).
+struct BlockSamples {
+    static constexpr int kVoxels = 512;
+    alignas(64) std::array<double, kVoxels> high;
+    alignas(64) std::array<double, kVoxels> low;  ///< as WideValue::low
+    std::array<std::uint64_t, 8> active;          ///< one bit a voxel
+
+    void fill(const Sample& sample, bool wide);
+};
+
+/// Reads one volume's voxels on one thread.
+class VoxelReader {
+  public:
+    virtual ~VoxelReader() = default;
+    /// Level of the node that holds the voxel's value: -1 background, 0 a tile of 4096^3 voxels, 1
+    /// of 128^3, 2 of 8^3, 3 a leaf.
+    virtual int depthAt(const openvdb::Coord& at) = 0;
+    virtual Sample sampleAt(const openvdb::Coord& at) = 0;
+    /// Fills in the block at `origin`; false if there is no leaf, so that sampleAt says it all.
+    virtual bool readLeaf(const openvdb::Coord& origin, BlockSamples& block) = 0;
+};
+
+/// How volumes of any kind look to the comparison.
+class VoxelSource {
+  public:
+    /// @param wide        whether values are split, as WideValue says
+    /// @param background  what voxels outside a dense volume hold
+    VoxelSource(const Volume& volume, bool wide, WideValue background);
+
+    const WideValue& background() const { return background_; }
+    /// First voxels of the 4096^3 regions outside which everything is background.
+    const std::vector<openvdb::Coord>& regions() const { return regions_; }
+    std::unique_ptr<VoxelReader> makeReader() const { return makeReader_(); }
+
+  private:
+    WideValue background_;
+    std::vector<openvdb::Coord> regions_;
+    std::function<std::unique_ptr<VoxelReader>()> makeReader_;
+};
+
+/// Returns whether the volume's own values are 64-bit integers.
+bool holdsInt64(const Volume& volume);
+
+/// Returns the value that inactive voxels hold beyond everything stored.
+/// @param wide  as VoxelSource
+WideValue backgroundOf(const Volume& volume, bool wide);
+
+}  // namespace deltasplat

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Grid.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "deltasplat/ingest/slot.h"
+#include "deltasplat/ingest/volume.h"
+
+namespace deltasplat {
+
+/// What a delta grid's metadata says; docs/delta-grid.md specifies it.
+struct DeltaHeader {
+    static constexpr int kVersion = 1;
+
+    int sliceAxis = 2;
+    int keyInterval = 8;
+    IndexBox box;  ///< in the source's index space
+    CodeBook book;
+    int codeCount = kCodeCount;  ///< codes are below this
+    std::string sourceType;      ///< as Volume::type
+    std::string sourceTree;  ///< value type of the source's OpenVDB tree; empty: not from a .vdb
+    std::string sourceMap;   ///< type of the source's transform; empty: not from a .vdb
+    std::string space;       ///< as Volume::space
+    double background = 0;
+    bool restActive = false;  ///< what no delta speaks of is active (a volume without empty places)
+    std::vector<double> inactiveValues;     ///< of slots from kSlotCount on
+    std::uint64_t active = 0;               ///< active voxels of the source
+    std::vector<std::uint64_t> slabDeltas;  ///< deltas of each slab
+    double tolerance = 0;
+    double toleranceValue = 0;
+    double maxError = 0;
+
+    /// Largest slot + 1.
+    Slot slotCount() const { return kSlotCount + Slot(inactiveValues.size()); }
+};
+
+/// Names of the source grid's own metadata in a delta grid begin with this.
+inline constexpr const char* kSourcePrefix = "source:";
+
+/// Returns whether a grid is a delta grid of any version.
+bool isDeltaGrid(const openvdb::GridBase& grid);
+
+/// Adds the header to a grid's metadata.
+void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata);
+
+/// Reads a delta grid's header and checks everything in it that can be checked without its voxels.
+/// @throw Error(kInput) at the first entry that is missing, of another type or out of range
+DeltaHeader takeDeltaHeader(const openvdb::MetaMap& metadata, const std::string& where);
+
+}  // namespace deltasplat

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/ingest/list_grids.h"
+
+#include "ingest/file_name.h"
+#include "ingest/vdb_file.h"
+
+namespace deltasplat {
+
+GridList listGrids(const std::filesystem::path& file) {
+    requireRegularFile(file);
+    GridList list;
+    const VdbFile vdb(file);
+    for (const VdbGrid& grid : vdb.grids()) {
+        if (grid.isScalar()) {
+            list.scalar.push_back(grid.name);
+        } else {
+            list.others.push_back(grid.describe());
+        }
+    }
+    return list;
+}
+
+}  // namespace deltasplat

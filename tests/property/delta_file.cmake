@@ -1,0 +1,1 @@
+deltasplat_test(property/delta_file_test.cpp SOURCES reference/plain_delta_reader.cpp)

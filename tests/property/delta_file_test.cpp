@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// What goes into a delta grid comes out of it: read by the library and, by the format's description
+// alone, by a reader that shares no code with it.
+#include "deltasplat/delta/delta_file.h"
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include "deltasplat/ingest/read_volume.h"
+#include "ingest/source_grid.h"
+#include "reference/plain_delta_reader.h"
+#include "unit/ingest_helpers.h"
+
+namespace deltasplat {
+namespace {
+
+using openvdb::Coord;
+using testing::PlainVolume;
+using testing::TempFolder;
+
+// What a value type's random values are.
+enum class Kind { kHalf, kFewFloats, kManyFloats, kSmallInts, kWideInts, kBool };
+
+struct Case {
+    unsigned seed;
+    Kind kind;
+};
+
+template <typename T>
+T randomValue(std::mt19937& random, Kind kind) {
+    switch (kind) {
+        case Kind::kHalf:
+            return T(float(openvdb::math::half(float(int(random() % 4001) - 2000) / 512)));
+        case Kind::kFewFloats:
+            return T(std::sin(double(random() % 3000)));
+        case Kind::kManyFloats:
+            return T(double(random()) / 4294967295.0 - 0.25);
+        case Kind::kSmallInts:
+            return T(int(random() % 60000) - 20000);
+        case Kind::kWideInts:
+            return T(int(random() % 5000) * 400000 - 1000000000);
+        case Kind::kBool:
+            break;
+    }
+    return T(random() % 2);
+}
+
+Coord randomCoord(std::mt19937& random, const Coord& low, const Coord& size) {
+    const auto below = [&](int n) { return int(random() % unsigned(n)); };
+    return low + Coord(below(size.x()), below(size.y()), below(size.z()));
+}
+
+// Boxes, single voxels and tiles, active and inactive, with values of their own, anywhere.
+template <typename Grid>
+typename Grid::Ptr randomGrid(std::mt19937& random, Kind kind) {
+    using T = typename Grid::ValueType;
+    const auto value = [&] {
+        return kind == Kind::kManyFloats ? randomValue<T>(random, kind)
+                                         : randomValue<T>(random, kind);
+    };
+    const Coord size(1 + int(random() % 70), 1 + int(random() % 70), 1 + int(random() % 70));
+    const Coord low(int(random() % 300) - 200, int(random() % 300) - 200,
+                    int(random() % 300) - 200);
+    auto grid = Grid::create(random() % 2 ? T(0) : value());
+    auto& tree = grid->tree();
+    for (int i = 0; i < 6; ++i) {
+        const Coord a = randomCoord(random, low, size), b = randomCoord(random, low, size);
+        tree.fill({Coord::minComponent(a, b), Coord::maxComponent(a, b)}, value(),
+                  random() % 4 != 0);
+    }
+    for (int i = 0; i < 3000; ++i) {
+        const Coord at = randomCoord(random, low, size);
+        if (random() % 5 != 0) {
+            tree.setValueOn(at, value());
+        } else {
+            tree.setValueOff(at, value());
+        }
+    }
+    tree.addTile(1, randomCoord(random, low, size), value(), true);
+    tree.addTile(1, randomCoord(random, low, size), value(), false);
+    if (random() % 3 == 0) tree.addTile(2, low, value(), false);
+    return grid;
+}
+
+void dress(openvdb::GridBase& grid, std::mt19937& random) {
+    const openvdb::GridClass classes[] = {openvdb::GRID_UNKNOWN, openvdb::GRID_FOG_VOLUME,
+                                          openvdb::GRID_LEVEL_SET, openvdb::GRID_STAGGERED};
+    grid.setName("density");
+    grid.setGridClass(classes[random() % 4]);
+    grid.setCreator("a test");
+    grid.insertMeta("weight", openvdb::DoubleMetadata(0.1));
+    grid.insertMeta("frame", openvdb::Int32Metadata(-7));
+    grid.insertMeta("place", openvdb::Vec3DMetadata({1, 2, 1e-300}));
+    using namespace openvdb::math;
+    Mat4d matrix(0.1, 0.02, 0, 0, -0.03, 0.2, 0.01, 0, 0.3, 0, -0.7, 0, 1, 2, 3, 1);
+    const MapBase::Ptr maps[] = {
+        std::make_shared<UniformScaleMap>(0.1),
+        std::make_shared<ScaleMap>(Vec3d(0.1, 0.7, 1.3)),
+        std::make_shared<TranslationMap>(Vec3d(1, -2, 0.1)),
+        std::make_shared<UniformScaleTranslateMap>(0.3, Vec3d(0.1, 0, 0)),
+        std::make_shared<ScaleTranslateMap>(Vec3d(1, 2, 0.3), Vec3d(0.1, 5, -6)),
+        std::make_shared<AffineMap>(matrix)};
+    grid.setTransform(std::make_shared<Transform>(maps[random() % 6]));
+}
+
+std::uint64_t bits(double value) {
+    return std::bit_cast<std::uint64_t>(value);
+}
+
+// Returns a box that holds all of a grid that is not background, and a rim.
+openvdb::CoordBBox reachOf(const openvdb::GridBase& grid) {
+    openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    return box.empty() ? openvdb::CoordBBox(Coord(-8), Coord(8))
+                       : openvdb::CoordBBox(box.min() - Coord(9), box.max() + Coord(9));
+}
+
+template <typename Grid>
+void expectEqual(const Grid& expected, const Volume& restored, const PlainVolume& plain) {
+    ASSERT_TRUE(restored.source);
+    ASSERT_TRUE(restored.source->grid->isType<Grid>());
+    const auto& grid = static_cast<const Grid&>(*restored.source->grid);
+    EXPECT_EQ(bits(double(grid.background())), bits(double(expected.background())));
+    EXPECT_EQ(bits(plain.background), bits(double(expected.background())));
+    EXPECT_EQ(grid.transform(), expected.transform());
+    EXPECT_EQ(grid.transform().mapType(), expected.transform().mapType());
+    EXPECT_EQ(plain.worldFromIndex, expected.transform().baseMap()->getAffineMap()->getMat4());
+    EXPECT_TRUE(static_cast<const openvdb::MetaMap&>(grid) == expected);
+    EXPECT_TRUE(plain.metadata == expected);
+    EXPECT_EQ(grid.getGridClass(), expected.getGridClass());
+    EXPECT_EQ(grid.saveFloatAsHalf(), expected.saveFloatAsHalf());
+    EXPECT_EQ(grid.activeVoxelCount(), expected.activeVoxelCount());
+
+    auto a = expected.getConstAccessor();
+    auto b = grid.getConstAccessor();
+    std::uint64_t wrong = 0;
+    for (auto at = reachOf(expected).begin(); at; ++at) {
+        typename Grid::ValueType p{}, q{};
+        const bool on = a.probeValue(*at, p);
+        const bool restoredOn = b.probeValue(*at, q);
+        const bool same = on == restoredOn && bits(double(p)) == bits(double(q)) &&
+                          on == plain.activeAt(*at) && bits(double(p)) == bits(plain.valueAt(*at));
+        wrong += same ? 0 : 1;
+    }
+    EXPECT_EQ(wrong, 0u);
+}
+
+// Writes a grid as OpenVDB does, makes a delta grid of it, and reads that back.
+template <typename Grid>
+void expectRoundTrip(unsigned seed, Kind kind) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const TempFolder folder;
+    openvdb::initialize();
+    std::mt19937 random(seed);
+    auto grid = randomGrid<Grid>(random, kind);
+    if (kind == Kind::kHalf) grid->setSaveFloatAsHalf(true);
+    dress(*grid, random);
+    openvdb::io::File("source.vdb").write({grid});
+    openvdb::io::File input("source.vdb");
+    input.open();
+    const auto source = openvdb::gridPtrCast<Grid>(input.readGrid("density"));
+
+    ReadOptions reading;
+    reading.keepSource = true;
+    reading.levelSetToFog = false;
+    DeltaFileOptions options;
+    if (seed % 4 != 3) options.sliceAxis = int(seed % 4);
+    options.keyInterval = int(8 * (seed % 5));
+    DeltaFile file;
+    const DeltaFileEntry entry = file.add(readVolume("source.vdb", reading), options);
+    file.write("delta.vdb");
+    EXPECT_EQ(entry.maxError, 0);
+    EXPECT_TRUE(entry.lossless);
+    const Volume restored = readVolume("delta.vdb", reading);
+    EXPECT_EQ(restored.origin->deltas, entry.deltas);
+    expectEqual(*source, restored, testing::readPlainDeltas("delta.vdb", "density"));
+}
+
+TEST(DeltaFile, HalfGridsComeBack) {
+    for (unsigned seed = 1; seed <= 12; ++seed)
+        expectRoundTrip<openvdb::FloatGrid>(seed, Kind::kHalf);
+}
+
+TEST(DeltaFile, FloatGridsOfFewValuesComeBack) {
+    for (unsigned seed = 21; seed <= 28; ++seed)
+        expectRoundTrip<openvdb::FloatGrid>(seed, Kind::kFewFloats);
+}
+
+TEST(DeltaFile, DoubleGridsComeBack) {
+    for (unsigned seed = 31; seed <= 34; ++seed)
+        expectRoundTrip<openvdb::DoubleGrid>(seed, Kind::kManyFloats);
+}
+
+TEST(DeltaFile, IntegerGridsComeBack) {
+    for (unsigned seed = 41; seed <= 44; ++seed) {
+        expectRoundTrip<openvdb::Int32Grid>(seed, Kind::kSmallInts);
+        expectRoundTrip<openvdb::Int64Grid>(seed, Kind::kWideInts);
+    }
+}
+
+TEST(DeltaFile, BoolGridsComeBack) {
+    for (unsigned seed = 51; seed <= 55; ++seed)
+        expectRoundTrip<openvdb::BoolGrid>(seed, Kind::kBool);
+}
+
+}  // namespace
+}  // namespace deltasplat

@@ -1,0 +1,1 @@
+deltasplat_test(unit/compare_volumes_test.cpp)

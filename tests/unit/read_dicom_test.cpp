@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "unit/dicom_helpers.h"
+#include "unit/format_helpers.h"
+
+namespace deltasplat {
+namespace {
+
+using namespace deltasplat::testing;
+
+// Writes slices one unit apart along z into the folder `scan`, each with values of its own. Their
+// names are in no order.
+std::vector<DicomFile> slices(int count) {
+    std::vector<DicomFile> files;
+    for (int i = 0; i < count; ++i) {
+        DicomFile file;
+        file.position = "10\\20\\" + std::to_string(30 + 2 * i);
+        for (std::uint16_t& pixel : file.pixels) pixel = std::uint16_t(pixel + 100 * i);
+        files.push_back(file);
+    }
+    return files;
+}
+
+std::string nameOf(int number) {
+    return "scan/" + std::string(1, char('a' + number * 7 % 26)) + ".dcm";
+}
+
+void write(const std::vector<DicomFile>& files) {
+    std::filesystem::remove_all("scan");
+    std::filesystem::create_directory("scan");
+    for (std::size_t i = 0; i < files.size(); ++i) writeBytes(nameOf(int(i)), files[i].bytes());
+}
+
+std::vector<double> expected(int count, double slope = 1, double intercept = 0) {
+    std::vector<double> values;
+    for (int i = 0; i < count * 6; ++i) {
+        values.push_back(slope * (100 * (i / 6) + i % 6) + intercept);
+    }
+    return values;
+}
+
+TEST(ReadDicom, SortedByPlace) {
+    const TempFolder folder;
+    write(slices(11));
+    for (const std::string name : {"scan", "scan/"}) {
+        const Volume volume = readVolume(name);
+        EXPECT_EQ(volume.name, "scan");
+        EXPECT_EQ(volume.type, "uint16");
+        EXPECT_EQ(volume.space, "LPS");
+        EXPECT_EQ(volume.box.dims(), glm::ivec3(3, 2, 11));
+        EXPECT_EQ(volume.worldFromIndex,
+                  glm::dmat4(0.25, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 2, 0, 10, 20, 30, 1));
+        EXPECT_EQ(valuesOf(volume), expected(11));
+    }
+}
+
+TEST(ReadDicom, AlongAnyNormal) {
+    const TempFolder folder;
+    auto files = slices(3);
+    for (int i = 0; i < 3; ++i) {
+        // Rows run along y, columns along -z: the normal is -x.
+        files[std::size_t(i)].orientation = "0\\1\\0\\0\\0\\-1";
+        files[std::size_t(i)].position = std::to_string(50 - 3 * i) + "\\20\\30";
+    }
+    write(files);
+    const Volume volume = readVolume("scan");
+    EXPECT_EQ(volume.worldFromIndex,
+              glm::dmat4(0, 0.25, 0, 0, 0, 0, -0.5, 0, -3, 0, 0, 0, 50, 20, 30, 1));
+    EXPECT_EQ(valuesOf(volume), expected(3));
+}
+
+TEST(ReadDicom, TiltedGantry) {
+    const TempFolder folder;
+    auto files = slices(3);
+    for (int i = 0; i < 3; ++i) {
+        files[std::size_t(i)].position =
+            "10\\" + std::to_string(20 + i) + "\\" + std::to_string(30 + 2 * i);
+    }
+    write(files);
+    EXPECT_EQ(readVolume("scan").worldFromIndex[2], glm::dvec4(0, 1, 2, 0));
+}
+
+TEST(ReadDicom, Rescale) {
+    const TempFolder folder;
+    auto files = slices(3);
+    for (DicomFile& file : files) file.intercept = "-1000";
+    write(files);
+    const Volume volume = readVolume("scan");
+    EXPECT_EQ(volume.type, "int32");  // uint16 - 1000
+    EXPECT_EQ(valuesOf(volume), expected(3, 1, -1000));
+    for (DicomFile& file : files) file.slope = "0.5";
+    write(files);
+    EXPECT_EQ(valuesOf(readVolume("scan")), expected(3, 0.5, -1000));
+}
+
+// As in PET: every slice is scaled on its own.
+TEST(ReadDicom, RescaleOfEachSlice) {
+    const TempFolder folder;
+    auto files = slices(3);
+    files[1].slope = "0.5";
+    files[2].slope = "0.25";
+    write(files);
+    const Volume volume = readVolume("scan");
+    EXPECT_EQ(volume.type, "float64");
+    EXPECT_EQ(valueAt(volume, 1, 0, 0), 1);
+    EXPECT_EQ(valueAt(volume, 1, 0, 1), 50.5);
+    EXPECT_EQ(valueAt(volume, 1, 0, 2), 50.25);
+}
+
+TEST(ReadDicom, SignedPixels) {
+    const TempFolder folder;
+    auto files = slices(2);
+    for (DicomFile& file : files) file.isSigned = true;
+    files[0].pixels[0] = 0xffff;
+    write(files);
+    EXPECT_EQ(readVolume("scan").type, "int16");
+    EXPECT_EQ(valueAt(readVolume("scan"), 0, 0, 0), -1);
+}
+
+TEST(ReadDicom, OneSlice) {
+    const TempFolder folder;
+    auto files = slices(1);
+    files[0].thickness = "3";
+    write(files);
+    for (const std::string& name : {std::string("scan"), nameOf(0)}) {
+        const Volume volume = readVolume(name);
+        EXPECT_EQ(volume.voxelSize(), glm::dvec3(0.25, 0.5, 3));
+        EXPECT_EQ(volume.name, name == "scan" ? "scan" : "a");
+    }
+}
+
+TEST(ReadDicom, OtherFilesInTheFolder) {
+    const TempFolder folder;
+    write(slices(2));
+    writeBytes("scan/DICOMDIR", slices(1)[0].bytes());
+    writeBytes("scan/readme.txt", "text");
+    writeBytes("scan/.hidden", "text");
+    std::filesystem::create_directory("scan/more");
+    Warnings warnings;
+    EXPECT_EQ(valuesOf(readVolume("scan", {}, warnings.listener())), expected(2));
+    EXPECT_EQ(warnings.lines,
+              std::vector<std::string>{
+                  "scan: 2 files that are no DICOM are passed over, the first DICOMDIR"});
+}
+
+template <typename Change>
+void expectRefusedWith(const std::string& message, const Change& change) {
+    auto files = slices(5);
+    change(files);
+    write(files);
+    expectRefused(message, "scan");
+}
+
+TEST(ReadDicomError, MissingAndDoubledSlices) {
+    const TempFolder folder;
+    expectRefusedWith(
+        "scan: got h.dcm and o.dcm 4 mm apart; expected 2 mm as between the others (a slice may be "
+        "missing)",
+        [](auto& files) { files.erase(files.begin() + 2); });
+    expectRefusedWith(
+        "scan: got o.dcm and v.dcm at the same place; expected one slice at each place",
+        [](auto& files) { files[3].position = files[2].position; });
+    expectRefusedWith("scan: got o.dcm 30 mm aside of the others; expected slices in one row",
+                      [](auto& files) { files[2].position = "40\\20\\34"; });
+}
+
+TEST(ReadDicomError, SlicesThatDiffer) {
+    const TempFolder folder;
+    expectRefusedWith("scan/v.dcm: got a slice of 2x3; expected 3x2, as in a.dcm",
+                      [](auto& files) { std::swap(files[3].columns, files[3].rows); });
+    expectRefusedWith(
+        "scan/v.dcm: got a slice of another direction or pixel spacing; expected one parallel to "
+        "a.dcm",
+        [](auto& files) { files[3].orientation = "0\\1\\0\\1\\0\\0"; });
+    expectRefusedWith(
+        "scan: got 2 DICOM series (1.2.3: 3 slices, 1.2.4: 2 slices); expected a folder with the "
+        "slices of one",
+        [](auto& files) { files[3].series = files[1].series = "1.2.4"; });
+}
+
+TEST(ReadDicomError, Headers) {
+    const TempFolder folder;
+    const std::string place = "; expected 3 numbers that say where the slice lies";
+    expectRefusedWith("scan/o.dcm: got no usable ImagePositionPatient" + place,
+                      [](auto& files) { files[2].position = ""; });
+    expectRefusedWith("scan/o.dcm: got no usable ImagePositionPatient" + place,
+                      [](auto& files) { files[2].position = "1\\two\\3"; });
+    expectRefusedWith(
+        "scan/o.dcm: got no usable ImageOrientationPatient; expected 6 numbers that "
+        "say where the slice lies",
+        [](auto& files) { files[2].orientation = "1\\0\\0"; });
+    expectRefusedWith(
+        "scan/o.dcm: got directions or spacing that are impossible; expected unit "
+        "vectors at a right angle and spacing above 0",
+        [](auto& files) { files[2].orientation = "1\\0\\0\\1\\0\\0"; });
+    expectRefusedWith(
+        "scan/o.dcm: got directions or spacing that are impossible; expected unit "
+        "vectors at a right angle and spacing above 0",
+        [](auto& files) { files[2].pixelSpacing = "0\\1"; });
+    expectRefusedWith("scan/o.dcm: got 7 frames in one file; expected one slice in each file",
+                      [](auto& files) { files[2].frames = "7"; });
+    expectRefusedWith("scan/o.dcm: got no image; expected a DICOM slice with rows and columns",
+                      [](auto& files) { files[2].rows = 0; });
+    expectRefusedWith("scan/o.dcm: got pixels of kind RGB; expected one grey value a pixel",
+                      [](auto& files) {
+                          files[2].samples = 3;
+                          files[2].photometric = "RGB";
+                      });
+}
+
+TEST(ReadDicomError, PixelsThatAreNotThere) {
+    const TempFolder folder;
+    auto files = slices(1);
+    files[0].columns = files[0].rows = 60000;
+    write(files);
+    expectRefused("scan/a.dcm: got 12 bytes of pixels; expected enough for 60000x60000", "scan");
+    files = slices(1);
+    files[0].pixels.resize(4);
+    write(files);
+    expectRefused("scan/a.dcm: got 8 bytes of pixels; expected enough for 3x2", "scan");
+    write(slices(2));
+    const std::string whole = readBytes("scan/a.dcm");
+    writeBytes("scan/a.dcm", whole.substr(0, whole.size() - 1));
+    expectRefused("scan/a.dcm: got DICOM whose elements are cut short at byte " +
+                      std::to_string(whole.size() - 12) + "; expected a sound file",
+                  "scan");
+    for (std::size_t size = 132; size < whole.size(); ++size) {
+        writeBytes("scan/a.dcm", whole.substr(0, size));
+        expectInputError("scan");
+    }
+}
+
+TEST(ReadDicomError, Structure) {
+    const TempFolder folder;
+    write(slices(1));
+    const std::string whole = readBytes("scan/a.dcm");
+    const auto refusedWith = [&](const std::string& message, const std::string& from,
+                                 const std::string& to) {
+        std::string bytes = whole;
+        bytes.replace(bytes.find(from), from.size(), to);
+        writeBytes("scan/a.dcm", bytes);
+        try {
+            readVolume("scan");
+            ADD_FAILURE() << message;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::kInput);
+            EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+        }
+    };
+    refusedWith("element has the unknown type \"X?\"", "OW", "X\n");
+    refusedWith("elements are in no order", std::string("\x28\0\x02\0", 4),
+                std::string("\x08\0\x02\0", 4));
+    refusedWith("DICOM with the transfer syntax \"1.2.840.90008.1.2.1\"", "1.2.840.10008.1.2.1",
+                "1.2.840.90008.1.2.1");
+    refusedWith("DICOM with the transfer syntax \"1.2.840.10008.1.2.1.99\"",
+                std::string("\x14\0"
+                            "1.2.840.10008.1.2.1\0",
+                            22),
+                std::string("\x16\0"
+                            "1.2.840.10008.1.2.1.99",
+                            24));
+    refusedWith("pixels of 17 bits up to bit 15 in 16", std::string("\x01\x01US\x02\0\x10", 7),
+                std::string("\x01\x01US\x02\0\x11", 7));
+}
+
+}  // namespace
+}  // namespace deltasplat

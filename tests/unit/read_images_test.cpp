@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "unit/format_helpers.h"
+
+namespace deltasplat {
+namespace {
+
+using namespace deltasplat::testing;
+using OIIO::ImageOutput;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+template <typename T>
+TypeDesc typeOf() {
+    return OIIO::BaseTypeFromC<T>::value;
+}
+
+template <typename T>
+void writeImage(const std::string& file, const ImageSpec& spec, const std::vector<T>& values) {
+    auto out = ImageOutput::create(file);
+    ASSERT_TRUE(out && out->open(file, spec)) << OIIO::geterror();
+    ASSERT_TRUE(out->write_image(typeOf<T>(), values.data()));
+    out->close();
+}
+
+// Pages of 4x3, with rising values.
+template <typename T>
+void writePages(const std::string& file, int pages, const std::string& compression = "none") {
+    auto out = ImageOutput::create(file);
+    ImageSpec spec(4, 3, 1, typeOf<T>());
+    spec.attribute("compression", compression);
+    const std::vector<ImageSpec> specs(std::size_t(pages), spec);
+    ASSERT_TRUE(out->open(file, pages, specs.data())) << out->geterror();
+    for (int page = 0; page < pages; ++page) {
+        const bool ready = page == 0 || out->open(file, spec, ImageOutput::AppendSubimage);
+        ASSERT_TRUE(ready) << out->geterror();
+        const auto values = ramp<T>(12, 12 * page);
+        ASSERT_TRUE(out->write_image(typeOf<T>(), values.data()));
+    }
+    out->close();
+}
+
+void writeStack(const std::vector<std::string>& files) {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        writeImage(files[i], ImageSpec(4, 3, 1, TypeDesc::UINT8),
+                   ramp<std::uint8_t>(12, 12 * double(i)));
+    }
+}
+
+TEST(ReadImages, PagesOfATiff) {
+    const TempFolder folder;
+    for (const std::string compression : {"none", "lzw", "zip"}) {
+        writePages<std::uint16_t>("a.tif", 11, compression);
+        const Volume volume = readVolume("a.tif");
+        EXPECT_EQ(volume.name, "a");
+        EXPECT_EQ(volume.type, "uint16");
+        EXPECT_EQ(volume.space, "");
+        EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 11));
+        EXPECT_EQ(valuesOf(volume), ramp<double>(132));
+        EXPECT_EQ(volume.worldFromIndex, glm::dmat4(1));
+    }
+}
+
+TEST(ReadImages, TypesOfTiff) {
+    const TempFolder folder;
+    writePages<std::uint8_t>("a.tiff", 2);
+    EXPECT_EQ(readVolume("a.tiff").type, "uint8");
+    writePages<std::int16_t>("b.tiff", 2);
+    EXPECT_EQ(readVolume("b.tiff").type, "int16");
+    writePages<float>("c.tiff", 2);
+    EXPECT_EQ(readVolume("c.tiff").type, "float32");
+    EXPECT_EQ(valuesOf(readVolume("c.tiff")), ramp<double>(24));
+    writePages<double>("d.tiff", 2);
+    EXPECT_EQ(readVolume("d.tiff").type, "float64");
+}
+
+TEST(ReadImages, StackByPattern) {
+    const TempFolder folder;
+    std::filesystem::create_directory("s");
+    writeStack({"s/slice.0008.png", "s/slice.0009.png", "s/slice.0010.png"});
+    writeStack({"s/other.0001.png", "s/slice.10.png", "s/slice.001x.png"});
+    for (const std::string name : {"s/slice.####.png", "s/slice.%04d.png", "./s/slice.####.png"}) {
+        const Volume volume = readVolume(name);
+        EXPECT_EQ(volume.name, "slice");
+        EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 3));
+        EXPECT_EQ(valuesOf(volume), ramp<double>(36));
+    }
+    EXPECT_EQ(readVolume("s/slice.##.png").box.dims(), glm::ivec3(4, 3, 1));
+}
+
+TEST(ReadImages, StackOfNumbersWithoutZeros) {
+    const TempFolder folder;
+    writeStack({"a9.png", "a10.png", "a11.png"});
+    for (const std::string name : {"a#.png", "a%d.png"}) {
+        EXPECT_EQ(valuesOf(readVolume(name)), ramp<double>(36));
+    }
+}
+
+TEST(ReadImages, EverySecondNumber) {
+    const TempFolder folder;
+    writeStack({"a.02.png", "a.04.png", "a.06.png"});
+    EXPECT_EQ(valuesOf(readVolume("a.##.png")), ramp<double>(36));
+}
+
+TEST(ReadImages, OneFileIsOnePicture) {
+    const TempFolder folder;
+    writeStack({"a.0001.png", "a.0002.png"});
+    EXPECT_EQ(readVolume("a.0001.png").box.dims(), glm::ivec3(4, 3, 1));
+}
+
+TEST(ReadImages, Folder) {
+    const TempFolder folder;
+    std::filesystem::create_directory("stack");
+    writeStack({"stack/z9.png", "stack/z10.png", "stack/z100.png"});
+    writeBytes("stack/notes.txt", "text");
+    Warnings warnings;
+    const Volume volume = readVolume("stack", {}, warnings.listener());
+    EXPECT_EQ(volume.name, "stack");
+    EXPECT_EQ(valuesOf(volume), ramp<double>(36));
+    EXPECT_EQ(warnings.lines,
+              std::vector<std::string>{
+                  "stack: 1 files that are no images are passed over, the first notes.txt"});
+}
+
+TEST(ReadImages, SpacingAndOrigin) {
+    const TempFolder folder;
+    writeStack({"a.1.png", "a.2.png"});
+    ReadOptions options;
+    options.raw.spacing = {2, 3, 4};
+    options.raw.origin = {10, 20, 30};
+    EXPECT_EQ(readVolume("a.#.png", options).worldFromIndex,
+              glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
+    options.raw.spacing.y = 0;
+    expectError(ErrorCode::kUsage, "--spacing: got 0; expected three finite numbers above 0",
+                [&] { readVolume("a.#.png", options); });
+}
+
+TEST(ReadImages, ColoursBecomeLuminance) {
+    const TempFolder folder;
+    std::vector<std::uint16_t> colors;
+    for (int i = 0; i < 12; ++i) {
+        colors.insert(colors.end(),
+                      {std::uint16_t(1000 * i), std::uint16_t(500), std::uint16_t(7)});
+    }
+    writeImage("a.1.png", ImageSpec(4, 3, 3, TypeDesc::UINT16), colors);
+    for (auto& color : colors) color = 30000;
+    writeImage("a.2.png", ImageSpec(4, 3, 3, TypeDesc::UINT16), colors);
+    Warnings warnings;
+    const Volume volume = readVolume("a.#.png", {}, warnings.listener());
+    EXPECT_EQ(volume.type, "uint16");
+    for (int i = 0; i < 12; ++i) {
+        const double sum = 0.2126 * 1000 * i + 0.7152 * 500 + 0.0722 * 7;
+        EXPECT_NEAR(valueAt(volume, i % 4, i / 4, 0), sum, 0.5);
+        EXPECT_EQ(valueAt(volume, i % 4, i / 4, 1), 30000);
+    }
+    EXPECT_EQ(warnings.lines,
+              std::vector<std::string>{"a.1.png: colours are read as their luminance"});
+}
+
+TEST(ReadImages, AlphaIsLeftOut) {
+    const TempFolder folder;
+    std::vector<std::uint8_t> pixels;
+    for (int i = 0; i < 12; ++i) {
+        pixels.insert(pixels.end(), {std::uint8_t(i * 20), std::uint8_t(i)});
+    }
+    ImageSpec spec(4, 3, 2, TypeDesc::UINT8);
+    spec.channelnames = {"Y", "A"};
+    spec.alpha_channel = 1;
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    writeImage("a.png", spec, pixels);
+    Warnings warnings;
+    EXPECT_EQ(valuesOf(readVolume("a.png", {}, warnings.listener())), ramp<double>(12, 0, 20));
+    EXPECT_EQ(warnings.lines,
+              std::vector<std::string>{"a.png: only the first of 2 channels is read"});
+}
+
+TEST(ReadImages, BitsThatAreSpread) {
+    const TempFolder folder;
+    ImageSpec spec(8, 2, 1, TypeDesc::UINT8);
+    spec.attribute("oiio:BitsPerSample", 1);
+    std::vector<std::uint8_t> pixels(16, 0);
+    pixels[3] = 255;
+    writeImage("a.tif", spec, pixels);
+    Warnings warnings;
+    EXPECT_EQ(valueAt(readVolume("a.tif", {}, warnings.listener()), 3, 0, 0), 255);
+    EXPECT_EQ(warnings.lines,
+              std::vector<std::string>{"a.tif: values of 1 bits are spread over 8"});
+}
+
+TEST(ReadImagesError, Stacks) {
+    const TempFolder folder;
+    expectRefused("a.####.png: got no file of that name; expected files such as a.0001.png",
+                  "a.####.png");
+    expectRefused("no/a.##.png: got no file of that name; expected files such as a.01.png",
+                  "no/a.##.png");
+    writeStack({"a.01.png", "a.02.png", "a.04.png"});
+    expectRefused("a.##.png: got no file a.03.png; expected 3 or more numbers in a row",
+                  "a.##.png");
+    writeImage("a.03.png", ImageSpec(3, 4, 1, TypeDesc::UINT8), ramp<std::uint8_t>(12));
+    expectRefused(
+        "a.03.png: got 3x4 uint8, channels: 1; expected 4x3 uint8, channels: 1, as in the first "
+        "slice",
+        "a.##.png");
+    writeImage("a.03.png", ImageSpec(4, 3, 1, TypeDesc::UINT16), ramp<std::uint16_t>(12));
+    expectRefused(
+        "a.03.png: got 4x3 uint16, channels: 1; expected 4x3 uint8, channels: 1, as in the first "
+        "slice",
+        "a.##.png");
+    writePages<std::uint8_t>("b.1.tif", 1);
+    writePages<std::uint8_t>("b.2.tif", 2);
+    expectRefused("b.2.tif: got 2 pages; expected one in each file of a stack", "b.#.tif");
+}
+
+TEST(ReadImagesError, Folders) {
+    const TempFolder folder;
+    std::filesystem::create_directory("empty");
+    expectRefused(
+        "empty: got a folder without DICOM files and images; expected a DICOM folder, a folder of "
+        "images, or a file",
+        "empty");
+    std::filesystem::create_directory("mixed");
+    writeStack({"mixed/1.png", "mixed/2.tif"});
+    expectRefused(
+        "mixed: got images of several kinds (.png, .tif); expected a folder with the images of one "
+        "stack",
+        "mixed");
+}
+
+TEST(ReadImagesError, DamagedFiles) {
+    const TempFolder folder;
+    writeBytes("a.png", "no image");
+    writeBytes("a.tif", "");
+    writePages<std::uint16_t>("b.tif", 3);
+    const std::string whole = readBytes("b.tif");
+    writeBytes("c.tif", whole.substr(0, 60));
+    writeImage("d.png", ImageSpec(40, 30, 1, TypeDesc::UINT8), ramp<std::uint8_t>(1200));
+    const std::string png = readBytes("d.png");
+    writeBytes("d.png", png.substr(0, png.size() / 2));
+    for (const std::string file : {"a.png", "a.tif", "c.tif", "d.png"}) {
+        try {
+            readVolume(file);
+            ADD_FAILURE() << file;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::kInput);
+            EXPECT_EQ(std::string(error.what()).rfind(file + ": got what OpenImageIO refuses (", 0),
+                      0u)
+                << error.what();
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+        }
+    }
+}
+
+// The header of a PNG with its sizes changed, and its checksum.
+TEST(ReadImagesError, SizesBeyondTheData) {
+    const TempFolder folder;
+    writeImage("a.png", ImageSpec(4, 3, 1, TypeDesc::UINT8), ramp<std::uint8_t>(12));
+    std::string bytes = readBytes("a.png");
+    for (const int place : {16, 20}) {
+        bytes.replace(std::size_t(place), 4, bytesOf<std::uint32_t>({1 << 18}, true));
+    }
+    const auto sum = std::uint32_t(crc32(0, reinterpret_cast<const Bytef*>(&bytes[12]), 17));
+    bytes.replace(29, 4, bytesOf<std::uint32_t>({sum}, true));
+    writeBytes("a.png", bytes);
+    try {
+        readVolume("a.png");
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::kInput) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace deltasplat

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include "unit/format_helpers.h"
+
+namespace deltasplat {
+namespace {
+
+using namespace deltasplat::testing;
+
+const std::vector<double> kRamp = ramp<double>(24);
+
+struct Meta {
+    int axes = 3;
+    std::string binary = "True";
+    std::string msb = "False";
+    std::string packed = "False";
+    std::string matrix = "1 0 0 0 1 0 0 0 1";
+    std::string offset = "10 20 30";
+    std::string spacing = "2 3 4";
+    std::string sizes = "4 3 2";
+    std::string type = "MET_USHORT";
+    std::string more;
+    std::string dataFile = "LOCAL";
+
+    std::string text() const {
+        return "ObjectType = Image\nNDims = " + std::to_string(axes) + "\nBinaryData = " + binary +
+               "\nBinaryDataByteOrderMSB = " + msb + "\nCompressedData = " + packed +
+               "\nTransformMatrix = " + matrix + "\nOffset = " + offset +
+               "\nElementSpacing = " + spacing + "\nDimSize = " + sizes +
+               "\nElementType = " + type + "\n" + more + "ElementDataFile = " + dataFile + "\n";
+    }
+};
+
+std::string data(bool bigEndian = false) {
+    return bytesOf(ramp<std::uint16_t>(24), bigEndian);
+}
+
+std::string packed(const std::string& bytes) {
+    std::string out(bytes.size() + 100, '\0');
+    uLongf size = out.size();
+    compress(reinterpret_cast<Bytef*>(out.data()), &size,
+             reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+    out.resize(size);
+    return out;
+}
+
+void expectSample(const Volume& volume) {
+    EXPECT_EQ(volume.type, "uint16");
+    EXPECT_EQ(volume.space, "");
+    EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 2));
+    EXPECT_EQ(volume.worldFromIndex, glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
+    EXPECT_EQ(valuesOf(volume), kRamp);
+}
+
+TEST(ReadMeta, LocalAndDetached) {
+    const TempFolder folder;
+    Meta meta;
+    writeBytes("a.mha", meta.text() + data());
+    expectSample(readVolume("a.mha"));
+    std::filesystem::create_directory("sub");
+    writeBytes("sub/values.raw", data());
+    meta.dataFile = "values.raw";
+    writeBytes("sub/b.mhd", meta.text());
+    const Volume volume = readVolume("sub/b.mhd");
+    EXPECT_EQ(volume.name, "b");
+    expectSample(volume);
+    for (const auto& [size, bytes] : {std::pair{"5", "12345" + data()}, {"-1", "abc" + data()}}) {
+        writeBytes("sub/values.raw", bytes);
+        meta.more = "HeaderSize = " + std::string(size) + "\n";
+        writeBytes("sub/c.mhd", meta.text());
+        expectSample(readVolume("sub/c.mhd"));
+    }
+}
+
+TEST(ReadMeta, BigEndian) {
+    const TempFolder folder;
+    Meta meta;
+    meta.msb = "True";
+    writeBytes("a.mha", meta.text() + data(true));
+    expectSample(readVolume("a.mha"));
+}
+
+TEST(ReadMeta, PackedAndText) {
+    const TempFolder folder;
+    Meta meta;
+    meta.packed = "True";
+    meta.dataFile = "values.zraw";
+    writeBytes("values.zraw", packed(data()));
+    writeBytes("c.mhd", meta.text());
+    expectSample(readVolume("c.mhd"));
+    meta.more = "CompressedDataSize = " + std::to_string(packed(data()).size()) + "\n";
+    meta.dataFile = "LOCAL";
+    writeBytes("a.mha", meta.text() + packed(data()));
+    expectSample(readVolume("a.mha"));
+    meta = {};
+    meta.binary = "False";
+    std::string numbers;
+    for (int i = 0; i < 24; ++i) numbers += std::to_string(i) + "\n";
+    writeBytes("b.mha", meta.text() + numbers);
+    expectSample(readVolume("b.mha"));
+}
+
+template <typename T>
+void expectType(const std::string& metaName, const std::string& name) {
+    for (const bool bigEndian : {false, true}) {
+        Meta meta;
+        meta.type = metaName;
+        meta.msb = bigEndian ? "True" : "False";
+        writeBytes("a.mha", meta.text() + bytesOf(ramp<T>(24, 2, 3), bigEndian));
+        const Volume volume = readVolume("a.mha");
+        EXPECT_EQ(volume.type, name);
+        EXPECT_EQ(valuesOf(volume), ramp<double>(24, 2, 3)) << name;
+    }
+}
+
+TEST(ReadMeta, Types) {
+    const TempFolder folder;
+    expectType<std::uint8_t>("MET_UCHAR", "uint8");
+    expectType<std::int8_t>("MET_CHAR", "int8");
+    expectType<std::uint16_t>("MET_USHORT", "uint16");
+    expectType<std::int16_t>("MET_SHORT", "int16");
+    expectType<std::uint32_t>("MET_UINT", "uint32");
+    expectType<std::int32_t>("MET_INT", "int32");
+    expectType<std::uint64_t>("MET_ULONG_LONG", "uint64");
+    expectType<std::int64_t>("MET_LONG_LONG", "int64");
+    expectType<float>("MET_FLOAT", "float32");
+    expectType<double>("MET_DOUBLE", "float64");
+}
+
+TEST(ReadMeta, Directions) {
+    const TempFolder folder;
+    Meta meta;
+    meta.matrix = "0 1 0 -1 0 0 0 0 -1";
+    writeBytes("a.mha", meta.text() + data());
+    EXPECT_EQ(readVolume("a.mha").worldFromIndex,
+              glm::dmat4(0, 2, 0, 0, -3, 0, 0, 0, 0, 0, -4, 0, 10, 20, 30, 1));
+}
+
+// Layers of 8 slices are read one by one.
+TEST(ReadMeta, ManySlices) {
+    const TempFolder folder;
+    for (const bool bigEndian : {false, true}) {
+        Meta meta;
+        meta.sizes = "9 7 37";
+        meta.msb = bigEndian ? "True" : "False";
+        writeBytes("a.mha", meta.text() + bytesOf(ramp<std::uint16_t>(9 * 7 * 37), bigEndian));
+        EXPECT_EQ(valuesOf(readVolume("a.mha")), ramp<double>(9 * 7 * 37));
+    }
+}
+
+TEST(ReadMeta, TwoAndFourAxes) {
+    const TempFolder folder;
+    Meta meta;
+    meta.axes = 2;
+    meta.matrix = "1 0 0 1";
+    meta.offset = "10 20";
+    meta.spacing = "2 3";
+    meta.sizes = "4 6";
+    writeBytes("a.mha", meta.text() + data());
+    EXPECT_EQ(readVolume("a.mha").box.dims(), glm::ivec3(4, 6, 1));
+    EXPECT_EQ(valuesOf(readVolume("a.mha")), kRamp);
+    meta.axes = 4;
+    meta.matrix = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
+    meta.offset = "10 20 30 40";
+    meta.spacing = "2 3 4 5";
+    meta.sizes = "4 3 2 1";
+    writeBytes("b.mha", meta.text() + data());
+    expectSample(readVolume("b.mha"));
+}
+
+void expectRefusedMeta(const std::string& message, const Meta& meta, const std::string& bytes) {
+    writeBytes("a.mha", meta.text() + bytes);
+    expectRefused("a.mha: " + message, "a.mha");
+}
+
+TEST(ReadMetaError, Headers) {
+    const TempFolder folder;
+    Meta meta;
+    meta.sizes = "4 -3 2";
+    expectRefusedMeta("got sizes 4 -3 2; expected whole numbers from 1 to 1073741824", meta,
+                      data());
+    meta.sizes = "4 x 2";
+    expectRefusedMeta("got sizes 4 x 2; expected whole numbers from 1 to 1073741824", meta, data());
+    meta = {};
+    meta.axes = 30;
+    expectRefusedMeta(
+        "got what ITK refuses (DimSize required and not defined); expected a sound file", meta,
+        data());
+    meta = {};
+    meta.type = "MET_FOO";
+    expectRefusedMeta("got values of an unknown type; expected whole or real numbers", meta,
+                      data());
+    meta = {};
+    meta.more = "ElementNumberOfChannels = 3\n";
+    expectRefusedMeta("got 3 values a voxel (vector); expected one", meta,
+                      data() + data() + data());
+    meta = {};
+    meta.more = "Comment = " + std::string(300, 'c') + "\n";
+    expectRefusedMeta(
+        "got the header line \"Comment = cccccccccc...\"; expected at most 200 characters of text",
+        meta, data());
+    writeBytes("b.mha", "garbage");
+    expectRefused("b.mha: got the header line \"garbage\"; expected \"Name = value\"", "b.mha");
+    writeBytes("c.mha", std::string(40000, 'x'));
+    expectRefused("c.mha: got a header without end; expected a text header", "c.mha");
+    writeBytes("d.mha", "");
+    expectRefused("d.mha: got no ElementDataFile; expected a MetaImage header that ends with one",
+                  "d.mha");
+}
+
+TEST(ReadMetaError, Data) {
+    const TempFolder folder;
+    Meta meta;
+    expectRefusedMeta("got 40 bytes of data; expected enough for 4x3x2 uint16", meta,
+                      data().substr(0, 40));
+    meta.sizes = "16384 8192 8192";
+    expectRefusedMeta("got 48 bytes of data; expected enough for 16384x8192x8192 uint16", meta,
+                      data());
+    meta = {};
+    meta.dataFile = "none.raw";
+    expectRefusedMeta("got no data file \"none.raw\"; expected a readable file", meta, "");
+    meta.dataFile = "LIST";
+    expectRefusedMeta("got data in \"LIST\"; expected the name of one data file", meta, "a\nb\n");
+    meta.dataFile = "slice%03d.raw 1 2 1";
+    expectRefusedMeta("got data in \"slice%03d.raw 1 2 1\"; expected the name of one data file",
+                      meta, "");
+    meta = {};
+    meta.more = "HeaderSize = 5\n";
+    expectRefusedMeta("got HeaderSize 5 for data in the same file; expected 0", meta, data());
+}
+
+TEST(ReadMetaError, PackedData) {
+    const TempFolder folder;
+    Meta meta;
+    meta.packed = "True";
+    const std::string bytes = packed(data());
+    expectRefusedMeta("got packed data that are cut short; expected sound data", meta,
+                      bytes.substr(0, bytes.size() - 6));
+    std::string damaged = bytes;
+    damaged[damaged.size() - 2] = char(damaged[damaged.size() - 2] ^ 1);
+    expectRefusedMeta("got corrupt packed data; expected sound data", meta, damaged);
+    expectRefusedMeta("got corrupt packed data; expected sound data", meta, data());
+    meta.sizes = "4 3 3";
+    expectRefusedMeta("got 48 bytes unpacked; expected 72 (4x3x3 uint16)", meta, bytes);
+    meta.sizes = "4 3 1";
+    expectRefusedMeta("got more than 24 bytes unpacked; expected 24 (4x3x1 uint16)", meta, bytes);
+    meta.sizes = "1024 1024 1024";
+    expectRefusedMeta("got " + std::to_string(bytes.size()) +
+                          " bytes of data; expected enough gzip for 1024x1024x1024 uint16",
+                      meta, bytes);
+    meta.sizes = "4 3 2";
+    // MetaIO needs to know where local data end, and fails without a word otherwise.
+    writeBytes("a.mha", meta.text() + bytes);
+    expectRefused("a.mha: got what ITK refuses (Uncompress failed); expected a sound file",
+                  "a.mha");
+    meta.more = "CompressedDataSize = 1000000000000\n";
+    expectRefusedMeta(
+        "got HeaderSize 0 and CompressedDataSize 1000000000000; expected at most the " +
+            std::to_string(bytes.size()) + " bytes of data",
+        meta, bytes);
+}
+
+TEST(ReadMetaError, NoPlaceInTheWorld) {
+    const TempFolder folder;
+    Meta meta;
+    meta.spacing = "2 0 4";
+    expectRefusedMeta(
+        "got spacing and directions that cannot be inverted; expected finite numbers that give "
+        "each voxel a place of its own",
+        meta, data());
+}
+
+}  // namespace
+}  // namespace deltasplat

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "unit/format_helpers.h"
+
+namespace deltasplat {
+namespace {
+
+using namespace deltasplat::testing;
+
+NiftiFile sample() {
+    NiftiFile file;
+    file.data = bytesOf(ramp<std::int16_t>(24));
+    return file;
+}
+
+template <typename Change>
+void expectRefusedWith(const std::string& message, const Change& change) {
+    for (const int version : {1, 2}) {
+        NiftiFile file = sample();
+        file.version = version;
+        change(file);
+        writeBytes("a.nii", file.bytes());
+        expectRefused("a.nii: " + message, "a.nii");
+    }
+}
+
+TEST(ReadNiftiError, NoHeader) {
+    const TempFolder folder;
+    const std::string message = "got no NIfTI header; expected a NIfTI-1 or NIfTI-2 file";
+    for (const std::string& bytes :
+         {std::string(), std::string(3, 'x'), std::string(1000, '\0'), std::string(1000, 'x')}) {
+        writeBytes("a.nii", bytes);
+        expectRefused("a.nii: " + message, "a.nii");
+    }
+    expectRefusedWith(message, [](NiftiFile& file) { file.magic = "n+9"; });
+    writeBytes("b.nii", sample().bytes().substr(0, 347));
+    expectRefused("b.nii: got 347 bytes; expected a whole NIfTI header", "b.nii");
+    writeGzip("c.nii.gz", "");
+    expectRefused("c.nii.gz: " + message, "c.nii.gz");
+    writeBytes("d.nii.gz", sample().bytes());
+    expectRefused("d.nii.gz: got no gzip stream; expected a gzip file", "d.nii.gz");
+}
+
+TEST(ReadNiftiError, PairOfFiles) {
+    const TempFolder folder;
+    NiftiFile file = sample();
+    file.magic = "ni1";
+    writeBytes("a.nii", file.bytes());
+    expectRefused(
+        "a.nii: got the header of a .hdr and .img pair; expected a NIfTI file in one piece",
+        "a.nii");
+}
+
+TEST(ReadNiftiError, Dims) {
+    const TempFolder folder;
+    expectRefusedWith("got dims 4x-3x2; expected each 1..1073741824", [](NiftiFile& file) {
+        file.dims = {4, -3, 2};
+    });
+    expectRefusedWith("got dims 4x3x0; expected each 1..1073741824", [](NiftiFile& file) {
+        file.dims = {4, 3, 0};
+    });
+    expectRefusedWith("got dims 2x3x2x2; expected one volume of single values",
+                      [](NiftiFile& file) {
+                          file.dims = {2, 3, 2, 2};
+                      });
+    expectRefusedWith("got 0 dimensions; expected 1 to 7 of them",
+                      [](NiftiFile& file) { file.dims = {}; });
+}
+
+TEST(ReadNiftiError, DimsBeyondTheData) {
+    const TempFolder folder;
+    NiftiFile file = sample();
+    file.dims = {4, 3, 3};
+    writeBytes("a.nii", file.bytes());
+    expectRefused("a.nii: got 400 bytes; expected at least 424 (352 skipped + 4x3x3 int16)",
+                  "a.nii");
+    writeGzip("b.nii.gz", file.bytes());
+    expectRefused(
+        "b.nii.gz: got 400 bytes unpacked; expected at least 424 (352 skipped + 4x3x3 int16)",
+        "b.nii.gz");
+    file.dims = {16384, 8192, 8192};  // 2^40 voxels
+    writeBytes("a.nii", file.bytes());
+    expectRefused(
+        "a.nii: got 400 bytes; expected at least 2199023255904 (352 skipped + 16384x8192x8192 "
+        "int16)",
+        "a.nii");
+    writeGzip("b.nii.gz", file.bytes());
+    expectRefused("b.nii.gz: got " + std::to_string(std::filesystem::file_size("b.nii.gz")) +
+                      " bytes of gzip; expected at least 2199023255904 (352 skipped + "
+                      "16384x8192x8192 int16)",
+                  "b.nii.gz");
+    NiftiFile second = sample();
+    second.version = 2;
+    second.dims = {1 << 30, 1 << 30, 1 << 30};
+    writeBytes("c.nii", second.bytes());
+    expectRefused(
+        "c.nii: got dims 1073741824x1073741824x1073741824; expected at most 4611686018427387904 "
+        "bytes",
+        "c.nii");
+}
+
+TEST(ReadNiftiError, Types) {
+    const TempFolder folder;
+    expectRefusedWith("got values of type complex64; expected whole or real numbers",
+                      [](NiftiFile& file) { file.dataType = 32; });
+    expectRefusedWith("got values of type RGB; expected whole or real numbers",
+                      [](NiftiFile& file) { file.dataType = 128; });
+    expectRefusedWith("got data type 77; expected one that NIfTI defines",
+                      [](NiftiFile& file) { file.dataType = 77; });
+}
+
+TEST(ReadNiftiError, PlaceOfTheData) {
+    const TempFolder folder;
+    NiftiFile file = sample();
+    for (const auto& [start, text] : {std::pair{16.0, "16"}, {360.5, "360.5"}, {-1.0, "-1"}}) {
+        file.dataStart = start;
+        writeBytes("a.nii", file.bytes());
+        expectRefused("a.nii: got data at byte " + std::string(text) + "; expected at least 352",
+                      "a.nii");
+    }
+}
+
+TEST(ReadNiftiError, NoPlaceInTheWorld) {
+    const TempFolder folder;
+    expectRefusedWith(
+        "got an sform that cannot be inverted; expected finite numbers that give each voxel a "
+        "place of its "
+        "own",
+        [](NiftiFile& file) { file.sform[0] = std::nan(""); });
+    expectRefusedWith(
+        "got an sform that cannot be inverted; expected finite numbers that give each voxel a "
+        "place of its "
+        "own",
+        [](NiftiFile& file) { file.sform.assign(12, 0); });
+    expectRefusedWith(
+        "got a qform that cannot be inverted; expected finite numbers that give each voxel a place "
+        "of its "
+        "own",
+        [](NiftiFile& file) {
+            file.sformCode = 0;
+            file.qformCode = 1;
+            file.quaternion[1] = INFINITY;
+        });
+    expectRefusedWith(
+        "got a voxel size that cannot be inverted; expected finite numbers that give each voxel a "
+        "place of its "
+        "own",
+        [](NiftiFile& file) {
+            file.sformCode = 0;
+            file.pixelSizes[2] = 0;
+        });
+}
+
+TEST(ReadNiftiError, DamagedGzip) {
+    const TempFolder folder;
+    NiftiFile file = sample();
+    file.dims = {32, 32, 20};
+    file.data.resize(32 * 32 * 20 * 2);
+    for (std::size_t i = 0; i < file.data.size(); ++i) file.data[i] = char(i * i >> 7);
+    writeGzip("a.nii.gz", file.bytes());
+    std::string bytes = readBytes("a.nii.gz");
+    writeBytes("b.nii.gz", bytes.substr(0, bytes.size() - 4));
+    expectRefused("b.nii.gz: got a gzip stream that is cut short; expected a whole one",
+                  "b.nii.gz");
+    bytes[bytes.size() - 6] = char(bytes[bytes.size() - 6] ^ 1);
+    writeBytes("c.nii.gz", bytes);
+    expectRefused(
+        "c.nii.gz: got a corrupt gzip stream (incorrect data check); expected a sound one",
+        "c.nii.gz");
+}
+
+}  // namespace
+}  // namespace deltasplat

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diff_options.h"
+
+#include "input_options.h"
+#include "number_text.h"
+
+namespace deltasplat {
+
+void addDiffOptions(CLI::App& app, DiffOptions& options) {
+    OptionGroup arguments(app, "Arguments");
+    arguments.addValue("A", "FILE", options.a, anyText(), "File to compare: .vdb, .raw or .raw.gz")
+        .required();
+    arguments
+        .addValue("B", "FILE", options.b, anyText(),
+                  "File to compare it with. Without --grid, two .vdb are\n"
+                  "compared grid by grid, by name")
+        .required();
+
+    CompareOptions& compare = options.compare;
+    DiffLimits& limits = options.limits;
+    const Parser<double> threshold = number(0);
+    OptionGroup group(app, "Thresholds (data units; also with one dash, as idiff's)");
+    group.addValue("--fail", "A", compare.fail, threshold,
+                   withDefault("Errors over A count as failures", numberText(compare.fail)));
+    group.addValue("--failpercent", "B", limits.failPercent, number(0, 100),
+                   withDefault("Up to B percent of the voxels may be failures",
+                               numberText(limits.failPercent)));
+    group.addValue("--hardfail", "C", limits.hardFail, threshold,
+                   "Different if any error is over C (default: no limit)");
+    group.addValue("--warn", "A", compare.warn, threshold,
+                   withDefault("Errors over A count as warnings", numberText(compare.warn)));
+    group.addValue("--warnpercent", "B", limits.warnPercent, number(0, 100),
+                   withDefault("Up to B percent of the voxels may be warnings",
+                               numberText(limits.warnPercent)));
+    group.addValue("--hardwarn", "C", limits.hardWarn, threshold,
+                   "Warning if any error is over C (default: no limit)");
+    group.addValue("--shift", "V", compare.shift, threshold,
+                   withDefault("Different if a voxel's place differs by more than V voxels",
+                               numberText(compare.shift)));
+    group.addFlag("--ignore-active", limits.ignoreActive,
+                  "Active states may differ (a dense volume has no inactive voxels)");
+    OptionGroup(app, "Output").addFlag("--json", options.json, "Print one JSON object");
+    addInputOptions(app, options.read);
+}
+
+}  // namespace deltasplat

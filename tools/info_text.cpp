@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "deltasplat/ingest/value_statistics.h"
+#include "info_report.h"
+#include "number_text.h"
+#include "parse.h"
+
+namespace deltasplat {
+namespace {
+
+template <class Vector>
+std::string toText(const Vector& v, const std::string& separator) {
+    return joinNumbers({double(v.x), double(v.y), double(v.z)}, separator);
+}
+
+std::string line(const std::string& label, const std::string& value) {
+    return "  " + label + std::string(label.size() < 14 ? 14 - label.size() : 1, ' ') + value +
+           "\n";
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+    return std::string(text.size() < width ? width - text.size() : 0, ' ') + text;
+}
+
+std::string percent(double part, double whole) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f %%", whole > 0 ? 100 * part / whole : 0.0);
+    return text;
+}
+
+std::string alongText(int axis) {
+    return std::string("along ") + "xyz"[axis];
+}
+
+std::string axisText(const GridReport& report, int axis) {
+    const SliceCounts& counts = report.counts[axis];
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4f", comparability(report, axis));
+    return "comparability " + std::string(text) + " as data, " + std::to_string(counts.deltas) +
+           " deltas (" + percent(double(counts.deltas), double(report.volume.box.voxels())) + ")";
+}
+
+std::string backgroundText(const GridReport& report) {
+    const Volume& volume = report.volume;
+    if (volume.hasBackground) return numberText(volume.background);
+    if (!report.backgroundGuess) return "none that is obvious";
+    const Code code = volume.codeBook.codeOf(*report.backgroundGuess);
+    return numberText(*report.backgroundGuess) +
+           ", a guess: " + percent(double(volume.histogram[code]), double(volume.activeCount)) +
+           " of the voxels have it";
+}
+
+std::string valuesText(const Volume& volume) {
+    if (volume.empty()) return line("range", "none");
+    std::string shares;
+    for (const int share : {1, 50, 99}) {
+        shares += (shares.empty() ? "" : ", ") + std::to_string(share) +
+                  " %: " + numberText(percentileValue(volume, share));
+    }
+    return line("range", numberText(volume.valueMin) + " to " + numberText(volume.valueMax)) +
+           line("percentiles", shares);
+}
+
+// A bar that has its full length at 100 % and loses the same for every tenth of it.
+std::string bar(double share) {
+    constexpr double kFull = 48;
+    constexpr double kPerTenth = 12;
+    const double length = std::round(kFull + kPerTenth * std::log10(share));
+    return std::string(std::size_t(std::max(1.0, length)), '#');
+}
+
+std::string histogramText(const Volume& volume) {
+    if (volume.empty()) return "";
+    const ValueHistogram histogram = histogramOfValues(volume, 16);
+    const double width = (histogram.high - histogram.low) / double(histogram.counts.size());
+    std::vector<std::string> from;
+    std::size_t longest = 0;
+    for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
+        char edge[32];
+        std::snprintf(edge, sizeof edge, "%.6g", histogram.low + width * double(i));
+        from.push_back(edge);
+        longest = std::max(longest, from.back().size());
+        // Bins of whole numbers may go on behind the largest value, and one value has one bin.
+        if (width == 0 || histogram.low + width * double(i + 1) > volume.valueMax) break;
+    }
+    std::string text =
+        line("histogram", "values from; share of the active voxels; 12 # more: ten times as many");
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        const double share = double(histogram.counts[i]) / double(volume.activeCount);
+        char number[32];
+        std::snprintf(number, sizeof number, "%10.4f %%  ", 100 * share);
+        text += "    " + padded(from[i], std::max<std::size_t>(longest, 10)) + number +
+                (histogram.counts[i] > 0 ? bar(share) : "") + "\n";
+    }
+    return text;
+}
+
+std::string stampsText(const GridReport& report) {
+    std::string text =
+        line("stamps", "predicted for a view along an axis; visible: " + report.visible);
+    const auto row = [](const std::string& name, const std::vector<std::string>& cells) {
+        std::string words;
+        for (const std::string& cell : cells) words += padded(cell, 13);
+        return line("  " + name, words);
+    };
+    text += row("", {"traditional", "sparse", "delta", "auto"});
+    for (int axis = 0; axis < 3; ++axis) {
+        const StampCounts& stamps = report.stamps[axis];
+        text +=
+            row(alongText(axis), {std::to_string(stamps.traditional), std::to_string(stamps.sparse),
+                                  std::to_string(stamps.delta), std::to_string(stamps.automatic)});
+    }
+    return text;
+}
+
+std::string gridText(const GridReport& report) {
+    const Volume& v = report.volume;
+    std::string text = line("grid", v.name) + line("type", v.type) + line("class", v.gridClass);
+    text += line("dims", toText(v.box.dims(), " x "));
+    text += line("box", v.empty() ? "empty"
+                                  : "(" + toText(v.box.min, ", ") + ") to (" +
+                                        toText(v.box.max, ", ") + ")");
+    text += line("voxel size", toText(v.voxelSize(), " x "));
+    text += line("active", std::to_string(v.activeCount) + " (" +
+                               percent(double(v.activeCount), double(v.box.voxels())) + ")");
+    text += valuesText(v);
+    text += line("background", backgroundText(report)) + line("code book", v.codeBook.name());
+    for (int axis = 0; axis < 3; ++axis) text += line(alongText(axis), axisText(report, axis));
+    return text + stampsText(report) + histogramText(v);
+}
+
+}  // namespace
+
+std::string plainText(const std::vector<FileReport>& reports) {
+    std::string text;
+    for (const FileReport& report : reports) {
+        text += (text.empty() ? "" : "\n") + report.file + "\n";
+        for (std::size_t i = 0; i < report.grids.size(); ++i)
+            text += (i > 0 ? "\n" : "") + gridText(report.grids[i]);
+        for (const std::string& grid : report.others) text += line("not read", grid);
+    }
+    return text;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "conversion_stats.h"
+#include "deltasplat/atomic_file.h"
+#include "deltasplat/convert/write_volume.h"
+#include "deltasplat/error.h"
+#include "deltasplat/ingest/read_volume.h"
+#include "listener.h"
+#include "lower_case.h"
+#include "read_grids.h"
+#include "stats_file.h"
+#include "stopwatch.h"
+#include "subcommands.h"
+
+namespace deltasplat {
+namespace {
+
+// Share of the progress that reading takes.
+constexpr double kReadShare = 0.5;
+
+struct RestoreCommand {
+    std::filesystem::path input;
+    std::filesystem::path output;
+    std::filesystem::path stats;  // empty: none
+    ReadOptions read;
+
+    bool toVdb() const { return lowerCase(output.extension().string()) == ".vdb"; }
+};
+
+void declareOptions(CLI::App& app, RestoreCommand& command) {
+    OptionGroup arguments(app, "Arguments");
+    arguments.addValue("INPUT", "FILE.vdb", command.input, anyText(), "Delta grids to read")
+        .required();
+    arguments
+        .addValue("OUTPUT", "FILE", command.output, anyText(),
+                  "File to write: .vdb .nrrd .nhdr .mhd .mha .nii .nii.gz .raw\n"
+                  "or .raw.gz; a .vdb gets all grids, the others the first")
+        .required();
+    OptionGroup options(app, "Restoring");
+    options.addValue("--grid", "NAME", command.read.gridName, anyText(),
+                     "Grid to restore (default: all that the output can hold)");
+    options.addValue("--stats", "FILE", command.stats, anyText(),
+                     "JSON file to write: sizes, deltas, largest error, seconds");
+}
+
+// Checks what can be checked before anything is read.
+void validate(const RestoreCommand& command) {
+    checkVolumeFile(command.output);
+    checkStatsFile(command.stats, {command.input, command.output}, "the input and the output");
+}
+
+void requireDeltas(const RestoreCommand& command, const Volume& volume) {
+    if (volume.origin) return;
+    throw Error(
+        ErrorCode::kInput,
+        gotExpected(command.input.string() + ": grid \"" + volume.name + "\"",
+                    "a grid of type " + volume.type, "a delta grid (convert takes other grids)"));
+}
+
+std::vector<Volume> readInput(const RestoreCommand& command, const Listener& listener,
+                              ConversionStats& stats) {
+    std::vector<Volume> volumes;
+    const auto take = [&](Volume volume) {
+        requireDeltas(command, volume);
+        stats.add(volume);
+        stats.deltas += volume.origin->deltas;
+        stats.maxError = std::max(stats.maxError, volume.origin->maxError);
+        // The source says all that the codes do, and more.
+        if (volume.source) volume.codes.reset();
+        volumes.push_back(std::move(volume));
+    };
+    if (command.toVdb()) {
+        stats.lossless = forEachScalarGrid(command.input, command.read, take, listener);
+    } else {
+        take(readVolume(command.input, command.read, listener));
+    }
+    return volumes;
+}
+
+void runRestore(const RestoreCommand& command, const Session& session) {
+    validate(command);
+    ConversionStats stats;
+    {
+        ProgressDisplay display(session.common.quiet);
+        std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare), stats);
+        const WriteReport report =
+            writeVolumes(command.output, std::move(volumes), {}, display.stage(kReadShare, 1));
+        for (const std::string& note : report.notes) display.warn(note);
+        stats.inputBytes = bytesOf({command.input});
+        stats.outputBytes = bytesOf(report.files);
+        stats.lossless = stats.lossless && report.lossless && stats.maxError == 0;
+        stats.maxError = std::max(stats.maxError, report.maxError);
+        stats.seconds = secondsSince(session.begin);
+    }
+    if (!command.stats.empty()) writeFileAtomically(command.stats, statsJson(stats));
+    if (session.common.verbose) std::fputs(statsSummary(stats).c_str(), stderr);
+}
+
+}  // namespace
+
+Subcommand addRestore(CLI::App& program) {
+    const auto command = std::make_shared<RestoreCommand>();
+    command->read.levelSetToFog = false;
+    command->read.keepSource = true;
+    CLI::App& app =
+        addSubcommand(program, "restore", "Restores the volume that delta grids were made from.",
+                      {"deltasplat restore smoke_delta.vdb smoke.vdb",
+                       "deltasplat restore head.vdb head_256x256x225_uint8.raw"});
+    declareOptions(app, *command);
+    return {&app, [command](const Session& session) { runRestore(*command, session); }};
+}
+
+}  // namespace deltasplat
