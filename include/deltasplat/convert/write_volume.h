@@ -17,8 +17,8 @@ struct WriteOptions {
     /// .vdb: make active voxels inactive that have the value `background`, which becomes the grid's
     /// background.
     bool dropBackground = false;
-    /// Empty: the background that the volume has; if it has none, its most frequent value (for
-    /// values without an exact code book: the most frequent one of the fullest code).
+    /// Empty: the background that the volume has; if it has none, its most frequent value (without
+    /// an exact code book: of those with the fullest code) if guessBackground finds one.
     std::optional<double> background;
 };
 
