@@ -9,7 +9,7 @@ set -euo pipefail
 packages=(
     g++ cmake ninja-build ccache git pkg-config
     libopenvdb-dev libboost-dev libboost-iostreams-dev libblosc-dev libimath-dev libtbb-dev
-    libopenimageio-dev libglm-dev libhwy-dev libcli11-dev nlohmann-json3-dev zlib1g-dev
+    libinsighttoolkit5-dev libopenimageio-dev libglm-dev libhwy-dev libcli11-dev nlohmann-json3-dev zlib1g-dev
     libgtest-dev libbenchmark-dev
 )
 if [[ ${1:-} != --to-build ]]; then

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "memory.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -8,6 +10,7 @@
 #include <string>
 
 #include "deltasplat/error.h"
+#include "deltasplat/memory_limit.h"
 
 namespace deltasplat {
 namespace {
@@ -18,6 +21,22 @@ std::uint64_t readNumber(const char* file) {
     std::ifstream in(file);
     std::uint64_t number = 0;
     return in >> number ? number : std::numeric_limits<std::uint64_t>::max();
+}
+
+std::uint64_t limit = 0;  // as setMemoryLimit says
+
+// What the process holds now: the second number of its statm, in pages.
+std::uint64_t residentBytes() {
+    std::ifstream in("/proc/self/statm");
+    std::uint64_t total = 0, resident = 0;
+    in >> total >> resident;
+    return resident * std::uint64_t(sysconf(_SC_PAGESIZE));
+}
+
+std::uint64_t limitAvailable() {
+    if (limit == 0) return std::numeric_limits<std::uint64_t>::max();
+    const std::uint64_t taken = residentBytes();
+    return limit > taken ? limit - taken : 0;
 }
 
 std::uint64_t systemAvailable() {
@@ -31,9 +50,17 @@ std::uint64_t systemAvailable() {
 
 }  // namespace
 
+void setMemoryLimit(std::uint64_t bytes) {
+    limit = bytes;
+}
+
+std::uint64_t memoryLimit() {
+    return limit;
+}
+
 std::uint64_t availableMemory() {
     // What a cgroup has in use counts its page cache, so only its limit is a fact.
-    return std::min({systemAvailable(), readNumber("/sys/fs/cgroup/memory.max"),
+    return std::min({limitAvailable(), systemAvailable(), readNumber("/sys/fs/cgroup/memory.max"),
                      readNumber("/sys/fs/cgroup/memory/memory.limit_in_bytes")});
 }
 
@@ -50,11 +77,13 @@ std::string humanBytes(double bytes) {
 }
 
 void requireMemory(const std::string& what, double bytes) {
-    const double available = double(availableMemory());
+    const double left = double(limitAvailable());
+    const double available = std::min(left, double(availableMemory()));
     if (bytes <= available) return;
-    throw Error(ErrorCode::kUsage, what + ": needs " + humanBytes(bytes) +
-                                       " of memory; expected at most " + humanBytes(available) +
-                                       ", which is available");
+    throw Error(ErrorCode::kUsage,
+                what + ": needs " + humanBytes(bytes) + " of memory; expected at most " +
+                    humanBytes(available) + ", which " +
+                    (available == left ? "--max-memory leaves" : "is available"));
 }
 
 }  // namespace deltasplat

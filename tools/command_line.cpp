@@ -39,6 +39,10 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
     group.addFlag("-v,--verbose", options.verbose, "Say more about what is done and what failed");
     group.addValue("--threads", "N", options.threads, wholeNumber(0, 1024),
                    withDefault("Threads to use, 0 = all", std::to_string(options.threads)));
+    group.addValue("--max-memory", "SIZE", options.maxMemory, byteCount(),
+                   "Refuse up front what would take more memory than this, the\n"
+                   "program itself (about 150M) included, such as 4G (default: what\n"
+                   "the machine has)");
     group.addValue(
         "--simd", "LEVEL", options.simd, anyText(),
         withDefault("SIMD level, a name from --version; never changes a pixel", options.simd));

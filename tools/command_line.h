@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@ struct CommonOptions {
     bool quiet = false;
     bool verbose = false;
     int threads = 0;
+    std::uint64_t maxMemory = 0;  ///< bytes; 0: no limit
     std::string simd = "auto";
 };
 

@@ -19,6 +19,9 @@
 namespace deltasplat {
 namespace {
 
+// What a leaf of floats takes for an 8x8x8 block that is not uniform.
+constexpr double kBytesPerBlock = 2200;
+
 // Share of the progress that reading takes.
 constexpr double kReadShare = 0.5;
 
@@ -53,7 +56,7 @@ void declareOptions(CLI::App& app, ConvertCommand& command) {
     OptionGroup arguments(app, "Arguments");
     arguments
         .addValue("INPUT", "FILE", command.input, anyText(),
-                  "Volume to read: .vdb, .raw or .raw.gz")
+                  std::string("Volume to read: ") + kInputFormats)
         .required();
     arguments
         .addValue("OUTPUT", "FILE", command.output, anyText(),
@@ -148,6 +151,7 @@ Subcommand addConvert(CLI::App& program) {
     // What is in a file is passed on as it is, not as it would be rendered.
     command->read.levelSetToFog = false;
     command->read.keepSource = true;
+    command->read.bytesPerBlock = kBytesPerBlock;
     CLI::App& app = addSubcommand(
         program, "convert", "Converts a volume to another format.",
         {"deltasplat convert engine_256x256x128_uint8.raw.gz engine.vdb --background auto",

@@ -22,6 +22,9 @@
 namespace deltasplat {
 namespace {
 
+// What its leaf of deltas and the list of blocks takes for an 8x8x8 block that is not uniform.
+constexpr double kBytesPerBlock = 2300;
+
 // Share of the progress up to writing.
 constexpr double kTakeShare = 0.8;
 
@@ -142,6 +145,7 @@ Subcommand addDelta(CLI::App& program) {
     // What is in a file is kept as it is, not as it would be rendered.
     command->read.levelSetToFog = false;
     command->read.keepSource = true;
+    command->read.bytesPerBlock = kBytesPerBlock;
     CLI::App& app = addSubcommand(
         program, "delta", "Stores a volume as delta grids: what changes from slice to slice.",
         {"deltasplat delta smoke.vdb smoke_delta.vdb",

@@ -125,7 +125,7 @@ Subcommand addInfo(CLI::App& program) {
         program, "info", "Tells what is in volume files, and how alike their slices are.",
         {"deltasplat info smoke.vdb --plot smoke.svg",
          "deltasplat info --json engine_256x256x128_uint8.raw.gz --tf ct.json"});
-    app.add_option("INPUT", options->inputs, "Files to describe: .vdb, .raw or .raw.gz")
+    app.add_option("INPUT", options->inputs, std::string("Files to describe: ") + kInputFormats)
         ->type_name("FILE")
         ->required()
         ->group("Arguments");

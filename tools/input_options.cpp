@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "input_options.h"
 
-#include <algorithm>
+#include <set>
 
-#include "lower_case.h"
+#include "deltasplat/error.h"
+#include "ingest/input_kind.h"
 
 namespace deltasplat {
 namespace {
@@ -51,13 +52,15 @@ void addInputOptions(CLI::App& app, ReadOptions& options) {
         "(default: as in the name)");
     group.addValue("--endian", "little|big", raw.bigEndian, endian(),
                    "Byte order (default: as in the name, else little)");
-    group.addValue("--spacing", "X,Y,Z", raw.spacing, voxelSpacing(),
-                   withDefault("World units per voxel", vectorText(raw.spacing)));
-    group.addValue(
-        "--origin", "X,Y,Z", raw.origin, vector3(),
-        withDefault("World position of the centre of voxel 0,0,0", vectorText(raw.origin)));
     group.addValue("--skip-bytes", "N", raw.skipBytes, wholeNumber(),
                    withDefault("Header bytes to pass over", std::to_string(raw.skipBytes)));
+
+    OptionGroup place(app, "Input, .raw, .raw.gz and images");
+    place.addValue("--spacing", "X,Y,Z", raw.spacing, voxelSpacing(),
+                   withDefault("World units per voxel", vectorText(raw.spacing)));
+    place.addValue(
+        "--origin", "X,Y,Z", raw.origin, vector3(),
+        withDefault("World position of the centre of voxel 0,0,0", vectorText(raw.origin)));
 
     OptionGroup any(app, "Input");
     any.addValue("--nan", "VALUE", options.nanValue, number(),
@@ -66,21 +69,31 @@ void addInputOptions(CLI::App& app, ReadOptions& options) {
 
 void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesystem::path>& inputs,
                               ProgressDisplay& display) {
-    const auto isVdb = [](const std::filesystem::path& file) {
-        return lowerCase(file.extension().string()) == ".vdb";
-    };
+    std::set<InputKind::Format> formats;
+    for (const std::filesystem::path& input : inputs) {
+        // What is wrong with an input is for its reader to say.
+        try {
+            formats.insert(findInput(input, {}).format);
+        } catch (const Error&) {
+            return;
+        }
+    }
+    const bool anyRaw = formats.contains(InputKind::Format::kRaw);
+    const bool anyImages = formats.contains(InputKind::Format::kImages);
     const auto warnOf = [&](const std::vector<std::string>& options, const std::string& input) {
         const std::string remark = ": has no effect without " + input;
         for (const std::string& option : options) {
             if (isGiven(app, option)) display.warn(option + remark);
         }
     };
-    if (std::none_of(inputs.begin(), inputs.end(), isVdb)) {
+    if (!formats.contains(InputKind::Format::kVdb)) {
         warnOf({"--grid", "--level-set"}, "a .vdb input");
     }
-    if (std::all_of(inputs.begin(), inputs.end(), isVdb)) {
-        warnOf({"--dims", "--type", "--endian", "--spacing", "--origin", "--skip-bytes"},
-               "a .raw or .raw.gz input");
+    if (!anyRaw) {
+        warnOf({"--dims", "--type", "--endian", "--skip-bytes"}, "a .raw or .raw.gz input");
+    }
+    if (!anyRaw && !anyImages) {
+        warnOf({"--spacing", "--origin"}, "an input of raw values or images");
     }
 }
 

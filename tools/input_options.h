@@ -10,6 +10,11 @@
 
 namespace deltasplat {
 
+/// What an input may be, for help texts.
+inline constexpr const char* kInputFormats =
+    ".vdb .raw .raw.gz .nrrd .nhdr .mhd .mha .nii .nii.gz,\n"
+    "a DICOM folder, a multi-page .tif, or images (slice.####.png)";
+
 /// Declares the options that say how an input is to be read.
 void addInputOptions(CLI::App& app, ReadOptions& options);
 

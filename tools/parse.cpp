@@ -124,6 +124,19 @@ Parser<std::int64_t> wholeNumber(std::int64_t min, std::int64_t max) {
     };
 }
 
+Parser<std::uint64_t> byteCount() {
+    return [](const std::string& option, const std::string& text) {
+        const std::string units = "KMGT";
+        const std::size_t unit = text.empty() ? std::string::npos : units.find(text.back());
+        const bool scaled = unit != std::string::npos;
+        const auto value = toNumber<double>(scaled ? text.substr(0, text.size() - 1) : text);
+        const double bytes = value.value_or(0) * (scaled ? std::exp2(10.0 * double(unit + 1)) : 1);
+        if (!(bytes >= 1 && bytes < 0x1p62))
+            refuse(option, text, "a number of bytes, such as 500000000, 400M or 1.5G");
+        return std::uint64_t(bytes);
+    };
+}
+
 Parser<glm::dvec3> vector3() {
     return threeNumbers(std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max(),
                         "X,Y,Z, three finite numbers");

@@ -25,6 +25,8 @@ Parser<double> number(double min = -std::numeric_limits<double>::infinity(),
 Parser<double> positiveNumber();
 Parser<std::int64_t> wholeNumber(std::int64_t min = 0,
                                  std::int64_t max = std::numeric_limits<std::int64_t>::max());
+/// Bytes, with K, M, G or T for powers of 1024: "400M", "1.5G".
+Parser<std::uint64_t> byteCount();
 /// `X,Y,Z`, each finite.
 Parser<glm::dvec3> vector3();
 /// `X,Y,Z`, world lengths of a voxel whose volume is still an ordinary number.

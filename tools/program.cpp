@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "deltasplat/error.h"
+#include "deltasplat/memory_limit.h"
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
 #include "interrupt.h"
@@ -164,6 +165,7 @@ int execute(const std::vector<std::string>& arguments,
     if (subcommand == nullptr) return 0;
     setSimdLevel(session.common.simd);
     const ThreadLimit limit(session.common.threads);
+    setMemoryLimit(session.common.maxMemory);
     subcommand->run(session);
     return subcommand->exitCode ? subcommand->exitCode() : 0;
 }

@@ -121,7 +121,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup arguments(app, "Arguments");
     arguments
         .addValue("INPUT", "FILE", command.input, anyText(),
-                  "Volume to render: .vdb, .raw or .raw.gz")
+                  std::string("Volume to render: ") + kInputFormats)
         .required();
     addOutputOptions(app, command);
     addCameraOptions(app, command);

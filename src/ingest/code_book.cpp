@@ -92,7 +92,12 @@ CodeBook CodeBook::linear(double low, double high, int bits) {
     const double large = std::max(std::fabs(low), std::fabs(high));
     const double spacing = large - std::nextafter(large, 0.0);
     const double steps = double((1 << bits) - 1);
-    return {Kind::kLinear, low, std::max((high - low) / steps, spacing), nullptr};
+    if (low >= 0 || high <= 0)
+        return {Kind::kLinear, low, std::max((high - low) / steps, spacing), nullptr};
+
+    // What is empty is 0 more often than not: one step more leaves room to move 0 onto a code.
+    const double step = std::max((high - low) / (steps - 1), spacing);
+    return {Kind::kLinear, -step * std::ceil(-low / step), step, nullptr};
 }
 
 CodeBook CodeBook::ofTable(std::vector<double> values) {

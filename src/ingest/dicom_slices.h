@@ -7,9 +7,24 @@
 #include <string>
 #include <vector>
 
-#include "ingest/raw_format.h"
+#include "ingest/dicom_walk.h"
+#include "ingest/rescale.h"
 
 namespace deltasplat {
+
+/// How the pixels of a slice are stored.
+struct DicomPixels {
+    std::string syntax;  ///< DICOM's name for how the file is written
+    bool bigEndian = false;
+    bool packed = false;
+    bool words = true;
+    using Piece = DicomElements::Piece;
+    std::vector<Piece> pieces;
+    int bitsAllocated = 16;  ///< 8, 16 or 32
+    int bitsStored = 16;     ///< the lowest of them
+    bool isSigned = false;
+    Rescale rescale;
+};
 
 /// What the header of one DICOM slice says, checked.
 struct DicomSlice {
@@ -17,6 +32,7 @@ struct DicomSlice {
     std::string series;
     int columns = 0;
     int rows = 0;
+    DicomPixels pixels;
     RawType type = RawType::kUint8;  ///< of the values, rescale slope and intercept applied
     glm::dvec3 position{0.0};        ///< of the centre of the first voxel; millimetres, LPS
     glm::dvec3 alongRow{0.0};        ///< from one column to the next

@@ -144,6 +144,7 @@ class Walk {
             refuse("DICOM with the transfer syntax \"" + printable(name) + "\"",
                    "one that is not deflated");
         }
+        elements_.syntax = name;
         explicitTypes_ = name != kPlain;
         elements_.bigEndian = name == kPlain + ".2";
         elements_.packed = explicitTypes_ && !elements_.bigEndian && name != kPlain + ".1";
@@ -169,7 +170,8 @@ class Walk {
         if (head.length % unitOf(head.type) != 0) refusePlace("element has an impossible length");
         if (depth == 0 && head.tag == kPixels) {
             if (elements_.packed) refusePlace("pixels are not packed as announced");
-            elements_.pixelBytes = head.length;
+            elements_.pixels = {{place_, head.length}};
+            elements_.pixelWords = head.type != "OB";
         }
         if (depth == 0 && head.length <= kMostValue) {
             elements_.values[head.tag] = take(head.length, end);
@@ -236,7 +238,8 @@ class Walk {
             if (head.tag != kItem || head.length == kUndefined) {
                 refusePlace("packed pixels are no list");
             }
-            elements_.pixelBytes += head.length;
+            requireLeft(head.length, end);
+            elements_.pixels.push_back({place_, head.length});
             pass(head.length, end);
         }
     }
@@ -267,6 +270,12 @@ int DicomElements::number(std::uint32_t tag, int missing) const {
         return int(static_cast<unsigned char>(found->second[i]));
     };
     return bigEndian ? byte(0) << 8 | byte(1) : byte(1) << 8 | byte(0);
+}
+
+std::uint64_t DicomElements::pixelBytes() const {
+    std::uint64_t bytes = 0;
+    for (const Piece& piece : pixels) bytes += piece.length;
+    return bytes;
 }
 
 DicomElements walkDicom(const std::filesystem::path& file) {

@@ -134,6 +134,12 @@ Volume readDeltaGrid(openvdb::Int32Grid& grid, const openvdb::MetaMap::ConstPtr&
         restoreMetadata(grid, *source);
         source->setTransform(makeTransformOfType(header.sourceMap, volume.worldFromIndex));
     }
+    // Values between two floats come back as the nearer one.
+    if (options.keepSource && header.sourceType == "float32" && !header.book.isExact()) {
+        source = gridFromCodes<openvdb::FloatGrid>(decoded.codes->tree, header.book, 0);
+        source->setName(grid.getName());
+        source->setTransform(makeTransform(volume.worldFromIndex));
+    }
     if (fog && source) {
         decoded = {};
         fillFromGrid(*source,

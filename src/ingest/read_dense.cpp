@@ -8,9 +8,11 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "deltasplat/memory_limit.h"
 #include "ingest/code_tree.h"
 #include "ingest/dense_source.h"
 #include "ingest/dense_tree_builder.h"
+#include "ingest/mixed_blocks.h"
 #include "ingest/raw_values.h"
 #include "ingest/readers.h"
 #include "ingest/source_grid.h"
@@ -211,9 +213,20 @@ openvdb::GridBase::Ptr readSourceGrid(const DenseSource& source, const ReadOptio
     }
 }
 
+// Where memory is limited, what the volume will take is known before any of it is taken.
+void requireLimit(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
+    if (memoryLimit() == 0) return;
+    Listener stopping;
+    stopping.progress = [&](double) { listener.report(0); };
+    const double bytesPerBlock =
+        sizeof(CodeTree::Leaf) + CodeTree::Leaf::SIZE * sizeof(Code) + options.bytesPerBlock;
+    requireMemory(source.where, double(countMixedBlocks(source, stopping)) * bytesPerBlock);
+}
+
 }  // namespace
 
 Volume readDense(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
+    requireLimit(source, options, listener);
     const double scanned = needsScan(source.type) ? 0.5 : 0.0;
     Volume volume;
     volume.codeBook = bookOf(source, options, partOf(listener, 0, scanned));

@@ -1,10 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Headers by GDCM, pixels by ITK's class for DICOM, which applies rescale slope and intercept.
-#include <gdcmImageHelper.h>
-#include <gdcmReader.h>
-#include <gdcmRescaler.h>
-#include <itkGDCMImageIO.h>
-
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -15,14 +9,12 @@
 
 #include "deltasplat/error.h"
 #include "ingest/dense_source.h"
+#include "ingest/dicom_pixels.h"
 #include "ingest/dicom_slices.h"
 #include "ingest/dicom_walk.h"
 #include "ingest/file_name.h"
-#include "ingest/itk_calls.h"
-#include "ingest/itk_types.h"
 #include "ingest/placement.h"
 #include "ingest/readers.h"
-#include "ingest/rescale.h"
 #include "memory.h"
 #include "printable.h"
 
@@ -44,6 +36,8 @@ constexpr std::uint32_t kBitsAllocated = 0x00280100;
 constexpr std::uint32_t kBitsStored = 0x00280101;
 constexpr std::uint32_t kHighBit = 0x00280102;
 constexpr std::uint32_t kSign = 0x00280103;
+constexpr std::uint32_t kIntercept = 0x00281052;
+constexpr std::uint32_t kSlope = 0x00281053;
 
 constexpr bool kBigEndian = std::endian::native == std::endian::big;
 
@@ -53,7 +47,6 @@ constexpr bool kBigEndian = std::endian::native == std::endian::big;
 }
 
 // The numbers of an attribute that is text, "1\0\0"; none if one of them is no usable number.
-// GDCM takes what is no number for 0.
 std::vector<double> numbersOf(const DicomElements& elements, std::uint32_t tag) {
     std::vector<double> numbers;
     std::istringstream parts(elements.text(tag));
@@ -76,45 +69,6 @@ std::vector<double> placeOf(const std::filesystem::path& path, const DicomElemen
     if (numbers.size() == count) return numbers;
     refuse(path, std::string("no usable ") + name,
            std::to_string(count) + " numbers that say where the slice lies");
-}
-
-std::optional<RawType> rawTypeOf(gdcm::PixelFormat::ScalarType type) {
-    switch (type) {
-        case gdcm::PixelFormat::UINT8:
-            return RawType::kUint8;
-        case gdcm::PixelFormat::INT8:
-            return RawType::kInt8;
-        case gdcm::PixelFormat::UINT12:
-        case gdcm::PixelFormat::UINT16:
-            return RawType::kUint16;
-        case gdcm::PixelFormat::INT12:
-        case gdcm::PixelFormat::INT16:
-            return RawType::kInt16;
-        case gdcm::PixelFormat::UINT32:
-            return RawType::kUint32;
-        case gdcm::PixelFormat::INT32:
-            return RawType::kInt32;
-        case gdcm::PixelFormat::FLOAT32:
-            return RawType::kFloat32;
-        case gdcm::PixelFormat::FLOAT64:
-            return RawType::kFloat64;
-        default:
-            return std::nullopt;
-    }
-}
-
-RawType typeOf(const std::filesystem::path& path, const gdcm::File& file) {
-    const gdcm::PixelFormat format = gdcm::ImageHelper::GetPixelFormatValue(file);
-    const std::vector<double> rescale = gdcm::ImageHelper::GetRescaleInterceptSlopeValue(file);
-    gdcm::Rescaler rescaler;
-    rescaler.SetIntercept(rescale.at(0));
-    rescaler.SetSlope(rescale.at(1));
-    rescaler.SetPixelFormat(format);
-    const std::optional<RawType> type = rawTypeOf(rescaler.ComputeInterceptSlopePixelType());
-    if (!type || !std::isfinite(rescale[0]) || !std::isfinite(rescale[1])) {
-        refuse(path, "pixels of an unknown type", "whole or real numbers");
-    }
-    return *type;
 }
 
 void setPlace(const DicomElements& elements, DicomSlice& slice) {
@@ -157,30 +111,53 @@ void setSize(const DicomElements& elements, DicomSlice& slice) {
     if (!frames.empty() && frames != "1") {
         refuse(slice.file, printable(frames) + " frames in one file", "one slice in each file");
     }
-    const int bits = elements.number(kBitsAllocated, 0);
-    const int stored = elements.number(kBitsStored, 0);
+}
+
+void setPixels(const DicomElements& elements, DicomSlice& slice) {
+    DicomPixels& pixels = slice.pixels;
+    pixels.syntax = elements.syntax;
+    pixels.bigEndian = elements.bigEndian;
+    pixels.packed = elements.packed;
+    pixels.words = elements.pixelWords;
+    pixels.pieces = elements.pixels;
+    pixels.bitsAllocated = elements.number(kBitsAllocated, 0);
+    pixels.bitsStored = elements.number(kBitsStored, 0);
     const int high = elements.number(kHighBit, 0);
     const int sign = elements.number(kSign, 0);
-    if ((bits != 8 && bits != 16 && bits != 32) || stored < 1 || stored > bits ||
-        high != stored - 1 || sign > 1) {
+    const int bits = pixels.bitsAllocated;
+    if ((bits != 8 && bits != 16 && bits != 32) || pixels.bitsStored < 1 ||
+        pixels.bitsStored > bits || high != pixels.bitsStored - 1 || sign > 1) {
         refuse(slice.file,
-               "pixels of " + std::to_string(stored) + " bits up to bit " + std::to_string(high) +
-                   " in " + std::to_string(bits),
+               "pixels of " + std::to_string(pixels.bitsStored) + " bits up to bit " +
+                   std::to_string(high) + " in " + std::to_string(bits),
                "whole numbers of 8, 16 or 32 bits");
     }
+    pixels.isSigned = sign == 1;
+}
+
+// A slope of 0 says as little as none.
+void setRescale(const DicomElements& elements, DicomSlice& slice) {
+    const auto valueOf = [&](std::uint32_t tag, double missing) {
+        if (elements.text(tag).empty()) return missing;
+        const std::vector<double> numbers = numbersOf(elements, tag);
+        if (numbers.size() == 1) return numbers[0];
+        refuse(slice.file, "rescale " + printable(elements.text(tag)), "a number");
+    };
+    slice.pixels.rescale = {valueOf(kSlope, 1), valueOf(kIntercept, 0)};
+    if (slice.pixels.rescale.slope == 0) slice.pixels.rescale.slope = 1;
+    slice.type = dicomValueType(slice.pixels);
 }
 
 void requirePixels(const DicomElements& elements, const DicomSlice& slice) {
-    const double bytes =
-        double(slice.columns) * slice.rows * elements.number(kBitsAllocated, 0) / 8;
+    const double bytes = double(slice.columns) * slice.rows * slice.pixels.bitsAllocated / 8;
     // Lossless JPEG 2000 of one grey packs best; this much is beyond anything an image is.
-    const double most = double(elements.pixelBytes) * (elements.packed ? 65536 : 1);
+    const double most = double(elements.pixelBytes()) * (elements.packed ? 65536 : 1);
     if (bytes <= most) return;
-    refuse(slice.file, std::to_string(elements.pixelBytes) + " bytes of pixels",
+    refuse(slice.file, std::to_string(elements.pixelBytes()) + " bytes of pixels",
            "enough for " + std::to_string(slice.columns) + "x" + std::to_string(slice.rows));
 }
 
-// The slices as ITK reads them, in values of one type.
+// The slices, in values of one type.
 struct DicomFiles {
     DicomVolume volume;
     RawType type = RawType::kUint8;
@@ -189,28 +166,6 @@ struct DicomFiles {
         return std::size_t(volume.slices[0].columns) * std::size_t(volume.slices[0].rows);
     }
 };
-
-void readPixels(const DicomFiles& files, const DicomSlice& slice, std::byte* to) {
-    callItk(slice.file, Printed::kIsNothing, [&] {
-        auto io = itk::GDCMImageIO::New();
-        io->SetFileName(slice.file.string());
-        io->ReadImageInformation();
-        const std::optional<RawType> type = rawTypeOfItk(io->GetComponentType());
-        if (io->GetDimensions(0) != std::size_t(slice.columns) ||
-            io->GetDimensions(1) != std::size_t(slice.rows) || io->GetNumberOfComponents() != 1 ||
-            std::size_t(io->GetImageSizeInPixels()) != files.slicePixels() || type != slice.type) {
-            refuse(slice.file, "pixels of another size or type than its header names",
-                   "a slice that GDCM reads alike");
-        }
-        if (slice.type == files.type) {
-            io->Read(to);
-            return;
-        }
-        std::vector<std::byte> own(files.slicePixels() * std::size_t(rawTypeBytes(slice.type)));
-        io->Read(own.data());
-        rescaleValues(own.data(), files.slicePixels(), slice.type, kBigEndian, {}, files.type, to);
-    });
-}
 
 void readLayers(const DicomFiles& files, const DenseSource::LayerUse& use,
                 const Listener& listener) {
@@ -221,8 +176,8 @@ void readLayers(const DicomFiles& files, const DenseSource::LayerUse& use,
     for (int first = 0; first < slices; first += DenseSource::kLayerSlices) {
         const int count = std::min(DenseSource::kLayerSlices, slices - first);
         for (int i = 0; i < count; ++i) {
-            readPixels(files, files.volume.slices[std::size_t(first + i)],
-                       bytes.get() + sliceBytes * std::size_t(i));
+            readDicomPixels(files.volume.slices[std::size_t(first + i)],
+                            bytes.get() + sliceBytes * std::size_t(i));
         }
         use(first, count, bytes.get());
         listener.report(double(first + count) / slices);
@@ -246,17 +201,10 @@ DicomSlice readDicomSlice(const std::filesystem::path& path) {
     slice.file = path;
     slice.series = elements.text(kSeries);
     setSize(elements, slice);
+    setPixels(elements, slice);
     requirePixels(elements, slice);
+    setRescale(elements, slice);
     setPlace(elements, slice);
-    callItk(path, Printed::kIsNothing, [&] {
-        gdcm::ImageHelper::SetForceRescaleInterceptSlope(true);
-        gdcm::Reader reader;
-        reader.SetFileName(path.c_str());
-        if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0010))) {
-            refuse(path, "what GDCM refuses", "a DICOM file");
-        }
-        slice.type = typeOf(path, reader.GetFile());
-    });
     return slice;
 }
 
@@ -266,6 +214,7 @@ DenseSource openDicom(const std::filesystem::path& input, const std::string& nam
     for (const std::filesystem::path& path : paths) slices.push_back(readDicomSlice(path));
     auto files = std::make_shared<DicomFiles>();
     files->type = commonType(slices);
+    for (DicomSlice& slice : slices) slice.type = files->type;
     files->volume = arrangeSlices(input.string(), std::move(slices));
 
     DenseSource source;

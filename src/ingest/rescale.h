@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "ingest/dense_source.h"
 
 namespace deltasplat {
@@ -16,8 +18,12 @@ struct Rescale {
 /// float32, float64 for others.
 RawType rescaledType(RawType type);
 
-/// Rescales `count` values of `type` into `to`, in the processor's byte order, as `toType`: float32
-/// or float64.
+/// Returns the type of whole numbers that holds the values from `least` to `most` rescaled; nothing
+/// if they become real or too large.
+std::optional<RawType> rescaledWholeType(double least, double most, const Rescale& rescale);
+
+/// Rescales `count` values of `type` into `to`, in the processor's byte order, as `toType`. What
+/// whole numbers cannot hold goes to the nearest that they can.
 void rescaleValues(const std::byte* from, std::size_t count, RawType type, bool bigEndian,
                    const Rescale& rescale, RawType toType, std::byte* to);
 

@@ -20,6 +20,7 @@ function(deltasplat_fuzz name)
     endforeach()
 endfunction()
 
+deltasplat_fuzz(delta_fuzz)
 deltasplat_fuzz(raw_fuzz)
 deltasplat_fuzz(vdb_fuzz)
 deltasplat_fuzz(image_fuzz)

@@ -8,8 +8,11 @@
 
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <random>
+#include <vector>
 
+#include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/source_grid.h"
 #include "reference/plain_delta_reader.h"
@@ -24,11 +27,6 @@ using testing::TempFolder;
 
 // What a value type's random values are.
 enum class Kind { kHalf, kFewFloats, kManyFloats, kSmallInts, kWideInts, kBool };
-
-struct Case {
-    unsigned seed;
-    Kind kind;
-};
 
 template <typename T>
 T randomValue(std::mt19937& random, Kind kind) {
@@ -58,10 +56,7 @@ Coord randomCoord(std::mt19937& random, const Coord& low, const Coord& size) {
 template <typename Grid>
 typename Grid::Ptr randomGrid(std::mt19937& random, Kind kind) {
     using T = typename Grid::ValueType;
-    const auto value = [&] {
-        return kind == Kind::kManyFloats ? randomValue<T>(random, kind)
-                                         : randomValue<T>(random, kind);
-    };
+    const auto value = [&] { return randomValue<T>(random, kind); };
     const Coord size(1 + int(random() % 70), 1 + int(random() % 70), 1 + int(random() % 70));
     const Coord low(int(random() % 300) - 200, int(random() % 300) - 200,
                     int(random() % 300) - 200);
@@ -96,7 +91,7 @@ void dress(openvdb::GridBase& grid, std::mt19937& random) {
     grid.insertMeta("frame", openvdb::Int32Metadata(-7));
     grid.insertMeta("place", openvdb::Vec3DMetadata({1, 2, 1e-300}));
     using namespace openvdb::math;
-    Mat4d matrix(0.1, 0.02, 0, 0, -0.03, 0.2, 0.01, 0, 0.3, 0, -0.7, 0, 1, 2, 3, 1);
+    const Mat4d matrix(0.1, 0.02, 0., 0., -0.03, 0.2, 0.01, 0., 0.3, 0., -0.7, 0., 1., 2., 3., 1.);
     const MapBase::Ptr maps[] = {
         std::make_shared<UniformScaleMap>(0.1),
         std::make_shared<ScaleMap>(Vec3d(0.1, 0.7, 1.3)),
@@ -204,6 +199,169 @@ TEST(DeltaFile, IntegerGridsComeBack) {
 TEST(DeltaFile, BoolGridsComeBack) {
     for (unsigned seed = 51; seed <= 55; ++seed)
         expectRoundTrip<openvdb::BoolGrid>(seed, Kind::kBool);
+}
+
+// A dense volume of noise on slow waves, as a scanner makes it: 37 x 29 x 50 voxels.
+std::vector<float> waves(std::mt19937& random, double noise) {
+    std::vector<float> values;
+    for (int z = 0; z < 50; ++z) {
+        for (int y = 0; y < 29; ++y) {
+            for (int x = 0; x < 37; ++x) {
+                const double wave = std::sin(x * 0.1) * std::cos(y * 0.07 + z * 0.02);
+                const double grain = noise * (double(random()) / 4294967295.0 - 0.5);
+                values.push_back(wave < 0 ? 0 : float(wave * 300 + grain));
+            }
+        }
+    }
+    return values;
+}
+
+constexpr const char* kWavesFile = "waves_37x29x50_float32.raw";
+
+Volume readKept(const std::string& file, std::optional<int> bits = {}) {
+    ReadOptions reading;
+    reading.keepSource = true;
+    reading.bits = bits;
+    return readVolume(file, reading);
+}
+
+// The largest error of a voxel by the plain reader, and whether all that is 0 stayed 0.
+double largestError(const std::vector<float>& values, const PlainVolume& plain) {
+    double largest = 0;
+    std::size_t i = 0;
+    for (int z = 0; z < 50; ++z) {
+        for (int y = 0; y < 29; ++y) {
+            for (int x = 0; x < 37; ++x, ++i) {
+                const float restored = float(plain.valueAt(Coord(x, y, z)));
+                largest = std::max(largest, std::fabs(double(restored) - double(values[i])));
+                EXPECT_TRUE(plain.activeAt(Coord(x, y, z)));
+            }
+        }
+    }
+    return largest;
+}
+
+TEST(DeltaFile, LinearBooksKeepToHalfAStepAndSayTheLargestError) {
+    std::mt19937 random(5);
+    std::vector<float> values = waves(random, 40);
+    for (const int bits : {8, 11, 16}) {
+        SCOPED_TRACE(bits);
+        const TempFolder folder;
+        testing::writeBytes(kWavesFile, testing::bytesOf(values));
+        const Volume volume = readKept(kWavesFile, bits);
+        DeltaFile file;
+        const DeltaFileEntry entry = file.add(volume, {});
+        file.write("delta.vdb");
+        const double found =
+            largestError(values, testing::readPlainDeltas("delta.vdb", "waves_37x29x50_float32"));
+        EXPECT_GT(entry.maxError, 0);
+        EXPECT_FALSE(entry.lossless);
+        // Values come back as the source's type, 32-bit reals: up to 320, so rounded by 2^-16.
+        EXPECT_LE(entry.maxError, volume.codeBook.step / 2 + 0x1p-16);
+        EXPECT_NEAR(entry.maxError, found, 1e-4 * found);
+        EXPECT_EQ(readVolume("delta.vdb").origin->maxError, entry.maxError);
+        DeltaFileOptions strict;
+        strict.maxError = entry.maxError * 0.99;
+        EXPECT_THROW(DeltaFile().add(volume, strict), Error);
+        strict.maxError = entry.maxError;
+        EXPECT_NO_THROW(DeltaFile().add(volume, strict));
+    }
+}
+
+// Of a restored volume no voxel is farther off than stated, and holding makes fewer deltas.
+void expectWithin(const std::vector<float>& values, const Volume& volume, int sliceAxis,
+                  const Tolerance& tolerance) {
+    SCOPED_TRACE("axis " + std::to_string(sliceAxis) + ", relative " +
+                 std::to_string(tolerance.relative) + ", value " + std::to_string(tolerance.value));
+    DeltaFileOptions options;
+    options.sliceAxis = sliceAxis;
+    DeltaFile exactly;
+    const DeltaFileEntry exact = exactly.add(volume, options);
+    options.tolerance = tolerance;
+    DeltaFile file;
+    const DeltaFileEntry entry = file.add(volume, options);
+    file.write("held.vdb");
+    EXPECT_LT(entry.deltas, exact.deltas);
+    const PlainVolume plain = testing::readPlainDeltas("held.vdb", volume.name);
+    double largest = 0;
+    std::uint64_t over = 0, filled = 0;
+    std::size_t i = 0;
+    for (int z = 0; z < 50; ++z) {
+        for (int y = 0; y < 29; ++y) {
+            for (int x = 0; x < 37; ++x, ++i) {
+                const double truth = values[i];
+                const double error = std::fabs(plain.valueAt(Coord(x, y, z)) - truth);
+                const bool tooFar =
+                    (tolerance.relative > 0 && error > tolerance.relative * std::fabs(truth)) ||
+                    (tolerance.value > 0 && error > tolerance.value);
+                over += tooFar ? 1 : 0;
+                filled += truth == 0 && error != 0 ? 1 : 0;
+                largest = std::max(largest, error);
+            }
+        }
+    }
+    EXPECT_EQ(over, 0u);
+    EXPECT_EQ(filled, 0u);
+    EXPECT_GT(largest, 0);
+    EXPECT_NEAR(entry.maxError, largest, 1e-4 * largest);
+}
+
+TEST(DeltaFile, ToleranceBoundsEveryVoxelsError) {
+    for (const unsigned seed : {1u, 2u, 3u}) {
+        SCOPED_TRACE(seed);
+        const TempFolder folder;
+        std::mt19937 random(seed);
+        std::vector<float> values = waves(random, 20);
+        for (float& value : values) value = std::round(value * 4) / 4 + 0.0f;
+        testing::writeBytes(kWavesFile, testing::bytesOf(values));
+        const Volume volume = readKept(kWavesFile);
+        ASSERT_TRUE(volume.codeBook.isExact());
+        for (int axis = 0; axis < 3; ++axis) {
+            expectWithin(values, volume, axis, {0.1, 0});
+            expectWithin(values, volume, axis, {0, 9});
+            expectWithin(values, volume, axis, {0.2, 7.5});
+        }
+    }
+}
+
+TEST(DeltaFile, ToleranceLeavesRoomForALinearBook) {
+    const TempFolder folder;
+    std::mt19937 random(9);
+    const std::vector<float> values = waves(random, 20);
+    testing::writeBytes(kWavesFile, testing::bytesOf(values));
+    const Volume volume = readKept(kWavesFile, 10);
+    expectWithin(values, volume, 2, {0, 5});
+    // Less than half a step cannot be kept.
+    DeltaFileOptions options;
+    options.tolerance.value = volume.codeBook.step / 3;
+    EXPECT_THROW(DeltaFile().add(volume, options), Error);
+}
+
+// Active states survive holding; what is inactive never takes a value.
+TEST(DeltaFile, ToleranceKeepsActiveStates) {
+    const TempFolder folder;
+    openvdb::initialize();
+    std::mt19937 random(4);
+    auto grid = randomGrid<openvdb::FloatGrid>(random, Kind::kHalf);
+    grid->setName("density");
+    openvdb::io::File("source.vdb").write({grid});
+    DeltaFileOptions options;
+    options.tolerance.value = 2.5;
+    DeltaFile file;
+    file.add(readKept("source.vdb"), options);
+    file.write("delta.vdb");
+    const PlainVolume plain = testing::readPlainDeltas("delta.vdb", "density");
+    auto accessor = grid->getConstAccessor();
+    std::uint64_t held = 0;
+    for (auto at = reachOf(*grid).begin(); at; ++at) {
+        float value = 0;
+        const bool on = accessor.probeValue(*at, value);
+        ASSERT_EQ(on, plain.activeAt(*at));
+        const double error = std::fabs(plain.valueAt(*at) - double(value));
+        ASSERT_LE(error, on ? 2.5 : 0);
+        held += error > 0 ? 1 : 0;
+    }
+    EXPECT_GT(held, 100u);
 }
 
 }  // namespace

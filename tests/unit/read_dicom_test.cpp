@@ -120,6 +120,36 @@ TEST(ReadDicom, SignedPixels) {
     EXPECT_EQ(valueAt(readVolume("scan"), 0, 0, 0), -1);
 }
 
+// DICOM's run lengths: a table of segments, high bytes first, then each segment's rows.
+std::string runLengths(const std::vector<std::uint16_t>& pixels) {
+    std::string segments[2];
+    for (const std::uint16_t pixel : pixels) {
+        // Each byte as a run of one.
+        segments[0] += std::string(1, '\0') + char(pixel >> 8);
+        segments[1] += std::string(1, '\0') + char(pixel & 0xff);
+    }
+    std::vector<std::uint32_t> table(16, 0);
+    table[0] = 2;
+    table[1] = 64;
+    table[2] = std::uint32_t(64 + segments[0].size());
+    return bytesOf(table) + segments[0] + segments[1];
+}
+
+TEST(ReadDicom, PackedPixels) {
+    const TempFolder folder;
+    auto files = slices(3);
+    for (DicomFile& file : files) {
+        file.syntax = "1.2.840.10008.1.2.5";
+        file.fragments = {runLengths(file.pixels)};
+        file.intercept = "-7";
+    }
+    write(files);
+    EXPECT_EQ(valuesOf(readVolume("scan")), expected(3, 1, -7));
+    files[1].fragments[0].resize(70);
+    write(files);
+    expectInputError("scan");
+}
+
 TEST(ReadDicom, OneSlice) {
     const TempFolder folder;
     auto files = slices(1);

@@ -41,7 +41,8 @@ struct CodeBook {
 
     static CodeBook integer(std::int64_t offset = 0);
     static CodeBook half();
-    /// Spreads 2^bits codes over [low, high]; a book with low == high has the one value `low`.
+    /// Spreads 2^bits codes over [low, high], so that 0 within is the value of a code (then the
+    /// ends may lie beyond by a step); a book with low == high has the one value `low`.
     static CodeBook linear(double low, double high, int bits = 16);
     /// @param values  [1..65536] increasing, finite
     static CodeBook ofTable(std::vector<double> values);

@@ -37,6 +37,9 @@ struct ReadOptions {
     /// one (at most 65536 different values), otherwise a linear one of 16 bits.
     std::optional<int> bits;
     bool keepSource = false;  ///< fill Volume::source
+    /// What the caller will take besides for each 8x8x8 block that is not uniform: counts where
+    /// setMemoryLimit() is in force, so that too large a volume is refused before it is read.
+    double bytesPerBlock = 0;
 };
 
 /// Reads one scalar volume from `.raw`, `.raw.gz` or `.vdb` (by extension, in any case).

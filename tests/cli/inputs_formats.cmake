@@ -1,0 +1,33 @@
+# Medical formats and images: what the program says and takes. Which file holds what is for the
+# tests of the readers.
+deltasplat_cli_test(formats.stack ARGS info stack.\#.pgm --spacing 1,1,2
+    STDOUT_MATCHES "grid +stack.*type +uint8.*dims +3 x 2 x 2.*voxel size +1 x 1 x 2")
+deltasplat_cli_test(formats.one_picture ARGS info stack.1.pgm STDOUT_MATCHES "dims +3 x 2 x 1")
+deltasplat_bad_input(stack_missing
+    "none.###.png: got no file of that name; expected files such as none.001.png" none.\#\#\#.png)
+deltasplat_bad_input(stack_odd
+    "odd.2.pgm: got 2x2 uint8, channels: 1; expected 3x2 uint8, channels: 1, as in the first slice"
+    odd.\#.pgm)
+deltasplat_cli_test(formats.unused_dims ARGS info stack.1.pgm --dims 3x2x1
+    STDERR "deltasplat: warning: --dims: has no effect without a .raw or .raw.gz input"
+    STDOUT_MATCHES "dims +3 x 2 x 1")
+
+if(DELTASPLAT_ITK)
+    deltasplat_cli_test(formats.nrrd ARGS info text.nrrd
+        STDOUT_MATCHES "grid +text.*type +int16.*dims +2 x 3 x 4.*voxel size +1 x 2 x 3")
+    deltasplat_cli_test(formats.unused_spacing ARGS info text.nrrd --spacing 1,1,1
+        STDERR "deltasplat: warning: --spacing: has no effect without an input of raw values or images"
+        STDOUT_MATCHES "voxel size +1 x 2 x 3")
+    deltasplat_bad_input(nrrd_sizes
+        "negative.nrrd: got sizes 2 -3 4; expected whole numbers from 1 to 1073741824"
+        negative.nrrd)
+    deltasplat_bad_input(meta_data
+        "no_data.mhd: got no data file \"nowhere.raw\"; expected a readable file" no_data.mhd)
+else()
+    foreach(file text.nrrd no_data.mhd)
+        string(REGEX REPLACE "^.*\\." "." extension ${file})
+        deltasplat_bad_input(without_itk${extension}
+            "${file}: got extension \"${extension}\"; expected a build with DELTASPLAT_ITK=ON to read NRRD, MetaImage and DICOM"
+            ${file})
+    endforeach()
+endif()

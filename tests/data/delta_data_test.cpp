@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every data set, as delta grids and back: nothing changes; with a tolerance, nothing changes by
+// more.
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "deltasplat/delta/delta_file.h"
+#include "deltasplat/diff/compare_volumes.h"
+#include "deltasplat/ingest/read_volume.h"
+#include "ingest/source_grid.h"
+#include "unit/ingest_helpers.h"
+
+namespace deltasplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Names that volumes begin with; a data file of a header (.mhd's .raw) is not read by itself.
+std::vector<fs::path> inputs() {
+    std::vector<fs::path> found;
+    const fs::path data = DELTASPLAT_SHARED_DATA;
+    if (!fs::is_directory(data)) return found;
+    for (const auto& entry : fs::recursive_directory_iterator(data)) {
+        const std::string name = entry.path().filename().string();
+        const bool vdb = name.ends_with(".vdb");
+        const bool raw = name.find("_uint") != std::string::npos;
+        if (vdb || raw) found.push_back(entry.path());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+ReadOptions keeping() {
+    ReadOptions options;
+    options.keepSource = true;
+    options.levelSetToFog = false;
+    return options;
+}
+
+// Metadata but what OpenVDB itself counts when it writes a file.
+openvdb::MetaMap::Ptr comparable(const openvdb::GridBase& grid) {
+    auto metadata = grid.copyMeta();
+    std::vector<std::string> counted;
+    for (auto entry = metadata->beginMeta(); entry != metadata->endMeta(); ++entry) {
+        if (entry->first.starts_with("file_")) counted.push_back(entry->first);
+    }
+    for (const std::string& name : counted) metadata->removeMeta(name);
+    return metadata;
+}
+
+void expectSameGrid(const Volume& source, const Volume& restored) {
+    ASSERT_TRUE(source.source && restored.source);
+    const openvdb::GridBase& a = *source.source->grid;
+    const openvdb::GridBase& b = *restored.source->grid;
+    EXPECT_EQ(a.type(), b.type());
+    EXPECT_EQ(a.transform(), b.transform());
+    EXPECT_EQ(a.activeVoxelCount(), b.activeVoxelCount());
+    EXPECT_EQ(*comparable(a), *comparable(b));
+}
+
+void expectRestored(const Volume& source, const DeltaFileEntry& entry, const Volume& restored) {
+    SCOPED_TRACE(source.name);
+    const VolumeComparison same = compareVolumes(source, restored);
+    EXPECT_TRUE(same.typeEqual && same.classEqual && same.nameEqual && same.transformEqual);
+    EXPECT_EQ(source.space, restored.space);
+    EXPECT_EQ(same.activeMismatch, 0u);
+    EXPECT_EQ(same.backgroundError, 0);
+    EXPECT_EQ(same.maxError, entry.maxError);
+    EXPECT_EQ(entry.lossless, source.codeBook.isExact());
+    EXPECT_LE(same.maxError, source.codeBook.isExact() ? 0 : source.codeBook.step * 0.50001);
+    if (source.hasBackground) expectSameGrid(source, restored);
+}
+
+TEST(DeltaData, EveryVolumeComesBack) {
+    const auto files = inputs();
+    if (files.empty()) GTEST_SKIP() << "no data sets at " << DELTASPLAT_SHARED_DATA;
+    EXPECT_GE(files.size(), 55u);
+    int lossy = 0;
+    for (const fs::path& file : files) {
+        SCOPED_TRACE(file.string());
+        const testing::TempFolder folder;
+        DeltaFile deltas;
+        std::vector<Volume> sources;
+        std::vector<DeltaFileEntry> entries;
+        VolumeVisitor visitor;
+        visitor.volume = [&](Volume volume) {
+            entries.push_back(deltas.add(volume, {}));
+            lossy += volume.codeBook.isExact() ? 0 : 1;
+            sources.push_back(std::move(volume));
+        };
+        forEachVolume(file, keeping(), visitor);
+        deltas.write("delta.vdb");
+        const std::vector<Volume> restored = readAllVolumes("delta.vdb", keeping());
+        ASSERT_EQ(restored.size(), sources.size());
+        for (std::size_t i = 0; i < sources.size(); ++i)
+            expectRestored(sources[i], entries[i], restored[i]);
+    }
+    // Two frames of smoke have more different 32-bit values than there are codes.
+    EXPECT_EQ(lossy, 2);
+}
+
+// What a tolerance promises, on the real thing: scanner noise, smoke, a field that never ends.
+TEST(DeltaData, TolerancesHold) {
+    const fs::path data = DELTASPLAT_SHARED_DATA;
+    if (!fs::is_directory(data)) GTEST_SKIP() << "no data sets at " << DELTASPLAT_SHARED_DATA;
+    const char* const files[] = {
+        "engine/engine_256x256x128_uint8.raw.gz", "tooth/tooth_103x94x161_uint16be.raw.gz",
+        "vdb_smoke/smoke.vdb", "vdb_plume_seq/fluid_data_0200.vdb", "vdb_anisotropic_fog/test.vdb"};
+    for (const char* const file : files) {
+        SCOPED_TRACE(file);
+        const testing::TempFolder folder;
+        const Volume source = readVolume(data / file, keeping());
+        DeltaFileOptions options;
+        const std::uint64_t exact = DeltaFile().add(source, options).deltas;
+        options.tolerance.value = 0.02 * (source.valueMax - source.valueMin);
+        DeltaFile deltas;
+        const DeltaFileEntry entry = deltas.add(source, options);
+        deltas.write("delta.vdb");
+        const VolumeComparison held = compareVolumes(source, readVolume("delta.vdb", keeping()));
+        EXPECT_LE(held.maxError, options.tolerance.value);
+        EXPECT_EQ(held.maxError, entry.maxError);
+        EXPECT_EQ(held.activeMismatch, 0u);
+        EXPECT_LT(entry.deltas, exact);
+    }
+}
+
+}  // namespace
+}  // namespace deltasplat

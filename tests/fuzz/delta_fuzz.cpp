@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// A delta grid, damaged where a .vdb's own checks do not look: byte 0 chooses the seed grid, byte 1
+// what happens to its metadata, the rest changes voxels and text.
+#include <openvdb/openvdb.h>
+
+#include <cstring>
+
+#include "deltasplat/delta/delta_file.h"
+#include "fuzz/fuzz_target.h"
+
+namespace deltasplat::fuzz {
+namespace {
+
+// Returns the delta grid of a small volume of each kind of code book.
+openvdb::Int32Grid::Ptr deltaGrid(int kind) {
+    openvdb::initialize();
+    auto source = openvdb::FloatGrid::create(-0.5f);
+    source->setName("density");
+    for (int i = 0; i < 500; ++i) {
+        const openvdb::Coord at(i % 13 - 3, i / 13 % 11, i / 40);
+        const float value = kind == 1 ? float(i % 50) / 3 : float(i % 37) * 0.25f;
+        if (i % 9 == 0) {
+            source->tree().setValueOff(at, value);
+        } else {
+            source->tree().setValueOn(at, value);
+        }
+    }
+    source->setSaveFloatAsHalf(kind == 0);
+    const std::string path = fileWith(".seed.vdb", nullptr, 0);
+    openvdb::io::File(path).write({source});
+    ReadOptions reading;
+    reading.keepSource = true;
+    if (kind == 2) reading.bits = 12;
+    DeltaFile file;
+    file.add(readVolume(path, reading), {});
+    file.write(path);
+    openvdb::io::File input(path);
+    input.open();
+    const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid("density"));
+    input.close();
+    std::remove(path.c_str());
+    return grid;
+}
+
+// Takes numbers from the input, zeros after its end.
+class Input {
+  public:
+    Input(const std::uint8_t* data, std::size_t size) : at_(data), end_(data + size) {}
+    bool empty() const { return at_ == end_; }
+    std::uint8_t byte() { return at_ == end_ ? 0 : *at_++; }
+    std::int32_t number() {
+        std::uint32_t bits = 0;
+        for (int i = 0; i < 4; ++i) bits = bits << 8 | byte();
+        return std::int32_t(bits);
+    }
+    std::string text() {
+        std::string text;
+        for (std::size_t n = byte() % 32; n > 0; --n) text += char(byte());
+        return text;
+    }
+
+  private:
+    const std::uint8_t* at_;
+    const std::uint8_t* end_;
+};
+
+// Removes an entry of the metadata, or gives it another value or type.
+void damageMetadata(Input& input, openvdb::MetaMap& metadata) {
+    if (metadata.metaCount() == 0) return;
+    auto entry = metadata.beginMeta();
+    for (std::size_t n = input.byte() % metadata.metaCount(); n > 0; --n) ++entry;
+    const std::string name = entry->first;
+    const std::string type = entry->second->typeName();
+    metadata.removeMeta(name);
+    switch (input.byte() % 4) {
+        case 0:
+            break;
+        case 1:
+            metadata.insertMeta(name, openvdb::StringMetadata(input.text()));
+            break;
+        case 2:
+            metadata.insertMeta(
+                name, openvdb::Vec3IMetadata({input.number(), input.number(), input.number()}));
+            break;
+        default:
+            if (type == "int32") metadata.insertMeta(name, openvdb::Int32Metadata(input.number()));
+            if (type == "int64") metadata.insertMeta(name, openvdb::Int64Metadata(input.number()));
+            if (type == "double")
+                metadata.insertMeta(name, openvdb::DoubleMetadata(input.number() * 1e30));
+    }
+}
+
+void damageVoxels(Input& input, openvdb::Int32Tree& tree) {
+    const openvdb::Coord at(std::int8_t(input.byte()), std::int8_t(input.byte()),
+                            std::int8_t(input.byte()));
+    const std::uint8_t how = input.byte();
+    const std::int32_t value = how % 2 ? input.number() : std::int8_t(input.byte());
+    if (how % 16 == 0) {
+        tree.addTile(1, at, value, true);
+    } else if (how % 4 == 1) {
+        tree.setValueOff(at);
+    } else {
+        tree.setValueOn(at, value);
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> seeds() {
+    std::vector<std::string> inputs;
+    for (const char kind : {0, 1, 2}) {
+        inputs.push_back({kind, 0});
+        inputs.push_back({kind, 1, 4, 2, 0, 0, 0, 3, 3, 3, 3, 3, 3});
+        inputs.push_back({kind, 0, 1, 2, 3, 0, 7, 4, 4, 4, 1, 0, 0, 0, 1});
+        inputs.push_back({kind, 3, 9, 3, 0, 0, 0, 9, 2, 1, 6, '1', ' ', '2', ' ', '3', '4'});
+    }
+    return inputs;
+}
+
+}  // namespace deltasplat::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace deltasplat;
+    if (size < 2 || size > 4096) return 0;
+    static const openvdb::Int32Grid::Ptr grids[] = {fuzz::deltaGrid(0), fuzz::deltaGrid(1),
+                                                    fuzz::deltaGrid(2)};
+    const openvdb::Int32Grid::Ptr grid = grids[data[0] % 3]->deepCopy();
+    fuzz::Input input(data + 2, size - 2);
+    for (int n = data[1] % 4; n > 0; --n) fuzz::damageMetadata(input, *grid);
+    while (!input.empty()) fuzz::damageVoxels(input, grid->tree());
+    const std::string path = fuzz::fileWith(".vdb", nullptr, 0);
+    openvdb::io::File(path).write({grid});
+    ReadOptions options;
+    options.keepSource = true;
+    fuzz::readAndCheck(path, options);
+    return 0;
+}

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// Damaged delta grids: each is refused with one line that says what is wrong.
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <functional>
+
+#include "deltasplat/delta/delta_file.h"
+#include "deltasplat/ingest/read_volume.h"
+#include "unit/ingest_helpers.h"
+
+namespace deltasplat {
+namespace {
+
+using openvdb::Coord;
+using testing::expectError;
+using testing::TempFolder;
+
+// Writes the delta grid of a 20 x 9 x 12 volume of bytes, sliced along z, then damages it.
+class Damaged {
+  public:
+    explicit Damaged(const std::function<void(openvdb::Int32Grid&)>& damage) {
+        std::string voxels(20 * 9 * 12, '\0');
+        for (std::size_t i = 0; i < voxels.size(); ++i) voxels[i] = char(i % 7 == 0 ? i % 250 : 0);
+        testing::writeBytes("a_20x9x12_uint8.raw", voxels);
+        DeltaFileOptions options;
+        options.sliceAxis = 2;
+        options.keyInterval = 8;
+        DeltaFile file;
+        file.add(readVolume("a_20x9x12_uint8.raw"), options);
+        file.write("whole.vdb");
+        openvdb::io::File input("whole.vdb");
+        input.open();
+        const auto grid =
+            openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid("a_20x9x12_uint8"));
+        damage(*grid);
+        openvdb::io::File("a.vdb").write({grid});
+    }
+
+  private:
+    TempFolder folder_;
+};
+
+void expectRefused(const std::string& message,
+                   const std::function<void(openvdb::Int32Grid&)>& damage) {
+    SCOPED_TRACE(message);
+    const Damaged files(damage);
+    EXPECT_NO_THROW(readVolume("whole.vdb"));
+    expectError(ErrorCode::kInput, "a.vdb: grid \"a_20x9x12_uint8\"" + message,
+                [] { readVolume("a.vdb"); });
+}
+
+template <typename T>
+std::function<void(openvdb::Int32Grid&)> with(const std::string& key, const T& value) {
+    return [=](openvdb::Int32Grid& grid) {
+        grid.removeMeta(key);
+        grid.insertMeta(key, openvdb::TypedMetadata<T>(value));
+    };
+}
+
+std::function<void(openvdb::Int32Grid&)> without(const std::string& key) {
+    return [=](openvdb::Int32Grid& grid) { grid.removeMeta(key); };
+}
+
+TEST(ReadDeltaError, UnknownVersion) {
+    expectRefused(": metadata \"delta_version\": got 2; expected an int32 within 1..1",
+                  with<std::int32_t>("delta_version", 2));
+}
+
+TEST(ReadDeltaError, MetadataMissingOrOfAnotherType) {
+    expectRefused(": metadata \"delta_slice_axis\": got nothing; expected one of \"x\" \"y\" \"z\"",
+                  without("delta_slice_axis"));
+    expectRefused(
+        ": metadata \"delta_key_interval\": got type float; expected an int32 within "
+        "8..1073741824",
+        with<float>("delta_key_interval", 8));
+    expectRefused(": metadata \"delta_active\": got nothing; expected an int64",
+                  without("delta_active"));
+    expectRefused(": metadata \"delta_box_max\": got nothing; expected a vec3i",
+                  without("delta_box_max"));
+}
+
+TEST(ReadDeltaError, MetadataOutOfRange) {
+    expectRefused(": metadata \"delta_slice_axis\": got \"w\"; expected one of \"x\" \"y\" \"z\"",
+                  with<std::string>("delta_slice_axis", "w"));
+    expectRefused(": metadata \"delta_key_interval\": got 12; expected a multiple of 8",
+                  with<std::int32_t>("delta_key_interval", 12));
+    expectRefused(
+        ": metadata \"delta_code_book\": got \"octal\"; expected one of \"integer\" "
+        "\"half\" \"linear\" \"table\"",
+        with<std::string>("delta_code_book", "octal"));
+    expectRefused(": metadata \"delta_offset\": got nan; expected a finite double",
+                  with<double>("delta_offset", std::nan("")));
+    expectRefused(
+        ": metadata \"delta_slab_deltas\": got \"12 many\"; expected at most 134217728 "
+        "numbers with one space between",
+        with<std::string>("delta_slab_deltas", "12 many"));
+    expectRefused(": metadata \"delta_active\": got -5; expected a count",
+                  with<std::int64_t>("delta_active", -5));
+    expectRefused(
+        ": metadata \"delta_box_max\": got [1073741824, 8, 11] with minimum [0, 0, 0]; "
+        "expected indices within 2^30 of 0 and a box of at most 2^62 voxels",
+        with<openvdb::Vec3i>("delta_box_max", {1 << 30, 8, 11}));
+}
+
+TEST(ReadDeltaError, TablesThatAreNone) {
+    const auto table = [](const std::string& text) {
+        return [=](openvdb::Int32Grid& grid) {
+            with<std::string>("delta_code_book", "table")(grid);
+            with<std::string>("delta_table", text)(grid);
+        };
+    };
+    expectRefused(
+        ": metadata \"delta_table\": got no increasing finite numbers; expected at least "
+        "one",
+        table("1 3 2"));
+    expectRefused(
+        ": metadata \"delta_table\": got no increasing finite numbers; expected at least "
+        "one",
+        table(""));
+    expectRefused(
+        ": metadata \"delta_code_count\": got 65536; expected 2, the numbers of "
+        "delta_table",
+        table("1 2"));
+}
+
+TEST(ReadDeltaError, MissingKeySlice) {
+    expectRefused(": got 152 deltas in slab 1; expected 178, as \"delta_slab_deltas\" says",
+                  [](openvdb::Int32Grid& grid) {
+                      for (auto value = grid.beginValueOn(); value; ++value) {
+                          if (value.getCoord().x() == 8) value.setActiveState(false);
+                      }
+                  });
+}
+
+TEST(ReadDeltaError, CodesOutsideOfTheBook) {
+    // Voxel (0, 0, 0) has code 0, the most frequent one; (7, 0, 0) has code 7.
+    expectRefused(
+        ": got deltas that lead to 65537 at (0, 7, 0); expected 0..65536, the codes of "
+        "its integer code book",
+        [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), 65537); });
+    expectRefused(
+        ": got deltas that lead to -1 at (0, 7, 0); expected 0..65536, the codes of its "
+        "integer code book",
+        [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), -1); });
+}
+
+// Sums of deltas that no 32 bits hold.
+TEST(ReadDeltaError, ChainsBeyondIntegers) {
+    expectRefused(
+        ": got deltas that lead to 2147483647 at (0, 7, 0); expected 0..65536, the codes "
+        "of its integer code book",
+        [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), 2147483647); });
+}
+
+TEST(ReadDeltaError, DeltasOutsideOfTheBox) {
+    const auto more = [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 200, 0), 4); };
+    expectRefused(
+        ": got deltas at (0, 200, 0); expected deltas within the box (0, 0, 0) to (11, "
+        "19, 8)",
+        more);
+}
+
+TEST(ReadDeltaError, AnotherNumberOfSlabs) {
+    expectRefused(": got 2 slabs in \"delta_slab_deltas\"; expected 1",
+                  with<std::int32_t>("delta_key_interval", 16));
+}
+
+TEST(ReadDeltaError, AnotherNumberOfActiveVoxels) {
+    expectRefused(": got 2160 active voxels; expected 2161, as \"delta_active\" says",
+                  with<std::int64_t>("delta_active", 2161));
+}
+
+TEST(ReadDeltaError, AnotherBackground) {
+    expectRefused(": got background 3; expected 0", [](openvdb::Int32Grid& grid) {
+        grid.tree().root().setBackground(3, /*updateChildNodes=*/true);
+    });
+}
+
+// A box that claims more than there is does not make the reader ask for memory.
+TEST(ReadDeltaError, BoxesThatMemoryCannotHold) {
+    const Damaged files([](openvdb::Int32Grid& grid) {
+        with<openvdb::Vec3i>("delta_box_max", {1 << 20, 1 << 20, 11})(grid);
+    });
+    expectError(ErrorCode::kUsage, "", [] {
+        try {
+            readVolume("a.vdb");
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("of memory"), std::string::npos);
+            throw Error(error.code(), "");
+        }
+    });
+}
+
+}  // namespace
+}  // namespace deltasplat
