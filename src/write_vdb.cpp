@@ -124,8 +124,8 @@ void writeVdb(const std::filesystem::path& file, const openvdb::GridCPtrVec& gri
     } catch (const std::ios_base::failure&) {
         throwCannotWrite(file, errno != 0 ? errno : EIO);
     }
-    output.commit();
     listener.report(1);
+    output.commit();
 }
 
 }  // namespace deltasplat

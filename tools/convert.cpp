@@ -70,9 +70,9 @@ void declareOptions(CLI::App& app, ConvertCommand& command) {
                    "Store 32-bit floats in a .vdb, not halves where those are exact");
     output.addValue("--background", "V|auto|none", command.write, background(command.write),
                     "Make voxels of this value inactive in a .vdb, and it the\n"
-                    "background; auto: the background that a .vdb has, the most\n"
-                    "frequent value of other inputs (default none: every voxel\n"
-                    "stays as active as it was)");
+                    "background; auto: the background that a .vdb has, what info\n"
+                    "guesses for other inputs (default none: every voxel stays as\n"
+                    "active as it was)");
     output.addValue("--stats", "FILE", command.stats, anyText(),
                     "JSON file to write: sizes, largest error, seconds");
     addInputOptions(app, command.read);

@@ -36,14 +36,14 @@ struct BoxArray {
     }
 };
 
-// Calls set(voxel, number of the voxel in its leaf) for all voxels of a block, x fastest.
-template <typename Set>
-void forVoxels(const IndexBox& block, const Set& set) {
-    for (int z = block.min.z; z <= block.max.z; ++z) {
-        for (int y = block.min.y; y <= block.max.y; ++y) {
-            for (int x = block.min.x; x <= block.max.x; ++x) {
-                set(glm::ivec3(x, y, z), openvdb::Index((x & 7) << 6 | (y & 7) << 3 | (z & 7)));
-            }
+// Calls fill(row, count, number in its leaf of the row's first voxel) for the rows of a block.
+template <typename Fill>
+void forRows(const IndexBox& block, const BoxArray& array, const Fill& fill) {
+    const glm::ivec3& min = block.min;
+    for (int z = min.z; z <= block.max.z; ++z) {
+        for (int y = min.y; y <= block.max.y; ++y) {
+            const auto first = openvdb::Index((min.x & 7) << 6 | (y & 7) << 3 | (z & 7));
+            fill(array.at({min.x, y, z}), block.dims().x, first);
         }
     }
 }
@@ -51,15 +51,18 @@ void forVoxels(const IndexBox& block, const Set& set) {
 template <typename Accessor, typename ValueOf>
 void readBlock(const Accessor& accessor, const ValueOf& valueOf, const IndexBox& block,
                const BoxArray& array) {
-    const openvdb::Coord first(block.min.x, block.min.y, block.min.z);
-    if (const auto* leaf = accessor.probeConstLeaf(first)) {
-        forVoxels(block, [&](const glm::ivec3& voxel, openvdb::Index i) {
-            *array.at(voxel) = valueOf(leaf->getValue(i), leaf->isValueOn(i));
+    const openvdb::Coord corner(block.min.x, block.min.y, block.min.z);
+    if (const auto* leaf = accessor.probeConstLeaf(corner)) {
+        forRows(block, array, [&](double* row, int count, openvdb::Index place) {
+            constexpr openvdb::Index kAlongX = 64;
+            for (int x = 0; x < count; ++x, place += kAlongX) {
+                row[x] = valueOf(leaf->getValue(place), leaf->isValueOn(place));
+            }
         });
     } else {
-        const double value = valueOf(accessor.getValue(first), accessor.isValueOn(first));
-        forVoxels(block,
-                  [&](const glm::ivec3& voxel, openvdb::Index) { *array.at(voxel) = value; });
+        const double value = valueOf(accessor.getValue(corner), accessor.isValueOn(corner));
+        forRows(block, array,
+                [&](double* row, int count, openvdb::Index) { std::fill_n(row, count, value); });
     }
 }
 

@@ -17,47 +17,29 @@ bool isHalf(T value) {
     return back == value || value != value;
 }
 
-// Active-mask compression stores neither the background nor its negative where a node's inactive
-// values are only those: they come back whole. Any other inactive value is stored as a half, and
-// may bring the background with it.
-template <typename T>
-class HalfTest {
-  public:
-    explicit HalfTest(T background)
-        : background_(background), halfBackground_(isHalf(background)) {}
-
-    bool operator()(T value, bool active) const {
-        if (active) return isHalf(value);
-        return value == background_ || value == -background_ || (halfBackground_ && isHalf(value));
-    }
-
-  private:
-    T background_;
-    bool halfBackground_;
-};
-
-template <typename Leaf, typename Test>
-bool passes(const Leaf& leaf, const Test& test) {
+template <typename Leaf>
+bool isHalfLeaf(const Leaf& leaf) {
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
-        if (!test(leaf.getValue(i), leaf.isValueOn(i))) return false;
+        if (!isHalf(leaf.getValue(i))) return false;
     }
     return true;
 }
 
 template <typename Tree>
 bool survives(const Tree& tree) {
-    const HalfTest<typename Tree::ValueType> test(tree.background());
+    // Background and inactive values are stored as halves too.
+    if (!isHalf(tree.background())) return false;
     auto tile = tree.cbeginValueAll();
     tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
-        if (!test(*tile, tile.isValueOn())) return false;
+        if (!isHalf(*tile)) return false;
     }
     std::vector<const typename Tree::LeafNodeType*> leaves;
     tree.getNodes(leaves);
     std::atomic<bool> all = true;
     forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && all; ++i) {
-            if (!passes(*leaves[i], test)) all = false;
+            if (!isHalfLeaf(*leaves[i])) all = false;
         }
     });
     return all;

@@ -109,7 +109,12 @@ openvdb::MetaMap metadataOf(const Volume& volume) {
     add(GridBase::META_GRID_NAME, volume.name);
     add(GridBase::META_GRID_CREATOR, "deltasplat " DELTASPLAT_VERSION);
     add(GridBase::META_GRID_CLASS, GridBase::gridClassToString(gridClass));
-    if (!volume.hasBackground) add(kSourceTypeKey, volume.type);
+    if (!volume.hasBackground) {
+        add(kSourceTypeKey, volume.type);
+        const glm::ivec3 &min = volume.box.min, &max = volume.box.max;
+        metadata.insertMeta(kBoxMinKey, openvdb::Vec3IMetadata({min.x, min.y, min.z}));
+        metadata.insertMeta(kBoxMaxKey, openvdb::Vec3IMetadata({max.x, max.y, max.z}));
+    }
     if (!volume.space.empty()) add(kSpaceKey, volume.space);
     return metadata;
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/write_dense.h"
 
+#include <openvdb/openvdb.h>
+
 #include <algorithm>
 #include <cerrno>
-#include <glm/gtc/matrix_transform.hpp>
+#include <glm/vector_relational.hpp>
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -26,8 +28,28 @@ namespace {
 
 constexpr int kBlock = 8;
 
-void requireVoxels(const std::filesystem::path& file, const Volume& volume) {
-    if (!volume.empty()) return;
+bool contains(const IndexBox& outer, const IndexBox& inner) {
+    return glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
+           glm::all(glm::greaterThanEqual(outer.max, inner.max));
+}
+
+// Returns the voxels to write: those of the file that a grid was made from, if it was made so.
+IndexBox boxOf(const Volume& volume) {
+    if (!volume.source) return volume.box;
+    const openvdb::GridBase& grid = *volume.source->grid;
+    const auto min = grid.getMetadata<openvdb::Vec3IMetadata>(kBoxMinKey);
+    const auto max = grid.getMetadata<openvdb::Vec3IMetadata>(kBoxMaxKey);
+    if (!min || !max) return volume.box;
+    const openvdb::Vec3i &low = min->value(), &high = max->value();
+    const IndexBox box{{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
+    constexpr double kMostVoxels = 0x1p62;  // as readers have it
+    const openvdb::Vec3d sides = openvdb::Vec3d(high) - openvdb::Vec3d(low) + openvdb::Vec3d(1);
+    const bool sound = !box.empty() && sides.x() * sides.y() * sides.z() <= kMostVoxels;
+    return sound && (volume.empty() || contains(box, volume.box)) ? box : volume.box;
+}
+
+void requireVoxels(const std::filesystem::path& file, const Volume& volume, const IndexBox& box) {
+    if (!box.empty()) return;
     throw Error(ErrorCode::kInput,
                 gotExpected(file.string(), "\"" + volume.name + "\", which has no active voxels",
                             "a volume with a bounding box (.vdb holds empty ones)"));
@@ -46,9 +68,9 @@ void requireSpace(const std::filesystem::path& file, const DenseFormat& format, 
                                         humanBytes(double(space.available)) + ", which is free");
 }
 
-void noteLostStates(const Volume& volume, Notes& notes) {
+void noteLostStates(const Volume& volume, const IndexBox& box, Notes& notes) {
     if (!volume.hasBackground) return;
-    const std::uint64_t inactive = std::uint64_t(volume.box.voxels()) - volume.activeCount;
+    const std::uint64_t inactive = std::uint64_t(box.voxels()) - volume.activeCount;
     if (inactive != 0) {
         notes.loss(std::to_string(inactive) +
                    " inactive voxels become voxels like the others, with the value they hold "
@@ -61,13 +83,13 @@ void noteLostStates(const Volume& volume, Notes& notes) {
                "\" and other metadata are left out");
 }
 
-DenseLayout layoutOf(const Volume& volume, const ValueFacts& facts, const DenseFormat& format,
-                     Notes& notes) {
+DenseLayout layoutOf(const Volume& volume, const IndexBox& box, const ValueFacts& facts,
+                     const DenseFormat& format, Notes& notes) {
     DenseLayout layout;
-    layout.dims = volume.box.dims();
+    layout.dims = box.dims();
     layout.type = denseType(volume, facts, format.wideIntegers, notes);
     layout.worldFromIndex = volume.worldFromIndex;
-    layout.worldFromIndex[3] = volume.worldFromIndex * glm::dvec4(volume.box.min, 1);
+    layout.worldFromIndex[3] = volume.worldFromIndex * glm::dvec4(box.min, 1);
     layout.space = volume.space;
     return layout;
 }
@@ -119,10 +141,9 @@ class Layer {
     std::vector<std::byte> data_;
 };
 
-double writeValues(const Volume& volume, RawType type, PackedOutput& out,
+double writeValues(const Volume& volume, const IndexBox& box, RawType type, PackedOutput& out,
                    const Listener& listener) {
     const ReadBox read = boxReader(volume);
-    const IndexBox& box = volume.box;
     double error = 0;
     for (int first = box.min.z; first <= box.max.z; first = (first & ~(kBlock - 1)) + kBlock) {
         IndexBox slices = box;
@@ -140,13 +161,14 @@ double writeValues(const Volume& volume, RawType type, PackedOutput& out,
 
 WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& format,
                        const Volume& volume, const Listener& listener) {
-    requireVoxels(file, volume);
+    const IndexBox box = boxOf(volume);
+    requireVoxels(file, volume, box);
     WriteReport report;
     Notes notes(report, file);
     const ValueFacts facts = factsOf(volume);
-    DenseLayout layout = layoutOf(volume, facts, format, notes);
+    DenseLayout layout = layoutOf(volume, box, facts, format, notes);
     format.settle(layout, file.string(), notes);
-    noteLostStates(volume, notes);
+    noteLostStates(volume, box, notes);
     const double sliceBytes = double(layout.dims.x) * layout.dims.y * rawTypeBytes(layout.type);
     requireMemory(file.string(), 2 * kBlock * sliceBytes);
     requireSpace(file, format, sliceBytes * layout.dims.z);
@@ -161,7 +183,8 @@ WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& for
     const std::string header = format.header(layout, dataFile.filename().string());
     head.write(header.data(), header.size());
     if (format.gzipData && !format.gzipHeader) data.beginGzip();
-    report.maxError = std::max(facts.doubleError, writeValues(volume, layout.type, data, listener));
+    report.maxError =
+        std::max(facts.doubleError, writeValues(volume, box, layout.type, data, listener));
 
     // The header comes last: who finds it finds the values.
     head.close();

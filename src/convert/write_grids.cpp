@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "convert/drop_background.h"
@@ -12,6 +13,7 @@
 #include "convert/volume_grid.h"
 #include "convert/write_report.h"
 #include "deltasplat/error.h"
+#include "deltasplat/ingest/value_statistics.h"
 #include "ingest/source_grid.h"
 #include "number_text.h"
 #include "write_vdb.h"
@@ -28,9 +30,12 @@ std::string quoted(const std::string& name) {
     return "grid \"" + name + "\"";
 }
 
-double droppedValue(const Volume& volume, const WriteOptions& options) {
-    if (options.background) return *options.background;
-    return volume.hasBackground ? volume.background : mostFrequentValue(volume);
+// Returns the value to drop, or nothing if there is none that stands out.
+std::optional<double> droppedValue(const Volume& volume, const WriteOptions& options) {
+    if (options.background) return options.background;
+    if (volume.hasBackground) return volume.background;
+    if (!guessBackground(volume)) return {};
+    return mostFrequentValue(volume);
 }
 
 // A background has to be a value of the grid's type.
@@ -49,7 +54,13 @@ void requireValue(const GridBase& grid, double value) {
 
 GridBase::ConstPtr sparseGrid(const GridBase::ConstPtr& grid, const Volume& volume,
                               const WriteOptions& options, Notes& notes) {
-    const double value = droppedValue(volume, options);
+    const std::optional<double> dropped = droppedValue(volume, options);
+    if (!dropped) {
+        notes.remark(
+            "--background: no value is frequent enough to be one; every voxel stays active");
+        return grid;
+    }
+    const double value = *dropped;
     // Inactive voxels that are there already have a value, which another background would change.
     if (volume.hasBackground && value != volume.background) {
         notes.remark("--background: has no effect on " + quoted(volume.name) +

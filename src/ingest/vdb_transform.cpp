@@ -5,9 +5,13 @@
 #include <openvdb/math/Maps.h>
 #include <openvdb/openvdb.h>
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <sstream>
+
+#include "deltasplat/error.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {
@@ -51,10 +55,17 @@ MapBase::Ptr affineMap(const glm::dmat4& worldFromIndex) {
 // one leaves it as it is.
 Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex) {
     const glm::dmat4& m = worldFromIndex;
-    const MapBase::Ptr map = isScaleAndTranslation(m)
-                                 ? scaleMap({m[0].x, m[1].y, m[2].z}, glm::dvec3(m[3]))
-                                 : affineMap(m);
     openvdb::initialize();
+    MapBase::Ptr map;
+    try {
+        map = isScaleAndTranslation(m) ? scaleMap({m[0].x, m[1].y, m[2].z}, glm::dvec3(m[3]))
+                                       : affineMap(m);
+    } catch (const openvdb::ArithmeticError&) {
+        const glm::dvec3 size(glm::length(m[0]), glm::length(m[1]), glm::length(m[2]));
+        throw Error(ErrorCode::kFailed,
+                    gotExpected("voxel size", numberText(size),
+                                "a volume of at least 3e-15, as .vdb has it (other units?)"));
+    }
     std::stringstream stream;
     openvdb::io::setCurrentVersion(stream);
     openvdb::writeString(stream, map->type());

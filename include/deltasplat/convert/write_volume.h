@@ -17,8 +17,8 @@ struct WriteOptions {
     /// .vdb: make active voxels inactive that have the value `background`, which becomes the grid's
     /// background.
     bool dropBackground = false;
-    /// Empty: the background that the volume has; if it has none, its most frequent value (for
-    /// values without an exact code book: the most frequent one of the fullest code).
+    /// Empty: the background that the volume has; if it has none, its most frequent value (without
+    /// an exact code book: of those with the fullest code) if guessBackground finds one.
     std::optional<double> background;
 };
 
@@ -47,11 +47,12 @@ void checkVolumeFile(const std::filesystem::path& file);
 /// - `.vdb`: any number of volumes, Blosc-compressed, in half precision where that is exact. A
 ///   volume that has its source writes that grid: values, active states, transform, class and
 ///   metadata. Others get a float grid where floats hold every value (otherwise int32 or double)
-///   whose metadata `deltasplat_source_type` and `deltasplat_space` say what it was.
+///   whose metadata `deltasplat_source_type`, `deltasplat_box_min`, `deltasplat_box_max` and
+///   `deltasplat_space` say what it was.
 /// - `.nrrd`, `.nhdr` (gzip inside), `.mhd`, `.mha`, `.nii`, `.nii.gz`, `.raw`, `.raw.gz`: one
-///   volume, every voxel of its box, little endian, x fastest. Voxels keep their type
-///   (`deltasplat_source_type` if there is one and it holds every value); inactive ones are written
-///   with the value they hold. World space is LPS in MetaImage and RAS in NIfTI, as these formats
+///   volume, every voxel of its box (or of the one in the metadata, if that holds it), little
+///   endian, x fastest. Voxels keep their type (`deltasplat_source_type` if there is one and it
+///   holds every value); inactive ones are written with the value they hold. World space is LPS in MetaImage and RAS in NIfTI, as these formats
 ///   have it; a volume whose `space` is empty keeps its numbers.
 ///
 /// Files appear only when they are whole. Values come from Volume::source if it is there (`codes`

@@ -1,0 +1,8 @@
+deltasplat_test(unit/dense_header_test.cpp)
+deltasplat_test(unit/drop_background_test.cpp)
+deltasplat_test(unit/half_exact_test.cpp)
+deltasplat_test(unit/write_dense_test.cpp)
+deltasplat_test(unit/write_grids_test.cpp)
+if(DELTASPLAT_ITK)
+    target_compile_definitions(write_dense_test PRIVATE DELTASPLAT_ITK)
+endif()
