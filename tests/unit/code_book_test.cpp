@@ -115,7 +115,9 @@ TEST(CodeBook, LinearErrorIsAtMostHalfAStep) {
         EXPECT_NEAR(book.valueOf(0), range[0], around ? book.step : 0);
         EXPECT_NEAR(book.valueOf(65535), range[1], (around ? book.step : 0) + 1e-15 * size);
         EXPECT_LE(book.step, (range[1] - range[0]) / 65534 * (1 + 1e-12));
-        if (around) EXPECT_EQ(book.valueOf(book.codeOf(0)), 0);
+        if (around) {
+            EXPECT_EQ(book.valueOf(book.codeOf(0)), 0);
+        }
         for (int i = 0; i < 20000; ++i) {
             const double value = range[0] + share(random) * (range[1] - range[0]);
             const double error = std::fabs(book.valueOf(book.codeOf(value)) - value);

@@ -98,7 +98,7 @@ TEST(Histogram, OneValueOnly) {
     EXPECT_EQ(level.counts, (std::vector<std::uint64_t>{9, 0, 0, 0, 0, 0, 0, 0}));
     // Spans that doubles can hardly divide do no harm.
     const ValueHistogram tiny =
-        histogramOfValues(volumeOf({CodeBook::Kind::kLinear, 0, 5e-324}, {4, 5}), 64);
+        histogramOfValues(volumeOf({CodeBook::Kind::kLinear, 0, 5e-324, nullptr}, {4, 5}), 64);
     EXPECT_EQ(sumOf(tiny.counts), 9u);
 }
 

@@ -1,0 +1,48 @@
+# Delta grids: made, read by every command, restored; and what is refused.
+set(cube cube_8x8x8_uint8.raw)
+
+deltasplat_cli_test(delta.fine.raw ARGS delta ${cube} d.vdb --stats s.json CREATES d.vdb s.json)
+deltasplat_cli_test(delta.fine.vdb ARGS delta two.vdb d.vdb CREATES d.vdb)
+deltasplat_cli_test(delta.fine.empty ARGS delta empty.vdb d.vdb CREATES d.vdb
+    STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels")
+deltasplat_cli_test(delta.fine.mixed ARGS delta mixed.vdb d.vdb CREATES d.vdb
+    STDERR "deltasplat: warning: mixed.vdb: left out velocity (vec3s)")
+deltasplat_cli_test(delta.fine.options ARGS delta ball.vdb d.vdb --axis y --key-interval 16
+    --tolerance 0.01 --tolerance-value 0.1 --max-error 0.1 CREATES d.vdb
+    STDOUT_MATCHES "^largest error 0\\.0[0-9]+")
+add_test(NAME cli.delta.round_trip COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/round_trip.sh
+    $<TARGET_FILE:deltasplat_tool> ${CMAKE_CURRENT_BINARY_DIR}/cli/round_trip
+    ${DELTASPLAT_FIXTURES}/two.vdb ${DELTASPLAT_FIXTURES}/ball_class.vdb
+    ${DELTASPLAT_FIXTURES}/cube_8x8x8_uint8.raw)
+set_tests_properties(cli.delta.round_trip PROPERTIES LABELS cli TIMEOUT 120
+                     FIXTURES_REQUIRED cli_files)
+deltasplat_cli_test(delta.max_error EXIT 1
+    ARGS delta ball.vdb d.vdb --tolerance-value 0.2 --max-error 0.001
+    STDERR_MATCHES "deltasplat: grid \"density\": got a largest error of 0.[0-9]+; expected at most 0.001 .--max-error.")
+
+deltasplat_cli_test(delta.usage.extension EXIT 2 ARGS delta ${cube} d.nrrd
+    STDERR "deltasplat: d.nrrd: got extension \".nrrd\"; expected .vdb")
+deltasplat_cli_test(delta.usage.axis EXIT 2 ARGS delta ${cube} d.vdb --axis w
+    STDERR "deltasplat: --axis: got w; expected auto, x, y or z")
+deltasplat_cli_test(delta.usage.key_interval EXIT 2 ARGS delta ${cube} d.vdb --key-interval 12
+    STDERR "deltasplat: --key-interval: got 12; expected a multiple of 8")
+deltasplat_cli_test(delta.usage.bits EXIT 2 ARGS delta ${cube} d.vdb --bits 7
+    STDERR "deltasplat: --bits: got 7; expected a whole number from 8 to 16")
+deltasplat_cli_test(delta.usage.tolerance EXIT 2 ARGS delta ${cube} d.vdb --tolerance-value -1
+    STDERR_MATCHES "deltasplat: --tolerance-value: got -1; expected a number .*0.*")
+deltasplat_cli_test(delta.no_folder EXIT 4 ARGS delta nowhere.vdb nowhere/d.vdb
+    STDERR "deltasplat: nowhere/d.vdb: cannot be written: No such file or directory")
+deltasplat_cli_test(delta.full EXIT 4 ARGS delta ${cube} full.vdb
+    STDERR "deltasplat: full.vdb: cannot be written: No space left on device")
+
+deltasplat_cli_test(restore.no_deltas EXIT 3 ARGS restore ball.vdb r.vdb
+    STDERR "deltasplat: ball.vdb: grid \"density\": got a grid of type float; expected a delta grid (convert takes other grids)")
+deltasplat_cli_test(restore.extension EXIT 2 ARGS restore ball.vdb r.txt
+    STDERR_MATCHES "deltasplat: r.txt: got extension \".txt\"; expected .*")
+
+# A limit on memory is kept by saying so first.
+deltasplat_cli_test(memory.refused EXIT 2 ARGS delta ${cube} d.vdb --max-memory 1K
+    STDERR_MATCHES "deltasplat: ${cube}: needs [0-9.]+ .*of memory; expected at most 0 bytes, which --max-memory leaves")
+deltasplat_cli_test(memory.granted ARGS delta ${cube} d.vdb --max-memory 2G CREATES d.vdb)
+deltasplat_cli_test(memory.usage EXIT 2 ARGS info ${cube} --max-memory much
+    STDERR "deltasplat: --max-memory: got much; expected a number of bytes, such as 500000000, 400M or 1.5G")
