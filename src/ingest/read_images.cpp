@@ -14,6 +14,7 @@
 #include "ingest/dense_source.h"
 #include "ingest/file_name.h"
 #include "ingest/readers.h"
+#include "ingest/silent_stderr.h"
 #include "memory.h"
 #include "parallel.h"
 #include "printable.h"
@@ -28,6 +29,11 @@ using OIIO::TypeDesc;
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
                          const std::string& expected) {
     throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
+}
+
+// OpenImageIO repeats itself on further lines.
+std::string firstLine(const std::string& text) {
+    return printable(text.substr(0, text.find('\n')));
 }
 
 struct ImageType {
@@ -78,9 +84,10 @@ std::unique_ptr<ImageInput> openImage(const std::filesystem::path& file) {
     requireRegularFile(file);
     ImageSpec config;
     config["oiio:UnassociatedAlpha"] = 1;  // alpha is not asked for, so it must change nothing
+    const SilentStderr silent;             // libpng prints what OpenImageIO then reports
     auto input = ImageInput::open(file.string(), &config);
     if (!input) {
-        refuse(file, "what OpenImageIO refuses (" + printable(OIIO::geterror()) + ")", "an image");
+        refuse(file, "what OpenImageIO refuses (" + firstLine(OIIO::geterror()) + ")", "an image");
     }
     return input;
 }
@@ -143,8 +150,9 @@ void warnOfLosses(const std::filesystem::path& file, const ImageSpec& spec,
 
 void readPage(const Stack& stack, ImageInput& input, const std::filesystem::path& file, int page,
               void* to) {
+    const SilentStderr silent;
     if (input.read_image(page, 0, 0, stack.channels, stack.type.oiio, to)) return;
-    refuse(file, "what OpenImageIO refuses (" + printable(input.geterror()) + ")", "a whole image");
+    refuse(file, "what OpenImageIO refuses (" + firstLine(input.geterror()) + ")", "a whole image");
 }
 
 // The weights are those of Rec. 709; they add up to 1, so a grey keeps its value.

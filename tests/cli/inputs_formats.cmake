@@ -8,6 +8,10 @@ deltasplat_bad_input(stack_missing
 deltasplat_bad_input(stack_odd
     "odd.2.pgm: got 2x2 uint8, channels: 1; expected 3x2 uint8, channels: 1, as in the first slice"
     odd.\#.pgm)
+# libpng would print a line of its own.
+deltasplat_bad_input(png_cut
+    "cut.png: got what OpenImageIO refuses (Read error: hit end of file); expected a whole image"
+    cut.png)
 deltasplat_cli_test(formats.unused_dims ARGS info stack.1.pgm --dims 3x2x1
     STDERR "deltasplat: warning: --dims: has no effect without a .raw or .raw.gz input"
     STDOUT_MATCHES "dims +3 x 2 x 1")

@@ -21,9 +21,9 @@ struct RawFormat {
     std::optional<glm::i64vec3> dims;  ///< voxels along x (fastest), y, z; each at least 1
     std::optional<std::string> type;   ///< uint8 int8 uint16 int16 uint32 int32 float32 float64
     std::optional<bool> bigEndian;     ///< default: little, or what the name says
-    glm::dvec3 spacing{1.0};           ///< world units per voxel, each finite and > 0
-    glm::dvec3 origin{0.0};            ///< world position of the centre of voxel (0,0,0)
-    std::uint64_t skipBytes = 0;       ///< header bytes to pass over (after decompression)
+    glm::dvec3 spacing{1.0};           ///< world units per voxel, each finite and > 0; images too
+    glm::dvec3 origin{0.0};       ///< world position of the centre of voxel (0,0,0); images too
+    std::uint64_t skipBytes = 0;  ///< header bytes to pass over (after decompression)
 };
 
 /// How to read a volume.
@@ -42,7 +42,10 @@ struct ReadOptions {
     double bytesPerBlock = 0;
 };
 
-/// Reads one scalar volume from `.raw`, `.raw.gz` or `.vdb` (by extension, in any case).
+/// Reads one scalar volume: `.vdb .raw .raw.gz .nii .nii.gz .nrrd .nhdr .mhd .mha .dcm` and images
+/// (`.tif .png .jpg .bmp .pgm .exr`, of which pages are slices) by extension, in any case; a folder
+/// of DICOM slices or of images; a stack `slice.####.png` or `slice.%04d.png`. NRRD, MetaImage and
+/// DICOM need a build with ITK. What is passed over is said in a warning.
 /// Level sets and NaN are treated as `options` says; only active values of a .vdb count, a NaN
 /// background is taken as `nanValue` or 0, with a warning. An empty grid is a valid, empty volume,
 /// with a warning. Deterministic; not affected by the number of threads.

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace deltasplat {
+
+/// While one lives, what is written to standard error goes nowhere, by any thread. For libraries
+/// that print there and cannot be told not to.
+class SilentStderr {
+  public:
+    SilentStderr();
+    ~SilentStderr();
+    SilentStderr(const SilentStderr&) = delete;
+    SilentStderr& operator=(const SilentStderr&) = delete;
+
+  private:
+    int before_ = -1;
+};
+
+}  // namespace deltasplat
