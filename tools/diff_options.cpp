@@ -8,7 +8,9 @@ namespace deltasplat {
 
 void addDiffOptions(CLI::App& app, DiffOptions& options) {
     OptionGroup arguments(app, "Arguments");
-    arguments.addValue("A", "FILE", options.a, anyText(), std::string("File to compare: ") + kInputFormats)
+    arguments
+        .addValue("A", "FILE", options.a, anyText(),
+                  std::string("File to compare: ") + kInputFormats)
         .required();
     arguments
         .addValue("B", "FILE", options.b, anyText(),

@@ -10,9 +10,9 @@ namespace deltasplat {
 /// Returns the OpenVDB grid that a volume is. The grid of a .vdb source is that source itself.
 /// Otherwise: a volume that has a background (it was a .vdb once) gets a grid of its own type
 /// again, another one a float grid if floats hold every value, else int32 if that does, else
-/// double; with name, class, transform, creator and the metadata of grid_metadata.h. Tiles stay tiles, and every active voxel is active. Values come from
-/// Volume::source, or if there is none from the codes. Whether it will be stored in half precision
-/// is left open. Deterministic.
+/// double; with name, class, transform, creator and the metadata of grid_metadata.h. Tiles stay
+/// tiles, and every active voxel is active. Values come from Volume::source, or if there is none
+/// from the codes. Whether it will be stored in half precision is left open. Deterministic.
 /// @throw Error(kFailed) if OpenVDB cannot hold the volume's transform
 openvdb::GridBase::ConstPtr gridOf(const Volume& volume);
 

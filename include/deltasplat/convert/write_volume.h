@@ -52,8 +52,9 @@ void checkVolumeFile(const std::filesystem::path& file);
 /// - `.nrrd`, `.nhdr` (gzip inside), `.mhd`, `.mha`, `.nii`, `.nii.gz`, `.raw`, `.raw.gz`: one
 ///   volume, every voxel of its box (or of the one in the metadata, if that holds it), little
 ///   endian, x fastest. Voxels keep their type (`deltasplat_source_type` if there is one and it
-///   holds every value); inactive ones are written with the value they hold. World space is LPS in MetaImage and RAS in NIfTI, as these formats
-///   have it; a volume whose `space` is empty keeps its numbers.
+///   holds every value); inactive ones are written with the value they hold. World space is LPS in
+///   MetaImage and RAS in NIfTI, as these formats have it; a volume whose `space` is empty keeps
+///   its numbers.
 ///
 /// Files appear only when they are whole. Values come from Volume::source if it is there (`codes`
 /// may then be empty), otherwise from the codes; memory for a few slices is needed beyond the
