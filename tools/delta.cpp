@@ -119,9 +119,9 @@ void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& s
         remarks.warning = taking.warning;
         const bool complete = forEachScalarGrid(
             command.input, command.read,
-            [&](Volume volume) {
+            [&](const Volume& volume) {
                 stats.add(volume);
-                add(file.add(std::move(volume), command.file, remarks), stats);
+                add(file.add(volume, command.file, remarks), stats);
             },
             taking);
         file.write(command.output);

@@ -117,6 +117,8 @@ ReadBox boxReader(const Volume& volume) {
         reader = treeReader(grid.constTree(), [background = volume.background](T value, bool) {
             if constexpr (std::is_floating_point_v<T>) {
                 if (!std::isfinite(value)) return background;
+            } else {
+                static_cast<void>(background);
             }
             return double(value);
         });

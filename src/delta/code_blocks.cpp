@@ -71,14 +71,14 @@ void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
 // A block may have both active voxels and inactive ones with values: two entries become one.
 void BlockReader::mergeDoubles() {
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-        if (kept > 0 && blocks_[kept - 1].position == blocks_[i].position) {
+    for (const CodeBlock& next : blocks_) {
+        if (kept > 0 && blocks_[kept - 1].position == next.position) {
             CodeBlock& block = blocks_[kept - 1];
-            if (!block.leaf) block.leaf = blocks_[i].leaf;
-            if (!block.inactive) block.inactive = blocks_[i].inactive;
-            if (block.tileSlot == kEmptySlot) block.tileSlot = blocks_[i].tileSlot;
+            if (!block.leaf) block.leaf = next.leaf;
+            if (!block.inactive) block.inactive = next.inactive;
+            if (block.tileSlot == kEmptySlot) block.tileSlot = next.tileSlot;
         } else {
-            blocks_[kept++] = blocks_[i];
+            blocks_[kept++] = next;
         }
     }
     blocks_.resize(kept);

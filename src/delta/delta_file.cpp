@@ -148,7 +148,7 @@ DeltaFile::DeltaFile() : impl_(std::make_unique<Impl>()) {
 
 DeltaFile::~DeltaFile() = default;
 
-DeltaFileEntry DeltaFile::add(Volume volume, const DeltaFileOptions& options,
+DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& options,
                               const Listener& listener) {
     checkTolerance("--tolerance", options.tolerance.relative);
     checkTolerance("--tolerance-value", options.tolerance.value);

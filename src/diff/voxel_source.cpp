@@ -31,7 +31,8 @@ WideValue split(double value) {
 
 WideValue split(std::int64_t value) {
     constexpr std::int64_t kStep = std::int64_t{1} << 32;
-    return {double(value / kStep) * kWideStep, double(value % kStep)};
+    const std::int64_t high = value / kStep;
+    return {double(high) * kWideStep, double(value % kStep)};
 }
 
 // Turns what a tree stores into values.

@@ -301,7 +301,8 @@ DecodedDeltas decodeDeltas(openvdb::Int32Grid& grid, const DeltaHeader& header,
     constexpr std::size_t kPortion = 2048;
     for (std::size_t begin = 0; begin + 1 < columns.size(); begin += kPortion) {
         const std::size_t count = std::min(kPortion, columns.size() - 1 - begin);
-        requireMemory(where, double(count) * (header.keyInterval / 8) * sizeof(Block));
+        const int blocksPerColumn = header.keyInterval / 8;
+        requireMemory(where, double(count) * blocksPerColumn * sizeof(Block));
         std::vector<std::vector<Block>> blocks(count);
         parallelForChunks(count, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {

@@ -185,7 +185,8 @@ glm::dmat4 sform(const Fields& fields) {
     glm::dmat4 matrix(1);
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 4; ++column) {
-            matrix[column][row] = fields.real(fields.places().sform, std::size_t(row * 4 + column));
+            matrix[column][row] =
+                fields.real(fields.places().sform, std::size_t(row) * 4 + std::size_t(column));
         }
     }
     return matrix;

@@ -44,7 +44,7 @@ class DeltaFile {
     /// @throw Error(kUsage) if the key interval is no multiple of 8, if a tolerance is negative or
     ///        smaller than the code book's own error, or if memory does not suffice;
     ///        Error(kFailed) if the error is larger than options.maxError
-    DeltaFileEntry add(Volume volume, const DeltaFileOptions& options,
+    DeltaFileEntry add(const Volume& volume, const DeltaFileOptions& options,
                        const Listener& listener = {});
     /// Writes all grids added.
     /// @throw Error(kOutput) if it cannot be written
