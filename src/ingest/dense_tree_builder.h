@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>
@@ -73,7 +74,8 @@ class DenseTreeBuilder {
 
     static bool isUniform(const Value* values) {
         // All neighbours equal: a comparison that libraries do with whole vectors.
-        return std::memcmp(values, values + 1, (kBlockVoxels - 1) * sizeof(Value)) == 0;
+        const auto* bytes = reinterpret_cast<const std::byte*>(values);
+        return std::memcmp(bytes, bytes + sizeof(Value), (kBlockVoxels - 1) * sizeof(Value)) == 0;
     }
 
     static void deactivateOutside(Leaf& leaf, const glm::ivec3& size) {

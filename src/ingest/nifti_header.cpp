@@ -193,7 +193,7 @@ glm::dmat4 sform(const Fields& fields) {
 }
 
 double voxelSize(const Fields& fields, int axis) {
-    return fields.real(fields.places().pixelSizes, std::size_t(axis + 1));
+    return fields.real(fields.places().pixelSizes, std::size_t(axis) + 1);
 }
 
 // Method 2 of nifti1.h: a unit quaternion whose real part is left out, then voxel sizes; the sign

@@ -176,7 +176,7 @@ void readLayers(const DicomFiles& files, const DenseSource::LayerUse& use,
     for (int first = 0; first < slices; first += DenseSource::kLayerSlices) {
         const int count = std::min(DenseSource::kLayerSlices, slices - first);
         for (int i = 0; i < count; ++i) {
-            readDicomPixels(files.volume.slices[std::size_t(first + i)],
+            readDicomPixels(files.volume.slices[std::size_t(first) + std::size_t(i)],
                             bytes.get() + sliceBytes * std::size_t(i));
         }
         use(first, count, bytes.get());
