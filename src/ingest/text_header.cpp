@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/text_header.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "deltasplat/error.h"
 #include "ingest/file_name.h"
@@ -16,6 +19,10 @@ namespace {
 
 // ITK's readers copy names and values to buffers of a few hundred bytes.
 constexpr std::size_t kMostLine = 200;
+// Nine numbers of 17 digits do not fit there; these fields are read number by number.
+constexpr std::array<std::string_view, 5> kMatrixFields{
+    "spacedirections", "measurementframe", "transformmatrix", "rotation", "orientation"};
+constexpr std::size_t kMostMatrixLine = 450;
 constexpr std::size_t kMostFreeLine = 16384;
 constexpr std::size_t kMostHeader = std::size_t{1} << 20;
 
@@ -69,9 +76,15 @@ class Lines {
 };
 
 void requireSaneLine(const Lines& lines, const std::string& line) {
-    if (line.size() <= kMostLine && line.find('\0') == std::string::npos) return;
+    constexpr std::size_t kMostName = 24;
+    const std::string name =
+        fieldName(line.substr(0, line.substr(0, kMostName).find_first_of(":=")));
+    const bool matrix =
+        std::ranges::find(kMatrixFields, std::string_view(name)) != kMatrixFields.end();
+    const std::size_t most = matrix ? kMostMatrixLine : kMostLine;
+    if (line.size() <= most && line.find('\0') == std::string::npos) return;
     refuse(lines.where(), "the header line \"" + printable(line.substr(0, 20)) + "...\"",
-           "at most " + std::to_string(kMostLine) + " characters of text");
+           "at most " + std::to_string(most) + " characters of text");
 }
 
 }  // namespace

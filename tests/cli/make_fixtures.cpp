@@ -143,8 +143,8 @@ void writeRawFiles() {
 
 // Whatever is written to these is refused as by a full disk.
 void linkToFullDevice() {
-    for (const char* const name :
-         {"full.exr", "full.png", "full.json", "full.raw", "full.svg", "full.vdb"}) {
+    for (const char* const name : {"full.exr", "full.png", "full.json", "full.raw", "full.svg",
+                                   "full.vdb", "full.nrrd", "full.mha", "full.nii.gz"}) {
         std::filesystem::remove(name);
         std::filesystem::create_symlink("/dev/full", name);
     }

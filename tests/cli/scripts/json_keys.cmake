@@ -88,6 +88,20 @@ endif()
 expect_value("${text}" 640 files 0 grids 0 histogram counts 0)
 expect_value("${text}" 320 files 0 grids 0 histogram counts 63)
 
+run(convert slab_12x10x8_uint8.raw slab.vdb --stats convert.json -q)
+file(READ ${SCRATCH}/convert.json stats)
+expect_keys("${stats}" "" "input_bytes;output_bytes;voxels;active;deltas;code_book;max_error;\
+lossless;seconds;peak_bytes")
+file(SIZE ${SCRATCH}/slab.vdb size)
+expect_value("${stats}" 960 input_bytes)
+expect_value("${stats}" ${size} output_bytes)
+expect_value("${stats}" 960 voxels)
+expect_value("${stats}" 960 active)
+expect_value("${stats}" 0 deltas)
+expect_value("${stats}" integer code_book)
+expect_value("${stats}" 0.0 max_error)
+expect_value("${stats}" ON lossless)
+
 run(diff slab_12x10x8_uint8.raw slab_12x10x8_uint8.raw --json -q)
 set(numbers "mean_error;rms_error;max_error;max_at;over;over_warn;voxels;active_mismatch;\
 background_error;shift;transform_equal;size_equal;type_equal;class_equal;equal;result")
