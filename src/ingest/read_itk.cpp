@@ -315,39 +315,43 @@ void readLayers(ItkFile& file, const DenseSource::LayerUse& use, const Listener&
     }
 }
 
+// Reads the header, and checks what can be checked without the data.
+void openFile(ItkFile& file) {
+    const std::string extension = lowerExtension(file.path);
+    const bool nrrd = extension == ".nrrd" || extension == ".nhdr";
+    file.claim = nrrd ? claimOfNrrd(file.path) : claimOfMeta(file.path);
+    callItk(file.path, Printed::kIsError, [&] {
+        if (nrrd) {
+            file.io = itk::NrrdImageIO::New();
+        } else {
+            file.io = itk::MetaImageIO::New();
+        }
+        file.io->SetFileName(file.path.string());
+        file.io->ReadImageInformation();
+    });
+    requireOneScalar(file);
+    requireSameSizes(file);
+    chooseAxes(file);
+    const std::optional<RawType> type = rawTypeOfItk(file.io->GetComponentType());
+    if (!type) refuse(file.path, "values of an unknown type", "whole or real numbers");
+    file.type = *type;
+    file.sliceBytes =
+        std::size_t(file.size(0)) * std::size_t(file.size(1)) * std::size_t(rawTypeBytes(*type));
+    requireData(file);
+    if (!nrrd && file.claim.encoding == Encoding::kGzip) requireUnpackedSize(file);
+}
+
 }  // namespace
 
 DenseSource openItk(const std::filesystem::path& path) {
     auto file = std::make_shared<ItkFile>();
-    const std::string extension = lowerExtension(path);
-    const bool nrrd = extension == ".nrrd" || extension == ".nhdr";
     file->path = path;
-    file->claim = nrrd ? claimOfNrrd(path) : claimOfMeta(path);
-    callItk(path, Printed::kIsError, [&] {
-        if (nrrd) {
-            file->io = itk::NrrdImageIO::New();
-        } else {
-            file->io = itk::MetaImageIO::New();
-        }
-        file->io->SetFileName(path.string());
-        file->io->ReadImageInformation();
-    });
-    requireOneScalar(*file);
-    requireSameSizes(*file);
-    chooseAxes(*file);
-    const std::optional<RawType> type = rawTypeOfItk(file->io->GetComponentType());
-    if (!type) refuse(path, "values of an unknown type", "whole or real numbers");
-    file->type = *type;
-    file->sliceBytes =
-        std::size_t(file->size(0)) * std::size_t(file->size(1)) * std::size_t(rawTypeBytes(*type));
-    requireData(*file);
-    if (!nrrd && file->claim.encoding == Encoding::kGzip) requireUnpackedSize(*file);
-
+    openFile(*file);
     DenseSource source;
     source.where = path.string();
     source.name = nameWithoutExtensions(path);
     source.dims = file->dims();
-    source.type = *type;
+    source.type = file->type;
     source.bigEndian = std::endian::native == std::endian::big;
     source.worldFromIndex = worldOf(*file);
     source.space = file->claim.space == "LAS" ? "" : file->claim.space;
