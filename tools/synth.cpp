@@ -52,7 +52,7 @@ void declareOptions(CLI::App& app, SynthOptions& options) {
         withDefault("Voxels along x, y, z",
                     joinNumbers({double(dims.x), double(dims.y), double(dims.z)}, "x")));
     sample.addValue("--seed", "N", options.seed, wholeNumber(),
-                    withDefault("Chooses the cloud's shape and the engine's noise",
+                    withDefault("Chooses the cloud's and the vessels' shape and the engine's noise",
                                 std::to_string(options.seed)));
     sample.addValue("--noise", "S", options.noise, number(0, 1),
                     withDefault("Standard deviation of the engine's noise, 1 = the value range",

@@ -9,8 +9,8 @@
 namespace deltasplat {
 
 const std::vector<std::string>& analyticNames() {
-    static const std::vector<std::string> kNames = {"marschner-lobb", "hydrogen", "shepp-logan",
-                                                    "engine",         "cloud",    "slab"};
+    static const std::vector<std::string> kNames = {
+        "marschner-lobb", "hydrogen", "shepp-logan", "engine", "cloud", "slab", "vessels"};
     return kNames;
 }
 
@@ -25,6 +25,7 @@ AnalyticVolume makeAnalytic(const std::string& name, std::uint64_t seed, double 
     if (name == "engine") return {name, makeEngine(seed, noise)};
     if (name == "cloud") return {name, makeCloud(seed)};
     if (name == "slab") return {name, makeSlab()};
+    if (name == "vessels") return {name, makeVessels(seed)};
 
     std::string names;
     for (const std::string& known : analyticNames()) names += (names.empty() ? "" : ", ") + known;

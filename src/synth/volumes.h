@@ -17,5 +17,6 @@ ValueAt makeSheppLogan();
 ValueAt makeEngine(std::uint64_t seed, double noise);
 ValueAt makeCloud(std::uint64_t seed);
 ValueAt makeSlab();
+ValueAt makeVessels(std::uint64_t seed);
 
 }  // namespace deltasplat

@@ -201,7 +201,7 @@ deltasplat_refusal(stats_is_input
 
 deltasplat_cli_test(synth_names ARGS synth STDOUT_MATCHES "marschner-lobb.*engine.*cloud")
 deltasplat_cli_test(usage.synth_name EXIT 2 ARGS synth ghost out.vdb
-    STDERR "deltasplat: NAME: got \"ghost\"; expected one of marschner-lobb, hydrogen, shepp-logan, engine, cloud, slab")
+    STDERR "deltasplat: NAME: got \"ghost\"; expected one of marschner-lobb, hydrogen, shepp-logan, engine, cloud, slab, vessels")
 deltasplat_cli_test(usage.synth_format EXIT 2 ARGS synth cloud out.txt
     STDERR "deltasplat: out.txt: got extension \".txt\"; expected .raw or .vdb")
 deltasplat_cli_test(usage.synth_dims EXIT 2 ARGS synth cloud out.raw --dims 0x1x1

@@ -27,7 +27,7 @@ void forGrid(int n, Visit visit) {
 }
 
 TEST(AnalyticVolume, EveryNameMakesAVolumeOfValuesFromZeroToOne) {
-    EXPECT_EQ(analyticNames().size(), 6u);
+    EXPECT_EQ(analyticNames().size(), 7u);
     for (const std::string& name : analyticNames()) {
         const AnalyticVolume volume = makeAnalytic(name, 3, 0.2);
         EXPECT_EQ(volume.name, name);
@@ -48,7 +48,7 @@ TEST(AnalyticVolume, EveryNameMakesAVolumeOfValuesFromZeroToOne) {
 TEST(AnalyticVolume, RefusesUnknownNamesAndBadNoise) {
     EXPECT_EQ(errorOf([] { makeAnalytic("Engine"); }),
               "2: NAME: got \"Engine\"; expected one of marschner-lobb, hydrogen, shepp-logan, "
-              "engine, cloud, slab");
+              "engine, cloud, slab, vessels");
     EXPECT_EQ(errorOf([] { makeAnalytic("engine", 1, -0.5); }),
               "2: --noise: got -0.500000; expected a number of at least 0");
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -220,6 +220,58 @@ TEST(Slab, IsABox) {
     EXPECT_EQ(valueAt({0.81, 0, 0}), 0);
     EXPECT_EQ(valueAt({0, -0.81, 0}), 0);
     EXPECT_EQ(valueAt({0, 0, 0.51}), 0);
+}
+
+TEST(Vessels, FillAboutOneHundredthOfTheCube) {
+    for (const std::uint64_t seed : {1u, 2u, 7u}) {
+        const auto valueAt = makeAnalytic("vessels", seed).valueAt;
+        int inside = 0, full = 0;
+        forGrid(128, [&](const glm::dvec3& p) {
+            const double value = valueAt(p);
+            inside += value > 0;
+            full += value == 1;
+        });
+        const double cube = 128.0 * 128 * 128;
+        EXPECT_NEAR(inside / cube, 0.01, 0.002) << seed;
+        EXPECT_GT(full, inside / 5) << seed;
+    }
+}
+
+TEST(Vessels, BeginWithATrunk) {
+    const auto valueAt = makeAnalytic("vessels").valueAt;
+    constexpr double kRadius = 0.072;
+    EXPECT_EQ(valueAt({0, -0.8, 0}), 1);
+    EXPECT_EQ(valueAt({kRadius * 0.49, -0.8, 0}), 1);
+    EXPECT_NEAR(valueAt({0, -0.8, kRadius * 0.75}), 0.5, 1e-12);
+    EXPECT_EQ(valueAt({kRadius * 1.01, -0.8, 0}), 0);
+}
+
+TEST(Vessels, HaveNoJumps) {
+    const auto valueAt = makeAnalytic("vessels").valueAt;
+    int seen = 0;
+    forGrid(32, [&](const glm::dvec3& p) {
+        // Tubes are looked up by cells that end at multiples of 1/32.
+        for (int axis = 0; axis < 3; ++axis) {
+            glm::dvec3 before = p * 0.99;
+            before[axis] = (p[axis] * 32 - 0.5) / 32 - 1e-10;
+            glm::dvec3 after = before;
+            after[axis] += 2e-10;
+            seen += valueAt(before) > 0;
+            EXPECT_NEAR(valueAt(before), valueAt(after), 1e-5);
+        }
+    });
+    EXPECT_GT(seen, 500);
+}
+
+TEST(Vessels, SeedsAreDifferentTrees) {
+    const auto one = makeAnalytic("vessels", 1).valueAt;
+    const auto two = makeAnalytic("vessels", 2).valueAt;
+    int differ = 0, either = 0;
+    forGrid(48, [&](const glm::dvec3& p) {
+        either += one(p) > 0 || two(p) > 0;
+        differ += one(p) != two(p);
+    });
+    EXPECT_GT(differ, either / 2);
 }
 
 }  // namespace
