@@ -8,11 +8,16 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "ingest/scalar_grids.h"
 #include "output_file.h"
+#include "parallel_grid.h"
 
 namespace deltasplat {
 namespace {
@@ -49,16 +54,23 @@ class ReportingFile : public std::filebuf {
 // each of three numbers) and the flag for grid offsets (1 byte).
 constexpr std::streamoff kTagPosition = 21;
 
-// Returns the FNV-1a hash of all bytes of a file but the `skipped` ones from kTagPosition on.
+// Returns a hash of all bytes of a file but the `skipped` ones from kTagPosition on: FNV-1a, eight
+// bytes at a time, with the upper half of each product mixed into the lower.
 std::uint64_t hashContent(std::istream& in, std::size_t skipped) {
     std::uint64_t hash = 0xcbf29ce484222325u;
     std::vector<char> block(std::size_t{1} << 20);
-    std::uint64_t position = 0;
-    while (in.read(block.data(), std::streamsize(block.size())), in.gcount() > 0) {
-        for (std::streamsize i = 0; i < in.gcount(); ++i, ++position) {
-            if (position - std::uint64_t(kTagPosition) < skipped) continue;
-            hash = (hash ^ static_cast<unsigned char>(block[std::size_t(i)])) * 0x100000001b3u;
+    for (bool first = true; in.read(block.data(), std::streamsize(block.size())), in.gcount() > 0;
+         first = false) {
+        const auto count = std::size_t(in.gcount());
+        std::fill(block.begin() + std::ptrdiff_t(count), block.end(), '\0');
+        if (first) std::fill_n(block.begin() + kTagPosition, skipped, '\0');
+        for (std::size_t i = 0; i < count; i += sizeof hash) {
+            std::uint64_t word = 0;
+            std::memcpy(&word, &block[i], sizeof word);
+            hash = (hash ^ word) * 0x100000001b3u;
+            hash ^= hash >> 32;
         }
+        hash ^= count;
     }
     return hash;
 }
@@ -89,6 +101,19 @@ void makeTagReproducible(std::iostream& stream, const std::string& randomTag) {
     stream.write(tag.data(), std::streamsize(tag.size()));
 }
 
+// Grids of the types that this program writes, as grids that are packed on all threads.
+openvdb::GridCPtrVec parallelGrids(const openvdb::GridCPtrVec& grids) {
+    openvdb::GridCPtrVec parallel;
+    for (const openvdb::GridBase::ConstPtr& grid : grids) {
+        parallel.push_back(grid);
+        grid->apply<ScalarGrids>([&](const auto& typed) {
+            using Grid = std::decay_t<decltype(typed)>;
+            parallel.back() = std::make_shared<const ParallelGrid<Grid>>(typed);
+        });
+    }
+    return parallel;
+}
+
 // The size in memory: a file of all that would be as large without compression.
 double memoryBytes(const openvdb::GridCPtrVec& grids) {
     double bytes = 1;
@@ -105,7 +130,7 @@ void writeStream(const AtomicFile& file, const openvdb::GridCPtrVec& grids,
     const auto mode = std::ios::in | std::ios::out | std::ios::binary | std::ios::trunc;
     if (!buffer.open(file.path(), mode)) stream.setstate(std::ios::failbit);
     SeekableArchive archive;
-    archive.writeTo(stream, grids, metadata);
+    archive.writeTo(stream, parallelGrids(grids), metadata);
     stream.flush();
     // Only a regular file can be read back.
     if (file.path() != file.finalPath()) makeTagReproducible(stream, archive.getUniqueTag());
