@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/itk_calls.h"
 
+#include "ingest/itk_compiler.h"
+
 #include <gdcmTrace.h>
 #include <itkMacro.h>
 #include <itkObject.h>

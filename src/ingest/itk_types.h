@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ingest/itk_compiler.h"
+
 #include <itkCommonEnums.h>
 
 #include <optional>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // NRRD and MetaImage through ITK's classes for these files, without its images and pipelines. ITK
 // takes a header at its word, so what it says is held against the size of the data first.
+#include "ingest/itk_compiler.h"
+
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
 
