@@ -1,8 +1,10 @@
 # Every target is also a plain program that replays mutations of its own seeds, so that the readers
 # of foreign bytes are tested wherever the other tests are.
+# Usage: deltasplat_fuzz(vdb_fuzz [SOURCES more.cpp])
 function(deltasplat_fuzz name)
+    cmake_parse_arguments(ARG "" "" "SOURCES" ${ARGN})
     set(programs ${name}_replay)
-    set(sources fuzz/${name}.cpp fuzz/fuzz_target.cpp fuzz/capped_new.cpp)
+    set(sources fuzz/${name}.cpp fuzz/fuzz_target.cpp fuzz/capped_new.cpp ${ARG_SOURCES})
     add_executable(${name}_replay ${sources} fuzz/replay_main.cpp)
     add_test(NAME fuzz.${name} COMMAND ${name}_replay)
     set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT 600)
@@ -22,6 +24,8 @@ endfunction()
 
 deltasplat_fuzz(delta_fuzz)
 deltasplat_fuzz(raw_fuzz)
+deltasplat_fuzz(raw_name_fuzz SOURCES ${PROJECT_SOURCE_DIR}/tools/parse.cpp)
+deltasplat_fuzz(transfer_function_fuzz)
 deltasplat_fuzz(vdb_fuzz)
 deltasplat_fuzz(image_fuzz)
 deltasplat_fuzz(nifti_fuzz)

@@ -18,12 +18,6 @@
 namespace deltasplat::fuzz {
 namespace {
 
-void require(bool holds, const char* what) {
-    if (holds) return;
-    std::fprintf(stderr, "broken promise: %s\n", what);
-    std::abort();
-}
-
 void check(const Volume& volume) {
     std::uint64_t sum = 0;
     for (const std::uint64_t count : volume.histogram) sum += count;
@@ -49,6 +43,25 @@ void renderSmall(const Volume& volume) {
 
 }  // namespace
 
+void require(bool holds, const char* what) {
+    if (holds) return;
+    std::fprintf(stderr, "broken promise: %s\n", what);
+    std::abort();
+}
+
+void expectErrorsOfOneLine(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        const std::string line = error.what();
+        const bool one = !line.empty() && line.find('\n') == std::string::npos;
+        if (!one) std::fprintf(stderr, "got: %s\n", line.c_str());
+        require(one, "errors are one line");
+    } catch (const std::exception& error) {
+        require(false, error.what());
+    }
+}
+
 std::string gzipped(const std::string& bytes) {
     std::string out(bytes.size() + 200, '\0');
     z_stream stream{};
@@ -73,17 +86,12 @@ std::string fileWith(const std::string& extension, const std::uint8_t* data, std
 }
 
 void readAndCheck(const std::string& file, const ReadOptions& options) {
-    try {
+    expectErrorsOfOneLine([&] {
         for (const Volume& volume : readAllVolumes(file, options)) {
             check(volume);
             renderSmall(volume);
         }
-    } catch (const Error& error) {
-        const std::string line = error.what();
-        require(!line.empty() && line.find('\n') == std::string::npos, "errors are one line");
-    } catch (const std::exception& error) {
-        require(false, error.what());
-    }
+    });
     std::filesystem::remove(file);
 }
 

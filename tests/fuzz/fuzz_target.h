@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,12 @@ std::string gzipped(const std::string& bytes);
 
 /// Writes the bytes to a file of this process, always the same, and returns its path.
 std::string fileWith(const std::string& extension, const std::uint8_t* data, std::size_t size);
+
+/// Aborts, saying which promise was broken, unless it holds.
+void require(bool holds, const char* what);
+
+/// Runs the work; that it refuses is fine. Aborts if anything but an Error of one line comes out.
+void expectErrorsOfOneLine(const std::function<void()>& work);
 
 /// Reads every volume of the file and renders the small ones; a refusal is fine. Aborts if a volume
 /// contradicts itself, if a pixel is no finite number or if anything but an Error comes out.
