@@ -110,6 +110,10 @@ void add(const DeltaFileEntry& entry, ConversionStats& stats) {
 void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& session) {
     validate(command);
     ConversionStats stats;
+    ReadOptions reading = command.read;
+    // Half of what may be lost goes to the code book, where one is needed, the rest to holding.
+    const double relative = command.file.tolerance.relative;
+    if (relative > 0 && relative < 1) reading.relativeError = relative / 2;
     {
         ProgressDisplay display(session.common.quiet);
         warnOfUnusedInputOptions(app, {command.input}, display);
@@ -118,7 +122,7 @@ void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& s
         Listener remarks;
         remarks.warning = taking.warning;
         const bool complete = forEachScalarGrid(
-            command.input, command.read,
+            command.input, reading,
             [&](const Volume& volume) {
                 stats.add(volume);
                 add(file.add(volume, command.file, remarks), stats);

@@ -63,26 +63,24 @@ int mostComparableAxis(const Volume& volume, std::span<const Slot> slotMap) {
     return best;
 }
 
-// Nothing differs more from its code's value than this; the largest error itself is measured.
-double codeErrorBound(const Volume& volume) {
-    return volume.codeBook.isExact() ? 0 : volume.codeBook.step / 2 * (1 + 1e-9);
-}
-
 // The tolerance has to leave room for what the code book does to values.
 void requireRoom(const Tolerance& tolerance, const Volume& volume) {
-    const double codeError = codeErrorBound(volume);
+    const CodeBook& book = volume.codeBook;
+    if (book.isExact() || tolerance.isExact()) return;
+    const double codeError = std::max(book.largestErrorOf(0), book.largestErrorOf(kCodeCount - 1));
     const auto refuse = [&](const char* flag, double got, const std::string& expected) {
         throw Error(ErrorCode::kUsage,
                     gotExpected(flag, numberText(got),
                                 expected + ": values are stored with errors up to " +
-                                    numberText(codeError) + " (linear code book)"));
+                                    numberText(codeError) + " (" + book.name() + " code book)"));
     };
-    if (codeError == 0) return;
     if (tolerance.value > 0 && tolerance.value < codeError)
         refuse("--tolerance-value", tolerance.value, "at least " + numberText(codeError));
-    if (tolerance.relative > 0)
+    if (tolerance.relative > 0 && book.relativeError == 0)
         refuse("--tolerance", tolerance.relative,
-               "--tolerance-value for real values of more than 65536 kinds");
+               "--tolerance-value, or a larger share without --bits, for these values");
+    if (tolerance.relative > 0 && tolerance.relative < book.relativeError)
+        refuse("--tolerance", tolerance.relative, "at least " + numberText(book.relativeError));
 }
 
 int codeCountOf(const Volume& volume) {
@@ -173,8 +171,7 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
                              ? options.keyInterval
                              : defaultKeyInterval(held.box.dims()[taking.sliceAxis]);
     listener.report(0.3);
-    holdValues(held, taking.sliceAxis, taking.keyInterval, options.tolerance,
-               codeErrorBound(volume), rest.slotMap);
+    holdValues(held, taking.sliceAxis, taking.keyInterval, options.tolerance, rest.slotMap);
     const DeltaGrid deltas = makeDeltaGrid(held, taking);
     listener.report(0.7);
 

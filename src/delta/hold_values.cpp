@@ -22,12 +22,13 @@ namespace {
 // Says which values stand for which, in terms of slots.
 class HoldRule {
   public:
-    HoldRule(const Volume& volume, const Tolerance& tolerance, double codeError)
+    HoldRule(const Volume& volume, const Tolerance& tolerance)
         : values_(kSlotCount), allowed_(kSlotCount, -1) {
         for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
             if (volume.histogram[code] == 0) continue;
             const double value = volume.codeBook.valueOf(Code(code));
             values_[code + 1] = value;
+            const double codeError = volume.codeBook.largestErrorOf(Code(code)) * (1 + 1e-9);
             allowed_[code + 1] = allowance(value, tolerance, codeError);
         }
     }
@@ -136,11 +137,11 @@ std::vector<std::size_t> columnsOf(const std::vector<CodeBlock>& blocks) {
 }  // namespace
 
 void holdValues(Volume& volume, int sliceAxis, int keyInterval, const Tolerance& tolerance,
-                double codeError, std::span<const Slot> slotMap) {
+                std::span<const Slot> slotMap) {
     if (volume.empty() || tolerance.isExact()) return;
     const SlabLayout layout = layoutOf(permutedBox(volume.box, sliceAxis), keyInterval);
     const BlockReader reader(*volume.codes, nullptr, sliceAxis, slotMap);
-    const HoldRule rule(volume, tolerance, codeError);
+    const HoldRule rule(volume, tolerance);
     const ColumnHolder holder(reader, layout, rule, sliceAxis);
     requireMemory("tolerance", double(reader.blocks().size()) * (sizeof(Changed) + 1200));
 

@@ -45,6 +45,23 @@ double roundedUp(double step) {
     return std::ldexp(std::ceil(mantissa * 256) / 256, exponent);
 }
 
+// The largest value of a kind that is at most `value` > 0.
+double roundedDown(double value, CodeBook::Range::Values kind) {
+    using Values = CodeBook::Range::Values;
+    if (kind == Values::kWhole) return std::floor(value);
+    if (kind == Values::kDouble || value > double(std::numeric_limits<float>::max())) return value;
+    const auto rounded = float(value);
+    return double(rounded) <= value ? double(rounded) : double(std::nextafter(rounded, 0.0f));
+}
+
+double nextAbove(double value, CodeBook::Range::Values kind) {
+    using Values = CodeBook::Range::Values;
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    if (kind == Values::kWhole) return std::max(value + 1, std::nextafter(value, kInfinity));
+    if (kind == Values::kDouble) return std::nextafter(value, kInfinity);
+    return double(std::nextafter(float(value), std::numeric_limits<float>::infinity()));
+}
+
 Code nearestTableCode(const std::vector<double>& table, double value) {
     const auto above = std::lower_bound(table.begin(), table.end(), value);
     if (above == table.begin()) return 0;
@@ -67,9 +84,15 @@ Code CodeBook::codeOf(double value) const {
     return linearCode(value, offset, step);
 }
 
+double CodeBook::largestErrorOf(Code code) const {
+    if (kind == Kind::kLinear) return step / 2;
+    // An error that is a share of the source's value is a larger share of a smaller one's.
+    if (relativeError > 0) return relativeError / (1 - relativeError) * std::fabs(valueOf(code));
+    return 0;
+}
+
 bool CodeBook::standsFor(Code code, double value) const {
-    const double within = kind == Kind::kLinear ? step / 2 : 0;
-    return std::fabs(valueOf(code) - value) <= within;
+    return std::fabs(valueOf(code) - value) <= largestErrorOf(code);
 }
 
 std::string CodeBook::name() const {
@@ -87,15 +110,15 @@ std::string CodeBook::name() const {
 }
 
 CodeBook CodeBook::integer(std::int64_t offset) {
-    return {Kind::kInteger, double(offset), 1, nullptr};
+    return {Kind::kInteger, double(offset), 1, nullptr, 0};
 }
 
 CodeBook CodeBook::half() {
-    return {Kind::kHalf, 0, 1, nullptr};
+    return {Kind::kHalf, 0, 1, nullptr, 0};
 }
 
 CodeBook CodeBook::linear(double low, double high, int bits) {
-    if (!(high > low)) return {Kind::kLinear, low, 0, nullptr};
+    if (!(high > low)) return {Kind::kLinear, low, 0, nullptr, 0};
     // A step below the spacing of doubles would give neighbouring codes the same value.
     const double large = std::max(std::fabs(low), std::fabs(high));
     const double spacing = large - std::nextafter(large, 0.0);
@@ -103,13 +126,43 @@ CodeBook CodeBook::linear(double low, double high, int bits) {
     for (const double parts : {steps, steps - 1}) {
         const double step = std::max(roundedUp((high - low) / parts), spacing);
         const double offset = step * std::floor(low / step);
-        if (offset + step * steps >= high) return {Kind::kLinear, offset, step, nullptr};
+        if (offset + step * steps >= high) return {Kind::kLinear, offset, step, nullptr, 0};
     }
-    return {Kind::kLinear, low, std::max((high - low) / steps, spacing), nullptr};
+    return {Kind::kLinear, low, std::max((high - low) / steps, spacing), nullptr, 0};
 }
 
 CodeBook CodeBook::ofTable(std::vector<double> values) {
-    return {Kind::kTable, 0, 1, std::make_shared<const std::vector<double>>(std::move(values))};
+    return {Kind::kTable, 0, 1, std::make_shared<const std::vector<double>>(std::move(values)), 0};
+}
+
+std::optional<CodeBook> CodeBook::relative(const Range& range, double error) {
+    // The middle between two neighbours is the farthest from both, so the ratio of neighbours must
+    // be at most (1 + error) / (1 - error); a little less leaves room for rounding.
+    const double ratio = 1 + (2 * error / (1 - error)) * (1 - 1e-6);
+    const auto magnitudes = [&](double largest) {
+        std::vector<double> values;
+        double value = range.least;
+        while (values.size() < std::size_t(kCodeCount)) {
+            values.push_back(std::min(value, largest));
+            if (!(value < largest)) break;
+            value =
+                std::max(roundedDown(value * ratio, range.values), nextAbove(value, range.values));
+        }
+        return values;
+    };
+    std::vector<double> table;
+    if (range.low < 0) table = magnitudes(-range.low);
+    std::reverse(table.begin(), table.end());
+    for (double& value : table) value = -value;
+    table.push_back(0);
+    if (range.high > 0) {
+        const std::vector<double> above = magnitudes(range.high);
+        table.insert(table.end(), above.begin(), above.end());
+    }
+    if (table.size() > std::size_t(kCodeCount)) return std::nullopt;
+    CodeBook book = ofTable(std::move(table));
+    book.relativeError = error;
+    return book;
 }
 
 }  // namespace deltasplat

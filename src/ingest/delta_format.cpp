@@ -107,14 +107,14 @@ std::vector<double> takeTable(const Entries& entries) {
 void takeBook(const Entries& entries, DeltaHeader& header) {
     switch (entries.choice("delta_code_book", {"integer", "half", "linear", "table"})) {
         case 0:
-            header.book = {CodeBook::Kind::kInteger, entries.finite("delta_offset"), 1, nullptr};
+            header.book = {CodeBook::Kind::kInteger, entries.finite("delta_offset"), 1, nullptr, 0};
             break;
         case 1:
             header.book = CodeBook::half();
             break;
         case 2:
             header.book = {CodeBook::Kind::kLinear, entries.finite("delta_offset"),
-                           entries.notNegative("delta_step"), nullptr};
+                           entries.notNegative("delta_step"), nullptr, 0};
             break;
         default:
             header.book = CodeBook::ofTable(takeTable(entries));

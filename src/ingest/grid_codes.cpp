@@ -29,7 +29,7 @@ template <typename Grid>
 void settleNonFinite(Grid& grid, const GridCodesOptions& options) {
     const GridScan range = scanTree(grid.tree(), /*distinct=*/false);
     if (range.nonFinite == 0) return;
-    if (!options.nanValue) {
+    if (!options.reading.nanValue) {
         fail(options.where,
              std::to_string(range.nonFinite) + " NaN or infinite active values, the first at (" +
                  std::to_string(range.first.x()) + ", " + std::to_string(range.first.y()) + ", " +
@@ -37,14 +37,14 @@ void settleNonFinite(Grid& grid, const GridCodesOptions& options) {
              "finite values (--nan VALUE replaces them)");
     }
     if constexpr (std::is_same_v<typename Grid::ValueType, float>) {
-        requireFloatNan(*options.nanValue);
+        requireFloatNan(*options.reading.nanValue);
     }
-    replaceNonFinite(grid.tree(), typename Grid::ValueType(*options.nanValue));
+    replaceNonFinite(grid.tree(), typename Grid::ValueType(*options.reading.nanValue));
 }
 
 template <typename Grid>
 void makeFog(Grid& grid, const GridCodesOptions& options) {
-    if (grid.getGridClass() != openvdb::GRID_LEVEL_SET || !options.levelSetToFog) return;
+    if (grid.getGridClass() != openvdb::GRID_LEVEL_SET || !options.reading.levelSetToFog) return;
     // Simulation caches label whole fields of distances as level sets, with a background of 0.
     const double width = double(grid.background());
     if (!(width > 0) || !std::isfinite(width)) {
@@ -108,11 +108,11 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
         makeFog(grid, options);
     }
     constexpr bool kReal = std::is_floating_point_v<T>;
-    const GridScan scan = scanTree(grid.tree(), !(kReal && options.bits));
+    const GridScan scan = scanTree(grid.tree(), !(kReal && options.reading.bits));
     // Masks have nothing but true, which stays 1.
     volume.codeBook = std::is_same_v<T, bool>
                           ? CodeBook::integer(0)
-                          : chooseBook(scan.census, kReal, options.bits, options.where);
+                          : chooseBook(scan.census, kReal, options.reading, options.where);
     volume.hasBackground = true;
     volume.background = double(grid.background());
     auto codes = codesOfTree(grid.tree(), volume.codeBook);

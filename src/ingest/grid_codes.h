@@ -3,21 +3,19 @@
 
 #include <openvdb/Grid.h>
 
-#include <optional>
 #include <string>
 
+#include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/progress.h"
 
 namespace deltasplat {
 
 struct GridCodesOptions {
-    const Listener& listener;        ///< hears of what was taken otherwise than the file says
-    std::string where;               ///< file and grid, for messages
-    std::string type;                ///< value type as the file stores it: "half", "float", ...
-    bool levelSetToFog = true;       ///< turn level sets into fog volumes
-    std::optional<double> nanValue;  ///< replaces NaN and infinities of active values
-    std::optional<int> bits;         ///< as ReadOptions::bits
+    const Listener& listener;  ///< hears of what was taken otherwise than the file says
+    std::string where;         ///< file and grid, for messages
+    std::string type;          ///< value type as the file stores it: "half", "float", ...
+    const ReadOptions& reading;
 };
 
 /// Turns a scalar grid into codes and fills in everything of `volume` but its name and transform.

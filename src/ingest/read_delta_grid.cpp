@@ -142,9 +142,7 @@ Volume readDeltaGrid(openvdb::Int32Grid& grid, const openvdb::MetaMap::ConstPtr&
     }
     if (fog && source) {
         decoded = {};
-        fillFromGrid(*source,
-                     {listener, where, header.sourceType, true, options.nanValue, options.bits},
-                     volume);
+        fillFromGrid(*source, {listener, where, header.sourceType, options}, volume);
     } else {
         fillVolume(header, std::move(decoded), where, volume);
     }

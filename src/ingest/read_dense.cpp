@@ -85,7 +85,7 @@ CodeBook bookOf(const DenseSource& source, const ReadOptions& options, const Lis
     RawScan whole = scan(source, options, listener);
     settleNonFinite(source, whole, options.nanValue);
     const bool real = source.type == RawType::kFloat32 || source.type == RawType::kFloat64;
-    return chooseBook(whole.census, real, options.bits, source.where);
+    return chooseBook(whole.census, real, options, source.where);
 }
 
 // Adds the layers of a source to a tree, block by block.

@@ -116,10 +116,7 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
                                options, decoding);
     } else {
         volume.worldFromIndex = matrix;
-        fillFromGrid(*loaded,
-                     {listener, where, grid.valueType(), options.levelSetToFog, options.nanValue,
-                      options.bits},
-                     volume);
+        fillFromGrid(*loaded, {listener, where, grid.valueType(), options}, volume);
         if (options.keepSource)
             volume.source = std::make_shared<const SourceGrid>(SourceGrid{loaded, file.metadata()});
         volume.space = spaceOf(*loaded);

@@ -9,16 +9,31 @@ void ValueCensus::append(const ValueCensus& next) {
     if (next.count == 0) return;
     min = count == 0 ? next.min : std::min(min, next.min);
     max = count == 0 ? next.max : std::max(max, next.max);
+    if (least == 0 || (next.least > 0 && next.least < least)) least = next.least;
     count += next.count;
     half = half && next.half;
     whole = whole && next.whole;
     exact = exact && next.exact;
+    floats = floats && next.floats;
     distinct.append(next.distinct);
 }
 
-CodeBook chooseBook(const ValueCensus& census, bool real, std::optional<int> bits,
+namespace {
+
+CodeBook::Range rangeOf(const ValueCensus& census) {
+    using Values = CodeBook::Range::Values;
+    const Values values = census.whole    ? Values::kWhole
+                          : census.floats ? Values::kFloat
+                                          : Values::kDouble;
+    return {census.min, census.max, census.least, values};
+}
+
+}  // namespace
+
+CodeBook chooseBook(const ValueCensus& census, bool real, const ReadOptions& reading,
                     const std::string& where) {
-    if (!real || !bits) {
+    const bool linear = real && reading.bits;
+    if (!linear) {
         if (real && census.half) return CodeBook::half();
         const bool near = census.exact && census.max - census.min < kCodeCount;
         if (census.whole && near) return CodeBook::integer(std::int64_t(census.min));
@@ -26,7 +41,14 @@ CodeBook chooseBook(const ValueCensus& census, bool real, std::optional<int> bit
             return CodeBook::ofTable(census.distinct.sorted());
     }
     requireFiniteSpan(where, census.min, census.max);
-    return CodeBook::linear(census.min, census.max, real ? bits.value_or(16) : 16);
+    if (!linear && reading.relativeError) {
+        // Finer steps than asked for leave a tolerance room for holding values.
+        for (const double error : {*reading.relativeError / 4, *reading.relativeError}) {
+            const auto book = CodeBook::relative(rangeOf(census), error);
+            if (book) return *book;
+        }
+    }
+    return CodeBook::linear(census.min, census.max, linear ? *reading.bits : 16);
 }
 
 }  // namespace deltasplat

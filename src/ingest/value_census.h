@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <type_traits>
 
 #include "deltasplat/ingest/code_book.h"
+#include "deltasplat/ingest/read_volume.h"
 #include "ingest/distinct_values.h"
 
 namespace deltasplat {
@@ -19,10 +19,12 @@ namespace deltasplat {
 struct ValueCensus {
     double min = 0;
     double max = 0;
+    double least = 0;  ///< the smallest magnitude other than 0; 0 if there is none
     std::uint64_t count = 0;
-    bool half = true;   ///< every value is a binary16 number
-    bool whole = true;  ///< every value is a whole number, and none is -0
-    bool exact = true;  ///< a double holds every value
+    bool half = true;    ///< every value is a binary16 number
+    bool whole = true;   ///< every value is a whole number, and none is -0
+    bool exact = true;   ///< a double holds every value
+    bool floats = true;  ///< a float holds every value
     DistinctValues distinct;
 
     template <typename T>
@@ -31,6 +33,9 @@ struct ValueCensus {
         min = count == 0 ? number : std::min(min, number);
         max = count == 0 ? number : std::max(max, number);
         ++count;
+        const double magnitude = std::fabs(number);
+        if (magnitude > 0 && (least == 0 || magnitude < least)) least = magnitude;
+        if constexpr (!std::is_same_v<T, float>) floats = floats && double(float(number)) == number;
         if constexpr (std::is_floating_point_v<T>) {
             half = half && double(float(openvdb::math::half(float(number)))) == number;
             whole = whole && number == std::floor(number) && (number != 0 || !std::signbit(number));
@@ -46,11 +51,13 @@ struct ValueCensus {
 /// Returns the code book for values of this census: exact if there is one. Real values that are
 /// all halves get `half`; whole numbers that span at most 65536 get `integer`; at most 65536
 /// different ones `table`; others `linear`.
-/// @param real   the source's type is real; whole numbers never get `half`
-/// @param bits   for real types: `linear` with that many bits instead of an exact book
-/// @param where  file, for messages
+/// @param real     the source's type is real; whole numbers never get `half`
+/// @param reading  its `bits` asks for `linear` instead of an exact book, for real types; its
+///                 `relativeError` for a `table` of relative errors instead of `linear`, where
+///                 65536 codes are enough for that
+/// @param where    file, for messages
 /// @throw Error(kInput) if the values lie too far apart
-CodeBook chooseBook(const ValueCensus& census, bool real, std::optional<int> bits,
+CodeBook chooseBook(const ValueCensus& census, bool real, const ReadOptions& reading,
                     const std::string& where);
 
 }  // namespace deltasplat

@@ -201,12 +201,14 @@ TEST(DeltaFile, BoolGridsComeBack) {
         expectRoundTrip<openvdb::BoolGrid>(seed, Kind::kBool);
 }
 
-// A dense volume of noise on slow waves, as a scanner makes it: 37 x 29 x 50 voxels.
+// A dense volume of noise on slow waves, as a scanner makes it.
+constexpr glm::ivec3 kWaves(95, 41, 50);
+
 std::vector<float> waves(std::mt19937& random, double noise) {
     std::vector<float> values;
-    for (int z = 0; z < 50; ++z) {
-        for (int y = 0; y < 29; ++y) {
-            for (int x = 0; x < 37; ++x) {
+    for (int z = 0; z < kWaves.z; ++z) {
+        for (int y = 0; y < kWaves.y; ++y) {
+            for (int x = 0; x < kWaves.x; ++x) {
                 const double wave = std::sin(x * 0.1) * std::cos(y * 0.07 + z * 0.02);
                 const double grain = noise * (double(random()) / 4294967295.0 - 0.5);
                 values.push_back(wave < 0 ? 0 : float(wave * 300 + grain));
@@ -216,22 +218,26 @@ std::vector<float> waves(std::mt19937& random, double noise) {
     return values;
 }
 
-constexpr const char* kWavesFile = "waves_37x29x50_float32.raw";
+constexpr const char* kWavesFile = "waves_95x41x50_float32.raw";
 
-Volume readKept(const std::string& file, std::optional<int> bits = {}) {
-    ReadOptions reading;
+Volume readKept(const std::string& file, ReadOptions reading = {}) {
     reading.keepSource = true;
-    reading.bits = bits;
     return readVolume(file, reading);
+}
+
+ReadOptions inBits(int bits) {
+    ReadOptions reading;
+    reading.bits = bits;
+    return reading;
 }
 
 // The largest error of a voxel by the plain reader, and whether all that is 0 stayed 0.
 double largestError(const std::vector<float>& values, const PlainVolume& plain) {
     double largest = 0;
     std::size_t i = 0;
-    for (int z = 0; z < 50; ++z) {
-        for (int y = 0; y < 29; ++y) {
-            for (int x = 0; x < 37; ++x, ++i) {
+    for (int z = 0; z < kWaves.z; ++z) {
+        for (int y = 0; y < kWaves.y; ++y) {
+            for (int x = 0; x < kWaves.x; ++x, ++i) {
                 const float restored = float(plain.valueAt(Coord(x, y, z)));
                 largest = std::max(largest, std::fabs(double(restored) - double(values[i])));
                 EXPECT_TRUE(plain.activeAt(Coord(x, y, z)));
@@ -248,12 +254,12 @@ TEST(DeltaFile, LinearBooksKeepToHalfAStepAndSayTheLargestError) {
         SCOPED_TRACE(bits);
         const TempFolder folder;
         testing::writeBytes(kWavesFile, testing::bytesOf(values));
-        const Volume volume = readKept(kWavesFile, bits);
+        const Volume volume = readKept(kWavesFile, inBits(bits));
         DeltaFile file;
         const DeltaFileEntry entry = file.add(volume, {});
         file.write("delta.vdb");
         const double found =
-            largestError(values, testing::readPlainDeltas("delta.vdb", "waves_37x29x50_float32"));
+            largestError(values, testing::readPlainDeltas("delta.vdb", "waves_95x41x50_float32"));
         EXPECT_GT(entry.maxError, 0);
         EXPECT_FALSE(entry.lossless);
         EXPECT_LE(entry.maxError, volume.codeBook.step / 2);
@@ -285,9 +291,9 @@ void expectWithin(const std::vector<float>& values, const Volume& volume, int sl
     double largest = 0;
     std::uint64_t over = 0, filled = 0;
     std::size_t i = 0;
-    for (int z = 0; z < 50; ++z) {
-        for (int y = 0; y < 29; ++y) {
-            for (int x = 0; x < 37; ++x, ++i) {
+    for (int z = 0; z < kWaves.z; ++z) {
+        for (int y = 0; y < kWaves.y; ++y) {
+            for (int x = 0; x < kWaves.x; ++x, ++i) {
                 const double truth = values[i];
                 const double error = std::fabs(plain.valueAt(Coord(x, y, z)) - truth);
                 const bool tooFar =
@@ -328,12 +334,37 @@ TEST(DeltaFile, ToleranceLeavesRoomForALinearBook) {
     std::mt19937 random(9);
     const std::vector<float> values = waves(random, 20);
     testing::writeBytes(kWavesFile, testing::bytesOf(values));
-    const Volume volume = readKept(kWavesFile, 10);
+    const Volume volume = readKept(kWavesFile, inBits(10));
     expectWithin(values, volume, 2, {0, 5});
     // Less than half a step cannot be kept.
     DeltaFileOptions options;
     options.tolerance.value = volume.codeBook.step / 3;
     EXPECT_THROW(DeltaFile().add(volume, options), Error);
+}
+
+TEST(DeltaFile, RelativeToleranceOfValuesOfManyKinds) {
+    // More than 65536 different ones, over nine orders of magnitude and both signs.
+    const TempFolder folder;
+    std::mt19937 random(12);
+    std::vector<float> values = waves(random, 20);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double scale = std::pow(10.0, double(i / 5000 % 10) - 6);
+        values[i] *= float(i / 3000 % 3 == 0 ? -scale : scale);
+    }
+    testing::writeBytes(kWavesFile, testing::bytesOf(values));
+    ReadOptions reading;
+    reading.relativeError = 0.05;
+    const Volume volume = readKept(kWavesFile, reading);
+    EXPECT_EQ(volume.codeBook.name(), "table");
+    EXPECT_FALSE(volume.codeBook.isExact());
+    expectWithin(values, volume, 2, {0.1, 0});
+    expectWithin(values, volume, 0, {0.1, 1e4});
+    DeltaFileOptions options;
+    options.tolerance.relative = 0.01;  // less than the code book's own error
+    EXPECT_THROW(DeltaFile().add(volume, options), Error);
+    // Without a book for it, the smallest values could not be kept.
+    options.tolerance.relative = 0.1;
+    EXPECT_THROW(DeltaFile().add(readKept(kWavesFile), options), Error);
 }
 
 // Active states survive holding; what is inactive never takes a value.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,25 +20,30 @@ struct CodeBook {
         kInteger,  ///< value = offset + code: exact for integers that span at most 65536 values
         kHalf,     ///< order-preserving IEEE binary16 pattern: exact for every finite half float
         kLinear,   ///< value = offset + step * code: error at most step / 2 inside the range
-        kTable     ///< value = table[code]: exact for at most 65536 different values
+        kTable     ///< value = table[code]: exact for at most 65536 different values, otherwise
+                   ///< error at most relativeError * |source value|
     };
     Kind kind = Kind::kInteger;
     double offset = 0;
     double step = 1;
     /// kTable: [1..65536] increasing finite values, -0 before 0. Codes beyond stand for the last.
     std::shared_ptr<const std::vector<double>> table;
+    /// kTable: how far source values may be from the code's, as a share of their magnitude.
+    double relativeError = 0;
 
     /// Returns the data value that `code` stands for (NaN for the half patterns of NaN).
     double valueOf(Code code) const;
     /// Returns the code whose value is nearest to `value`, clamped to the book's range.
     Code codeOf(double value) const;
-    /// Returns whether voxels of this value get the code: within half a step of a linear book,
-    /// exactly otherwise.
+    /// Returns how far source values that were given the code may be from its value: half a step
+    /// of a linear book, a share of the value of a table with relative errors, otherwise 0.
+    double largestErrorOf(Code code) const;
+    /// Returns whether voxels of this value get the code.
     bool standsFor(Code code, double value) const;
     /// Returns "integer", "half", "linear" or "table".
     std::string name() const;
     /// Whether a source that was given this book by a reader comes back from it bit for bit.
-    bool isExact() const { return kind != Kind::kLinear; }
+    bool isExact() const { return kind != Kind::kLinear && relativeError == 0; }
 
     static CodeBook integer(std::int64_t offset = 0);
     static CodeBook half();
@@ -48,6 +54,17 @@ struct CodeBook {
     static CodeBook linear(double low, double high, int bits = 16);
     /// @param values  [1..65536] increasing, finite
     static CodeBook ofTable(std::vector<double> values);
+
+    /// The values that a book of relative errors has to stand for.
+    struct Range {
+        double low = 0, high = 0;
+        double least = 0;  ///< the smallest magnitude other than 0
+        enum class Values { kWhole, kFloat, kDouble } values = Values::kDouble;
+    };
+    /// Returns a table of the range's kind of values, 0 among them, of which each value in the
+    /// range is within `error` (0..1, exclusive) times its own magnitude; empty if that takes more
+    /// than 65536 codes.
+    static std::optional<CodeBook> relative(const Range& range, double error);
 };
 
 }  // namespace deltasplat

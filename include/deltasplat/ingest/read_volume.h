@@ -36,6 +36,10 @@ struct ReadOptions {
     /// Real values: a linear code book of 2^bits codes, 8..16. Empty: an exact book if there is
     /// one (at most 65536 different values), otherwise a linear one of 16 bits.
     std::optional<int> bits;
+    /// Values of more than 65536 kinds: each kept within this share (0..1, exclusive) of its
+    /// magnitude (a quarter of it, if possible), where 65536 codes are enough for that. Empty, or
+    /// not enough: a linear book.
+    std::optional<double> relativeError;
     bool keepSource = false;  ///< fill Volume::source
     /// What the caller will take besides for each 8x8x8 block that is not uniform: counts where
     /// setMemoryLimit() is in force, so that too large a volume is refused before it is read.
