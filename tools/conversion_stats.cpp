@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conversion_stats.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -15,6 +16,8 @@ namespace fs = std::filesystem;
 void ConversionStats::add(const Volume& volume) {
     voxels += std::uint64_t(volume.box.voxels());
     active += volume.activeCount;
+    maxError = std::max(maxError, volume.readError);
+    lossless = lossless && volume.replaced == 0 && volume.readError == 0;
     const std::string book = volume.codeBook.name();
     if ((", " + codeBook + ",").find(", " + book + ",") != std::string::npos) return;
     codeBook += (codeBook.empty() ? "" : ", ") + book;

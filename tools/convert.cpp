@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -136,8 +137,8 @@ void runConvert(const CLI::App& app, const ConvertCommand& command, const Sessio
                                                 display.stage(kReadShare, 1));
         for (const std::string& note : report.notes) display.warn(note);
         stats.outputBytes = bytesOf(report.files);
-        stats.maxError = report.maxError;
-        stats.lossless = report.lossless && complete;
+        stats.maxError = std::max(stats.maxError, report.maxError);
+        stats.lossless = stats.lossless && report.lossless && complete;
         stats.seconds = secondsSince(session.begin);
     }
     if (!command.stats.empty()) writeFileAtomically(command.stats, statsJson(stats));

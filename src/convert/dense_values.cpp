@@ -14,6 +14,7 @@
 #include "ingest/raw_load.h"
 #include "ingest/scalar_grids.h"
 #include "ingest/source_grid.h"
+#include "ingest/value_cast.h"
 #include "little_endian.h"
 
 namespace deltasplat {
@@ -100,7 +101,7 @@ template <typename T>
 double store(const double* values, std::size_t count, std::byte* out) {
     double error = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        const T value = T(values[i]);
+        const T value = valueAs<T>(values[i]);
         error = std::max(error, std::abs(double(value) - values[i]));
         storeLittle(value, out + i * sizeof(T));
     }

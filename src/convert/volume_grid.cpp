@@ -12,6 +12,7 @@
 #include "ingest/grid_values.h"
 #include "ingest/scalar_grids.h"
 #include "ingest/source_grid.h"
+#include "ingest/value_cast.h"
 #include "ingest/vdb_transform.h"
 
 namespace deltasplat {
@@ -23,7 +24,7 @@ template <typename SourceLeaf, typename Leaf, typename ValueOf>
 void fillLeaf(const SourceLeaf& source, Leaf& leaf, const ValueOf& valueOf) {
     using T = typename Leaf::ValueType;
     for (auto voxel = source.cbeginValueOn(); voxel; ++voxel) {
-        const T value = T(valueOf(*voxel));
+        const T value = valueOf(*voxel);
         if constexpr (std::is_same_v<T, bool>) {
             leaf.setValueOnly(voxel.pos(), value);
         } else {
@@ -38,7 +39,7 @@ typename Grid::Ptr translate(const Tree& tree, const ValueOf& valueOf, double ba
     using T = typename Grid::ValueType;
     // OpenVDB's trees cannot be assigned, only made in place.
     typename Grid::TreePtrType made(
-        new typename Grid::TreeType(tree, T(background), openvdb::TopologyCopy()));
+        new typename Grid::TreeType(tree, valueAs<T>(background), openvdb::TopologyCopy()));
     // The tree of a mask is all topology.
     if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
         std::vector<const typename Tree::LeafNodeType*> sources;
@@ -49,7 +50,7 @@ typename Grid::Ptr translate(const Tree& tree, const ValueOf& valueOf, double ba
             for (std::size_t i = begin; i < end; ++i) fillLeaf(*sources[i], *leaves[i], valueOf);
         });
         forActiveTiles(*made, [&](const auto& tile) {
-            tile.setValue(T(valueOf(tree.getValue(tile.getCoord()))));
+            tile.setValue(valueOf(tree.getValue(tile.getCoord())));
         });
     }
     return Grid::create(made);
@@ -57,19 +58,21 @@ typename Grid::Ptr translate(const Tree& tree, const ValueOf& valueOf, double ba
 
 template <typename Grid>
 GridBase::Ptr fromCodes(const Volume& volume) {
+    using T = typename Grid::ValueType;
     std::vector<double> values(kCodeCount);
     for (int code = 0; code < kCodeCount; ++code) {
         values[std::size_t(code)] = volume.codeBook.valueOf(Code(code));
     }
     return translate<Grid>(
-        volume.codes->tree, [&](Code code) { return values[code]; },
+        volume.codes->tree, [&](Code code) { return valueAs<T>(values[code]); },
         volume.hasBackground ? volume.background : 0);
 }
 
 // What a volume without OpenVDB's types becomes.
 std::string smallestType(const ValueFacts& facts) {
     if (facts.fit(RawType::kFloat32)) return "float";
-    return facts.fit(RawType::kInt32) ? "int32" : "double";
+    if (facts.fit(RawType::kInt32)) return "int32";
+    return facts.doubleError == 0 ? "double" : "int64";
 }
 
 GridBase::Ptr fromCodes(const Volume& volume, const std::string& type) {
@@ -87,7 +90,7 @@ GridBase::Ptr fromSource(const GridBase& source) {
     GridBase::Ptr made;
     source.apply<Wide>([&](const auto& grid) {
         made = translate<Grid>(
-            grid.constTree(), [](auto value) { return value; }, 0);
+            grid.constTree(), [](auto value) { return typename Grid::ValueType(value); }, 0);
     });
     return made;
 }

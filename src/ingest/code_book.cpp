@@ -37,25 +37,40 @@ Code nearestHalfCode(double value) {
     return best;
 }
 
-// Rounds up to 8 significant bits: multiples by 16-bit numbers are then floats, so that values do
-// not lose anything when they come back as such.
-double roundedUp(double step) {
+double roundedUp(double step, int significantBits) {
     int exponent = 0;
     const double mantissa = std::frexp(step, &exponent);
-    return std::ldexp(std::ceil(mantissa * 256) / 256, exponent);
+    return std::ldexp(std::ceil(std::ldexp(mantissa, significantBits)), exponent - significantBits);
+}
+
+// The distance from `large` > 0 to the number of the kind below it.
+double spacingBelow(double large, CodeBook::Values values) {
+    const double doubles = large - std::nextafter(large, 0.0);
+    if (values == CodeBook::Values::kWhole) return std::max(doubles, 1.0);
+    if (values == CodeBook::Values::kDouble) return doubles;
+    return double(float(large)) - double(std::nextafter(float(large), 0.0f));
+}
+
+// The most significant bits of a step, at most 8, with which multiples of it up to `large` are
+// numbers of the kind.
+int significantBitsOf(double step, double large, CodeBook::Values values) {
+    const int digits = values == CodeBook::Values::kFloat ? std::numeric_limits<float>::digits
+                                                          : std::numeric_limits<double>::digits;
+    const int multiple = std::ilogb(large / step + 2) + 1;
+    return std::clamp(digits - multiple, 1, 8);
 }
 
 // The largest value of a kind that is at most `value` > 0.
-double roundedDown(double value, CodeBook::Range::Values kind) {
-    using Values = CodeBook::Range::Values;
+double roundedDown(double value, CodeBook::Values kind) {
+    using Values = CodeBook::Values;
     if (kind == Values::kWhole) return std::floor(value);
     if (kind == Values::kDouble || value > double(std::numeric_limits<float>::max())) return value;
     const auto rounded = float(value);
     return double(rounded) <= value ? double(rounded) : double(std::nextafter(rounded, 0.0f));
 }
 
-double nextAbove(double value, CodeBook::Range::Values kind) {
-    using Values = CodeBook::Range::Values;
+double nextAbove(double value, CodeBook::Values kind) {
+    using Values = CodeBook::Values;
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     if (kind == Values::kWhole) return std::max(value + 1, std::nextafter(value, kInfinity));
     if (kind == Values::kDouble) return std::nextafter(value, kInfinity);
@@ -117,14 +132,19 @@ CodeBook CodeBook::half() {
     return {Kind::kHalf, 0, 1, nullptr, 0};
 }
 
-CodeBook CodeBook::linear(double low, double high, int bits) {
+CodeBook CodeBook::linear(double low, double high, int bits, Values values) {
     if (!(high > low)) return {Kind::kLinear, low, 0, nullptr, 0};
-    // A step below the spacing of doubles would give neighbouring codes the same value.
+    // A step below the spacing of values would give neighbouring codes the same one.
     const double large = std::max(std::fabs(low), std::fabs(high));
-    const double spacing = large - std::nextafter(large, 0.0);
+    const double spacing = spacingBelow(large, values);
     const double steps = double((1 << bits) - 1);
+    if (values == Values::kWhole) {
+        const double step = std::max(std::ceil((high - low) / steps), spacing);
+        return {Kind::kLinear, low, step, nullptr, 0};
+    }
     for (const double parts : {steps, steps - 1}) {
-        const double step = std::max(roundedUp((high - low) / parts), spacing);
+        const double least = std::max((high - low) / parts, spacing);
+        const double step = roundedUp(least, significantBitsOf(least, large, values));
         const double offset = step * std::floor(low / step);
         if (offset + step * steps >= high) return {Kind::kLinear, offset, step, nullptr, 0};
     }

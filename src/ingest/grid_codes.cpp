@@ -26,9 +26,9 @@ namespace {
 }
 
 template <typename Grid>
-void settleNonFinite(Grid& grid, const GridCodesOptions& options) {
+std::uint64_t settleNonFinite(Grid& grid, const GridCodesOptions& options) {
     const GridScan range = scanTree(grid.tree(), /*distinct=*/false);
-    if (range.nonFinite == 0) return;
+    if (range.nonFinite == 0) return 0;
     if (!options.reading.nanValue) {
         fail(options.where,
              std::to_string(range.nonFinite) + " NaN or infinite active values, the first at (" +
@@ -40,6 +40,10 @@ void settleNonFinite(Grid& grid, const GridCodesOptions& options) {
         requireFloatNan(*options.reading.nanValue);
     }
     replaceNonFinite(grid.tree(), typename Grid::ValueType(*options.reading.nanValue));
+    options.listener.warn(options.where + ": " + std::to_string(range.nonFinite) +
+                          " NaN or infinite active values replaced by " +
+                          numberText(*options.reading.nanValue));
+    return range.nonFinite;
 }
 
 template <typename Grid>
@@ -104,7 +108,7 @@ template <typename Grid>
 void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     using T = typename Grid::ValueType;
     if constexpr (std::is_floating_point_v<T>) {
-        settleNonFinite(grid, options);
+        volume.replaced = settleNonFinite(grid, options);
         makeFog(grid, options);
     }
     constexpr bool kReal = std::is_floating_point_v<T>;

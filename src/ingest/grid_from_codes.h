@@ -9,6 +9,7 @@
 #include "deltasplat/ingest/code_book.h"
 #include "ingest/code_tree.h"
 #include "ingest/grid_values.h"
+#include "ingest/value_cast.h"
 
 namespace deltasplat {
 
@@ -20,7 +21,7 @@ typename Grid::Ptr gridFromCodes(const CodeTree::Tree& codes, const CodeBook& bo
     using Tree = typename Grid::TreeType;
     using Value = typename Grid::ValueType;
     auto tree = typename Tree::Ptr(new Tree(codes, background, openvdb::TopologyCopy()));
-    const auto valueOf = [&](Code code) { return Value(book.valueOf(code)); };
+    const auto valueOf = [&](Code code) { return valueAs<Value>(book.valueOf(code)); };
     if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
         std::vector<const CodeTree::Leaf*> sources;
         std::vector<typename Tree::LeafNodeType*> targets;

@@ -16,8 +16,10 @@
 #include "ingest/raw_values.h"
 #include "ingest/readers.h"
 #include "ingest/source_grid.h"
+#include "ingest/value_cast.h"
 #include "ingest/vdb_transform.h"
 #include "memory.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {
@@ -75,17 +77,33 @@ bool needsScan(RawType type) {
     return rawTypeBytes(type) > 2;
 }
 
-CodeBook bookOf(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
-    if (source.type == RawType::kInt8)
-        return CodeBook::integer(std::numeric_limits<std::int8_t>::min());
-    if (source.type == RawType::kInt16)
-        return CodeBook::integer(std::numeric_limits<std::int16_t>::min());
-    if (!needsScan(source.type)) return CodeBook::integer(0);
+CodeBook fixedBook(RawType type) {
+    if (type == RawType::kInt8) return CodeBook::integer(std::numeric_limits<std::int8_t>::min());
+    if (type == RawType::kInt16) return CodeBook::integer(std::numeric_limits<std::int16_t>::min());
+    return CodeBook::integer(0);
+}
 
+// Reads everything to find out which codes there have to be.
+void chooseBook(const DenseSource& source, const ReadOptions& options, const Listener& listener,
+                Volume& volume) {
     RawScan whole = scan(source, options, listener);
     settleNonFinite(source, whole, options.nanValue);
+    volume.replaced = whole.nonFinite;
+    volume.readError = whole.census.rounding;
     const bool real = source.type == RawType::kFloat32 || source.type == RawType::kFloat64;
-    return chooseBook(whole.census, real, options, source.where);
+    volume.codeBook = chooseBook(whole.census, real, options, source.where);
+}
+
+void warnOfChanges(const DenseSource& source, const ReadOptions& options, const Volume& volume,
+                   const Listener& listener) {
+    if (volume.replaced > 0) {
+        listener.warn(source.where + ": " + std::to_string(volume.replaced) +
+                      " NaN or infinite values replaced by " + numberText(*options.nanValue));
+    }
+    if (volume.readError > 0) {
+        listener.warn(source.where + ": values read as the nearest doubles, off by up to " +
+                      numberText(volume.readError));
+    }
 }
 
 // Adds the layers of a source to a tree, block by block.
@@ -181,7 +199,7 @@ openvdb::GridBase::Ptr readGrid(const DenseSource& source, const ReadOptions& op
     using Value = typename Grid::ValueType;
     auto grid = Grid::create();
     LayerAdder<typename Grid::TreeType> adder(source, grid->tree());
-    const auto nanValue = Value(options.nanValue.value_or(0));
+    const auto nanValue = valueAs<Value>(options.nanValue.value_or(0));
     source.forEachLayer(
         [&](int first, int, const std::byte* bytes) {
             adder.add(
@@ -214,23 +232,31 @@ openvdb::GridBase::Ptr readSourceGrid(const DenseSource& source, const ReadOptio
 }
 
 // Where memory is limited, what the volume will take is known before any of it is taken.
-void requireLimit(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
+void requireLimit(const DenseSource& source, const ReadOptions& options, bool keep,
+                  const Listener& listener) {
     if (memoryLimit() == 0) return;
     Listener stopping;
     stopping.progress = [&](double) { listener.report(0); };
-    const double bytesPerBlock =
+    double bytesPerBlock =
         sizeof(CodeTree::Leaf) + CodeTree::Leaf::SIZE * sizeof(Code) + options.bytesPerBlock;
+    if (keep) {
+        bytesPerBlock += sizeof(CodeTree::Leaf) +
+                         CodeTree::Leaf::SIZE * double(rawTypeBytes(source.type)) +
+                         options.bytesPerInexactBlock;
+    }
     requireMemory(source.where, double(countMixedBlocks(source, stopping)) * bytesPerBlock);
 }
 
 }  // namespace
 
 Volume readDense(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
-    requireLimit(source, options, listener);
     const double scanned = needsScan(source.type) ? 0.5 : 0.0;
     Volume volume;
-    volume.codeBook = bookOf(source, options, partOf(listener, 0, scanned));
+    volume.codeBook = fixedBook(source.type);
+    if (needsScan(source.type)) chooseBook(source, options, partOf(listener, 0, scanned), volume);
+    warnOfChanges(source, options, volume, listener);
     const bool keep = options.keepSource && !volume.codeBook.isExact();
+    requireLimit(source, options, keep, listener);
     const double coded = keep ? 0.75 : 1;
     readCodes(source, options, partOf(listener, scanned, coded), volume);
     if (keep) {

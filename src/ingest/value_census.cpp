@@ -15,17 +15,15 @@ void ValueCensus::append(const ValueCensus& next) {
     whole = whole && next.whole;
     exact = exact && next.exact;
     floats = floats && next.floats;
+    rounding = std::max(rounding, next.rounding);
     distinct.append(next.distinct);
 }
 
 namespace {
 
-CodeBook::Range rangeOf(const ValueCensus& census) {
-    using Values = CodeBook::Range::Values;
-    const Values values = census.whole    ? Values::kWhole
-                          : census.floats ? Values::kFloat
-                                          : Values::kDouble;
-    return {census.min, census.max, census.least, values};
+CodeBook::Values kindOf(const ValueCensus& census, bool real) {
+    if (!real) return CodeBook::Values::kWhole;
+    return census.floats ? CodeBook::Values::kFloat : CodeBook::Values::kDouble;
 }
 
 }  // namespace
@@ -42,13 +40,15 @@ CodeBook chooseBook(const ValueCensus& census, bool real, const ReadOptions& rea
     }
     requireFiniteSpan(where, census.min, census.max);
     if (!linear && reading.relativeError) {
+        const CodeBook::Range range{census.min, census.max, census.least, kindOf(census, real)};
         // Finer steps than asked for leave a tolerance room for holding values.
         for (const double error : {*reading.relativeError / 4, *reading.relativeError}) {
-            const auto book = CodeBook::relative(rangeOf(census), error);
+            const auto book = CodeBook::relative(range, error);
             if (book) return *book;
         }
     }
-    return CodeBook::linear(census.min, census.max, linear ? *reading.bits : 16);
+    return CodeBook::linear(census.min, census.max, linear ? *reading.bits : 16,
+                            kindOf(census, real));
 }
 
 }  // namespace deltasplat

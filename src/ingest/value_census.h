@@ -21,10 +21,11 @@ struct ValueCensus {
     double max = 0;
     double least = 0;  ///< the smallest magnitude other than 0; 0 if there is none
     std::uint64_t count = 0;
-    bool half = true;    ///< every value is a binary16 number
-    bool whole = true;   ///< every value is a whole number, and none is -0
-    bool exact = true;   ///< a double holds every value
-    bool floats = true;  ///< a float holds every value
+    bool half = true;     ///< every value is a binary16 number
+    bool whole = true;    ///< every value is a whole number, and none is -0
+    bool exact = true;    ///< a double holds every value
+    bool floats = true;   ///< a float holds every value
+    double rounding = 0;  ///< largest difference between an integer and its nearest double
     DistinctValues distinct;
 
     template <typename T>
@@ -42,10 +43,20 @@ struct ValueCensus {
         } else {
             constexpr std::int64_t kMost = std::int64_t{1} << 53;
             exact = exact && std::int64_t(value) >= -kMost && std::int64_t(value) <= kMost;
+            if constexpr (std::is_same_v<T, std::uint64_t>)
+                rounding = std::max(rounding, off(value));
         }
         distinct.add(number);
     }
     void append(const ValueCensus& next);
+
+  private:
+    static double off(std::uint64_t value) {
+        const auto number = double(value);
+        // The largest round to 2^64.
+        const std::uint64_t back = number < 0x1p64 ? std::uint64_t(number) : 0;
+        return double(std::min(back - value, value - back));
+    }
 };
 
 /// Returns the code book for values of this census: exact if there is one. Real values that are

@@ -76,7 +76,8 @@ deltasplat_cli_test(input.one_bad_grid EXIT 3 ARGS info one_bad.vdb
 deltasplat_cli_test(input.fine.empty ARGS render empty.vdb -o out.exr CREATES out.exr
     STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels")
 deltasplat_cli_test(input.fine.empty_quiet ARGS render empty.vdb -o out.exr -q CREATES out.exr)
-deltasplat_cli_test(input.fine.nan ARGS render nan.vdb -o out.exr --nan 0 CREATES out.exr)
+deltasplat_cli_test(input.fine.nan ARGS render nan.vdb -o out.exr --nan 0 CREATES out.exr
+    STDERR "deltasplat: warning: nan.vdb: grid \"density\": 2 NaN or infinite active values replaced by 0")
 deltasplat_cli_test(input.fine.mixed ARGS render mixed.vdb -o out.exr CREATES out.exr)
 deltasplat_cli_test(input.fine.second_grid ARGS info two.vdb --grid heat STDOUT_MATCHES "grid +heat")
 deltasplat_cli_test(input.fine.plain ARGS info plain.raw --dims 8x4x8 --type uint16 --endian big

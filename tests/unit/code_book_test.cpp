@@ -162,5 +162,40 @@ TEST(CodeBook, CodesStandForTheValuesThatGetThem) {
     EXPECT_FALSE(half.standsFor(half.codeOf(1.0), 1.0001));
 }
 
+// Values of codes are floats where the source's are, however far from 0 the range lies.
+TEST(CodeBook, LinearCodesOfFloatsAreFloats) {
+    std::mt19937_64 random(3);
+    const double ranges[][2] = {{8388608, 8388608 + 98303},
+                                {4294305.5, 4294305.5 + 40000},
+                                {-1e9, -1e9 + 3e7},
+                                {1e6, 1e6 + 1000},
+                                {-3, 1e-3},
+                                {0, 1.17e-38}};
+    for (const auto& range : ranges) {
+        for (const int bits : {8, 12, 16}) {
+            SCOPED_TRACE(std::to_string(range[0]) + ", bits " + std::to_string(bits));
+            const CodeBook book =
+                CodeBook::linear(range[0], range[1], bits, CodeBook::Values::kFloat);
+            for (int i = 0; i < 20000; ++i) {
+                const double share = double(random() >> 11) * 0x1p-53;
+                const auto source = float(range[0] + share * (range[1] - range[0]));
+                const Code code = book.codeOf(double(source));
+                ASSERT_LT(code, 1 << bits);
+                const double value = book.valueOf(code);
+                ASSERT_EQ(double(float(value)), value);
+                ASSERT_LE(std::fabs(value - double(source)), book.step / 2);
+            }
+        }
+    }
+}
+
+TEST(CodeBook, LinearCodesOfWholeNumbersAreWhole) {
+    const CodeBook book = CodeBook::linear(-2147483648.0, 2147483647, 16, CodeBook::Values::kWhole);
+    EXPECT_EQ(book.step, 65537);
+    EXPECT_EQ(book.valueOf(0), -2147483648.0);
+    EXPECT_GE(book.valueOf(65535), 2147483647.0);
+    EXPECT_EQ(CodeBook::linear(7, 70, 16, CodeBook::Values::kWhole).step, 1);
+}
+
 }  // namespace
 }  // namespace deltasplat

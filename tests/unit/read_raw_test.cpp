@@ -321,6 +321,7 @@ TEST(ReadRaw, ReplacesNonFiniteValues) {
     options.nanValue = -1.5;
     const Volume volume = readVolume(plain.file("float32"), options);
     EXPECT_EQ(volume.valueMin, -1.5);
+    EXPECT_EQ(volume.replaced, 3u);
     expectSame(volume, plain, volume.codeBook.step * 0.5000001);
 }
 

@@ -9,6 +9,7 @@
 
 #include "deltasplat/convert/write_volume.h"
 #include "unit/convert_helpers.h"
+#include "unit/format_helpers.h"
 #include "unit/vdb_compare.h"
 #include "unit/vdb_helpers.h"
 
@@ -282,6 +283,37 @@ TEST(WriteGrids, InterruptedItLeavesNothing) {
                 [&] { writeVolumes("out.vdb", std::move(volumes), {}, listener); });
     std::filesystem::remove("source.raw");
     EXPECT_TRUE(std::filesystem::is_empty("."));
+}
+
+// Whole numbers that no double holds.
+TEST(WriteGrids, IntegersOf64Bits) {
+    const TempFolder folder;
+    const std::int64_t base = std::int64_t{1} << 60;
+    std::vector<std::int64_t> values;
+    for (int i = 0; i < 24; ++i) values.push_back(base + 3 * i + 1);
+    NiftiFile file;
+    file.dataType = 1024;
+    file.bits = 64;
+    file.data = bytesOf(values);
+    writeBytes("a.nii", file.bytes());
+    const WriteReport report = write("a.vdb", readKept("a.nii"));
+    EXPECT_TRUE(report.lossless);
+    const auto grid = readGrid<openvdb::Int64Grid>("a.vdb");
+    ASSERT_TRUE(grid);
+    for (int i = 0; i < 24; ++i)
+        EXPECT_EQ(grid->tree().getValue(Coord(i % 4, i / 4 % 3, i / 12)), values[std::size_t(i)]);
+}
+
+TEST(WriteGrids, UnsignedIntegersThatBecomeDoubles) {
+    const TempFolder folder;
+    std::vector<std::uint64_t> values(24, (std::uint64_t{1} << 63) + 1000);
+    values[5] += 1023;
+    NiftiFile file;
+    file.dataType = 1280;
+    file.bits = 64;
+    file.data = bytesOf(values);
+    writeBytes("a.nii", file.bytes());
+    EXPECT_EQ(readKept("a.nii").readError, 1000);  // doubles are 2048 apart there
 }
 
 }  // namespace

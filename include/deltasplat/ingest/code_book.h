@@ -47,11 +47,15 @@ struct CodeBook {
 
     static CodeBook integer(std::int64_t offset = 0);
     static CodeBook half();
-    /// Spreads 2^bits codes over [low, high], with a step of 8 significant bits (up to 1/128 wider
-    /// than need be) and an offset that is a multiple of it: so 0, if it lies within, is the value
-    /// of a code, and near 0 all values are floats. A book with low == high has the one value
-    /// `low`.
-    static CodeBook linear(double low, double high, int bits = 16);
+    /// What the values of a source are.
+    enum class Values { kWhole, kFloat, kDouble };
+    /// Spreads 2^bits codes over [low, high], such that the values of codes are of the source's
+    /// kind, so that they lose nothing when they come back as such. The step is a whole number, or
+    /// has up to 8 significant bits (where values are not much finer than the kind tells apart it
+    /// is up to twice as wide as need be, otherwise up to 1/128) and the offset is a multiple of
+    /// it: so 0, if it lies within, is the value of a code. A book with low == high has the one
+    /// value `low`.
+    static CodeBook linear(double low, double high, int bits = 16, Values values = Values::kDouble);
     /// @param values  [1..65536] increasing, finite
     static CodeBook ofTable(std::vector<double> values);
 
@@ -59,7 +63,7 @@ struct CodeBook {
     struct Range {
         double low = 0, high = 0;
         double least = 0;  ///< the smallest magnitude other than 0
-        enum class Values { kWhole, kFloat, kDouble } values = Values::kDouble;
+        Values values = Values::kDouble;
     };
     /// Returns a table of the range's kind of values, 0 among them, of which each value in the
     /// range is within `error` (0..1, exclusive) times its own magnitude; empty if that takes more

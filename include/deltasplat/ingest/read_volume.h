@@ -44,6 +44,7 @@ struct ReadOptions {
     /// What the caller will take besides for each 8x8x8 block that is not uniform: counts where
     /// setMemoryLimit() is in force, so that too large a volume is refused before it is read.
     double bytesPerBlock = 0;
+    double bytesPerInexactBlock = 0;  ///< likewise, in addition, where the code book is not exact
 };
 
 /// Reads one scalar volume: `.vdb .raw .raw.gz .nii .nii.gz .nrrd .nhdr .mhd .mha .dcm` and images

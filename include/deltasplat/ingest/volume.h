@@ -71,6 +71,10 @@ struct Volume {
     /// formats only if the code book is not exact (then a grid of the file's value type).
     std::shared_ptr<const SourceGrid> source;
     std::optional<DeltaOrigin> origin;  ///< only of a volume read from a delta grid
+    std::uint64_t replaced = 0;         ///< NaN and infinities that ReadOptions::nanValue replaced
+    /// Largest difference between a 64-bit integer of the file and what was read, which only
+    /// unsigned ones beyond 2^53 have.
+    double readError = 0;
     double valueMin = 0;  ///< smallest active value, as the code book gives it back; 0 if none
     double valueMax = 0;  ///< largest active value, as the code book gives it back; 0 if none
 
