@@ -24,6 +24,10 @@ namespace {
 
 // What its leaf of deltas and the list of blocks takes for an 8x8x8 block that is not uniform.
 constexpr double kBytesPerBlock = 2300;
+// What measuring the error takes besides: what comes back, as codes and as reals.
+constexpr double kBytesPerInexactBlock = 3400;
+// A tolerance takes a second tree of codes and measures as well.
+constexpr double kBytesPerHeldBlock = 1200 + kBytesPerInexactBlock;
 
 // Share of the progress up to writing.
 constexpr double kTakeShare = 0.8;
@@ -113,7 +117,8 @@ void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& s
     ReadOptions reading = command.read;
     // Half of what may be lost goes to the code book, where one is needed, the rest to holding.
     const double relative = command.file.tolerance.relative;
-    if (relative > 0 && relative < 1) reading.relativeError = relative / 2;
+    if (relative > 0) reading.relativeError = relative / 2;
+    if (!command.file.tolerance.isExact()) reading.bytesPerBlock += kBytesPerHeldBlock;
     {
         ProgressDisplay display(session.common.quiet);
         warnOfUnusedInputOptions(app, {command.input}, display);
@@ -124,6 +129,9 @@ void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& s
         const bool complete = forEachScalarGrid(
             command.input, reading,
             [&](const Volume& volume) {
+                if (volume.origin && reading.bits)
+                    remarks.warn(
+                        "--bits: has no effect on delta grids, which keep their code book");
                 stats.add(volume);
                 add(file.add(volume, command.file, remarks), stats);
             },
@@ -150,6 +158,7 @@ Subcommand addDelta(CLI::App& program) {
     command->read.levelSetToFog = false;
     command->read.keepSource = true;
     command->read.bytesPerBlock = kBytesPerBlock;
+    command->read.bytesPerInexactBlock = kBytesPerInexactBlock;
     CLI::App& app = addSubcommand(
         program, "delta", "Stores a volume as delta grids: what changes from slice to slice.",
         {"deltasplat delta smoke.vdb smoke_delta.vdb",

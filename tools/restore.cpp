@@ -74,7 +74,8 @@ std::vector<Volume> readInput(const RestoreCommand& command, const Listener& lis
         volumes.push_back(std::move(volume));
     };
     if (command.toVdb()) {
-        stats.lossless = forEachScalarGrid(command.input, command.read, take, listener);
+        const bool complete = forEachScalarGrid(command.input, command.read, take, listener);
+        stats.lossless = stats.lossless && complete;
     } else {
         take(readVolume(command.input, command.read, listener));
     }
@@ -87,8 +88,10 @@ void runRestore(const RestoreCommand& command, const Session& session) {
     {
         ProgressDisplay display(session.common.quiet);
         std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare), stats);
+        WriteOptions writing;
+        writing.keepPrecision = true;
         const WriteReport report =
-            writeVolumes(command.output, std::move(volumes), {}, display.stage(kReadShare, 1));
+            writeVolumes(command.output, std::move(volumes), writing, display.stage(kReadShare, 1));
         for (const std::string& note : report.notes) display.warn(note);
         stats.inputBytes = bytesOf({command.input});
         stats.outputBytes = bytesOf(report.files);

@@ -93,6 +93,7 @@ GridBase::ConstPtr storedGrid(Volume volume, const WriteOptions& options, Notes&
     volume.codes.reset();
     if (options.dropBackground) grid = sparseGrid(grid, volume, options, notes);
 
+    if (options.keepPrecision && volume.source && volume.hasBackground) return grid;
     const bool half = !options.fullFloat && survivesHalf(*grid);
     openvdb::MetaMap metadata = *grid;
     metadata.insertMeta(GridBase::META_SAVE_HALF_FLOAT, openvdb::BoolMetadata(half));

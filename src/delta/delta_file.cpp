@@ -83,9 +83,13 @@ void requireRoom(const Tolerance& tolerance, const Volume& volume) {
         refuse("--tolerance", tolerance.relative, "at least " + numberText(book.relativeError));
 }
 
+// The codes of a table, otherwise those up to the largest one in use.
 int codeCountOf(const Volume& volume) {
-    const CodeBook& book = volume.codeBook;
-    return book.table ? int(book.table->size()) : kCodeCount;
+    if (volume.codeBook.table) return int(volume.codeBook.table->size());
+    const auto& counts = volume.histogram;
+    const auto used = [](std::uint64_t count) { return count != 0; };
+    const auto last = std::find_if(counts.rbegin(), counts.rend(), used);
+    return std::max(1, int(counts.rend() - last));
 }
 
 IndexBox united(IndexBox box, const InactiveValues& inactive) {
@@ -124,8 +128,11 @@ DeltaHeader headerOf(const Volume& volume, const DeltaGrid& deltas, const Rest& 
     header.inactiveValues = inactive.values;
     header.active = volume.activeCount;
     for (const Slab& slab : deltas.slabs) header.slabDeltas.push_back(slab.deltas);
-    header.tolerance = tolerance.relative;
-    header.toleranceValue = tolerance.value;
+    // A source that was a delta grid itself has an error of its own.
+    const DeltaOrigin before = volume.origin.value_or(DeltaOrigin());
+    header.tolerance = (1 + tolerance.relative) * (1 + before.tolerance) - 1;
+    header.toleranceValue = tolerance.value + before.toleranceValue;
+    header.maxError = before.maxError;
     return header;
 }
 
@@ -201,9 +208,10 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
         reading.keepSource = true;
         const Volume restored = readDeltaGrid(*grid, nullptr, volume.name, reading, {});
         entry.maxError = compareVolumes(restored, volume).maxError;
-        header.maxError = entry.maxError;
+        header.maxError += entry.maxError;
         putDeltaHeader(header, *grid);
     }
+    entry.maxError = header.maxError;
     entry.lossless = entry.maxError == 0 && !inactive.tooMany;
     if (inactive.tooMany)
         listener.warn("grid \"" + volume.name +

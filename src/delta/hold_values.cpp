@@ -29,7 +29,10 @@ class HoldRule {
             const double value = volume.codeBook.valueOf(Code(code));
             values_[code + 1] = value;
             const double codeError = volume.codeBook.largestErrorOf(Code(code)) * (1 + 1e-9);
-            allowed_[code + 1] = allowance(value, tolerance, codeError);
+            // What is empty, though active, stays empty, and nothing becomes so.
+            const bool empty = volume.hasBackground && value == volume.background;
+            if (empty) values_[code + 1] = std::numeric_limits<double>::infinity();
+            allowed_[code + 1] = empty ? -1 : allowance(value, tolerance, codeError);
         }
     }
 

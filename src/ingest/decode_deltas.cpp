@@ -45,6 +45,11 @@ struct Block {
     Slot tile = kEmptySlot;  // of the whole block, if there is no leaf
 };
 
+// One delta can stand for as many blocks as there are slices until the next key slice, so memory is
+// asked for as it is needed.
+constexpr std::size_t kAskEvery = 1024;
+constexpr double kBlockBytes = sizeof(Block) + sizeof(Leaf) + Leaf::SIZE * sizeof(Code);
+
 class Decoder {
   public:
     Decoder(const DeltaHeader& header, const std::string& where)
@@ -88,6 +93,8 @@ class Decoder {
                 position.x = blockOf(**begin).x - 1;
                 continue;
             }
+            if (blocks.size() % kAskEvery == 0)
+                requireMemory(where_, double(kAskEvery) * kBlockBytes);
             blocks.push_back(decodeBlock(position, changes ? *begin++ : nullptr, slots));
         }
         return blocks;
@@ -256,21 +263,59 @@ openvdb::Coord cornerOf(const Block& block, int sliceAxis) {
     return {xyz.x, xyz.y, xyz.z};
 }
 
-void hangIn(std::vector<Block>& blocks, int sliceAxis, DecodedDeltas& decoded) {
-    openvdb::tree::ValueAccessor<CodeTree::Tree> codes(decoded.codes->tree);
-    openvdb::tree::ValueAccessor<CodeTree::Tree> inactive(decoded.inactive->tree);
-    for (Block& block : blocks) {
-        if (block.codes) codes.addLeaf(block.codes.release());
-        if (block.inactive) inactive.addLeaf(block.inactive.release());
-        if (block.tile == kEmptySlot) continue;
-        const openvdb::Coord corner = cornerOf(block, sliceAxis);
-        if (block.tile < kSlotCount) {
-            codes.addTile(1, corner, Code(block.tile - 1), true);
-        } else {
-            inactive.addTile(1, corner, Code(block.tile - kSlotCount), true);
+// Puts blocks into the trees.
+class Collector {
+  public:
+    Collector(const DeltaHeader& header, const std::string& where, DecodedDeltas& decoded)
+        : header_(header),
+          where_(where),
+          codes_(decoded.codes->tree),
+          inactive_(decoded.inactive->tree) {}
+
+    void add(std::vector<Block>& blocks) {
+        for (Block& block : blocks) {
+            count(block);
+            const openvdb::Coord corner = cornerOf(block, header_.sliceAxis);
+            askForNode(corner);
+            if (block.codes) codes_.addLeaf(block.codes.release());
+            if (block.inactive) inactive_.addLeaf(block.inactive.release());
+            if (block.tile == kEmptySlot) continue;
+            if (block.tile < kSlotCount) {
+                codes_.addTile(1, corner, Code(block.tile - 1), true);
+            } else {
+                inactive_.addTile(1, corner, Code(block.tile - kSlotCount), true);
+            }
         }
     }
-}
+
+  private:
+    using Accessor = openvdb::tree::ValueAccessor<CodeTree::Tree>;
+    using Node = CodeTree::Tree::RootNodeType::ChildNodeType::ChildNodeType;
+
+    // What is more than the file says is not waited for.
+    void count(const Block& block) {
+        if (header_.restActive) return;
+        if (block.codes) active_ += block.codes->onVoxelCount();
+        if (block.tile != kEmptySlot && block.tile < kSlotCount) active_ += Leaf::SIZE;
+        if (active_ <= header_.active) return;
+        fail(where_, "at least " + std::to_string(active_) + " active voxels",
+             std::to_string(header_.active) + ", as \"delta_active\" says");
+    }
+
+    // Tiles are small, but not the nodes that they are in.
+    void askForNode(const openvdb::Coord& corner) {
+        constexpr int kAtOnce = 64;
+        if (codes_.probeConstNode<Node>(corner)) return;
+        if (newNodes_++ % kAtOnce == 0) requireMemory(where_, 2.0 * kAtOnce * sizeof(Node));
+    }
+
+    const DeltaHeader& header_;
+    const std::string& where_;
+    Accessor codes_;
+    Accessor inactive_;
+    std::uint64_t active_ = 0;
+    int newNodes_ = 0;
+};
 
 void fillRest(const DeltaHeader& header, Code restCode, const std::string& where,
               CodeTree::Tree& tree) {
@@ -297,6 +342,7 @@ DecodedDeltas decodeDeltas(openvdb::Int32Grid& grid, const DeltaHeader& header,
     if (header.restActive && !header.box.empty())
         fillRest(header, decoder.restCode(), where, decoded.codes->tree);
     const std::vector<std::size_t> columns = columnsOf(leaves, decoder);
+    Collector collector(header, where, decoded);
     // In portions, so that memory is asked for as it is needed.
     constexpr std::size_t kPortion = 2048;
     for (std::size_t begin = 0; begin + 1 < columns.size(); begin += kPortion) {
@@ -310,7 +356,7 @@ DecodedDeltas decodeDeltas(openvdb::Int32Grid& grid, const DeltaHeader& header,
                                                  leaves.data() + columns[begin + i + 1]);
             }
         });
-        for (auto& column : blocks) hangIn(column, header.sliceAxis, decoded);
+        for (auto& column : blocks) collector.add(column);
         listener.report(double(begin + count) / double(columns.size()));
     }
     return decoded;

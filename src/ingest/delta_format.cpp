@@ -8,6 +8,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/number_list.h"
+#include "ingest/value_cast.h"
 #include "number_text.h"
 #include "printable.h"
 
@@ -147,6 +148,29 @@ void takeBox(const Entries& entries, DeltaHeader& header) {
     }
 }
 
+// What rests has to be a code, and the source's type has to hold the background and the book.
+void requireHeldValues(const Entries& entries, const DeltaHeader& header) {
+    const double background = header.background;
+    const auto refuse = [&](const std::string& expected) {
+        entries.fail("delta_background", numberText(background), expected);
+    };
+    if (header.restActive) {
+        const CodeBook& book = header.book;
+        const Code code = std::isfinite(background) ? book.codeOf(background) : Code{0};
+        if (code >= header.codeCount || book.valueOf(code) != background)
+            refuse("the value of a code, for active voxels to rest at");
+    }
+    const std::string& tree = header.sourceTree;
+    if (tree == "float" && std::isfinite(background) &&
+        double(valueAs<float>(background)) != background)
+        refuse("a float");
+    if (tree.empty() || tree == "float" || tree == "double") return;
+    if (background != std::floor(background) || std::fabs(background) > 0x1p63)
+        refuse("a whole number of type " + tree);
+    if (header.book.kind == CodeBook::Kind::kHalf)
+        entries.fail("delta_code_book", "\"half\"", "a book of whole numbers for type " + tree);
+}
+
 }  // namespace
 
 bool isDeltaGrid(const openvdb::GridBase& grid) {
@@ -202,6 +226,7 @@ DeltaHeader takeDeltaHeader(const openvdb::MetaMap& metadata, const std::string&
     header.space = textOr(metadata, "delta_space");
     header.background = entries.get<double>("delta_background", "a double");
     header.restActive = entries.choice("delta_rest", {"inactive", "active"}) == 1;
+    requireHeldValues(entries, header);
     header.inactiveValues = entries.list<double>("delta_inactive_values", kCodeCount);
     const auto active = entries.get<std::int64_t>("delta_active", "an int64");
     if (active < 0) entries.fail("delta_active", std::to_string(active), "a count");

@@ -12,6 +12,10 @@ namespace deltasplat {
 void DistinctValues::insert(std::uint64_t bits) {
     last_ = bits;
     if (tooMany_) return;
+    if (bits == kNone) {
+        hasNone_ = true;
+        return;
+    }
     if (2 * (count_ + 1) > places_.size()) grow();
     place(bits);
     if (count_ > std::size_t(kCodeCount)) giveUp();
@@ -35,12 +39,14 @@ void DistinctValues::grow() {
 
 void DistinctValues::giveUp() {
     tooMany_ = true;
+    hasNone_ = false;
     count_ = 0;
     places_ = {};
 }
 
 void DistinctValues::append(const DistinctValues& other) {
     if (other.tooMany_) giveUp();
+    if (other.hasNone_ && !tooMany_) hasNone_ = true;
     for (const std::uint64_t bits : other.places_) {
         if (bits != kNone && !tooMany_) insert(bits);
     }
@@ -51,7 +57,13 @@ std::vector<double> DistinctValues::sorted() const {
     for (const std::uint64_t bits : places_) {
         if (bits != kNone) values.push_back(std::bit_cast<double>(bits));
     }
+    if (hasNone_) values.push_back(std::bit_cast<double>(kNone));
     std::sort(values.begin(), values.end(), [](double a, double b) {
+        if (std::isnan(a) || std::isnan(b)) {
+            const bool both = std::isnan(a) && std::isnan(b);
+            return both ? std::bit_cast<std::uint64_t>(a) < std::bit_cast<std::uint64_t>(b)
+                        : std::isnan(b);
+        }
         return a != b ? a < b : std::signbit(a) && !std::signbit(b);
     });
     return values;

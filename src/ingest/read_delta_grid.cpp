@@ -16,6 +16,7 @@
 #include "ingest/grid_from_codes.h"
 #include "ingest/readers.h"
 #include "ingest/source_grid.h"
+#include "ingest/value_cast.h"
 #include "ingest/vdb_transform.h"
 #include "printable.h"
 
@@ -52,7 +53,9 @@ DeltaOrigin originOf(const DeltaHeader& header) {
 template <typename Tree>
 void setInactive(const CodeTree::Tree& inactive, const std::vector<double>& values, Tree& tree) {
     openvdb::tree::ValueAccessor<Tree> accessor(tree);
-    const auto valueOf = [&](Code number) { return typename Tree::ValueType(values[number]); };
+    const auto valueOf = [&](Code number) {
+        return valueAs<typename Tree::ValueType>(values[number]);
+    };
     for (auto leaf = inactive.cbeginLeaf(); leaf; ++leaf) {
         for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
             accessor.setValueOff(voxel.getCoord(), valueOf(*voxel));
@@ -65,7 +68,8 @@ void setInactive(const CodeTree::Tree& inactive, const std::vector<double>& valu
 template <typename Grid>
 openvdb::GridBase::Ptr restoredGrid(const DeltaHeader& header, const DecodedDeltas& decoded) {
     using Value = typename Grid::ValueType;
-    auto grid = gridFromCodes<Grid>(decoded.codes->tree, header.book, Value(header.background));
+    auto grid =
+        gridFromCodes<Grid>(decoded.codes->tree, header.book, valueAs<Value>(header.background));
     if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
         setInactive(decoded.inactive->tree, header.inactiveValues, grid->tree());
         openvdb::tools::prune(grid->tree());

@@ -8,6 +8,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <random>
 #include <vector>
@@ -74,6 +75,13 @@ typename Grid::Ptr randomGrid(std::mt19937& random, Kind kind) {
         } else {
             tree.setValueOff(at, value());
         }
+    }
+    if constexpr (std::is_floating_point_v<T>) {
+        constexpr T kOdd[] = {std::numeric_limits<T>::quiet_NaN(),
+                              -std::numeric_limits<T>::quiet_NaN(),
+                              std::numeric_limits<T>::infinity()};
+        for (int i = 0; i < int(random() % 40); ++i)
+            tree.setValueOff(randomCoord(random, low, size), kOdd[random() % 3]);
     }
     tree.addTile(1, randomCoord(random, low, size), value(), true);
     tree.addTile(1, randomCoord(random, low, size), value(), false);
@@ -374,6 +382,10 @@ TEST(DeltaFile, ToleranceKeepsActiveStates) {
     std::mt19937 random(4);
     auto grid = randomGrid<openvdb::FloatGrid>(random, Kind::kHalf);
     grid->setName("density");
+    const float background = grid->background();
+    const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
+    for (int i = 0; i < 2000; ++i)
+        grid->tree().setValueOn(randomCoord(random, box.min(), box.dim()), background);
     openvdb::io::File("source.vdb").write({grid});
     DeltaFileOptions options;
     options.tolerance.value = 2.5;
@@ -387,11 +399,71 @@ TEST(DeltaFile, ToleranceKeepsActiveStates) {
         float value = 0;
         const bool on = accessor.probeValue(*at, value);
         ASSERT_EQ(on, plain.activeAt(*at));
+        if (!on) {
+            ASSERT_EQ(bits(plain.valueAt(*at)), bits(double(value)));
+            continue;
+        }
         const double error = std::fabs(plain.valueAt(*at) - double(value));
-        ASSERT_LE(error, on ? 2.5 : 0);
+        // Nothing becomes empty, though active, and what is stays so.
+        ASSERT_EQ(plain.valueAt(*at) == double(background), value == background);
+        ASSERT_LE(error, 2.5);
         held += error > 0 ? 1 : 0;
     }
     EXPECT_GT(held, 100u);
+}
+
+// Whole numbers of more than 65536 kinds, up to the ends of their type.
+TEST(DeltaFile, WideIntegersStayWholeAndWithinHalfAStep) {
+    const TempFolder folder;
+    openvdb::initialize();
+    std::mt19937 random(8);
+    for (const bool ends : {false, true}) {
+        auto grid = openvdb::Int32Grid::create(3);
+        std::int64_t value = ends ? std::numeric_limits<std::int32_t>::min() : 16'000'000;
+        for (int i = 0; i < 50 * 50 * 40; ++i) {
+            grid->tree().setValue(Coord(i % 50, i / 50 % 50, i / 2500), std::int32_t(value));
+            value += 1 + random() % (ends ? 80000u : 2u);
+            value = std::min<std::int64_t>(value, std::numeric_limits<std::int32_t>::max());
+        }
+        grid->setName("count");
+        openvdb::io::File("source.vdb").write({grid});
+        const Volume volume = readKept("source.vdb");
+        ASSERT_EQ(volume.codeBook.name(), "linear");
+        EXPECT_EQ(volume.codeBook.step, std::floor(volume.codeBook.step));
+        DeltaFile file;
+        const DeltaFileEntry entry = file.add(volume, {});
+        file.write("delta.vdb");
+        const Volume restored = readKept("delta.vdb");
+        ASSERT_TRUE(restored.source->grid->isType<openvdb::Int32Grid>());
+        const auto& back = static_cast<const openvdb::Int32Grid&>(*restored.source->grid);
+        std::int64_t largest = 0;
+        for (auto voxel = grid->cbeginValueOn(); voxel; ++voxel) {
+            const std::int64_t other = back.tree().getValue(voxel.getCoord());
+            largest = std::max(largest, std::abs(other - std::int64_t(*voxel)));
+        }
+        EXPECT_GT(largest, 0);
+        EXPECT_LE(double(largest), volume.codeBook.step / 2);
+        EXPECT_EQ(double(largest), entry.maxError);
+    }
+}
+
+// What one delta grid lost, another made of it does not forget.
+TEST(DeltaFile, ErrorsOfADeltaGridAreCarriedOn) {
+    const TempFolder folder;
+    std::mt19937 random(2);
+    testing::writeBytes(kWavesFile, testing::bytesOf(waves(random, 20)));
+    DeltaFileOptions options;
+    options.tolerance.value = 4;
+    DeltaFile first;
+    const DeltaFileEntry before = first.add(readKept(kWavesFile), options);
+    first.write("first.vdb");
+    DeltaFile second;
+    const DeltaFileEntry same = second.add(readKept("first.vdb"), {});
+    EXPECT_EQ(same.maxError, before.maxError);
+    EXPECT_FALSE(same.lossless);
+    second.write("second.vdb");
+    EXPECT_EQ(readVolume("second.vdb").origin->maxError, before.maxError);
+    EXPECT_EQ(readVolume("second.vdb").origin->toleranceValue, 4);
 }
 
 }  // namespace

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
+#include <cmath>
 #include <functional>
 
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "deltasplat/memory_limit.h"
+#include "number_text.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {
@@ -119,7 +122,7 @@ TEST(ReadDeltaError, TablesThatAreNone) {
         "one",
         table(""));
     expectRefused(
-        ": metadata \"delta_code_count\": got 65536; expected 2, the numbers of "
+        ": metadata \"delta_code_count\": got 250; expected 2, the numbers of "
         "delta_table",
         table("1 2"));
 }
@@ -136,11 +139,11 @@ TEST(ReadDeltaError, MissingKeySlice) {
 TEST(ReadDeltaError, CodesOutsideOfTheBook) {
     // Voxel (0, 0, 0) has code 0, the most frequent one; (7, 0, 0) has code 7.
     expectRefused(
-        ": got deltas that lead to 65537 at (0, 7, 0); expected 0..65536, the codes of "
+        ": got deltas that lead to 251 at (0, 7, 0); expected 0..250, the codes of "
         "its integer code book",
-        [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), 65537); });
+        [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), 251); });
     expectRefused(
-        ": got deltas that lead to -1 at (0, 7, 0); expected 0..65536, the codes of its "
+        ": got deltas that lead to -1 at (0, 7, 0); expected 0..250, the codes of its "
         "integer code book",
         [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), -1); });
 }
@@ -148,7 +151,7 @@ TEST(ReadDeltaError, CodesOutsideOfTheBook) {
 // Sums of deltas that no 32 bits hold.
 TEST(ReadDeltaError, ChainsBeyondIntegers) {
     expectRefused(
-        ": got deltas that lead to 2147483647 at (0, 7, 0); expected 0..65536, the codes "
+        ": got deltas that lead to 2147483647 at (0, 7, 0); expected 0..250, the codes "
         "of its integer code book",
         [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), 2147483647); });
 }
@@ -190,6 +193,66 @@ TEST(ReadDeltaError, BoxesThatMemoryCannotHold) {
             throw Error(error.code(), "");
         }
     });
+}
+
+// One delta that lasts for millions of slices takes more in tiles than in the file.
+TEST(ReadDeltaError, ChainsThatMemoryCannotHold) {
+    const TempFolder folder;
+    openvdb::initialize();
+    auto block = openvdb::FloatGrid::create();
+    block->fill({Coord(0), Coord(7)}, 1);
+    block->setName("a");
+    openvdb::io::File("source.vdb").write({block});
+    DeltaFileOptions options;
+    options.sliceAxis = 2;
+    options.keyInterval = 1 << 23;
+    DeltaFile file;
+    file.add(readVolume("source.vdb"), options);
+    file.write("whole.vdb");
+    openvdb::io::File input("whole.vdb");
+    input.open();
+    const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid("a"));
+    const auto claim = [&](std::int64_t active) {
+        with<openvdb::Vec3i>("delta_box_max", {7, 7, (1 << 23) - 1})(*grid);
+        with<std::int64_t>("delta_active", active)(*grid);
+        openvdb::io::File("a.vdb").write({grid});
+    };
+    claim(512);
+    expectError(ErrorCode::kInput,
+                "a.vdb: grid \"a\": got at least 1024 active voxels; expected 512, as "
+                "\"delta_active\" says",
+                [] { readVolume("a.vdb"); });
+    claim(std::int64_t{1} << 29);
+    setMemoryLimit(std::uint64_t{1} << 30);
+    EXPECT_THROW(readVolume("a.vdb"), Error);
+    setMemoryLimit(0);
+}
+
+TEST(ReadDeltaError, BackgroundsThatNothingCanHold) {
+    // 0 is what most voxels of the file rest at.
+    for (const double value : {std::nan(""), 0.5, 300.0, 1e300}) {
+        expectRefused(": metadata \"delta_background\": got " + numberText(value) +
+                          "; expected the value of a code, for active voxels to rest at",
+                      with<double>("delta_background", value));
+    }
+    const auto inactive = [](const std::string& tree, double background) {
+        return [=](openvdb::Int32Grid& grid) {
+            with<std::string>("delta_rest", "inactive")(grid);
+            with<std::string>("delta_source_tree", tree)(grid);
+            with<double>("delta_background", background)(grid);
+        };
+    };
+    expectRefused(": metadata \"delta_background\": got 1e+300; expected a float",
+                  inactive("float", 1e300));
+    expectRefused(": metadata \"delta_background\": got 0.5; expected a whole number of type int32",
+                  inactive("int32", 0.5));
+    expectRefused(
+        ": metadata \"delta_code_book\": got \"half\"; expected a book of whole numbers for type "
+        "int32",
+        [&](openvdb::Int32Grid& grid) {
+            inactive("int32", 0)(grid);
+            with<std::string>("delta_code_book", "half")(grid);
+        });
 }
 
 }  // namespace

@@ -14,6 +14,9 @@ namespace deltasplat {
 /// How to write volumes.
 struct WriteOptions {
     bool fullFloat = false;  ///< .vdb: never store real values as halves
+    /// .vdb: store real values of a volume's own grid in the precision that its metadata says,
+    /// rather than as halves where that is exact.
+    bool keepPrecision = false;
     /// .vdb: make active voxels inactive that have the value `background`, which becomes the grid's
     /// background.
     bool dropBackground = false;

@@ -17,6 +17,17 @@ for file in "$@"; do
     "$program" delta "$name" one.vdb --threads 1 -q
     "$program" delta "$name" two.vdb --threads 3 -q
     cmp one.vdb two.vdb
+    "$program" delta one.vdb again.vdb --bits 8 2>&1 | grep -q -- '--bits: has no effect on delta'
+    if [[ $name == *.vdb ]]; then
+        # The precision that a grid asks for is its own, even where halves would do.
+        "$program" convert "$name" floats.vdb --float -q
+        "$program" delta floats.vdb floats_delta.vdb -q
+        "$program" restore floats_delta.vdb floats_again.vdb -q
+        for one in floats floats_again; do
+            "$program" info "$one.vdb" --json | grep '"type"' >"$one.txt"
+        done
+        cmp floats.txt floats_again.txt
+    fi
     "$program" restore one.vdb "restored.${name##*.}" --stats stats.json -q
     options=()
     [[ $name == *.raw ]] && options=(--dims 8x8x8 --type uint8)
