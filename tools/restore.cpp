@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "conversion_files.h"
 #include "conversion_stats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/convert/write_volume.h"
@@ -12,7 +13,6 @@
 #include "listener.h"
 #include "lower_case.h"
 #include "read_grids.h"
-#include "stats_file.h"
 #include "stopwatch.h"
 #include "subcommands.h"
 
@@ -47,12 +47,6 @@ void declareOptions(CLI::App& app, RestoreCommand& command) {
                      "JSON file to write: sizes, deltas, largest error, seconds");
 }
 
-// Checks what can be checked before anything is read.
-void validate(const RestoreCommand& command) {
-    checkVolumeFile(command.output);
-    checkStatsFile(command.stats, {command.input, command.output}, "the input and the output");
-}
-
 void requireDeltas(const RestoreCommand& command, const Volume& volume) {
     if (volume.origin) return;
     throw Error(
@@ -82,8 +76,9 @@ std::vector<Volume> readInput(const RestoreCommand& command, const Listener& lis
 }
 
 void runRestore(const RestoreCommand& command, const Session& session) {
-    validate(command);
+    checkVolumeFile(command.output);
     ConversionStats stats;
+    checkConversionFiles(command.input, command.output, command.stats);
     {
         ProgressDisplay display(session.common.quiet);
         std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare), stats);

@@ -30,6 +30,8 @@ deltasplat_cli_test(delta.usage.bits EXIT 2 ARGS delta ${cube} d.vdb --bits 7
     STDERR "deltasplat: --bits: got 7; expected a whole number from 8 to 16")
 deltasplat_cli_test(delta.usage.tolerance EXIT 2 ARGS delta ${cube} d.vdb --tolerance-value -1
     STDERR_MATCHES "deltasplat: --tolerance-value: got -1; expected a finite number of at least 0")
+deltasplat_cli_test(delta.stats_is_image EXIT 2 ARGS delta stack.\#.pgm d.vdb --stats stack.2.pgm
+    STDERR "deltasplat: --stats: got stack.2.pgm; expected another file than the input and the output")
 deltasplat_cli_test(delta.no_folder EXIT 4 ARGS delta nowhere.vdb nowhere/d.vdb
     STDERR "deltasplat: nowhere/d.vdb: cannot be written: No such file or directory")
 deltasplat_cli_test(delta.full EXIT 4 ARGS delta ${cube} full.vdb
@@ -39,6 +41,8 @@ deltasplat_cli_test(restore.no_deltas EXIT 3 ARGS restore ball.vdb r.vdb
     STDERR "deltasplat: ball.vdb: grid \"density\": got a grid of type float; expected a delta grid (convert takes other grids)")
 deltasplat_cli_test(restore.extension EXIT 2 ARGS restore ball.vdb r.txt
     STDERR_MATCHES "deltasplat: r.txt: got extension \".txt\"; expected .*")
+deltasplat_cli_test(restore.stats_is_data EXIT 2 ARGS restore ball.vdb out.mhd --stats out.raw
+    STDERR "deltasplat: --stats: got out.raw; expected another file than the input and the output")
 
 # A limit on memory is kept by saying so first.
 deltasplat_cli_test(memory.refused EXIT 2 ARGS delta ${cube} d.vdb --max-memory 1K

@@ -126,6 +126,10 @@ void writeRawFiles() {
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = char(i % 97);
     writeBytes("cube_8x8x8_uint8.raw", bytes);
     writeBytes("plain.raw", bytes);
+    writeBytes("detached.raw", bytes);
+    writeBytes("detached.nhdr",
+               "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n"
+               "data file: detached.raw\n");
     std::string changed = bytes;
     changed[5 + 8 * 1 + 64 * 1] = 80;  // instead of 77
     writeBytes("changed_8x8x8_uint8.raw", changed);
