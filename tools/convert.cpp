@@ -109,14 +109,14 @@ std::vector<Volume> readInput(const ConvertCommand& command, const Listener& lis
 void runConvert(const CLI::App& app, const ConvertCommand& command, const Session& session) {
     checkVolumeFile(command.output);
     ConversionStats stats;
-    checkConversionFiles(command.input, command.output, command.stats);
+    // Asked before writing, which may take the input's place.
+    stats.inputBytes = bytesOf(checkConversionFiles(command.input, command.output, command.stats));
     {
         ProgressDisplay display(session.common.quiet);
         warnOfUnusedOptions(app, command, display);
         bool complete = true;
         std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare), complete);
         for (const Volume& volume : volumes) stats.add(volume);
-        stats.inputBytes = bytesOf({command.input});
 
         const WriteReport report = writeVolumes(command.output, std::move(volumes), command.write,
                                                 display.stage(kReadShare, 1));

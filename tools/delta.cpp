@@ -108,7 +108,8 @@ void add(const DeltaFileEntry& entry, ConversionStats& stats) {
 void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& session) {
     checkOutput(command);
     ConversionStats stats;
-    checkConversionFiles(command.input, command.output, command.stats);
+    // Asked before writing, which may take the input's place.
+    stats.inputBytes = bytesOf(checkConversionFiles(command.input, command.output, command.stats));
     ReadOptions reading = command.read;
     // Half of what may be lost goes to the code book, where one is needed, the rest to holding.
     const double relative = command.file.tolerance.relative;
@@ -130,7 +131,6 @@ void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& s
         file.write(command.output);
         display.stage(kTakeShare, 1).report(1);
 
-        stats.inputBytes = bytesOf({command.input});
         stats.outputBytes = bytesOf({command.output});
         stats.lossless = stats.lossless && complete;
         stats.seconds = secondsSince(session.begin);

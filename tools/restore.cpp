@@ -78,14 +78,14 @@ std::vector<Volume> readInput(const RestoreCommand& command, const Listener& lis
 void runRestore(const RestoreCommand& command, const Session& session) {
     checkVolumeFile(command.output);
     ConversionStats stats;
-    checkConversionFiles(command.input, command.output, command.stats);
+    // Asked before writing, which may take the input's place.
+    stats.inputBytes = bytesOf(checkConversionFiles(command.input, command.output, command.stats));
     {
         ProgressDisplay display(session.common.quiet);
         std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare), stats);
         const WriteReport report =
             writeVolumes(command.output, std::move(volumes), {}, display.stage(kReadShare, 1));
         for (const std::string& note : report.notes) display.warn(note);
-        stats.inputBytes = bytesOf({command.input});
         stats.outputBytes = bytesOf(report.files);
         stats.lossless = stats.lossless && report.lossless && stats.maxError == 0;
         stats.maxError = std::max(stats.maxError, report.maxError);

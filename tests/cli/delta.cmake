@@ -16,6 +16,12 @@ add_test(NAME cli.delta.round_trip COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/script
     ${DELTASPLAT_FIXTURES}/cube_8x8x8_uint8.raw)
 set_tests_properties(cli.delta.round_trip PROPERTIES LABELS cli TIMEOUT 120
                      FIXTURES_REQUIRED cli_files)
+add_test(NAME cli.delta.input_bytes
+    COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/input_bytes.sh $<TARGET_FILE:deltasplat_tool>
+    ${CMAKE_CURRENT_BINARY_DIR}/cli/input_bytes ${DELTASPLAT_FIXTURES} ${DELTASPLAT_CASE_FILES}
+    ${DELTASPLAT_ITK})
+set_tests_properties(cli.delta.input_bytes PROPERTIES LABELS cli TIMEOUT 120
+                     FIXTURES_REQUIRED cli_files)
 deltasplat_cli_test(delta.max_error EXIT 1
     ARGS delta ${cube} d.vdb --tolerance-value 50 --max-error 0.5
     STDERR_MATCHES "deltasplat: grid \"cube_8x8x8_uint8\": got a largest error of [0-9]+; expected at most 0.5 .--max-error.")
