@@ -9,10 +9,11 @@
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
+#include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "ingest/file_name.h"
 #include "listener.h"
 #include "lower_case.h"
-#include "read_grids.h"
 #include "stopwatch.h"
 #include "subcommands.h"
 
@@ -38,7 +39,7 @@ void declareOptions(CLI::App& app, RestoreCommand& command) {
     arguments
         .addValue("OUTPUT", "FILE", command.output, anyText(),
                   "File to write: .vdb .nrrd .nhdr .mhd .mha .nii .nii.gz .raw\n"
-                  "or .raw.gz; a .vdb gets all grids, the others the first")
+                  "or .raw.gz; a .vdb gets all delta grids, others the first")
         .required();
     OptionGroup options(app, "Restoring");
     options.addValue("--grid", "NAME", command.read.gridName, anyText(),
@@ -55,10 +56,45 @@ void requireDeltas(const RestoreCommand& command, const Volume& volume) {
                     "a grid of type " + volume.type, "a delta grid (convert takes other grids)"));
 }
 
+std::string joined(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
+// The delta grids that the output can hold, by name. Without any, reading says what is wrong.
+std::vector<std::string> chooseGrids(const RestoreCommand& command, const Listener& listener,
+                                     ConversionStats& stats) {
+    const bool isVdb = lowerExtension(command.input) == ".vdb";
+    if (!isVdb || !command.read.gridName.empty()) return {command.read.gridName};
+    GridList grids = listGrids(command.input);
+    if (grids.deltas.empty()) return {grids.scalar.empty() ? "" : grids.scalar.front()};
+    const std::string where = command.input.string() + ": ";
+    if (!grids.ordinary.empty()) {
+        listener.warn(where + "left out " + joined(grids.ordinary) + ", which are no delta grids");
+    }
+    if (!command.toVdb() && grids.deltas.size() > 1) {
+        listener.warn(where + "reading grid \"" + grids.deltas.front() + "\", the first of " +
+                      std::to_string(grids.deltas.size()) + " delta grids");
+        grids.deltas.resize(1);
+    }
+    stats.lossless = grids.ordinary.empty() || !command.toVdb();
+    return grids.deltas;
+}
+
 std::vector<Volume> readInput(const RestoreCommand& command, const Listener& listener,
                               ConversionStats& stats) {
     std::vector<Volume> volumes;
-    const auto take = [&](Volume volume) {
+    const std::vector<std::string> names = chooseGrids(command, listener, stats);
+    for (const std::string& name : names) {
+        const double done = double(volumes.size());
+        Listener part = listener;
+        part.progress = [&, done](double share) {
+            listener.report((done + share) / double(names.size()));
+        };
+        ReadOptions options = command.read;
+        options.gridName = name;
+        Volume volume = readVolume(command.input, options, part);
         requireDeltas(command, volume);
         stats.add(volume);
         stats.deltas += volume.origin->deltas;
@@ -66,11 +102,6 @@ std::vector<Volume> readInput(const RestoreCommand& command, const Listener& lis
         // The source says all that the codes do, and more.
         if (volume.source) volume.codes.reset();
         volumes.push_back(std::move(volume));
-    };
-    if (command.toVdb()) {
-        stats.lossless = forEachScalarGrid(command.input, command.read, take, listener);
-    } else {
-        take(readVolume(command.input, command.read, listener));
     }
     return volumes;
 }

@@ -45,6 +45,12 @@ deltasplat_cli_test(delta.full EXIT 4 ARGS delta ${cube} full.vdb
 
 deltasplat_cli_test(restore.no_deltas EXIT 3 ARGS restore ball.vdb r.vdb
     STDERR "deltasplat: ball.vdb: grid \"density\": got a grid of type float; expected a delta grid (convert takes other grids)")
+add_test(NAME cli.restore.other_grids
+    COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/restore_other_grids.sh
+    $<TARGET_FILE:deltasplat_tool> $<TARGET_FILE:make_fixtures>
+    ${CMAKE_CURRENT_BINARY_DIR}/cli/restore_other_grids ${DELTASPLAT_FIXTURES})
+set_tests_properties(cli.restore.other_grids PROPERTIES LABELS cli TIMEOUT 120
+                     FIXTURES_REQUIRED cli_files)
 deltasplat_cli_test(restore.extension EXIT 2 ARGS restore ball.vdb r.txt
     STDERR_MATCHES "deltasplat: r.txt: got extension \".txt\"; expected .*")
 deltasplat_cli_test(restore.stats_is_data EXIT 2 ARGS restore ball.vdb out.mhd --stats out.raw

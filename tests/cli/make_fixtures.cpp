@@ -155,10 +155,27 @@ void linkToFullDevice() {
     std::filesystem::create_directory("folder.exr");
 }
 
+// Writes the grids of several files into one.
+void joinFiles(const std::string& to, const std::vector<std::string>& from) {
+    openvdb::GridPtrVec grids;
+    for (const std::string& name : from) {
+        openvdb::io::File file(name);
+        file.open(/*delayLoad=*/false);
+        const openvdb::GridPtrVecPtr held = file.getGrids();
+        grids.insert(grids.end(), held->begin(), held->end());
+    }
+    writeVdb(to, grids);
+}
+
 }  // namespace
 
-int main() {
+// make_fixtures [OUTPUT.vdb INPUT.vdb...]: writes all files, or joins some.
+int main(int count, char** words) {
     openvdb::initialize();
+    if (count > 2) {
+        joinFiles(words[1], {words + 2, words + count});
+        return 0;
+    }
     linkToFullDevice();
     writeVdbFiles();
     writeRawFiles();
