@@ -26,13 +26,8 @@ void ConversionStats::add(const Volume& volume) {
 std::uint64_t bytesOf(const std::vector<fs::path>& files) {
     std::uint64_t bytes = 0;
     std::error_code ignored;
-    const auto add = [&](const fs::path& file) {
-        if (fs::is_regular_file(file, ignored)) bytes += fs::file_size(file, ignored);
-    };
     for (const fs::path& file : files) {
-        add(file);
-        if (!fs::is_directory(file, ignored)) continue;
-        for (const fs::directory_entry& entry : fs::directory_iterator(file, ignored)) add(entry);
+        if (fs::is_regular_file(file, ignored)) bytes += fs::file_size(file, ignored);
     }
     return bytes;
 }

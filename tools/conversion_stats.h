@@ -12,7 +12,7 @@ namespace deltasplat {
 
 /// What `--stats` of convert, delta and restore tells.
 struct ConversionStats {
-    std::uint64_t inputBytes = 0;
+    std::uint64_t inputBytes = 0;  ///< of all files that the input consists of
     std::uint64_t outputBytes = 0;
     std::uint64_t voxels = 0;  ///< in the boxes of all volumes
     std::uint64_t active = 0;
@@ -26,7 +26,7 @@ struct ConversionStats {
     void add(const Volume& volume);
 };
 
-/// Returns the bytes of files; of folders, those of the files in them.
+/// Returns the bytes of files; one that is no regular file counts as none.
 std::uint64_t bytesOf(const std::vector<std::filesystem::path>& files);
 
 /// Returns the JSON object of `--stats`.

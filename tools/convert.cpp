@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "conversion_files.h"
 #include "conversion_stats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/convert/write_volume.h"
@@ -13,7 +14,6 @@
 #include "listener.h"
 #include "lower_case.h"
 #include "read_grids.h"
-#include "stats_file.h"
 #include "stopwatch.h"
 #include "subcommands.h"
 
@@ -79,21 +79,6 @@ void declareOptions(CLI::App& app, ConvertCommand& command) {
     addInputOptions(app, command.read);
 }
 
-// Checks what can be checked before anything is read.
-void validate(const ConvertCommand& command) {
-    checkVolumeFile(command.output);
-    const std::filesystem::path dataFile = dataFileOf(command.output);
-    if (!dataFile.empty() && sameFile(dataFile, command.input)) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(command.output.string(),
-                                "the input " + command.input.string() + " as its data file",
-                                "another name"));
-    }
-    std::vector<std::filesystem::path> others = {command.input, command.output};
-    if (!dataFile.empty()) others.push_back(dataFile);
-    checkStatsFile(command.stats, others, "the input and the output");
-}
-
 void warnOfUnusedOptions(const CLI::App& app, const ConvertCommand& command,
                          ProgressDisplay& display) {
     warnOfUnusedInputOptions(app, {command.input}, display);
@@ -123,15 +108,16 @@ std::vector<Volume> readInput(const ConvertCommand& command, const Listener& lis
 }
 
 void runConvert(const CLI::App& app, const ConvertCommand& command, const Session& session) {
-    validate(command);
+    checkVolumeFile(command.output);
     ConversionStats stats;
+    // Asked before writing, which may take the input's place.
+    stats.inputBytes = bytesOf(checkConversionFiles(command.input, command.output, command.stats));
     {
         ProgressDisplay display(session.common.quiet);
         warnOfUnusedOptions(app, command, display);
         bool complete = true;
         std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare), complete);
         for (const Volume& volume : volumes) stats.add(volume);
-        stats.inputBytes = bytesOf({command.input});
 
         const WriteReport report = writeVolumes(command.output, std::move(volumes), command.write,
                                                 display.stage(kReadShare, 1));

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "conversion_files.h"
 #include "conversion_stats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
@@ -15,7 +16,6 @@
 #include "lower_case.h"
 #include "number_text.h"
 #include "read_grids.h"
-#include "stats_file.h"
 #include "stopwatch.h"
 #include "subcommands.h"
 
@@ -93,16 +93,14 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
     addInputOptions(app, command.read);
 }
 
-// Checks what can be checked before anything is read.
-void validate(const DeltaCommand& command) {
+void checkOutput(const DeltaCommand& command) {
     if (lowerCase(command.output.extension().string()) != ".vdb") {
         throw Error(
             ErrorCode::kUsage,
             gotExpected(command.output.string(),
                         "extension \"" + command.output.extension().string() + "\"", ".vdb"));
     }
-    { const AtomicFile probe(command.output); }
-    checkStatsFile(command.stats, {command.input, command.output}, "the input and the output");
+    const AtomicFile probe(command.output);
 }
 
 void add(const DeltaFileEntry& entry, ConversionStats& stats) {
@@ -112,8 +110,10 @@ void add(const DeltaFileEntry& entry, ConversionStats& stats) {
 }
 
 void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& session) {
-    validate(command);
+    checkOutput(command);
     ConversionStats stats;
+    // Asked before writing, which may take the input's place.
+    stats.inputBytes = bytesOf(checkConversionFiles(command.input, command.output, command.stats));
     ReadOptions reading = command.read;
     // Half of what may be lost goes to the code book, where one is needed, the rest to holding.
     const double relative = command.file.tolerance.relative;
@@ -139,7 +139,6 @@ void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& s
         file.write(command.output);
         display.stage(kTakeShare, 1).report(1);
 
-        stats.inputBytes = bytesOf({command.input});
         stats.outputBytes = bytesOf({command.output});
         stats.lossless = stats.lossless && complete;
         stats.seconds = secondsSince(session.begin);

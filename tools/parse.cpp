@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "deltasplat/error.h"
+#include "ingest/placement.h"
 #include "number_text.h"
 
 namespace deltasplat {
@@ -143,7 +144,7 @@ Parser<glm::dvec3> vector3() {
 }
 
 Parser<glm::dvec3> voxelSpacing() {
-    return threeNumbers(1e-30, 1e30, "X,Y,Z, three numbers from 1e-30 to 1e+30");
+    return threeNumbers(1 / kMostLength, kMostLength, "X,Y,Z, three numbers from 1e-15 to 1e+15");
 }
 
 Parser<glm::dvec2> interval() {

@@ -4,15 +4,16 @@
 #include <filesystem>
 #include <memory>
 
+#include "conversion_files.h"
 #include "conversion_stats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
+#include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "ingest/file_name.h"
 #include "listener.h"
 #include "lower_case.h"
-#include "read_grids.h"
-#include "stats_file.h"
 #include "stopwatch.h"
 #include "subcommands.h"
 
@@ -38,19 +39,13 @@ void declareOptions(CLI::App& app, RestoreCommand& command) {
     arguments
         .addValue("OUTPUT", "FILE", command.output, anyText(),
                   "File to write: .vdb .nrrd .nhdr .mhd .mha .nii .nii.gz .raw\n"
-                  "or .raw.gz; a .vdb gets all grids, the others the first")
+                  "or .raw.gz; a .vdb gets all delta grids, others the first")
         .required();
     OptionGroup options(app, "Restoring");
     options.addValue("--grid", "NAME", command.read.gridName, anyText(),
                      "Grid to restore (default: all that the output can hold)");
     options.addValue("--stats", "FILE", command.stats, anyText(),
                      "JSON file to write: sizes, deltas, largest error, seconds");
-}
-
-// Checks what can be checked before anything is read.
-void validate(const RestoreCommand& command) {
-    checkVolumeFile(command.output);
-    checkStatsFile(command.stats, {command.input, command.output}, "the input and the output");
 }
 
 void requireDeltas(const RestoreCommand& command, const Volume& volume) {
@@ -61,10 +56,45 @@ void requireDeltas(const RestoreCommand& command, const Volume& volume) {
                     "a grid of type " + volume.type, "a delta grid (convert takes other grids)"));
 }
 
+std::string joined(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
+// The delta grids that the output can hold, by name. Without any, reading says what is wrong.
+std::vector<std::string> chooseGrids(const RestoreCommand& command, const Listener& listener,
+                                     ConversionStats& stats) {
+    const bool isVdb = lowerExtension(command.input) == ".vdb";
+    if (!isVdb || !command.read.gridName.empty()) return {command.read.gridName};
+    GridList grids = listGrids(command.input);
+    if (grids.deltas.empty()) return {grids.scalar.empty() ? "" : grids.scalar.front()};
+    const std::string where = command.input.string() + ": ";
+    if (!grids.ordinary.empty()) {
+        listener.warn(where + "left out " + joined(grids.ordinary) + ", which are no delta grids");
+    }
+    if (!command.toVdb() && grids.deltas.size() > 1) {
+        listener.warn(where + "reading grid \"" + grids.deltas.front() + "\", the first of " +
+                      std::to_string(grids.deltas.size()) + " delta grids");
+        grids.deltas.resize(1);
+    }
+    stats.lossless = grids.ordinary.empty() || !command.toVdb();
+    return grids.deltas;
+}
+
 std::vector<Volume> readInput(const RestoreCommand& command, const Listener& listener,
                               ConversionStats& stats) {
     std::vector<Volume> volumes;
-    const auto take = [&](Volume volume) {
+    const std::vector<std::string> names = chooseGrids(command, listener, stats);
+    for (const std::string& name : names) {
+        const double done = double(volumes.size());
+        Listener part = listener;
+        part.progress = [&, done](double share) {
+            listener.report((done + share) / double(names.size()));
+        };
+        ReadOptions options = command.read;
+        options.gridName = name;
+        Volume volume = readVolume(command.input, options, part);
         requireDeltas(command, volume);
         stats.add(volume);
         stats.deltas += volume.origin->deltas;
@@ -72,19 +102,15 @@ std::vector<Volume> readInput(const RestoreCommand& command, const Listener& lis
         // The source says all that the codes do, and more.
         if (volume.source) volume.codes.reset();
         volumes.push_back(std::move(volume));
-    };
-    if (command.toVdb()) {
-        const bool complete = forEachScalarGrid(command.input, command.read, take, listener);
-        stats.lossless = stats.lossless && complete;
-    } else {
-        take(readVolume(command.input, command.read, listener));
     }
     return volumes;
 }
 
 void runRestore(const RestoreCommand& command, const Session& session) {
-    validate(command);
+    checkVolumeFile(command.output);
     ConversionStats stats;
+    // Asked before writing, which may take the input's place.
+    stats.inputBytes = bytesOf(checkConversionFiles(command.input, command.output, command.stats));
     {
         ProgressDisplay display(session.common.quiet);
         std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare), stats);
@@ -93,7 +119,6 @@ void runRestore(const RestoreCommand& command, const Session& session) {
         const WriteReport report =
             writeVolumes(command.output, std::move(volumes), writing, display.stage(kReadShare, 1));
         for (const std::string& note : report.notes) display.warn(note);
-        stats.inputBytes = bytesOf({command.input});
         stats.outputBytes = bytesOf(report.files);
         stats.lossless = stats.lossless && report.lossless && stats.maxError == 0;
         stats.maxError = std::max(stats.maxError, report.maxError);

@@ -10,6 +10,8 @@ namespace deltasplat {
 
 bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code ignored;
+    // Names that differ may lead to one file: by a hard link, or where case does not count.
+    if (equivalent(a, b, ignored)) return true;
     return weakly_canonical(absolute(a), ignored) == weakly_canonical(absolute(b), ignored);
 }
 

@@ -10,6 +10,7 @@
 
 #include "convert/dense_layout.h"
 #include "deltasplat/error.h"
+#include "ingest/placement.h"
 #include "little_endian.h"
 
 namespace deltasplat {
@@ -90,8 +91,8 @@ void setMatrix(const DenseLayout& layout, Fields& fields) {
     }
 }
 
-bool floatsHold(const glm::dmat4& matrix) {
-    return glm::dmat4(glm::mat4(matrix)) == matrix;
+glm::dmat4 asFloats(const glm::dmat4& matrix) {
+    return glm::dmat4(glm::mat4(matrix));
 }
 
 }  // namespace
@@ -108,7 +109,13 @@ void settleNifti(DenseLayout& layout, const std::string& file, Notes& notes) {
         notes.remark("no patient space is known; NIfTI takes world space for RAS");
     }
     layout.turnTo("RAS");
-    if (!floatsHold(layout.worldFromIndex)) {
+    const glm::dmat4 written = asFloats(layout.worldFromIndex);
+    if (!givesPlaces(written)) {
+        throw Error(ErrorCode::kFailed,
+                    gotExpected(file, "spacing, directions or origin out of range",
+                                "ones that 32-bit floats hold, as NIfTI has them"));
+    }
+    if (written != layout.worldFromIndex) {
         notes.loss("spacing, directions or origin rounded to 32-bit floats, as NIfTI has them");
     }
 }

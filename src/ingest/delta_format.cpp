@@ -174,7 +174,11 @@ void requireHeldValues(const Entries& entries, const DeltaHeader& header) {
 }  // namespace
 
 bool isDeltaGrid(const openvdb::GridBase& grid) {
-    return grid.isType<openvdb::Int32Grid>() && bool(grid[kVersionKey]);
+    return isDeltaGrid(grid.valueType(), grid) && grid.isType<openvdb::Int32Grid>();
+}
+
+bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata) {
+    return valueType == "int32" && bool(metadata[kVersionKey]);
 }
 
 void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {

@@ -43,6 +43,8 @@ inline constexpr const char* kSourcePrefix = "source:";
 
 /// Returns whether a grid is a delta grid of any version.
 bool isDeltaGrid(const openvdb::GridBase& grid);
+/// Returns the same by a grid's value type ("int32") and metadata.
+bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata);
 
 /// Adds the header to a grid's metadata.
 void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/ingest/list_grids.h"
 
+#include "ingest/delta_format.h"
 #include "ingest/file_name.h"
 #include "ingest/vdb_file.h"
 
@@ -15,6 +16,12 @@ GridList listGrids(const std::filesystem::path& file) {
             list.scalar.push_back(grid.name);
         } else {
             list.others.push_back(grid.describe());
+        }
+        if (grid.isScalar() && grid.type == "int32" &&
+            isDeltaGrid(grid.type, *vdb.metadata(grid))) {
+            list.deltas.push_back(grid.name);
+        } else {
+            list.ordinary.push_back(grid.describe());
         }
     }
     return list;

@@ -6,8 +6,15 @@
 
 namespace deltasplat {
 
-/// Checks that a file's worldFromIndex gives every voxel a place of its own, in sizes that a double
-/// can still tell apart.
+/// The largest length that a place or a voxel may have; its inverse is the smallest that a voxel
+/// may have.
+inline constexpr double kMostLength = 1e15;
+
+/// Returns whether worldFromIndex gives every voxel a place of its own, in sizes that a double can
+/// still tell apart.
+bool givesPlaces(const glm::dmat4& worldFromIndex);
+
+/// Checks that a file's worldFromIndex gives places.
 /// @param what  "an sform", "spacing and directions"
 /// @throw Error(kInput) "<where>: got <what> that give no place to voxels; expected ..."
 void requirePlacement(const std::string& where, const std::string& what, const glm::dmat4& matrix);

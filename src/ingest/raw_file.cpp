@@ -31,9 +31,9 @@ void requireRawSize(const RawFile& file) {
         if (held < wanted || (held > wanted && !file.mayGoOn)) throwSize(file, held);
         return;
     }
-    // Deflate makes at most 1032 bytes of one.
+    // Deflate makes at most 1032 bytes of one. What more is claimed is a lie, not a need of memory.
     constexpr double kMostRatio = 1032;
-    if (file.mayGoOn && double(held) * kMostRatio < double(wanted)) {
+    if (double(held) * kMostRatio < double(wanted)) {
         throwSize(file, std::to_string(held) + " bytes of gzip");
     }
 }

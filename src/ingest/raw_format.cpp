@@ -3,12 +3,13 @@
 
 #include <array>
 #include <charconv>
-#include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <regex>
 
 #include "deltasplat/error.h"
 #include "ingest/file_name.h"
+#include "ingest/placement.h"
 #include "number_text.h"
 
 namespace deltasplat {
@@ -155,15 +156,15 @@ std::string RawLayout::expectedSize() const {
 }
 
 void requireGeometry(const RawFormat& format) {
+    const std::string most = numberText(kMostLength);
     for (int axis = 0; axis < 3; ++axis) {
         const double spacing = format.spacing[axis];
-        if (!std::isfinite(spacing) || spacing <= 0) {
-            refuse("--spacing", numberText(spacing), "three finite numbers above 0");
-        }
-        if (!std::isfinite(format.origin[axis])) {
-            refuse("--origin", numberText(format.origin[axis]), "three finite numbers");
-        }
+        if (spacing >= 1 / kMostLength && spacing <= kMostLength) continue;
+        refuse("--spacing", numberText(spacing),
+               "three numbers from " + numberText(1 / kMostLength) + " to " + most);
     }
+    if (glm::length(format.origin) <= kMostLength) return;
+    refuse("--origin", numberText(format.origin), "a place within " + most + " of 0,0,0");
 }
 
 RawLayout resolveRawLayout(const std::filesystem::path& file, const RawFormat& format) {

@@ -43,7 +43,8 @@ struct RawLayout {
     std::string expectedSize() const;
 };
 
-/// @throw Error(kUsage) if the spacing or the origin cannot be meant
+/// @throw Error(kUsage) if the spacing or the origin is one that no file could hold: a reader would
+///        refuse it
 void requireGeometry(const RawFormat& format);
 
 /// Completes `format` from the name of `file`; what the options say wins over the name.

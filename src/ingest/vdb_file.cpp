@@ -116,6 +116,13 @@ GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::p
     return head;
 }
 
+openvdb::MetaMap::ConstPtr parseMetadata(const std::string& bytes) {
+    std::istringstream stream(bytes);
+    const auto metadata = std::make_shared<openvdb::MetaMap>();
+    metadata->readMeta(stream);
+    return metadata;
+}
+
 }  // namespace
 
 bool VdbGrid::isScalar() const {
@@ -162,10 +169,12 @@ void VdbFile::readDirectory() {
 }
 
 openvdb::MetaMap::ConstPtr VdbFile::metadata() const {
-    std::istringstream stream(metadata_);
-    const auto metadata = std::make_shared<openvdb::MetaMap>();
-    metadata->readMeta(stream);
-    return metadata;
+    return parseMetadata(metadata_);
+}
+
+openvdb::MetaMap::ConstPtr VdbFile::metadata(const VdbGrid& grid) const {
+    VdbBytes bytes(file_);
+    return parseMetadata(readHead(bytes, grid, file_).metadata);
 }
 
 // A file written as a stream says nowhere how long its grids are.

@@ -44,6 +44,9 @@ class VdbFile {
     const std::vector<VdbGrid>& grids() const { return grids_; }
     /// Returns the metadata of the file itself.
     openvdb::MetaMap::ConstPtr metadata() const;
+    /// Returns the metadata of an int32 grid of grids(), which says whether it holds deltas.
+    /// @throw Error(kInput) if its bytes are not a sound grid
+    openvdb::MetaMap::ConstPtr metadata(const VdbGrid& grid) const;
     /// Reads one grid of grids().
     /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if it does not fit
     /// into

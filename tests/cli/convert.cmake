@@ -59,6 +59,14 @@ deltasplat_cli_test(convert.stats_is_data EXIT 2 ARGS convert ${cube} out.mhd --
 deltasplat_cli_test(convert.data_is_input EXIT 2
     ARGS convert plain.raw plain.mhd --dims 8x8x8 --type uint8
     STDERR "deltasplat: plain.mhd: got the input plain.raw as its data file; expected another name")
+# A header's data is as much the input as the header.
+deltasplat_cli_test(convert.data_is_inputs_data EXIT 2 ARGS convert detached.nhdr detached.mhd
+    STDERR "deltasplat: detached.mhd: got the input detached.raw as its data file; expected another name")
+deltasplat_cli_test(convert.output_is_inputs_data EXIT 2 ARGS convert detached.nhdr detached.raw
+    STDERR "deltasplat: detached.raw: got a file of the input detached.nhdr; expected another name")
+deltasplat_cli_test(convert.stats_is_inputs_data EXIT 2
+    ARGS convert detached.nhdr out.vdb --stats detached.raw
+    STDERR "deltasplat: --stats: got detached.raw; expected another file than the input and the output")
 deltasplat_cli_test(convert.empty_box EXIT 3 ARGS convert empty.vdb out.nrrd
     STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels
 deltasplat: out.nrrd: got \"density\", which has no active voxels; expected a volume with a bounding box (.vdb holds empty ones)")

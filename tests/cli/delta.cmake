@@ -16,6 +16,12 @@ add_test(NAME cli.delta.round_trip COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/script
     ${DELTASPLAT_FIXTURES}/cube_8x8x8_uint8.raw)
 set_tests_properties(cli.delta.round_trip PROPERTIES LABELS cli TIMEOUT 120
                      FIXTURES_REQUIRED cli_files)
+add_test(NAME cli.delta.input_bytes
+    COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/input_bytes.sh $<TARGET_FILE:deltasplat_tool>
+    ${CMAKE_CURRENT_BINARY_DIR}/cli/input_bytes ${DELTASPLAT_FIXTURES} ${DELTASPLAT_CASE_FILES}
+    ${DELTASPLAT_ITK})
+set_tests_properties(cli.delta.input_bytes PROPERTIES LABELS cli TIMEOUT 120
+                     FIXTURES_REQUIRED cli_files)
 deltasplat_cli_test(delta.max_error EXIT 1
     ARGS delta ${cube} d.vdb --tolerance-value 50 --max-error 0.5
     STDERR_MATCHES "deltasplat: grid \"cube_8x8x8_uint8\": got a largest error of [0-9]+; expected at most 0.5 .--max-error.")
@@ -30,6 +36,8 @@ deltasplat_cli_test(delta.usage.bits EXIT 2 ARGS delta ${cube} d.vdb --bits 7
     STDERR "deltasplat: --bits: got 7; expected a whole number from 8 to 16")
 deltasplat_cli_test(delta.usage.tolerance EXIT 2 ARGS delta ${cube} d.vdb --tolerance-value -1
     STDERR_MATCHES "deltasplat: --tolerance-value: got -1; expected a finite number of at least 0")
+deltasplat_cli_test(delta.stats_is_image EXIT 2 ARGS delta stack.\#.pgm d.vdb --stats stack.2.pgm
+    STDERR "deltasplat: --stats: got stack.2.pgm; expected another file than the input and the output")
 deltasplat_cli_test(delta.no_folder EXIT 4 ARGS delta nowhere.vdb nowhere/d.vdb
     STDERR "deltasplat: nowhere/d.vdb: cannot be written: No such file or directory")
 deltasplat_cli_test(delta.full EXIT 4 ARGS delta ${cube} full.vdb
@@ -37,8 +45,16 @@ deltasplat_cli_test(delta.full EXIT 4 ARGS delta ${cube} full.vdb
 
 deltasplat_cli_test(restore.no_deltas EXIT 3 ARGS restore ball.vdb r.vdb
     STDERR "deltasplat: ball.vdb: grid \"density\": got a grid of type float; expected a delta grid (convert takes other grids)")
+add_test(NAME cli.restore.other_grids
+    COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/restore_other_grids.sh
+    $<TARGET_FILE:deltasplat_tool> $<TARGET_FILE:make_fixtures>
+    ${CMAKE_CURRENT_BINARY_DIR}/cli/restore_other_grids ${DELTASPLAT_FIXTURES})
+set_tests_properties(cli.restore.other_grids PROPERTIES LABELS cli TIMEOUT 120
+                     FIXTURES_REQUIRED cli_files)
 deltasplat_cli_test(restore.extension EXIT 2 ARGS restore ball.vdb r.txt
     STDERR_MATCHES "deltasplat: r.txt: got extension \".txt\"; expected .*")
+deltasplat_cli_test(restore.stats_is_data EXIT 2 ARGS restore ball.vdb out.mhd --stats out.raw
+    STDERR "deltasplat: --stats: got out.raw; expected another file than the input and the output")
 
 # A limit on memory is kept by saying so first.
 deltasplat_cli_test(memory.refused EXIT 2 ARGS delta ${cube} d.vdb --max-memory 1K

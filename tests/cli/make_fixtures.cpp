@@ -126,6 +126,10 @@ void writeRawFiles() {
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = char(i % 97);
     writeBytes("cube_8x8x8_uint8.raw", bytes);
     writeBytes("plain.raw", bytes);
+    writeBytes("detached.raw", bytes);
+    writeBytes("detached.nhdr",
+               "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n"
+               "data file: detached.raw\n");
     std::string changed = bytes;
     changed[5 + 8 * 1 + 64 * 1] = 80;  // instead of 77
     writeBytes("changed_8x8x8_uint8.raw", changed);
@@ -151,10 +155,27 @@ void linkToFullDevice() {
     std::filesystem::create_directory("folder.exr");
 }
 
+// Writes the grids of several files into one.
+void joinFiles(const std::string& to, const std::vector<std::string>& from) {
+    openvdb::GridPtrVec grids;
+    for (const std::string& name : from) {
+        openvdb::io::File file(name);
+        file.open(/*delayLoad=*/false);
+        const openvdb::GridPtrVecPtr held = file.getGrids();
+        grids.insert(grids.end(), held->begin(), held->end());
+    }
+    writeVdb(to, grids);
+}
+
 }  // namespace
 
-int main() {
+// make_fixtures [OUTPUT.vdb INPUT.vdb...]: writes all files, or joins some.
+int main(int count, char** words) {
     openvdb::initialize();
+    if (count > 2) {
+        joinFiles(words[1], {words + 2, words + count});
+        return 0;
+    }
     linkToFullDevice();
     writeVdbFiles();
     writeRawFiles();

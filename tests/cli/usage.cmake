@@ -142,15 +142,23 @@ foreach(dims 8x8 8x8x8x8 8x8xy 8x8x99999999999999999999)
 endforeach()
 deltasplat_cli_test(usage.dims_product EXIT 2 ARGS ${raw} --dims 1000000000x1000000000x1000000000
     STDERR "deltasplat: --dims: got 1000000000x1000000000x1000000000 uint8; expected at most 9223372036854775807 bytes")
-foreach(spacing 1,0,1 1e200,1e200,1e200 1,1e-110,1 1,1,-1)
+foreach(spacing 1,0,1 1e200,1e200,1e200 1,1e-110,1 1e-30,1,1 1,1,-1)
     deltasplat_cli_test(usage.spacing_${spacing} EXIT 2
         ARGS ${raw} --dims 8x8x8 --spacing=${spacing}
-        STDERR "deltasplat: --spacing: got ${spacing}; expected X,Y,Z, three numbers from 1e-30 to 1e+30")
+        STDERR "deltasplat: --spacing: got ${spacing}; expected X,Y,Z, three numbers from 1e-15 to 1e+15")
 endforeach()
-foreach(spacing 1e-30 1e30)
+foreach(spacing 1e-15 1e15)
     deltasplat_cli_test(spacing_${spacing} CREATES out.exr
         ARGS render ${cube} -o out.exr --size 8x8 --spacing ${spacing},${spacing},${spacing})
 endforeach()
+foreach(origin 1e+300,0,0 0,8e+14,-8e+14)
+    deltasplat_cli_test(usage.origin_${origin} EXIT 2
+        ARGS delta ${cube} out.vdb --origin ${origin}
+        STDERR "deltasplat: --origin: got ${origin}; expected a place within 1e+15 of 0,0,0")
+endforeach()
+deltasplat_cli_test(usage.origin_of_images EXIT 2
+    ARGS convert stack.\#.pgm out.vdb --origin 1e+16,0,0
+    STDERR "deltasplat: --origin: got 1e+16,0,0; expected a place within 1e+15 of 0,0,0")
 deltasplat_cli_test(usage.skip_bytes EXIT 2 ARGS ${raw} --dims 8x8x8 --skip-bytes -1
     STDERR "deltasplat: --skip-bytes: got -1; expected a whole number of at least 0")
 
@@ -212,8 +220,8 @@ deltasplat_cli_test(usage.synth_absurd EXIT 2
 deltasplat_cli_test(usage.synth_absurd_vdb EXIT 2
     ARGS synth cloud out.vdb --dims 1x2147483647x2147483647
     STDERR_MATCHES "deltasplat: --dims: needs [0-9.]+ .iB of memory; expected at most [0-9.]+ .iB, which is available")
-deltasplat_cli_test(usage.synth_spacing EXIT 2 ARGS synth cloud out.vdb --spacing 1,1,1e31
-    STDERR "deltasplat: --spacing: got 1,1,1e31; expected X,Y,Z, three numbers from 1e-30 to 1e+30")
+deltasplat_cli_test(usage.synth_spacing EXIT 2 ARGS synth cloud out.vdb --spacing 1,1,1e16
+    STDERR "deltasplat: --spacing: got 1,1,1e16; expected X,Y,Z, three numbers from 1e-15 to 1e+15")
 deltasplat_cli_test(usage.synth_type EXIT 2 ARGS synth cloud out.raw --type int8
     STDERR "deltasplat: --type: got int8; expected uint8, uint16 or float32")
 deltasplat_cli_test(usage.synth_noise EXIT 2 ARGS synth engine out.raw --noise 2

@@ -90,6 +90,27 @@ TEST(DenseHeader, Nifti) {
     EXPECT_EQ(niftiHeader(layout(""), "")[123], 0);
 }
 
+// What is beyond floats would become infinite, or nothing.
+TEST(DenseHeader, NiftiPlacesBeyondFloats) {
+    WriteReport report;
+    Notes notes(report, "a.nii");
+    for (const double scale : {1e-50, 1e50}) {
+        for (const int column : {0, 3}) {
+            DenseLayout far = layout("RAS");
+            far.worldFromIndex[column] *= scale;
+            far.worldFromIndex[3].w = 1;
+            if (column == 3 && scale < 1) {
+                EXPECT_NO_THROW(settleNifti(far, "a.nii", notes));
+                continue;
+            }
+            expectError(ErrorCode::kFailed,
+                        "a.nii: got spacing, directions or origin out of range; expected ones "
+                        "that 32-bit floats hold, as NIfTI has them",
+                        [&] { settleNifti(far, "a.nii", notes); });
+        }
+    }
+}
+
 // The quaternion says the same as the matrix, by the formula of nifti1.h.
 TEST(DenseHeader, NiftiQuaternion) {
     for (const bool mirrored : {false, true}) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "ingest/file_name.h"
+#include "number_text.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {
@@ -132,16 +133,23 @@ TEST(RawFormat, UnknownType) {
 }
 
 TEST(RawFormat, SpacingAndOrigin) {
+    const std::string file = "a_1x2x3_uint8.raw";
     RawFormat format;
-    format.spacing = {1, 0, 1};
-    expectUsage("--spacing: got 0; expected three finite numbers above 0", "a_1x2x3_uint8.raw",
+    for (const double spacing : {0.0, 1e-16, 1e16, std::numeric_limits<double>::infinity(),
+                                 std::numeric_limits<double>::quiet_NaN()}) {
+        format.spacing = {1, spacing, 1};
+        expectUsage("--spacing: got " + numberText(spacing) +
+                        "; expected three numbers from 1e-15 to 1e+15",
+                    file, format);
+    }
+    format.spacing = {1e-15, 1, 1e15};
+    format.origin = {-1e15, 0, 0};
+    EXPECT_NO_THROW(resolveRawLayout(file, format));
+    format.origin = {-1e15, 1e12, 0};
+    expectUsage("--origin: got -1e+15,1e+12,0; expected a place within 1e+15 of 0,0,0", file,
                 format);
-    format.spacing = {1, 1, std::numeric_limits<double>::infinity()};
-    expectUsage("--spacing: got inf; expected three finite numbers above 0", "a_1x2x3_uint8.raw",
-                format);
-    format.spacing = {1, 1, 1};
-    format.origin.y = std::numeric_limits<double>::quiet_NaN();
-    expectUsage("--origin: got nan; expected three finite numbers", "a_1x2x3_uint8.raw", format);
+    format.origin = {0, std::numeric_limits<double>::quiet_NaN(), 0};
+    expectUsage("--origin: got 0,nan,0; expected a place within 1e+15 of 0,0,0", file, format);
 }
 
 TEST(FileName, Extensions) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "deltasplat/ingest/read_volume.h"
+#include "deltasplat/memory_limit.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {
@@ -142,19 +143,29 @@ TEST(ReadRawError, RangeBeyondDoubles) {
     EXPECT_EQ(readVolume("a_2x1x1_float64.raw").valueMax, 1.5e308);
 }
 
+TEST(ReadRawError, MoreThanGzipCanHold) {
+    const TempFolder folder;
+    const std::string file = "a_100000x100000x1000_uint8.raw.gz";
+    writeGzip(file, std::string(1000000, '\0'));
+    const std::string bytes = std::to_string(std::filesystem::file_size(file));
+    expectInput(file + ": got " + bytes +
+                    " bytes of gzip; expected 10000000000000 (100000x100000x1000 uint8)",
+                file);
+}
+
 TEST(ReadRawError, MoreThanMemoryHolds) {
     const TempFolder folder;
-    writeGzip("a.raw.gz", "x");
-    ReadOptions options;
-    options.raw.dims = {1 << 30, 1 << 20, 8};
-    options.raw.type = "uint8";
+    writeGzip("a_128x128x64_uint8.raw.gz", std::string(1 << 20, '\0'));
+    setMemoryLimit(1);
     try {
-        readVolume("a.raw.gz", options);
-        FAIL();
+        readVolume("a_128x128x64_uint8.raw.gz");
+        ADD_FAILURE();
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::kUsage);
-        EXPECT_EQ(std::string(error.what()).rfind("a.raw.gz: needs ", 0), 0u) << error.what();
+        EXPECT_EQ(std::string(error.what()).rfind("a_128x128x64_uint8.raw.gz: needs ", 0), 0u)
+            << error.what();
     }
+    setMemoryLimit(0);
 }
 
 TEST(ReadRawError, TheListenerStopsTheWork) {

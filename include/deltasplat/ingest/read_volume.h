@@ -21,8 +21,9 @@ struct RawFormat {
     std::optional<glm::i64vec3> dims;  ///< voxels along x (fastest), y, z; each at least 1
     std::optional<std::string> type;   ///< uint8 int8 uint16 int16 uint32 int32 float32 float64
     std::optional<bool> bigEndian;     ///< default: little, or what the name says
-    glm::dvec3 spacing{1.0};           ///< world units per voxel, each finite and > 0; images too
-    glm::dvec3 origin{0.0};       ///< world position of the centre of voxel (0,0,0); images too
+    glm::dvec3 spacing{1.0};           ///< world units per voxel, each 1e-15..1e15; images too
+    glm::dvec3 origin{0.0};       ///< world position of the centre of voxel (0,0,0), within 1e15 of
+                                  ///< the world's; images too
     std::uint64_t skipBytes = 0;  ///< header bytes to pass over (after decompression)
 };
 

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace deltasplat {
+
+/// Returns every file that an input consists of, itself first if it is a file: a header and its
+/// data file, the images that a pattern stands for, or the slices in a folder. Only names, headers
+/// and the first bytes of a folder's files are looked at; a data file that a header names need not
+/// exist. Of an input that cannot be read, it returns the input alone: what is wrong is for its
+/// reader to say.
+std::vector<std::filesystem::path> filesOf(const std::filesystem::path& input);
+
+}  // namespace deltasplat

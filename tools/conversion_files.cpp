@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conversion_files.h"
+
+#include <string>
+
+#include "deltasplat/convert/write_volume.h"
+#include "deltasplat/error.h"
+#include "ingest/input_files.h"
+#include "stats_file.h"
+
+namespace deltasplat {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& output, const std::string& got) {
+    throw Error(ErrorCode::kUsage, gotExpected(output.string(), got, "another name"));
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> checkConversionFiles(const std::filesystem::path& input,
+                                                        const std::filesystem::path& output,
+                                                        const std::filesystem::path& stats) {
+    const std::vector<std::filesystem::path> sources = filesOf(input);
+    const std::filesystem::path dataFile = dataFileOf(output);
+    for (const std::filesystem::path& source : sources) {
+        if (sameFile(output, source) && !sameFile(output, input)) {
+            refuse(output, "a file of the input " + input.string());
+        }
+        if (!dataFile.empty() && sameFile(dataFile, source)) {
+            refuse(output, "the input " + source.string() + " as its data file");
+        }
+    }
+    std::vector<std::filesystem::path> others = sources;
+    others.push_back(output);
+    if (!dataFile.empty()) others.push_back(dataFile);
+    checkStatsFile(stats, others, "the input and the output");
+    return sources;
+}
+
+}  // namespace deltasplat
