@@ -77,10 +77,16 @@ std::string agreement(const std::string& a, const std::string& b) {
     return a == b ? a : "A has " + a + ", B has " + b;
 }
 
+std::string indexText(const glm::ivec3& index) {
+    return "(" + numberText(glm::dvec3(index)) + ")";
+}
+
 std::string placeText(const VolumeComparison& c) {
-    if (c.shift == 0) return "equal";
+    const std::string offset =
+        c.offset == glm::ivec3(0) ? "" : "; B's voxel (0,0,0) is A's " + indexText(c.offset);
+    if (c.shift == 0) return "equal" + offset;
     return (c.transformEqual ? "equal within rounding, up to " : "different, up to ") +
-           numberText(c.shift) + " voxels apart";
+           numberText(c.shift) + " voxels apart" + offset;
 }
 
 std::string activeText(const GridDiff& grid) {
@@ -134,7 +140,10 @@ std::string plainText(const GridDiff& grid, const CompareOptions& thresholds) {
     text += line("class", agreement(grid.a.gridClass, grid.b.gridClass));
     text += line("background", backgroundText(grid));
     text += line("active", activeText(grid));
-    if (!c.sizeEqual) text += line("dims", agreement(dimsText(grid.a), dimsText(grid.b)));
+    if (!c.sizeEqual) {
+        const std::string dims = agreement(dimsText(grid.a), dimsText(grid.b));
+        text += line("dims", dims + (c.offset == glm::ivec3(0) ? "" : ", from other voxels on"));
+    }
     text += "  Mean error = " + numberText(c.meanError) + "\n";
     text += "  RMS error = " + numberText(c.rmsError) + "\n";
     text += "  Max error = " + maxText(grid) + "\n";
@@ -172,7 +181,10 @@ std::string jsonText(const FileDiff& diff) {
     json["only_in_b"] = diff.onlyInB;
     json["grids"] = Json::array();
     for (const GridDiff& grid : diff.grids) {
-        Json one = {{"name", grid.a.name}, {"name_b", grid.b.name}};
+        const glm::ivec3& offset = grid.comparison.offset;
+        Json one = {{"name", grid.a.name},
+                    {"name_b", grid.b.name},
+                    {"offset", {offset.x, offset.y, offset.z}}};
         one.update(toJson(grid.comparison, grid.verdict));
         json["grids"].push_back(one);
     }

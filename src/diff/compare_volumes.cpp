@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
@@ -34,16 +35,22 @@ IndexBox boxOfBoth(const IndexBox& a, const IndexBox& b) {
     return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
 }
 
+IndexBox movedBox(const IndexBox& box, const glm::ivec3& offset) {
+    return box.empty() ? box : IndexBox{box.min + offset, box.max + offset};
+}
+
 double smallest(const glm::dvec3& v) {
     return std::min({v.x, v.y, v.z});
 }
 
-// The map between both places is affine, so the corners move farthest.
-double shiftOf(const Volume& a, const Volume& b) {
+// Returns how far apart the places of B's voxels are from those of A's that lie `offset` further
+// on. The map between both places is affine, so the corners move farthest.
+double shiftOf(const Volume& a, const Volume& b, const glm::ivec3& offset) {
+    const glm::dmat4 placeA = glm::translate(a.worldFromIndex, glm::dvec3(offset));
     const glm::dmat4 placeB = inSpaceOf(a, b);
-    if (a.worldFromIndex == placeB) return 0;
-    const glm::dmat4 moved = placeB - a.worldFromIndex;
-    const IndexBox box = boxOfBoth(a.box, b.box);
+    if (placeA == placeB) return 0;
+    const glm::dmat4 moved = placeB - placeA;
+    const IndexBox box = boxOfBoth(movedBox(a.box, -offset), b.box);
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 index((corner & 1) != 0 ? box.max.x : box.min.x,
@@ -53,6 +60,33 @@ double shiftOf(const Volume& a, const Volume& b) {
     }
     const double voxel = std::min(smallest(a.voxelSize()), smallest(b.voxelSize()));
     return std::min(farthest / voxel, std::numeric_limits<double>::max());
+}
+
+// Returns the whole number of voxels that is nearest to the way from A's voxel (0,0,0) to B's; 0 if
+// indices do not reach so far.
+glm::ivec3 nearestOffset(const Volume& a, const Volume& b) {
+    const glm::dvec3 way(inSpaceOf(a, b)[3] - a.worldFromIndex[3]);
+    const glm::dvec3 voxels = glm::round(glm::inverse(glm::dmat3(a.worldFromIndex)) * way);
+    constexpr double kMost = 0x1p29;
+    const bool inReach =
+        std::max({std::abs(voxels.x), std::abs(voxels.y), std::abs(voxels.z)}) <= kMost;
+    return inReach ? glm::ivec3(voxels) : glm::ivec3(0);
+}
+
+void takePlaces(const Volume& a, const Volume& b, const CompareOptions& options,
+                VolumeComparison& result) {
+    result.shift = shiftOf(a, b, glm::ivec3(0));
+    if (result.shift > options.shift) {
+        const glm::ivec3 offset = nearestOffset(a, b);
+        const double rest = shiftOf(a, b, offset);
+        if (rest <= options.shift) {
+            result.offset = offset;
+            result.shift = rest;
+        }
+    }
+    result.transformEqual = result.shift <= options.shift;
+    result.sizeEqual =
+        a.hasBackground || b.hasBackground || a.box == movedBox(b.box, result.offset);
 }
 
 void takeSums(const ErrorSums& sums, VolumeComparison& result) {
@@ -83,11 +117,11 @@ VolumeComparison compareVolumes(const Volume& a, const Volume& b, const CompareO
     const ErrorTerms terms{backgroundA, backgroundB, options.fail, options.warn, wide};
 
     VolumeComparison result;
-    takeSums(compareTrees({a, wide, backgroundA}, {b, wide, backgroundB}, terms, listener), result);
+    takePlaces(a, b, options, result);
+    const openvdb::Coord offset(result.offset.x, result.offset.y, result.offset.z);
+    takeSums(compareTrees({a, wide, backgroundA}, {b, wide, backgroundB, offset}, terms, listener),
+             result);
     result.backgroundError = errorOf(backgroundA, backgroundB);
-    result.shift = shiftOf(a, b);
-    result.transformEqual = result.shift <= options.shift;
-    result.sizeEqual = a.hasBackground || b.hasBackground || a.box == b.box;
     result.typeEqual = a.type == b.type;
     result.classEqual = a.gridClass == b.gridClass;
     result.nameEqual = a.name == b.name;

@@ -137,6 +137,39 @@ std::vector<Coord> regionsOf(const Tree& tree) {
     return regions;
 }
 
+// Returns a copy of a tree whose voxels lie `offset` further on.
+template <typename Tree>
+std::shared_ptr<const Tree> moved(const Tree& tree, const Coord& offset) {
+    auto result = std::make_shared<Tree>(tree.background());
+    openvdb::tree::ValueAccessor<Tree, /*IsSafe=*/false> to(*result);
+    // Tiles first: filling their place must not take away nodes that the accessor knows.
+    for (const bool tiles : {true, false}) {
+        auto from = tree.cbeginValueAll();
+        if (tiles) from.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
+        if (!tiles) from.setMinDepth(Tree::ValueAllCIter::LEAF_DEPTH);
+        for (; from; ++from) {
+            const bool active = from.isValueOn();
+            typename Tree::ValueType value = *from;
+            // A leaf of a mask has no values beside its states.
+            if constexpr (std::is_same_v<typename Tree::BuildType, openvdb::ValueMask>) {
+                value = active;
+            }
+            if (!active && value == tree.background()) continue;
+            openvdb::CoordBBox box;
+            from.getBoundingBox(box);
+            box.translate(offset);
+            if (tiles) {
+                result->fill(box, value, active);
+            } else if (active) {
+                to.setValueOn(box.min(), value);
+            } else {
+                to.setValueOff(box.min(), value);
+            }
+        }
+    }
+    return result;
+}
+
 std::shared_ptr<const std::vector<double>> tableOf(const CodeBook& book) {
     auto table = std::make_shared<std::vector<double>>(kCodeCount);
     for (int code = 0; code < kCodeCount; ++code) (*table)[code] = book.valueOf(Code(code));
@@ -162,16 +195,19 @@ void BlockSamples::fill(const Sample& sample, bool wide) {
     active.fill(sample.active ? ~std::uint64_t{0} : 0);
 }
 
-VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background)
+VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background, const Coord& offset)
     : background_(background) {
     // Only a source with inactive values of its own tells them apart.
     std::optional<WideValue> inactive;
     if (!volume.source || !volume.hasBackground) inactive = background;
-    const auto readTree = [&](const auto& tree, Decoder decode) {
-        regions_ = regionsOf(tree);
-        makeReader_ = [&tree, decode = std::move(decode), inactive] {
-            return std::make_unique<TreeReader<std::decay_t<decltype(tree)>>>(tree, decode,
-                                                                              inactive);
+    const auto readTree = [&](const auto& own, Decoder decode) {
+        using Tree = std::decay_t<decltype(own)>;
+        // A volume's own tree outlives this; a copy is held.
+        std::shared_ptr<const Tree> tree(&own, [](const Tree*) {});
+        if (offset != Coord(0)) tree = moved(own, offset);
+        regions_ = regionsOf(*tree);
+        makeReader_ = [tree, decode = std::move(decode), inactive] {
+            return std::make_unique<TreeReader<Tree>>(*tree, decode, inactive);
         };
     };
     if (volume.source) {

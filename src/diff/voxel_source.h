@@ -56,7 +56,9 @@ class VoxelSource {
   public:
     /// @param wide        whether values are split, as WideValue says
     /// @param background  what voxels outside a dense volume hold
-    VoxelSource(const Volume& volume, bool wide, WideValue background);
+    /// @param offset      added to all indices; unless it is 0, the voxels are copied
+    VoxelSource(const Volume& volume, bool wide, WideValue background,
+                const openvdb::Coord& offset = openvdb::Coord(0));
 
     const WideValue& background() const { return background_; }
     /// First voxels of the 4096^3 regions outside which everything is background.

@@ -68,6 +68,16 @@ deltasplat_diff(moved 2 "transform     different, up to 0.5 voxels apart.*Max er
     ball.vdb ball_moved.vdb)
 deltasplat_diff(moved_within 0 "equal within rounding, up to 0.5 voxels apart.*PASS"
     ball.vdb ball_moved.vdb --shift 0.5)
+deltasplat_diff(elsewhere 0
+    "transform     equal; B's voxel [(]0,0,0[)] is A's [(]-5,4,-3[)].*active +925 voxels.*PASS"
+    ball.vdb ball_elsewhere.vdb)
+deltasplat_diff(elsewhere_json 2
+    "\"active_mismatch\": 1,.*\"transform_equal\": true,.*\"offset\": .[^]]*5,[^]]*-4,[^]]*3[^]]*.,"
+    ball_elsewhere.vdb ball_active.vdb --json)
+add_test(NAME cli.diff.converted COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/converted.sh
+    $<TARGET_FILE:deltasplat_tool> ${CMAKE_CURRENT_BINARY_DIR}/cli/converted ${DELTASPLAT_FIXTURES})
+set_tests_properties(cli.diff.converted PROPERTIES LABELS cli TIMEOUT 120
+                     FIXTURES_REQUIRED cli_files)
 deltasplat_diff(dense_and_sparse 2 "background    A has none, B has 0.*FAILURE" ${cube} ball.vdb)
 
 # Several grids.

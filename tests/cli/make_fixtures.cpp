@@ -93,6 +93,15 @@ void writeOtherBalls() {
     const auto moved = ball("density");
     moved->transform().postTranslate({0.5, 0, 0});
     writeVdb("ball_moved.vdb", {moved});
+    // The ball at the same place in the world, its indices counted from elsewhere.
+    const auto elsewhere = emptyFog<openvdb::FloatGrid>("density");
+    for (auto voxel = active->cbeginValueOn(); voxel; ++voxel) {
+        if (voxel.getCoord() == openvdb::Coord(0, 0, 7)) continue;
+        elsewhere->getAccessor().setValueOn(voxel.getCoord().offsetBy(5, -4, 3), *voxel);
+    }
+    elsewhere->setTransform(active->transform().copy());
+    elsewhere->transform().preTranslate({-5, 4, -3});
+    writeVdb("ball_elsewhere.vdb", {elsewhere});
     const auto changed = ball("heat");
     changed->getAccessor().setValueOn({1, 2, 3}, 0.75F);
     writeVdb("three.vdb", {ball("density"), changed, ball("smoke"), vectors()});

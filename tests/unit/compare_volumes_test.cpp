@@ -6,6 +6,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/mat4x4.hpp>
 #include <limits>
 #include <random>
@@ -417,6 +418,77 @@ TEST(CompareVolumes, ShiftIsInVoxels) {
     b.worldFromIndex[2][2] = 3 + 1e-6;
     EXPECT_FALSE(compareVolumes(a, b).transformEqual);
     EXPECT_EQ(compareVolumes(a, a).shift, 0);
+}
+
+// A volume with a source of its own, at the same place in the world, but `offset` further on.
+Volume elsewhere(const Volume& volume, const Coord& offset) {
+    Volume result = volume;
+    using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
+                                    openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid>;
+    volume.source->grid->apply<Types>([&](const auto& grid) {
+        auto moved = std::decay_t<decltype(grid)>::create(grid.background());
+        for (auto voxel = openvdb::CoordBBox(-21, -9, -13, 14, 27, 22).begin(); voxel; ++voxel) {
+            moved->tree().setValueOn(*voxel + offset, grid.tree().getValue(*voxel));
+            moved->tree().setActiveState(*voxel + offset, grid.tree().isValueOn(*voxel));
+        }
+        result.source = std::make_shared<SourceGrid>(SourceGrid{moved});
+    });
+    const glm::ivec3 way(offset.x(), offset.y(), offset.z());
+    result.box = {volume.box.min + way, volume.box.max + way};
+    result.worldFromIndex = glm::translate(volume.worldFromIndex, -glm::dvec3(way));
+    return result;
+}
+
+TEST(CompareVolumes, WholeVoxelsApartTheSamePlacesAreCompared) {
+    Volume codes = test::randomVolume(kBox, 7);
+    codes.hasBackground = true;
+    codes.background = 0.5;
+    // Of a mask, only states matter; of its tiles' values, those that agree with them.
+    const auto mask = openvdb::MaskGrid::create();
+    mask->fill(openvdb::CoordBBox(-16, -8, -8, 3, 23, 15), true);
+    const std::vector<Volume> volumes = {
+        randomGrid<openvdb::FloatGrid>(1, 0.3, 0.25), randomGrid<openvdb::Int64Grid>(4, 1e18, -7),
+        randomGrid<openvdb::BoolGrid>(5, 0.2, 0), volumeOf<openvdb::MaskGrid>(mask), codes};
+    for (const Volume& a : volumes) {
+        if (!a.source) continue;
+        for (const Volume& b : volumes) {
+            SCOPED_TRACE(a.type + " and " + b.type);
+            const VolumeComparison expected = compareVolumes(a, b);
+            const VolumeComparison got = compareVolumes(elsewhere(a, {5, -8, 11}), b);
+            EXPECT_EQ(got.offset, glm::ivec3(5, -8, 11));
+            EXPECT_TRUE(got.transformEqual);
+            EXPECT_NEAR(got.shift, 0, 1e-12);
+            EXPECT_EQ(got.voxels, expected.voxels);
+            EXPECT_EQ(got.activeMismatch, expected.activeMismatch);
+            EXPECT_EQ(got.overFail, expected.overFail);
+            EXPECT_EQ(got.maxError, expected.maxError);
+            EXPECT_NEAR(got.meanError, expected.meanError, 1e-14 * expected.meanError);
+        }
+    }
+}
+
+TEST(CompareVolumes, OffsetsThatAreNotWholeAreADifference) {
+    const Volume a = randomGrid<openvdb::FloatGrid>(1, 0.3, 0.25);
+    Volume b = elsewhere(a, {1, 0, 0});
+    expectNothing(compareVolumes(a, b));
+    EXPECT_EQ(compareVolumes(a, b).offset, glm::ivec3(-1, 0, 0));
+    b.worldFromIndex[3].x += 1e-5;
+    EXPECT_FALSE(compareVolumes(a, b).transformEqual);
+    EXPECT_EQ(compareVolumes(a, b).offset, glm::ivec3(0));
+    EXPECT_TRUE(compareVolumes(a, b, {0, 0, 1e-4}).transformEqual);
+    EXPECT_EQ(compareVolumes(a, b, {0, 0, 1e-4}).offset, glm::ivec3(-1, 0, 0));
+}
+
+TEST(CompareVolumes, DenseVolumesThatOverlapInPart) {
+    const auto code = [](int, int, int) { return 3; };
+    const Volume a = test::makeVolume({glm::ivec3(0), glm::ivec3(9)}, code);
+    Volume b = a;
+    b.worldFromIndex[3].x = 4;
+    const VolumeComparison result = compareVolumes(a, b);
+    EXPECT_EQ(result.offset, glm::ivec3(4, 0, 0));
+    EXPECT_TRUE(result.transformEqual);
+    EXPECT_FALSE(result.sizeEqual);
+    EXPECT_EQ(result.activeMismatch, 800U);
 }
 
 TEST(CompareVolumes, PatientSpacesAreComparedInOne) {

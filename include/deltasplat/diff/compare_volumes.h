@@ -13,7 +13,8 @@ namespace deltasplat {
 struct CompareOptions {
     double fail = 0;  ///< data units, at least 0: larger errors count in VolumeComparison::overFail
     double warn = 0;  ///< data units, at least 0: larger errors count in VolumeComparison::overWarn
-    double shift = 1e-6;  ///< voxels, at least 0: the largest shift that is rounding only
+    double shift = 1e-6;  ///< voxels, at least 0: the largest shift that is rounding only, also
+                          ///< from a whole number of voxels
 };
 
 /// How two volumes differ. A voxel's error is |value in A - value in B|, in data units.
@@ -36,12 +37,16 @@ struct VolumeComparison {
     std::uint64_t overWarn = 0;  ///< compared voxels whose error is above CompareOptions::warn
     std::uint64_t activeMismatch = 0;  ///< voxels that are active in one volume only
     double backgroundError = 0;        ///< |background of A - of B|; 0 if one of them is dense
+    /// A's index of the voxel that is (0,0,0) in B: not 0 if B's indices count from elsewhere in
+    /// the world, by whole voxels.
+    glm::ivec3 offset{0};
     /// Largest distance between the places in the world that A and B give a corner of the box that
-    /// holds both, in units of the smallest voxel size.
+    /// holds both, `offset` taken into account, in units of the smallest voxel size.
     double shift = 0;
 
     bool transformEqual = true;  ///< `shift` is at most CompareOptions::shift
-    bool sizeEqual = true;       ///< boxes are equal; always true unless both volumes are dense
+    bool sizeEqual = true;       ///< boxes are equal, `offset` taken into account; always true
+                                 ///< unless both volumes are dense
     bool typeEqual = true;       ///< value types have the same name
     bool classEqual = true;      ///< grid classes have the same name
     bool nameEqual = true;       ///< grids have the same name
@@ -54,13 +59,15 @@ struct VolumeComparison {
     }
 };
 
-/// Compares two volumes voxel by voxel, at the same indices; where one has `source`, its own values
-/// are taken, inactive ones included, otherwise those that its codes stand for (inactive voxels
-/// then hold the background). Tiles are compared as tiles, so that nothing depends on the extent
-/// of a box. Differences of 64-bit integers are exact before they become a double. Infinities
-/// and NaN, which only inactive voxels can hold, equal themselves; any other difference that is no
-/// finite number counts as the largest double. 0 equals -0. If both volumes name their patient's
-/// coordinate system, they are compared in one.
+/// Compares two volumes voxel by voxel: those of the same indices, or if their transforms differ by
+/// whole voxels, as those of a .vdb and of a dense file made from it do, those at the same place in
+/// the world (B is then copied). Where a volume has `source`, its own values are taken, inactive
+/// ones included, otherwise those that its codes stand for (inactive voxels then hold the
+/// background). Tiles are compared as tiles, so that nothing depends on the extent of a box.
+/// Differences of 64-bit integers are exact before they become a double. Infinities and NaN, which
+/// only inactive voxels can hold, equal themselves; any other difference that is no finite number
+/// counts as the largest double. 0 equals -0. If both volumes name their patient's coordinate
+/// system, they are compared in one.
 ///
 /// The result is the same to the last bit for any number of threads.
 /// @throw whatever `listener.progress` throws
