@@ -109,6 +109,22 @@ void add(const DeltaFileEntry& entry, ConversionStats& stats) {
     stats.lossless = stats.lossless && entry.lossless;
 }
 
+bool isWhole(const std::string& type) {
+    return type.rfind("int", 0) == 0 || type.rfind("uint", 0) == 0 || type == "bool" ||
+           type == "mask";
+}
+
+// Labels are whole numbers, and a label that is rounded is another one.
+void warnOfWholeNumbers(const Volume& volume, const DeltaFileEntry& entry,
+                        const DeltaCommand& command, const Listener& listener) {
+    if (!isWhole(volume.type) || volume.origin) return;
+    if (command.read.bits) listener.warn("--bits: has no effect on whole numbers");
+    if (entry.lossless || !command.file.tolerance.isExact() || entry.maxError == 0) return;
+    listener.warn("grid \"" + volume.name + "\": more than 65536 different values of type " +
+                  volume.type + " rounded, by up to " + numberText(entry.maxError) +
+                  " (--max-error 0 refuses)");
+}
+
 void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& session) {
     checkOutput(command);
     ConversionStats stats;
@@ -133,7 +149,9 @@ void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& s
                     remarks.warn(
                         "--bits: has no effect on delta grids, which keep their code book");
                 stats.add(volume);
-                add(file.add(volume, command.file, remarks), stats);
+                const DeltaFileEntry entry = file.add(volume, command.file, remarks);
+                warnOfWholeNumbers(volume, entry, command, remarks);
+                add(entry, stats);
             },
             taking);
         file.write(command.output);

@@ -39,6 +39,15 @@ Json toJson(const StampCounts& stamps) {
             {"auto", stamps.automatic}};
 }
 
+Json toJson(const DeltaOrigin& origin) {
+    return {{"slice_axis", kAxisNames[origin.sliceAxis]},
+            {"key_interval", origin.keyInterval},
+            {"deltas", origin.deltas},
+            {"tolerance", origin.tolerance},
+            {"tolerance_value", origin.toleranceValue},
+            {"max_error", origin.maxError}};
+}
+
 Json toJson(const GridReport& report, const Json& transferFunction) {
     const Volume& volume = report.volume;
     Json axes;
@@ -62,6 +71,7 @@ Json toJson(const GridReport& report, const Json& transferFunction) {
             {"percentiles", percentilesJson(volume)},
             {"histogram", histogramJson(volume)},
             {"code_book", volume.codeBook.name()},
+            {"delta", volume.origin ? toJson(*volume.origin) : Json()},
             {"axes", axes},
             {"transfer_function", transferFunction},
             {"stamps", stamps}};

@@ -53,6 +53,17 @@ std::string backgroundText(const GridReport& report) {
            " of the voxels have it";
 }
 
+std::string deltaText(const DeltaOrigin& origin) {
+    std::string text = alongText(origin.sliceAxis) + ", a key slice every " +
+                       std::to_string(origin.keyInterval) + ", " + std::to_string(origin.deltas) +
+                       " deltas, ";
+    if (origin.maxError == 0) return text + "exact";
+    if (origin.tolerance > 0) text += "tolerance " + numberText(origin.tolerance) + ", ";
+    if (origin.toleranceValue > 0)
+        text += "tolerance value " + numberText(origin.toleranceValue) + ", ";
+    return text + "largest error " + numberText(origin.maxError);
+}
+
 std::string valuesText(const Volume& volume) {
     if (volume.empty()) return line("range", "none");
     std::string shares;
@@ -128,6 +139,7 @@ std::string gridText(const GridReport& report) {
                                percent(double(v.activeCount), double(v.box.voxels())) + ")");
     text += valuesText(v);
     text += line("background", backgroundText(report)) + line("code book", v.codeBook.name());
+    if (v.origin) text += line("delta grid", deltaText(*v.origin));
     for (int axis = 0; axis < 3; ++axis) text += line(alongText(axis), axisText(report, axis));
     return text + stampsText(report) + histogramText(v);
 }

@@ -34,7 +34,8 @@ Parser<bool> endian() {
 void addInputOptions(CLI::App& app, ReadOptions& options) {
     OptionGroup vdb(app, "Input, .vdb");
     vdb.addValue("--grid", "NAME", options.gridName, anyText(),
-                 "Grid to read (default: the first scalar grid;\n"
+                 "Grid to read (default: the first scalar grid, where one is\n"
+                 "wanted, otherwise all of them;\n"
                  "vector and point grids are never read)");
     vdb.addValue("--level-set", "fog|keep", options.levelSetToFog, levelSet(),
                  withDefault("Turn level sets into fog, or keep their distances",

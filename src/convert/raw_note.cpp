@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <glm/gtc/matrix_transform.hpp>
-#include <optional>
 
 #include "convert/dense_layout.h"
 #include "deltasplat/error.h"
@@ -9,19 +8,13 @@
 namespace deltasplat {
 namespace {
 
-// Returns what the reader makes of the file's name.
-std::optional<RawLayout> layoutFromName(const std::string& file) {
+bool nameSaysLayout(const std::string& file) {
     try {
-        return resolveRawLayout(file, {});
+        resolveRawLayout(file, {});
+        return true;
     } catch (const Error&) {
-        return {};
+        return false;
     }
-}
-
-bool saysName(const DenseLayout& layout, const std::string& file) {
-    const std::optional<RawLayout> said = layoutFromName(file);
-    return said && glm::ivec3(said->dims) == layout.dims && said->type == layout.type &&
-           (!said->bigEndian || rawTypeBytes(layout.type) == 1);
 }
 
 }  // namespace
@@ -30,7 +23,8 @@ bool saysName(const DenseLayout& layout, const std::string& file) {
 void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
     const glm::dvec3 spacing = layout.spacing(), origin = layout.origin();
     std::string options;
-    if (!saysName(layout, file)) {
+    requireTrueName(file, {layout.dims, layout.type, false, 0});
+    if (!nameSaysLayout(file)) {
         options += " --dims " + layout.dimsText() + " --type " + rawTypeName(layout.type);
         if (rawTypeBytes(layout.type) > 1) options += " --endian little";
     }

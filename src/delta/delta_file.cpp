@@ -78,7 +78,7 @@ void requireRoom(const Tolerance& tolerance, const Volume& volume) {
         refuse("--tolerance-value", tolerance.value, "at least " + numberText(codeError));
     if (tolerance.relative > 0 && book.relativeError == 0)
         refuse("--tolerance", tolerance.relative,
-               "--tolerance-value, or a larger share without --bits, for these values");
+               "a larger share, or --tolerance-value, for these values");
     if (tolerance.relative > 0 && tolerance.relative < book.relativeError)
         refuse("--tolerance", tolerance.relative, "at least " + numberText(book.relativeError));
 }

@@ -103,8 +103,11 @@ bool hasColors(const ImageSpec& spec) {
 }
 
 // The most bytes that one byte of a file can unpack to. A header that claims more lies.
-double mostRatio(const ImageSpec& spec) {
-    const std::string packing = spec.get_string_attribute("compression", "none");
+double mostRatio(const std::filesystem::path& file, const ImageSpec& spec) {
+    // OpenImageIO does not name the packing of formats that always pack, such as PNG.
+    const std::string extension = lowerExtension(file);
+    const bool netpbm = extension.size() == 4 && extension[1] == 'p' && extension[3] == 'm';
+    const std::string packing = spec.get_string_attribute("compression", netpbm ? "none" : "");
     if (packing == "none") return 8;  // single bits become bytes
     if (packing.rfind("ccitt", 0) == 0) return 0x1p18;
     return 0x1p13;
@@ -117,7 +120,7 @@ void requireSane(const std::filesystem::path& file, const ImageSpec& spec) {
     }
     const double bytes = double(spec.width) * spec.height * spec.nchannels;
     const double held = double(std::filesystem::file_size(file));
-    if (bytes <= (held + 1024) * mostRatio(spec)) return;
+    if (bytes <= (held + 1024) * mostRatio(file, spec)) return;
     refuse(file, std::to_string(std::uint64_t(held)) + " bytes", "enough for " + sizeText(spec));
 }
 

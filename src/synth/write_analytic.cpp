@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "deltasplat/error.h"
+#include "ingest/raw_format.h"
 #include "little_endian.h"
 #include "lower_case.h"
 #include "memory.h"
@@ -38,14 +39,15 @@ void storeWhole(double value, std::byte* at) {
 }
 
 struct SampleType {
+    RawType raw;
     std::size_t bytes;
     void (*store)(double value, std::byte* at);
 };
 
 SampleType sampleType(const std::string& name) {
-    if (name.empty() || name == "uint8") return {1, storeWhole<std::uint8_t>};
-    if (name == "uint16") return {2, storeWhole<std::uint16_t>};
-    if (name == "float32") return {4, storeFloat};
+    if (name.empty() || name == "uint8") return {RawType::kUint8, 1, storeWhole<std::uint8_t>};
+    if (name == "uint16") return {RawType::kUint16, 2, storeWhole<std::uint16_t>};
+    if (name == "float32") return {RawType::kFloat32, 4, storeFloat};
     throw Error(ErrorCode::kUsage,
                 gotExpected("--type", "\"" + name + "\"", "uint8, uint16 or float32 for .raw"));
 }
@@ -56,6 +58,8 @@ void writeRaw(const AnalyticVolume& volume, const std::filesystem::path& file,
     const glm::ivec3 dims = options.dims;
     const std::size_t rowBytes = std::size_t(dims.x) * type.bytes;
     requireMemory("--dims", double(rowBytes) * dims.y);
+
+    requireTrueName(file, {dims, type.raw, false, 0});
 
     OutputFile out(file);
     std::vector<std::byte> slice(rowBytes * std::size_t(dims.y));

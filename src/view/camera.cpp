@@ -96,7 +96,7 @@ void orient(Camera& camera, const CameraOptions& options) {
     if (glm::length(glm::cross(direction, up)) < 1e-9) {
         refuse(options.direction ? "--direction" : "--up",
                numberText(givenDirection) + " as direction, parallel to up " + numberText(givenUp),
-               "directions that differ (see --up)");
+               "directions that differ (another --view, --direction or --up)");
     }
 
     // The azimuth goes about the up that was given, the rest about the camera's own axes.

@@ -22,9 +22,8 @@ foreach(file out.nii out.nii.gz)
 endforeach()
 deltasplat_cli_test(convert.raw ARGS convert ${cube} out.raw --spacing 1,1,2 CREATES out.raw
     STDERR "deltasplat: warning: out.raw: no header; read it with --dims 8x8x8 --type uint8 --spacing 1,1,2")
-deltasplat_cli_test(convert.raw_name ARGS convert ${cube} out_4x4x4_uint8.raw
-    CREATES out_4x4x4_uint8.raw
-    STDERR "deltasplat: warning: out_4x4x4_uint8.raw: no header; read it with --dims 8x8x8 --type uint8")
+deltasplat_cli_test(convert.raw_name ARGS convert ${cube} out.raw CREATES out.raw
+    STDERR "deltasplat: warning: out.raw: no header; read it with --dims 8x8x8 --type uint8")
 deltasplat_cli_test(convert.verbose ARGS convert ${cube} out.nrrd -v CREATES out.nrrd
     STDERR_MATCHES "512 of 512 voxels active, code book integer.*512 bytes read, [0-9]+ bytes written, largest error 0, .*")
 
@@ -87,3 +86,16 @@ deltasplat_cli_test(convert.unused.float ARGS convert ${cube} out.nrrd --float C
 deltasplat_cli_test(convert.unused.background ARGS convert ${cube} out.nrrd --background 0
     CREATES out.nrrd
     STDERR "deltasplat: warning: --background: has no effect without a .vdb output")
+
+# A name that says something else than the file would be believed by whoever reads it.
+deltasplat_cli_test(convert.name_of_other_order EXIT 2
+    ARGS convert cube_8x8x8_uint8.raw a_8x8x4_uint8.raw
+    STDERR "deltasplat: a_8x8x4_uint8.raw: got a name that says 8x8x4 uint8; expected 8x8x8 uint8, or a name that says nothing")
+deltasplat_cli_test(convert.name_of_other_type EXIT 2
+    ARGS convert wide_48x48x32_int32.raw a_48x48x32_int32be.raw
+    STDERR "deltasplat: a_48x48x32_int32be.raw: got a name that says 48x48x32 int32be; expected 48x48x32 int32, or a name that says nothing")
+deltasplat_cli_test(synth.name_of_other_dims EXIT 2
+    ARGS synth slab a_8x8x4_uint8.raw --dims 8x8x8
+    STDERR "deltasplat: a_8x8x4_uint8.raw: got a name that says 8x8x4 uint8; expected 8x8x8 uint8, or a name that says nothing")
+deltasplat_cli_test(convert.name_of_same ARGS convert cube_8x8x8_uint8.raw a_8x8x8_uint8be.raw
+    CREATES a_8x8x8_uint8be.raw)

@@ -147,6 +147,11 @@ void writeRawFiles() {
     writeBytes("cut_8x8x8_uint8.raw", bytes.substr(0, 500));
     writeBytes("long_8x8x8_uint8.raw", bytes + "more");
     writeBytes("garbage_8x8x8_uint8.raw.gz", "no gzip");
+    // More values than there are codes.
+    std::vector<std::int32_t> wide(48 * 48 * 32);
+    for (std::size_t i = 0; i < wide.size(); ++i) wide[i] = std::int32_t(3 * i);
+    writeBytes("wide_48x48x32_int32.raw",
+               {reinterpret_cast<const char*>(wide.data()), 4 * wide.size()});
     std::vector<float> values(64, 0.25F);
     values[1 + 4 * (2 + 4 * 3)] = std::nanf("");
     values[63] = -std::numeric_limits<float>::infinity();

@@ -100,10 +100,10 @@ deltasplat_refusal(view
 
 # Cameras that cannot be.
 deltasplat_refusal(direction_parallel_to_up
-    "--direction: got 0,1,0 as direction, parallel to up 0,1,0; expected directions that differ (see --up)"
+    "--direction: got 0,1,0 as direction, parallel to up 0,1,0; expected directions that differ (another --view, --direction or --up)"
     --direction 0,1,0)
 deltasplat_refusal(direction_against_up
-    "--direction: got 0,0,-1 as direction, parallel to up 0,0,2; expected directions that differ (see --up)"
+    "--direction: got 0,0,-1 as direction, parallel to up 0,0,2; expected directions that differ (another --view, --direction or --up)"
     --direction 0,0,-1 --up 0,0,2)
 deltasplat_refusal(direction_zero
     "--direction: got 0,0,0; expected three finite numbers, not all of them 0" --direction 0,0,0)

@@ -258,10 +258,10 @@ TEST(Camera, refusesWhatCannotBeMeant) {
               "--up: got 0,0,0; expected three finite numbers, not all of them 0");
     EXPECT_EQ(messageOf([](CameraOptions& o) { o.direction = glm::dvec3(0, 2, 0); }),
               "--direction: got 0,2,0 as direction, parallel to up 0,1,0; expected directions that "
-              "differ (see --up)");
+              "differ (another --view, --direction or --up)");
     EXPECT_EQ(messageOf([](CameraOptions& o) { o.up = glm::dvec3(0, 0, 1); }),
               "--up: got 0,0,-1 as direction, parallel to up 0,0,1; expected directions that "
-              "differ (see --up)");
+              "differ (another --view, --direction or --up)");
     EXPECT_EQ(messageOf([](CameraOptions& o) { o.frameWidthWorld = 0; }),
               "--frame-width: got 0; expected a number > 0");
     EXPECT_EQ(messageOf([](CameraOptions& o) {

@@ -191,6 +191,21 @@ TEST(ReadImages, BitsThatAreSpread) {
               std::vector<std::string>{"a.tif: values of 1 bits are spread over 8"});
 }
 
+// The last slices of a scan are often empty, and pack well.
+TEST(ReadImages, SlicesThatPackWell) {
+    const TempFolder folder;
+    const std::vector<std::uint8_t> black(512 * 512);
+    for (const std::string file : {"a.png", "a.jpg", "a.bmp", "a.tif", "a.pgm"}) {
+        SCOPED_TRACE(file);
+        ImageSpec spec(512, 512, 1, TypeDesc::UINT8);
+        if (file == "a.tif") spec.attribute("compression", "zip");
+        writeImage(file, spec, black);
+        const Volume volume = readVolume(file);
+        EXPECT_EQ(volume.box.dims(), glm::ivec3(512, 512, 1));
+        EXPECT_EQ(volume.valueMax, 0);
+    }
+}
+
 TEST(ReadImagesError, Stacks) {
     const TempFolder folder;
     expectRefused("a.####.png: got no file of that name; expected files such as a.0001.png",

@@ -51,7 +51,7 @@ run(info slab_12x10x8_uint8.raw --json -q)
 expect_keys("${text}" "" files)
 expect_keys("${text}" "files;0" "file;grids")
 expect_keys("${text}" "files;0;grids;0" "name;type;class;dims;bbox;voxel_size;active;range;\
-background;background_guess;percentiles;histogram;code_book;axes;transfer_function;stamps")
+background;background_guess;percentiles;histogram;code_book;delta;axes;transfer_function;stamps")
 expect_keys("${text}" "files;0;grids;0;axes" "x;y;z")
 expect_keys("${text}" "files;0;grids;0;stamps" "x;y;z")
 foreach(axis x y z)
@@ -101,6 +101,13 @@ expect_value("${stats}" 0 deltas)
 expect_value("${stats}" integer code_book)
 expect_value("${stats}" 0.0 max_error)
 expect_value("${stats}" ON lossless)
+
+run(delta slab_12x10x8_uint8.raw slab_delta.vdb -q)
+run(info slab_delta.vdb --json -q)
+expect_keys("${text}" "files;0;grids;0;delta"
+    "slice_axis;key_interval;deltas;tolerance;tolerance_value;max_error")
+expect_value("${text}" 8 files 0 grids 0 delta key_interval)
+expect_value("${text}" 0.0 files 0 grids 0 delta max_error)
 
 run(diff slab_12x10x8_uint8.raw slab_12x10x8_uint8.raw --json -q)
 set(numbers "mean_error;rms_error;max_error;max_at;over;over_warn;voxels;active_mismatch;\
