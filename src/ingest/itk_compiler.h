@@ -8,7 +8,7 @@
 #pragma push_macro("__GNUC__")
 #undef __clang__
 #undef __GNUC__
-#define __GNUC__ 12
+#define __GNUC__ 12  // NOLINT(bugprone-reserved-identifier)
 #include <itk_compiler_detection.h>
 #pragma pop_macro("__GNUC__")
 #pragma pop_macro("__clang__")
