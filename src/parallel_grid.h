@@ -28,6 +28,12 @@ class ParallelGrid : public Grid {
         : Grid(const_cast<Grid&>(grid), openvdb::ShallowCopy{}) {
         // A shallow copy has a transform of its own, and copying one rounds it.
         this->setTransform(const_cast<Grid&>(grid).transformPtr());
+        // Writing sets these anew, and fails on one that a file gave another type.
+        for (const char* key :
+             {openvdb::GridBase::META_FILE_BBOX_MIN, openvdb::GridBase::META_FILE_BBOX_MAX,
+              openvdb::GridBase::META_FILE_COMPRESSION, openvdb::GridBase::META_FILE_MEM_BYTES,
+              openvdb::GridBase::META_FILE_VOXEL_COUNT, openvdb::GridBase::META_FILE_DELAYED_LOAD})
+            this->removeMeta(key);
     }
 
     /// The copy that OpenVDB writes in a grid's place.

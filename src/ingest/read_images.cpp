@@ -85,9 +85,14 @@ std::unique_ptr<ImageInput> openImage(const std::filesystem::path& file) {
     ImageSpec config;
     config["oiio:UnassociatedAlpha"] = 1;  // alpha is not asked for, so it must change nothing
     const SilentStderr silent;             // libpng prints what OpenImageIO then reports
-    auto input = ImageInput::open(file.string(), &config);
-    if (!input) {
-        refuse(file, "what OpenImageIO refuses (" + firstLine(OIIO::geterror()) + ")", "an image");
+    // Asked for by the name of a file that its format's reader refuses, OpenImageIO would hand it
+    // to all of its readers, those of DICOM and films too.
+    auto input = ImageInput::create(lowerExtension(file).substr(1));
+    ImageSpec spec;
+    if (!input || !input->open(file.string(), spec, config)) {
+        const std::string error = input ? input->geterror() : OIIO::geterror();
+        const std::string reason = error.empty() ? "no reason given" : firstLine(error);
+        refuse(file, "what OpenImageIO refuses (" + reason + ")", "an image");
     }
     return input;
 }

@@ -75,7 +75,12 @@ glm::dmat4 worldFromIndex(const openvdb::math::Transform& transform, const std::
     if (!transform.isLinear()) {
         fail(where, "a " + transform.mapType() + " transform", "a linear one (no frustum)");
     }
-    const glm::dmat4 matrix = matrixOf(transform);
+    glm::dmat4 matrix(0);
+    try {
+        matrix = matrixOf(transform);
+    } catch (const openvdb::ArithmeticError&) {
+        // OpenVDB's own word for a volume of a voxel below 3e-15.
+    }
     bool finite = true;
     for (int axis = 0; axis < 4; ++axis) {
         finite = finite && std::isfinite(glm::dot(matrix[axis], matrix[axis]));

@@ -270,6 +270,15 @@ TEST(ReadImagesError, DamagedFiles) {
 }
 
 // The header of a PNG with its sizes changed, and its checksum.
+// Only the reader of the format that the name says is asked.
+TEST(ReadImagesError, FormatsUnderAnotherName) {
+    const TempFolder folder;
+    writeImage("a.png", ImageSpec(4, 3, 1, TypeDesc::UINT8), ramp<std::uint8_t>(12));
+    std::filesystem::copy_file("a.png", "a.tif");
+    EXPECT_NO_THROW(readVolume("a.png"));
+    EXPECT_THROW(readVolume("a.tif"), Error);
+}
+
 TEST(ReadImagesError, SizesBeyondTheData) {
     const TempFolder folder;
     writeImage("a.png", ImageSpec(4, 3, 1, TypeDesc::UINT8), ramp<std::uint8_t>(12));

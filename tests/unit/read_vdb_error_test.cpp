@@ -5,6 +5,7 @@
 #include <openvdb/points/PointDataGrid.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "deltasplat/ingest/read_volume.h"
@@ -269,6 +270,26 @@ TEST(ReadVdbError, TileAndChildAtOnce) {
     poke(bytes, at + 4096, 0, 1);
     poke(bytes, at - 12, 8, 4);
     expectInput("a.vdb: got a misplaced root node; expected a sound OpenVDB tree", "a.vdb");
+}
+
+// OpenVDB makes no such transform, but reads one.
+TEST(ReadVdbError, VoxelsOfAlmostNoVolume) {
+    const TempFolder folder;
+    const auto grid = noise("g", 20);
+    grid->setTransform(std::make_shared<openvdb::math::Transform>(
+        std::make_shared<openvdb::math::ScaleMap>(openvdb::Vec3d(0.3125, 0.3125, 0.3125))));
+    writeGrids("a.vdb", {grid});
+    std::string bytes = readBytes("a.vdb");
+    const double before = 0.3125, after = 1e-7;
+    const std::string pattern(reinterpret_cast<const char*>(&before), sizeof before);
+    int found = 0;
+    for (std::size_t at = 0; (at = bytes.find(pattern, at)) != std::string::npos; ++found)
+        std::memcpy(bytes.data() + at, &after, sizeof after);
+    ASSERT_GT(found, 0);
+    writeBytes("a.vdb", bytes);
+    expectInput(
+        "a.vdb: grid \"g\": got a transform that cannot be inverted; expected a finite affine map",
+        "a.vdb");
 }
 
 TEST(ReadVdbError, TheListenerStopsTheWork) {
