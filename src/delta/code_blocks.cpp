@@ -53,8 +53,10 @@ void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
     requireMemory("list of voxel blocks", blocks * kBytesPerBlock);
 
     blocks_.reserve(std::size_t(blocks));
-    // Shifting keeps the floor of negative positions.
+    // Shifting keeps the floor of negative positions. Leaves without active voxels may lie outside
+    // of the box of those.
     for (auto leaf = codes.tree.cbeginLeaf(); leaf; ++leaf) {
+        if (leaf->isEmpty()) continue;
         blocks_.push_back(
             {toSliceOrder(leaf->origin() >> 3, sliceAxis_), &*leaf, kEmptySlot, nullptr});
     }

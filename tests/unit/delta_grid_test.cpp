@@ -119,6 +119,28 @@ TEST(DeltaGrid, TilesCountAsTheirVoxels) {
     EXPECT_EQ(counts.deltas, 64 + 63 + 1 + 128 * 128);
 }
 
+// Files hold leaves of which every voxel is inactive, anywhere.
+TEST(DeltaGrid, LeavesWithoutActiveVoxelsCountForNothing) {
+    Volume volume = test::randomVolume(boxes()[2], 5);
+    const Volume plain = volume;
+    std::shared_ptr<CodeTree> codes(new CodeTree{CodeTree::Tree(plain.codes->tree)});
+    for (const openvdb::Coord& far : {openvdb::Coord(-900, 3, 500), openvdb::Coord(4, 700, -88),
+                                      openvdb::Coord(2000, -300, 0)}) {
+        codes->tree.setValueOn(far, 7);
+        codes->tree.setActiveState(far, false);
+    }
+    ASSERT_EQ(codes->tree.leafCount(), plain.codes->tree.leafCount() + 3);
+    volume.codes = codes;
+    for (int axis = 0; axis < 3; ++axis) {
+        const DeltaGrid grid = makeDeltaGrid(volume, {axis, 8, Encoding::kChanges, {}});
+        const DeltaGrid expected = makeDeltaGrid(plain, {axis, 8, Encoding::kChanges, {}});
+        EXPECT_EQ(sumOfDeltas(grid), slotsOf(plain, axis));
+        EXPECT_EQ(grid.tree->grid->tree().leafCount(), expected.tree->grid->tree().leafCount());
+        EXPECT_EQ(grid.deltas(), expected.deltas());
+        EXPECT_EQ(countDeltas(volume, axis).deltas, countDeltas(plain, axis).deltas);
+    }
+}
+
 TEST(DeltaGrid, SlotMapMergesAndHides) {
     const Volume volume = test::randomVolume(boxes()[1], 3);
     std::vector<Slot> slotMap(kSlotCount, 0);
