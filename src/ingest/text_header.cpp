@@ -87,6 +87,15 @@ void requireSaneLine(const Lines& lines, const std::string& line) {
            "at most " + std::to_string(most) + " characters of text");
 }
 
+// Of a field given twice readers take one or the other.
+void addField(const Lines& lines, const std::string& line, std::size_t sign, TextHeader& header) {
+    const TextHeader::Field field{fieldName(line.substr(0, sign)), trimmed(line.substr(sign + 1))};
+    if (header.find(field.name) != nullptr && field.name != "comment") {
+        refuse(lines.where(), "the field " + printable(field.name) + " twice", "each field once");
+    }
+    header.fields.push_back(field);
+}
+
 }  // namespace
 
 const std::string* TextHeader::find(const std::string& name) const {
@@ -114,8 +123,7 @@ TextHeader readNrrdHeader(const std::filesystem::path& file) {
             refuse(lines.where(), "the header line \"" + printable(*line) + "\"",
                    "\"field: value\"");
         }
-        header.fields.push_back(
-            {fieldName(line->substr(0, colon)), trimmed(line->substr(colon + 1))});
+        addField(lines, *line, colon, header);
     }
     header.dataStart = lines.place();
     return header;
@@ -132,8 +140,7 @@ TextHeader readMetaHeader(const std::filesystem::path& file) {
             refuse(lines.where(), "the header line \"" + printable(*line) + "\"",
                    "\"Name = value\"");
         }
-        header.fields.push_back(
-            {fieldName(line->substr(0, sign)), trimmed(line->substr(sign + 1))});
+        addField(lines, *line, sign, header);
         if (header.fields.back().name == "elementdatafile") {
             header.dataStart = lines.place();
             return header;

@@ -25,7 +25,7 @@ struct TextHeader {
 /// Reads lines `name: value` up to an empty line or the file's end; lines with ":=" and comments
 /// are passed over.
 /// @throw Error(kInput) if the file cannot be read, does not begin with "NRRD", or has a line or a
-///        header too long to be meant
+///        header too long to be meant, or a field twice
 TextHeader readNrrdHeader(const std::filesystem::path& file);
 
 /// Reads lines `name = value` up to the one named ElementDataFile.

@@ -196,6 +196,10 @@ TEST(ReadMetaError, Headers) {
     meta.more = "ElementNumberOfChannels = 3\n";
     expectRefusedMeta("got 3 values a voxel (vector); expected one", meta,
                       data() + data() + data());
+    // MetaIO would take the second, and write beyond what the first has room for.
+    meta = {};
+    meta.more = "ObjectType = Image\n";
+    expectRefusedMeta("got the field objecttype twice; expected each field once", meta, data());
     meta = {};
     meta.more = "Comment = " + std::string(300, 'c') + "\n";
     expectRefusedMeta(
