@@ -5,7 +5,6 @@
 #include <cctype>
 #include <charconv>
 #include <map>
-#include <regex>
 #include <system_error>
 
 #include "deltasplat/error.h"
@@ -70,6 +69,26 @@ std::string StackPattern::nameOf(std::uint64_t number) const {
     return before + middle + after;
 }
 
+namespace {
+
+// The number of a name such as slice.%04d.png: %d, or %01d to %09d; the last one counts.
+std::optional<StackPattern> percentPattern(const std::filesystem::path& folder,
+                                           const std::string& name) {
+    std::size_t sign = name.rfind('%');
+    for (; sign != std::string::npos;
+         sign = sign == 0 ? std::string::npos : name.rfind('%', sign - 1)) {
+        const bool padded = name.size() > sign + 3 && name[sign + 1] == '0' &&
+                            name[sign + 2] >= '1' && name[sign + 2] <= '9';
+        const std::size_t end = sign + (padded ? 3 : 1);
+        if (end >= name.size() || name[end] != 'd') continue;
+        const std::size_t digits = padded ? std::size_t(name[sign + 2] - '0') : 0;
+        return StackPattern{folder, name.substr(0, sign), name.substr(end + 1), digits};
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<StackPattern> stackPattern(const std::filesystem::path& input) {
     const std::string name = input.filename().string();
     const std::size_t last = name.rfind('#');
@@ -79,11 +98,7 @@ std::optional<StackPattern> stackPattern(const std::filesystem::path& input) {
         return StackPattern{input.parent_path(), name.substr(0, first), name.substr(last + 1),
                             last + 1 - first};
     }
-    static const std::regex kPercent("^(.*)%(?:0([1-9]))?d(.*)$");
-    std::smatch match;
-    if (!std::regex_match(name, match, kPercent)) return std::nullopt;
-    const std::size_t digits = match[2].matched ? std::size_t(match[2].str()[0] - '0') : 0;
-    return StackPattern{input.parent_path(), match[1], match[3], digits};
+    return percentPattern(input.parent_path(), name);
 }
 
 std::vector<std::filesystem::path> stackFiles(const std::filesystem::path& input,

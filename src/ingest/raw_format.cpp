@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/raw_format.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <regex>
 
 #include "deltasplat/error.h"
 #include "ingest/file_name.h"
@@ -57,14 +57,44 @@ const TypeInfo* findType(const std::string& name) {
     return nullptr;
 }
 
+bool isDigit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+bool isLetterOrDigit(char c) {
+    return isDigit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+// Takes a text such as 256x256x128 apart.
+std::optional<std::array<std::string, 3>> dimsIn(const std::string& text) {
+    std::array<std::string, 3> dims;
+    std::size_t axis = 0;
+    for (const char c : text) {
+        if (c == 'x' && !dims[axis].empty() && axis < 2) {
+            ++axis;
+        } else if (isDigit(c)) {
+            dims[axis] += c;
+        } else {
+            return {};
+        }
+    }
+    if (dims[2].empty()) return {};
+    return dims;
+}
+
 NameParts parseName(const std::filesystem::path& file) {
-    static const std::regex kPattern("_([0-9]+)x([0-9]+)x([0-9]+)_([A-Za-z0-9]+)$");
     NameParts parts;
-    std::smatch match;
     const std::string stem = nameWithoutExtensions(file);
-    if (!std::regex_search(stem, match, kPattern)) return parts;
-    parts.dims = {match[1], match[2], match[3]};
-    parts.type = match[4];
+    const std::size_t second = stem.rfind('_');
+    if (second == std::string::npos || second == 0) return parts;
+    const std::size_t first = stem.rfind('_', second - 1);
+    if (first == std::string::npos) return parts;
+    const std::string type = stem.substr(second + 1);
+    const auto dims = dimsIn(stem.substr(first + 1, second - first - 1));
+    if (!dims || type.empty() || !std::all_of(type.begin(), type.end(), isLetterOrDigit))
+        return parts;
+    parts.dims = *dims;
+    parts.type = type;
 
     // "uint16be" is a known type with a byte order behind it.
     const std::size_t size = parts.type.size();

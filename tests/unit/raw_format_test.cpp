@@ -34,6 +34,21 @@ TEST(RawFormat, ReadsTheName) {
     EXPECT_FALSE(resolveRawLayout("a_b_1x2x3_float64le.raw", {}).bigEndian);
 }
 
+TEST(RawFormat, NamesOfAnyLength) {
+    const std::string digits(1'000'000, '1');
+    expectUsage(
+        "a_" + digits + "x1x1_uint8.raw: got dims " + digits + "x1x1; expected each 1..1073741824",
+        "a_" + digits + "x1x1_uint8.raw", {});
+    const std::string name(1'000'000, 'x');
+    EXPECT_EQ(resolveRawLayout(name + "_1x2x3_uint8.raw", {}).dims, glm::i64vec3(1, 2, 3));
+    for (const char* const none :
+         {"a_1x2_uint8.raw", "a_1x2x3x4_uint8.raw", "a_1x2x_uint8.raw", "a_x2x3_uint8.raw",
+          "1x2x3_uint8.raw", "a_1x2x3_.raw", "a_1x2x3_u-8.raw", "_.raw", "a_1xx3_uint8.raw"}) {
+        EXPECT_THROW(resolveRawLayout(none, {}), Error) << none;
+    }
+    EXPECT_EQ(resolveRawLayout("_1x2x3_uint8.raw", {}).dims, glm::i64vec3(1, 2, 3));
+}
+
 TEST(RawFormat, ReadsEveryTypeName) {
     for (const RawType type :
          {RawType::kUint8, RawType::kInt8, RawType::kUint16, RawType::kInt16, RawType::kUint32,
