@@ -26,6 +26,18 @@ void forGrid(int n, Visit visit) {
     }
 }
 
+// At more than half of the voxels where either of two seeds has something they differ.
+void expectOtherSeedsDiffer(const std::string& name, int n) {
+    const auto one = makeAnalytic(name, 1).valueAt;
+    const auto two = makeAnalytic(name, 2).valueAt;
+    int differ = 0, either = 0;
+    forGrid(n, [&](const glm::dvec3& p) {
+        either += one(p) > 0 || two(p) > 0;
+        differ += one(p) != two(p);
+    });
+    EXPECT_GT(differ, either / 2);
+}
+
 TEST(AnalyticVolume, EveryNameMakesAVolumeOfValuesFromZeroToOne) {
     EXPECT_EQ(analyticNames().size(), 7u);
     for (const std::string& name : analyticNames()) {
@@ -203,14 +215,7 @@ TEST(Cloud, HasNoJumps) {
 }
 
 TEST(Cloud, SeedsAreDifferentClouds) {
-    const auto one = makeAnalytic("cloud", 1).valueAt;
-    const auto two = makeAnalytic("cloud", 2).valueAt;
-    int differ = 0, either = 0;
-    forGrid(24, [&](const glm::dvec3& p) {
-        either += one(p) > 0 || two(p) > 0;
-        differ += one(p) != two(p);
-    });
-    EXPECT_GT(differ, either / 2);
+    expectOtherSeedsDiffer("cloud", 24);
 }
 
 TEST(Slab, IsABox) {
@@ -264,14 +269,7 @@ TEST(Vessels, HaveNoJumps) {
 }
 
 TEST(Vessels, SeedsAreDifferentTrees) {
-    const auto one = makeAnalytic("vessels", 1).valueAt;
-    const auto two = makeAnalytic("vessels", 2).valueAt;
-    int differ = 0, either = 0;
-    forGrid(48, [&](const glm::dvec3& p) {
-        either += one(p) > 0 || two(p) > 0;
-        differ += one(p) != two(p);
-    });
-    EXPECT_GT(differ, either / 2);
+    expectOtherSeedsDiffer("vessels", 48);
 }
 
 }  // namespace
