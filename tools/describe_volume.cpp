@@ -15,7 +15,7 @@ std::vector<Slot> slotMapOf(const GridReport& report, const DescribeOptions& opt
     if (options.transferFunction) {
         Optics optics;
         optics.transferFunction = *options.transferFunction;
-        return mergeAlikeSlots(classify(volume, optics, volume.voxelSize()[axis]));
+        return classify(volume, optics, volume.voxelSize()[axis]).classOfSlot;
     }
     if (!report.backgroundGuess) return {};
     return slotsWithout(volume.codeBook, *report.backgroundGuess);

@@ -32,7 +32,8 @@ struct RenderOptions {
     Optics optics;
     /// Footprint's standard deviation in voxels, kMinSigma..kMaxSigma; empty: defaultSigma.
     std::optional<double> sigma;
-    std::optional<int> resolution;  ///< sheet pixels a voxel; empty: chosen from the screen
+    std::optional<int> resolution;      ///< sheet pixels a voxel; empty: chosen from the screen
+    std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for
 };
 
 /// What was done and how long it took. Times are wall-clock seconds.

@@ -15,90 +15,123 @@ namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using FullTag = hn::ScalableTag<float>;
-using PixelTag = hn::FixedTag<float, 4>;
 
-// Reads whole sheet pixels as floats.
+// One pixel: what is left at a span's end.
+template <int kChannels>
+using RestTag = hn::FixedTag<float, kChannels == 4 ? 4 : 1>;
+
+// Pixels that are read at a time, so that they stay in the first-level cache.
+constexpr std::size_t kStretch = 128;
+
 template <class Tag>
 auto readSheet(Tag tag, const std::int32_t* sheet) {
     return hn::ConvertTo(tag, hn::LoadU(hn::RebindToSigned<Tag>(), sheet));
 }
 
-// The bilinear weights and the scale, in every lane they are needed.
-template <class Tag>
-struct Weights {
-    using V = hn::Vec<Tag>;
-    Weights(Tag tag, const OverWeights& weights)
-        : corner00(hn::Set(tag, weights.corner[0])),
-          corner10(hn::Set(tag, weights.corner[1])),
-          corner01(hn::Set(tag, weights.corner[2])),
-          corner11(hn::Set(tag, weights.corner[3])),
-          scale(hn::LoadDup128(tag, &weights.scale.x)) {}
-    V corner00, corner10, corner01, corner11, scale;
-};
-
-// Composites as many pixels as the tag has lanes for. `kShifted` is false where the sheet's pixels
-// fall on the layer's: the other three corners would only add zeros.
-template <bool kFrontToBack, bool kShifted, class Tag>
-HWY_INLINE void overPixels(Tag tag, const Weights<Tag>& w, const std::int32_t* row,
-                           const std::int32_t* nextRow, float* layer) {
-    auto color = hn::Mul(readSheet(tag, row), w.corner00);
-    if constexpr (kShifted) {
-        color = hn::Add(color, hn::Mul(readSheet(tag, row + 4), w.corner10));
-        const auto next = hn::Add(hn::Mul(readSheet(tag, nextRow), w.corner01),
-                                  hn::Mul(readSheet(tag, nextRow + 4), w.corner11));
-        color = hn::Add(color, next);
+template <int kChannels, class Tag>
+auto loadScale(Tag tag, const glm::vec4& scale) {
+    if constexpr (kChannels == 4) {
+        return hn::LoadDup128(tag, &scale.x);
+    } else {
+        return hn::Set(tag, scale.w);
     }
-    color = hn::Mul(color, w.scale);
+}
+
+template <int kChannels, class V>
+HWY_INLINE V opacityOf(V color) {
+    if constexpr (kChannels == 4) {
+        return hn::Broadcast<3>(color);
+    } else {
+        return color;
+    }
+}
+
+// Composites as many values as the tag has lanes for.
+template <int kChannels, bool kFrontToBack, class Tag, class V>
+HWY_INLINE void over(Tag tag, V color, float* layer) {
     const auto below = hn::LoadU(tag, layer);
     const auto front = kFrontToBack ? below : color;
     const auto back = kFrontToBack ? color : below;
-    const auto clear = hn::Sub(hn::Set(tag, 1.0f), hn::Broadcast<3>(front));
+    const auto clear = hn::Sub(hn::Set(tag, 1.0f), opacityOf<kChannels>(front));
     hn::StoreU(hn::Add(front, hn::Mul(clear, back)), tag, layer);
 }
 
-template <bool kFrontToBack, bool kShifted>
-void overSpansOf(const std::vector<OverSpan>& spans, const OverWeights& weights) {
+// Calls use(tag, i) for whole vectors of `count` values, then for what is left.
+template <int kChannels, typename Use>
+HWY_INLINE void forVectors(std::size_t count, const Use& use) {
     const FullTag full;
-    const PixelTag single;
-    const std::size_t step = hn::Lanes(full) / 4;
-    const Weights<FullTag> fullWeights(full, weights);
-    const Weights<PixelTag> singleWeights(single, weights);
-    for (const OverSpan& span : spans) {
-        std::size_t x = 0;
-        for (; x + step <= span.pixels; x += step) {
-            overPixels<kFrontToBack, kShifted>(full, fullWeights, span.row + 4 * x,
-                                               span.nextRow + 4 * x, span.layer + 4 * x);
+    const RestTag<kChannels> rest;
+    std::size_t i = 0;
+    for (; i + hn::Lanes(full) <= count; i += hn::Lanes(full)) use(full, i);
+    for (; i < count; i += hn::Lanes(rest)) use(rest, i);
+}
+
+// Sheet pixels fall on the layer's.
+template <int kChannels, bool kFrontToBack>
+HWY_INLINE void overStraight(const OverSpan& span, const OverWeights& weights) {
+    forVectors<kChannels>(kChannels * span.pixels, [&](auto tag, std::size_t i) {
+        const auto color =
+            hn::Mul(readSheet(tag, span.row + i), loadScale<kChannels>(tag, weights.thisRow));
+        over<kChannels, kFrontToBack>(tag, color, span.layer + i);
+    });
+}
+
+// Reads along the columns first, then along the rows.
+template <int kChannels, bool kFrontToBack>
+HWY_INLINE void overStretch(const OverSpan& span, const OverWeights& weights) {
+    HWY_ALIGN float columns[(kStretch + 1) * kChannels];
+    forVectors<kChannels>(kChannels * (span.pixels + 1), [&](auto tag, std::size_t i) {
+        const auto here =
+            hn::Mul(readSheet(tag, span.row + i), loadScale<kChannels>(tag, weights.thisRow));
+        const auto next =
+            hn::Mul(readSheet(tag, span.nextRow + i), loadScale<kChannels>(tag, weights.nextRow));
+        hn::StoreU(hn::Add(here, next), tag, columns + i);
+    });
+    forVectors<kChannels>(kChannels * span.pixels, [&](auto tag, std::size_t i) {
+        const auto here = hn::Mul(hn::LoadU(tag, columns + i), hn::Set(tag, weights.thisColumn));
+        const auto next =
+            hn::Mul(hn::LoadU(tag, columns + i + kChannels), hn::Set(tag, weights.nextColumn));
+        over<kChannels, kFrontToBack>(tag, hn::Add(here, next), span.layer + i);
+    });
+}
+
+template <int kChannels, bool kFrontToBack>
+void overSpansOf(const std::vector<OverSpan>& spans, const OverWeights& weights) {
+    const bool straight = weights.straight();
+    for (OverSpan span : spans) {
+        if (straight) {
+            overStraight<kChannels, kFrontToBack>(span, weights);
+            continue;
         }
-        for (; x < span.pixels; ++x) {
-            overPixels<kFrontToBack, kShifted>(single, singleWeights, span.row + 4 * x,
-                                               span.nextRow + 4 * x, span.layer + 4 * x);
+        for (std::size_t rest = span.pixels; rest > 0; rest -= span.pixels) {
+            span.pixels = rest < kStretch ? rest : kStretch;
+            overStretch<kChannels, kFrontToBack>(span, weights);
+            span.row += kChannels * span.pixels;
+            span.nextRow += kChannels * span.pixels;
+            span.layer += kChannels * span.pixels;
         }
     }
 }
 
 void overSpansKernel(const std::vector<OverSpan>& spans, const OverWeights& weights) {
-    const bool shifted = weights.corner[0] != 1;
-    if (weights.frontToBack) {
-        return shifted ? overSpansOf<true, true>(spans, weights)
-                       : overSpansOf<true, false>(spans, weights);
+    if (weights.channels == 4) {
+        return weights.frontToBack ? overSpansOf<4, true>(spans, weights)
+                                   : overSpansOf<4, false>(spans, weights);
     }
-    return shifted ? overSpansOf<false, true>(spans, weights)
-                   : overSpansOf<false, false>(spans, weights);
+    return weights.frontToBack ? overSpansOf<1, true>(spans, weights)
+                               : overSpansOf<1, false>(spans, weights);
 }
 
-template <class Tag>
-HWY_INLINE void mergePixels(Tag tag, float* front, const float* layer) {
-    const auto f = hn::LoadU(tag, front);
-    const auto clear = hn::Sub(hn::Set(tag, 1.0f), hn::Broadcast<3>(f));
-    hn::StoreU(hn::Add(f, hn::Mul(clear, hn::LoadU(tag, layer))), tag, front);
+template <int kChannels>
+void mergeBehindOf(float* front, const float* layer, std::size_t pixels) {
+    forVectors<kChannels>(kChannels * pixels, [&](auto tag, std::size_t i) {
+        over<kChannels, true>(tag, hn::LoadU(tag, layer + i), front + i);
+    });
 }
 
-void mergeBehindKernel(float* front, const float* layer, std::size_t pixels) {
-    const FullTag full;
-    const std::size_t step = hn::Lanes(full) / 4;
-    std::size_t x = 0;
-    for (; x + step <= pixels; x += step) mergePixels(full, front + 4 * x, layer + 4 * x);
-    for (; x < pixels; ++x) mergePixels(PixelTag(), front + 4 * x, layer + 4 * x);
+void mergeBehindKernel(float* front, const float* layer, std::size_t pixels, int channels) {
+    return channels == 4 ? mergeBehindOf<4>(front, layer, pixels)
+                         : mergeBehindOf<1>(front, layer, pixels);
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -114,8 +147,8 @@ void overSpans(const std::vector<OverSpan>& spans, const OverWeights& weights) {
     HWY_DYNAMIC_DISPATCH(overSpansKernel)(spans, weights);
 }
 
-void mergeBehind(float* front, const float* layer, std::size_t pixels) {
-    HWY_DYNAMIC_DISPATCH(mergeBehindKernel)(front, layer, pixels);
+void mergeBehind(float* front, const float* layer, std::size_t pixels, int channels) {
+    HWY_DYNAMIC_DISPATCH(mergeBehindKernel)(front, layer, pixels, channels);
 }
 
 }  // namespace deltasplat

@@ -11,14 +11,24 @@ namespace deltasplat {
 
 /// What compositing one slice multiplies with.
 struct OverWeights {
-    OverWeights(glm::vec2 fraction, const glm::vec4& unitScale, bool order)
-        : corner{(1 - fraction.x) * (1 - fraction.y), fraction.x * (1 - fraction.y),
-                 (1 - fraction.x) * fraction.y, fraction.x * fraction.y},
-          scale(unitScale),
+    /// @param fraction  how far base plane pixels lie behind sheet pixels, 0..1 along each axis
+    /// @param scale     sheet units to RGBA; of one channel only the last is used
+    OverWeights(glm::vec2 fraction, const glm::vec4& scale, int channelCount, bool order)
+        : thisRow((1 - fraction.y) * scale),
+          nextRow(fraction.y * scale),
+          thisColumn(1 - fraction.x),
+          nextColumn(fraction.x),
+          channels(channelCount),
           frontToBack(order) {}
 
-    float corner[4];  ///< bilinear weights of (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)
-    glm::vec4 scale;  ///< sheet units to RGBA
+    /// Whether sheet pixels fall on the layer's.
+    bool straight() const { return nextColumn == 0 && nextRow == glm::vec4(0); }
+
+    glm::vec4 thisRow;
+    glm::vec4 nextRow;
+    float thisColumn;
+    float nextColumn;
+    int channels;  ///< of sheet and layer: 4 (RGBA) or 1 (opacity)
     bool frontToBack;
 };
 
@@ -34,8 +44,7 @@ struct OverSpan {
 /// additions are separate and per pixel, so that every SIMD level gives the same bits.
 void overSpans(const std::vector<OverSpan>& spans, const OverWeights& weights);
 
-/// Puts premultiplied `layer` behind `front`: front += (1 - front.a) * layer, for a row of RGBA
-/// pixels.
-void mergeBehind(float* front, const float* layer, std::size_t pixels);
+/// Puts premultiplied `layer` behind `front`: front += (1 - front.a) * layer, for a row of pixels.
+void mergeBehind(float* front, const float* layer, std::size_t pixels, int channels);
 
 }  // namespace deltasplat

@@ -16,8 +16,9 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-std::uint64_t differingSlotsKernel(const Slot* HWY_RESTRICT a, const Slot* HWY_RESTRICT b) {
-    const hn::CappedTag<Slot, 16> tag;
+template <typename T>
+HWY_INLINE std::uint64_t differing(const T* HWY_RESTRICT a, const T* HWY_RESTRICT b) {
+    const hn::CappedTag<T, 64 / sizeof(T)> tag;
     const std::size_t lanes = hn::Lanes(tag);
     std::uint64_t word = 0;
     for (std::size_t n = 0; n < 64; n += lanes) {
@@ -30,6 +31,20 @@ std::uint64_t differingSlotsKernel(const Slot* HWY_RESTRICT a, const Slot* HWY_R
     return word;
 }
 
+std::uint64_t differingSlotsKernel(const Slot* a, const Slot* b) {
+    return differing(a, b);
+}
+
+void compareClassesKernel(const std::uint16_t* before, const std::uint16_t* classes,
+                          std::uint64_t* HWY_RESTRICT visible,
+                          std::uint64_t* HWY_RESTRICT changed) {
+    alignas(64) static constexpr std::uint16_t kEmpty[64] = {};
+    for (int s = 0; s < 8; ++s, before = classes, classes += 64) {
+        visible[s] = differing(classes, kEmpty);
+        changed[s] = differing(classes, before);
+    }
+}
+
 }  // namespace deltasplat::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -37,9 +52,15 @@ HWY_AFTER_NAMESPACE();
 namespace deltasplat {
 
 HWY_EXPORT(differingSlotsKernel);
+HWY_EXPORT(compareClassesKernel);
 
 std::uint64_t differingSlots(const Slot* a, const Slot* b) {
     return HWY_DYNAMIC_DISPATCH(differingSlotsKernel)(a, b);
+}
+
+void compareClasses(const std::uint16_t* before, const std::uint16_t* classes,
+                    std::uint64_t* visible, std::uint64_t* changed) {
+    HWY_DYNAMIC_DISPATCH(compareClassesKernel)(before, classes, visible, changed);
 }
 
 }  // namespace deltasplat

@@ -29,6 +29,10 @@ inline SlabLayout layoutOf(const IndexBox& box, int keyInterval) {
     return {box.min.x >> 3, keyInterval / 8, box.max.x >> 3, box.max.x};
 }
 
+/// Returns the slabs of a layout, with what was counted in them, and which of them are whole.
+std::vector<Slab> makeSlabs(const IndexBox& box, const SlabLayout& layout,
+                            const std::vector<SliceCounts>& counts, Encoding encoding);
+
 /// Returns a volume's box in (slice, u, v) order.
 inline IndexBox permutedBox(const IndexBox& box, int sliceAxis) {
     return {toSliceOrder(box.min, sliceAxis), toSliceOrder(box.max, sliceAxis)};

@@ -25,6 +25,20 @@ void forVisibleTiles(const CodeTree& codes, const SlotOf& slotOf, const Use& use
     }
 }
 
+// Returns the leaves with active voxels whose slots may be other than empty.
+std::vector<CodeLeaf> visibleLeaves(const CodeTree& codes, std::span<const Slot> slotMap) {
+    std::vector<CodeLeaf> leaves = *codes.leaves();
+    if (slotMap.empty()) return leaves;
+    // How many codes before each have a slot.
+    std::vector<int> before(kSlotCount, 0);
+    for (int code = 0; code < kCodeCount; ++code)
+        before[code + 1] = before[code] + (slotMap[code + 1] != kEmptySlot);
+    std::erase_if(leaves, [&](const CodeLeaf& leaf) {
+        return before[leaf.highest + 1] == before[leaf.lowest];
+    });
+    return leaves;
+}
+
 Slot inactiveSlot(Code number) {
     return kSlotCount + number;
 }
@@ -43,8 +57,9 @@ BlockReader::BlockReader(const CodeTree& codes, const CodeTree* inactive, int sl
 }
 
 void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
+    const std::vector<CodeLeaf> leaves = visibleLeaves(codes, slotMap_);
     // A tile may stand for any number of blocks: know how many before they are listed.
-    double blocks = codes.tree.leafCount();
+    double blocks = double(leaves.size());
     const auto slotOfCode = [this](Code code) { return slotOf(code); };
     const auto count = [&](const openvdb::CoordBBox& box, Slot) { blocks += box.volume() / 512.0; };
     forVisibleTiles(codes, slotOfCode, count);
@@ -53,12 +68,10 @@ void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
     requireMemory("list of voxel blocks", blocks * kBytesPerBlock);
 
     blocks_.reserve(std::size_t(blocks));
-    // Shifting keeps the floor of negative positions. Leaves without active voxels may lie outside
-    // of the box of those.
-    for (auto leaf = codes.tree.cbeginLeaf(); leaf; ++leaf) {
-        if (leaf->isEmpty()) continue;
+    // Shifting keeps the floor of negative positions.
+    for (const CodeLeaf& entry : leaves) {
         blocks_.push_back(
-            {toSliceOrder(leaf->origin() >> 3, sliceAxis_), &*leaf, kEmptySlot, nullptr});
+            {toSliceOrder(entry.leaf->origin() >> 3, sliceAxis_), entry.leaf, kEmptySlot, nullptr});
     }
     const auto add = [&](const openvdb::CoordBBox& box, Slot slot) { addTile(box, slot); };
     forVisibleTiles(codes, slotOfCode, add);

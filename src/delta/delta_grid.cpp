@@ -66,25 +66,6 @@ std::vector<SliceCounts> countSlabs(const Differences& differences) {
     return counts;
 }
 
-std::vector<Slab> makeSlabs(const IndexBox& box, const Differences& differences,
-                            Encoding encoding) {
-    const SlabLayout& layout = differences.layout;
-    const std::vector<SliceCounts> counts = countSlabs(differences);
-    std::vector<Slab> slabs(layout.count());
-    for (int i = 0; i < layout.count(); ++i) {
-        const int begin = 8 * (layout.firstBlock + i * layout.blocksPerSlab);
-        Slab& slab = slabs[i];
-        slab.firstSlice = std::max(begin, box.min.x);
-        slab.sliceCount =
-            std::min(begin + 8 * layout.blocksPerSlab, box.max.x + 1) - slab.firstSlice;
-        slab.visible = counts[i].visible;
-        slab.deltas = counts[i].deltas;
-        slab.whole = encoding == Encoding::kWhole ||
-                     (encoding == Encoding::kSmaller && slab.visible < slab.deltas);
-    }
-    return slabs;
-}
-
 // Returns the leaf of a block's deltas, or of its whole slices, active where `words` says so.
 std::unique_ptr<Leaf> makeLeaf(const glm::ivec3& position, const BlockWindow& window,
                                const std::array<std::uint64_t, 8>& words, bool whole) {
@@ -152,6 +133,24 @@ DeltaGrid gridWithoutSlabs(const Volume& volume, const DeltaOptions& options) {
 
 }  // namespace
 
+std::vector<Slab> makeSlabs(const IndexBox& box, const SlabLayout& layout,
+                            const std::vector<SliceCounts>& counts, Encoding encoding) {
+    std::vector<Slab> slabs(layout.count());
+    for (int i = 0; i < layout.count(); ++i) {
+        const int begin = 8 * (layout.firstBlock + i * layout.blocksPerSlab);
+        Slab& slab = slabs[i];
+        slab.firstSlice = std::max(begin, box.min.x);
+        slab.sliceCount =
+            std::min(begin + 8 * layout.blocksPerSlab, box.max.x + 1) - slab.firstSlice;
+        slab.visible = counts[i].visible;
+        slab.deltas = counts[i].deltas;
+        // A stamp of a whole slice costs a little more: what it replaces must be taken away.
+        slab.whole = encoding == Encoding::kWhole ||
+                     (encoding == Encoding::kSmaller && 10 * slab.visible < 9 * slab.deltas);
+    }
+    return slabs;
+}
+
 std::uint64_t DeltaGrid::visible() const {
     return std::accumulate(slabs.begin(), slabs.end(), std::uint64_t{0},
                            [](std::uint64_t sum, const Slab& slab) { return sum + slab.visible; });
@@ -172,7 +171,7 @@ DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options) {
     if (grid.box.empty()) return grid;
     const Differences differences(volume, options.sliceAxis, options.slotMap,
                                   layoutOf(grid.box, grid.keyInterval), options.inactive);
-    grid.slabs = makeSlabs(grid.box, differences, options.encoding);
+    grid.slabs = makeSlabs(grid.box, differences.layout, countSlabs(differences), options.encoding);
     grid.tree = makeTree(differences, grid.slabs);
     return grid;
 }
@@ -180,9 +179,9 @@ DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options) {
 std::vector<Slab> planSlabs(const Volume& volume, const DeltaOptions& options) {
     const DeltaGrid grid = gridWithoutSlabs(volume, options);
     if (volume.empty()) return {};
-    return makeSlabs(grid.box,
-                     Differences(volume, options.sliceAxis, options.slotMap,
-                                 layoutOf(grid.box, grid.keyInterval)),
+    const SlabLayout layout = layoutOf(grid.box, grid.keyInterval);
+    return makeSlabs(grid.box, layout,
+                     countSlabs(Differences(volume, options.sliceAxis, options.slotMap, layout)),
                      options.encoding);
 }
 

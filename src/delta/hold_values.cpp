@@ -157,13 +157,13 @@ void holdValues(Volume& volume, int sliceAxis, int keyInterval, const Tolerance&
         }
     });
 
-    auto codes = std::shared_ptr<CodeTree>(new CodeTree{CodeTree::Tree(volume.codes->tree)});
+    const auto codes = std::make_shared<CodeTree>(std::in_place, volume.codes->tree);
     openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(codes->tree);
     for (auto& column : changed) {
         for (Changed& block : column) accessor.addLeaf(block.leaf.release());
     }
     volume.histogram = histogramOf(codes->tree);
-    volume.codes = std::move(codes);
+    volume.codes = codes;
     summarize(volume);
 }
 

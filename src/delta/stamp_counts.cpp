@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/delta/stamp_counts.h"
 
-#include <algorithm>
-
 namespace deltasplat {
 
 StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap) {
     StampCounts stamps;
     stamps.traditional = std::uint64_t(volume.box.voxels());
-    for (const Slab& slab : planSlabs(volume, {sliceAxis, 0, Encoding::kChanges, slotMap})) {
+    for (const Slab& slab : planSlabs(volume, {sliceAxis, 0, Encoding::kSmaller, slotMap})) {
         stamps.sparse += slab.visible;
         stamps.delta += slab.deltas;
-        stamps.automatic += std::min(slab.visible, slab.deltas);
+        stamps.automatic += slab.whole ? slab.visible : slab.deltas;
     }
     return stamps;
 }

@@ -3,12 +3,13 @@
 #include "image/filter_table.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace deltasplat {
 namespace {
 
-// Fine enough that rounding a position moves a value by less than 1/2000 of what it changes over
+// Fine enough that rounding a position moves a value by less than 1/1000 of what it changes over
 // the filter's width.
 constexpr double kStepsPerWidth = 1024;
 
@@ -28,18 +29,23 @@ FilterTable::FilterTable(double wantedStretch) {
     const double stretch = std::min(wantedStretch, kMaxStretch);
     taps_ = 2 * int(std::ceil(2 * stretch));
     paddedTaps_ = (taps_ + 3) / 4 * 4;
-    steps_ = std::max(4, int(kStepsPerWidth / stretch));
-    weights_.resize(std::size_t(steps_ + 1) * paddedTaps_ * 4);
+    const int steps = int(std::bit_floor(unsigned(std::max(4.0, kStepsPerWidth / stretch))));
+    shift_ = 32 - std::countr_zero(unsigned(steps));
+    ownWeights_.resize(std::size_t(steps + 1) * paddedTaps_);
+    ownWide_.resize(4 * ownWeights_.size());
+    weights_ = ownWeights_.data();
+    wide_ = ownWide_.data();
     std::vector<double> exact(taps_);
-    for (int step = 0; step <= steps_; ++step) {
+    for (int step = 0; step <= steps; ++step) {
         double sum = 0;
         for (int tap = 0; tap < taps_; ++tap) {
-            exact[tap] = catmullRom((firstTap(0) + tap - double(step) / steps_) / stretch);
+            exact[tap] = catmullRom((firstTap(0) + tap - double(step) / steps) / stretch);
             sum += exact[tap];
         }
-        float* weights = &weights_[std::size_t(step) * 4 * paddedTaps_];
         for (int tap = 0; tap < taps_; ++tap) {
-            std::fill_n(weights + 4 * tap, 4, float(exact[tap] / sum));
+            const std::size_t place = std::size_t(step) * paddedTaps_ + tap;
+            ownWeights_[place] = float(exact[tap] / sum);
+            std::fill_n(&ownWide_[4 * place], 4, ownWeights_[place]);
         }
     }
 }

@@ -2,35 +2,54 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace deltasplat {
 
 /// Weights of a Catmull-Rom filter along one axis, for every position between two lattice points in
-/// small steps.
-class FilterTable {
+/// small steps: what reading them takes.
+class FilterView {
   public:
-    /// @param wantedStretch  lattice points a picture pixel, at least 1: the filter is that much
-    /// wider, up to 16384
-    ///                       times
-    explicit FilterTable(double wantedStretch);
-
     int taps() const { return taps_; }
     /// Taps rounded up to a multiple of four; the weights of the added ones are zero.
     int paddedTaps() const { return paddedTaps_; }
     /// The first lattice point under the filter at a position whose floor is `whole`.
     int firstTap(int whole) const { return whole - (taps_ / 2 - 1); }
-    /// Returns paddedTaps() weights, each repeated for four channels, for a position `fraction`
-    /// (0..1) behind a lattice point.
-    const float* weights(double fraction) const {
-        return &weights_[std::size_t(fraction * steps_ + 0.5) * 4 * paddedTaps_];
+    /// Returns paddedTaps() weights for a position that lies `fraction` / 2^32 behind a lattice
+    /// point.
+    const float* weights(std::uint32_t fraction) const {
+        return &weights_[stepOf(fraction) * paddedTaps_];
+    }
+    /// Returns the same weights, each repeated for four channels.
+    const float* wideWeights(std::uint32_t fraction) const {
+        return &wide_[4 * stepOf(fraction) * paddedTaps_];
     }
 
-  private:
+  protected:
+    std::size_t stepOf(std::uint32_t fraction) const {
+        return std::size_t((fraction + (std::uint64_t{1} << (shift_ - 1))) >> shift_);
+    }
+
     int taps_ = 0;
     int paddedTaps_ = 0;
-    int steps_ = 0;
-    std::vector<float> weights_;  // [steps_ + 1][paddedTaps_][4]
+    int shift_ = 0;                   // there are 2^(32 - shift_) steps
+    const float* weights_ = nullptr;  // [steps + 1][paddedTaps_]
+    const float* wide_ = nullptr;     // [steps + 1][paddedTaps_][4]
+};
+
+/// A filter and its weights.
+class FilterTable : public FilterView {
+  public:
+    /// @param wantedStretch  lattice points a picture pixel, at least 1: the filter is that much
+    /// wider, up to 16384 times
+    explicit FilterTable(double wantedStretch);
+    FilterTable(const FilterTable&) = delete;
+    FilterTable& operator=(const FilterTable&) = delete;
+
+  private:
+    std::vector<float> ownWeights_;
+    std::vector<float> ownWide_;
 };
 
 }  // namespace deltasplat

@@ -5,8 +5,11 @@
 #include "image/warp.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
+#include <optional>
+#include <vector>
 
 #include "image/warp_kernels.h"
 #include "parallel.h"
@@ -32,23 +35,85 @@ Columns clipColumns(const Columns& columns, double a, double b, double low, doub
     return {int(std::max<double>(first, columns.first)), int(std::min<double>(last, columns.last))};
 }
 
+// Knows which squares of a raster hold anything but zeros.
+class RasterTiles {
+  public:
+    static constexpr int kTile = 8;
+
+    explicit RasterTiles(const Raster& raster)
+        : tiles_((raster.size + kTile - 1) / kTile),
+          words_((tiles_.x + 63) / 64),
+          full_(std::size_t(words_) * tiles_.y) {
+        parallelFor(std::size_t(tiles_.y), [&](std::size_t row) { findRow(raster, int(row)); });
+    }
+
+    // Whether any pixel of [first, last], both inclusive, may not be zero.
+    bool anyIn(glm::ivec2 first, glm::ivec2 last) const {
+        first = glm::max(first / kTile, glm::ivec2(0));
+        last = glm::min(last / kTile, tiles_ - 1);
+        for (int row = first.y; row <= last.y; ++row) {
+            for (int column = first.x; column <= last.x; ++column) {
+                if (full_[std::size_t(words_) * row + column / 64] >> (column % 64) & 1)
+                    return true;
+            }
+        }
+        return false;
+    }
+
+  private:
+    void findRow(const Raster& raster, int row) {
+        const int lastY = std::min((row + 1) * kTile, raster.size.y);
+        for (int y = row * kTile; y < lastY; ++y) {
+            const float* pixel = raster.values + std::size_t(raster.channels) * raster.size.x * y;
+            for (int column = 0; column < tiles_.x; ++column) {
+                const int count = raster.channels * std::min(kTile, raster.size.x - column * kTile);
+                std::uint32_t bits = 0;  // of all values: faster than comparing each
+                for (int i = 0; i < count; ++i) bits |= std::bit_cast<std::uint32_t>(*pixel++);
+                full_[std::size_t(words_) * row + column / 64] |= std::uint64_t{bits != 0}
+                                                                  << (column % 64);
+            }
+        }
+    }
+
+    glm::ivec2 tiles_;
+    int words_;
+    std::vector<std::uint64_t> full_;  // [tile row][words_]
+};
+
 class Warper {
   public:
     Warper(const Raster& raster, const glm::dmat3& rasterFromPixel, Image& picture)
         : raster_(raster),
+          tiles_(raster),
           map_(rasterFromPixel),
           picture_(picture),
-          filterX_(std::max(1.0, stretchOf(map_[0].x, map_[1].x))),
-          filterY_(std::max(1.0, stretchOf(map_[0].y, map_[1].y))) {}
+          wideX_(tableFor(stretchOf(map_[0].x, map_[1].x))),
+          wideY_(tableFor(stretchOf(map_[0].y, map_[1].y))),
+          filterX_(wideX_ ? *wideX_ : narrowest()),
+          filterY_(wideY_ ? *wideY_ : narrowest()) {}
 
     void run() {
-        parallelFor(std::size_t(picture_.size.y), [&](std::size_t y) { warpRow(int(y)); });
+        const int bands = (picture_.size.y + kBand - 1) / kBand;
+        parallelFor(std::size_t(bands), [&](std::size_t band) { warpBand(int(band) * kBand); });
     }
 
   private:
+    // What is looked at at once to find out whether the raster is empty there.
+    static constexpr int kBand = 8;
+    static constexpr int kStretch = 16;
+
     // How far a step of one picture pixel, in whichever direction is worst, moves along one raster
     // axis.
     static double stretchOf(double alongX, double alongY) { return std::hypot(alongX, alongY); }
+
+    // The usual filter is made once.
+    static const FilterTable& narrowest() {
+        static const FilterTable table(1);
+        return table;
+    }
+    static std::optional<FilterTable> tableFor(double stretch) {
+        return stretch > 1 ? std::optional<FilterTable>(std::in_place, stretch) : std::nullopt;
+    }
 
     glm::dvec2 step() const { return map_[0]; }
     // Positions run relative to the raster's first pixel, so that large index offsets cost no
@@ -59,63 +124,116 @@ class Warper {
     glm::dvec2 positionOf(int x, int y) const { return rowStart(y) + step() * (x + 0.5); }
 
     // The columns whose positions lie within [low, high] on both raster axes.
-    Columns columnsWithin(int y, glm::dvec2 low, glm::dvec2 high) const {
+    Columns columnsWithin(int y, Columns columns, glm::dvec2 low, glm::dvec2 high) const {
         const glm::dvec2 start = rowStart(y);
-        Columns columns{0, picture_.size.x};
         for (int axis = 0; axis < 2; ++axis) {
             columns = clipColumns(columns, start[axis], step()[axis], low[axis], high[axis]);
         }
         return columns;
     }
 
-    void warpRow(int y) {
+    // Warps kBand rows, but for stretches where the raster is empty.
+    void warpBand(int firstRow) {
+        const int lastRow = std::min(firstRow + kBand, picture_.size.y);
+        std::vector<Columns> stretches;
+        for (int x = 0; x < picture_.size.x; x += kStretch) {
+            const int next = std::min(x + kStretch, picture_.size.x);
+            if (isEmpty({x, firstRow}, {next - 1, lastRow - 1})) continue;
+            if (!stretches.empty() && stretches.back().last == x) {
+                stretches.back().last = next;
+            } else {
+                stretches.push_back({x, next});
+            }
+        }
+        for (int y = firstRow; y < lastRow; ++y) {
+            for (const Columns& columns : stretches) warpRow(y, columns);
+        }
+    }
+
+    bool isEmpty(glm::ivec2 first, glm::ivec2 last) const {
+        const glm::dvec2 corners[] = {positionOf(first.x, first.y), positionOf(last.x, first.y),
+                                      positionOf(first.x, last.y), positionOf(last.x, last.y)};
+        glm::dvec2 low = corners[0];
+        glm::dvec2 high = corners[0];
+        for (const glm::dvec2& corner : corners) {
+            low = glm::min(low, corner);
+            high = glm::max(high, corner);
+        }
+        const glm::dvec2 reach(filterX_.taps() / 2 + 1, filterY_.taps() / 2 + 1);
+        const glm::dvec2 edge = raster_.size - 1;
+        low = glm::max(glm::floor(low) - reach, glm::dvec2(0));
+        high = glm::min(glm::floor(high) + reach, edge);
+        return !(low.x <= high.x && low.y <= high.y) ||
+               !tiles_.anyIn(glm::ivec2(low), glm::ivec2(high));
+    }
+
+    void warpRow(int y, const Columns& within) {
         const glm::dvec2 last = raster_.size - 1;
         const glm::dvec2 reach(filterX_.taps() / 2, filterY_.taps() / 2);
-        const Columns reached = columnsWithin(y, -reach, last + reach);
+        const Columns reached = columnsWithin(y, within, -reach, last + reach);
         // A thousandth of a pixel more, so that rounding lets no tap fall outside.
         const glm::dvec2 padded(filterX_.paddedTaps() - filterX_.taps(), 0);
-        Columns inner = columnsWithin(y, reach - 0.999, last - reach - padded - 0.001);
+        Columns inner = columnsWithin(y, reached, reach - 0.999, last - reach - padded - 0.001);
         if (inner.first >= inner.last) inner = {reached.last, reached.last};
         for (int x = reached.first; x < inner.first; ++x) sample(x, y);
-        if (inner.first < inner.last) {
-            sampleRun(raster_, filterX_, filterY_, positionOf(inner.first, y), step(),
-                      inner.last - inner.first, picture_.pixel(inner.first, y));
-        }
+        sampleColumns(y, inner.first, inner.last);
         for (int x = inner.last; x < reached.last; ++x) sample(x, y);
-        for (int x = reached.first; x < reached.last; ++x) clamp(picture_.pixel(x, y));
+    }
+
+    void sampleColumns(int y, int first, int last) {
+        if (first >= last) return;
+        // A single pixel takes no step, which may be too long to be written as a fixed number.
+        const glm::dvec2 along = last - first > 1 ? step() : glm::dvec2(0);
+        sampleRun(raster_, filterX_, filterY_, fixed(positionOf(first, y)), fixed(along),
+                  last - first, picture_.pixel(first, y));
+    }
+
+    static FixedPosition fixed(glm::dvec2 position) {
+        const double unit = std::ldexp(1.0, 32);
+        return {std::llround(position.x * unit), std::llround(position.y * unit)};
     }
 
     // Near the raster's edge: what lies outside counts as transparent.
     void sample(int x, int y) const {
-        const glm::dvec2 position = positionOf(x, y);
-        const glm::ivec2 whole(glm::floor(position));
-        const glm::ivec2 first(filterX_.firstTap(whole.x), filterY_.firstTap(whole.y));
-        const float* weightX = filterX_.weights(position.x - whole.x);
-        const float* weightY = filterY_.weights(position.y - whole.y);
+        const FixedPosition position = fixed(positionOf(x, y));
+        const glm::ivec2 first(filterX_.firstTap(int(position.x >> 32)),
+                               filterY_.firstTap(int(position.y >> 32)));
+        const float* weightX = filterX_.weights(std::uint32_t(position.x));
+        const float* weightY = filterY_.weights(std::uint32_t(position.y));
         const glm::ivec2 taps{filterX_.taps(), filterY_.taps()};
         const glm::ivec2 begin = glm::max(glm::ivec2(0), -first);
         const glm::ivec2 end = glm::min(taps, raster_.size - first);
-        float* out = picture_.pixel(x, y);
+        float sum[4] = {};
         for (int j = begin.y; j < end.y; ++j) {
-            const float* row = raster_.rgba + 4 * std::size_t(first.y + j) * raster_.size.x;
+            const float* row =
+                raster_.values +
+                raster_.channels * (std::size_t(first.y + j) * raster_.size.x + first.x);
             for (int i = begin.x; i < end.x; ++i) {
-                const float* pixel = row + 4 * std::size_t(first.x + i);
-                const float weight = weightY[4 * j] * weightX[4 * i];
-                for (int c = 0; c < 4; ++c) out[c] += weight * pixel[c];
+                const float weight = weightY[j] * weightX[i];
+                for (int c = 0; c < raster_.channels; ++c) {
+                    sum[c] += weight * row[raster_.channels * i + c];
+                }
             }
+        }
+        write(sum, picture_.pixel(x, y));
+    }
+
+    void write(const float* sum, float* out) const {
+        const int last = raster_.channels - 1;
+        out[3] = std::clamp(sum[last], 0.0f, 1.0f);
+        for (int c = 0; c < 3; ++c) {
+            out[c] = last == 0 ? out[3] * raster_.color[c] : std::max(sum[c], 0.0f);
         }
     }
 
-    static void clamp(float* pixel) {
-        for (int c = 0; c < 4; ++c) pixel[c] = std::max(pixel[c], 0.0f);
-        pixel[3] = std::min(pixel[3], 1.0f);
-    }
-
     const Raster& raster_;
+    RasterTiles tiles_;
     const glm::dmat3& map_;
     Image& picture_;
-    FilterTable filterX_;
-    FilterTable filterY_;
+    std::optional<FilterTable> wideX_;
+    std::optional<FilterTable> wideY_;
+    const FilterTable& filterX_;
+    const FilterTable& filterY_;
 };
 
 }  // namespace

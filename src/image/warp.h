@@ -2,17 +2,21 @@
 #pragma once
 
 #include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
 
 #include "deltasplat/image/image.h"
 
 namespace deltasplat {
 
-/// A float RGBA raster that lies somewhere on an integer lattice: `[size.y][size.x][4]`,
+/// A float raster that lies somewhere on an integer lattice: `[size.y][size.x][channels]`,
 /// transparent outside.
 struct Raster {
     glm::ivec2 min{0};  ///< lattice position of the first pixel's centre
     glm::ivec2 size{0};
-    const float* rgba = nullptr;
+    const float* values = nullptr;
+    int channels = 4;  ///< 4: premultiplied RGBA; 1: opacity
+    /// The colour that opacity 1 has, if opacity is all there is.
+    glm::vec3 color{1.0f};
 };
 
 /// Resamples a raster under an affine map with a Catmull-Rom filter, widened where the picture is

@@ -3,8 +3,6 @@
 // four vectors. Sums run in one order whatever the width, so that every level gives the same bits.
 #include "image/warp_kernels.h"
 
-#include <cmath>
-
 #include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -20,64 +18,120 @@ namespace hn = hwy::HWY_NAMESPACE;
 using RowTag = hn::CappedTag<float, 16>;
 using PixelTag = hn::FixedTag<float, 4>;
 
-// Weighs four neighbouring taps by all rows, and leaves them in `columns`: [4 taps][RGBA].
-HWY_INLINE void sumRows(const float* corner, std::size_t pitch, const float* weightY, int rows,
-                        float* HWY_RESTRICT columns) {
+using PixelVector = hn::Vec<PixelTag>;
+
+// Weighs four neighbouring lanes' worth of a column by all rows. kTaps is 0 where it is not known.
+template <int kTaps, class Tag>
+HWY_INLINE auto sumRows(Tag tag, const float* corner, std::size_t pitch, const float* weightY,
+                        int rows) {
+    auto sum = hn::Mul(hn::LoadU(tag, corner), hn::Set(tag, weightY[0]));
+    for (int j = 1; j < (kTaps ? kTaps : rows); ++j) {
+        sum = hn::Add(sum, hn::Mul(hn::LoadU(tag, corner + j * pitch), hn::Set(tag, weightY[j])));
+    }
+    return sum;
+}
+
+// Adds four taps of RGBA up: (first + third) + (second + fourth), whatever a vector's width.
+template <int kTaps>
+HWY_INLINE PixelVector sumTaps(const float* corner, std::size_t pitch, const float* weightX,
+                               const float* weightY, int rows) {
     const RowTag tag;
-    for (std::size_t lane = 0; lane < 16; lane += hn::Lanes(tag)) {
-        const float* row = corner + lane;
-        auto sum = hn::Mul(hn::LoadU(tag, row), hn::Set(tag, weightY[0]));
-        for (int j = 1; j < rows; ++j) {
-            row += pitch;
-            sum = hn::Add(sum, hn::Mul(hn::LoadU(tag, row), hn::Set(tag, weightY[4 * j])));
-        }
-        hn::Store(sum, tag, columns + lane);
+    const auto part = [&](int tap) {
+        return hn::Mul(sumRows<kTaps>(tag, corner + 4 * tap, pitch, weightY, rows),
+                       hn::LoadU(tag, weightX + 4 * tap));
+    };
+#if HWY_MAX_BYTES >= 64
+    if constexpr (hn::MaxLanes(tag) == 16) {
+        const hn::Half<RowTag> half;
+        const hn::Half<hn::Half<RowTag>> quarter;
+        const auto all = part(0);
+        const auto pairs = hn::Add(hn::LowerHalf(half, all), hn::UpperHalf(half, all));
+        return hn::Add(hn::LowerHalf(quarter, pairs), hn::UpperHalf(quarter, pairs));
     }
+#elif HWY_MAX_BYTES >= 32
+    if constexpr (hn::MaxLanes(tag) == 8) {
+        const hn::Half<RowTag> half;
+        const auto pairs = hn::Add(part(0), part(2));
+        return hn::Add(hn::LowerHalf(half, pairs), hn::UpperHalf(half, pairs));
+    }
+#else
+    return hn::Add(hn::Add(part(0), part(2)), hn::Add(part(1), part(3)));
+#endif
 }
 
-// One pixel: rows first, then the columns that are left, four at a time. kRows is 0 where it is not
-// known.
-template <int kRows>
-HWY_INLINE void samplePixel(const float* corner, std::size_t pitch, const FilterTable& filterX,
-                            const float* weightX, const float* weightY, int rows, float* out) {
+// The same for four taps of opacity; all lanes of the result are the sum.
+template <int kTaps>
+HWY_INLINE PixelVector sumOpacities(const float* corner, std::size_t pitch, const float* weightX,
+                                    const float* weightY, int rows) {
     const PixelTag tag;
-    HWY_ALIGN float columns[16];
-    auto sum = hn::Zero(tag);
-    for (int first = 0; first < filterX.paddedTaps(); first += 4) {
-        sumRows(corner + 4 * first, pitch, weightY, kRows ? kRows : rows, columns);
-        for (int tap = 0; tap < 4; ++tap) {
-            sum = hn::Add(sum, hn::Mul(hn::Load(tag, columns + 4 * tap),
-                                       hn::LoadU(tag, weightX + 4 * (first + tap))));
-        }
-    }
-    hn::StoreU(sum, tag, out);
+    const auto taps =
+        hn::Mul(sumRows<kTaps>(tag, corner, pitch, weightY, rows), hn::LoadU(tag, weightX));
+    const auto pairs = hn::Add(taps, hn::Shuffle1032(taps));
+    return hn::Add(pairs, hn::Shuffle2301(pairs));
 }
 
-template <int kRows>
-void sampleRunOf(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
-                 glm::dvec2 position, glm::dvec2 step, int pixels, float* out) {
-    const std::size_t pitch = std::size_t{4} * raster.size.x;
-    for (int i = 0; i < pixels; ++i, out += 4) {
-        const glm::dvec2 p(position.x + step.x * i, position.y + step.y * i);
-        const int wholeX = int(std::floor(p.x));
-        const int wholeY = int(std::floor(p.y));
-        const float* corner = raster.rgba + filterY.firstTap(wholeY) * pitch +
-                              std::size_t{4} * filterX.firstTap(wholeX);
-        samplePixel<kRows>(corner, pitch, filterX, filterX.weights(p.x - wholeX),
-                           filterY.weights(p.y - wholeY), filterY.taps(), out);
+HWY_INLINE PixelVector clamped(PixelVector sum) {
+    const PixelTag tag;
+    HWY_ALIGN static constexpr float kMost[4] = {3.4e38f, 3.4e38f, 3.4e38f, 1};
+    return hn::Min(hn::Max(sum, hn::Zero(tag)), hn::Load(tag, kMost));
+}
+
+// Writes one pixel of RGBA. kTaps are those along both axes, or 0 if they are not four.
+template <int kTaps, int kChannels>
+HWY_INLINE void samplePixel(const Raster& raster, const FilterView& filterX, std::uint32_t x,
+                            const float* corner, std::size_t pitch, const float* weightY, int rows,
+                            float* out) {
+    const PixelTag tag;
+    const float* weightX = kChannels == 4 ? filterX.wideWeights(x) : filterX.weights(x);
+    auto sum = hn::Zero(tag);
+    for (int first = 0; first < (kTaps ? kTaps : filterX.paddedTaps()); first += 4) {
+        const float* taps = corner + kChannels * first;
+        if constexpr (kChannels == 4) {
+            sum = hn::Add(sum, sumTaps<kTaps>(taps, pitch, weightX + 4 * first, weightY, rows));
+        } else {
+            sum = hn::Add(sum, sumOpacities<kTaps>(taps, pitch, weightX + first, weightY, rows));
+        }
     }
+    if constexpr (kChannels == 1) {
+        const auto opacity = hn::Min(hn::Max(sum, hn::Zero(tag)), hn::Set(tag, 1.0f));
+        HWY_ALIGN const float color[4] = {raster.color.x, raster.color.y, raster.color.z, 1};
+        hn::StoreU(hn::Mul(opacity, hn::Load(tag, color)), tag, out);
+    } else {
+        hn::StoreU(clamped(sum), tag, out);
+    }
+}
+
+template <int kTaps, int kChannels>
+void sampleRunOf(const Raster& raster, const FilterTable& wantedX, const FilterTable& wantedY,
+                 FixedPosition position, FixedPosition step, int pixels, float* out) {
+    const std::size_t pitch = std::size_t(kChannels) * raster.size.x;
+    // Copies, so that what is written cannot be thought to change them.
+    const FilterView filterX(wantedX);
+    const FilterView filterY(wantedY);
+    for (int i = 0; i < pixels; ++i, out += 4) {
+        const float* corner = raster.values + filterY.firstTap(int(position.y >> 32)) * pitch +
+                              kChannels * filterX.firstTap(int(position.x >> 32));
+        samplePixel<kTaps, kChannels>(raster, filterX, std::uint32_t(position.x), corner, pitch,
+                                      filterY.weights(std::uint32_t(position.y)), filterY.taps(),
+                                      out);
+        position.x += step.x;
+        position.y += step.y;
+    }
+}
+
+template <int kChannels>
+void sampleRunOf(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
+                 FixedPosition position, FixedPosition step, int pixels, float* out) {
+    const bool four = filterX.taps() == 4 && filterY.taps() == 4;
+    return four ? sampleRunOf<4, kChannels>(raster, filterX, filterY, position, step, pixels, out)
+                : sampleRunOf<0, kChannels>(raster, filterX, filterY, position, step, pixels, out);
 }
 
 void sampleRunKernel(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
-                     glm::dvec2 position, glm::dvec2 step, int pixels, float* out) {
-    switch (filterY.taps()) {
-        case 4:
-            return sampleRunOf<4>(raster, filterX, filterY, position, step, pixels, out);
-        case 6:
-            return sampleRunOf<6>(raster, filterX, filterY, position, step, pixels, out);
-        default:
-            return sampleRunOf<0>(raster, filterX, filterY, position, step, pixels, out);
-    }
+                     FixedPosition position, FixedPosition step, int pixels, float* out) {
+    return raster.channels == 4
+               ? sampleRunOf<4>(raster, filterX, filterY, position, step, pixels, out)
+               : sampleRunOf<1>(raster, filterX, filterY, position, step, pixels, out);
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -89,7 +143,7 @@ namespace deltasplat {
 HWY_EXPORT(sampleRunKernel);
 
 void sampleRun(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
-               glm::dvec2 position, glm::dvec2 step, int pixels, float* out) {
+               FixedPosition position, FixedPosition step, int pixels, float* out) {
     HWY_DYNAMIC_DISPATCH(sampleRunKernel)
     (raster, filterX, filterY, position, step, pixels, out);
 }

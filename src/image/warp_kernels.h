@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <glm/vec2.hpp>
+#include <cstdint>
 
 #include "image/filter_table.h"
 #include "image/warp.h"
 
 namespace deltasplat {
 
+/// A position on a raster, from its first lattice point, in units of 2^-32.
+struct FixedPosition {
+    std::int64_t x;
+    std::int64_t y;
+};
+
 /// Samples a run of picture pixels whose taps all lie inside the raster, those that only pad the
 /// filter along x included.
-/// @param position  of the first pixel, from the raster's first lattice point
+/// @param position  of the first pixel
 /// @param step      from one pixel to the next
-/// @param out       RGBA, not yet clamped
+/// @param out       RGBA: colours not negative, alpha 0..1
 void sampleRun(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
-               glm::dvec2 position, glm::dvec2 step, int pixels, float* out);
+               FixedPosition position, FixedPosition step, int pixels, float* out);
 
 }  // namespace deltasplat

@@ -65,7 +65,7 @@ std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book) {
     using SourceLeaf = typename Tree::LeafNodeType;
     // OpenVDB's trees cannot be assigned, only made in place.
     std::shared_ptr<CodeTree> codes(
-        new CodeTree{CodeTree::Tree(tree, Code{0}, openvdb::TopologyCopy())});
+        new CodeTree(std::in_place, tree, Code{0}, openvdb::TopologyCopy()));
     std::vector<SourceLeaf*> sources;
     std::vector<CodeTree::Leaf*> targets;
     tree.getNodes(sources);

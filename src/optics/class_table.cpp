@@ -5,7 +5,9 @@
 #include "deltasplat/optics/class_table.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "deltasplat/error.h"
 #include "number_text.h"
@@ -45,15 +47,19 @@ double alphaOf(double opacity, double unitDistancesPerSlice) {
     return -std::expm1(std::log1p(-opacity) * unitDistancesPerSlice);
 }
 
-using Rgba = std::array<double, 4>;
+// A code that can be seen: its light for one slice, before it is rounded.
+struct VisibleCode {
+    Code code;
+    double alpha;
+    glm::dvec3 color;  // not multiplied by alpha
+};
 
-// Premultiplied colour of every slot, before it is rounded.
-std::vector<Rgba> classifyExactly(const Volume& volume, const Optics& optics,
-                                  double unitDistancesPerSlice) {
+std::vector<VisibleCode> classifyExactly(const Volume& volume, const Optics& optics,
+                                         double unitDistancesPerSlice) {
     const TransferFunction& function = optics.transferFunction;
     const glm::dvec2 range =
         function.normalized ? optics.range.value_or(defaultRange(volume)) : glm::dvec2(0, 1);
-    std::vector<Rgba> exact(kSlotCount, Rgba{});
+    std::vector<VisibleCode> visible;
     for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
         if (volume.histogram[code] == 0) continue;
         const double value = volume.codeBook.valueOf(Code(code));
@@ -61,16 +67,86 @@ std::vector<Rgba> classifyExactly(const Volume& volume, const Optics& optics,
                              ? (0.5 * value - 0.5 * range.x) / (0.5 * range.y - 0.5 * range.x)
                              : value;
         const double alpha = alphaOf(function.opacityAt(x), unitDistancesPerSlice);
-        if (alpha == 0) continue;
-        const glm::dvec3 rgb = alpha * function.colorAt(x);
-        exact[code + 1] = {rgb.r, rgb.g, rgb.b, alpha};
+        if (alpha > 0) visible.push_back({Code(code), alpha, function.colorAt(x)});
     }
-    return exact;
+    return visible;
 }
 
-std::uint64_t packed(const std::array<std::uint16_t, 4>& entry) {
-    return std::uint64_t{entry[0]} << 48 | std::uint64_t{entry[1]} << 32 |
-           std::uint64_t{entry[2]} << 16 | entry[3];
+// Rounds the colours of all visible codes with one scale a channel.
+class ColorRounder {
+  public:
+    explicit ColorRounder(const std::vector<VisibleCode>& visible) {
+        oneColor_ = !visible.empty();
+        for (const VisibleCode& one : visible) {
+            largest_ = glm::max(largest_, premultiplied(one));
+            oneColor_ = oneColor_ && one.color == visible.front().color;
+        }
+    }
+
+    bool oneColor() const { return oneColor_; }
+    // What is too small for a scale is nothing.
+    glm::dvec4 scale() const { return largest_ / double(ClassTable::kMax); }
+
+    ClassTable::Color operator()(const VisibleCode& one) const {
+        const glm::dvec4 exact = premultiplied(one);
+        ClassTable::Color color{};
+        for (int c = 0; c < 4; ++c) {
+            if (scale()[c] == 0) continue;
+            // Of one colour, all channels are the opacity: equal, however division rounds.
+            const int channel = oneColor_ ? 3 : c;
+            color[c] =
+                std::int16_t(std::lround(exact[channel] / largest_[channel] * ClassTable::kMax));
+        }
+        return color;
+    }
+
+  private:
+    static glm::dvec4 premultiplied(const VisibleCode& one) {
+        return {one.alpha * one.color, one.alpha};
+    }
+
+    glm::dvec4 largest_{0.0};
+    bool oneColor_;
+};
+
+// Gives equal colours equal numbers, in the order in which they come. An open hash table at most
+// half full: several times as fast as sorting.
+class ColorNumbers {
+  public:
+    explicit ColorNumbers(std::size_t colors)
+        : placeBits_(std::bit_width(2 * colors)), classAt_(std::size_t{1} << placeBits_) {}
+
+    Slot numberOf(const ClassTable::Color& color, std::vector<ClassTable::Color>& colors) {
+        constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 / golden ratio (D. Knuth)
+        if (color == ClassTable::Color{}) return kEmptySlot;
+        const auto key = std::bit_cast<std::uint64_t>(color);
+        std::size_t place = key * kSpread >> (64 - placeBits_);
+        while (classAt_[place] != 0 && colors[classAt_[place]] != color) {
+            place = (place + 1) % classAt_.size();
+        }
+        if (classAt_[place] == 0) {
+            if (colors.size() == ClassTable::kMaxClasses) return ClassTable::kMaxClasses - 1;
+            classAt_[place] = Slot(colors.size());
+            colors.push_back(color);
+        }
+        return classAt_[place];
+    }
+
+  private:
+    int placeBits_;
+    std::vector<Slot> classAt_;  // 0 where nothing is
+};
+
+// Of one colour, the opacity says all.
+void numberByOpacity(const std::vector<VisibleCode>& visible, const ColorRounder& rounded,
+                     ClassTable& table) {
+    table.colors.resize(ClassTable::kMax + 1);
+    for (int opacity = 0; opacity <= ClassTable::kMax; ++opacity) {
+        for (int c = 0; c < 4; ++c) {
+            table.colors[opacity][c] = std::int16_t(table.scale[c] == 0 ? 0 : opacity);
+        }
+    }
+    for (const VisibleCode& one : visible) table.classOfSlot[one.code + 1] = rounded(one)[3];
 }
 
 }  // namespace
@@ -78,47 +154,22 @@ std::uint64_t packed(const std::array<std::uint16_t, 4>& entry) {
 ClassTable classify(const Volume& volume, const Optics& optics, double sliceStepWorld) {
     checkOptics(optics);
     const double unitDistance = optics.unitDistance.value_or(smallest(volume.voxelSize()));
-    const std::vector<Rgba> exact =
+    const std::vector<VisibleCode> visible =
         classifyExactly(volume, optics, optics.extinctionScale * (sliceStepWorld / unitDistance));
-
+    const ColorRounder rounded(visible);
     ClassTable table;
-    table.entries.assign(kSlotCount, {});
-    for (int channel = 0; channel < 4; ++channel) {
-        double largest = 0;
-        for (const Rgba& rgba : exact) largest = std::max(largest, rgba[channel]);
-        table.scale[channel] = largest / ClassTable::kMax;
-
-        // What is too small for a scale is nothing.
-        if (table.scale[channel] == 0) continue;
-        for (int slot = 0; slot < kSlotCount; ++slot) {
-            table.entries[slot][channel] =
-                std::uint16_t(std::lround(exact[slot][channel] / largest * ClassTable::kMax));
+    table.scale = rounded.scale();
+    table.oneColor = rounded.oneColor();
+    table.classOfSlot.assign(kSlotCount, kEmptySlot);
+    if (table.oneColor) {
+        numberByOpacity(visible, rounded, table);
+    } else {
+        ColorNumbers numbers(visible.size());
+        for (const VisibleCode& one : visible) {
+            table.classOfSlot[one.code + 1] = numbers.numberOf(rounded(one), table.colors);
         }
     }
     return table;
-}
-
-std::vector<Slot> mergeAlikeSlots(const ClassTable& table) {
-    // An open hash table at most half full: each place holds the first slot that got there, so
-    // that the result does not depend on how keys are spread. Several times as fast as sorting.
-    constexpr int kPlaceBits = 17;
-    constexpr std::uint64_t kPlaces = 1 << kPlaceBits;
-    constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio (D. Knuth)
-    static_assert(kPlaces >= 2 * kCodeCount);
-
-    std::vector<Slot> firstSlots(kPlaces, kEmptySlot);
-    std::vector<Slot> slotMap(table.entries.size(), kEmptySlot);
-    for (std::size_t slot = 1; slot < table.entries.size(); ++slot) {
-        const std::uint64_t key = packed(table.entries[slot]);
-        if (key == 0) continue;
-        std::uint64_t place = key * kSpread >> (64 - kPlaceBits);
-        while (firstSlots[place] != kEmptySlot && packed(table.entries[firstSlots[place]]) != key) {
-            place = (place + 1) % kPlaces;
-        }
-        if (firstSlots[place] == kEmptySlot) firstSlots[place] = Slot(slot);
-        slotMap[slot] = firstSlots[place];
-    }
-    return slotMap;
 }
 
 }  // namespace deltasplat

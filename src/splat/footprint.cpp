@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
+#include <string>
 
 #include "deltasplat/error.h"
 #include "number_text.h"
@@ -71,26 +72,33 @@ void normalizePhase(const std::vector<double>& real, const std::vector<int>& pla
 
 }  // namespace
 
-Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolution) {
+Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolution,
+                        std::optional<int> width) {
     if (!(sigmaVoxels >= kMinSigma && sigmaVoxels <= kMaxSigma)) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--sigma", numberText(sigmaVoxels),
                                 "a number of voxels from " + numberText(kMinSigma) + " to " +
                                     numberText(kMaxSigma)));
     }
+    // Every phase must have a voxel within reach.
+    if (width && (*width < resolution || *width > kMaxFootprintWidth)) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("footprint width", std::to_string(*width),
+                                "pixels from " + std::to_string(resolution) + " to " +
+                                    std::to_string(kMaxFootprintWidth)));
+    }
     const SlicePlaneGaussian gaussian{sigmaVoxels, shiftPerSlice};
     Footprint footprint;
     footprint.resolution = resolution;
-    footprint.radius = radiusFor(gaussian, resolution);
-    const int width = footprint.width();
-    std::vector<double> real(std::size_t(width) * width);
+    footprint.width = width.value_or(2 * radiusFor(gaussian, resolution) + 1);
+    const double middle = 0.5 * (footprint.width - 1);
+    std::vector<double> real(std::size_t(footprint.width) * footprint.width);
     std::vector<std::vector<int>> placesOfPhase(std::size_t(resolution) * resolution);
-    for (int v = 0; v < width; ++v) {
-        for (int u = 0; u < width; ++u) {
-            const int place = v * width + u;
-            real[place] = gaussian.at(double(u - footprint.radius) / resolution,
-                                      double(v - footprint.radius) / resolution);
-            placesOfPhase[(v % resolution) * resolution + u % resolution].push_back(place);
+    for (int y = 0; y < footprint.width; ++y) {
+        for (int x = 0; x < footprint.width; ++x) {
+            const int place = y * footprint.width + x;
+            real[place] = gaussian.at((x - middle) / resolution, (y - middle) / resolution);
+            placesOfPhase[(y % resolution) * resolution + x % resolution].push_back(place);
         }
     }
     footprint.weights.resize(real.size());

@@ -30,77 +30,72 @@ void requireCountable(const glm::i64vec2& size) {
                                                "at most 4294967295, a smaller --resolution"));
 }
 
-// Sets the bits [first, last], both inclusive, of a row of words.
-void setBits(std::uint64_t* words, int first, int last) {
-    for (int word = first / 64; word <= last / 64; ++word) {
-        const int low = std::max(first - 64 * word, 0);
-        const int high = std::min(last - 64 * word, 63);
-        words[word] |= (~std::uint64_t{0} >> (63 - high + low)) << low;
-    }
-}
-
 }  // namespace
 
-SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint) {
+SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels) {
     SheetLayout layout;
     layout.resolution = footprint.resolution;
+    layout.reachPixels = footprint.reach();
+    layout.offsetPixels = footprint.offsetPixels();
+    layout.channels = channels;
     // One tile more than the footprint needs stays zero: compositing goes one pixel over the
     // occupied ones.
-    layout.marginPixels = roundUpToTile(footprint.radius) + kTilePixels;
+    layout.marginPixels = roundUpToTile(footprint.reach()) + kTilePixels;
     layout.firstSlice = box.min.x;
-    const glm::ivec2 firstBlock{box.min.y >> 3, box.min.z >> 3};
+    const glm::ivec2 firstBlock{box.min.z >> 3, box.min.y >> 3};
     const glm::i64vec2 blocks =
-        glm::i64vec2{box.max.y >> 3, box.max.z >> 3} - glm::i64vec2(firstBlock) + std::int64_t{1};
+        glm::i64vec2{box.max.z >> 3, box.max.y >> 3} - glm::i64vec2(firstBlock) + std::int64_t{1};
     layout.firstVoxel = 8 * firstBlock;
     const glm::i64vec2 size =
         std::int64_t{8 * footprint.resolution} * blocks + std::int64_t{2 * layout.marginPixels};
     requireCountable(size);
+    layout.blocks = glm::ivec2(blocks);
     layout.sizePixels = glm::ivec2(size);
     return layout;
 }
 
 Sheet::Sheet(const SheetLayout& layout)
     : layout_(layout),
-      wordsPerRow_((layout.tiles().x + 63) / 64),
+      bytesPerRow_((layout.tiles().x + 7) / 8 * 8),
       pixels_(layout.bytes() / sizeof(std::int32_t)),
-      occupied_(wordsPerRow_ * layout.tiles().y),
-      touched_(occupied_.size()) {}
+      full_(bytesPerRow_ * layout.tiles().y),
+      touched_(full_.size()),
+      touchedRows_(layout.tiles().y) {}
 
 void Sheet::touch(glm::ivec2 first, glm::ivec2 last) {
     const glm::ivec2 firstTile = first / kTilePixels;
     const glm::ivec2 lastTile = last / kTilePixels;
     for (int row = firstTile.y; row <= lastTile.y; ++row) {
-        setBits(&touched_[wordsPerRow_ * row], firstTile.x, lastTile.x);
+        const int low = std::max(first.y - kTilePixels * row, 0);
+        const int high = std::min(last.y - kTilePixels * row, kTilePixels - 1);
+        const auto rows = std::uint8_t(0xFFu >> (7 - high + low) << low);
+        touchedRows_[row] = true;
+        std::uint8_t* touched = &touched_[bytesPerRow_ * row];
+        for (int column = firstTile.x; column <= lastTile.x; ++column) touched[column] |= rows;
     }
-}
-
-std::int32_t* Sheet::tile(int tileRow, int column) {
-    return &pixels_[4 * (layout_.pitchPixels() * tileRow + column) * kTilePixels];
 }
 
 void Sheet::settle() {
-    const std::size_t pitch = 4 * layout_.pitchPixels();
-    for (std::size_t i = 0; i < touched_.size(); ++i) {
-        for (std::uint64_t rest = touched_[i]; rest != 0; rest &= rest - 1) {
-            const int bit = std::countr_zero(rest);
-            const int row = int(i / wordsPerRow_);
-            const int column = int(i % wordsPerRow_) * 64 + bit;
-            const std::uint64_t full = !isTileZero(tile(row, column), pitch);
-            occupied_[i] = (occupied_[i] & ~(std::uint64_t{1} << bit)) | full << bit;
-        }
-        touched_[i] = 0;
-    }
+    refillTouched(
+        [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
+            for (int column = 0; column < layout_.tiles().x; ++column) {
+                if (touched[column] == 0) continue;
+                full[column] = findFullRows(tile(row, column), pitch(), layout_.channels);
+            }
+        });
 }
 
 void Sheet::clear() {
-    const std::size_t pitch = 4 * layout_.pitchPixels();
     settle();
-    for (std::size_t i = 0; i < occupied_.size(); ++i) {
-        for (std::uint64_t rest = occupied_[i]; rest != 0; rest &= rest - 1) {
-            const int column = int(i % wordsPerRow_) * 64 + std::countr_zero(rest);
-            clearTile(tile(int(i / wordsPerRow_), column), pitch);
+    for (int row = 0; row < layout_.tiles().y; ++row) {
+        for (int column = 0; column < layout_.tiles().x; ++column) {
+            std::uint8_t& full = full_[bytesPerRow_ * row + column];
+            for (unsigned rest = full; rest != 0; rest &= rest - 1) {
+                std::fill_n(tile(row, column) + std::countr_zero(rest) * pitch(),
+                            kTilePixels * layout_.channels, 0);
+            }
+            full = 0;
         }
-        occupied_[i] = 0;
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <span>
@@ -8,28 +9,35 @@
 
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/splat/footprint.h"
-#include "splat/sheet_kernels.h"
+#include "splat/stamp_kernels.h"
+#include "splat/tile_kernels.h"
 
 namespace deltasplat {
 
-/// Where sheet pixels lie: pixel p is at voxel position (p - marginPixels) / resolution +
-/// firstVoxel. The margin takes footprints that reach over the edge, and keeps the outermost pixels
-/// zero.
+/// Where sheet pixels lie. Pixels run along v, rows along u: the order of a leaf's voxels. Pixel p
+/// is at voxel position (p - marginPixels + offsetPixels) / resolution + firstVoxel. The margin
+/// takes footprints that reach over the edge, and keeps the outermost pixels zero.
 struct SheetLayout {
     int resolution = 1;
     int firstSlice = 0;        ///< of the volume: the slice that lies on the base plane unshifted
-    glm::ivec2 firstVoxel{0};  ///< (u, v), multiples of 8
-    int marginPixels =
-        0;  ///< a multiple of kTilePixels, at least one more than the footprint reaches
+    glm::ivec2 firstVoxel{0};  ///< (v, u), multiples of 8
+    glm::ivec2 blocks{0};      ///< blocks of 8x8 voxels along (v, u)
+    /// A multiple of kTilePixels, at least one more than the footprint reaches.
+    int marginPixels = 0;
     glm::ivec2 sizePixels{0};  ///< multiples of kTilePixels
+    int reachPixels = 0;       ///< as Footprint::reach
+    double offsetPixels = 0;   ///< as Footprint::offsetPixels
+    int channels = 4;          ///< 4 (RGBA), or 1 where all that is seen has one colour
 
     glm::ivec2 tiles() const { return sizePixels / kTilePixels; }
     /// Pixels from one row to the next; longer than a row by what a vector may reach over its end.
     std::size_t pitchPixels() const { return std::size_t(sizePixels.x) + kTilePixels; }
-    std::size_t bytes() const { return 16 * pitchPixels() * sizePixels.y; }
-    /// Place of the upper left pixel of the footprint of the voxel at (u, v), in pixels.
-    std::size_t stampPlace(glm::ivec2 voxel, int radius) const {
-        const glm::ivec2 p = (voxel - firstVoxel) * resolution + marginPixels - radius;
+    std::size_t bytes() const {
+        return sizeof(std::int32_t) * channels * pitchPixels() * sizePixels.y;
+    }
+    /// Place of the first pixel of the footprint of the voxel at (v, u), in pixels.
+    std::size_t stampPlace(glm::ivec2 voxel) const {
+        const glm::ivec2 p = (voxel - firstVoxel) * resolution + marginPixels - reachPixels;
         return std::size_t(p.y) * pitchPixels() + p.x;
     }
 };
@@ -37,38 +45,59 @@ struct SheetLayout {
 /// Lays out a sheet for the voxels of a (slice, u, v) box.
 /// @throw Error(kUsage) if it would have more pixels than can be counted in 32 bits, or does not
 /// fit into memory
-SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint);
+SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels = 4);
 
-/// The running splat of the current slice: 32-bit integer RGBA `[row][pitch][4]`, rows along v, in
-/// slice coordinates. Knows which tiles hold anything but zeros: integers return to exact zero, so
-/// that can be told exactly.
+/// The running splat of the current slice: 32-bit integers `[row][pitch][channels]`, in slice
+/// coordinates. Knows which rows of which tiles hold anything but zeros: integers return to exact
+/// zero, so that can be told exactly.
 class Sheet {
   public:
     explicit Sheet(const SheetLayout& layout);
 
     const SheetLayout& layout() const { return layout_; }
+    /// Integers from one row to the next.
+    std::size_t pitch() const { return layout_.channels * layout_.pitchPixels(); }
     std::int32_t* pixels() { return pixels_.data(); }
-    const std::int32_t* row(int y) const { return &pixels_[4 * layout_.pitchPixels() * y]; }
+    const std::int32_t* row(int y) const { return &pixels_[pitch() * y]; }
 
     /// Says that pixels of [first, last], both inclusive, may have changed.
     void touch(glm::ivec2 first, glm::ivec2 last);
-    /// Finds out which of the touched tiles are zero. Call it when all stamps of a slice are in.
+    /// Calls `refill(tileRow, touched, full)` for every row of tiles that has touched ones. Of each
+    /// tile there is a byte, bit y for its row y: where `touched` has bits, `refill` puts into
+    /// `full` whether those rows are not all zero now.
+    template <typename Refill>
+    void refillTouched(const Refill& refill);
+    /// Finds out which of the touched rows are zero. Call it when all stamps of a slice are in.
     void settle();
     /// Makes every pixel zero.
     void clear();
-    /// Returns one bit for each tile of a tile row, set where it is not all zero.
-    std::span<const std::uint64_t> occupiedTiles(int tileRow) const {
-        return {&occupied_[wordsPerRow_ * tileRow], wordsPerRow_};
+    /// Returns a byte for each tile of a tile row, and zeros up to a multiple of eight: bit y is
+    /// set where row y of the tile is not all zero.
+    std::span<const std::uint8_t> fullRows(int tileRow) const {
+        return {&full_[bytesPerRow_ * tileRow], bytesPerRow_};
+    }
+    std::int32_t* tile(int tileRow, int column) {
+        return &pixels_[(pitch() * tileRow + std::size_t(layout_.channels) * column) * kTilePixels];
     }
 
   private:
-    std::int32_t* tile(int tileRow, int column);
-
     SheetLayout layout_;
-    std::size_t wordsPerRow_;
+    std::size_t bytesPerRow_;
     std::vector<std::int32_t> pixels_;
-    std::vector<std::uint64_t> occupied_;  // [tile row][wordsPerRow_]
-    std::vector<std::uint64_t> touched_;   // likewise
+    std::vector<std::uint8_t> full_;     // [tile row][bytesPerRow_]
+    std::vector<std::uint8_t> touched_;  // likewise
+    std::vector<bool> touchedRows_;      // [tile row]
 };
+
+template <typename Refill>
+void Sheet::refillTouched(const Refill& refill) {
+    for (int row = 0; row < layout_.tiles().y; ++row) {
+        if (!touchedRows_[row]) continue;
+        touchedRows_[row] = false;
+        const std::span touched(&touched_[bytesPerRow_ * row], bytesPerRow_);
+        refill(row, touched, std::span(&full_[bytesPerRow_ * row], bytesPerRow_));
+        std::fill(touched.begin(), touched.end(), std::uint8_t{0});
+    }
+}
 
 }  // namespace deltasplat

@@ -1,93 +1,79 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: "Accelerating Footprint Method Based on Comparability of Consecutive Image Slices",
 // equation 9, and Lee Westover, "Footprint Evaluation for Volume Rendering", 1990, for the sheet.
-// Walks the delta grid's leaves and their mask words; a plane of slots remembers what each voxel of
-// the current slice is.
+// Deviates in that footprints of at most 3x3 pixels are not stamped one by one: the tiles that
+// changed voxels reach are summed anew from the colours shown, which gives the same integers.
 #include "splat/splatter.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 #include <span>
+#include <vector>
 
-#include "delta/delta_tree.h"
+#include "hwy/cache_control.h"
+#include "splat/tile_kernels.h"
 
 namespace deltasplat {
 namespace {
 
-using Leaf = DeltaTree::Leaf;
+constexpr std::array<ClassIndex, 64> kEmptyClasses{};
 
-// Splats the slices of one slab into one sheet.
-class SlabSplatter {
-  public:
-    SlabSplatter(const SplatInput& input, const Slab& slab, Sheet& sheet)
-        : input_(input),
-          slab_(slab),
-          sheet_(sheet),
-          entries_(input.classes.entries.data()),
-          leaves_(input.grid.tree->leaves) {
-        const IndexBox& box = input.grid.box;
-        firstBlock_ = {box.min.y >> 3, box.min.z >> 3};
-        blocks_ = glm::ivec2{box.max.y >> 3, box.max.z >> 3} - firstBlock_ + 1;
-        for (int n = 0; n < 64; ++n) {
-            placeInBlock_[n] =
-                std::uint32_t((std::size_t(n & 7) * sheet.layout().pitchPixels() + (n >> 3)) *
-                              sheet.layout().resolution);
-        }
-        if (!slab.whole) slots_.resize(std::size_t{64} * blocks_.x * blocks_.y);
+// Returns a mask word of the voxels of a block that lie in the (slice, u, v) box.
+std::uint64_t voxelsInBox(const IndexBox& box, glm::ivec2 block) {
+    std::uint64_t word = 0;
+    for (int n = 0; n < 64; ++n) {
+        const int u = 8 * block.x + (n >> 3);
+        const int v = 8 * block.y + (n & 7);
+        const bool inside = u >= box.min.y && u <= box.max.y && v >= box.min.z && v <= box.max.z;
+        word |= std::uint64_t{inside} << n;
     }
+    return word;
+}
 
-    std::uint64_t run(const std::function<void(int, const Sheet&)>& eachSlice) {
-        for (int slice = slab_.firstSlice; slice < slab_.firstSlice + slab_.sliceCount; ++slice) {
-            if (slab_.whole) sheet_.clear();
-            splatSlice(slice);
-            flush();
-            sheet_.settle();
+}  // namespace
+
+// What both ways of splatting share: which words a slice has, and which pixels they reach.
+class Splatter::Kernel {
+  public:
+    explicit Kernel(const SplatInput& input) : input_(input), sheet_(input.layout) {}
+    virtual ~Kernel() = default;
+
+    std::uint64_t run(const Slab& slab, const std::function<void(int, const Sheet&)>& eachSlice) {
+        stamps_ = 0;
+        for (int slice = slab.firstSlice; slice < slab.firstSlice + slab.sliceCount; ++slice) {
+            splatSlice(slice, slab.whole);
             eachSlice(slice, sheet_);
         }
+        clear();
         return stamps_;
     }
 
-  private:
-    void splatSlice(int slice) {
-        const std::span<const Leaf* const> leaves = leavesOfBlock(slice >> 3);
-        const int s = slice & 7;
-        if (input_.stampEmptyVoxels) return addEveryVoxel(leaves, s);
-        for (const Leaf* leaf : leaves) {
-            const std::uint64_t word = leaf->getValueMask().getWord<std::uint64_t>(s);
-            if (word == 0) continue;
-            const glm::ivec2 block = blockOf(*leaf);
-            makeRoom();
-            touchBlock(block, word);
-            const LeafSlice leafSlice{leaf->buffer().data() + 64 * s, word, placeOf(block),
-                                      placeInBlock_.data()};
-            if (slab_.whole) {
-                listWhole(leafSlice, entries_, list_);
-            } else {
-                listChanges(leafSlice, entries_, slotsOf(block), list_);
-            }
+  protected:
+    virtual void splatSlice(int slice, bool whole) = 0;
+    // Makes everything as it was before the first slice.
+    virtual void clear() = 0;
+
+    // Calls use(block, stamped voxels, classes) for the blocks of a slice that have something to
+    // stamp.
+    template <typename Use>
+    void forBlocks(int slice, bool whole, const Use& use) {
+        const std::span<const DeltaWord> words = input_.deltas.slice(slice);
+        if (input_.stampEmptyVoxels) return forAllBlocks(words, use);
+        for (const DeltaWord& word : words) {
+            prefetchClasses(&word, words);
+            const std::uint64_t active = whole ? word.visible : word.changed;
+            stamps_ += std::popcount(active);
+            use(blockOf(word), active, word.classes);
         }
     }
 
-    std::span<const Leaf* const> leavesOfBlock(int block) const {
-        const auto first =
-            std::lower_bound(leaves_.begin(), leaves_.end(), 8 * block,
-                             [](const Leaf* leaf, int x) { return leaf->origin().x() < x; });
-        const auto last =
-            std::upper_bound(first, leaves_.end(), 8 * block,
-                             [](int x, const Leaf* leaf) { return x < leaf->origin().x(); });
-        return {first, last};
+    std::size_t placeOf(glm::ivec2 block) const {
+        return std::size_t(block.y) * input_.layout.blocks.x + block.x;
     }
-
-    glm::ivec2 blockOf(const Leaf& leaf) const {
-        return glm::ivec2{leaf.origin().y() >> 3, leaf.origin().z() >> 3} - firstBlock_;
-    }
-    std::uint32_t placeOf(glm::ivec2 block) const {
-        return std::uint32_t(sheet_.layout().stampPlace(sheet_.layout().firstVoxel + 8 * block,
-                                                        input_.footprintRadius));
-    }
-    Slot* slotsOf(glm::ivec2 block) {
-        return &slots_[std::size_t{64} * (std::size_t(block.x) * blocks_.y + block.y)];
+    std::size_t blockCount() const {
+        return std::size_t(input_.layout.blocks.x) * input_.layout.blocks.y;
     }
 
     // Tells the sheet which pixels the voxels of a mask word reach.
@@ -100,74 +86,247 @@ class SlabSplatter {
         const auto columns = std::uint8_t(word);
         const int firstV = std::countr_zero(columns);
         const int lastV = 7 - std::countl_zero(columns);
-        const SheetLayout& layout = sheet_.layout();
-        const int radius = input_.footprintRadius;
-        const glm::ivec2 origin = 8 * layout.resolution * block + layout.marginPixels;
-        sheet_.touch(origin + layout.resolution * glm::ivec2(firstU, firstV) - radius,
-                     origin + layout.resolution * glm::ivec2(lastU, lastV) + radius);
-    }
-
-    // Stamps all voxels of the slice that lie in the box, leaf or no leaf.
-    void addEveryVoxel(std::span<const Leaf* const> leaves, int s) {
-        static constexpr std::array<std::int32_t, 64> kNothing{};
-        auto leaf = leaves.begin();
-        for (int u = 0; u < blocks_.x; ++u) {
-            for (int v = 0; v < blocks_.y; ++v) {
-                const std::int32_t* values = kNothing.data();
-                if (leaf != leaves.end() && blockOf(**leaf) == glm::ivec2(u, v)) {
-                    values = (*leaf)->buffer().data() + 64 * s;
-                    ++leaf;
-                }
-                const std::uint64_t word = voxelsInBox({u, v});
-                makeRoom();
-                touchBlock({u, v}, word);
-                listWhole({values, word, placeOf({u, v}), placeInBlock_.data()}, entries_, list_);
-            }
-        }
-    }
-
-    // Returns a mask word of a block's voxels that lie in the box.
-    std::uint64_t voxelsInBox(glm::ivec2 block) const {
-        const glm::ivec2 first = 8 * (firstBlock_ + block);
-        std::uint64_t word = 0;
-        for (int n = 0; n < 64; ++n) {
-            const int u = first.x + (n >> 3);
-            const int v = first.y + (n & 7);
-            const IndexBox& box = input_.grid.box;
-            const bool inside =
-                u >= box.min.y && u <= box.max.y && v >= box.min.z && v <= box.max.z;
-            word |= std::uint64_t{inside} << n;
-        }
-        return word;
-    }
-
-    void makeRoom() {
-        if (list_.count + 64 > StampList::kCapacity) flush();
-    }
-    void flush() {
-        stamps_ += list_.count;
-        addStamps(sheet_.pixels(), sheet_.layout().pitchPixels(), input_.weights, list_);
+        const SheetLayout& layout = input_.layout;
+        const glm::ivec2 origin =
+            8 * layout.resolution * block + layout.marginPixels - layout.reachPixels;
+        sheet_.touch(
+            origin + layout.resolution * glm::ivec2(firstV, firstU),
+            origin + layout.resolution * glm::ivec2(lastV, lastU) + input_.footprint.width - 1);
     }
 
     const SplatInput& input_;
-    const Slab& slab_;
-    Sheet& sheet_;
-    const std::array<std::uint16_t, 4>* entries_;  // the class table
-    std::span<const Leaf* const> leaves_;
-    glm::ivec2 firstBlock_;
-    glm::ivec2 blocks_;
-    std::array<std::uint32_t, 64>
-        placeInBlock_;         // of a voxel's footprint, from its block's first one
-    std::vector<Slot> slots_;  // of the current slice, [block u][block v][64]
-    StampList list_;
+    Sheet sheet_;
     std::uint64_t stamps_ = 0;
+
+  private:
+    // The words of a slice lie in order, but not what they point to.
+    static void prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words) {
+        constexpr std::ptrdiff_t kAhead = 8;
+        if (words.data() + words.size() - word <= kAhead) return;
+        hwy::Prefetch(word[kAhead].classes);
+        hwy::Prefetch(word[kAhead].classes + 32);
+    }
+
+    // Sheets run along v.
+    glm::ivec2 firstBlock() const { return input_.layout.firstVoxel / 8; }
+    glm::ivec2 blockOf(const DeltaWord& word) const {
+        return glm::ivec2(word.block.y, word.block.x) - firstBlock();
+    }
+
+    template <typename Use>
+    void forAllBlocks(std::span<const DeltaWord> words, const Use& use) {
+        auto word = words.begin();
+        for (int u = 0; u < input_.layout.blocks.y; ++u) {
+            for (int v = 0; v < input_.layout.blocks.x; ++v) {
+                const ClassIndex* classes = kEmptyClasses.data();
+                if (word != words.end() && blockOf(*word) == glm::ivec2(v, u)) {
+                    classes = word->classes;
+                    ++word;
+                }
+                const std::uint64_t active =
+                    voxelsInBox(input_.deltas.box,
+                                glm::ivec2(firstBlock().y, firstBlock().x) + glm::ivec2(u, v));
+                stamps_ += std::popcount(active);
+                use(glm::ivec2(v, u), active, classes);
+            }
+        }
+    }
+};
+
+namespace {
+
+// Stamps footprints one by one.
+class StampKernel : public Splatter::Kernel {
+  public:
+    explicit StampKernel(const SplatInput& input)
+        : Kernel(input), weights_(input.footprint, input.layout.channels) {
+        const SheetLayout& layout = input.layout;
+        for (int n = 0; n < 64; ++n) {
+            const std::size_t pixels = std::size_t(n >> 3) * layout.pitchPixels() + (n & 7);
+            placeInBlock_[n] = std::uint32_t(pixels * layout.resolution);
+        }
+    }
+
+  private:
+    void splatSlice(int slice, bool whole) override {
+        if (whole) {
+            sheet_.clear();
+        } else if (shown_.empty()) {
+            shown_.resize(64 * blockCount());
+        }
+        const ClassTable::Color* colors = input_.classes.colors.data();
+        forBlocks(slice, whole,
+                  [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
+                      if (list_.count + 64 > StampList::kCapacity) flush();
+                      touchBlock(block, active);
+                      const SheetLayout& layout = input_.layout;
+                      const std::size_t place = layout.stampPlace(layout.firstVoxel + 8 * block);
+                      const BlockSlice voxels{classes, active, std::uint32_t(place),
+                                              placeInBlock_.data()};
+                      if (whole) {
+                          listWhole(voxels, colors, list_);
+                      } else {
+                          listChanges(voxels, colors, &shown_[64 * placeOf(block)], list_);
+                      }
+                  });
+        flush();
+        sheet_.settle();
+    }
+
+    void flush() { addStamps(sheet_.pixels(), sheet_.pitch(), weights_, list_); }
+
+    void clear() override {
+        sheet_.clear();
+        std::fill(shown_.begin(), shown_.end(), ClassTable::Color{});
+    }
+
+    StampWeights weights_;
+    std::array<std::uint32_t, 64>
+        placeInBlock_;                      // of a voxel's footprint, from its block's first one
+    std::vector<ClassTable::Color> shown_;  // [block][64], of slabs that are not whole
+    StampList list_;
+};
+
+// Sums up whole tiles of small footprints.
+class TileKernel : public Splatter::Kernel {
+  public:
+    explicit TileKernel(const SplatInput& input)
+        : Kernel(input),
+          weights_(input.footprint, input.layout.channels),
+          pitch_(input.layout.channels * input.layout.pitchPixels()),
+          plane_(pitch_ * input.layout.sizePixels.y),
+          shown_(blockCount()) {}
+
+  private:
+    // What the plane shows of a block.
+    struct Shown {
+        std::uint64_t voxels = 0;  // that may not be empty
+        int slice = 0;             // that last painted it, in a slab that is whole
+    };
+
+    void splatSlice(int slice, bool whole) override {
+        if (whole) {
+            paintWhole(slice);
+        } else {
+            paintChanges(slice);
+        }
+        sheet_.refillTouched(
+            [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
+                splatTiles(
+                    weights_,
+                    {planeAt({0, kTilePixels * row}), pitch_, sheet_.tile(row, 0), sheet_.pitch()},
+                    touched, full);
+            });
+    }
+
+    void paintChanges(int slice) {
+        forBlocks(slice, false,
+                  [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
+                      Shown& shown = shown_[placeOf(block)];
+                      if (shown.voxels == 0) shownBlocks_.push_back(block);
+                      shown.voxels |= active;
+                      paint(block, active, classes);
+                  });
+    }
+
+    // Only what the slice before showed and this one does not paint over has to be taken away.
+    void paintWhole(int slice) {
+        before_.swap(shownBlocks_);
+        shownBlocks_.clear();
+        forBlocks(slice, true,
+                  [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
+                      Shown& shown = shown_[placeOf(block)];
+                      paint(block, active | shown.voxels, classes);
+                      shown = {active, slice};
+                      shownBlocks_.push_back(block);
+                  });
+        for (const glm::ivec2 block : before_) {
+            if (shown_[placeOf(block)].slice != slice) takeAway(block);
+        }
+    }
+
+    void takeAway(glm::ivec2 block) {
+        Shown& shown = shown_[placeOf(block)];
+        paint(block, shown.voxels, kEmptyClasses.data());
+        shown.voxels = 0;
+    }
+
+    // Writes the colours of voxels of a block.
+    void paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes) {
+        touchBlock(block, voxels);
+        std::int16_t* first = planeAt(8 * block + input_.layout.marginPixels);
+        if (input_.layout.channels == 4) {
+            paintColors(first, voxels, classes);
+        } else {
+            paintOpacities(first, classes);
+        }
+    }
+
+    void paintColors(std::int16_t* plane, std::uint64_t voxels, const ClassIndex* classes) const {
+        const ClassTable::Color* colors = input_.classes.colors.data();
+        // Where most voxels change, it is faster to write all.
+        constexpr int kFew = 24;
+        if (std::popcount(voxels) >= kFew) {
+            for (int u = 0; u < 8; ++u, plane += pitch_) {
+                for (int v = 0; v < 8; ++v)
+                    std::memcpy(plane + 4 * v, &colors[*classes++], sizeof *colors);
+            }
+            return;
+        }
+        for (std::uint64_t rest = voxels; rest != 0; rest &= rest - 1) {
+            const int n = std::countr_zero(rest);
+            std::memcpy(plane + (n >> 3) * pitch_ + 4 * (n & 7), &colors[classes[n]],
+                        sizeof *colors);
+        }
+    }
+
+    // Of one colour, a class's number is its opacity.
+    void paintOpacities(std::int16_t* plane, const ClassIndex* classes) const {
+        static_assert(sizeof *plane == sizeof *classes);
+        for (int u = 0; u < 8; ++u, plane += pitch_, classes += 8) {
+            std::memcpy(plane, classes, 8 * sizeof *classes);
+        }
+    }
+
+    std::int16_t* planeAt(glm::ivec2 pixel) {
+        return &plane_[pitch_ * pixel.y + std::size_t(input_.layout.channels) * pixel.x];
+    }
+
+    void clear() override {
+        for (const glm::ivec2 block : shownBlocks_) takeAway(block);
+        shownBlocks_.clear();
+        sheet_.clear();
+    }
+
+    TileWeights weights_;
+    std::size_t pitch_;                    // of the plane
+    std::vector<std::int16_t> plane_;      // colours shown, laid out as the sheet
+    std::vector<Shown> shown_;             // [block]
+    std::vector<glm::ivec2> shownBlocks_;  // those with voxels
+    std::vector<glm::ivec2> before_;       // likewise, in the slice before
 };
 
 }  // namespace
 
-std::uint64_t splatSlab(const SplatInput& input, const Slab& slab, Sheet& sheet,
-                        const std::function<void(int, const Sheet&)>& eachSlice) {
-    return SlabSplatter(input, slab, sheet).run(eachSlice);
+Splatter::Splatter(const SplatInput& input) {
+    if (TileWeights::fits(input.footprint)) {
+        kernel_ = std::make_unique<TileKernel>(input);
+    } else {
+        kernel_ = std::make_unique<StampKernel>(input);
+    }
+}
+
+Splatter::~Splatter() = default;
+
+std::uint64_t Splatter::run(const Slab& slab,
+                            const std::function<void(int, const Sheet&)>& eachSlice) {
+    return kernel_->run(slab, eachSlice);
+}
+
+double Splatter::bytes(const SheetLayout& layout) {
+    // The sheet, and what is shown: half the sheet's size at most, or 8 bytes a voxel.
+    const double voxels = 64.0 * layout.blocks.x * layout.blocks.y;
+    return 1.5 * double(layout.bytes()) + (8 + 0.25) * voxels;
 }
 
 }  // namespace deltasplat

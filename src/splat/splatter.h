@@ -3,30 +3,47 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 
-#include "deltasplat/delta/delta_grid.h"
+#include "delta/packed_deltas.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/splat/footprint.h"
 #include "splat/sheet.h"
 
 namespace deltasplat {
 
-/// Everything that splatting a slab needs and does not change.
+/// Everything that splatting slabs needs and does not change.
 struct SplatInput {
-    const DeltaGrid& grid;
+    const PackedDeltas& deltas;
     const ClassTable& classes;
-    const StampWeights& weights;
-    int footprintRadius;
-    bool stampEmptyVoxels;  ///< stamp every voxel of the box, the empty ones too (method
-                            ///< `traditional`); the grid must hold whole slices
+    const Footprint& footprint;
+    const SheetLayout& layout;
+    /// Stamp every voxel of the box, the empty ones too (method `traditional`); all slabs must be
+    /// whole.
+    bool stampEmptyVoxels;
 };
 
-/// Turns one slab into sheets: calls `eachSlice(slice, sheet)` for its slices in increasing order,
-/// with the sheet complete and settled. Deltas are added to what the sheet holds; of a slab stored
-/// whole, each slice starts anew.
-/// @param sheet  all zero; left as the last slice made it
-/// @return the number of stamps added
-std::uint64_t splatSlab(const SplatInput& input, const Slab& slab, Sheet& sheet,
-                        const std::function<void(int slice, const Sheet&)>& eachSlice);
+/// Turns slabs into sheets. Holds what that takes, to be used for one slab after the other; not
+/// thread-safe.
+class Splatter {
+  public:
+    explicit Splatter(const SplatInput& input);
+    ~Splatter();
+
+    /// Calls `eachSlice(slice, sheet)` for the slab's slices in increasing order, with the sheet
+    /// complete. Deltas are added to what the slice before left; of a whole slab, each slice starts
+    /// anew.
+    /// @return the number of stamps added
+    std::uint64_t run(const Slab& slab,
+                      const std::function<void(int slice, const Sheet& sheet)>& eachSlice);
+
+    /// Bytes that a splatter takes.
+    static double bytes(const SheetLayout& layout);
+
+    class Kernel;
+
+  private:
+    std::unique_ptr<Kernel> kernel_;
+};
 
 }  // namespace deltasplat

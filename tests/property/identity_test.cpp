@@ -74,7 +74,8 @@ TEST(Identity, MethodsStampWhatTheySay) {
     EXPECT_EQ(statsOf(Method::kTraditional).stamps, delta.voxels);
     EXPECT_EQ(statsOf(Method::kSparse).stamps, delta.visible);
     EXPECT_EQ(delta.stamps, delta.deltas);
-    EXPECT_LE(statsOf(Method::kAuto).stamps, std::min(delta.visible, delta.deltas));
+    // A tenth fewer stamps is what makes whole slices worth it.
+    EXPECT_LE(9 * statsOf(Method::kAuto).stamps, 10 * std::min(delta.visible, delta.deltas));
 }
 
 // Positions in a picture are rounded once in doubles, and the warp reads its filter from a table:

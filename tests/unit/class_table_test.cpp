@@ -35,7 +35,7 @@ Optics ramp() {
 }
 
 double channel(const ClassTable& table, int code, int c) {
-    return table.entries[code + 1][c] * table.scale[c];
+    return table.colorOfCode(Code(code))[c] * table.scale[c];
 }
 
 TEST(Classify, followsTheFormulaWithinHalfAUnit) {
@@ -45,24 +45,25 @@ TEST(Classify, followsTheFormulaWithinHalfAUnit) {
     optics.extinctionScale = 3;
     const double step = 1.25;
     const ClassTable table = classify(volume, optics, step);
-    ASSERT_EQ(table.entries.size(), std::size_t(kSlotCount));
+    ASSERT_EQ(table.classOfSlot.size(), std::size_t(kSlotCount));
+    EXPECT_FALSE(table.oneColor);
     for (const int code : {0, 10, 30, 60}) {
         const double extinction = -std::log(1 - code / 100.0) / 2 * 3;
         const double alpha = 1 - std::exp(-extinction * step);
         EXPECT_NEAR(channel(table, code, 3), alpha, table.scale.a * 0.501) << code;
         EXPECT_NEAR(channel(table, code, 0), alpha * code / 100, table.scale.r * 0.501) << code;
         EXPECT_NEAR(channel(table, code, 2), alpha, table.scale.b * 0.501) << code;
-        EXPECT_EQ(table.entries[code + 1][1], 0);
+        EXPECT_EQ(table.colorOfCode(Code(code))[1], 0);
     }
     EXPECT_EQ(table.scale.g, 0);
-    for (const int c : {0, 2, 3}) EXPECT_EQ(table.entries[61][c], ClassTable::kMax) << c;
+    for (const int c : {0, 2, 3}) EXPECT_EQ(table.colorOfCode(60)[c], ClassTable::kMax) << c;
 }
 
 TEST(Classify, leavesCodesThatDoNotOccurEmpty) {
     const ClassTable table = classify(volumeWithCodes({10, 30}), ramp(), 1);
     for (int slot = 0; slot < kSlotCount; ++slot) {
         const bool occurs = slot == 11 || slot == 31;
-        EXPECT_EQ(table.entries[slot][3] != 0, occurs) << slot;
+        EXPECT_EQ(table.classOfSlot[slot] != kEmptySlot, occurs) << slot;
     }
 }
 
@@ -78,7 +79,7 @@ TEST(Classify, keepsOpacityOneAndZeroAtAnyStep) {
     for (const double step : {1e-9, 1.0, 1e9}) {
         const ClassTable table = classify(volumeWithCodes({0, 100}), ramp(), step);
         EXPECT_EQ(channel(table, 100, 3), 1) << step;
-        EXPECT_EQ(table.entries[1][3], 0) << step;
+        EXPECT_EQ(table.colorOfCode(0)[3], 0) << step;
     }
 }
 
@@ -87,7 +88,7 @@ TEST(Classify, isClearWithoutExtinction) {
     optics.extinctionScale = 0;
     const ClassTable table = classify(volumeWithCodes({50, 100}), optics, 1);
     EXPECT_EQ(table.scale, glm::dvec4(0));
-    for (const auto& entry : table.entries) EXPECT_EQ(entry, (std::array<std::uint16_t, 4>{}));
+    for (const Slot slot : table.classOfSlot) EXPECT_EQ(slot, kEmptySlot);
 }
 
 TEST(Classify, keepsPrecisionInThinFog) {
@@ -104,7 +105,7 @@ TEST(Classify, scalesNormalizedFunctionsToTheRange) {
     Optics optics = ramp();
     optics.transferFunction.normalized = true;
     optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {1, 0.8, 0.5, 0}};
-    EXPECT_NEAR(channel(classify(volume, optics, 1), 300, 3), 0.4, 1e-5);
+    EXPECT_NEAR(channel(classify(volume, optics, 1), 300, 3), 0.4, 2e-5);
     optics.range = glm::dvec2(100, 500);
     EXPECT_NEAR(channel(classify(volume, optics, 1), 400, 3), 0.6, 1e-12);
 }
@@ -136,32 +137,60 @@ TEST(Classify, refusesOpticsOutOfRangeByTheFlagsName) {
     EXPECT_EQ(messageOf(optics), "--range: got 5,5; expected LO,HI with LO < HI");
 }
 
-TEST(MergeAlikeSlots, givesTheSmallestSlotWithTheSameEntry) {
-    std::mt19937 random(7);
-    ClassTable table;
-    table.entries.assign(kSlotCount, {});
-    for (int slot = 1; slot < kSlotCount; ++slot) {
-        for (auto& value : table.entries[slot]) value = std::uint16_t(random() % 12);
-    }
-    const std::vector<Slot> slotMap = mergeAlikeSlots(table);
-    ASSERT_EQ(slotMap.size(), std::size_t(kSlotCount));
-    std::map<std::array<std::uint16_t, 4>, Slot> first;
-    for (int slot = 0; slot < kSlotCount; ++slot) {
-        EXPECT_EQ(slotMap[slot], first.try_emplace(table.entries[slot], slot).first->second);
-    }
-    EXPECT_LE(first.size(), 12u * 12 * 12 * 12);  // so most slots were merged
+// Few steps of opacity and colour, so that codes share colours.
+Optics steps() {
+    Optics optics = ramp();
+    optics.transferFunction.colors = {{0, {0, 0, 0}}, {30000, {0, 0, 0}}, {30001, {1, 1, 0}}};
+    optics.transferFunction.opacities = {
+        {100, 0, 0.5, 0}, {101, 0.2, 0.5, 0}, {50000, 0.2, 0.5, 0}, {50001, 0.7, 0.5, 0}};
+    return optics;
 }
 
-TEST(MergeAlikeSlots, mapsInvisibleSlotsToEmpty) {
-    ClassTable table;
-    table.entries.assign(kSlotCount, {});
-    table.entries[5] = {0, 0, 0, 1};
-    table.entries[900] = {1, 0, 0, 0};
-    table.entries[65536] = {0, 0, 0, 1};
-    const std::vector<Slot> slotMap = mergeAlikeSlots(table);
-    for (int slot = 0; slot < kSlotCount; ++slot) {
-        const Slot expected = slot == 5 || slot == 65536 ? 5 : slot == 900 ? 900 : kEmptySlot;
-        EXPECT_EQ(slotMap[slot], expected);
+TEST(Classify, codesThatLookAlikeShareAClass) {
+    const ClassTable table =
+        classify(volumeWithCodes({5, 101, 7000, 30001, 40000, 60000, 65535}), steps(), 1);
+    EXPECT_EQ(table.colors.size(), 4u);
+    EXPECT_EQ(table.colors[0], ClassTable::Color{});
+    EXPECT_EQ(table.classOfSlot[6], kEmptySlot);
+    EXPECT_EQ(table.classOfSlot[102], table.classOfSlot[7001]);
+    EXPECT_EQ(table.classOfSlot[30002], table.classOfSlot[40001]);
+    EXPECT_EQ(table.classOfSlot[60001], table.classOfSlot[65536]);
+    for (std::size_t i = 0; i < table.colors.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) EXPECT_NE(table.colors[i], table.colors[j]);
+    }
+}
+
+TEST(Classify, numbersClassesOfOneColorByTheirOpacity) {
+    Optics optics = ramp();
+    optics.transferFunction.colors = {{0, {0.7, 0, 0.3}}};
+    const ClassTable table = classify(volumeWithCodes({0, 10, 30, 60}), optics, 1);
+    EXPECT_TRUE(table.oneColor);
+    for (const int code : {0, 10, 30, 60}) {
+        const ClassTable::Color color = table.colorOfCode(Code(code));
+        EXPECT_EQ(table.classOfSlot[code + 1], color[3]);
+        EXPECT_EQ(color[0], color[3]);
+        EXPECT_EQ(color[1], 0);
+        EXPECT_NEAR(channel(table, code, 0), 0.7 * code / 100, table.scale.r * 0.501);
+    }
+    EXPECT_EQ(table.scale.g, 0);
+    for (int opacity = 0; opacity <= ClassTable::kMax; ++opacity) {
+        ASSERT_EQ(table.colors[opacity][3], opacity);
+    }
+}
+
+// All 65536 codes look different: one class fewer than that is left for them.
+TEST(Classify, lastTwoOfAllCodesShareAClass) {
+    Volume volume = volumeWithCodes({0, 65535});
+    volume.histogram.assign(kCodeCount, 1);
+    Optics optics = ramp();
+    optics.transferFunction.colors = {{0, {0, 1, 0}}, {32767, {1, 1, 0}}, {65535, {1, 0, 0}}};
+    optics.transferFunction.opacities = {{0, 0.5, 0.5, 0}, {65535, 0.9, 0.5, 0}};
+    const ClassTable table = classify(volume, optics, 1);
+    EXPECT_LE(table.colors.size(), std::size_t(ClassTable::kMaxClasses));
+    for (const Slot slot : table.classOfSlot) ASSERT_LT(slot, ClassTable::kMaxClasses);
+    for (int code = 0; code < kCodeCount; ++code) {
+        const double alpha = 0.5 + 0.4 * code / 65535;
+        ASSERT_NEAR(channel(table, code, 3), alpha, table.scale.a * 1.01);
     }
 }
 

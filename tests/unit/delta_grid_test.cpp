@@ -123,7 +123,7 @@ TEST(DeltaGrid, TilesCountAsTheirVoxels) {
 TEST(DeltaGrid, LeavesWithoutActiveVoxelsCountForNothing) {
     Volume volume = test::randomVolume(boxes()[2], 5);
     const Volume plain = volume;
-    std::shared_ptr<CodeTree> codes(new CodeTree{CodeTree::Tree(plain.codes->tree)});
+    const auto codes = std::make_shared<CodeTree>(std::in_place, plain.codes->tree);
     for (const openvdb::Coord& far : {openvdb::Coord(-900, 3, 500), openvdb::Coord(4, 700, -88),
                                       openvdb::Coord(2000, -300, 0)}) {
         codes->tree.setValueOn(far, 7);

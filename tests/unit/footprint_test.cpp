@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "deltasplat/error.h"
 
@@ -18,8 +20,8 @@ TEST(Footprint, WeightsOfEveryPhaseAddUpToOne) {
             for (const int r : {1, 2, 3, 8}) {
                 const Footprint footprint = makeFootprint(sigma, shift, r);
                 std::vector<std::int64_t> sums(std::size_t(r) * r);
-                for (int v = 0; v < footprint.width(); ++v) {
-                    for (int u = 0; u < footprint.width(); ++u) {
+                for (int v = 0; v < footprint.width; ++v) {
+                    for (int u = 0; u < footprint.width; ++u) {
                         EXPECT_GE(footprint.at(u, v), 0);
                         sums[(v % r) * r + u % r] += footprint.at(u, v);
                     }
@@ -36,14 +38,15 @@ TEST(Footprint, HasTheCovarianceOfTheRoundKernelSeenAlongTheView) {
     const int r = 4;
     for (const glm::dvec2 d : kShifts) {
         const Footprint footprint = makeFootprint(sigma, d, r);
+        const double middle = 0.5 * (footprint.width - 1);
         double sum = 0;
         double uu = 0;
         double uv = 0;
         double vv = 0;
-        for (int y = 0; y < footprint.width(); ++y) {
-            for (int x = 0; x < footprint.width(); ++x) {
-                const double u = double(x - footprint.radius) / r;
-                const double v = double(y - footprint.radius) / r;
+        for (int y = 0; y < footprint.width; ++y) {
+            for (int x = 0; x < footprint.width; ++x) {
+                const double u = (x - middle) / r;
+                const double v = (y - middle) / r;
                 const double w = footprint.at(x, y);
                 sum += w;
                 uu += w * u * u;
@@ -60,7 +63,7 @@ TEST(Footprint, HasTheCovarianceOfTheRoundKernelSeenAlongTheView) {
 
 TEST(Footprint, IsSymmetricAboutItsMiddle) {
     const Footprint footprint = makeFootprint(0.7, {0.5, -0.3}, 2);
-    const int last = footprint.width() - 1;
+    const int last = footprint.width - 1;
     for (int v = 0; v <= last; ++v) {
         for (int u = 0; u <= last; ++u) {
             // Rounding by the largest remainder may favour one of two equal weights by one.
@@ -70,8 +73,26 @@ TEST(Footprint, IsSymmetricAboutItsMiddle) {
 }
 
 TEST(Footprint, NarrowKernelIsThreePixelsWide) {
-    EXPECT_EQ(makeFootprint(0.4, {0, 0}, 1).width(), 3);
-    EXPECT_EQ(makeFootprint(0.4, {0.6, 0.75}, 1).width(), 3);
+    EXPECT_EQ(makeFootprint(0.4, {0, 0}, 1).width, 3);
+    EXPECT_EQ(makeFootprint(0.4, {0.6, 0.75}, 1).width, 3);
+}
+
+TEST(Footprint, TakesAnyWidthThatReachesEveryPhase) {
+    for (const int width : {1, 2, 6, 7}) {
+        const Footprint footprint = makeFootprint(1, {0, 0}, 1, width);
+        EXPECT_EQ(footprint.width, width);
+        EXPECT_EQ(footprint.reach(), width / 2);
+        EXPECT_EQ(footprint.offsetPixels(), width % 2 == 0 ? 0.5 : 0);
+        EXPECT_EQ(std::accumulate(footprint.weights.begin(), footprint.weights.end(), 0),
+                  Footprint::kOne);
+        // Its largest weights lie around the middle.
+        // Rounding may favour one of equal weights by one.
+        EXPECT_GE(footprint.at(width / 2, width / 2) + 1,
+                  *std::max_element(footprint.weights.begin(), footprint.weights.end()));
+    }
+    EXPECT_THROW(makeFootprint(1, {0, 0}, 2, 1), Error);
+    EXPECT_THROW(makeFootprint(1, {0, 0}, 1, 0), Error);
+    EXPECT_THROW(makeFootprint(1, {0, 0}, 1, kMaxFootprintWidth + 1), Error);
 }
 
 TEST(Footprint, RefusesSigmaOutOfRange) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "composite/layer.h"
+#include "composite/compositor.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "composite/layer_fold.h"
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
 
@@ -13,23 +14,24 @@ namespace deltasplat {
 namespace {
 
 constexpr IndexBox kBox{{0, -3, 5}, {30, 20, 30}};  // slice, u, v
-constexpr float kScale = 1.0f / (65535.0f * Footprint::kOne);
+constexpr float kScale = 1.0f / (float(ClassTable::kMax) * Footprint::kOne);
 
 // A sheet with random colours in some of its inner tiles and zeros elsewhere.
-Sheet randomSheet(std::uint32_t seed, double share = 0.5) {
-    Sheet sheet(layoutSheet(kBox, makeFootprint(0.4, {0, 0}, 1)));
+Sheet randomSheet(std::uint32_t seed, int channels = 4) {
+    Sheet sheet(layoutSheet(kBox, makeFootprint(0.4, {0, 0}, 1), channels));
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(0, 1);
     const glm::ivec2 tiles = sheet.layout().tiles();
     for (int y = 1; y + 1 < tiles.y; ++y) {
         for (int x = 1; x + 1 < tiles.x; ++x) {
-            if (uniform(random) > share) continue;
+            if (uniform(random) > 0.5) continue;
             for (int n = 0; n < 64; ++n) {
                 const glm::ivec2 p = 8 * glm::ivec2(x, y) + glm::ivec2(n % 8, n / 8);
-                std::int32_t* pixel =
-                    &sheet.pixels()[4 * (p.y * sheet.layout().pitchPixels() + p.x)];
-                for (int c = 0; c < 4; ++c) {
-                    pixel[c] = std::int32_t(uniform(random) * 65535 * Footprint::kOne);
+                std::int32_t* pixel = &sheet.pixels()[p.y * sheet.pitch() + channels * p.x];
+                // Whole rows stay empty, too.
+                if (p.y % 5 == 1) continue;
+                for (int c = 0; c < channels; ++c) {
+                    pixel[c] = std::int32_t(uniform(random) * ClassTable::kMax * Footprint::kOne);
                 }
             }
             sheet.touch(8 * glm::ivec2(x, y), 8 * glm::ivec2(x, y) + 7);
@@ -42,7 +44,7 @@ Sheet randomSheet(std::uint32_t seed, double share = 0.5) {
 double sheetAt(const Sheet& sheet, int x, int y, int c) {
     const glm::ivec2 size = sheet.layout().sizePixels;
     if (x < 0 || y < 0 || x >= size.x || y >= size.y) return 0;
-    return double(sheet.row(y)[4 * x + c]) * kScale;
+    return double(sheet.row(y)[sheet.layout().channels * x + c]) * kScale;
 }
 
 // The sheet of a slice, read bilinearly where base plane pixel b falls on it.
@@ -58,84 +60,143 @@ double bilinearAt(const Sheet& sheet, glm::dvec2 d, int slice, glm::ivec2 b, int
            (1 - fx) * fy * sheetAt(sheet, x, y + 1, c) + fx * fy * sheetAt(sheet, x + 1, y + 1, c);
 }
 
-std::vector<float> compositeSlices(glm::dvec2 d, bool frontToBack, const std::string& level) {
-    setSimdLevel(level);
-    Layer layer(reachOf(randomSheet(0).layout(), d, 0, 4));
-    for (int slice = 0; slice < 4; ++slice) {
-        const Sheet sheet = randomSheet(std::uint32_t(slice));
-        compositeSheet(sheet, shiftOf(sheet.layout(), d, slice), glm::vec4(kScale), frontToBack,
-                       layer);
+Layer compositeSlices(glm::dvec2 d, bool frontToBack, int channels, int first = 0, int count = 4,
+                      float scale = kScale) {
+    Layer layer(reachOf(randomSheet(0).layout(), d, 0, 6), channels);
+    Compositor compositor(glm::vec4(scale), frontToBack);
+    for (int slice = first; slice < first + count; ++slice) {
+        const Sheet sheet = randomSheet(std::uint32_t(slice), channels);
+        compositor.composite(sheet, shiftOf(sheet.layout(), d, slice), layer);
     }
-    setSimdLevel("auto");
-    return layer.rgba;
+    return layer;
 }
 
-const glm::dvec2 kShifts[] = {{0, 0}, {1, -1}, {0.37, -0.81}, {-0.999, 0.001}};
+const glm::dvec2 kShifts[] = {{0, 0}, {1, -1}, {0.37, -0.81}, {-0.999, 0.001}, {0, 0.5}};
 
-TEST(Layer, CompositesBilinearReadingsInOrder) {
+class LayerOfChannels : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Channels, LayerOfChannels, testing::Values(1, 4));
+
+TEST_P(LayerOfChannels, CompositesBilinearReadingsInOrder) {
+    const int channels = GetParam();
     for (const glm::dvec2 d : kShifts) {
         for (const bool frontToBack : {true, false}) {
-            Layer layer(reachOf(randomSheet(0).layout(), d, 0, 4));
-            layer.rgba = compositeSlices(d, frontToBack, "auto");
+            const Layer layer = compositeSlices(d, frontToBack, channels);
+            std::vector<Sheet> sheets;
+            for (std::uint32_t slice = 0; slice < 4; ++slice)
+                sheets.push_back(randomSheet(slice, channels));
             for (int y = layer.box.min.y; y < layer.box.max.y; ++y) {
                 for (int x = layer.box.min.x; x < layer.box.max.x; ++x) {
                     double expected[4] = {};
                     for (int k = 0; k < 4; ++k) {
                         const int slice = frontToBack ? k : 3 - k;
-                        const Sheet sheet = randomSheet(std::uint32_t(slice));
-                        const double clear = 1 - expected[3];
-                        for (int c = 0; c < 4; ++c) {
-                            expected[c] += clear * bilinearAt(sheet, d, slice, {x, y}, c);
+                        const double clear = 1 - expected[channels - 1];
+                        for (int c = 0; c < channels; ++c) {
+                            expected[c] += clear * bilinearAt(sheets[slice], d, slice, {x, y}, c);
                         }
                     }
-                    for (int c = 0; c < 4; ++c) {
+                    for (int c = 0; c < channels; ++c) {
                         ASSERT_NEAR(layer.pixel({x, y})[c], expected[c], 1e-5)
                             << x << ' ' << y << ' ' << c;
                     }
                 }
-                if (y > layer.box.min.y + 12)
-                    y += 5;  // a sample of rows is enough, and much faster
             }
         }
     }
 }
 
-TEST(Layer, SameBitsAtEverySimdLevel) {
+TEST_P(LayerOfChannels, RowsAreZeroOutsideOfTheirSpans) {
+    const Layer layer = compositeSlices({0.37, -0.81}, true, GetParam());
+    for (int y = 0; y < layer.box.size().y; ++y) {
+        const glm::ivec2 span = layer.spans[std::size_t(y)];
+        for (int x = 0; x < layer.box.size().x; ++x) {
+            if (x >= span.x && x < span.y) continue;
+            for (int c = 0; c < GetParam(); ++c) {
+                ASSERT_EQ(layer.pixel(layer.box.min + glm::ivec2(x, y))[c], 0);
+            }
+        }
+    }
+}
+
+TEST_P(LayerOfChannels, SameBitsAtEverySimdLevel) {
     for (const glm::dvec2 d : kShifts) {
         for (const bool frontToBack : {true, false}) {
-            const auto best = compositeSlices(d, frontToBack, "auto");
+            const auto best = compositeSlices(d, frontToBack, GetParam()).values;
             for (const std::string& level : simdLevels()) {
-                EXPECT_EQ(compositeSlices(d, frontToBack, level), best) << level;
+                setSimdLevel(level);
+                EXPECT_EQ(compositeSlices(d, frontToBack, GetParam()).values, best) << level;
             }
+            setSimdLevel("auto");
         }
     }
 }
 
-TEST(Layer, MergingIsOverInTheGivenOrder) {
-    std::mt19937 random(4);
+TEST(Layer, ResetLeavesAnEmptyLayerOfAnotherBox) {
+    Layer layer = compositeSlices({0.37, -0.81}, true, 4);
+    const PlaneBox box{{-3, 8}, {40, 19}};
+    layer.reset(box);
+    EXPECT_EQ(layer.box.min, box.min);
+    EXPECT_EQ(layer.values.size(), std::size_t(4 * 43 * 11));
+    for (const float value : layer.values) ASSERT_EQ(value, 0);
+    for (const glm::ivec2 span : layer.spans) EXPECT_GE(span.x, span.y);
+}
+
+// A layer full of random numbers, those of each row in a span of its own.
+Layer randomLayer(const PlaneBox& box, int channels, std::uint32_t seed) {
+    std::mt19937 random(seed);
     std::uniform_real_distribution<float> uniform(0, 1);
-    std::vector<Layer> layers;
-    for (const PlaneBox box :
-         {PlaneBox{{0, 0}, {9, 7}}, PlaneBox{{-4, 3}, {6, 12}}, PlaneBox{{2, -5}, {5, 20}}}) {
-        layers.emplace_back(box);
-        for (float& value : layers.back().rgba) value = uniform(random);
+    Layer layer(box, channels);
+    for (int y = box.min.y; y < box.max.y; ++y) {
+        const int first = box.min.x + int(random() % unsigned(box.size().x));
+        const int last = first + int(random() % unsigned(box.max.x - first + 1));
+        if (first == last) continue;
+        layer.extend(y, first, last);
+        for (int i = 0; i < channels * (last - first); ++i) {
+            layer.pixel({first, y})[i] = uniform(random);
+        }
     }
+    return layer;
+}
+
+// In whatever order they are done: the same bits as folding from the front.
+TEST(LayerFold, IsOverFromTheFront) {
+    const PlaneBox all{{-4, -5}, {30, 70}};
+    const PlaneBox boxes[] = {{{0, 0}, {9, 70}}, {{-4, 3}, {6, 12}}, {{2, -5}, {30, 20}}, all};
+    const std::vector<std::vector<std::size_t>> orders = {
+        {0, 1, 2, 3}, {3, 2, 1, 0}, {1, 0, 3, 2}, {2, 0, 1, 3}};
     const ThreadLimit limit(2);
-    const Layer merged = mergeLayers(layers);
-    EXPECT_EQ(merged.box.min, glm::ivec2(-4, -5));
-    EXPECT_EQ(merged.box.max, glm::ivec2(9, 20));
-    for (int y = -5; y < 20; ++y) {
-        for (int x = -4; x < 9; ++x) {
-            float expected[4] = {};
-            for (const Layer& layer : layers) {
-                if (x < layer.box.min.x || x >= layer.box.max.x || y < layer.box.min.y ||
-                    y >= layer.box.max.y) {
-                    continue;
+    for (const int channels : {1, 4}) {
+        for (const auto& order : orders) {
+            for (const bool takeAllFirst : {false, true}) {
+                LayerFold fold(4, all, channels);
+                if (takeAllFirst) {
+                    for (const PlaneBox& box : boxes) fold.take(box);
                 }
-                const float clear = 1 - expected[3];
-                for (int c = 0; c < 4; ++c) expected[c] += clear * layer.pixel({x, y})[c];
+                for (const std::size_t i : order) {
+                    const Layer empty =
+                        takeAllFirst ? Layer(boxes[i], channels) : fold.take(boxes[i]);
+                    for (const float value : empty.values) ASSERT_EQ(value, 0);
+                    fold.add(i, randomLayer(boxes[i], channels, std::uint32_t(i)));
+                }
+                const Layer merged = fold.finish();
+                std::vector<Layer> layers;
+                for (std::uint32_t i = 0; i < 4; ++i)
+                    layers.push_back(randomLayer(boxes[i], channels, i));
+                for (int y = all.min.y; y < all.max.y; ++y) {
+                    for (int x = all.min.x; x < all.max.x; ++x) {
+                        float expected[4] = {};
+                        for (const Layer& layer : layers) {
+                            const PlaneBox& box = layer.box;
+                            if (x < box.min.x || x >= box.max.x || y < box.min.y || y >= box.max.y)
+                                continue;
+                            const float clear = 1 - expected[channels - 1];
+                            for (int c = 0; c < channels; ++c)
+                                expected[c] += clear * layer.pixel({x, y})[c];
+                        }
+                        for (int c = 0; c < channels; ++c)
+                            ASSERT_EQ(merged.pixel({x, y})[c], expected[c]);
+                    }
+                }
             }
-            for (int c = 0; c < 4; ++c) EXPECT_EQ(merged.pixel({x, y})[c], expected[c]);
         }
     }
 }
@@ -143,23 +204,14 @@ TEST(Layer, MergingIsOverInTheGivenOrder) {
 // Merging layers is the same as compositing on, but for rounding.
 TEST(Layer, OverIsAssociativeWithinRounding) {
     const glm::dvec2 d(0.25, 0.5);
-    const auto part = [&](int first, int count) {
-        Layer layer(reachOf(randomSheet(0).layout(), d, 0, 6));
-        for (int slice = first; slice < first + count; ++slice) {
-            const Sheet sheet = randomSheet(std::uint32_t(slice));
-            compositeSheet(sheet, shiftOf(sheet.layout(), d, slice), glm::vec4(kScale / 8), true,
-                           layer);
-        }
-        return layer;
-    };
-    std::vector<Layer> halves;
-    halves.push_back(part(0, 3));
-    halves.push_back(part(3, 3));
-    const Layer merged = mergeLayers(halves);
-    const Layer whole = part(0, 6);
-    for (std::size_t i = 0; i < whole.rgba.size(); ++i) {
+    LayerFold halves(2, reachOf(randomSheet(0).layout(), d, 0, 6), 4);
+    halves.add(0, compositeSlices(d, true, 4, 0, 3, kScale / 8));
+    halves.add(1, compositeSlices(d, true, 4, 3, 3, kScale / 8));
+    const Layer merged = halves.finish();
+    const Layer whole = compositeSlices(d, true, 4, 0, 6, kScale / 8);
+    for (std::size_t i = 0; i < whole.values.size(); ++i) {
         // Six slices, each rounded a handful of times to 2^-24 of values below 1.
-        ASSERT_NEAR(merged.rgba[i], whole.rgba[i], 6 * 6 * std::ldexp(1.0, -24));
+        ASSERT_NEAR(merged.values[i], whole.values[i], 6 * 6 * std::ldexp(1.0, -24));
     }
 }
 

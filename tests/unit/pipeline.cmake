@@ -1,6 +1,8 @@
 deltasplat_test(unit/delta_grid_test.cpp)
 deltasplat_test(unit/slice_counts_test.cpp)
 deltasplat_test(unit/footprint_test.cpp)
+deltasplat_test(unit/packed_deltas_test.cpp)
 deltasplat_test(unit/sheet_test.cpp)
+deltasplat_test(unit/tile_kernels_test.cpp)
 deltasplat_test(unit/layer_test.cpp)
 deltasplat_test(unit/warp_test.cpp)

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "deltasplat/threads.h"
@@ -25,7 +26,7 @@ struct OwnedRaster {
             }
         }
     }
-    Raster raster() const { return {min, size, rgba.data()}; }
+    Raster raster() const { return {min, size, rgba.data(), 4, {}}; }
 };
 
 glm::dmat3 affine(double xx, double xy, double x0, double yx, double yy, double y0) {
@@ -115,6 +116,64 @@ TEST(Warp, FilterWiderThanTheRasterReadsNothingOutside) {
             EXPECT_NEAR(sum / area, 1, 0.15) << stretch;
         }
     }
+}
+
+// Opacity alone gives what RGBA in a fixed ratio gives.
+TEST(Warp, OneChannelIsOpacityTimesColour) {
+    const auto opacity = [](int x, int y) { return float((x * x + 3 * y) % 17) / 17; };
+    const OwnedRaster all({-2, 5}, {50, 40}, opacity);
+    std::vector<float> values;
+    for (std::size_t i = 0; i < all.rgba.size(); i += 4) values.push_back(all.rgba[i]);
+    const Raster one{all.min, all.size, values.data(), 1, {0.5f, 2.0f, 0.0f}};
+    for (const double scale : {0.6, 2.5}) {
+        Image expected({90, 70});
+        Image picture({90, 70});
+        warp(all.raster(), affine(scale, 0.1, -2, -0.2, 0.7, 4), expected);
+        warp(one, affine(scale, 0.1, -2, -0.2, 0.7, 4), picture);
+        for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+            const float a = expected.rgba[i + 3];
+            EXPECT_NEAR(picture.rgba[i], 0.5f * a, 1e-6);
+            EXPECT_NEAR(picture.rgba[i + 1], 2 * a, 2e-6);
+            EXPECT_EQ(picture.rgba[i + 2], 0);
+            EXPECT_NEAR(picture.rgba[i + 3], a, 1e-6);
+        }
+    }
+}
+
+// What is passed over because it is empty is empty.
+TEST(Warp, FindsASinglePixelWherever) {
+    int hits = 0;
+    for (const int place : {0, 7, 8, 31, 63}) {
+        const OwnedRaster raster({0, 0}, {64, 64}, [&](int x, int y) {
+            return x == place && y == 63 - place ? 1.0f : 0.0f;
+        });
+        for (const auto& map : {affine(0.5, 0, 0, 0, 0.5, 0), affine(0, 0.4, 3, -0.4, 0, 60),
+                                affine(3, 1, -60, -1, 3, -20)}) {
+            Image picture({150, 150});
+            warp(raster.raster(), map, picture);
+            double sum = 0;
+            bool hit = false;  // a pixel's centre lies close to the raster's
+            for (int y = 0; y < 150; ++y) {
+                for (int x = 0; x < 150; ++x) {
+                    const glm::dvec3 p = map * glm::dvec3(x + 0.5, y + 0.5, 1);
+                    const double reach = 2 * std::max(1.0, std::hypot(map[0].x, map[1].x));
+                    const bool near =
+                        std::abs(p.x - place) < reach && std::abs(p.y - (63 - place)) < reach;
+                    const float value = picture.pixel(x, y)[3];
+                    if (!near) {
+                        ASSERT_EQ(value, 0);
+                    }
+                    sum += value;
+                    hit = hit || std::hypot(p.x - place, p.y - (63 - place)) < 0.5;
+                }
+            }
+            if (hit) {
+                EXPECT_GT(sum, 0.05) << place;
+            }
+            hits += hit;
+        }
+    }
+    EXPECT_GT(hits, 8);
 }
 
 TEST(Warp, EmptyRasterLeavesThePictureAlone) {

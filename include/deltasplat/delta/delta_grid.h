@@ -18,7 +18,7 @@ struct DeltaTree;
 enum class Encoding {
     kChanges,  ///< one key slice a slab, then deltas (method `delta`)
     kWhole,    ///< every slice is a key slice (methods `sparse` and `traditional`)
-    kSmaller   ///< for each slab whichever has fewer active voxels; ties: kChanges (method `auto`)
+    kSmaller   ///< for each slab kWhole if it has fewer active voxels by a tenth (method `auto`)
 };
 
 /// A run of slices that can be read on its own, because its first slice is a key slice.

@@ -14,11 +14,12 @@ struct StampCounts {
     std::uint64_t traditional = 0;  ///< voxels of the box
     std::uint64_t sparse = 0;       ///< visible voxels
     std::uint64_t delta = 0;        ///< deltas, key slices at their default interval included
-    std::uint64_t automatic = 0;    ///< for each slab the smaller of `sparse` and `delta`
+    std::uint64_t automatic =
+        0;  ///< for each slab one of `sparse` and `delta`, see Encoding::kSmaller
 };
 
 /// Returns what `render` takes for a picture along a slice axis, without rendering or storing
-/// deltas: exact for the slot map of its transfer function (see mergeAlikeSlots).
+/// deltas: exact for the slot map of its transfer function (see ClassTable::classOfSlot).
 /// @param slotMap  as DeltaOptions::slotMap
 StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap = {});
 

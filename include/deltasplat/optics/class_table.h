@@ -13,15 +13,27 @@
 
 namespace deltasplat {
 
-/// Classified colour of every slot: premultiplied integer RGBA with one scale a channel.
+/// Classified colours: premultiplied integer RGBA with one scale a channel. Codes that look alike
+/// share a class, so that they make no deltas; class 0 is what cannot be seen.
 struct ClassTable {
-    static constexpr int kMax = 65535;  ///< the largest entry of each channel that is not all zero
+    using Color = std::array<std::int16_t, 4>;
+    static constexpr int kMax = 32767;  ///< the largest value of each channel that is not all zero
+    /// Classes are numbered with 16 bits. Where all 65536 codes look different, the last two share
+    /// a class.
+    static constexpr int kMaxClasses = 65536;
 
-    /// [kSlotCount]: entry 0 (empty) is zero; entry code + 1 is that code's premultiplied RGBA for
-    /// one slice.
-    std::vector<std::array<std::uint16_t, 4>> entries;
+    /// Premultiplied RGBA of each class for one slice; entry 0 is zero. No two are alike.
+    std::vector<Color> colors{Color{}};
+    /// [kSlotCount]: the class of every slot, the map that `DeltaOptions::slotMap` takes. 0 for
+    /// slot 0, for codes that do not occur and for clear ones.
+    std::vector<Slot> classOfSlot;
     /// Value of one integer unit of each channel; 0 for a channel that is zero throughout.
     glm::dvec4 scale{0.0};
+    /// All classes have one colour and differ in opacity alone. Then a class's number is its
+    /// opacity, and its channels are equal wherever the scale is not 0; all opacities have a class.
+    bool oneColor = false;
+
+    const Color& colorOfCode(Code code) const { return colors[classOfSlot[code + 1]]; }
 };
 
 /// What turns data values into light.
@@ -35,15 +47,11 @@ struct Optics {
     double extinctionScale = 1;  ///< >= 0; multiplies the extinction
 };
 
-/// Classifies every code that occurs in the volume (entries of the others are zero): extinction per
-/// world unit sigma_t = -ln(1 - opacity) / unitDistance * extinctionScale, alpha = 1 - exp(-sigma_t
-/// * sliceStepWorld). Opacity 1 stays 1 at any step, as long as the extinction is not scaled to 0.
+/// Classifies every code that occurs in the volume: extinction per world unit sigma_t = -ln(1 -
+/// opacity) / unitDistance * extinctionScale, alpha = 1 - exp(-sigma_t * sliceStepWorld). Opacity 1
+/// stays 1 at any step, as long as the extinction is not scaled to 0.
 /// @param sliceStepWorld  world distance between consecutive slices along the line of sight, > 0
 /// @throw Error(kUsage) naming the option if unit distance, extinction or range is out of range
 ClassTable classify(const Volume& volume, const Optics& optics, double sliceStepWorld);
-
-/// Returns for every slot the smallest slot with the same entry (0 for those that are all zero),
-/// the map that `DeltaOptions::slotMap` takes: two codes that look alike make no delta.
-std::vector<Slot> mergeAlikeSlots(const ClassTable& table);
 
 }  // namespace deltasplat

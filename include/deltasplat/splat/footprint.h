@@ -3,25 +3,30 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <optional>
 #include <vector>
 
 namespace deltasplat {
 
 /// The table of integer weights that one voxel stamps into the sheet: the kernel integrated along
-/// the line of sight. Sheet pixels lie at voxel centres and at the r - 1 places between them, so
-/// that every voxel has the same phase and one table serves the whole volume.
+/// the line of sight. Every voxel has the same sub-pixel phase, so that one table serves the whole
+/// volume: sheet pixels lie at voxel centres and at the r - 1 places between them, or half a pixel
+/// beside those if the width is even.
 struct Footprint {
-    static constexpr std::int32_t kOne = 32768;  ///< what the weights of one phase add up to
+    static constexpr std::int32_t kOne = 32767;  ///< what the weights of one phase add up to
 
     int resolution = 1;  ///< r: sheet pixels a voxel
-    int radius = 0;      ///< sheet pixels from the middle to the edge
-    /// `[width()][width()]`, rows along v, columns along u, middle at (radius, radius). None is
-    /// negative. For each of the r * r phases (places modulo r), the weights add up to exactly
-    /// kOne: a constant slice gives a constant sheet.
+    int width = 1;       ///< and height, in sheet pixels
+    /// `[width][width]`, the voxel's centre in the middle. None is negative. For each of the r * r
+    /// phases (places modulo r), the weights add up to exactly kOne: a constant slice gives a
+    /// constant sheet.
     std::vector<std::int32_t> weights;
 
-    int width() const { return 2 * radius + 1; }
-    std::int32_t at(int u, int v) const { return weights[v * width() + u]; }
+    /// Sheet pixels from the one at the voxel's centre, or half a pixel behind it, to the first.
+    int reach() const { return width / 2; }
+    /// How far before a voxel's centre its sheet pixel lies: 0, or half a pixel.
+    double offsetPixels() const { return width % 2 == 0 ? 0.5 : 0; }
+    std::int32_t at(int x, int y) const { return weights[y * width + x]; }
 };
 
 inline constexpr double kMinSigma = 0.2;
@@ -35,12 +40,16 @@ inline double defaultSigma(int resolution) {
 }
 
 /// Makes the Gaussian footprint with covariance sigma^2 (I + d d^T) in slice units: a round kernel
-/// seen along the line of sight. Cut off where less than `kFootprintTail` of it is left outside.
+/// seen along the line of sight.
 /// @param sigmaVoxels    kMinSigma..kMaxSigma
-/// @param shiftPerSlice  d, |d| <= 1 in each component
+/// @param shiftPerSlice  d, |d| <= 1 in each component, in the table's (x, y)
 /// @param resolution     r, at least 1
-/// @throw Error(kUsage) if sigma is out of range
-Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolution);
+/// @param width          pixels, r..kMaxFootprintWidth; empty: the smallest odd number that leaves
+/// out less than kFootprintTail of the weight
+/// @throw Error(kUsage) if sigma or width is out of range
+Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolution,
+                        std::optional<int> width = {});
 inline constexpr double kFootprintTail = 0.002;
+inline constexpr int kMaxFootprintWidth = 1024;
 
 }  // namespace deltasplat

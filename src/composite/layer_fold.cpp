@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "composite/layer_fold.h"
+
+#include <utility>
+
+#include "parallel.h"
+
+namespace deltasplat {
+
+LayerFold::LayerFold(std::size_t count, const PlaneBox& box, int channels)
+    : merged_(box, channels), done_(count) {}
+
+Layer LayerFold::take(const PlaneBox& box) {
+    std::unique_lock lock(mutex_);
+    ++taken_;
+    if (idle_.empty()) {
+        const int channels = merged_.channels;
+        lock.unlock();
+        return Layer(box, channels);
+    }
+    Layer layer = std::move(idle_.back());
+    idle_.pop_back();
+    lock.unlock();
+    layer.reset(box);
+    return layer;
+}
+
+void LayerFold::add(std::size_t number, Layer layer) {
+    std::unique_lock lock(mutex_);
+    done_[number] = std::move(layer);
+    // The last ones are merged by all threads together.
+    if (!merging_ && taken_ < done_.size()) mergeReady(lock);
+}
+
+void LayerFold::mergeReady(std::unique_lock<std::mutex>& lock) {
+    merging_ = true;
+    while (next_ < done_.size() && done_[next_]) {
+        Layer layer = std::move(*done_[next_]);
+        done_[next_++].reset();
+        lock.unlock();
+        for (int y = layer.box.min.y; y < layer.box.max.y; ++y) mergeRowBehind(merged_, layer, y);
+        lock.lock();
+        idle_.push_back(std::move(layer));
+    }
+    merging_ = false;
+}
+
+Layer LayerFold::finish() {
+    parallelForChunks(std::size_t(merged_.box.size().y), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row) {
+            for (std::size_t i = next_; i < done_.size(); ++i) {
+                mergeRowBehind(merged_, *done_[i], merged_.box.min.y + int(row));
+            }
+        }
+    });
+    return std::move(merged_);
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "composite/layer.h"
+
+namespace deltasplat {
+
+/// Merges layers front to back, in whatever order they are done: the order of the arithmetic is
+/// fixed by their numbers alone. As long as more are to come, layers are merged as soon as those in
+/// front of them are, so that few are in memory. Thread-safe but for finish().
+class LayerFold {
+  public:
+    /// @param count  layers to come, numbered from the front
+    /// @param box    what covers them all
+    LayerFold(std::size_t count, const PlaneBox& box, int channels);
+
+    /// Returns an empty layer. Call it once for each number.
+    Layer take(const PlaneBox& box);
+    /// Takes a finished layer back.
+    void add(std::size_t number, Layer layer);
+    /// Merges what is left, on all threads, and returns the result.
+    Layer finish();
+
+  private:
+    void mergeReady(std::unique_lock<std::mutex>& lock);
+
+    std::mutex mutex_;  // guards all below
+    Layer merged_;
+    std::vector<std::optional<Layer>> done_;  // [count]: not yet merged
+    std::vector<Layer> idle_;
+    std::size_t taken_ = 0;
+    std::size_t next_ = 0;  // the first that is not merged
+    bool merging_ = false;
+};
+
+}  // namespace deltasplat

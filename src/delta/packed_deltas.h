@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+#include "deltasplat/delta/delta_grid.h"
+
+namespace deltasplat {
+
+/// What a voxel looks like: an index into the colours of a class table; 0 = empty.
+using ClassIndex = std::uint16_t;
+
+/// One slice of an 8x8x8 block: its 64 voxels, bit 8 * u + v of the masks, as OpenVDB's leaves have
+/// them.
+struct DeltaWord {
+    std::uint64_t visible;      ///< whose class is not empty
+    std::uint64_t changed;      ///< whose class differs from the slice before
+    const ClassIndex* classes;  ///< [64]: of all voxels in this slice
+    glm::ivec2 block;           ///< (u, v) of the first voxel divided by 8
+};
+
+/// The delta grid of a volume as a picture needs it: of classes instead of codes, ordered as it is
+/// walked, and without what nothing is stamped for.
+struct PackedDeltas {
+    int sliceAxis = 2;
+    IndexBox box;             ///< the volume's box in (slice, u, v) order
+    std::vector<Slab> slabs;  ///< in increasing order, covering `box`; none for an empty volume
+
+    std::uint64_t visible() const;  ///< visible voxels, all slabs together
+    std::uint64_t deltas() const;   ///< deltas, all slabs together
+    /// The words of a slice with changed voxels, or with visible ones in a slab that is whole,
+    /// ordered by u, then v.
+    std::span<const DeltaWord> slice(int index) const;
+
+    std::vector<DeltaWord> words;     ///< by slice, u and v
+    std::vector<std::size_t> begins;  ///< [slices + 1]: the first of each slice's words
+    std::vector<std::vector<ClassIndex>> storage;  ///< what the words point into
+};
+
+/// How to pack deltas.
+struct PackOptions {
+    int sliceAxis = 2;
+    Encoding encoding = Encoding::kChanges;
+    std::span<const Slot> classOfSlot;  ///< [kSlotCount], entry 0 must be 0
+    /// May a voxel of the second slot go on as one of the first, which the slice before has? Both
+    /// can be seen and belong to different classes. Empty: never.
+    std::function<bool(Slot held, Slot slot)> holds;
+};
+
+/// Takes the differences of consecutive slices, in one pass over the leaves that can be seen; slabs
+/// have the default key interval. With `holds`, a voxel keeps its class along the slice axis as
+/// long as it may: compared with its true slot each time, so that errors never add up. Linear in
+/// the active voxels; deterministic; multi-threaded.
+PackedDeltas packDeltas(const Volume& volume, const PackOptions& options);
+
+}  // namespace deltasplat

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/packed_deltas.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <tuple>
+
+#include "deltasplat/threads.h"
+#include "support/make_volume.h"
+
+namespace deltasplat {
+namespace {
+
+// Classes of visible voxels by (slice, u, v).
+using Classes = std::map<std::tuple<int, int, int>, ClassIndex>;
+
+std::vector<Slot> plainClasses() {
+    std::vector<Slot> classes(kSlotCount, 0);
+    for (Slot slot = 1; slot < kSlotCount; ++slot) classes[slot] = slot <= 60 ? 0 : slot / 8;
+    return classes;
+}
+
+Classes classesOf(const Volume& volume, int axis, const std::vector<Slot>& classOfSlot) {
+    Classes classes;
+    for (auto voxel = volume.codes->tree.cbeginValueOn(); voxel; ++voxel) {
+        openvdb::CoordBBox box;
+        voxel.getBoundingBox(box);
+        const Slot found = classOfSlot[*voxel + 1];
+        if (found == 0) continue;
+        for (auto place = box.begin(); place; ++place) {
+            const glm::ivec3 p = toSliceOrder(*place, axis);
+            classes[{p.x, p.y, p.z}] = ClassIndex(found);
+        }
+    }
+    return classes;
+}
+
+// Walks the words as a renderer does.
+Classes walk(const PackedDeltas& packed) {
+    Classes all;
+    std::map<std::tuple<int, int>, ClassIndex> plane;
+    for (const Slab& slab : packed.slabs) {
+        plane.clear();
+        for (int s = slab.firstSlice; s < slab.firstSlice + slab.sliceCount; ++s) {
+            if (slab.whole) plane.clear();
+            for (const DeltaWord& word : packed.slice(s)) {
+                std::uint64_t rest = slab.whole ? word.visible : word.changed;
+                EXPECT_NE(rest, 0u);
+                for (; rest != 0; rest &= rest - 1) {
+                    const int n = std::countr_zero(rest);
+                    plane[{8 * word.block.x + n / 8, 8 * word.block.y + n % 8}] = word.classes[n];
+                }
+                for (int n = 0; n < 64; ++n) EXPECT_EQ(word.visible >> n & 1, word.classes[n] != 0);
+            }
+            for (const auto& [place, found] : plane) {
+                if (found != 0) all[{s, std::get<0>(place), std::get<1>(place)}] = found;
+            }
+        }
+    }
+    return all;
+}
+
+const IndexBox kBox{{-19, 5, -60}, {30, 40, 2}};
+
+TEST(PackedDeltas, AddUpToTheClassesOfTheVolume) {
+    const Volume volume = test::randomVolume(kBox, 3);
+    const std::vector<Slot> classes = plainClasses();
+    for (int axis = 0; axis < 3; ++axis) {
+        const Classes expected = classesOf(volume, axis, classes);
+        for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller}) {
+            for (const int threads : {1, 2}) {
+                const ThreadLimit limit(threads);
+                const PackedDeltas packed = packDeltas(volume, {axis, encoding, classes, {}});
+                EXPECT_EQ(walk(packed), expected) << axis;
+                EXPECT_EQ(packed.visible(), expected.size());
+            }
+        }
+    }
+}
+
+TEST(PackedDeltas, CountWhatTheDeltaGridCounts) {
+    const Volume volume = test::randomVolume(kBox, 4);
+    const std::vector<Slot> classes = plainClasses();
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller}) {
+            const PackedDeltas packed = packDeltas(volume, {axis, encoding, classes, {}});
+            const DeltaGrid grid = makeDeltaGrid(volume, {axis, 0, encoding, classes});
+            EXPECT_EQ(packed.visible(), grid.visible());
+            EXPECT_EQ(packed.deltas(), grid.deltas());
+            ASSERT_EQ(packed.slabs.size(), grid.slabs.size());
+            for (std::size_t i = 0; i < grid.slabs.size(); ++i) {
+                EXPECT_EQ(packed.slabs[i].whole, grid.slabs[i].whole);
+                EXPECT_EQ(packed.slabs[i].firstSlice, grid.slabs[i].firstSlice);
+            }
+        }
+    }
+}
+
+TEST(PackedDeltas, TakeTilesOfTheTree) {
+    Volume volume = test::makeVolume({{0, 0, 0}, {63, 63, 63}}, [](int x, int y, int z) {
+        return x < 32 ? 200 : (x + y + z) % 3 == 0 ? 90 : test::kInactive;
+    });
+    const auto pruned = std::make_shared<CodeTree>(std::in_place, volume.codes->tree);
+    pruned->tree.prune();
+    EXPECT_LT(pruned->tree.leafCount(), volume.codes->tree.leafCount());
+    const std::vector<Slot> classes = plainClasses();
+    for (int axis = 0; axis < 3; ++axis) {
+        const Classes expected = classesOf(volume, axis, classes);
+        Volume tiled = volume;
+        tiled.codes = pruned;
+        EXPECT_EQ(walk(packDeltas(tiled, {axis, Encoding::kChanges, classes, {}})), expected);
+    }
+}
+
+// Held voxels stay within the rule of their true ones, never change their visibility, and a key
+// slice holds nothing.
+TEST(PackedDeltas, HoldsAgainstTheTrueSlot) {
+    const Volume volume = test::randomVolume({{0, 0, 0}, {30, 20, 40}}, 5);
+    std::vector<Slot> classes = plainClasses();
+    for (Slot slot = 61; slot < kSlotCount; ++slot) classes[slot] = slot < 65536 ? slot : 1;
+    constexpr int kReach = 9;
+    const auto holds = [](Slot held, Slot slot) { return std::abs(held - slot) <= kReach; };
+    for (int axis = 0; axis < 3; ++axis) {
+        const Classes truth = classesOf(volume, axis, classes);
+        const PackedDeltas exact = packDeltas(volume, {axis, Encoding::kChanges, classes, {}});
+        const PackedDeltas held = packDeltas(volume, {axis, Encoding::kChanges, classes, holds});
+        EXPECT_LT(held.deltas(), exact.deltas());
+        EXPECT_EQ(held.visible(), exact.visible());
+        const Classes shown = walk(held);
+        ASSERT_EQ(shown.size(), truth.size());
+        int different = 0;
+        for (const auto& [place, found] : truth) {
+            const int distance = std::abs(int(shown.at(place)) - int(found));
+            EXPECT_LE(distance, kReach);
+            if (std::get<0>(place) % 8 == 0) {
+                EXPECT_EQ(distance, 0);
+            }
+            different += distance != 0;
+        }
+        EXPECT_GT(different, 0);
+    }
+}
+
+TEST(PackedDeltas, EmptyVolumeHasNoSlabs) {
+    Volume volume;
+    volume.codes = std::make_shared<CodeTree>();
+    const PackedDeltas packed = packDeltas(volume, {});
+    EXPECT_TRUE(packed.slabs.empty());
+    EXPECT_EQ(packed.visible(), 0u);
+}
+
+}  // namespace
+}  // namespace deltasplat
