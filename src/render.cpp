@@ -12,6 +12,7 @@
 #include "deltasplat/threads.h"
 #include "image/warp.h"
 #include "memory.h"
+#include "optics/hold_rule.h"
 #include "parallel.h"
 #include "splat/splatter.h"
 #include "stopwatch.h"
@@ -194,10 +195,14 @@ void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const F
     const double mergedSeconds = secondsSince(start);
     listener.report(0.95);
 
-    warp(rasterOf(merged, classes), planeFromPixel(planeView, layout), result.image);
+    const glm::dmat3 map = planeFromPixel(planeView, layout);
+    warp(rasterOf(merged, classes), map, result.image);
 
     RenderStats& stats = result.stats;
     stats.stamps = slabs.stamps();
+    const ErrorBound bound = errorBound(classes, options.tolerance);
+    stats.errorBoundColor = bound.color * warpGain(map);
+    stats.errorBoundAlpha = bound.alpha * warpGain(map);
     stats.resolution = resolution;
     stats.footprint = footprint.width;
     stats.renderSeconds = secondsSince(start);
@@ -233,7 +238,8 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
     const ClassTable classes = classify(volume, options.optics, view.sliceStepWorld);
     listener.report(0.05);
     const PackedDeltas deltas =
-        packDeltas(volume, {view.sliceAxis, encodingOf(options.method), classes.classOfSlot, {}});
+        packDeltas(volume, {view.sliceAxis, encodingOf(options.method), classes.classOfSlot,
+                            holdRule(volume, classes, options.tolerance)});
     listener.report(0.2);
 
     RenderStats& stats = result.stats;

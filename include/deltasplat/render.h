@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "deltasplat/delta/tolerance.h"
 #include "deltasplat/image/image.h"
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/optics/class_table.h"
@@ -32,7 +33,8 @@ struct RenderOptions {
     Optics optics;
     /// Footprint's standard deviation in voxels, kMinSigma..kMaxSigma; empty: defaultSigma.
     std::optional<double> sigma;
-    std::optional<int> resolution;      ///< sheet pixels a voxel; empty: chosen from the screen
+    std::optional<int> resolution;  ///< sheet pixels a voxel; empty: chosen from the screen
+    Tolerance tolerance;            ///< how far what is shown of a voxel may be from what is true
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for
 };
 
@@ -54,6 +56,10 @@ struct RenderStats {
     double compositeSeconds = 0;  ///< compositing and merging, likewise
     double warpSeconds = 0;
     double renderSeconds = 0;  ///< splat, composite, merge and warp
+    /// Most that a pixel may differ from the exact picture's, but for the rounding of floats
+    /// (docs/method.md): 0 without a tolerance, infinity where it is not known.
+    double errorBoundColor = 0;
+    double errorBoundAlpha = 0;
 };
 
 struct RenderResult {

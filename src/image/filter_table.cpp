@@ -42,6 +42,9 @@ FilterTable::FilterTable(double wantedStretch) {
             exact[tap] = catmullRom((firstTap(0) + tap - double(step) / steps) / stretch);
             sum += exact[tap];
         }
+        double magnitude = 0;
+        for (const double weight : exact) magnitude += std::abs(weight / sum);
+        gain_ = std::max(gain_, magnitude);
         for (int tap = 0; tap < taps_; ++tap) {
             const std::size_t place = std::size_t(step) * paddedTaps_ + tap;
             ownWeights_[place] = float(exact[tap] / sum);

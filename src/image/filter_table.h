@@ -21,6 +21,8 @@ class FilterView {
     const float* weights(std::uint32_t fraction) const {
         return &weights_[stepOf(fraction) * paddedTaps_];
     }
+    /// Most that the filter can enlarge a value: the largest sum of its weights' magnitudes.
+    double gain() const { return gain_; }
     /// Returns the same weights, each repeated for four channels.
     const float* wideWeights(std::uint32_t fraction) const {
         return &wide_[4 * stepOf(fraction) * paddedTaps_];
@@ -33,6 +35,7 @@ class FilterView {
 
     int taps_ = 0;
     int paddedTaps_ = 0;
+    double gain_ = 1;
     int shift_ = 0;                   // there are 2^(32 - shift_) steps
     const float* weights_ = nullptr;  // [steps + 1][paddedTaps_]
     const float* wide_ = nullptr;     // [steps + 1][paddedTaps_][4]

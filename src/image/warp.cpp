@@ -92,6 +92,7 @@ class Warper {
           filterX_(wideX_ ? *wideX_ : narrowest()),
           filterY_(wideY_ ? *wideY_ : narrowest()) {}
 
+    double gain() const { return filterX_.gain() * filterY_.gain(); }
     void run() {
         const int bands = (picture_.size.y + kBand - 1) / kBand;
         parallelFor(std::size_t(bands), [&](std::size_t band) { warpBand(int(band) * kBand); });
@@ -240,6 +241,12 @@ class Warper {
 
 void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, Image& picture) {
     if (raster.size.x > 0 && raster.size.y > 0) Warper(raster, rasterFromPixel, picture).run();
+}
+
+double warpGain(const glm::dmat3& rasterFromPixel) {
+    const Raster none;
+    Image picture;
+    return Warper(none, rasterFromPixel, picture).gain();
 }
 
 }  // namespace deltasplat

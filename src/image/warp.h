@@ -26,4 +26,7 @@ struct Raster {
 /// lattice positions
 void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, Image& picture);
 
+/// Returns the most that `warp` under the same map can enlarge a difference of rasters.
+double warpGain(const glm::dmat3& rasterFromPixel);
+
 }  // namespace deltasplat

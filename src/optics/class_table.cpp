@@ -97,7 +97,8 @@ class ColorRounder {
             color[c] =
                 std::int16_t(std::lround(exact[channel] / largest_[channel] * ClassTable::kMax));
         }
-        return color;
+        // What lets all light through shows nothing.
+        return color[3] == 0 ? ClassTable::Color{} : color;
     }
 
   private:

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "deltasplat/delta/tolerance.h"
+#include "deltasplat/optics/class_table.h"
+
+namespace deltasplat {
+
+/// Returns the rule by which a voxel may go on as what it was in the slice before
+/// (`PackOptions::holds`): with a relative tolerance t every classified channel of what is held is
+/// within t times that of the true one, with a tolerance of values the held value is within it of
+/// the true one. Empty if the tolerance is exact. Refers to `classes`.
+/// @throw Error(kUsage) if a tolerance is negative or not finite, or the relative one is not below 1
+std::function<bool(Slot held, Slot slot)> holdRule(const Volume& volume, const ClassTable& classes,
+                                                   const Tolerance& tolerance);
+
+/// Most that a picture under a tolerance may differ from the exact one, but for the rounding of
+/// floats; infinity where that is not known.
+struct ErrorBound {
+    double color = 0;  ///< of each colour channel, premultiplied
+    double alpha = 0;
+};
+
+/// Returns the bound that docs/method.md proves for a layer on the base plane: alpha t, colour 2 t
+/// times the brightest colour (t times it where all is of one colour).
+ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance);
+
+}  // namespace deltasplat
