@@ -9,6 +9,7 @@
 #include "interrupt.h"
 #include "listener.h"
 #include "lower_case.h"
+#include "render_input.h"
 #include "render_options.h"
 #include "render_stats.h"
 #include "stopwatch.h"
@@ -31,25 +32,11 @@ ImageFileOptions imageOptions(const RenderCommand& command, const RenderResult& 
         {"version", programVersion()},
         {"commandLine", session.commandLine},
         {"input", command.input.string()},
-        {"method", methodName(command.render.method)},
+        {"method", methodName(command.picture.render.method)},
         {"tolerance", "0"},
         {"errorBound", "color 0, alpha 0"},
     };
     return options;
-}
-
-// Everything from here on is reading; what can be refused without it has been.
-Volume readInput(const RenderCommand& command, RenderOptions& options, ProgressDisplay& display) {
-    const Listener listener = display.stage(0, kReadShare);
-    const bool ramp = command.transferFunction.empty();
-    if (!ramp)
-        options.optics.transferFunction = readTransferFunction(command.transferFunction, listener);
-    if (options.optics.range && (ramp || !options.optics.transferFunction.normalized))
-        display.warn("--range: has no effect without a normalized transfer function");
-
-    Volume volume = readVolume(command.input, command.read, listener);
-    if (ramp) options.optics.transferFunction = defaultRamp(volume);
-    return volume;
 }
 
 void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
@@ -57,24 +44,26 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     warnOfUnusedInputOptions(app, {command.input}, display);
     if (isGiven(app, "--bits") && lowerCase(command.output.extension().string()) != ".png")
         display.warn("--bits: has no effect without a .png picture");
-    if (isGiven(app, "--view") && isGiven(app, "--direction"))
-        display.warn("--view: has no effect with --direction");
+    warnOfUnusedCameraOptions(app, display);
 }
 
 void runRender(const CLI::App& app, const RenderCommand& command, const Session& session) {
     validate(command);
-    RenderOptions options = command.render;
+    const PictureOptions& picture = command.picture;
     RenderTimes times;
     RenderResult result;
     {
         ProgressDisplay display(session.common.quiet);
         warnOfUnusedOptions(app, command, display);
         const auto beginRead = std::chrono::steady_clock::now();
-        const Volume volume = readInput(command, options, display);
+        // Everything from here on is reading; what can be refused without it has been.
+        const Listener reading = display.stage(0, kReadShare);
+        RenderOptions options = readOptics(picture, reading);
+        const Volume volume = readToRender(command.input, picture, options, reading);
         times.read = secondsSince(beginRead);
 
         result = render(volume, options, display.stage(kReadShare, kRenderShare));
-        if (command.background) compositeOver(result.image, *command.background);
+        if (picture.background) compositeOver(result.image, *picture.background);
 
         const Listener writing = display.stage(kRenderShare, 1);
         writing.report(0);

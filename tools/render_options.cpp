@@ -33,11 +33,35 @@ std::string sizeText(const glm::ivec2& size) {
     return joinNumbers({double(size.x), double(size.y)}, "x");
 }
 
-void addCameraOptions(CLI::App& app, RenderCommand& command) {
-    CameraOptions& camera = command.render.camera;
+void addOutputOptions(CLI::App& app, RenderCommand& command) {
+    OptionGroup group(app, "Output");
+    group
+        .addValue("-o,--output", "FILE", command.output, anyText(),
+                  "Picture to write: .exr (scene-linear, premultiplied) or\n"
+                  ".png (sRGB)")
+        .required();
+    group.addFlag("--float", command.image.floatExr, "Store 32-bit floats in an .exr, not halves");
+    group.addValue("--bits", "8|16", command.image.bits, bits(),
+                   withDefault("Bits per channel of a .png", std::to_string(command.image.bits)));
+    group.addValue("--stats", "FILE", command.stats, anyText(),
+                   "JSON file to write: what was done, how long it took in seconds");
+}
+
+void addMethodOption(CLI::App& app, Method& chosen) {
+    OptionGroup group(app, "Splatting");
+    group.addValue("--method", "NAME", chosen, method(),
+                   withDefault("auto, delta, sparse or traditional: the same picture, bit for\n"
+                               "bit, in different times",
+                               methodName(chosen)));
+}
+
+}  // namespace
+
+void addCameraOptions(CLI::App& app, PictureOptions& options) {
+    CameraOptions& camera = options.render.camera;
     OptionGroup group(app, "Camera");
-    group.addValue("--projection", "ortho", command.projection, choice({"ortho"}),
-                   withDefault("Parallel lines of sight", command.projection));
+    group.addValue("--projection", "ortho", options.projection, choice({"ortho"}),
+                   withDefault("Parallel lines of sight", options.projection));
     group.addValue("--view", "NAME", camera.view, anyText(),
                    withDefault("Where the camera is, y up: front (+z) back (-z) right (+x)\n"
                                "left (-x) top (+y) bottom (-y) or iso (+x +y +z)",
@@ -65,12 +89,12 @@ void addCameraOptions(CLI::App& app, RenderCommand& command) {
                    withDefault("Width and height in pixels", sizeText(camera.sizePixels)));
 }
 
-void addOpticsOptions(CLI::App& app, RenderCommand& command) {
-    Optics& optics = command.render.optics;
+void addOpticsOptions(CLI::App& app, PictureOptions& options) {
+    Optics& optics = options.render.optics;
     OptionGroup group(app, "Optics");
-    group.addValue("--mode", "composite", command.mode, choice({"composite"}),
-                   withDefault("Emission and absorption, front to back", command.mode));
-    group.addValue("--tf", "FILE", command.transferFunction, anyText(),
+    group.addValue("--mode", "composite", options.mode, choice({"composite"}),
+                   withDefault("Emission and absorption, front to back", options.mode));
+    group.addValue("--tf", "FILE", options.transferFunction, anyText(),
                    "Transfer function, a ParaView JSON file (default: a grey ramp\n"
                    "over the 1st to 99th percentile of the values)");
     group.addValue("--range", "LO,HI", optics.range, interval(),
@@ -81,16 +105,12 @@ void addOpticsOptions(CLI::App& app, RenderCommand& command) {
                    "opacity (default: the smallest voxel size)");
     group.addValue("--extinction", "S", optics.extinctionScale, number(0),
                    withDefault("Scales the extinction", numberText(optics.extinctionScale)));
-    group.addValue("--background", "R,G,B[,A]", command.background, color(),
+    group.addValue("--background", "R,G,B[,A]", options.background, color(),
                    "Scene-linear colour behind the volume (default: transparent)");
 }
 
 void addSplattingOptions(CLI::App& app, RenderOptions& options) {
     OptionGroup group(app, "Splatting");
-    group.addValue("--method", "NAME", options.method, method(),
-                   withDefault("auto, delta, sparse or traditional: the same picture, bit for\n"
-                               "bit, in different times",
-                               methodName(options.method)));
     group.addValue("--sigma", "V", options.sigma, number(kMinSigma, kMaxSigma),
                    "Standard deviation of the footprint in voxels, " + numberText(kMinSigma) +
                        " to " + numberText(kMaxSigma) +
@@ -101,22 +121,6 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
                        " (default: chosen from the screen)");
 }
 
-void addOutputOptions(CLI::App& app, RenderCommand& command) {
-    OptionGroup group(app, "Output");
-    group
-        .addValue("-o,--output", "FILE", command.output, anyText(),
-                  "Picture to write: .exr (scene-linear, premultiplied) or\n"
-                  ".png (sRGB)")
-        .required();
-    group.addFlag("--float", command.image.floatExr, "Store 32-bit floats in an .exr, not halves");
-    group.addValue("--bits", "8|16", command.image.bits, bits(),
-                   withDefault("Bits per channel of a .png", std::to_string(command.image.bits)));
-    group.addValue("--stats", "FILE", command.stats, anyText(),
-                   "JSON file to write: what was done, how long it took in seconds");
-}
-
-}  // namespace
-
 void addRenderOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup arguments(app, "Arguments");
     arguments
@@ -124,18 +128,26 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
                   std::string("Volume to render: ") + kInputFormats)
         .required();
     addOutputOptions(app, command);
-    addCameraOptions(app, command);
-    addOpticsOptions(app, command);
-    addSplattingOptions(app, command.render);
-    addInputOptions(app, command.read);
+    addCameraOptions(app, command.picture);
+    addOpticsOptions(app, command.picture);
+    addMethodOption(app, command.picture.render.method);
+    addSplattingOptions(app, command.picture.render);
+    addInputOptions(app, command.picture.read);
+}
+
+void checkCamera(const CameraOptions& camera) {
+    // Any box will do to have the camera's own options checked.
+    makeCamera(camera, IndexBox{glm::ivec3(0), glm::ivec3(1)}, glm::dmat4(1));
+}
+
+void warnOfUnusedCameraOptions(const CLI::App& app, ProgressDisplay& display) {
+    if (isGiven(app, "--view") && isGiven(app, "--direction"))
+        display.warn("--view: has no effect with --direction");
 }
 
 void validate(const RenderCommand& command) {
-    checkImageFile(command.output, command.render.camera.sizePixels, command.image);
-
-    // Any box will do to have the camera's own options checked.
-    makeCamera(command.render.camera, IndexBox{glm::ivec3(0), glm::ivec3(1)}, glm::dmat4(1));
-
+    checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
+    checkCamera(command.picture.render.camera);
     checkStatsFile(command.stats, {command.input, command.output}, "the input and the picture");
 }
 

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_input.h"
+
+namespace deltasplat {
+
+RenderOptions readOptics(const PictureOptions& picture, const Listener& listener) {
+    RenderOptions options = picture.render;
+    const bool ramp = picture.transferFunction.empty();
+    if (!ramp)
+        options.optics.transferFunction = readTransferFunction(picture.transferFunction, listener);
+    if (options.optics.range && (ramp || !options.optics.transferFunction.normalized))
+        listener.warn("--range: has no effect without a normalized transfer function");
+    return options;
+}
+
+Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
+                    RenderOptions& options, const Listener& listener) {
+    Volume volume = readVolume(input, picture.read, listener);
+    if (picture.transferFunction.empty()) options.optics.transferFunction = defaultRamp(volume);
+    return volume;
+}
+
+}  // namespace deltasplat
