@@ -29,6 +29,16 @@ Parser<std::int64_t> bits() {
     };
 }
 
+// All of a value could not be held: what is left of it would be nothing.
+Parser<double> relativeTolerance() {
+    return [](const std::string& option, const std::string& text) {
+        const double value = number(0)(option, text);
+        if (value < 1) return value;
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(option, text, "a finite number of at least 0 and less than 1"));
+    };
+}
+
 std::string sizeText(const glm::ivec2& size) {
     return joinNumbers({double(size.x), double(size.y)}, "x");
 }
@@ -111,6 +121,13 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
 
 void addSplattingOptions(CLI::App& app, RenderOptions& options) {
     OptionGroup group(app, "Splatting");
+    group.addValue("--tolerance", "T", options.tolerance.relative, relativeTolerance(),
+                   withDefault("Stamp less: keep what a voxel was while it is within T times the\n"
+                               "true one, 0 <= T < 1; how far the picture may be off is proved",
+                               numberText(options.tolerance.relative)));
+    group.addValue("--tolerance-value", "V", options.tolerance.value, number(0),
+                   withDefault("The same within V data units, which bounds no picture",
+                               numberText(options.tolerance.value)));
     group.addValue("--sigma", "V", options.sigma, number(kMinSigma, kMaxSigma),
                    "Standard deviation of the footprint in voxels, " + numberText(kMinSigma) +
                        " to " + numberText(kMaxSigma) +
