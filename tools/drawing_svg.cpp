@@ -24,26 +24,6 @@ std::string colorText(const Rgb& color) {
     return text;
 }
 
-std::string escaped(const std::string& text) {
-    std::u32string result;
-    for (const char32_t point : codePoints(text)) {
-        switch (point) {
-            case U'&':
-                result += U"&amp;";
-                break;
-            case U'<':
-                result += U"&lt;";
-                break;
-            case U'>':
-                result += U"&gt;";
-                break;
-            default:
-                result += point;
-        }
-    }
-    return utf8(result);
-}
-
 // Steps are mostly level and upright, which SVG says with one number.
 std::string pathText(const std::vector<glm::dvec2>& points) {
     std::string path;
@@ -89,7 +69,7 @@ std::string itemText(const Label& label) {
     if (label.anchor == Label::Anchor::kEnd) text += " text-anchor=\"end\"";
     if (label.bold) text += " font-weight=\"bold\"";
     if (label.upwards) text += " transform=\"rotate(-90 " + x + " " + y + ")\"";
-    return text + ">" + escaped(label.text) + "</text>";
+    return text + ">" + markupText(label.text) + "</text>";
 }
 
 }  // namespace

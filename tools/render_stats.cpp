@@ -4,20 +4,13 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "axis_name.h"
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
 #include "json_text.h"
 #include "peak_bytes.h"
 
 namespace deltasplat {
-namespace {
-
-std::string axisName(int axis) {
-    return std::string(1, char('x' + axis));
-}
-
-}  // namespace
-
 std::string statsJson(const RenderStats& stats, const RenderTimes& times) {
     const nlohmann::ordered_json seconds = {
         {"read", times.read},

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "nice_step.h"
 #include "number_text.h"
 #include "stroke_font.h"
 #include "utf8_text.h"
@@ -59,15 +60,6 @@ Curves curvesOf(const std::vector<SliceCounts>& columns, const IndexBox& box, in
         curves.changedShare += double(columns[i].deltas) / voxels;
     }
     return curves;
-}
-
-// The largest of 1, 2 and 5 times a power of ten that divides `span` at least `parts` times.
-double niceStep(double span, int parts) {
-    const double power = std::pow(10.0, std::floor(std::log10(span / parts)));
-    for (const double factor : {5.0, 2.0}) {
-        if (span / (factor * power) >= parts) return factor * power;
-    }
-    return power;
 }
 
 std::string formatted(const char* format, double value) {

@@ -53,4 +53,24 @@ std::string utf8(std::u32string_view points) {
     return text;
 }
 
+std::string markupText(std::string_view text) {
+    std::u32string result;
+    for (const char32_t point : codePoints(text)) {
+        switch (point) {
+            case U'&':
+                result += U"&amp;";
+                break;
+            case U'<':
+                result += U"&lt;";
+                break;
+            case U'>':
+                result += U"&gt;";
+                break;
+            default:
+                result += point;
+        }
+    }
+    return utf8(result);
+}
+
 }  // namespace deltasplat

@@ -22,14 +22,18 @@ std::string programVersion() {
     return DELTASPLAT_VERSION;
 }
 
+std::vector<std::pair<std::string, std::string>> libraryVersions() {
+    return {{"OpenVDB", openvdb::getLibraryVersionString()},
+            {"OpenImageIO", dotted(OIIO::openimageio_version())},
+            {"TBB", TBB_runtime_version()}};
+}
+
 std::string versionText() {
+    std::string text = "deltasplat " + programVersion() + "\n";
+    for (const auto& [library, version] : libraryVersions()) text += library + " " + version + "\n";
     std::string levels;
     for (const std::string& level : simdLevels()) levels += (levels.empty() ? "" : ", ") + level;
-    return "deltasplat " + programVersion() + "\n" +                      //
-           "OpenVDB " + openvdb::getLibraryVersionString() + "\n" +       //
-           "OpenImageIO " + dotted(OIIO::openimageio_version()) + "\n" +  //
-           "TBB " + TBB_runtime_version() + "\n" +                        //
-           "SIMD level " + simdLevel() + " (of " + levels + ")";
+    return text + "SIMD level " + simdLevel() + " (of " + levels + ")";
 }
 
 }  // namespace deltasplat
