@@ -4,6 +4,6 @@
 
 int main(int argc, char** argv) {
     using namespace deltasplat;
-    return runProgram({argv, argv + argc},
-                      {addInfo, addConvert, addDelta, addRestore, addDiff, addRender, addSynth});
+    return runProgram({argv, argv + argc}, {addInfo, addConvert, addDelta, addRestore, addDiff,
+                                            addRender, addBench, addSynth});
 }

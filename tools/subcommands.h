@@ -5,6 +5,7 @@
 
 namespace deltasplat {
 
+Subcommand addBench(CLI::App& program);
 Subcommand addConvert(CLI::App& program);
 Subcommand addDelta(CLI::App& program);
 Subcommand addDiff(CLI::App& program);

@@ -1,7 +1,8 @@
 # Defines deltasplat_cli_test(NAME ARGS arguments... [EXIT code] [STDERR "text" | STDERR_MATCHES
 # "regex"] [STDOUT_MATCHES "regex"] [CREATES files...]): runs the program in a folder that holds the
 # fixtures and checks its exit code, the whole of standard error (lines of progress aside) and which
-# files are new. Included first, by its name's place in the alphabet.
+# files are new. Included first, by its name's place in the alphabet or by who comes before it.
+include_guard()
 set(DELTASPLAT_CASE ${CMAKE_CURRENT_LIST_DIR}/scripts/case.sh)
 set(DELTASPLAT_CASE_FILES ${CMAKE_CURRENT_LIST_DIR}/data)
 set(DELTASPLAT_FIXTURES ${CMAKE_CURRENT_BINARY_DIR}/cli/fixtures)

@@ -7,7 +7,7 @@ function(deltasplat_refusal name message)
                         ARGS render cube_8x8x8_uint8.raw -o out.exr ${ARGN})
 endfunction()
 
-deltasplat_cli_test(help ARGS --help STDOUT_MATCHES "Subcommands:.*info.*convert.*delta.*restore.*diff.*render.*synth")
+deltasplat_cli_test(help ARGS --help STDOUT_MATCHES "Subcommands:.*info.*convert.*delta.*restore.*diff.*render.*bench.*synth")
 deltasplat_cli_test(help_short ARGS -h STDOUT_MATCHES "Usage: deltasplat")
 deltasplat_cli_test(help_info ARGS info --help
     STDOUT_MATCHES "--level-set.*default keep.*Examples:.*deltasplat info.*deltasplat info")
@@ -20,11 +20,11 @@ deltasplat_cli_test(version ARGS --version
 deltasplat_cli_test(version_of_subcommand ARGS render --version STDOUT_MATCHES "OpenVDB")
 
 deltasplat_cli_test(usage.no_subcommand EXIT 2 ARGS -q
-    STDERR "deltasplat: subcommand: got nothing; expected info, convert, delta, restore, diff, render or synth (see 'deltasplat --help')")
+    STDERR "deltasplat: subcommand: got nothing; expected info, convert, delta, restore, diff, render, bench or synth (see 'deltasplat --help')")
 deltasplat_cli_test(usage.unknown_subcommand EXIT 2 ARGS rendr ${cube} -o out.exr
-    STDERR "deltasplat: Unknown subcommand 'rendr'. Did you mean 'render'? Expected info, convert, delta, restore, diff, render or synth")
+    STDERR "deltasplat: Unknown subcommand 'rendr'. Did you mean 'render'? Expected info, convert, delta, restore, diff, render, bench or synth")
 deltasplat_cli_test(usage.unlike_any_subcommand EXIT 2 ARGS compress
-    STDERR "deltasplat: Unknown subcommand 'compress'. Expected info, convert, delta, restore, diff, render or synth")
+    STDERR "deltasplat: Unknown subcommand 'compress'. Expected info, convert, delta, restore, diff, render, bench or synth")
 deltasplat_cli_test(usage.unknown_option_before EXIT 2 ARGS --verbos info ${cube}
     STDERR "deltasplat: Unknown option '--verbos'. Did you mean '--verbose'?")
 deltasplat_refusal(unknown_option "Unknown option '--sise'. Did you mean '--size'?" --sise 8x8)
@@ -60,6 +60,15 @@ foreach(sigma nan inf 0.1 5 1,0 0.4x 1e)
     deltasplat_refusal(sigma_${sigma}
         "--sigma: got ${sigma}; expected a finite number from 0.2 to 4" --sigma ${sigma})
 endforeach()
+foreach(tolerance 1 1.5)
+    deltasplat_refusal(tolerance_${tolerance}
+        "--tolerance: got ${tolerance}; expected a finite number of at least 0 and less than 1"
+        --tolerance ${tolerance})
+endforeach()
+deltasplat_refusal(tolerance_below_0
+    "--tolerance: got -0.1; expected a finite number of at least 0" --tolerance -0.1)
+deltasplat_refusal(tolerance_value
+    "--tolerance-value: got -1; expected a finite number of at least 0" --tolerance-value -1)
 foreach(resolution 0 17 1.5 -1)
     deltasplat_refusal(resolution_${resolution}
         "--resolution: got ${resolution}; expected a whole number from 1 to 16"

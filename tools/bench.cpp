@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <memory>
+
+#include "bench_page_file.h"
+#include "bench_report.h"
+#include "bench_words.h"
+#include "deltasplat/error.h"
+#include "input_options.h"
+#include "listener.h"
+#include "number_text.h"
+#include "render_input.h"
+#include "render_options.h"
+#include "subcommands.h"
+
+namespace deltasplat {
+namespace {
+
+// Share of a volume's progress that reading takes.
+constexpr double kReadShare = 0.1;
+
+struct BenchCommand {
+    std::vector<std::string> inputs;
+    int repeats = 7;
+    bool json = false;
+    std::filesystem::path report;  // empty: none
+    PictureOptions picture;
+};
+
+// What has been measured, and what could not be: the rest is told all the same.
+struct Findings {
+    BenchReport report;
+    std::vector<Error> failures;
+};
+
+void addBenchOptions(CLI::App& app, BenchCommand& command) {
+    app.add_option("INPUT", command.inputs, std::string("Volumes to render: ") + kInputFormats)
+        ->type_name("FILE")
+        ->required()
+        ->group("Arguments");
+    OptionGroup group(app, "Measuring");
+    group.addValue("--repeats", "N", command.repeats, wholeNumber(1, 100000),
+                   withDefault("Rounds that count, after one to warm up; in each round each\n"
+                               "method makes one picture",
+                               std::to_string(command.repeats)));
+    OptionGroup output(app, "Output");
+    output.addFlag("--json", command.json, "Print one JSON object, times in seconds");
+    output.addValue("--report", "DIR", command.report, anyText(),
+                    "Folder to write index.html to, a page of pictures, bars and\n"
+                    "tables that needs nothing else; made if it does not exist");
+    addCameraOptions(app, command.picture);
+    addOpticsOptions(app, command.picture);
+    addSplattingOptions(app, command.picture.render);
+    addInputOptions(app, command.picture.read);
+}
+
+void warnOfUnusedOptions(const CLI::App& app, const BenchCommand& command,
+                         ProgressDisplay& display) {
+    warnOfUnusedInputOptions(app, {command.inputs.begin(), command.inputs.end()}, display);
+    warnOfUnusedCameraOptions(app, display);
+    if (isGiven(app, "--background") && command.report.empty())
+        display.warn("--background: has no effect without --report");
+}
+
+void measure(const std::string& input, const BenchCommand& command, RenderOptions options,
+             ProgressDisplay& display, double begin, double end, Findings& found) {
+    const double read = begin + (end - begin) * kReadShare;
+    try {
+        const Volume volume =
+            readToRender(input, command.picture, options, display.stage(begin, read));
+        found.report.entries.push_back(
+            {input, command.picture.mode,
+             measureMethods(volume, options, command.repeats, display.stage(read, end))});
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::kInterrupted) throw;
+        found.failures.push_back(error);
+    }
+}
+
+Findings measureAll(const CLI::App& app, const BenchCommand& command, const Session& session) {
+    Findings found;
+    found.report.machine = thisMachine();
+    found.report.commandLine = session.commandLine;
+    ProgressDisplay display(session.common.quiet);
+    warnOfUnusedOptions(app, command, display);
+    const RenderOptions options = readOptics(command.picture, display.stage(0, 0));
+    const double count = double(command.inputs.size());
+    double done = 0;
+    for (const std::string& input : command.inputs) {
+        measure(input, command, options, display, done / count, (done + 1) / count, found);
+        ++done;
+    }
+    return found;
+}
+
+// All methods promise the same pixels, so that a difference is a failure of the program.
+void addDifferences(Findings& found) {
+    for (const BenchEntry& entry : found.report.entries) {
+        if (entry.run.identical) continue;
+        found.failures.emplace_back(
+            ErrorCode::kFailed,
+            gotExpected(entry.input,
+                        "pixels that differ by up to " + numberText(entry.run.maxDifference) +
+                            " between methods",
+                        "the same bits from all methods in all rounds"));
+    }
+}
+
+void runBench(const CLI::App& app, const BenchCommand& command, const Session& session) {
+    checkCamera(command.picture.render.camera);
+    if (!command.report.empty())
+        checkPageFolder(command.report, command.picture.render.camera.sizePixels);
+    Findings found = measureAll(app, command, session);
+    if (!found.report.entries.empty()) {
+        printOut(command.json ? jsonText(found.report) : plainText(found.report));
+        if (!command.report.empty())
+            writePage(command.report, pageText(found.report, command.picture.background));
+    }
+    addDifferences(found);
+    if (found.failures.empty()) return;
+    // The last one ends the program, which shows it as it shows every error.
+    for (std::size_t i = 0; i + 1 < found.failures.size(); ++i) showError(found.failures[i].what());
+    throw found.failures.back();
+}
+
+}  // namespace
+
+Subcommand addBench(CLI::App& program) {
+    const auto command = std::make_shared<BenchCommand>();
+    CLI::App& app =
+        addSubcommand(program, "bench", "Measures the four methods side by side on volumes.",
+                      {"deltasplat bench smoke.vdb --view iso --threads 1 --report out",
+                       "deltasplat bench engine_256x256x128_uint8.raw.gz head.vdb --tf ct.json "
+                       "--repeats 9 --json"});
+    addBenchOptions(app, *command);
+    return {&app, [&app, command](const Session& session) { runBench(app, *command, session); }};
+}
+
+}  // namespace deltasplat
