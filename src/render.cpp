@@ -244,6 +244,7 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
 
     RenderStats& stats = result.stats;
     stats.method = options.method;
+    stats.tolerance = options.tolerance;
     stats.voxels = std::uint64_t(volume.box.voxels());
     stats.visible = deltas.visible();
     stats.deltas = deltas.deltas();

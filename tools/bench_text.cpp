@@ -3,6 +3,7 @@
 
 #include "bench_report.h"
 #include "bench_words.h"
+#include "render_stats.h"
 
 namespace deltasplat {
 namespace {

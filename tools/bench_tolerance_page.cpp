@@ -6,6 +6,7 @@
 #include "bench_words.h"
 #include "heat_map.h"
 #include "picture_data.h"
+#include "render_stats.h"
 
 namespace deltasplat {
 namespace {

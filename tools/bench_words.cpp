@@ -93,12 +93,4 @@ std::string identityText(const BenchRun& run) {
     return "DIFFERENT by up to " + errorText(run.maxDifference) + ": " + compared;
 }
 
-std::string toleranceText(const Tolerance& tolerance) {
-    std::string text;
-    if (tolerance.relative > 0) text = numberText(tolerance.relative) + " of the value";
-    if (tolerance.value > 0)
-        text += (text.empty() ? "" : " and ") + numberText(tolerance.value) + " data units";
-    return text;
-}
-
 }  // namespace deltasplat

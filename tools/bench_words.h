@@ -36,7 +36,4 @@ std::string pictureText(const BenchEntry& entry);
 /// Returns whether all pixels are the same, and if not, how far apart they are.
 std::string identityText(const BenchRun& run);
 
-/// Returns "0.01", "2 data units" or both.
-std::string toleranceText(const Tolerance& tolerance);
-
 }  // namespace deltasplat

@@ -33,10 +33,17 @@ ImageFileOptions imageOptions(const RenderCommand& command, const RenderResult& 
         {"commandLine", session.commandLine},
         {"input", command.input.string()},
         {"method", methodName(command.picture.render.method)},
-        {"tolerance", "0"},
-        {"errorBound", "color 0, alpha 0"},
+        {"tolerance", toleranceText(result.stats.tolerance)},
+        {"errorBound", errorBoundText(result.stats)},
     };
     return options;
+}
+
+// A tolerance is a promise: what it comes to is said.
+void showErrorBound(const RenderStats& stats) {
+    const std::string line = "tolerance " + toleranceText(stats.tolerance) +
+                             ": largest error of a pixel: " + errorBoundText(stats) + "\n";
+    std::fputs(line.c_str(), stderr);
 }
 
 void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
@@ -75,6 +82,7 @@ void runRender(const CLI::App& app, const RenderCommand& command, const Session&
             writeFileAtomically(command.stats, statsJson(result.stats, times));
         writing.report(1);
     }
+    if (!result.stats.tolerance.isExact() && !session.common.quiet) showErrorBound(result.stats);
     if (session.common.verbose) std::fputs(statsSummary(result.stats, times).c_str(), stderr);
 }
 

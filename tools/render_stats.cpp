@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_stats.h"
 
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -8,9 +9,19 @@
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
 #include "json_text.h"
+#include "number_text.h"
 #include "peak_bytes.h"
 
 namespace deltasplat {
+namespace {
+
+// What is not known is null.
+nlohmann::ordered_json boundJson(double bound) {
+    return std::isinf(bound) ? nlohmann::ordered_json() : nlohmann::ordered_json(bound);
+}
+
+}  // namespace
+
 std::string statsJson(const RenderStats& stats, const RenderTimes& times) {
     const nlohmann::ordered_json seconds = {
         {"read", times.read},
@@ -38,9 +49,27 @@ std::string statsJson(const RenderStats& stats, const RenderTimes& times) {
         {"peak_bytes", peakBytes()},
         {"threads", threadCount()},
         {"simd", simdLevel()},
-        {"tolerance", 0},
-        {"error_bound", {{"color", 0}, {"alpha", 0}}},
+        {"tolerance", stats.tolerance.relative},
+        {"tolerance_value", stats.tolerance.value},
+        {"error_bound",
+         {{"color", boundJson(stats.errorBoundColor)},
+          {"alpha", boundJson(stats.errorBoundAlpha)}}},
     });
+}
+
+std::string toleranceText(const Tolerance& tolerance) {
+    if (tolerance.isExact()) return "0";
+    std::string text;
+    if (tolerance.relative > 0) text = numberText(tolerance.relative) + " of the colour";
+    if (tolerance.value > 0)
+        text += (text.empty() ? "" : " and ") + numberText(tolerance.value) + " data units";
+    return text;
+}
+
+std::string errorBoundText(const RenderStats& stats) {
+    if (std::isinf(stats.errorBoundColor)) return "unknown";
+    return "color " + numberText(stats.errorBoundColor) + ", alpha " +
+           numberText(stats.errorBoundAlpha);
 }
 
 std::string statsSummary(const RenderStats& stats, const RenderTimes& times) {

@@ -17,6 +17,13 @@ struct RenderTimes {
 /// Returns the JSON object of `render --stats`.
 std::string statsJson(const RenderStats& stats, const RenderTimes& times);
 
+/// Returns "0.02 of the colour and 2 data units", or "0" where nothing is tolerated.
+std::string toleranceText(const Tolerance& tolerance);
+
+/// Returns how far the picture may be from the exact one: "color 0.0625, alpha 0.03125", or
+/// "unknown".
+std::string errorBoundText(const RenderStats& stats);
+
 /// Returns a few lines for people.
 std::string statsSummary(const RenderStats& stats, const RenderTimes& times);
 

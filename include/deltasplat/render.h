@@ -56,6 +56,7 @@ struct RenderStats {
     double compositeSeconds = 0;  ///< compositing and merging, likewise
     double warpSeconds = 0;
     double renderSeconds = 0;  ///< splat, composite, merge and warp
+    Tolerance tolerance;
     /// Most that a pixel may differ from the exact picture's, but for the rounding of floats
     /// (docs/method.md): 0 without a tolerance, infinity where it is not known.
     double errorBoundColor = 0;

@@ -29,7 +29,7 @@ deltasplat_cli_test(bench.options ARGS bench ${cube} ${quick} --threads 1 --view
     STDOUT_MATCHES "16 x 16 pixels, composite, 1 thread; 8 slices along x .*, 2 sheet pixels a voxel")
 deltasplat_cli_test(bench.tolerance ARGS bench ${cube} ${quick} --tolerance 0.1 --tolerance-value 2
     STDOUT_MATCHES "bit for bit.*
-  tolerance 0.1 of the value and 2 data units: [0-9]+ deltas, exactly [0-9]+
+  tolerance 0.1 of the colour and 2 data units: [0-9]+ deltas, exactly [0-9]+
   error bound: +colour .*, alpha .*
   error measured: colour [0-9].*, alpha [0-9]")
 deltasplat_cli_test(bench.empty ARGS bench empty.vdb ${quick}

@@ -32,5 +32,13 @@ deltasplat_cli_test(output.fine.stats CREATES out.exr stats.json
     ARGS render ball.vdb -o out.exr --float --stats stats.json --background 0.1,0.2,0.3,0.5)
 deltasplat_cli_test(output.fine.verbose CREATES out.exr ARGS render ball.vdb -o out.exr -v
     STDERR_MATCHES "method auto: .* stamps.*slices along z.*seconds: read .*")
+# A tolerance says what it may do to the picture.
+deltasplat_cli_test(output.tolerance CREATES out.exr ARGS render ${cube} -o out.exr --tolerance 0.02
+    STDERR_MATCHES "tolerance 0.02 of the colour: largest error of a pixel: color 0.0[0-9]*, alpha 0.031[0-9]*")
+deltasplat_cli_test(output.tolerance_value CREATES out.exr
+    ARGS render ${cube} -o out.exr --tolerance-value 2
+    STDERR "tolerance 2 data units: largest error of a pixel: unknown")
+deltasplat_cli_test(output.tolerance_quiet CREATES out.exr
+    ARGS render ${cube} -o out.exr --tolerance 0.02 -q)
 deltasplat_cli_test(output.fine.synth ARGS synth slab out.vdb CREATES out.vdb)
 deltasplat_cli_test(output.json ARGS info ball.vdb --json -q STDOUT_MATCHES "\"comparability\": 0")

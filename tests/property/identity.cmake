@@ -1,1 +1,2 @@
 deltasplat_test(property/identity_test.cpp)
+deltasplat_test(property/tolerance_test.cpp)

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "../tools/bench_words.h"
+#include "../tools/render_stats.h"
 #include "support/make_volume.h"
 
 namespace deltasplat {
@@ -132,8 +133,9 @@ TEST(BenchWords, AreExactAboutNumbers) {
     EXPECT_EQ(errorText(std::numeric_limits<double>::infinity()), "none known");
     EXPECT_EQ(groupedText(999), "999");
     EXPECT_EQ(groupedText(1234567), "1\u202f234\u202f567");
-    EXPECT_EQ(toleranceText({0.5, 2}), "0.5 of the value and 2 data units");
+    EXPECT_EQ(toleranceText({0.5, 2}), "0.5 of the colour and 2 data units");
     EXPECT_EQ(toleranceText({0, 2}), "2 data units");
+    EXPECT_EQ(toleranceText({}), "0");
 }
 
 TEST(BenchWords, SayWhenPixelsDiffer) {
