@@ -40,6 +40,14 @@ void forEachRun(std::span<const std::uint64_t> words, const Emit& emit) {
 }  // namespace
 
 void Compositor::composite(const Sheet& sheet, const SheetShift& shift, Layer& layer) {
+    const OverWeights weights(glm::vec2(shift.fraction), scale_, layer.channels, frontToBack_);
+    findSpans(sheet, shift, weights.straight(), layer);
+    overSpans(spans_, weights);
+}
+
+// Finds the runs of pixels that the sheet reaches.
+void Compositor::findSpans(const Sheet& sheet, const SheetShift& shift, bool straight,
+                           Layer& layer) {
     words_ = (sheet.fullRows(0).size() + 63) / 64;
     rows_.assign((kTilePixels + 1) * words_, 0);
     either_.resize(words_);
@@ -48,15 +56,14 @@ void Compositor::composite(const Sheet& sheet, const SheetShift& shift, Layer& l
     for (int tileRow = 0; tileRow < sheet.layout().tiles().y; ++tileRow) {
         const bool any = findRows(sheet, tileRow);
         // The row before reads into the first one as well.
-        const int first = kTilePixels * tileRow;
-        if (any || anyBefore) addSpans(sheet, shift, first - 1, 0, layer);
-        for (int y = 0; any && y + 1 < kTilePixels; ++y) {
-            addSpans(sheet, shift, first + y, std::size_t(y) + 1, layer);
+        const int first = kTilePixels * tileRow - 1;
+        if (any || anyBefore) {
+            for (int y = 0; y < (any ? kTilePixels : 1); ++y)
+                addSpans(sheet, shift, first + y, std::size_t(y), straight, layer);
         }
         std::copy_n(&rows_[kTilePixels * words_], words_, rows_.begin());
         anyBefore = any;
     }
-    overSpans(spans_, OverWeights(glm::vec2(shift.fraction), scale_, layer.channels, frontToBack_));
 }
 
 // Turns bytes of eight rows into words of 64 tiles.
@@ -78,19 +85,20 @@ bool Compositor::findRows(const Sheet& sheet, int tileRow) {
 }
 
 // Adds what row y of the sheet reaches: `row` of rows_ says where it is full, the next one where
-// the row behind it is.
+// the row behind it is. Read straight, it reaches no more than itself.
 void Compositor::addSpans(const Sheet& sheet, const SheetShift& shift, int y, std::size_t row,
-                          Layer& layer) {
+                          bool straight, Layer& layer) {
     std::uint64_t any = 0;
     for (std::size_t i = 0; i < words_; ++i) {
-        either_[i] = rows_[row * words_ + i] | rows_[(row + 1) * words_ + i];
+        either_[i] = rows_[row * words_ + i];
+        if (!straight) either_[i] |= rows_[(row + 1) * words_ + i];
         any |= either_[i];
     }
     if (any == 0) return;
     const int channels = sheet.layout().channels;
     forEachRun(either_, [&](int firstTile, int lastTile) {
         // The pixel before the first one reads into it as well.
-        const int first = kTilePixels * firstTile - 1;
+        const int first = kTilePixels * firstTile - (straight ? 0 : 1);
         const int last = kTilePixels * lastTile;
         const glm::ivec2 b = glm::ivec2(first, y) - shift.offset;
         layer.extend(b.y, b.x, b.x + last - first);

@@ -26,9 +26,10 @@ class Compositor {
     void composite(const Sheet& sheet, const SheetShift& shift, Layer& layer);
 
   private:
+    void findSpans(const Sheet& sheet, const SheetShift& shift, bool straight, Layer& layer);
     bool findRows(const Sheet& sheet, int tileRow);
     void addSpans(const Sheet& sheet, const SheetShift& shift, int y, std::size_t row,
-                  Layer& layer);
+                  bool straight, Layer& layer);
 
     glm::vec4 scale_;
     bool frontToBack_;

@@ -12,7 +12,8 @@ namespace deltasplat {
 /// (`PackOptions::holds`): with a relative tolerance t every classified channel of what is held is
 /// within t times that of the true one, with a tolerance of values the held value is within it of
 /// the true one. Empty if the tolerance is exact. Refers to `classes`.
-/// @throw Error(kUsage) if a tolerance is negative or not finite, or the relative one is not below 1
+/// @throw Error(kUsage) if a tolerance is negative or not finite, or the relative one is not below
+/// 1
 std::function<bool(Slot held, Slot slot)> holdRule(const Volume& volume, const ClassTable& classes,
                                                    const Tolerance& tolerance);
 

@@ -79,8 +79,11 @@ void Sheet::settle() {
     refillTouched(
         [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
             for (int column = 0; column < layout_.tiles().x; ++column) {
-                if (touched[column] == 0) continue;
-                full[column] = findFullRows(tile(row, column), pitch(), layout_.channels);
+                const std::uint8_t rows = touched[column];
+                if (rows == 0) continue;
+                full[column] =
+                    std::uint8_t((full[column] & ~rows) |
+                                 findFullRows(tile(row, column), pitch(), layout_.channels, rows));
             }
         });
 }

@@ -177,13 +177,13 @@ class StampKernel : public Splatter::Kernel {
 
     void clear() override {
         sheet_.clear();
-        std::fill(shown_.begin(), shown_.end(), ClassTable::Color{});
+        std::fill(shown_.begin(), shown_.end(), ClassIndex{kEmptySlot});
     }
 
     StampWeights weights_;
     std::array<std::uint32_t, 64>
-        placeInBlock_;                      // of a voxel's footprint, from its block's first one
-    std::vector<ClassTable::Color> shown_;  // [block][64], of slabs that are not whole
+        placeInBlock_;               // of a voxel's footprint, from its block's first one
+    std::vector<ClassIndex> shown_;  // [block][64], of slabs that are not whole
     StampList list_;
 };
 

@@ -101,29 +101,33 @@ void listWholeKernel(const BlockSlice& slice, const ClassTable::Color* HWY_RESTR
 }
 
 void listChangesKernel(const BlockSlice& slice, const ClassTable::Color* HWY_RESTRICT colors,
-                       ClassTable::Color* HWY_RESTRICT shown, StampList& stamps) {
+                       std::uint16_t* HWY_RESTRICT shown, StampList& stamps) {
     std::size_t count = stamps.count;
     forActive(slice.active, [&](int n) {
-        const ClassTable::Color& after = colors[slice.classes[n]];
+        const auto before = loadColor(colors[shown[n]]);
+        shown[n] = slice.classes[n];
         stamps.places[count] = slice.place + slice.placeInBlock[n];
-        hn::Store(hn::Sub(loadColor(after), loadColor(shown[n])), ColorTag(),
+        hn::Store(hn::Sub(loadColor(colors[shown[n]]), before), ColorTag(),
                   stamps.colors[count].data());
-        shown[n] = after;
         ++count;
     });
     stamps.count = count;
 }
 
 std::uint8_t findFullRowsKernel(const std::int32_t* HWY_RESTRICT tile, std::size_t pitch,
-                                int channels) {
+                                int channels, std::uint8_t rows) {
     const hn::CappedTag<std::int32_t, 8> tag;
+    const std::size_t length = std::size_t{kTilePixels} * channels;
     unsigned full = 0;
-    for (int y = 0; y < kTilePixels; ++y, tile += pitch) {
-        auto any = hn::Zero(tag);
-        for (std::size_t x = 0; x < std::size_t{kTilePixels} * channels; x += hn::Lanes(tag)) {
-            any = hn::Or(any, hn::LoadU(tag, tile + x));
+    for (unsigned rest = rows; rest != 0; rest &= rest - 1) {
+        const int y = std::countr_zero(rest);
+        bool any = false;
+        // Most rows are full, and their first vector shows it.
+        for (std::size_t x = 0; x < length && !any; x += hn::Lanes(tag)) {
+            const auto values = hn::LoadU(tag, tile + y * pitch + x);
+            any = !hn::AllTrue(tag, hn::Eq(values, hn::Zero(tag)));
         }
-        full |= unsigned{!hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)))} << y;
+        full |= unsigned{any} << y;
     }
     return std::uint8_t(full);
 }
@@ -156,7 +160,7 @@ void listWhole(const BlockSlice& slice, const ClassTable::Color* colors, StampLi
     HWY_DYNAMIC_DISPATCH(listWholeKernel)(slice, colors, stamps);
 }
 
-void listChanges(const BlockSlice& slice, const ClassTable::Color* colors, ClassTable::Color* shown,
+void listChanges(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
                  StampList& stamps) {
     HWY_DYNAMIC_DISPATCH(listChangesKernel)(slice, colors, shown, stamps);
 }
@@ -167,8 +171,9 @@ void addStamps(std::int32_t* sheet, std::size_t pitch, const StampWeights& weigh
     stamps.count = 0;
 }
 
-std::uint8_t findFullRows(const std::int32_t* tile, std::size_t pitch, int channels) {
-    return HWY_DYNAMIC_DISPATCH(findFullRowsKernel)(tile, pitch, channels);
+std::uint8_t findFullRows(const std::int32_t* tile, std::size_t pitch, int channels,
+                          std::uint8_t rows) {
+    return HWY_DYNAMIC_DISPATCH(findFullRowsKernel)(tile, pitch, channels, rows);
 }
 
 }  // namespace deltasplat

@@ -45,9 +45,9 @@ struct BlockSlice {
 /// @param colors  of the class table
 void listWhole(const BlockSlice& slice, const ClassTable::Color* colors, StampList& stamps);
 
-/// Lists a stamp for every active voxel, in the difference between the colour of its class and what
-/// it showed before ([64]), which is replaced.
-void listChanges(const BlockSlice& slice, const ClassTable::Color* colors, ClassTable::Color* shown,
+/// Lists a stamp for every active voxel, in the difference between the colour of its class and that
+/// of the class it showed before ([64]), which is replaced.
+void listChanges(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
                  StampList& stamps);
 
 /// Adds every stamp of the list to the sheet: sheet += colour * weight, in 32-bit integers, so that
@@ -57,7 +57,9 @@ void listChanges(const BlockSlice& slice, const ClassTable::Color* colors, Class
 void addStamps(std::int32_t* sheet, std::size_t pitch, const StampWeights& weights,
                StampList& stamps);
 
-/// Returns which rows of a tile are not all zero, bit y for row y; rows are `pitch` integers apart.
-std::uint8_t findFullRows(const std::int32_t* tile, std::size_t pitch, int channels);
+/// Returns which of the rows of a tile that `rows` has bits for are not all zero, bit y for row y.
+/// Rows are `pitch` integers apart.
+std::uint8_t findFullRows(const std::int32_t* tile, std::size_t pitch, int channels,
+                          std::uint8_t rows);
 
 }  // namespace deltasplat
