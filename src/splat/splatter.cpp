@@ -193,8 +193,8 @@ class TileKernel : public Splatter::Kernel {
     explicit TileKernel(const SplatInput& input)
         : Kernel(input),
           weights_(input.footprint, input.layout.channels),
-          pitch_(input.layout.channels * input.layout.pitchPixels()),
-          plane_(pitch_ * input.layout.sizePixels.y),
+          pitch_(input.layout.channels * (input.layout.pitchPixels() / input.layout.resolution)),
+          plane_(pitch_ * (input.layout.sizePixels.y / input.layout.resolution)),
           shown_(blockCount()) {}
 
   private:
@@ -212,10 +212,10 @@ class TileKernel : public Splatter::Kernel {
         }
         sheet_.refillTouched(
             [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-                splatTiles(
-                    weights_,
-                    {planeAt({0, kTilePixels * row}), pitch_, sheet_.tile(row, 0), sheet_.pitch()},
-                    touched, full);
+                splatTiles(weights_,
+                           {planeAt({0, kTilePixels * row / input_.layout.resolution}), pitch_,
+                            sheet_.tile(row, 0), sheet_.pitch()},
+                           touched, full);
             });
     }
 
@@ -254,7 +254,8 @@ class TileKernel : public Splatter::Kernel {
     // Writes the colours of voxels of a block.
     void paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes) {
         touchBlock(block, voxels);
-        std::int16_t* first = planeAt(8 * block + input_.layout.marginPixels);
+        std::int16_t* first =
+            planeAt(8 * block + input_.layout.marginPixels / input_.layout.resolution);
         if (input_.layout.channels == 4) {
             paintColors(first, voxels, classes);
         } else {
@@ -288,8 +289,8 @@ class TileKernel : public Splatter::Kernel {
         }
     }
 
-    std::int16_t* planeAt(glm::ivec2 pixel) {
-        return &plane_[pitch_ * pixel.y + std::size_t(input_.layout.channels) * pixel.x];
+    std::int16_t* planeAt(glm::ivec2 voxel) {
+        return &plane_[pitch_ * voxel.y + std::size_t(input_.layout.channels) * voxel.x];
     }
 
     void clear() override {
@@ -300,7 +301,7 @@ class TileKernel : public Splatter::Kernel {
 
     TileWeights weights_;
     std::size_t pitch_;                    // of the plane
-    std::vector<std::int16_t> plane_;      // colours shown, laid out as the sheet
+    std::vector<std::int16_t> plane_;      // colours shown, a margin around them as in the sheet
     std::vector<Shown> shown_;             // [block]
     std::vector<glm::ivec2> shownBlocks_;  // those with voxels
     std::vector<glm::ivec2> before_;       // likewise, in the slice before

@@ -17,21 +17,22 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <int kChannels>
+template <int kChannels, int kResolution>
 class TileSplatter {
     static constexpr int kRow = kTilePixels * kChannels;
     // Vectors never reach over a row's end.
     using Tag = hn::CappedTag < std::int32_t, kRow<16 ? kRow : 16>;
     using V = hn::Vec<Tag>;
-    // A pixel more on either side, in whole vectors.
-    static constexpr int kPairs = (kRow + 2 * kChannels + 15) / 16 * 16;
+    // From one voxel to the next along a row.
+    static constexpr int kStep = kResolution * kChannels;
+    // A voxel more on either side, in whole vectors.
+    static constexpr int kPairs = (kRow + 2 * kStep + 15) / 16 * 16;
 
   public:
     explicit TileSplatter(const TileWeights& weights) {
-        for (int x = 0; x < 3; ++x) {
-            first_[x] = hn::Set(Tag(), weights.firstRows[x]);
-            last_[x] = hn::Set(Tag(), weights.lastRow[x]);
-        }
+        load(weights.firstRows, firstRows_);
+        load(weights.lastRow, lastRow_);
+        load(weights.between, between_);
     }
 
     // Makes rows [first, last] of a tile and returns which of them are not all zero. Inlined, so
@@ -39,86 +40,144 @@ class TileSplatter {
     HWY_INLINE unsigned run(const std::int16_t* plane, std::size_t planePitch,
                             std::int32_t* HWY_RESTRICT sheet, std::size_t sheetPitch, int first,
                             int last) const {
-        const Tag tag;
         HWY_ALIGN std::int32_t pairs[kTilePixels + 2][kPairs];
-        pairRows(plane + (first - 1) * std::ptrdiff_t(planePitch) - kChannels, planePitch,
-                 last - first + 3, pairs);
+        // Pairs of rows, from the one before the first voxel's.
+        const int firstVoxel = first / kResolution;
+        const int rows = last / kResolution - firstVoxel + 3;
+        const std::int16_t* voxels = plane + (firstVoxel - 1) * std::ptrdiff_t(planePitch);
+        if constexpr (kResolution == 1) {
+            pairRows(voxels - kChannels, planePitch, rows, pairs);
+        } else {
+            pairDoubledRows(voxels - kChannels, planePitch, rows, pairs);
+        }
         unsigned full = 0;
         sheet += first * sheetPitch;
         for (int y = first; y <= last; ++y, sheet += sheetPitch) {
-            V any = hn::Zero(tag);
-            for (int i = 0; i < kRow; i += int(hn::Lanes(tag))) {
-                V sum = hn::Zero(tag);
-                for (int x = 0; x < 3; ++x) {
-                    const std::int32_t* firstRows = &pairs[y - first][i + kChannels * x];
-                    const std::int32_t* lastRow = &pairs[y - first + 2][i + kChannels * x];
-                    sum = addPairs(sum, hn::LoadU(tag, firstRows), first_[x]);
-                    sum = addPairs(sum, hn::LoadU(tag, lastRow), last_[x]);
-                }
-                hn::StoreU(sum, tag, sheet + i);
-                any = hn::Or(any, sum);
-            }
-            full |= unsigned{!hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)))} << y;
+            const bool any =
+                makeRow(pairs + (y / kResolution - firstVoxel), y % kResolution != 0, sheet);
+            full |= unsigned{any} << y;
         }
         return full;
     }
 
   private:
+    using PairRow = std::int32_t[kPairs];
+
+    // Makes one row of pixels; `pairs` begins with the pair before the voxels' row.
+    HWY_INLINE bool makeRow(const PairRow* pairs, bool between,
+                            std::int32_t* HWY_RESTRICT sheet) const {
+        const Tag tag;
+        V any = hn::Zero(tag);
+        for (int i = 0; i < kRow; i += int(hn::Lanes(tag))) {
+            V sum = hn::Zero(tag);
+            for (int x = 0; x < 3; ++x) {
+                const int place = i + kStep * x;
+                const int phase = i / int(hn::Lanes(tag)) % kPhases;
+                if (between) {
+                    sum = addPairs(sum, pairs[1] + place, between_[phase][x]);
+                } else {
+                    sum = addPairs(sum, pairs[0] + place, firstRows_[phase][x]);
+                    sum = addPairs(sum, pairs[2] + place, lastRow_[phase][x]);
+                }
+            }
+            hn::StoreU(sum, tag, sheet + i);
+            any = hn::Or(any, sum);
+        }
+        return !hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)));
+    }
+
     // Adds the products of the two 16-bit halves of each lane.
-    static HWY_INLINE V addPairs(V sum, V colors, V weights) {
+    static HWY_INLINE V addPairs(V sum, const std::int32_t* colors, V weights) {
         const Tag tag;
         const hn::Repartition<std::int16_t, Tag> half;
         V odd = hn::Zero(tag);
-        sum = hn::ReorderWidenMulAccumulate(tag, hn::BitCast(half, colors),
+        sum = hn::ReorderWidenMulAccumulate(tag, hn::BitCast(half, hn::LoadU(tag, colors)),
                                             hn::BitCast(half, weights), sum, odd);
         return hn::RearrangeToOddPlusEven(sum, odd);
     }
 
+    template <class T>
+    static HWY_INLINE hn::Vec<T> loadColors(T tag, const std::int16_t* colors) {
+        return hn::PromoteTo(tag, hn::LoadU(hn::Rebind<std::int16_t, T>(), colors));
+    }
+    template <class T>
+    static HWY_INLINE hn::Vec<T> paired(T tag, hn::Vec<T> row, hn::Vec<T> behind) {
+        return hn::Or(hn::And(row, hn::Set(tag, 0xFFFF)), hn::ShiftLeft<16>(behind));
+    }
+
     // Puts each row of colours into the low halves and the row behind it into the high halves.
     static HWY_INLINE void pairRows(const std::int16_t* plane, std::size_t pitch, int rows,
-                                    std::int32_t (*HWY_RESTRICT pairs)[kPairs]) {
+                                    PairRow* HWY_RESTRICT pairs) {
         const Tag tag;
-        const hn::Rebind<std::int16_t, Tag> narrow;
-        const auto load = [&](const std::int16_t* colors) {
-            return hn::PromoteTo(tag, hn::LoadU(narrow, colors));
-        };
-        const V low = hn::Set(tag, 0xFFFF);
         for (int i = 0; i < kPairs; i += int(hn::Lanes(tag))) {
-            V row = load(plane + i);
+            V row = loadColors(tag, plane + i);
             for (int y = 0; y < rows; ++y) {
-                const V behind = load(plane + (y + 1) * pitch + i);
-                hn::Store(hn::Or(hn::And(row, low), hn::ShiftLeft<16>(behind)), tag, &pairs[y][i]);
+                const V behind = loadColors(tag, plane + (y + 1) * pitch + i);
+                hn::Store(paired(tag, row, behind), tag, &pairs[y][i]);
                 row = behind;
             }
         }
     }
 
-    V first_[3];
-    V last_[3];
+    // Likewise, each voxel twice.
+    static HWY_INLINE void pairDoubledRows(const std::int16_t* plane, std::size_t pitch, int rows,
+                                           PairRow* HWY_RESTRICT pairs) {
+        const hn::FixedTag<std::int32_t, kChannels> tag;
+        for (int i = 0; i < kRow / kResolution + 2 * kChannels; i += kChannels) {
+            auto row = loadColors(tag, plane + i);
+            for (int y = 0; y < rows; ++y) {
+                const auto behind = loadColors(tag, plane + (y + 1) * pitch + i);
+                const auto pair = paired(tag, row, behind);
+                hn::StoreU(pair, tag, &pairs[y][2 * i]);
+                hn::StoreU(pair, tag, &pairs[y][2 * i + kChannels]);
+                row = behind;
+            }
+        }
+    }
+
+    // A vector may be shorter than a step: then weights differ from one to the next.
+    static constexpr int kLanes = int(hn::MaxLanes(Tag()));
+    static constexpr int kPhases = kStep > kLanes ? kStep / kLanes : 1;
+    using Weights = V[kPhases][3];
+
+    static void load(const TileWeights::Columns& columns, Weights& weights) {
+        for (int phase = 0; phase < kPhases; ++phase) {
+            for (int x = 0; x < 3; ++x)
+                weights[phase][x] = hn::LoadU(Tag(), &columns[x][phase * kLanes]);
+        }
+    }
+
+    Weights firstRows_;
+    Weights lastRow_;
+    Weights between_;
 };
 
-template <int kChannels>
+template <int kChannels, int kResolution>
 void splatTilesOf(const TileWeights& weights, const TileRow& row,
                   std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-    const TileSplatter<kChannels> splatter(weights);
+    const TileSplatter<kChannels, kResolution> splatter(weights);
     for (std::size_t i = 0; i < touched.size(); ++i) {
         const unsigned rows = touched[i];
         if (rows == 0) continue;
         const std::size_t column = std::size_t{kTilePixels} * kChannels * i;
         const auto run = [&](int first, int last) HWY_ATTR {
-            return splatter.run(row.plane + column, row.planePitch, row.sheet + column,
-                                row.sheetPitch, first, last);
+            return splatter.run(row.plane + column / kResolution, row.planePitch,
+                                row.sheet + column, row.sheetPitch, first, last);
         };
         const unsigned found = rows == 0xFF ? run(0, kTilePixels - 1)
                                             : run(std::countr_zero(rows), std::bit_width(rows) - 1);
-        full[i] = std::uint8_t((full[i] & ~rows) | found);
+        full[i] = std::uint8_t((full[i] & ~rows) | (found & rows));
     }
 }
 
 void splatTilesKernel(const TileWeights& weights, const TileRow& row,
                       std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-    return weights.channels == 4 ? splatTilesOf<4>(weights, row, touched, full)
-                                 : splatTilesOf<1>(weights, row, touched, full);
+    if (weights.resolution == 1) {
+        return weights.channels == 4 ? splatTilesOf<4, 1>(weights, row, touched, full)
+                                     : splatTilesOf<1, 1>(weights, row, touched, full);
+    }
+    return weights.channels == 4 ? splatTilesOf<4, 2>(weights, row, touched, full)
+                                 : splatTilesOf<1, 2>(weights, row, touched, full);
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -129,19 +188,33 @@ namespace deltasplat {
 
 HWY_EXPORT(splatTilesKernel);
 
-TileWeights::TileWeights(const Footprint& footprint, int sheetChannels) : channels(sheetChannels) {
+bool TileWeights::fits(const Footprint& footprint) {
+    return footprint.resolution <= 2 && footprint.width % 2 == 1 &&
+           footprint.width <= 2 * footprint.resolution + 1;
+}
+
+TileWeights::TileWeights(const Footprint& footprint, int sheetChannels)
+    : resolution(footprint.resolution), channels(sheetChannels) {
+    // What a voxel gives to the pixel at (x, y) from it.
     const auto weightAt = [&](int x, int y) {
-        const int reach = footprint.reach();
-        // What a voxel gives to the pixel before it, the pixel takes from the voxel behind it.
-        const int column = reach - x;
-        const int row = reach - y;
+        const int column = x + footprint.reach();
+        const int row = y + footprint.reach();
         const bool inside =
             column >= 0 && row >= 0 && column < footprint.width && row < footprint.width;
         return inside ? footprint.at(column, row) : 0;
     };
-    for (int x = -1; x <= 1; ++x) {
-        firstRows[x + 1] = weightAt(x, 0) << 16 | weightAt(x, -1);
-        lastRow[x + 1] = weightAt(x, 1);
+    for (int column = 0; column < 3; ++column) {
+        for (int lane = 0; lane < 16; ++lane) {
+            // The pixel's place behind a voxel, and behind the voxel of this column.
+            const int phase = lane / channels % resolution;
+            const int x = phase - resolution * (column - 1);
+            const auto pair = [&](int y, int yBehind) {
+                return std::int32_t(weightAt(x, yBehind) << 16 | weightAt(x, y));
+            };
+            firstRows[column][lane] = pair(resolution, 0);
+            lastRow[column][lane] = weightAt(x, -resolution);
+            if (resolution == 2) between[column][lane] = pair(1, -1);
+        }
     }
 }
 

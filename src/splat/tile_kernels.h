@@ -13,21 +13,24 @@ namespace deltasplat {
 /// Sheets are watched, and may be splatted, in squares of this many pixels.
 inline constexpr int kTilePixels = 8;
 
-/// The weights of a footprint of at most 3x3 pixels at one sheet pixel a voxel, as the kernel takes
-/// them: a sheet pixel is the sum over its nine nearest voxels, two rows at a time.
+/// The weights of a footprint that reaches no farther than the voxels next to a sheet pixel, as the
+/// kernel takes them: a sheet pixel is the sum over its nearest 3x3 voxels, two rows at a time.
 struct TileWeights {
-    /// Whether a footprint is small enough.
-    static bool fits(const Footprint& footprint) {
-        return footprint.resolution == 1 && footprint.width % 2 == 1 && footprint.width <= 3;
-    }
+    /// For one vector of pixels, by the column of the voxel (before, here, behind): low 16 bits the
+    /// weight of a row of voxels, high 16 bits that of the row behind it.
+    using Columns = std::array<std::array<std::int32_t, 16>, 3>;
+
+    /// Whether a footprint is small enough: at most 3x3 pixels at one sheet pixel a voxel, or 5x5
+    /// at two.
+    static bool fits(const Footprint& footprint);
     /// @param footprint  one that fits
     TileWeights(const Footprint& footprint, int sheetChannels);
 
-    int channels;  ///< of plane and sheet: 1 or 4
-    /// [x]: for the voxels at x - 1, the weight of the row before (low 16 bits) and of the row
-    /// itself.
-    std::array<std::int32_t, 3> firstRows{};
-    std::array<std::int32_t, 3> lastRow{};  ///< [x]: likewise, of the row behind (low 16 bits)
+    int resolution;       ///< 1 or 2 sheet pixels a voxel
+    int channels;         ///< of plane and sheet: 1 or 4
+    Columns firstRows{};  ///< for pixels at voxels' rows: the row before and the row itself
+    Columns lastRow{};    ///< likewise: the row behind (low 16 bits)
+    Columns between{};    ///< for pixels between two rows of voxels: these two
 };
 
 /// Where a row of tiles lies.
@@ -39,8 +42,7 @@ struct TileRow {
 };
 
 /// Splats rows of tiles whole: makes each touched row the sum of colour times weight of all voxels
-/// that reach it, which lie in it and the pixels around it: the very integers that stamps add up
-/// to.
+/// that reach it, which lie in it and next to it: the very integers that stamps add up to.
 /// @param touched  a byte for each tile, bit y for its row y; rows between touched ones are made
 /// too
 /// @param full     likewise; says of touched rows whether they are not all zero

@@ -36,30 +36,78 @@ double mean(const Image& image) {
     return sum / double(image.rgba.size());
 }
 
+// Renders by all methods, numbers of threads and SIMD levels.
+void expectSamePixels(const Volume& volume, RenderOptions options) {
+    const Image expected = render(volume, options).image;
+    EXPECT_GT(mean(expected), 0.02);
+    for (const Method method : kMethods) {
+        options.method = method;
+        for (const int threads : {1, 2, 3, 8}) {
+            const ThreadLimit limit(threads);
+            ASSERT_EQ(threadCount(), threads);
+            EXPECT_EQ(render(volume, options).image.rgba, expected.rgba)
+                << methodName(method) << ", " << threads << " threads";
+        }
+        for (const std::string& level : simdLevels()) {
+            setSimdLevel(level);
+            EXPECT_EQ(render(volume, options).image.rgba, expected.rgba)
+                << methodName(method) << ", " << level;
+        }
+        setSimdLevel("auto");
+    }
+}
+
+const IndexBox kBoxes[] = {{{0, 0, 0}, {40, 21, 33}}, {{-19, 5, -60}, {0, 70, 2}}};
+
+// Resolutions 1 and 2 sum up tiles, 3 stamps footprints, and so does a wide footprint.
 TEST(Identity, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
-    const IndexBox boxes[] = {{{0, 0, 0}, {40, 21, 33}}, {{-19, 5, -60}, {0, 70, 2}}};
-    for (const IndexBox& box : boxes) {
+    for (const IndexBox& box : kBoxes) {
         const Volume volume = test::randomVolume(box, 17, 0.5, {1, 1.5, 0.8});
         for (const glm::dvec3& direction : kDirections) {
             RenderOptions options = optionsFor(direction);
-            const Image expected = render(volume, options).image;
-            EXPECT_GT(mean(expected), 0.05);
-            for (const Method method : kMethods) {
-                options.method = method;
-                for (const int threads : {1, 2, 3, 8}) {
-                    const ThreadLimit limit(threads);
-                    ASSERT_EQ(threadCount(), threads);
-                    EXPECT_EQ(render(volume, options).image.rgba, expected.rgba)
-                        << methodName(method) << ", " << threads << " threads";
-                }
-                for (const std::string& level : simdLevels()) {
-                    setSimdLevel(level);
-                    EXPECT_EQ(render(volume, options).image.rgba, expected.rgba)
-                        << methodName(method) << ", " << level;
-                }
-                setSimdLevel("auto");
+            for (const int resolution : {1, 2, 3}) {
+                options.resolution = resolution;
+                expectSamePixels(volume, options);
+            }
+            options.resolution = 1;
+            options.sigma = 0.9;
+            expectSamePixels(volume, options);
+            options.footprintWidth = 6;
+            expectSamePixels(volume, options);
+        }
+    }
+}
+
+TEST(Identity, AlsoOfOneColorAndUnderATolerance) {
+    for (const IndexBox& box : kBoxes) {
+        const Volume volume = test::randomVolume(box, 18, 0.5, {1, 1.5, 0.8});
+        for (const glm::dvec3& direction : kDirections) {
+            RenderOptions options = optionsFor(direction);
+            for (const int resolution : {1, 2, 3}) {
+                options.resolution = resolution;
+                options.tolerance = {0.05, 0};
+                expectSamePixels(volume, options);
+                options.tolerance = {};
+                options.optics.transferFunction.colors = {{0, {0.5, 0.7, 0.2}}};
+                expectSamePixels(volume, options);
             }
         }
+    }
+}
+
+// Opacity times a colour is what the four channels give, but for rounding.
+TEST(Identity, OneColorIsTheSameAsFourChannels) {
+    const Volume volume = test::randomVolume(kBoxes[0], 19, 0.5);
+    RenderOptions options = optionsFor(kDirections[1]);
+    TransferFunction& function = options.optics.transferFunction;
+    function.linearColors = true;
+    function.colors = {{0, {0.5, 0.7, 0.2}}};
+    const Image one = render(volume, options).image;
+    // A colour that is hardly another one.
+    function.colors = {{0, {0.5, 0.7, 0.2}}, {255, {0.5 + 1e-9, 0.7, 0.2}}};
+    const Image four = render(volume, options).image;
+    for (std::size_t i = 0; i < one.rgba.size(); ++i) {
+        ASSERT_NEAR(one.rgba[i], four.rgba[i], 1e-4);
     }
 }
 
