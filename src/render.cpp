@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -62,68 +63,137 @@ int sheetResolution(const Factorization& view, const ClassTable& classes,
     return !options.resolution && view.resolution == 2 && thin ? 1 : view.resolution;
 }
 
-// What the slabs share, and where their results go.
+// Rows of the base plane that are worked on by themselves.
+struct Strip {
+    int first;
+    int last;
+    std::unique_ptr<LayerFold> layers;
+};
+
+// What the slabs share, and where their results go. Work is cut into pieces of a slab and a strip
+// of base plane rows; how many strips there are changes nothing but who does what.
 class SlabRenderer {
   public:
-    SlabRenderer(const SplatInput& input, const PlaneView& view, const Listener& listener)
+    SlabRenderer(const SplatInput& input, const SheetLayout& layout, const PlaneView& view,
+                 const Listener& listener)
         : input_(input),
           view_(view),
-          layout_(input.layout),
+          layout_(layout),
           listener_(listener),
           scale_(input.classes.scale / double(Footprint::kOne)),
-          layers_(input.deltas.slabs.size(), reachOfAll(), layout_.channels) {}
+          merged_(reachOfAll(), layout_.channels) {
+        cutIntoStrips();
+    }
 
     // Renders all slabs, from the front on.
     void run() {
-        const std::vector<Slab>& slabs = input_.deltas.slabs;
-        const auto workers = std::min<std::size_t>(std::size_t(threadCount()), slabs.size());
+        const std::size_t pieces = strips_.size() * slabs().size();
+        const auto workers = std::min<std::size_t>(std::size_t(threadCount()), pieces);
         parallelFor(workers, [&](std::size_t) {
-            Splatter splatter(input_);
-            for (std::size_t i = next_++; i < slabs.size(); i = next_++) {
-                renderSlab(i, slabs[view_.frontToBack ? i : slabs.size() - 1 - i], splatter);
-            }
+            Splatter splatter(input_, largestLayout());
+            for (std::size_t i = next_++; i < pieces; i = next_++) renderPiece(i, splatter);
         });
     }
-    // Returns what the slabs look like together.
-    Layer merge() { return layers_.finish(); }
 
-    std::uint64_t stamps() const { return stamps_; }
-    // The share of the slabs' time that went into compositing, 0..1.
+    // Returns what the slabs look like together.
+    Layer merge() {
+        parallelForChunks(std::size_t(merged_.box.size().y),
+                          [&](std::size_t begin, std::size_t end) {
+                              for (std::size_t row = begin; row < end; ++row) {
+                                  const int y = merged_.box.min.y + int(row);
+                                  for (Strip& strip : strips_) {
+                                      if (y >= strip.first && y < strip.last)
+                                          strip.layers->finishRow(y);
+                                  }
+                              }
+                          });
+        return std::move(merged_);
+    }
+
+    // The share of the pieces' time that went into compositing, 0..1.
     double compositeShare() const {
-        return slabSeconds_ > 0 ? compositeSeconds_ / slabSeconds_ : 0;
+        return pieceSeconds_ > 0 ? compositeSeconds_ / pieceSeconds_ : 0;
     }
 
   private:
+    // Enough pieces for every thread to take some, and strips that are not much smaller than what
+    // the rows at their edges cost, which belong to two.
+    static constexpr std::size_t kPiecesPerThread = 4;
+    static constexpr int kLeastRows = 48;
+
+    const std::vector<Slab>& slabs() const { return input_.deltas.slabs; }
+
     PlaneBox reachOfAll() const {
         const IndexBox& box = input_.deltas.box;
         return reachOf(layout_, view_.shiftPerSlice, box.min.x, box.dims().x);
     }
 
-    void renderSlab(std::size_t number, const Slab& slab, Splatter& splatter) {
-        const Clock::time_point start = Clock::now();
-        double compositeSeconds = 0;
-        Compositor compositor(scale_, view_.frontToBack);
-        Layer layer =
-            layers_.take(reachOf(layout_, view_.shiftPerSlice, slab.firstSlice, slab.sliceCount));
-        const std::uint64_t stamps = splatter.run(slab, [&](int slice, const Sheet& filled) {
-            const Clock::time_point before = Clock::now();
-            const SheetShift shift = shiftOf(layout_, view_.shiftPerSlice, slice);
-            compositor.composite(filled, shift, layer);
-            compositeSeconds += secondsSince(before);
-        });
-        const Clock::time_point before = Clock::now();
-        layers_.add(number, std::move(layer));
-        compositeSeconds += secondsSince(before);
-        count(slab, stamps, compositeSeconds, secondsSince(start));
+    void cutIntoStrips() {
+        const int rows = merged_.box.size().y;
+        const std::size_t wanted =
+            (kPiecesPerThread * std::size_t(threadCount()) + slabs().size() - 1) / slabs().size();
+        const int count =
+            std::clamp(int(std::min<std::size_t>(wanted, 1024)), 1, std::max(1, rows / kLeastRows));
+        for (int i = 0; i < count; ++i) {
+            const auto edge = [&](int n) {
+                return merged_.box.min.y + int(std::int64_t{rows} * n / count);
+            };
+            strips_.push_back(
+                {edge(i), edge(i + 1), std::make_unique<LayerFold>(slabs().size(), merged_)});
+        }
     }
 
-    void count(const Slab& slab, std::uint64_t stamps, double compositeSeconds,
-               double slabSeconds) {
+    // The part of the sheet that a slab needs for a strip.
+    SheetLayout layoutOf(const Strip& strip, const Slab& slab) const {
+        if (strips_.size() == 1) return layout_;
+        const int lastSlice = slab.firstSlice + slab.sliceCount - 1;
+        const int a = shiftOf(layout_, view_.shiftPerSlice, slab.firstSlice).offset.y;
+        const int b = shiftOf(layout_, view_.shiftPerSlice, lastSlice).offset.y;
+        // Reading takes in the row behind the last as well.
+        return layoutRows(layout_, strip.first + std::min(a, b), strip.last + std::max(a, b) + 1);
+    }
+
+    SheetLayout largestLayout() const {
+        SheetLayout largest = layoutRows(layout_, 0, 0);
+        for (const Strip& strip : strips_) {
+            for (const Slab& slab : slabs()) {
+                const SheetLayout layout = layoutOf(strip, slab);
+                if (layout.sizePixels.y > largest.sizePixels.y) largest = layout;
+            }
+        }
+        return largest;
+    }
+
+    void renderPiece(std::size_t piece, Splatter& splatter) {
+        const Clock::time_point start = Clock::now();
+        const std::size_t number = piece / strips_.size();
+        const Slab& slab = slabs()[view_.frontToBack ? number : slabs().size() - 1 - number];
+        const Strip& strip = strips_[piece % strips_.size()];
+        double compositeSeconds = 0;
+        PlaneBox box = reachOf(layout_, view_.shiftPerSlice, slab.firstSlice, slab.sliceCount);
+        box.min.y = std::clamp(strip.first, box.min.y, box.max.y);
+        box.max.y = std::clamp(strip.last, box.min.y, box.max.y);
+        Layer layer = strip.layers->take(box);
+        const SheetLayout layout = layoutOf(strip, slab);
+        if (!box.empty() && layout.blocks.y > 0) {
+            Compositor compositor(scale_, view_.frontToBack);
+            splatter.run(slab, layout, [&](int slice, const Sheet& sheet) {
+                const Clock::time_point before = Clock::now();
+                compositor.composite(sheet, shiftOf(layout, view_.shiftPerSlice, slice), layer);
+                compositeSeconds += secondsSince(before);
+            });
+        }
+        const Clock::time_point before = Clock::now();
+        strip.layers->add(number, std::move(layer));
+        compositeSeconds += secondsSince(before);
+        count(slab, compositeSeconds, secondsSince(start));
+    }
+
+    void count(const Slab& slab, double compositeSeconds, double pieceSeconds) {
         const std::lock_guard lock(mutex_);
-        stamps_ += stamps;
         compositeSeconds_ += compositeSeconds;
-        slabSeconds_ += slabSeconds;
-        slicesDone_ += slab.sliceCount;
+        pieceSeconds_ += pieceSeconds;
+        slicesDone_ += double(slab.sliceCount) / double(strips_.size());
         listener_.report(0.2 + 0.7 * slicesDone_ / input_.deltas.box.dims().x);
     }
 
@@ -132,14 +202,22 @@ class SlabRenderer {
     const SheetLayout& layout_;
     const Listener& listener_;
     glm::vec4 scale_;
-    LayerFold layers_;
+    Layer merged_;
+    std::vector<Strip> strips_;
     std::atomic<std::size_t> next_ = 0;
     std::mutex mutex_;  // guards all below
-    std::uint64_t stamps_ = 0;
     double compositeSeconds_ = 0;
-    double slabSeconds_ = 0;
-    int slicesDone_ = 0;
+    double pieceSeconds_ = 0;
+    double slicesDone_ = 0;
 };
+
+// Footprints that a method adds.
+std::uint64_t stampsOf(const PackedDeltas& deltas, const RenderStats& stats) {
+    if (stats.method == Method::kTraditional) return stats.voxels;
+    std::uint64_t stamps = 0;
+    for (const Slab& slab : deltas.slabs) stamps += slab.whole ? slab.visible : slab.deltas;
+    return stamps;
+}
 
 // Maps picture positions to base plane pixels: r a voxel, counted from the layout's first voxel and
 // slice.
@@ -185,9 +263,8 @@ void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const F
                       resolution, options.footprintWidth);
     const SheetLayout layout = layoutSheet(deltas.box, footprint, classes.oneColor ? 1 : 4);
     requireSlabMemory(deltas, planeView, layout);
-    const SplatInput input{deltas, classes, footprint, layout,
-                           options.method == Method::kTraditional};
-    SlabRenderer slabs(input, planeView, listener);
+    const SplatInput input{deltas, classes, footprint, options.method == Method::kTraditional};
+    SlabRenderer slabs(input, layout, planeView, listener);
     slabs.run();
     const double slabSeconds = secondsSince(start);
 
@@ -199,7 +276,7 @@ void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const F
     warp(rasterOf(merged, classes), map, result.image);
 
     RenderStats& stats = result.stats;
-    stats.stamps = slabs.stamps();
+    stats.stamps = stampsOf(deltas, stats);
     const ErrorBound bound = errorBound(classes, options.tolerance);
     stats.errorBoundColor = bound.color * warpGain(map);
     stats.errorBoundAlpha = bound.alpha * warpGain(map);

@@ -88,6 +88,8 @@ bool Compositor::findRows(const Sheet& sheet, int tileRow) {
 // the row behind it is. Read straight, it reaches no more than itself.
 void Compositor::addSpans(const Sheet& sheet, const SheetShift& shift, int y, std::size_t row,
                           bool straight, Layer& layer) {
+    const int layerRow = y - shift.offset.y;
+    if (layerRow < layer.box.min.y || layerRow >= layer.box.max.y) return;
     std::uint64_t any = 0;
     for (std::size_t i = 0; i < words_; ++i) {
         either_[i] = rows_[row * words_ + i];

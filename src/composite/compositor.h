@@ -22,7 +22,7 @@ class Compositor {
 
     /// Composites one slice: its sheet, read bilinearly at the layer's pixels, goes behind what the
     /// layer holds (front to back) or in front of it. Only what the sheet's full rows reach is
-    /// touched.
+    /// touched; of that, the rows that the layer has.
     void composite(const Sheet& sheet, const SheetShift& shift, Layer& layer);
 
   private:

@@ -11,7 +11,7 @@ SheetShift shiftOf(const SheetLayout& layout, glm::dvec2 shiftPerSlice, int slic
     const glm::dvec2 sheetOrigin =
         shiftPerSlice * slices * double(layout.resolution) - double(layout.marginPixels);
     const glm::dvec2 whole = glm::floor(-sheetOrigin);
-    return {glm::ivec2(whole), -sheetOrigin - whole};
+    return {glm::ivec2(whole) - glm::ivec2(0, layout.originRow), -sheetOrigin - whole};
 }
 
 PlaneBox reachOf(const SheetLayout& layout, glm::dvec2 shiftPerSlice, int firstSlice,

@@ -3,12 +3,7 @@
 
 #include <utility>
 
-#include "parallel.h"
-
 namespace deltasplat {
-
-LayerFold::LayerFold(std::size_t count, const PlaneBox& box, int channels)
-    : merged_(box, channels), done_(count) {}
 
 Layer LayerFold::take(const PlaneBox& box) {
     std::unique_lock lock(mutex_);
@@ -45,15 +40,8 @@ void LayerFold::mergeReady(std::unique_lock<std::mutex>& lock) {
     merging_ = false;
 }
 
-Layer LayerFold::finish() {
-    parallelForChunks(std::size_t(merged_.box.size().y), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row) {
-            for (std::size_t i = next_; i < done_.size(); ++i) {
-                mergeRowBehind(merged_, *done_[i], merged_.box.min.y + int(row));
-            }
-        }
-    });
-    return std::move(merged_);
+void LayerFold::finishRow(int y) {
+    for (std::size_t i = next_; i < done_.size(); ++i) mergeRowBehind(merged_, *done_[i], y);
 }
 
 }  // namespace deltasplat

@@ -12,25 +12,25 @@ namespace deltasplat {
 
 /// Merges layers front to back, in whatever order they are done: the order of the arithmetic is
 /// fixed by their numbers alone. As long as more are to come, layers are merged as soon as those in
-/// front of them are, so that few are in memory. Thread-safe but for finish().
+/// front of them are, so that few are in memory. Thread-safe but for finishRow().
 class LayerFold {
   public:
-    /// @param count  layers to come, numbered from the front
-    /// @param box    what covers them all
-    LayerFold(std::size_t count, const PlaneBox& box, int channels);
+    /// @param count   layers to come, numbered from the front
+    /// @param merged  what they are put behind; folds may share it if their layers share no row
+    LayerFold(std::size_t count, Layer& merged) : merged_(merged), done_(count) {}
 
     /// Returns an empty layer. Call it once for each number.
     Layer take(const PlaneBox& box);
     /// Takes a finished layer back.
     void add(std::size_t number, Layer layer);
-    /// Merges what is left, on all threads, and returns the result.
-    Layer finish();
+    /// Merges row y of the layers that are left, when all have been added.
+    void finishRow(int y);
 
   private:
     void mergeReady(std::unique_lock<std::mutex>& lock);
 
-    std::mutex mutex_;  // guards all below
-    Layer merged_;
+    Layer& merged_;
+    std::mutex mutex_;                        // guards all below
     std::vector<std::optional<Layer>> done_;  // [count]: not yet merged
     std::vector<Layer> idle_;
     std::size_t taken_ = 0;

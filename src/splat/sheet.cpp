@@ -36,6 +36,7 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int cha
     SheetLayout layout;
     layout.resolution = footprint.resolution;
     layout.reachPixels = footprint.reach();
+    layout.footprintPixels = footprint.width;
     layout.offsetPixels = footprint.offsetPixels();
     layout.channels = channels;
     // One tile more than the footprint needs stays zero: compositing goes one pixel over the
@@ -52,6 +53,22 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int cha
     layout.blocks = glm::ivec2(blocks);
     layout.sizePixels = glm::ivec2(size);
     return layout;
+}
+
+SheetLayout layoutRows(const SheetLayout& whole, int first, int last) {
+    const int blockPixels = 8 * whole.resolution;
+    // Of block b: [begin + b * blockPixels, end + b * blockPixels).
+    const int begin = whole.marginPixels - whole.reachPixels;
+    const int end = begin + blockPixels - whole.resolution + whole.footprintPixels;
+    const auto floorDiv = [](int a, int b) { return a / b - (a % b != 0 && a < 0); };
+    const int firstBlock = std::max(floorDiv(first - end, blockPixels) + 1, 0);
+    const int lastBlock = std::min(floorDiv(last - 1 - begin, blockPixels), whole.blocks.y - 1);
+    SheetLayout part = whole;
+    part.blocks.y = std::max(lastBlock - firstBlock + 1, 0);
+    part.firstVoxel.y += 8 * firstBlock;
+    part.originRow = blockPixels * firstBlock;
+    part.sizePixels.y += blockPixels * (part.blocks.y - whole.blocks.y);
+    return part;
 }
 
 Sheet::Sheet(const SheetLayout& layout)

@@ -25,7 +25,9 @@ struct SheetLayout {
     /// A multiple of kTilePixels, at least one more than the footprint reaches.
     int marginPixels = 0;
     glm::ivec2 sizePixels{0};  ///< multiples of kTilePixels
+    int originRow = 0;         ///< rows of the whole sheet before the first of this part of it
     int reachPixels = 0;       ///< as Footprint::reach
+    int footprintPixels = 1;   ///< as Footprint::width
     double offsetPixels = 0;   ///< as Footprint::offsetPixels
     int channels = 4;          ///< 4 (RGBA), or 1 where all that is seen has one colour
 
@@ -42,6 +44,10 @@ struct SheetLayout {
     }
 };
 
+/// Lays out the part of a sheet in which rows [first, last) of the whole are complete: the blocks
+/// whose footprints reach them. Without blocks if there are none.
+SheetLayout layoutRows(const SheetLayout& whole, int first, int last);
+
 /// Lays out a sheet for the voxels of a (slice, u, v) box.
 /// @throw Error(kUsage) if it would have more pixels than can be counted in 32 bits, or does not
 /// fit into memory
@@ -55,6 +61,9 @@ class Sheet {
     explicit Sheet(const SheetLayout& layout);
 
     const SheetLayout& layout() const { return layout_; }
+    /// Becomes another part of the same sheet, or the whole: no larger than the layout it was made
+    /// with. Every pixel must be zero.
+    void setLayout(const SheetLayout& layout) { layout_ = layout; }
     /// Integers from one row to the next.
     std::size_t pitch() const { return layout_.channels * layout_.pitchPixels(); }
     std::int32_t* pixels() { return pixels_.data(); }

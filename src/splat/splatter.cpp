@@ -37,17 +37,19 @@ std::uint64_t voxelsInBox(const IndexBox& box, glm::ivec2 block) {
 // What both ways of splatting share: which words a slice has, and which pixels they reach.
 class Splatter::Kernel {
   public:
-    explicit Kernel(const SplatInput& input) : input_(input), sheet_(input.layout) {}
+    Kernel(const SplatInput& input, const SheetLayout& largest)
+        : input_(input), layout_(largest), sheet_(largest) {}
     virtual ~Kernel() = default;
 
-    std::uint64_t run(const Slab& slab, const std::function<void(int, const Sheet&)>& eachSlice) {
-        stamps_ = 0;
+    void run(const Slab& slab, const SheetLayout& layout,
+             const std::function<void(int, const Sheet&)>& eachSlice) {
+        layout_ = layout;
+        sheet_.setLayout(layout);
         for (int slice = slab.firstSlice; slice < slab.firstSlice + slab.sliceCount; ++slice) {
             splatSlice(slice, slab.whole);
             eachSlice(slice, sheet_);
         }
         clear();
-        return stamps_;
     }
 
   protected:
@@ -59,22 +61,19 @@ class Splatter::Kernel {
     // stamp.
     template <typename Use>
     void forBlocks(int slice, bool whole, const Use& use) {
-        const std::span<const DeltaWord> words = input_.deltas.slice(slice);
+        const std::span<const DeltaWord> words = wordsOf(slice);
         if (input_.stampEmptyVoxels) return forAllBlocks(words, use);
         for (const DeltaWord& word : words) {
             prefetchClasses(&word, words);
             const std::uint64_t active = whole ? word.visible : word.changed;
-            stamps_ += std::popcount(active);
             use(blockOf(word), active, word.classes);
         }
     }
 
     std::size_t placeOf(glm::ivec2 block) const {
-        return std::size_t(block.y) * input_.layout.blocks.x + block.x;
+        return std::size_t(block.y) * layout_.blocks.x + block.x;
     }
-    std::size_t blockCount() const {
-        return std::size_t(input_.layout.blocks.x) * input_.layout.blocks.y;
-    }
+    std::size_t blockCount() const { return std::size_t(layout_.blocks.x) * layout_.blocks.y; }
 
     // Tells the sheet which pixels the voxels of a mask word reach.
     void touchBlock(glm::ivec2 block, std::uint64_t word) {
@@ -86,7 +85,7 @@ class Splatter::Kernel {
         const auto columns = std::uint8_t(word);
         const int firstV = std::countr_zero(columns);
         const int lastV = 7 - std::countl_zero(columns);
-        const SheetLayout& layout = input_.layout;
+        const SheetLayout& layout = layout_;
         const glm::ivec2 origin =
             8 * layout.resolution * block + layout.marginPixels - layout.reachPixels;
         sheet_.touch(
@@ -95,10 +94,19 @@ class Splatter::Kernel {
     }
 
     const SplatInput& input_;
+    SheetLayout layout_;
     Sheet sheet_;
-    std::uint64_t stamps_ = 0;
 
   private:
+    // The words of a slice whose blocks the layout has; they are ordered by u.
+    std::span<const DeltaWord> wordsOf(int slice) const {
+        const std::span<const DeltaWord> words = input_.deltas.slice(slice);
+        const int firstU = layout_.firstVoxel.y / 8;
+        const auto before = [](const DeltaWord& word, int u) { return word.block.x < u; };
+        const auto first = std::lower_bound(words.begin(), words.end(), firstU, before);
+        return {first, std::lower_bound(first, words.end(), firstU + layout_.blocks.y, before)};
+    }
+
     // The words of a slice lie in order, but not what they point to.
     static void prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words) {
         constexpr std::ptrdiff_t kAhead = 8;
@@ -108,7 +116,7 @@ class Splatter::Kernel {
     }
 
     // Sheets run along v.
-    glm::ivec2 firstBlock() const { return input_.layout.firstVoxel / 8; }
+    glm::ivec2 firstBlock() const { return layout_.firstVoxel / 8; }
     glm::ivec2 blockOf(const DeltaWord& word) const {
         return glm::ivec2(word.block.y, word.block.x) - firstBlock();
     }
@@ -116,8 +124,8 @@ class Splatter::Kernel {
     template <typename Use>
     void forAllBlocks(std::span<const DeltaWord> words, const Use& use) {
         auto word = words.begin();
-        for (int u = 0; u < input_.layout.blocks.y; ++u) {
-            for (int v = 0; v < input_.layout.blocks.x; ++v) {
+        for (int u = 0; u < layout_.blocks.y; ++u) {
+            for (int v = 0; v < layout_.blocks.x; ++v) {
                 const ClassIndex* classes = kEmptyClasses.data();
                 if (word != words.end() && blockOf(*word) == glm::ivec2(v, u)) {
                     classes = word->classes;
@@ -126,7 +134,6 @@ class Splatter::Kernel {
                 const std::uint64_t active =
                     voxelsInBox(input_.deltas.box,
                                 glm::ivec2(firstBlock().y, firstBlock().x) + glm::ivec2(u, v));
-                stamps_ += std::popcount(active);
                 use(glm::ivec2(v, u), active, classes);
             }
         }
@@ -138,12 +145,13 @@ namespace {
 // Stamps footprints one by one.
 class StampKernel : public Splatter::Kernel {
   public:
-    explicit StampKernel(const SplatInput& input)
-        : Kernel(input), weights_(input.footprint, input.layout.channels) {
-        const SheetLayout& layout = input.layout;
+    StampKernel(const SplatInput& input, const SheetLayout& largest)
+        : Kernel(input, largest),
+          mostBlocks_(blockCount()),
+          weights_(input.footprint, largest.channels) {
         for (int n = 0; n < 64; ++n) {
-            const std::size_t pixels = std::size_t(n >> 3) * layout.pitchPixels() + (n & 7);
-            placeInBlock_[n] = std::uint32_t(pixels * layout.resolution);
+            const std::size_t pixels = std::size_t(n >> 3) * largest.pitchPixels() + (n & 7);
+            placeInBlock_[n] = std::uint32_t(pixels * largest.resolution);
         }
     }
 
@@ -152,14 +160,14 @@ class StampKernel : public Splatter::Kernel {
         if (whole) {
             sheet_.clear();
         } else if (shown_.empty()) {
-            shown_.resize(64 * blockCount());
+            shown_.resize(64 * mostBlocks_);
         }
         const ClassTable::Color* colors = input_.classes.colors.data();
         forBlocks(slice, whole,
                   [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
                       if (list_.count + 64 > StampList::kCapacity) flush();
                       touchBlock(block, active);
-                      const SheetLayout& layout = input_.layout;
+                      const SheetLayout& layout = layout_;
                       const std::size_t place = layout.stampPlace(layout.firstVoxel + 8 * block);
                       const BlockSlice voxels{classes, active, std::uint32_t(place),
                                               placeInBlock_.data()};
@@ -180,6 +188,7 @@ class StampKernel : public Splatter::Kernel {
         std::fill(shown_.begin(), shown_.end(), ClassIndex{kEmptySlot});
     }
 
+    std::size_t mostBlocks_;  // of any layout
     StampWeights weights_;
     std::array<std::uint32_t, 64>
         placeInBlock_;               // of a voxel's footprint, from its block's first one
@@ -190,11 +199,11 @@ class StampKernel : public Splatter::Kernel {
 // Sums up whole tiles of small footprints.
 class TileKernel : public Splatter::Kernel {
   public:
-    explicit TileKernel(const SplatInput& input)
-        : Kernel(input),
-          weights_(input.footprint, input.layout.channels),
-          pitch_(input.layout.channels * (input.layout.pitchPixels() / input.layout.resolution)),
-          plane_(pitch_ * (input.layout.sizePixels.y / input.layout.resolution)),
+    TileKernel(const SplatInput& input, const SheetLayout& largest)
+        : Kernel(input, largest),
+          weights_(input.footprint, largest.channels),
+          pitch_(largest.channels * (largest.pitchPixels() / largest.resolution)),
+          plane_(pitch_ * (largest.sizePixels.y / largest.resolution)),
           shown_(blockCount()) {}
 
   private:
@@ -213,7 +222,7 @@ class TileKernel : public Splatter::Kernel {
         sheet_.refillTouched(
             [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
                 splatTiles(weights_,
-                           {planeAt({0, kTilePixels * row / input_.layout.resolution}), pitch_,
+                           {planeAt({0, kTilePixels * row / layout_.resolution}), pitch_,
                             sheet_.tile(row, 0), sheet_.pitch()},
                            touched, full);
             });
@@ -254,9 +263,8 @@ class TileKernel : public Splatter::Kernel {
     // Writes the colours of voxels of a block.
     void paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes) {
         touchBlock(block, voxels);
-        std::int16_t* first =
-            planeAt(8 * block + input_.layout.marginPixels / input_.layout.resolution);
-        if (input_.layout.channels == 4) {
+        std::int16_t* first = planeAt(8 * block + layout_.marginPixels / layout_.resolution);
+        if (layout_.channels == 4) {
             paintColors(first, voxels, classes);
         } else {
             paintOpacities(first, classes);
@@ -290,7 +298,7 @@ class TileKernel : public Splatter::Kernel {
     }
 
     std::int16_t* planeAt(glm::ivec2 voxel) {
-        return &plane_[pitch_ * voxel.y + std::size_t(input_.layout.channels) * voxel.x];
+        return &plane_[pitch_ * voxel.y + std::size_t(layout_.channels) * voxel.x];
     }
 
     void clear() override {
@@ -309,19 +317,19 @@ class TileKernel : public Splatter::Kernel {
 
 }  // namespace
 
-Splatter::Splatter(const SplatInput& input) {
+Splatter::Splatter(const SplatInput& input, const SheetLayout& largest) {
     if (TileWeights::fits(input.footprint)) {
-        kernel_ = std::make_unique<TileKernel>(input);
+        kernel_ = std::make_unique<TileKernel>(input, largest);
     } else {
-        kernel_ = std::make_unique<StampKernel>(input);
+        kernel_ = std::make_unique<StampKernel>(input, largest);
     }
 }
 
 Splatter::~Splatter() = default;
 
-std::uint64_t Splatter::run(const Slab& slab,
-                            const std::function<void(int, const Sheet&)>& eachSlice) {
-    return kernel_->run(slab, eachSlice);
+void Splatter::run(const Slab& slab, const SheetLayout& layout,
+                   const std::function<void(int, const Sheet&)>& eachSlice) {
+    kernel_->run(slab, layout, eachSlice);
 }
 
 double Splatter::bytes(const SheetLayout& layout) {

@@ -17,7 +17,6 @@ struct SplatInput {
     const PackedDeltas& deltas;
     const ClassTable& classes;
     const Footprint& footprint;
-    const SheetLayout& layout;
     /// Stamp every voxel of the box, the empty ones too (method `traditional`); all slabs must be
     /// whole.
     bool stampEmptyVoxels;
@@ -27,15 +26,16 @@ struct SplatInput {
 /// thread-safe.
 class Splatter {
   public:
-    explicit Splatter(const SplatInput& input);
+    /// @param largest  of the layouts to come
+    Splatter(const SplatInput& input, const SheetLayout& largest);
     ~Splatter();
 
     /// Calls `eachSlice(slice, sheet)` for the slab's slices in increasing order, with the sheet
     /// complete. Deltas are added to what the slice before left; of a whole slab, each slice starts
     /// anew.
-    /// @return the number of stamps added
-    std::uint64_t run(const Slab& slab,
-                      const std::function<void(int slice, const Sheet& sheet)>& eachSlice);
+    /// @param layout  of the whole sheet, or of a part of it (layoutRows)
+    void run(const Slab& slab, const SheetLayout& layout,
+             const std::function<void(int slice, const Sheet& sheet)>& eachSlice);
 
     /// Bytes that a splatter takes.
     static double bytes(const SheetLayout& layout);

@@ -8,7 +8,6 @@
 
 #include "composite/layer_fold.h"
 #include "deltasplat/simd.h"
-#include "deltasplat/threads.h"
 
 namespace deltasplat {
 namespace {
@@ -163,11 +162,11 @@ TEST(LayerFold, IsOverFromTheFront) {
     const PlaneBox boxes[] = {{{0, 0}, {9, 70}}, {{-4, 3}, {6, 12}}, {{2, -5}, {30, 20}}, all};
     const std::vector<std::vector<std::size_t>> orders = {
         {0, 1, 2, 3}, {3, 2, 1, 0}, {1, 0, 3, 2}, {2, 0, 1, 3}};
-    const ThreadLimit limit(2);
     for (const int channels : {1, 4}) {
         for (const auto& order : orders) {
             for (const bool takeAllFirst : {false, true}) {
-                LayerFold fold(4, all, channels);
+                Layer merged(all, channels);
+                LayerFold fold(4, merged);
                 if (takeAllFirst) {
                     for (const PlaneBox& box : boxes) fold.take(box);
                 }
@@ -177,7 +176,7 @@ TEST(LayerFold, IsOverFromTheFront) {
                     for (const float value : empty.values) ASSERT_EQ(value, 0);
                     fold.add(i, randomLayer(boxes[i], channels, std::uint32_t(i)));
                 }
-                const Layer merged = fold.finish();
+                for (int y = all.min.y; y < all.max.y; ++y) fold.finishRow(y);
                 std::vector<Layer> layers;
                 for (std::uint32_t i = 0; i < 4; ++i)
                     layers.push_back(randomLayer(boxes[i], channels, i));
@@ -204,10 +203,11 @@ TEST(LayerFold, IsOverFromTheFront) {
 // Merging layers is the same as compositing on, but for rounding.
 TEST(Layer, OverIsAssociativeWithinRounding) {
     const glm::dvec2 d(0.25, 0.5);
-    LayerFold halves(2, reachOf(randomSheet(0).layout(), d, 0, 6), 4);
+    Layer merged(reachOf(randomSheet(0).layout(), d, 0, 6));
+    LayerFold halves(2, merged);
     halves.add(0, compositeSlices(d, true, 4, 0, 3, kScale / 8));
     halves.add(1, compositeSlices(d, true, 4, 3, 3, kScale / 8));
-    const Layer merged = halves.finish();
+    for (int y = merged.box.min.y; y < merged.box.max.y; ++y) halves.finishRow(y);
     const Layer whole = compositeSlices(d, true, 4, 0, 6, kScale / 8);
     for (std::size_t i = 0; i < whole.values.size(); ++i) {
         // Six slices, each rounded a handful of times to 2^-24 of values below 1.
