@@ -76,9 +76,10 @@ HWY_INLINE PixelVector clamped(PixelVector sum) {
     return hn::Min(hn::Max(sum, hn::Zero(tag)), hn::Load(tag, kMost));
 }
 
-// Writes one pixel of RGBA. kTaps are those along both axes, or 0 if they are not four.
+// Writes one pixel of RGBA, which of opacity alone is `color` times it. kTaps are those along both
+// axes, or 0 if they are not four.
 template <int kTaps, int kChannels>
-HWY_INLINE void samplePixel(const Raster& raster, const FilterView& filterX, std::uint32_t x,
+HWY_INLINE void samplePixel(PixelVector color, const FilterView& filterX, std::uint32_t x,
                             const float* corner, std::size_t pitch, const float* weightY, int rows,
                             float* out) {
     const PixelTag tag;
@@ -94,8 +95,7 @@ HWY_INLINE void samplePixel(const Raster& raster, const FilterView& filterX, std
     }
     if constexpr (kChannels == 1) {
         const auto opacity = hn::Min(hn::Max(sum, hn::Zero(tag)), hn::Set(tag, 1.0f));
-        HWY_ALIGN const float color[4] = {raster.color.x, raster.color.y, raster.color.z, 1};
-        hn::StoreU(hn::Mul(opacity, hn::Load(tag, color)), tag, out);
+        hn::StoreU(hn::Mul(opacity, color), tag, out);
     } else {
         hn::StoreU(clamped(sum), tag, out);
     }
@@ -108,10 +108,12 @@ void sampleRunOf(const Raster& raster, const FilterTable& wantedX, const FilterT
     // Copies, so that what is written cannot be thought to change them.
     const FilterView filterX(wantedX);
     const FilterView filterY(wantedY);
+    HWY_ALIGN const float rgba[4] = {raster.color.x, raster.color.y, raster.color.z, 1};
+    const auto color = hn::Load(PixelTag(), rgba);
     for (int i = 0; i < pixels; ++i, out += 4) {
         const float* corner = raster.values + filterY.firstTap(int(position.y >> 32)) * pitch +
                               kChannels * filterX.firstTap(int(position.x >> 32));
-        samplePixel<kTaps, kChannels>(raster, filterX, std::uint32_t(position.x), corner, pitch,
+        samplePixel<kTaps, kChannels>(color, filterX, std::uint32_t(position.x), corner, pitch,
                                       filterY.weights(std::uint32_t(position.y)), filterY.taps(),
                                       out);
         position.x += step.x;

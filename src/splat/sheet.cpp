@@ -80,15 +80,17 @@ Sheet::Sheet(const SheetLayout& layout)
       touchedRows_(layout.tiles().y) {}
 
 void Sheet::touch(glm::ivec2 first, glm::ivec2 last) {
-    const glm::ivec2 firstTile = first / kTilePixels;
-    const glm::ivec2 lastTile = last / kTilePixels;
-    for (int row = firstTile.y; row <= lastTile.y; ++row) {
-        const int low = std::max(first.y - kTilePixels * row, 0);
-        const int high = std::min(last.y - kTilePixels * row, kTilePixels - 1);
+    // Shifts, for dividing a signed number takes longer.
+    static_assert(kTilePixels == 8);
+    const int firstColumn = first.x >> 3;
+    const int lastColumn = last.x >> 3;
+    for (int row = first.y >> 3; row <= last.y >> 3; ++row) {
+        const int low = std::max(first.y - 8 * row, 0);
+        const int high = std::min(last.y - 8 * row, 7);
         const auto rows = std::uint8_t(0xFFu >> (7 - high + low) << low);
-        touchedRows_[row] = true;
+        touchedRows_[row] = 1;
         std::uint8_t* touched = &touched_[bytesPerRow_ * row];
-        for (int column = firstTile.x; column <= lastTile.x; ++column) touched[column] |= rows;
+        for (int column = firstColumn; column <= lastColumn; ++column) touched[column] |= rows;
     }
 }
 

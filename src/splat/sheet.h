@@ -93,16 +93,16 @@ class Sheet {
     SheetLayout layout_;
     std::size_t bytesPerRow_;
     std::vector<std::int32_t> pixels_;
-    std::vector<std::uint8_t> full_;     // [tile row][bytesPerRow_]
-    std::vector<std::uint8_t> touched_;  // likewise
-    std::vector<bool> touchedRows_;      // [tile row]
+    std::vector<std::uint8_t> full_;         // [tile row][bytesPerRow_]
+    std::vector<std::uint8_t> touched_;      // likewise
+    std::vector<std::uint8_t> touchedRows_;  // [tile row]: whether any is
 };
 
 template <typename Refill>
 void Sheet::refillTouched(const Refill& refill) {
     for (int row = 0; row < layout_.tiles().y; ++row) {
-        if (!touchedRows_[row]) continue;
-        touchedRows_[row] = false;
+        if (touchedRows_[row] == 0) continue;
+        touchedRows_[row] = 0;
         const std::span touched(&touched_[bytesPerRow_ * row], bytesPerRow_);
         refill(row, touched, std::span(&full_[bytesPerRow_ * row], bytesPerRow_));
         std::fill(touched.begin(), touched.end(), std::uint8_t{0});
