@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inner loops of splatting, compositing and warping by themselves, in caches that are warm:
+// what is left to gain there. Times are of one stamp, tile or pixel (Google Benchmark's options
+// apply):
+//   kernel_benchmark --benchmark_filter=stamps
+#include <benchmark/benchmark.h>
+
+#include <random>
+#include <vector>
+
+#include "composite/over_kernels.h"
+#include "image/warp.h"
+#include "parallel.h"
+#include "splat/stamp_kernels.h"
+#include "splat/tile_kernels.h"
+
+namespace {
+
+using namespace deltasplat;
+
+// As many items a second as `itemsEach` for each iteration.
+void countItems(benchmark::State& state, std::size_t itemsEach) {
+    state.SetItemsProcessed(state.iterations() * std::int64_t(itemsEach));
+}
+
+// Footprints of a slice of 64x64 voxels, column by column of 8x8 blocks as the splatter lists them.
+void stamps(benchmark::State& state) {
+    const int channels = int(state.range(0));
+    const Footprint footprint = makeFootprint(1, {0.5, -0.5}, 1, int(state.range(1)));
+    const StampWeights weights(footprint, channels);
+    constexpr std::size_t kPitch = 128;  // pixels
+    std::vector<std::int32_t> sheet(channels * kPitch * 128);
+    std::vector<std::uint32_t> places;
+    for (int block = 0; block < 64; ++block) {
+        for (int n = 0; n < 64; ++n) {
+            const int x = 8 * (block % 8) + n / 8;
+            const int y = 8 * (block / 8) + n % 8;
+            places.push_back(std::uint32_t(y * kPitch + x));
+        }
+    }
+    StampList list;
+    list.colors.fill({3000, 2000, 1000, 500});
+    for (auto _ : state) {
+        for (std::size_t first = 0; first < places.size(); first += StampList::kCapacity) {
+            list.count = StampList::kCapacity;
+            std::copy_n(&places[first], list.count, list.places.begin());
+            addStamps(sheet.data(), channels * kPitch, weights, list);
+        }
+        benchmark::ClobberMemory();
+    }
+    countItems(state, places.size());
+}
+BENCHMARK(stamps)->ArgNames({"channels", "width"})->ArgsProduct({{1, 4}, {3, 5, 6, 13}});
+
+// Rows of tiles that are touched all over.
+void tiles(benchmark::State& state) {
+    const int channels = int(state.range(0));
+    const int resolution = int(state.range(1));
+    const Footprint footprint = makeFootprint(0.3, {0.5, -0.5}, resolution, 2 * resolution + 1);
+    const TileWeights weights(footprint, channels);
+    constexpr int kTiles = 32;
+    const std::size_t pitch = std::size_t(channels) * 8 * (kTiles + 4);
+    std::vector<std::int16_t> plane(pitch * 24, 1234);
+    std::vector<std::int32_t> sheet(pitch * 8);
+    const std::vector<std::uint8_t> touched(kTiles, 0xFF);
+    std::vector<std::uint8_t> full(kTiles);
+    for (auto _ : state) {
+        splatTiles(weights, {&plane[8 * pitch + 64], pitch, sheet.data(), pitch}, touched, full);
+        benchmark::ClobberMemory();
+    }
+    countItems(state, kTiles);
+}
+BENCHMARK(tiles)->ArgNames({"channels", "r"})->ArgsProduct({{1, 4}, {1, 2}});
+
+// Spans of so many pixels of a sheet, read between its pixels or straight.
+void over(benchmark::State& state) {
+    const int channels = int(state.range(0));
+    const auto pixels = std::size_t(state.range(1));
+    const float fraction = state.range(2) != 0 ? 0.3f : 0.0f;
+    constexpr std::size_t kRows = 64;
+    const std::size_t pitch = channels * (pixels + 16);
+    std::vector<std::int32_t> sheet(pitch * (kRows + 1), 100000);
+    std::vector<float> layer(pitch * kRows, 0.25f);
+    std::vector<OverSpan> spans;
+    for (std::size_t y = 0; y < kRows; ++y) {
+        spans.push_back({&sheet[y * pitch], &sheet[(y + 1) * pitch], &layer[y * pitch], pixels});
+    }
+    const OverWeights weights({fraction, fraction}, glm::vec4(1e-12f), channels, true);
+    for (auto _ : state) {
+        overSpans(spans, weights);
+        benchmark::ClobberMemory();
+    }
+    countItems(state, kRows * pixels);
+}
+BENCHMARK(over)
+    ->ArgNames({"channels", "pixels", "shifted"})
+    ->ArgsProduct({{1, 4}, {9, 129}, {0, 1}});
+
+// A raster of 256x256 pixels, twice as large in the picture and turned.
+void warpPicture(benchmark::State& state) {
+    const int channels = int(state.range(0));
+    std::vector<float> values(std::size_t(channels) * 256 * 256, 0.5f);
+    const Raster raster{{0, 0}, {256, 256}, values.data(), channels, {1, 1, 1}};
+    const glm::dmat3 map(0.45, 0.1, 0, -0.1, 0.45, 0, 40, -10, 1);
+    Image picture({512, 512});
+    for (auto _ : state) {
+        warp(raster, map, picture);
+        benchmark::ClobberMemory();
+    }
+    countItems(state, 512 * 512);
+}
+BENCHMARK(warpPicture)->ArgName("channels")->Arg(1)->Arg(4);
+
+}  // namespace
+
+BENCHMARK_MAIN();
