@@ -2,29 +2,14 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "convert/dense_layout.h"
-#include "deltasplat/error.h"
 #include "number_text.h"
 
 namespace deltasplat {
-namespace {
-
-bool nameSaysLayout(const std::string& file) {
-    try {
-        resolveRawLayout(file, {});
-        return true;
-    } catch (const Error&) {
-        return false;
-    }
-}
-
-}  // namespace
-
 // A file without a header: what its name does not say, the options have to when it is read.
 void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
     const glm::dvec3 spacing = layout.spacing(), origin = layout.origin();
     std::string options;
-    requireTrueName(file, {layout.dims, layout.type, false, 0});
-    if (!nameSaysLayout(file)) {
+    if (!saysLayout(file, {layout.dims, layout.type, false, 0})) {
         options += " --dims " + layout.dimsText() + " --type " + rawTypeName(layout.type);
         if (rawTypeBytes(layout.type) > 1) options += " --endian little";
     }

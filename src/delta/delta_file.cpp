@@ -130,7 +130,9 @@ DeltaHeader headerOf(const Volume& volume, const DeltaGrid& deltas, const Rest& 
     for (const Slab& slab : deltas.slabs) header.slabDeltas.push_back(slab.deltas);
     // A source that was a delta grid itself has an error of its own.
     const DeltaOrigin before = volume.origin.value_or(DeltaOrigin());
-    header.tolerance = (1 + tolerance.relative) * (1 + before.tolerance) - 1;
+    // (1 + t) (1 + b) - 1, exact where there was none before.
+    const double t = tolerance.relative;
+    header.tolerance = t + before.tolerance + t * before.tolerance;
     header.toleranceValue = tolerance.value + before.toleranceValue;
     header.maxError = before.maxError;
     return header;

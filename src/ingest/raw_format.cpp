@@ -209,18 +209,18 @@ RawLayout resolveRawLayout(const std::filesystem::path& file, const RawFormat& f
     return layout;
 }
 
-void requireTrueName(const std::filesystem::path& file, const RawLayout& layout) {
+bool saysLayout(const std::filesystem::path& file, const RawLayout& layout) {
     RawLayout said;
     try {
         said = resolveRawLayout(file, {});
     } catch (const Error&) {
-        return;  // the name says nothing that a reader would take
+        return false;  // the name says nothing that a reader would take
     }
     const auto text = [](const RawLayout& one) {
         const bool ordered = rawTypeBytes(one.type) > 1 && one.bigEndian;
         return dimsText(one.dims) + " " + rawTypeName(one.type) + (ordered ? "be" : "");
     };
-    if (text(said) == text(layout)) return;
+    if (text(said) == text(layout)) return true;
     refuse(file.string(), "a name that says " + text(said),
            text(layout) + ", or a name that says nothing");
 }

@@ -51,9 +51,9 @@ void requireGeometry(const RawFormat& format);
 /// @throw Error(kUsage) if dims or type are missing, unknown or out of range
 RawLayout resolveRawLayout(const std::filesystem::path& file, const RawFormat& format);
 
-/// Checks that a file to be written is not read as something else by its name: it says this layout,
-/// or nothing.
+/// Returns whether the name of a file to be written says its layout; false if it says nothing that
+/// a reader would take.
 /// @throw Error(kUsage) "<file>: got a name that says 4x4x4 uint8; expected 4x4x8 uint8"
-void requireTrueName(const std::filesystem::path& file, const RawLayout& layout);
+bool saysLayout(const std::filesystem::path& file, const RawLayout& layout);
 
 }  // namespace deltasplat

@@ -59,7 +59,7 @@ void writeRaw(const AnalyticVolume& volume, const std::filesystem::path& file,
     const std::size_t rowBytes = std::size_t(dims.x) * type.bytes;
     requireMemory("--dims", double(rowBytes) * dims.y);
 
-    requireTrueName(file, {dims, type.raw, false, 0});
+    saysLayout(file, {dims, type.raw, false, 0});
 
     OutputFile out(file);
     std::vector<std::byte> slice(rowBytes * std::size_t(dims.y));

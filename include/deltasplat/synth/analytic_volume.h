@@ -29,14 +29,12 @@ struct AnalyticVolume {
 /// - cloud: seeded fractal fog of gradient noise; 0 outside a ball-like region
 /// - slab: 1 where |x| <= 0.8, |y| <= 0.8 and |z| <= 0.5, 0 elsewhere
 /// - vessels: a seeded tree of vessels that fork, as in an angiography; about 1 % of the cube is
-/// not
-///   0, rising from each wall to 1 half a radius below it
+///   not 0, rising from each wall to 1 half a radius below it
 const std::vector<std::string>& analyticNames();
 
 /// Returns the volume called `name`.
 /// @param seed   chooses the cloud's and the vessels' shape and the engine's noise; without effect
-/// on the
-///               others
+///               on the others
 /// @param noise  standard deviation of the engine's noise in units of the value range, 0 = none;
 ///               noisy values are clamped to 0..1; without effect on the others
 /// @throw Error(kUsage) if there is no such name (listing those there are), or if the noise is
