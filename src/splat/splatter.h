@@ -1,34 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <functional>
-#include <memory>
+#include <variant>
 
-#include "delta/packed_deltas.h"
-#include "deltasplat/optics/class_table.h"
-#include "deltasplat/splat/footprint.h"
-#include "splat/sheet.h"
+#include "splat/stamp_splatter.h"
+#include "splat/tile_splatter.h"
 
 namespace deltasplat {
 
-/// Everything that splatting slabs needs and does not change.
-struct SplatInput {
-    const PackedDeltas& deltas;
-    const ClassTable& classes;
-    const Footprint& footprint;
-    /// Stamp every voxel of the box, the empty ones too (method `traditional`); all slabs must be
-    /// whole.
-    bool stampEmptyVoxels;
-};
-
-/// Turns slabs into sheets. Holds what that takes, to be used for one slab after the other; not
-/// thread-safe.
+/// Turns slabs into sheets, in the way that suits the footprint. Holds what that takes, to be used
+/// for one slab after the other; not thread-safe.
 class Splatter {
   public:
     /// @param largest  of the layouts to come
     Splatter(const SplatInput& input, const SheetLayout& largest);
-    ~Splatter();
 
     /// Calls `eachSlice(slice, sheet)` for the slab's slices in increasing order, with the sheet
     /// complete. Deltas are added to what the slice before left; of a whole slab, each slice starts
@@ -40,10 +26,8 @@ class Splatter {
     /// Bytes that a splatter takes.
     static double bytes(const SheetLayout& layout);
 
-    class Kernel;
-
   private:
-    std::unique_ptr<Kernel> kernel_;
+    std::variant<StampSplatter, TileSplatter> way_;
 };
 
 }  // namespace deltasplat

@@ -18,7 +18,7 @@ namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 template <int kChannels, int kResolution>
-class TileSplatter {
+class TileSums {
     static constexpr int kRow = kTilePixels * kChannels;
     // Vectors never reach over a row's end.
     using Tag = hn::CappedTag < std::int32_t, kRow<16 ? kRow : 16>;
@@ -29,7 +29,7 @@ class TileSplatter {
     static constexpr int kPairs = (kRow + 2 * kStep + 15) / 16 * 16;
 
   public:
-    explicit TileSplatter(const TileWeights& weights) {
+    explicit TileSums(const TileWeights& weights) {
         load(weights.firstRows, firstRows_);
         load(weights.lastRow, lastRow_);
         load(weights.between, between_);
@@ -155,14 +155,14 @@ class TileSplatter {
 template <int kChannels, int kResolution>
 void splatTilesOf(const TileWeights& weights, const TileRow& row,
                   std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-    const TileSplatter<kChannels, kResolution> splatter(weights);
+    const TileSums<kChannels, kResolution> sums(weights);
     for (std::size_t i = 0; i < touched.size(); ++i) {
         const unsigned rows = touched[i];
         if (rows == 0) continue;
         const std::size_t column = std::size_t{kTilePixels} * kChannels * i;
         const auto run = [&](int first, int last) HWY_ATTR {
-            return splatter.run(row.plane + column / kResolution, row.planePitch,
-                                row.sheet + column, row.sheetPitch, first, last);
+            return sums.run(row.plane + column / kResolution, row.planePitch, row.sheet + column,
+                            row.sheetPitch, first, last);
         };
         const unsigned found = rows == 0xFF ? run(0, kTilePixels - 1)
                                             : run(std::countr_zero(rows), std::bit_width(rows) - 1);

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <span>
+
+#include "delta/packed_deltas.h"
+#include "deltasplat/optics/class_table.h"
+#include "deltasplat/splat/footprint.h"
+#include "splat/sheet.h"
+
+namespace deltasplat {
+
+/// Everything that splatting slabs needs and does not change.
+struct SplatInput {
+    const PackedDeltas& deltas;
+    const ClassTable& classes;
+    const Footprint& footprint;
+    /// Stamp every voxel of the box, the empty ones too (method `traditional`); all slabs must be
+    /// whole.
+    bool stampEmptyVoxels;
+};
+
+/// Classes of 64 empty voxels.
+inline constexpr std::array<ClassIndex, 64> kEmptyClasses{};
+
+/// The blocks of slices that a sheet, or a part of it, is made of.
+class SliceBlocks {
+  public:
+    SliceBlocks(const SplatInput& input, const SheetLayout& layout)
+        : input_(input), layout_(layout) {}
+
+    void setLayout(const SheetLayout& layout) { layout_ = layout; }
+    const SheetLayout& layout() const { return layout_; }
+
+    /// Calls `use(block, voxels, classes)` for the blocks (v, u) of a slice that have something to
+    /// stamp: a mask word of voxels, and the classes of all 64.
+    template <typename Use>
+    void forEach(int slice, bool whole, const Use& use) const;
+
+    std::size_t count() const { return std::size_t(layout_.blocks.x) * layout_.blocks.y; }
+    /// Returns where what is kept of a block lies in an array of count().
+    std::size_t placeOf(glm::ivec2 block) const {
+        return std::size_t(block.y) * layout_.blocks.x + block.x;
+    }
+
+    /// Tells a sheet which pixels the voxels of a block's mask word reach.
+    void touch(glm::ivec2 block, std::uint64_t voxels, Sheet& sheet) const;
+
+  private:
+    std::span<const DeltaWord> wordsOf(int slice) const;
+    glm::ivec2 blockOf(const DeltaWord& word) const;
+    std::uint64_t voxelsInBox(glm::ivec2 block) const;
+    static void prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words);
+
+    const SplatInput& input_;
+    SheetLayout layout_;
+};
+
+template <typename Use>
+void SliceBlocks::forEach(int slice, bool whole, const Use& use) const {
+    const std::span<const DeltaWord> words = wordsOf(slice);
+    if (!input_.stampEmptyVoxels) {
+        for (const DeltaWord& word : words) {
+            prefetchClasses(&word, words);
+            use(blockOf(word), whole ? word.visible : word.changed, word.classes);
+        }
+        return;
+    }
+    auto word = words.begin();
+    for (int u = 0; u < layout_.blocks.y; ++u) {
+        for (int v = 0; v < layout_.blocks.x; ++v) {
+            const bool has = word != words.end() && blockOf(*word) == glm::ivec2(v, u);
+            use(glm::ivec2(v, u), voxelsInBox({v, u}), has ? word->classes : kEmptyClasses.data());
+            if (has) ++word;
+        }
+    }
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: Lee Westover, "Footprint Evaluation for Volume Rendering", 1990.
+#include "splat/stamp_splatter.h"
+
+#include <algorithm>
+
+namespace deltasplat {
+
+StampSplatter::StampSplatter(const SplatInput& input, const SheetLayout& largest)
+    : input_(input),
+      blocks_(input, largest),
+      sheet_(largest),
+      weights_(input.footprint, largest.channels),
+      mostBlocks_(blocks_.count()) {
+    for (int n = 0; n < 64; ++n) {
+        const std::size_t pixels = std::size_t(n >> 3) * largest.pitchPixels() + (n & 7);
+        placeInBlock_[n] = std::uint32_t(pixels * largest.resolution);
+    }
+}
+
+void StampSplatter::setLayout(const SheetLayout& layout) {
+    blocks_.setLayout(layout);
+    sheet_.setLayout(layout);
+}
+
+void StampSplatter::splat(int slice, bool whole) {
+    if (whole) {
+        sheet_.clear();
+    } else if (shown_.empty()) {
+        shown_.resize(64 * mostBlocks_);
+    }
+    const ClassTable::Color* colors = input_.classes.colors.data();
+    const SheetLayout& layout = sheet_.layout();
+    blocks_.forEach(
+        slice, whole, [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
+            if (list_.count + 64 > StampList::kCapacity) flush();
+            blocks_.touch(block, active, sheet_);
+            const std::size_t place = layout.stampPlace(layout.firstVoxel + 8 * block);
+            const BlockSlice voxels{classes, active, std::uint32_t(place), placeInBlock_.data()};
+            if (whole) {
+                listWhole(voxels, colors, list_);
+            } else {
+                listChanges(voxels, colors, &shown_[64 * blocks_.placeOf(block)], list_);
+            }
+        });
+    flush();
+    sheet_.settle();
+}
+
+void StampSplatter::flush() {
+    addStamps(sheet_.pixels(), sheet_.pitch(), weights_, list_);
+}
+
+void StampSplatter::clear() {
+    sheet_.clear();
+    std::fill(shown_.begin(), shown_.end(), ClassIndex{kEmptySlot});
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "splat/slice_blocks.h"
+#include "splat/stamp_kernels.h"
+
+namespace deltasplat {
+
+/// Makes sheets by stamping footprints of any size, one by one.
+class StampSplatter {
+  public:
+    /// @param largest  of the layouts to come
+    StampSplatter(const SplatInput& input, const SheetLayout& largest);
+
+    const Sheet& sheet() const { return sheet_; }
+    void setLayout(const SheetLayout& layout);
+    /// Makes the sheet that of the slice, after the one before it if it is not whole.
+    void splat(int slice, bool whole);
+    /// Makes everything as it was before the first slice.
+    void clear();
+
+  private:
+    void flush();
+
+    const SplatInput& input_;
+    SliceBlocks blocks_;
+    Sheet sheet_;
+    StampWeights weights_;
+    std::size_t mostBlocks_;  // of any layout
+    /// Of a voxel's footprint, from its block's first one.
+    std::array<std::uint32_t, 64> placeInBlock_;
+    std::vector<ClassIndex> shown_;  // [block][64], of slabs that are not whole
+    StampList list_;
+};
+
+}  // namespace deltasplat

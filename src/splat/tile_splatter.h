@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "splat/slice_blocks.h"
+#include "splat/tile_kernels.h"
+
+namespace deltasplat {
+
+/// Makes sheets of small footprints (TileWeights::fits): writes what changes to a plane of colours,
+/// and sums up the tiles of the sheet that it reaches.
+class TileSplatter {
+  public:
+    /// @param largest  of the layouts to come
+    TileSplatter(const SplatInput& input, const SheetLayout& largest);
+
+    const Sheet& sheet() const { return sheet_; }
+    void setLayout(const SheetLayout& layout);
+    /// Makes the sheet that of the slice, after the one before it if it is not whole.
+    void splat(int slice, bool whole);
+    /// Makes everything as it was before the first slice.
+    void clear();
+
+  private:
+    // What the plane shows of a block.
+    struct Shown {
+        std::uint64_t voxels = 0;  // that may not be empty
+        int slice = 0;             // that last painted it, in a slab that is whole
+    };
+
+    void paintChanges(int slice);
+    void paintWhole(int slice);
+    void takeAway(glm::ivec2 block);
+    void paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes);
+    void paintColors(std::int16_t* plane, std::uint64_t voxels, const ClassIndex* classes) const;
+    void paintOpacities(std::int16_t* plane, const ClassIndex* classes) const;
+    std::int16_t* planeAt(glm::ivec2 voxel);
+
+    const SplatInput& input_;
+    SliceBlocks blocks_;
+    Sheet sheet_;
+    TileWeights weights_;
+    std::size_t pitch_;                    // of the plane
+    std::vector<std::int16_t> plane_;      // colours shown, a margin around them as in the sheet
+    std::vector<Shown> shown_;             // [block]
+    std::vector<glm::ivec2> shownBlocks_;  // those with voxels
+    std::vector<glm::ivec2> before_;       // likewise, in the slice before
+};
+
+}  // namespace deltasplat
