@@ -1,36 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/render.h"
 
-#include <algorithm>
-#include <atomic>
-#include <memory>
-#include <mutex>
 #include <string>
-#include <utility>
 
-#include "composite/compositor.h"
-#include "composite/layer_fold.h"
-#include "deltasplat/threads.h"
-#include "image/warp.h"
+#include "composite_render.h"
 #include "memory.h"
-#include "optics/hold_rule.h"
-#include "parallel.h"
-#include "splat/splatter.h"
-#include "stopwatch.h"
 
 namespace deltasplat {
 namespace {
-
-Encoding encodingOf(Method method) {
-    switch (method) {
-        case Method::kAuto:
-            return Encoding::kSmaller;
-        case Method::kDelta:
-            return Encoding::kChanges;
-        default:
-            return Encoding::kWhole;
-    }
-}
 
 // The picture itself, and what encoding it takes besides (measured: 41 bytes for a float .exr).
 constexpr double kBytesPerPixel = 48;
@@ -38,254 +15,6 @@ constexpr double kBytesPerPixel = 48;
 void requireImageMemory(glm::ivec2 size) {
     requireMemory("--size " + std::to_string(size.x) + "x" + std::to_string(size.y),
                   kBytesPerPixel * size.x * size.y);
-}
-
-// A factorization in the sheets' axes: they run along v.
-struct PlaneView {
-    explicit PlaneView(const Factorization& view)
-        : frontToBack(view.frontToBack),
-          shiftPerSlice(view.shiftPerSlice.y, view.shiftPerSlice.x),
-          planeFromPixel(glm::dmat3(0, 1, 0, 1, 0, 0, 0, 0, 1) * view.baseFromPixel) {}
-
-    bool frontToBack;
-    glm::dvec2 shiftPerSlice;
-    glm::dmat3 planeFromPixel;
-};
-
-// Below this opacity a slice, two sheet pixels a voxel show nothing that one does not: measured on
-// smoke, the pictures agree to 56 dB or better (docs/decisions.md).
-constexpr double kThinSlice = 0.25;
-
-// Where the screen asks for two sheet pixels a voxel, what is thin gets one.
-int sheetResolution(const Factorization& view, const ClassTable& classes,
-                    const RenderOptions& options) {
-    const bool thin = classes.scale.a * ClassTable::kMax <= kThinSlice;
-    return !options.resolution && view.resolution == 2 && thin ? 1 : view.resolution;
-}
-
-// Rows of the base plane that are worked on by themselves.
-struct Strip {
-    int first;
-    int last;
-    std::unique_ptr<LayerFold> layers;
-};
-
-// What the slabs share, and where their results go. Work is cut into pieces of a slab and a strip
-// of base plane rows; how many strips there are changes nothing but who does what.
-class SlabRenderer {
-  public:
-    SlabRenderer(const SplatInput& input, const SheetLayout& layout, const PlaneView& view,
-                 const Listener& listener)
-        : input_(input),
-          view_(view),
-          layout_(layout),
-          listener_(listener),
-          scale_(input.classes.scale / double(Footprint::kOne)),
-          merged_(reachOfAll(), layout_.channels) {
-        cutIntoStrips();
-    }
-
-    // Renders all slabs, from the front on.
-    void run() {
-        const std::size_t pieces = strips_.size() * slabs().size();
-        const auto workers = std::min<std::size_t>(std::size_t(threadCount()), pieces);
-        parallelFor(workers, [&](std::size_t) {
-            Splatter splatter(input_, largestLayout());
-            for (std::size_t i = next_++; i < pieces; i = next_++) renderPiece(i, splatter);
-        });
-    }
-
-    // Returns what the slabs look like together.
-    Layer merge() {
-        parallelForChunks(std::size_t(merged_.box.size().y),
-                          [&](std::size_t begin, std::size_t end) {
-                              for (std::size_t row = begin; row < end; ++row) {
-                                  const int y = merged_.box.min.y + int(row);
-                                  for (Strip& strip : strips_) {
-                                      if (y >= strip.first && y < strip.last)
-                                          strip.layers->finishRow(y);
-                                  }
-                              }
-                          });
-        return std::move(merged_);
-    }
-
-    // The share of the pieces' time that went into compositing, 0..1.
-    double compositeShare() const {
-        return pieceSeconds_ > 0 ? compositeSeconds_ / pieceSeconds_ : 0;
-    }
-
-  private:
-    // Enough pieces for every thread to take some, and strips that are not much smaller than what
-    // the rows at their edges cost, which belong to two.
-    static constexpr std::size_t kPiecesPerThread = 4;
-    static constexpr int kLeastRows = 48;
-
-    const std::vector<Slab>& slabs() const { return input_.deltas.slabs; }
-
-    PlaneBox reachOfAll() const {
-        const IndexBox& box = input_.deltas.box;
-        return reachOf(layout_, view_.shiftPerSlice, box.min.x, box.dims().x);
-    }
-
-    void cutIntoStrips() {
-        const int rows = merged_.box.size().y;
-        const std::size_t wanted =
-            (kPiecesPerThread * std::size_t(threadCount()) + slabs().size() - 1) / slabs().size();
-        const int count =
-            std::clamp(int(std::min<std::size_t>(wanted, 1024)), 1, std::max(1, rows / kLeastRows));
-        for (int i = 0; i < count; ++i) {
-            const auto edge = [&](int n) {
-                return merged_.box.min.y + int(std::int64_t{rows} * n / count);
-            };
-            strips_.push_back(
-                {edge(i), edge(i + 1), std::make_unique<LayerFold>(slabs().size(), merged_)});
-        }
-    }
-
-    // The part of the sheet that a slab needs for a strip.
-    SheetLayout layoutOf(const Strip& strip, const Slab& slab) const {
-        if (strips_.size() == 1) return layout_;
-        const int lastSlice = slab.firstSlice + slab.sliceCount - 1;
-        const int a = shiftOf(layout_, view_.shiftPerSlice, slab.firstSlice).offset.y;
-        const int b = shiftOf(layout_, view_.shiftPerSlice, lastSlice).offset.y;
-        // Reading takes in the row behind the last as well.
-        return layoutRows(layout_, strip.first + std::min(a, b), strip.last + std::max(a, b) + 1);
-    }
-
-    SheetLayout largestLayout() const {
-        SheetLayout largest = layoutRows(layout_, 0, 0);
-        for (const Strip& strip : strips_) {
-            for (const Slab& slab : slabs()) {
-                const SheetLayout layout = layoutOf(strip, slab);
-                if (layout.sizePixels.y > largest.sizePixels.y) largest = layout;
-            }
-        }
-        return largest;
-    }
-
-    void renderPiece(std::size_t piece, Splatter& splatter) {
-        const Clock::time_point start = Clock::now();
-        const std::size_t number = piece / strips_.size();
-        const Slab& slab = slabs()[view_.frontToBack ? number : slabs().size() - 1 - number];
-        const Strip& strip = strips_[piece % strips_.size()];
-        double compositeSeconds = 0;
-        PlaneBox box = reachOf(layout_, view_.shiftPerSlice, slab.firstSlice, slab.sliceCount);
-        box.min.y = std::clamp(strip.first, box.min.y, box.max.y);
-        box.max.y = std::clamp(strip.last, box.min.y, box.max.y);
-        Layer layer = strip.layers->take(box);
-        const SheetLayout layout = layoutOf(strip, slab);
-        if (!box.empty() && layout.blocks.y > 0) {
-            Compositor compositor(scale_, view_.frontToBack);
-            splatter.run(slab, layout, [&](int slice, const Sheet& sheet) {
-                const Clock::time_point before = Clock::now();
-                compositor.composite(sheet, shiftOf(layout, view_.shiftPerSlice, slice), layer);
-                compositeSeconds += secondsSince(before);
-            });
-        }
-        const Clock::time_point before = Clock::now();
-        strip.layers->add(number, std::move(layer));
-        compositeSeconds += secondsSince(before);
-        count(slab, compositeSeconds, secondsSince(start));
-    }
-
-    void count(const Slab& slab, double compositeSeconds, double pieceSeconds) {
-        const std::lock_guard lock(mutex_);
-        compositeSeconds_ += compositeSeconds;
-        pieceSeconds_ += pieceSeconds;
-        slicesDone_ += double(slab.sliceCount) / double(strips_.size());
-        listener_.report(0.2 + 0.7 * slicesDone_ / input_.deltas.box.dims().x);
-    }
-
-    const SplatInput& input_;
-    const PlaneView& view_;
-    const SheetLayout& layout_;
-    const Listener& listener_;
-    glm::vec4 scale_;
-    Layer merged_;
-    std::vector<Strip> strips_;
-    std::atomic<std::size_t> next_ = 0;
-    std::mutex mutex_;  // guards all below
-    double compositeSeconds_ = 0;
-    double pieceSeconds_ = 0;
-    double slicesDone_ = 0;
-};
-
-// Footprints that a method adds.
-std::uint64_t stampsOf(const PackedDeltas& deltas, const RenderStats& stats) {
-    if (stats.method == Method::kTraditional) return stats.voxels;
-    std::uint64_t stamps = 0;
-    for (const Slab& slab : deltas.slabs) stamps += slab.whole ? slab.visible : slab.deltas;
-    return stamps;
-}
-
-// Maps picture positions to base plane pixels: r a voxel, counted from the layout's first voxel and
-// slice.
-glm::dmat3 planeFromPixel(const PlaneView& view, const SheetLayout& layout) {
-    const glm::dvec2 origin =
-        glm::dvec2(layout.firstVoxel) + double(layout.firstSlice) * view.shiftPerSlice;
-    glm::dmat3 relative = view.planeFromPixel;
-    relative[2] -= glm::dvec3(origin, 0);
-    const double r = layout.resolution;
-    const double offset = layout.offsetPixels;
-    return glm::dmat3(r, 0, 0, 0, r, 0, -offset, -offset, 1) * relative;
-}
-
-Raster rasterOf(const Layer& layer, const ClassTable& classes) {
-    Raster raster{layer.box.min, layer.box.size(), layer.values.data(), layer.channels};
-    // Of one colour, every channel is a fixed share of the opacity.
-    if (classes.oneColor) raster.color = glm::dvec3(classes.scale) / classes.scale.a;
-    return raster;
-}
-
-// What all slabs together take: splatters for each thread, layers, and the merged one.
-void requireSlabMemory(const PackedDeltas& deltas, const PlaneView& view,
-                       const SheetLayout& layout) {
-    double bytes =
-        Splatter::bytes(layout) * std::min<double>(threadCount(), double(deltas.slabs.size()));
-    const auto layerBytes = [&](int firstSlice, int sliceCount) {
-        const glm::dvec2 size = reachOf(layout, view.shiftPerSlice, firstSlice, sliceCount).size();
-        return sizeof(float) * layout.channels * size.x * size.y;
-    };
-    for (const Slab& slab : deltas.slabs) bytes += layerBytes(slab.firstSlice, slab.sliceCount);
-    bytes += layerBytes(deltas.box.min.x, deltas.box.dims().x);
-    requireMemory("sheets and layers at " + std::to_string(layout.resolution) + " pixels a voxel",
-                  bytes);
-}
-
-void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const Factorization& view,
-                  const RenderOptions& options, const Listener& listener, RenderResult& result) {
-    const Clock::time_point start = Clock::now();
-    const PlaneView planeView(view);
-    const int resolution = sheetResolution(view, classes, options);
-    const Footprint footprint =
-        makeFootprint(options.sigma.value_or(defaultSigma(resolution)), planeView.shiftPerSlice,
-                      resolution, options.footprintWidth);
-    const SheetLayout layout = layoutSheet(deltas.box, footprint, classes.oneColor ? 1 : 4);
-    requireSlabMemory(deltas, planeView, layout);
-    const SplatInput input{deltas, classes, footprint, options.method == Method::kTraditional};
-    SlabRenderer slabs(input, layout, planeView, listener);
-    slabs.run();
-    const double slabSeconds = secondsSince(start);
-
-    const Layer merged = slabs.merge();
-    const double mergedSeconds = secondsSince(start);
-    listener.report(0.95);
-
-    const glm::dmat3 map = planeFromPixel(planeView, layout);
-    warp(rasterOf(merged, classes), map, result.image);
-
-    RenderStats& stats = result.stats;
-    stats.stamps = stampsOf(deltas, stats);
-    const ErrorBound bound = errorBound(classes, options.tolerance);
-    stats.errorBoundColor = bound.color * warpGain(map);
-    stats.errorBoundAlpha = bound.alpha * warpGain(map);
-    stats.resolution = resolution;
-    stats.footprint = footprint.width;
-    stats.renderSeconds = secondsSince(start);
-    stats.splatSeconds = slabSeconds * (1 - slabs.compositeShare());
-    stats.compositeSeconds = mergedSeconds - stats.splatSeconds;
-    stats.warpSeconds = stats.renderSeconds - mergedSeconds;
 }
 
 }  // namespace
@@ -305,31 +34,18 @@ std::string methodName(Method method) {
 }
 
 RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {
-    const Clock::time_point start = Clock::now();
     RenderResult result;
     result.camera = makeCamera(options.camera, volume.box, volume.worldFromIndex);
     requireImageMemory(result.camera.sizePixels);
     result.image = Image(result.camera.sizePixels);
     const Factorization view = factorize(result.camera, volume.worldFromIndex, options.resolution);
 
-    const ClassTable classes = classify(volume, options.optics, view.sliceStepWorld);
-    listener.report(0.05);
-    const PackedDeltas deltas =
-        packDeltas(volume, {view.sliceAxis, encodingOf(options.method), classes.classOfSlot,
-                            holdRule(volume, classes, options.tolerance)});
-    listener.report(0.2);
-
     RenderStats& stats = result.stats;
-    stats.method = options.method;
-    stats.tolerance = options.tolerance;
     stats.voxels = std::uint64_t(volume.box.voxels());
-    stats.visible = deltas.visible();
-    stats.deltas = deltas.deltas();
-    stats.slices = deltas.box.dims().x;
-    stats.slabs = int(deltas.slabs.size());
     stats.sliceAxis = view.sliceAxis;
-    stats.prepareSeconds = secondsSince(start);
-    if (!volume.empty()) renderDeltas(deltas, classes, view, options, listener, result);
+    stats.slices = volume.box.dims()[view.sliceAxis];
+    stats.method = options.method;
+    renderComposite(volume, view, options, listener, result);
     listener.report(1);
     return result;
 }
