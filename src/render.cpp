@@ -5,6 +5,7 @@
 
 #include "composite_render.h"
 #include "memory.h"
+#include "ray_render.h"
 
 namespace deltasplat {
 namespace {
@@ -33,6 +34,18 @@ std::string methodName(Method method) {
     return "auto";
 }
 
+std::string modeName(Mode mode) {
+    switch (mode) {
+        case Mode::kComposite:
+            return "composite";
+        case Mode::kXray:
+            return "xray";
+        case Mode::kMip:
+            return "mip";
+    }
+    return "composite";
+}
+
 RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {
     RenderResult result;
     result.camera = makeCamera(options.camera, volume.box, volume.worldFromIndex);
@@ -44,8 +57,13 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
     stats.voxels = std::uint64_t(volume.box.voxels());
     stats.sliceAxis = view.sliceAxis;
     stats.slices = volume.box.dims()[view.sliceAxis];
+    stats.mode = options.mode;
     stats.method = options.method;
-    renderComposite(volume, view, options, listener, result);
+    if (options.mode == Mode::kComposite) {
+        renderComposite(volume, view, options, listener, result);
+    } else if (!volume.empty()) {
+        renderRays(volume, view, options, listener, result);
+    }
     listener.report(1);
     return result;
 }

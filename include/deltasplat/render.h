@@ -27,8 +27,24 @@ enum class Method {
 /// Returns "auto", "delta", "sparse" or "traditional".
 std::string methodName(Method method);
 
+/// What a pixel shows of the volume along its line of sight.
+enum class Mode {
+    kComposite,  ///< emission and absorption through the transfer function, by splatting
+    kXray,       ///< the integral of the value
+    kMip         ///< the largest value
+};
+
+/// Returns "composite", "xray" or "mip".
+std::string modeName(Mode mode);
+
+/// What can be asked for. Under kXray and kMip method, tolerance, resolution, extinction and unit
+/// distance have no effect, under kMip sigma neither; the transfer function has none but for the
+/// colours of `mipColors`.
 struct RenderOptions {
     Method method = Method::kAuto;
+    Mode mode = Mode::kComposite;
+    /// kMip: the transfer function's colour of the value, opaque, instead of the value itself.
+    bool mipColors = false;
     CameraOptions camera;
     Optics optics;
     /// Footprint's standard deviation in voxels, kMinSigma..kMaxSigma; empty: defaultSigma.
@@ -41,8 +57,10 @@ struct RenderOptions {
 /// What was done and how long it took. Times are wall-clock seconds.
 struct RenderStats {
     Method method = Method::kAuto;
+    Mode mode = Mode::kComposite;
     std::uint64_t voxels = 0;   ///< of the bounding box
-    std::uint64_t visible = 0;  ///< whose classified colour is not zero
+    std::uint64_t visible = 0;  ///< whose classified colour is not zero; kXray: active ones whose
+                                ///< value is not 0; kMip: active ones
     std::uint64_t deltas =
         0;  ///< whose classified colour differs from the slice before, key slices included
     std::uint64_t stamps = 0;  ///< footprints added
@@ -52,8 +70,9 @@ struct RenderStats {
     int resolution = 1;
     int footprint = 0;            ///< width and height of the footprint in sheet pixels
     double prepareSeconds = 0;    ///< classification and taking differences
-    double splatSeconds = 0;      ///< walking and stamping, its share of the wall time of all slabs
-    double compositeSeconds = 0;  ///< compositing and merging, likewise
+    double splatSeconds = 0;      ///< walking and stamping, its share of the wall time of all
+                                  ///< slabs; kXray, kMip: following the lines of sight
+    double compositeSeconds = 0;  ///< compositing and merging, likewise; kXray: the footprint
     double warpSeconds = 0;
     double renderSeconds = 0;  ///< splat, composite, merge and warp
     Tolerance tolerance;
@@ -71,6 +90,10 @@ struct RenderResult {
 
 /// Renders one picture. The same volume and options give the same pixels, bit for bit, for every
 /// method, thread count and SIMD level. An empty volume gives a transparent picture.
+///
+/// Under kXray R = G = B = A = the line integral of the value in world units, under kMip
+/// R = G = B = the largest value and A = 1 where an active voxel is met, and all 0 elsewhere:
+/// numbers, not light, that may be negative or larger than 1. Inactive voxels count as 0.
 /// @throw Error(kUsage) for options out of range, or a picture that does not fit this machine's
 /// memory;
 ///        whatever `listener.progress` throws

@@ -220,11 +220,13 @@ class Warper {
     }
 
     void write(const float* sum, float* out) const {
-        const int last = raster_.channels - 1;
-        out[3] = std::clamp(sum[last], 0.0f, 1.0f);
-        for (int c = 0; c < 3; ++c) {
-            out[c] = last == 0 ? out[3] * raster_.color[c] : std::max(sum[c], 0.0f);
+        if (raster_.channels == 1) {
+            out[3] = std::clamp(sum[0], raster_.range.x, raster_.range.y);
+            for (int c = 0; c < 3; ++c) out[c] = out[3] * raster_.color[c];
+            return;
         }
+        out[3] = std::clamp(sum[3], 0.0f, 1.0f);
+        for (int c = 0; c < 3; ++c) out[c] = std::max(sum[c], 0.0f);
     }
 
     const Raster& raster_;

@@ -14,14 +14,17 @@ struct Raster {
     glm::ivec2 min{0};  ///< lattice position of the first pixel's centre
     glm::ivec2 size{0};
     const float* values = nullptr;
-    int channels = 4;  ///< 4: premultiplied RGBA; 1: opacity
+    int channels = 4;  ///< 4: premultiplied RGBA; 1: opacity, or another value
     /// The colour that opacity 1 has, if opacity is all there is.
     glm::vec3 color{1.0f};
+    /// What a value that stands alone is clamped to: where it is no opacity, the raster's own range
+    /// and 0.
+    glm::vec2 range{0.0f, 1.0f};
 };
 
 /// Resamples a raster under an affine map with a Catmull-Rom filter, widened where the picture is
-/// coarser than the raster. Colours are clamped to be not negative, alpha to 0..1: the filter's
-/// lobes may leave that range. Deterministic; multi-threaded.
+/// coarser than the raster. Colours are clamped to be not negative, alpha to 0..1 and values that
+/// stand alone to their range: the filter's lobes may leave it. Deterministic; multi-threaded.
 /// @param rasterFromPixel  continuous picture coordinates (pixel centres at half-integers) to
 /// lattice positions
 void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, Image& picture);

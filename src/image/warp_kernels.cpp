@@ -76,10 +76,23 @@ HWY_INLINE PixelVector clamped(PixelVector sum) {
     return hn::Min(hn::Max(sum, hn::Zero(tag)), hn::Load(tag, kMost));
 }
 
-// Writes one pixel of RGBA, which of opacity alone is `color` times it. kTaps are those along both
-// axes, or 0 if they are not four.
+// What becomes of a raster's only channel.
+struct SingleChannel {
+    explicit SingleChannel(const Raster& raster)
+        : lowest(hn::Set(PixelTag(), raster.range.x)),
+          highest(hn::Set(PixelTag(), raster.range.y)) {
+        HWY_ALIGN const float rgba[4] = {raster.color.x, raster.color.y, raster.color.z, 1};
+        color = hn::Load(PixelTag(), rgba);
+    }
+    PixelVector lowest;
+    PixelVector highest;
+    PixelVector color;
+};
+
+// Writes one pixel of RGBA, which of a single channel is a color times it. kTaps are those along
+// both axes, or 0 if they are not four.
 template <int kTaps, int kChannels>
-HWY_INLINE void samplePixel(PixelVector color, const FilterView& filterX, std::uint32_t x,
+HWY_INLINE void samplePixel(const SingleChannel& single, const FilterView& filterX, std::uint32_t x,
                             const float* corner, std::size_t pitch, const float* weightY, int rows,
                             float* out) {
     const PixelTag tag;
@@ -94,8 +107,8 @@ HWY_INLINE void samplePixel(PixelVector color, const FilterView& filterX, std::u
         }
     }
     if constexpr (kChannels == 1) {
-        const auto opacity = hn::Min(hn::Max(sum, hn::Zero(tag)), hn::Set(tag, 1.0f));
-        hn::StoreU(hn::Mul(opacity, color), tag, out);
+        const auto value = hn::Min(hn::Max(sum, single.lowest), single.highest);
+        hn::StoreU(hn::Mul(value, single.color), tag, out);
     } else {
         hn::StoreU(clamped(sum), tag, out);
     }
@@ -108,12 +121,11 @@ void sampleRunOf(const Raster& raster, const FilterTable& wantedX, const FilterT
     // Copies, so that what is written cannot be thought to change them.
     const FilterView filterX(wantedX);
     const FilterView filterY(wantedY);
-    HWY_ALIGN const float rgba[4] = {raster.color.x, raster.color.y, raster.color.z, 1};
-    const auto color = hn::Load(PixelTag(), rgba);
+    const SingleChannel single(raster);
     for (int i = 0; i < pixels; ++i, out += 4) {
         const float* corner = raster.values + filterY.firstTap(int(position.y >> 32)) * pitch +
                               kChannels * filterX.firstTap(int(position.x >> 32));
-        samplePixel<kTaps, kChannels>(color, filterX, std::uint32_t(position.x), corner, pitch,
+        samplePixel<kTaps, kChannels>(single, filterX, std::uint32_t(position.x), corner, pitch,
                                       filterY.weights(std::uint32_t(position.y)), filterY.taps(),
                                       out);
         position.x += step.x;

@@ -103,6 +103,12 @@ TransferFunction defaultRamp(const Volume& volume) {
                     volume.codeBook.valueOf(percentileCode(counts, 99)));
 }
 
+TransferFunction wholeRamp(const Volume& volume) {
+    TransferFunction ramp = greyRamp(volume.valueMin, volume.valueMax);
+    ramp.linearColors = false;
+    return ramp;
+}
+
 glm::dvec2 defaultRange(const Volume& volume) {
     if (volume.type == "uint8") return {0, 255};
     glm::dvec2 range(volume.valueMin, volume.valueMax);

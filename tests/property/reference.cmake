@@ -2,3 +2,6 @@ set(DELTASPLAT_SCENE_SOURCES property/test_scene.cpp reference/reference_rendere
 deltasplat_test(property/reference_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
 deltasplat_test(property/slab_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
 deltasplat_test(property/placement_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
+deltasplat_test(property/rays_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
+deltasplat_test(property/rays_reference_test.cpp
+    SOURCES ${DELTASPLAT_SCENE_SOURCES} reference/reference_rays.cpp)

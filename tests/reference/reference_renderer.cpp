@@ -7,24 +7,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "reference/formulas.h"
+
 namespace reference {
 namespace {
-
-double dot(const Vector& a, const Vector& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Vector cross(const Vector& a, const Vector& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-// The index components of a world vector, by Cramer's rule.
-Vector indexComponents(const std::array<Vector, 3>& axes, const Vector& world) {
-    const double determinant = dot(axes[0], cross(axes[1], axes[2]));
-    return {dot(world, cross(axes[1], axes[2])) / determinant,
-            dot(world, cross(axes[2], axes[0])) / determinant,
-            dot(world, cross(axes[0], axes[1])) / determinant};
-}
 
 // One volume seen along one direction: slices along axis `s`, the others are `u` and `v`.
 class SliceView {
@@ -161,18 +147,6 @@ Rgba filtered(const Samples& samples, double a, double b, int reach, const Kerne
         }
     }
     return sum;
-}
-
-double tent(double x) {
-    return std::abs(x) < 1 ? 1 - std::abs(x) : 0;
-}
-
-// E. Catmull and R. Rom, A Class of Local Interpolating Splines, 1974.
-double catmullRom(double x) {
-    const double t = std::abs(x);
-    if (t < 1) return (3 * t * t * t - 5 * t * t + 2) / 2;
-    if (t < 2) return (-t * t * t + 5 * t * t - 8 * t + 4) / 2;
-    return 0;
 }
 
 Samples sampledSlice(const SliceView& slices, int slice, int resolution) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -196,6 +197,34 @@ TEST(Warp, SameBitsOnEveryNumberOfThreads) {
         warp(raster.raster(), affine(0.6, 0.1, -2, -0.2, 0.7, 4), two);
     }
     EXPECT_EQ(one.rgba, two.rgba);
+}
+
+// Values that are no opacity come back as they are, in all four channels, within their own range.
+TEST(Warp, ValuesKeepTheirRange) {
+    std::vector<float> values(30 * 30);
+    for (int i = 0; i < 900; ++i) values[i] = i % 30 < 15 ? -4.0f : 900.0f;
+    Raster raster{{0, 0}, {30, 30}, values.data(), 1};
+    for (const bool clamped : {false, true}) {
+        raster.range = clamped ? glm::vec2(-4, 900) : glm::vec2(-1e9f, 1e9f);
+        // The last columns and rows lie at the raster's edge and beyond.
+        Image picture({120, 120});
+        warp(raster, affine(0.3, 0, -0.1, 0, 0.3, -0.1), picture);
+        float low = 0;
+        float high = 0;
+        for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+            for (int c = 1; c < 4; ++c) ASSERT_EQ(picture.rgba[i + c], picture.rgba[i]);
+            low = std::min(low, picture.rgba[i]);
+            high = std::max(high, picture.rgba[i]);
+        }
+        // The filter's lobes go beyond what there is.
+        if (clamped) {
+            EXPECT_EQ(low, -4);
+            EXPECT_EQ(high, 900);
+        } else {
+            EXPECT_LT(low, -40);
+            EXPECT_GT(high, 930);
+        }
+    }
 }
 
 }  // namespace

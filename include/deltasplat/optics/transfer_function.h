@@ -57,6 +57,10 @@ TransferFunction readTransferFunction(const std::filesystem::path& file,
 TransferFunction defaultRamp(const Volume& volume);
 inline constexpr double kRampOpacity = 0.1;
 
+/// Returns the grey ramp for largest values when no other is given: black at the smallest and white
+/// at the largest active value, grey levels of an sRGB picture in proportion to values between.
+TransferFunction wholeRamp(const Volume& volume);
+
 /// Returns the data values that 0 and 1 of a normalized transfer function stand for when nothing
 /// else is said: 0..255 for uint8 sources, otherwise the smallest and largest of the active values
 /// and, for .vdb grids, the background. A volume of one value only: from 0 to that value, or from

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "deltasplat/optics/class_table.h"
+
+namespace deltasplat {
+
+/// A transfer function's colours as a table that is read linearly: thousands of times as fast as
+/// the function; a jump of the function becomes a ramp of 1/4096 of its range.
+class ValueColors {
+  public:
+    ValueColors(const Volume& volume, const Optics& optics);
+
+    /// Returns the scene-linear colour of a data value.
+    glm::vec3 colorOf(float value) const;
+
+  private:
+    static constexpr int kSteps = 4096;
+    glm::vec3 below_{0.0f};          // the colour of what is less than the first
+    double first_ = 0;               // data value of the first colour
+    double stepsPerUnit_ = 0;        // of data values
+    std::vector<glm::vec3> colors_;  // [kSteps + 1], scene-linear
+};
+
+}  // namespace deltasplat

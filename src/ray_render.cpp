@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ray_render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "composite/plane_view.h"
+#include "image/warp.h"
+#include "optics/value_colors.h"
+#include "parallel.h"
+#include "rays/blur_plane.h"
+#include "rays/follow_rays.h"
+#include "stopwatch.h"
+
+namespace deltasplat {
+namespace {
+
+// Sheet pixels a voxel: what is between them is for the warp to find.
+constexpr int kResolution = 1;
+
+// What is divided by what is warped alike must not be clamped before.
+constexpr glm::vec2 kAnyValue{std::numeric_limits<float>::lowest(),
+                              std::numeric_limits<float>::max()};
+
+// Under the maximum a voxel stands for itself.
+Footprint singlePixel() {
+    Footprint footprint;
+    footprint.weights = {Footprint::kOne};
+    return footprint;
+}
+
+Footprint footprintOf(const RenderOptions& options, glm::dvec2 shiftPerSlice) {
+    if (options.mode == Mode::kMip) return singlePixel();
+    return makeFootprint(options.sigma.value_or(defaultSigma(kResolution)), shiftPerSlice,
+                         kResolution, options.footprintWidth);
+}
+
+Raster rasterOf(const RayPlane& plane, glm::vec2 range) {
+    Raster raster{plane.box.min, plane.box.size(), plane.values.data(), 1};
+    raster.range = range;
+    return raster;
+}
+
+// The values of a plane, and the nothing around it.
+glm::vec2 rangeOf(const RayPlane& plane) {
+    const auto [low, high] = std::minmax_element(plane.values.begin(), plane.values.end());
+    return {std::min(*low, 0.0f), std::max(*high, 0.0f)};
+}
+
+// Splits a plane of largest values into whether anything is met (1 or 0), and the value there.
+RayPlane splitMet(RayPlane& plane) {
+    RayPlane met(plane.box);
+    parallelForChunks(plane.values.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            met.values[i] = std::isinf(plane.values[i]) ? 0.0f : 1.0f;
+            if (met.values[i] == 0) plane.values[i] = 0;
+        }
+    });
+    return met;
+}
+
+// Makes the picture of values and of what is met, both warped: a pixel is met where it is by half
+// or more, and has the mean of the values that are.
+void combineMet(const Image& met, glm::vec2 range, Image& image) {
+    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
+        float* rgba = image.pixel(0, int(y));
+        const float* share = met.pixel(0, int(y));
+        for (int x = 0; x < image.size.x; ++x, rgba += 4, share += 4) {
+            const bool isMet = share[3] >= 0.5f;
+            const float value = isMet ? std::clamp(rgba[3] / share[3], range.x, range.y) : 0.0f;
+            for (int c = 0; c < 3; ++c) rgba[c] = value;
+            rgba[3] = isMet ? 1.0f : 0.0f;
+        }
+    });
+}
+
+void colorValues(const ValueColors& colors, Image& image) {
+    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
+        float* rgba = image.pixel(0, int(y));
+        for (int x = 0; x < image.size.x; ++x, rgba += 4) {
+            if (rgba[3] == 0) continue;
+            const glm::vec3 color = colors.colorOf(rgba[0]);
+            for (int c = 0; c < 3; ++c) rgba[c] = color[c];
+        }
+    });
+}
+
+}  // namespace
+
+void renderRays(const Volume& volume, const Factorization& view, const RenderOptions& options,
+                const Listener& listener, RenderResult& result) {
+    const Clock::time_point start = Clock::now();
+    const bool mip = options.mode == Mode::kMip;
+    const RayRule rule = mip ? RayRule::kMax : RayRule::kSum;
+    const RayVolume rays = makeRayVolume(volume, view.sliceAxis, rule);
+    RenderStats& stats = result.stats;
+    stats.prepareSeconds = secondsSince(start);
+
+    const Clock::time_point renderStart = Clock::now();
+    const PlaneView planeView(view);
+    const Footprint footprint = footprintOf(options, planeView.shiftPerSlice);
+    const SheetLayout layout = layoutSheet(rays.box, footprint, 1);
+    RayPlane plane = followRays({rays, rule, layout, planeView.shiftPerSlice}, listener);
+    stats.splatSeconds = secondsSince(renderStart);
+
+    const glm::dmat3 map = planeFromPixel(planeView, layout);
+    if (mip) {
+        const RayPlane met = splitMet(plane);
+        stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;
+        Image share(result.image.size);
+        warp(rasterOf(met, kAnyValue), map, share);
+        warp(rasterOf(plane, kAnyValue), map, result.image);
+        combineMet(share, {rays.lowest, rays.highest}, result.image);
+        if (options.mipColors) colorValues(ValueColors(volume, options.optics), result.image);
+    } else {
+        plane = blurPlane(plane, footprint, float(view.sliceStepWorld));
+        stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;
+        warp(rasterOf(plane, rangeOf(plane)), map, result.image);
+    }
+    stats.visible = rays.visible;
+    stats.resolution = kResolution;
+    stats.footprint = footprint.width;
+    stats.renderSeconds = secondsSince(renderStart);
+    stats.warpSeconds = stats.renderSeconds - stats.splatSeconds - stats.compositeSeconds;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rays/follow_rays.h"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <mutex>
+
+#include "deltasplat/threads.h"
+#include "memory.h"
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+// Rows of the base plane that are done at a time: so many that little is read twice, so few that
+// what they read stays in the second-level cache.
+constexpr int kBandRows = 64;
+
+}  // namespace
+
+RayPlane followRays(const RayInput& input, const Listener& listener) {
+    const IndexBox& volume = input.volume.box;
+    const PlaneBox box = reachOf(input.layout, input.shiftPerSlice, volume.min.x, volume.dims().x);
+    const int bands = (box.size().y + kBandRows - 1) / kBandRows;
+    const int workers = std::min(threadCount(), bands);
+    requireMemory("base plane", 2.0 * sizeof(float) * box.size().x * box.size().y +
+                                    workers * RayBand::bytes(input, kBandRows));
+
+    const bool sum = input.rule == RayRule::kSum;
+    RayPlane plane(box, sum ? 0 : -std::numeric_limits<float>::infinity());
+    std::atomic<int> next = 0;
+    std::mutex mutex;  // guards `done`
+    int done = 0;
+    parallelFor(std::size_t(workers), [&](std::size_t) {
+        RayBand band(input, kBandRows);
+        for (int i = next++; i < bands; i = next++) {
+            const int first = box.min.y + i * kBandRows;
+            band.run(first, std::min(first + kBandRows, box.max.y), plane);
+            const std::lock_guard lock(mutex);
+            listener.report(0.1 + 0.8 * ++done / bands);
+        }
+    });
+    return plane;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "delta/code_blocks.h"
+#include "deltasplat/ingest/volume.h"
+#include "rays/ray_kernels.h"
+
+namespace deltasplat {
+
+/// What is looked for along the lines of sight.
+enum class RayRule {
+    kSum,  ///< sums of values; where there is no active voxel there is 0
+    kMax   ///< the largest value that is met
+};
+
+/// A volume as rays see it: float values, in blocks ordered by slice.
+struct RayVolume {
+    IndexBox box;  ///< in (slice, u, v) order
+    int sliceAxis = 2;
+    CodeValues values;
+    /// What voxels hold that are not active: 0, or under kMax the smallest value where that is
+    /// negative, so that nothing never outshines something.
+    float empty = 0;
+    float lowest = 0;           ///< of the active voxels' values
+    float highest = 0;          ///< likewise
+    std::uint64_t visible = 0;  ///< active voxels, under kSum but for those of value 0
+
+    /// The blocks that matter of 8 slices from 8 * layer on, ordered by u, then v.
+    std::span<const CodeBlock> layer(int layer) const {
+        const auto i = std::size_t(layer - (box.min.x >> 3));
+        return std::span(blocks).subspan(begins[i], begins[i + 1] - begins[i]);
+    }
+
+    float valueOf(Code code) const {
+        return values.direct ? float(code) + values.offset : table[code];
+    }
+
+    std::vector<CodeBlock> blocks;
+    std::vector<std::size_t> begins;  ///< [layers + 1]: the first of each layer's blocks
+    std::vector<float> table;         ///< [kCodeCount], unless values are direct
+};
+
+/// Lists what rays meet of a volume that is not empty. The volume must outlive what is returned.
+RayVolume makeRayVolume(const Volume& volume, int sliceAxis, RayRule rule);
+
+}  // namespace deltasplat

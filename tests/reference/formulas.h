@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+#include "reference/reference_renderer.h"
+
+namespace reference {
+
+inline double dot(const Vector& a, const Vector& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+inline Vector cross(const Vector& a, const Vector& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+// The index components of a world vector, by Cramer's rule.
+inline Vector indexComponents(const std::array<Vector, 3>& axes, const Vector& world) {
+    const double determinant = dot(axes[0], cross(axes[1], axes[2]));
+    return {dot(world, cross(axes[1], axes[2])) / determinant,
+            dot(world, cross(axes[2], axes[0])) / determinant,
+            dot(world, cross(axes[0], axes[1])) / determinant};
+}
+
+inline double tent(double x) {
+    return std::abs(x) < 1 ? 1 - std::abs(x) : 0;
+}
+
+// E. Catmull and R. Rom, A Class of Local Interpolating Splines, 1974.
+inline double catmullRom(double x) {
+    const double t = std::abs(x);
+    if (t < 1) return (3 * t * t * t - 5 * t * t + 2) / 2;
+    if (t < 2) return (-t * t * t + 5 * t * t - 8 * t + 4) / 2;
+    return 0;
+}
+
+}  // namespace reference
