@@ -69,7 +69,7 @@ void measure(const std::string& input, const BenchCommand& command, RenderOption
         const Volume volume =
             readToRender(input, command.picture, options, display.stage(begin, read));
         found.report.entries.push_back(
-            {input, command.picture.mode,
+            {input, modeName(command.picture.render.mode),
              measureMethods(volume, options, command.repeats, display.stage(read, end))});
     } catch (const Error& error) {
         if (error.code() == ErrorCode::kInterrupted) throw;

@@ -9,7 +9,9 @@
 #include "interrupt.h"
 #include "listener.h"
 #include "lower_case.h"
+#include "number_text.h"
 #include "render_input.h"
+#include "render_modes.h"
 #include "render_options.h"
 #include "render_stats.h"
 #include "stopwatch.h"
@@ -32,10 +34,13 @@ ImageFileOptions imageOptions(const RenderCommand& command, const RenderResult& 
         {"version", programVersion()},
         {"commandLine", session.commandLine},
         {"input", command.input.string()},
-        {"method", methodName(command.picture.render.method)},
-        {"tolerance", toleranceText(result.stats.tolerance)},
-        {"errorBound", errorBoundText(result.stats)},
+        {"mode", modeName(result.stats.mode)},
     };
+    if (result.stats.mode != Mode::kComposite) return options;
+    options.metadata.insert(options.metadata.end(),
+                            {{"method", methodName(command.picture.render.method)},
+                             {"tolerance", toleranceText(result.stats.tolerance)},
+                             {"errorBound", errorBoundText(result.stats)}});
     return options;
 }
 
@@ -52,9 +57,19 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     if (isGiven(app, "--bits") && lowerCase(command.output.extension().string()) != ".png")
         display.warn("--bits: has no effect without a .png picture");
     warnOfUnusedCameraOptions(app, display);
+    warnOfUnusedModeOptions(app, command, display);
 }
 
-void runRender(const CLI::App& app, const RenderCommand& command, const Session& session) {
+// Makes the picture what is stored of it, and says in `image` what that took.
+void finishPicture(const RenderCommand& command, RenderResult& result, ImageFileOptions& image) {
+    if (storesValues(command)) return;
+    if (command.picture.render.mode == Mode::kXray)
+        image.metadata.emplace_back("xrayScale", numberText(scaleXray(result.image)));
+    if (command.picture.background) compositeOver(result.image, *command.picture.background);
+}
+
+void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
+    applyMode(command);
     validate(command);
     const PictureOptions& picture = command.picture;
     RenderTimes times;
@@ -70,12 +85,13 @@ void runRender(const CLI::App& app, const RenderCommand& command, const Session&
         times.read = secondsSince(beginRead);
 
         result = render(volume, options, display.stage(kReadShare, kRenderShare));
-        if (picture.background) compositeOver(result.image, *picture.background);
+        ImageFileOptions image = imageOptions(command, result, session);
+        finishPicture(command, result, image);
 
         const Listener writing = display.stage(kRenderShare, 1);
         writing.report(0);
         const auto beginWrite = std::chrono::steady_clock::now();
-        writeImage(command.output, result.image, imageOptions(command, result, session));
+        writeImage(command.output, result.image, image);
         times.write = secondsSince(beginWrite);
         times.total = secondsSince(session.begin);
         if (!command.stats.empty())

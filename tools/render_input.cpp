@@ -16,7 +16,9 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
 Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
                     RenderOptions& options, const Listener& listener) {
     Volume volume = readVolume(input, picture.read, listener);
-    if (picture.transferFunction.empty()) options.optics.transferFunction = defaultRamp(volume);
+    if (!picture.transferFunction.empty()) return volume;
+    const bool mip = picture.render.mode == Mode::kMip;
+    options.optics.transferFunction = mip ? wholeRamp(volume) : defaultRamp(volume);
     return volume;
 }
 

@@ -23,6 +23,18 @@ Parser<Method> method() {
     };
 }
 
+Parser<Mode> mode() {
+    return [](const std::string& option, const std::string& text) {
+        const Mode modes[] = {Mode::kComposite, Mode::kXray, Mode::kMip};
+        std::vector<std::string> names;
+        for (const Mode candidate : modes) {
+            if (modeName(candidate) == text) return candidate;
+            names.push_back(modeName(candidate));
+        }
+        throw Error(ErrorCode::kUsage, gotExpected(option, text, joinWords(names, "or")));
+    };
+}
+
 Parser<std::int64_t> bits() {
     return [](const std::string& option, const std::string& text) {
         return choice({"8", "16"})(option, text) == "8" ? 8 : 16;
@@ -55,6 +67,17 @@ void addOutputOptions(CLI::App& app, RenderCommand& command) {
                    withDefault("Bits per channel of a .png", std::to_string(command.image.bits)));
     group.addValue("--stats", "FILE", command.stats, anyText(),
                    "JSON file to write: what was done, how long it took in seconds");
+}
+
+void addModeOption(CLI::App& app, Mode& chosen) {
+    OptionGroup group(app, "Optics");
+    group.addValue("--mode", "NAME", chosen, mode(),
+                   withDefault("composite (emission and absorption), xray (integral of the value\n"
+                               "in world units) or mip (largest value along the line of\n"
+                               "sight): the last two store their values as 32-bit floats in\n"
+                               "an .exr. In a .png, xray is scaled so that its largest value\n"
+                               "is 1, and mip shows the transfer function's colours",
+                               modeName(chosen)));
 }
 
 void addMethodOption(CLI::App& app, Method& chosen) {
@@ -102,8 +125,6 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
 void addOpticsOptions(CLI::App& app, PictureOptions& options) {
     Optics& optics = options.render.optics;
     OptionGroup group(app, "Optics");
-    group.addValue("--mode", "composite", options.mode, choice({"composite"}),
-                   withDefault("Emission and absorption, front to back", options.mode));
     group.addValue("--tf", "FILE", options.transferFunction, anyText(),
                    "Transfer function, a ParaView JSON file (default: a grey ramp\n"
                    "over the 1st to 99th percentile of the values)");
@@ -146,6 +167,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
         .required();
     addOutputOptions(app, command);
     addCameraOptions(app, command.picture);
+    addModeOption(app, command.picture.render.mode);
     addOpticsOptions(app, command.picture);
     addMethodOption(app, command.picture.render.method);
     addSplattingOptions(app, command.picture.render);

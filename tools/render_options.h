@@ -18,7 +18,6 @@ struct PictureOptions {
     std::filesystem::path transferFunction;  ///< empty: the grey ramp
     std::optional<glm::vec4> background;
     std::string projection = "ortho";
-    std::string mode = "composite";
     ReadOptions read;
     RenderOptions render;
 };

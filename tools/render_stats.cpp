@@ -20,6 +20,22 @@ nlohmann::ordered_json boundJson(double bound) {
     return std::isinf(bound) ? nlohmann::ordered_json() : nlohmann::ordered_json(bound);
 }
 
+std::string workSummary(const RenderStats& stats) {
+    char text[256];
+    const auto visible = (unsigned long long)stats.visible;
+    const auto voxels = (unsigned long long)stats.voxels;
+    if (stats.mode == Mode::kComposite) {
+        std::snprintf(text, sizeof text,
+                      "method %s: %llu stamps (%llu of %llu voxels visible, %llu deltas)\n",
+                      methodName(stats.method).c_str(), (unsigned long long)stats.stamps, visible,
+                      voxels, (unsigned long long)stats.deltas);
+    } else {
+        std::snprintf(text, sizeof text, "mode %s: %llu of %llu voxels\n",
+                      modeName(stats.mode).c_str(), visible, voxels);
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string statsJson(const RenderStats& stats, const RenderTimes& times) {
@@ -35,7 +51,7 @@ std::string statsJson(const RenderStats& stats, const RenderTimes& times) {
     };
     return dumpJson({
         {"method", methodName(stats.method)},
-        {"mode", "composite"},
+        {"mode", modeName(stats.mode)},
         {"voxels", stats.voxels},
         {"visible", stats.visible},
         {"deltas", stats.deltas},
@@ -75,13 +91,10 @@ std::string errorBoundText(const RenderStats& stats) {
 std::string statsSummary(const RenderStats& stats, const RenderTimes& times) {
     char text[512];
     std::snprintf(text, sizeof text,
-                  "method %s: %llu stamps (%llu of %llu voxels visible, %llu deltas)\n"
-                  "%d slices along %s in %d slabs, %d sheet pixels a voxel, footprint %dx%d\n"
+                  "%s%d slices along %s in %d slabs, %d sheet pixels a voxel, footprint %dx%d\n"
                   "seconds: read %.3f, prepare %.3f, render %.3f (splat %.3f, composite %.3f, "
                   "warp %.3f), write %.3f, total %.3f\n",
-                  methodName(stats.method).c_str(), (unsigned long long)stats.stamps,
-                  (unsigned long long)stats.visible, (unsigned long long)stats.voxels,
-                  (unsigned long long)stats.deltas, stats.slices, axisName(stats.sliceAxis).c_str(),
+                  workSummary(stats).c_str(), stats.slices, axisName(stats.sliceAxis).c_str(),
                   stats.slabs, stats.resolution, stats.footprint, stats.footprint, times.read,
                   stats.prepareSeconds, stats.renderSeconds, stats.splatSeconds,
                   stats.compositeSeconds, stats.warpSeconds, times.write, times.total);

@@ -32,6 +32,7 @@ add_test(NAME cli.json_keys
                  -P ${DELTASPLAT_CLI_SCRIPTS}/json_keys.cmake)
 set_tests_properties(cli.json_keys PROPERTIES LABELS cli TIMEOUT 600)
 
+deltasplat_script_test(modes modes.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/modes)
 deltasplat_script_test(identity.simd identity.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/identity_simd every synth --size 90x70)
 deltasplat_script_test(identity.fine identity.sh

@@ -98,7 +98,7 @@ deltasplat_refusal(nan "--nan: got inf; expected a finite number" --nan inf)
 # Words.
 deltasplat_refusal(method "--method: got fast; expected auto, delta, sparse or traditional"
     --method fast)
-deltasplat_refusal(mode "--mode: got mip; expected composite" --mode mip)
+deltasplat_refusal(mode "--mode: got average; expected composite, xray or mip" --mode average)
 deltasplat_refusal(projection "--projection: got perspective; expected ortho"
     --projection perspective)
 deltasplat_refusal(level_set "--level-set: got maybe; expected fog or keep" --level-set maybe)
@@ -200,6 +200,28 @@ deltasplat_unused(noise --noise "on a volume other than engine"
     ARGS synth slab out.vdb --noise 0.1 CREATES out.vdb)
 deltasplat_unused(synth_spacing --spacing "without a .vdb output"
     ARGS synth slab out.raw --spacing 1,1,2 CREATES out.raw)
+
+foreach(mode xray mip)
+    foreach(option method=delta tolerance=0.1 tolerance-value=1 resolution=2 extinction=2
+            unit-distance=3 tf=tf_good.json)
+        string(REGEX REPLACE "=.*" "" name ${option})
+        deltasplat_unused(${mode}_${name} --${name} "with --mode ${mode}" CREATES out.exr
+            ARGS render ${cube} -o out.exr --size 8x8 --mode ${mode} --${option})
+    endforeach()
+    deltasplat_unused(${mode}_background --background "on an .exr with --mode ${mode}"
+        CREATES out.exr
+        ARGS render ${cube} -o out.exr --size 8x8 --mode ${mode} --background 1,1,1)
+    deltasplat_cli_test(used.${mode}_background CREATES out.png
+        ARGS render ${cube} -o out.png --size 8x8 --mode ${mode} --background 1,1,1)
+endforeach()
+deltasplat_unused(mip_sigma --sigma "with --mode mip" CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --mode mip --sigma 1)
+deltasplat_unused(xray_tf_png --tf "with --mode xray" CREATES out.png
+    ARGS render ${cube} -o out.png --size 8x8 --mode xray --tf tf_good.json)
+deltasplat_cli_test(used.xray_sigma CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --mode xray --sigma 1 --float)
+deltasplat_cli_test(used.mip_tf CREATES out.png
+    ARGS render ${cube} -o out.png --size 8x8 --mode mip --tf tf_good.json)
 
 # Outputs that cannot be meant.
 deltasplat_cli_test(usage.png_side EXIT 2 ARGS render ${cube} -o out.png --size 1000001x1

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_modes.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "input_options.h"
+#include "lower_case.h"
+
+namespace deltasplat {
+namespace {
+
+bool isExr(const std::filesystem::path& file) {
+    return lowerCase(file.extension().string()) == ".exr";
+}
+
+}  // namespace
+
+bool storesValues(const RenderCommand& command) {
+    return command.picture.render.mode != Mode::kComposite && isExr(command.output);
+}
+
+void applyMode(RenderCommand& command) {
+    if (storesValues(command)) command.image.floatExr = true;
+    command.picture.render.mipColors = !isExr(command.output);
+}
+
+double scaleXray(Image& image) {
+    const float largest = *std::max_element(image.rgba.begin(), image.rgba.end());
+    if (!(largest > 0)) return 1;
+    for (float& value : image.rgba) value /= largest;
+    return largest;
+}
+
+void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
+                             ProgressDisplay& display) {
+    const Mode mode = command.picture.render.mode;
+    if (mode == Mode::kComposite) return;
+    std::vector<std::string> unused = {"--method",     "--tolerance",  "--tolerance-value",
+                                       "--resolution", "--extinction", "--unit-distance"};
+    if (mode == Mode::kMip) unused.push_back("--sigma");
+    if (mode == Mode::kXray || isExr(command.output)) unused.push_back("--tf");
+    for (const std::string& option : unused) {
+        if (isGiven(app, option))
+            display.warn(option + ": has no effect with --mode " + modeName(mode));
+    }
+    if (isGiven(app, "--background") && storesValues(command))
+        display.warn("--background: has no effect on an .exr with --mode " + modeName(mode));
+}
+
+}  // namespace deltasplat
