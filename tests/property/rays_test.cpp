@@ -21,8 +21,8 @@ TEST(Rays, HalfFloatsAreValues) {
     ASSERT_NE(value, 0xBE00);
     ASSERT_NE(value, 0);
     const TestView view = viewOf(volume, {0, 0, -1});
-    const float* xray = render(volume, optionsOf(Mode::kXray, view)).image.pixel(35, 30);
-    EXPECT_FLOAT_EQ(xray[0], float(16 * value));
+    const Image xray = render(volume, optionsOf(Mode::kXray, view)).image;
+    EXPECT_FLOAT_EQ(xray.pixel(35, 30)[0], float(16 * value));
     const Image mip = render(volume, optionsOf(Mode::kMip, view)).image;
     EXPECT_FLOAT_EQ(mip.pixel(35, 30)[0], float(value));
 }
