@@ -37,6 +37,8 @@ struct Subcommand {
     std::function<int()> exitCode = {};
     /// Exit code of everything that goes wrong but an interrupt; empty: the number of ErrorCode.
     std::optional<int> errorExit = {};
+    /// Subcommands of its own, of which one may be called in its place.
+    std::vector<Subcommand> nested = {};
 };
 
 /// Options shown under one heading of the help.
@@ -77,7 +79,7 @@ std::string withDefault(const std::string& help, const std::string& value);
 /// Returns whether the option stands on the command line; false while that is not yet parsed.
 bool isGiven(const CLI::App& app, const std::string& name);
 
-/// Declares a subcommand with an empty set of options.
+/// Declares a subcommand, of the program or of another one, with an empty set of options.
 /// @param examples  command lines, shown below the help
 CLI::App& addSubcommand(CLI::App& program, const std::string& name, const std::string& summary,
                         const std::vector<std::string>& examples);

@@ -54,16 +54,36 @@ std::vector<std::string> subcommandNames(const std::vector<Subcommand>& subcomma
     return names;
 }
 
+// Returns how an app is called: "deltasplat bench table1".
+std::string callOf(const CLI::App& app) {
+    const CLI::App* const parent = app.get_parent();
+    return (parent == nullptr ? "" : callOf(*parent) + " ") + app.get_name();
+}
+
+// Returns the subcommand to run, the innermost one that was called; nullptr if none was.
+const Subcommand* called(const std::vector<Subcommand>& subcommands) {
+    for (const Subcommand& subcommand : subcommands) {
+        if (!subcommand.app->parsed()) continue;
+        const Subcommand* const nested = called(subcommand.nested);
+        return nested != nullptr ? nested : &subcommand;
+    }
+    return nullptr;
+}
+
 // Spells a long option of the subcommand with two dashes where it was written with one, as users of
 // idiff and oiiotool do: "-fail" is no "-f ail".
 void spellWithTwoDashes(std::vector<std::string>& arguments,
                         const std::vector<Subcommand>& subcommands) {
     const CLI::App* app = nullptr;
+    const std::vector<Subcommand>* callable = &subcommands;
     for (std::string& argument : arguments) {
-        const auto named = std::find_if(subcommands.begin(), subcommands.end(), [&](const auto& s) {
+        const auto named = std::find_if(callable->begin(), callable->end(), [&](const auto& s) {
             return s.app->get_name() == argument;
         });
-        if (app == nullptr && named != subcommands.end()) app = named->app;
+        if (named != callable->end()) {
+            app = named->app;
+            callable = &named->nested;
+        }
         if (app == nullptr || argument.size() < 3 || argument[0] != '-') continue;
         const std::string name = "-" + argument.substr(0, argument.find('='));
         if (app->get_option_no_throw(name) != nullptr) argument.insert(0, 1, '-');
@@ -87,9 +107,8 @@ void refuseExtras(const CLI::App& app, const std::vector<Subcommand>& subcommand
         throw Error(ErrorCode::kUsage,
                     "Unknown option '" + name + "'." + suggestion(name, longOptions(app)));
     }
-    throw Error(ErrorCode::kUsage, "Unexpected argument '" + extras.front() + "'; see '" +
-                                       (isProgram ? "deltasplat" : "deltasplat " + app.get_name()) +
-                                       " --help'");
+    throw Error(ErrorCode::kUsage,
+                "Unexpected argument '" + extras.front() + "'; see '" + callOf(app) + " --help'");
 }
 
 // Puts what CLI11 has to say into our words.
@@ -102,7 +121,7 @@ Error usageError(const CLI::App& app, const CLI::ParseError& problem) {
     if (option->get_type_name().empty())
         return Error(ErrorCode::kUsage, gotExpected(name, "a value", "none, it is a flag"));
     return Error(ErrorCode::kUsage, gotExpected(name, "nothing", option->get_type_name()) +
-                                        " (see 'deltasplat " + app.get_name() + " --help')");
+                                        " (see '" + callOf(app) + " --help')");
 }
 
 // Parses the arguments; returns the subcommand to run, or nullptr if help or versions were shown.
@@ -111,10 +130,6 @@ const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcom
     std::vector<std::string> spelt(arguments.begin() + 1, arguments.end());
     spellWithTwoDashes(spelt, subcommands);
     std::vector<std::string> reversed(spelt.rbegin(), spelt.rend());
-    const auto parsed = [&] {
-        return std::find_if(subcommands.begin(), subcommands.end(),
-                            [](const Subcommand& s) { return s.app->parsed(); });
-    };
     try {
         program.parse(reversed);
     } catch (const CLI::Success& shown) {
@@ -123,19 +138,22 @@ const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcom
         printOut(text.str());
         return nullptr;
     } catch (const CLI::ParseError& problem) {
-        const CLI::App& app = parsed() == subcommands.end() ? program : *parsed()->app;
+        const Subcommand* const subcommand = called(subcommands);
+        const CLI::App& app = subcommand == nullptr ? program : *subcommand->app;
         // A misspelt option is why another one seems to be missing.
         refuseExtras(app, subcommands);
         throw usageError(app, problem);
     }
     refuseExtras(program, subcommands);
-    if (parsed() == subcommands.end()) {
+    const Subcommand* const subcommand = called(subcommands);
+    if (subcommand == nullptr) {
         throw Error(ErrorCode::kUsage, gotExpected("subcommand", "nothing",
                                                    joinWords(subcommandNames(subcommands), "or")) +
                                            " (see 'deltasplat --help')");
     }
-    refuseExtras(*parsed()->app, subcommands);
-    return &*parsed();
+    for (const CLI::App* app = subcommand->app; app != &program; app = app->get_parent())
+        refuseExtras(*app, subcommands);
+    return subcommand;
 }
 
 // Runs the program; returns its exit code. Sets `errorExit` as soon as there is a subcommand that
@@ -159,6 +177,8 @@ int execute(const std::vector<std::string>& arguments,
         addCommonOptions(app, session.common);
         const auto code = subcommands.back().errorExit;
         app.preparse_callback([&errorExit, code](std::size_t) { errorExit = code; });
+        for (const Subcommand& nested : subcommands.back().nested)
+            addCommonOptions(*nested.app, session.common);
     }
 
     const Subcommand* const subcommand = parse(program, subcommands, arguments);
