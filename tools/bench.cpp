@@ -2,13 +2,12 @@
 #include <filesystem>
 #include <memory>
 
+#include "bench_failures.h"
 #include "bench_page_file.h"
 #include "bench_report.h"
-#include "bench_words.h"
-#include "deltasplat/error.h"
+#include "bench_table1.h"
 #include "input_options.h"
 #include "listener.h"
-#include "number_text.h"
 #include "render_input.h"
 #include "render_options.h"
 #include "subcommands.h"
@@ -34,9 +33,10 @@ struct Findings {
 };
 
 void addBenchOptions(CLI::App& app, BenchCommand& command) {
-    app.add_option("INPUT", command.inputs, std::string("Volumes to render: ") + kInputFormats)
+    // Not required, since a required one would take the name of a subcommand for a file.
+    app.add_option("INPUT", command.inputs,
+                   std::string("Volumes to render, at least one: ") + kInputFormats)
         ->type_name("FILE")
-        ->required()
         ->group("Arguments");
     OptionGroup group(app, "Measuring");
     group.addValue("--repeats", "N", command.repeats, wholeNumber(1, 100000),
@@ -93,20 +93,8 @@ Findings measureAll(const CLI::App& app, const BenchCommand& command, const Sess
     return found;
 }
 
-// All methods promise the same pixels, so that a difference is a failure of the program.
-void addDifferences(Findings& found) {
-    for (const BenchEntry& entry : found.report.entries) {
-        if (entry.run.identical) continue;
-        found.failures.emplace_back(
-            ErrorCode::kFailed,
-            gotExpected(entry.input,
-                        "pixels that differ by up to " + numberText(entry.run.maxDifference) +
-                            " between methods",
-                        "the same bits from all methods in all rounds"));
-    }
-}
-
 void runBench(const CLI::App& app, const BenchCommand& command, const Session& session) {
+    requireArgument(!command.inputs.empty(), "INPUT", "FILE (see 'deltasplat bench --help')");
     checkCamera(command.picture.render.camera);
     if (!command.report.empty())
         checkPageFolder(command.report, command.picture.render.camera.sizePixels);
@@ -116,11 +104,8 @@ void runBench(const CLI::App& app, const BenchCommand& command, const Session& s
         if (!command.report.empty())
             writePage(command.report, pageText(found.report, command.picture.background));
     }
-    addDifferences(found);
-    if (found.failures.empty()) return;
-    // The last one ends the program, which shows it as it shows every error.
-    for (std::size_t i = 0; i + 1 < found.failures.size(); ++i) showError(found.failures[i].what());
-    throw found.failures.back();
+    for (const BenchEntry& entry : found.report.entries) addDifference(entry, found.failures);
+    throwFailures(found.failures);
 }
 
 }  // namespace
@@ -131,9 +116,13 @@ Subcommand addBench(CLI::App& program) {
         addSubcommand(program, "bench", "Measures the four methods side by side on volumes.",
                       {"deltasplat bench smoke.vdb --view iso --threads 1 --report out",
                        "deltasplat bench engine_256x256x128_uint8.raw.gz head.vdb --tf ct.json "
-                       "--repeats 9 --json"});
+                       "--repeats 9 --json",
+                       "deltasplat bench table1 data"});
     addBenchOptions(app, *command);
-    return {&app, [&app, command](const Session& session) { runBench(app, *command, session); }};
+    Subcommand bench{&app,
+                     [&app, command](const Session& session) { runBench(app, *command, session); }};
+    bench.nested.push_back(addTable1(app));
+    return bench;
 }
 
 }  // namespace deltasplat

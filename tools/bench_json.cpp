@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "bench_json.h"
+
 #include "axis_name.h"
-#include "bench_report.h"
 #include "json_text.h"
 #include "version.h"
 
@@ -8,16 +9,6 @@ namespace deltasplat {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json toJson(const Machine& machine) {
-    Json versions;
-    versions["deltasplat"] = programVersion();
-    for (const auto& [library, version] : libraryVersions()) versions[library] = version;
-    return {{"cpu", machine.cpu},   {"logical_cores", machine.logicalCores},
-            {"simd", machine.simd}, {"memory_bytes", machine.memoryBytes},
-            {"os", machine.os},     {"compiler", machine.compiler},
-            {"versions", versions}};
-}
 
 Json toJson(const Timing& timing) {
     return {{"min", timing.min}, {"median", timing.median}};
@@ -56,7 +47,19 @@ Json speedupJson(const BenchRun& run) {
     return speedup;
 }
 
-Json toJson(const BenchEntry& entry) {
+}  // namespace
+
+Json machineJson(const Machine& machine) {
+    Json versions;
+    versions["deltasplat"] = programVersion();
+    for (const auto& [library, version] : libraryVersions()) versions[library] = version;
+    return {{"cpu", machine.cpu},   {"logical_cores", machine.logicalCores},
+            {"simd", machine.simd}, {"memory_bytes", machine.memoryBytes},
+            {"os", machine.os},     {"compiler", machine.compiler},
+            {"versions", versions}};
+}
+
+Json runJson(const BenchEntry& entry) {
     const BenchRun& run = entry.run;
     const RenderStats& stats = run.stats;
     Json methods;
@@ -86,12 +89,10 @@ Json toJson(const BenchEntry& entry) {
     return json;
 }
 
-}  // namespace
-
 std::string jsonText(const BenchReport& report) {
     Json runs = Json::array();
-    for (const BenchEntry& entry : report.entries) runs.push_back(toJson(entry));
-    return dumpJson({{"machine", toJson(report.machine)}, {"runs", runs}});
+    for (const BenchEntry& entry : report.entries) runs.push_back(runJson(entry));
+    return dumpJson({{"machine", machineJson(report.machine)}, {"runs", runs}});
 }
 
 }  // namespace deltasplat

@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointDataGrid.h>
+#include <zlib.h>
 
 #include <cmath>
 #include <filesystem>
@@ -159,6 +160,43 @@ void writeRawFiles() {
                {reinterpret_cast<const char*>(values.data()), 4 * values.size()});
 }
 
+// A volume of zeros with a few bars along z, of which one grows denser from slice to slice.
+std::string bars(std::size_t width, std::size_t height, std::size_t depth) {
+    std::string bytes(width * height * depth, '\0');
+    for (std::size_t z = depth / 4; z < depth / 2; ++z) {
+        for (std::size_t n = 0; n < 24; ++n) {
+            const std::size_t corner = (z * height + 8 + n) * width + 8;
+            bytes[corner] = char(200);
+            bytes[corner + 4] = char(70 + z % 64);
+        }
+    }
+    return bytes;
+}
+
+void writePacked(const std::string& file, const std::string& bytes) {
+    const gzFile out = gzopen(file.c_str(), "wb1");
+    gzwrite(out, bytes.data(), unsigned(bytes.size()));
+    gzclose(out);
+}
+
+// Volumes with the names that `bench table1` looks for, in folders and in folders of folders, one
+// of them twice.
+void writeTable1Files() {
+    std::filesystem::create_directories("table1_all/deep/deeper");
+    std::filesystem::create_directories("table1_some");
+    const std::string ear = bars(128, 128, 30);
+    writeBytes("table1_all/fuel_64x64x64_uint8.raw", bars(64, 64, 64));
+    writeBytes("table1_all/deep/fuel_64x64x64_uint8.raw", "not this one");
+    writeBytes("table1_all/deep/ear_region_128x128x30_uint8.raw", ear);
+    writePacked("table1_all/deep/deeper/cthead_256x256x225_uint8.raw.gz", bars(256, 256, 225));
+    writePacked("table1_all/deep/engine_256x256x128_uint8.raw.gz", bars(256, 256, 128));
+    writeBytes("table1_some/ear_region_128x128x30_uint8.raw", ear);
+    writeBytes("table1_some/fuel_64x64x64_uint8.raw", "too short");
+    // Around in a circle.
+    std::filesystem::remove("table1_some/again");
+    std::filesystem::create_directory_symlink(".", "table1_some/again");
+}
+
 // Whatever is written to these is refused as by a full disk.
 void linkToFullDevice() {
     for (const char* const name : {"full.exr", "full.png", "full.json", "full.raw", "full.svg",
@@ -193,4 +231,5 @@ int main(int count, char** words) {
     linkToFullDevice();
     writeVdbFiles();
     writeRawFiles();
+    writeTable1Files();
 }

@@ -5,3 +5,4 @@ deltasplat_test(unit/bench_runs_test.cpp SOURCES ${tools}/bench_runs.cpp ${tools
 target_compile_definitions(bench_runs_test PRIVATE DELTASPLAT_VERSION="${PROJECT_VERSION}")
 deltasplat_test(unit/bench_picture_test.cpp SOURCES ${tools}/bench_page_file.cpp
     ${tools}/heat_map.cpp ${tools}/picture_data.cpp)
+deltasplat_test(unit/table1_test.cpp SOURCES ${tools}/ct_ramp.cpp ${tools}/table1.cpp)

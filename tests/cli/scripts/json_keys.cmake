@@ -1,5 +1,6 @@
 # Checks the keys of the program's JSON: cmake -DPROGRAM=.. -DSCRATCH=.. -P json_keys.cmake
 cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/expect_json.cmake)
 file(REMOVE_RECURSE ${SCRATCH})
 file(MAKE_DIRECTORY ${SCRATCH})
 
@@ -7,29 +8,6 @@ function(run)
     execute_process(COMMAND ${PROGRAM} ${ARGN} WORKING_DIRECTORY ${SCRATCH}
                     OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
     set(text "${text}" PARENT_SCOPE)
-endfunction()
-
-# Fails unless the object at a path of the JSON text has exactly these keys.
-function(expect_keys json where expected)
-    string(JSON count LENGTH "${json}" ${where})
-    set(keys)
-    math(EXPR last "${count} - 1")
-    foreach(i RANGE ${last})
-        string(JSON key MEMBER "${json}" ${where} ${i})
-        list(APPEND keys ${key})
-    endforeach()
-    list(SORT keys)
-    list(SORT expected)
-    if(NOT "${keys}" STREQUAL "${expected}")
-        message(FATAL_ERROR "keys of '${where}':\n  got ${keys}\n  expected ${expected}")
-    endif()
-endfunction()
-
-function(expect_value json expected)
-    string(JSON value GET "${json}" ${ARGN})
-    if(NOT "${value}" STREQUAL "${expected}")
-        message(FATAL_ERROR "${ARGN}: got ${value}; expected ${expected}")
-    endif()
 endfunction()
 
 run(synth slab slab_12x10x8_uint8.raw --dims 12x10x8 -q)
