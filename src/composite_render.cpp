@@ -44,6 +44,16 @@ int sheetResolution(const Factorization& view, const ClassTable& classes,
     return !options.resolution && view.resolution == 2 && thin ? 1 : view.resolution;
 }
 
+// Into how many strips rows of the base plane are cut: enough pieces for every thread to take some,
+// and strips that are not much smaller than the rows at their edges, which belong to two.
+int stripCount(int rows, std::size_t slabs) {
+    constexpr std::size_t kPiecesPerThread = 4;
+    constexpr int kLeastRows = 48;
+    if (threadCount() == 1) return 1;
+    const std::size_t wanted = (kPiecesPerThread * std::size_t(threadCount()) + slabs - 1) / slabs;
+    return std::clamp(int(std::min<std::size_t>(wanted, 1024)), 1, std::max(1, rows / kLeastRows));
+}
+
 // Rows of the base plane that are worked on by themselves.
 struct Strip {
     int first;
@@ -97,11 +107,6 @@ class SlabRenderer {
     }
 
   private:
-    // Enough pieces for every thread to take some, and strips that are not much smaller than what
-    // the rows at their edges cost, which belong to two.
-    static constexpr std::size_t kPiecesPerThread = 4;
-    static constexpr int kLeastRows = 48;
-
     const std::vector<Slab>& slabs() const { return input_.deltas.slabs; }
 
     PlaneBox reachOfAll() const {
@@ -111,10 +116,7 @@ class SlabRenderer {
 
     void cutIntoStrips() {
         const int rows = merged_.box.size().y;
-        const std::size_t wanted =
-            (kPiecesPerThread * std::size_t(threadCount()) + slabs().size() - 1) / slabs().size();
-        const int count =
-            std::clamp(int(std::min<std::size_t>(wanted, 1024)), 1, std::max(1, rows / kLeastRows));
+        const int count = stripCount(rows, slabs().size());
         for (int i = 0; i < count; ++i) {
             const auto edge = [&](int n) {
                 return merged_.box.min.y + int(std::int64_t{rows} * n / count);
@@ -210,8 +212,17 @@ Raster rasterOf(const Layer& layer, const ClassTable& classes) {
 // What all slabs together take: splatters for each thread, layers, and the merged one.
 void requireSlabMemory(const PackedDeltas& deltas, const PlaneView& view,
                        const SheetLayout& layout) {
-    double bytes =
-        Splatter::bytes(layout) * std::min<double>(threadCount(), double(deltas.slabs.size()));
+    const IndexBox& box = deltas.box;
+    const int rows = reachOf(layout, view.shiftPerSlice, box.min.x, box.dims().x).size().y;
+    const int strips = stripCount(rows, deltas.slabs.size());
+    int longest = 0;
+    for (const Slab& slab : deltas.slabs) longest = std::max(longest, slab.sliceCount);
+    // A strip's rows, those that its slabs are shifted by, and whole blocks and margins around.
+    const double partRows =
+        rows / strips + 1.0 * (longest + 16) * layout.resolution + 2.0 * layout.marginPixels;
+    const double share = std::min(1.0, partRows / layout.sizePixels.y);
+    double bytes = share * Splatter::bytes(layout) *
+                   std::min<double>(threadCount(), double(strips) * double(deltas.slabs.size()));
     const auto layerBytes = [&](int firstSlice, int sliceCount) {
         const glm::dvec2 size = reachOf(layout, view.shiftPerSlice, firstSlice, sliceCount).size();
         return sizeof(float) * layout.channels * size.x * size.y;
@@ -246,9 +257,12 @@ void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const F
 
     RenderStats& stats = result.stats;
     stats.stamps = stampsOf(deltas, stats);
-    const ErrorBound bound = errorBound(classes, options.tolerance);
-    stats.errorBoundColor = bound.color * warpGain(map);
-    stats.errorBoundAlpha = bound.alpha * warpGain(map);
+    if (!options.tolerance.isExact()) {
+        const ErrorBound bound = errorBound(classes, options.tolerance);
+        const double gain = warpGain(map);
+        stats.errorBoundColor = bound.color * gain;
+        stats.errorBoundAlpha = bound.alpha * gain;
+    }
     stats.resolution = resolution;
     stats.footprint = footprint.width;
     stats.renderSeconds = secondsSince(start);

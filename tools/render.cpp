@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/render.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -44,10 +45,20 @@ ImageFileOptions imageOptions(const RenderCommand& command, const RenderResult& 
     return options;
 }
 
+// A background shows where the picture lets it: what may be wrong of alpha, is wrong of it as well.
+void boundOver(const std::optional<glm::vec4>& background, RenderStats& stats) {
+    if (!background || stats.tolerance.isExact()) return;
+    const glm::dvec4 color(*background);
+    stats.errorBoundColor += stats.errorBoundAlpha * std::max({color.r, color.g, color.b});
+    stats.errorBoundAlpha *= 1 - color.a;
+}
+
 // A tolerance is a promise: what it comes to is said.
 void showErrorBound(const RenderStats& stats) {
-    const std::string line = "tolerance " + toleranceText(stats.tolerance) +
-                             ": largest error of a pixel: " + errorBoundText(stats) + "\n";
+    const std::string line =
+        "tolerance " + toleranceText(stats.tolerance) +
+        ": largest error of a pixel, scene-linear and premultiplied: " + errorBoundText(stats) +
+        "\n";
     std::fputs(line.c_str(), stderr);
 }
 
@@ -85,6 +96,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         times.read = secondsSince(beginRead);
 
         result = render(volume, options, display.stage(kReadShare, kRenderShare));
+        boundOver(picture.background, result.stats);
         ImageFileOptions image = imageOptions(command, result, session);
         finishPicture(command, result, image);
 

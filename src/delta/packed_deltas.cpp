@@ -22,8 +22,6 @@ namespace {
 using BlockClasses = std::array<ClassIndex, 512>;
 using SliceClasses = std::array<ClassIndex, 64>;
 
-constexpr double kBytesPerBlock = 8 * (sizeof(DeltaWord) + sizeof(SliceClasses) + 16);
-
 // Reads a leaf in (slice, u, v) order. kStep: how far neighbours along x, y and z lie in `out`.
 template <int kStepX, int kStepY, int kStepZ>
 void readLeaf(const CodeTree::Leaf& leaf, const Slot* classOfSlot, ClassIndex* out) {
@@ -51,6 +49,11 @@ struct PendingWord {
     glm::ivec2 block;
 };
 
+// Words that a block may make: its slices, and one behind it that takes away what it showed.
+constexpr std::size_t kMostWords = 9;
+constexpr double kBytesPerBlock =
+    kMostWords * (sizeof(DeltaWord) + sizeof(PendingWord) + sizeof(SliceClasses));
+
 // Packs columns of blocks (same u and v), slices in increasing order.
 class ColumnPacker {
   public:
@@ -59,6 +62,9 @@ class ColumnPacker {
 
     // Packs blocks [begin, end), which are whole columns.
     void run(const CodeBlock* begin, const CodeBlock* end) {
+        // What is not used of it takes no memory.
+        words_.reserve(kMostWords * std::size_t(end - begin));
+        storage_.reserve(64 * kMostWords * std::size_t(end - begin));
         for (const CodeBlock* block = begin; block != end; ++block) {
             if (block == begin || !follows(block)) {
                 before_.fill(kEmptySlot);

@@ -26,6 +26,13 @@ struct DeltaWord {
 /// The delta grid of a volume as a picture needs it: of classes instead of codes, ordered as it is
 /// walked, and without what nothing is stamped for.
 struct PackedDeltas {
+    // Words point into the storage.
+    PackedDeltas() = default;
+    PackedDeltas(const PackedDeltas&) = delete;
+    PackedDeltas& operator=(const PackedDeltas&) = delete;
+    PackedDeltas(PackedDeltas&&) = default;
+    PackedDeltas& operator=(PackedDeltas&&) = default;
+
     int sliceAxis = 2;
     IndexBox box;             ///< the volume's box in (slice, u, v) order
     std::vector<Slab> slabs;  ///< in increasing order, covering `box`; none for an empty volume

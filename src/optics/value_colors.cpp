@@ -15,7 +15,7 @@ ValueColors::ValueColors(const Volume& volume, const Optics& optics) {
     const double low = function.colors.front().x;
     const double high = function.colors.back().x;
     below_ = function.colorAt(std::nextafter(low, -std::numeric_limits<double>::infinity()));
-    first_ = range.x + low * (range.y - range.x);
+    first_ = float(range.x + low * (range.y - range.x));
     const double width = (high - low) * (range.y - range.x);
     stepsPerUnit_ = width > 0 ? kSteps / width : 0;
     for (int i = 0; i <= kSteps; ++i)
@@ -24,7 +24,7 @@ ValueColors::ValueColors(const Volume& volume, const Optics& optics) {
 
 glm::vec3 ValueColors::colorOf(float value) const {
     if (value < first_) return below_;
-    const double place = std::clamp((value - first_) * stepsPerUnit_, 0.0, double(kSteps));
+    const double place = std::clamp((double(value) - first_) * stepsPerUnit_, 0.0, double(kSteps));
     const int step = std::min(int(place), kSteps - 1);
     return glm::mix(colors_[step], colors_[step + 1], float(place - step));
 }

@@ -21,7 +21,7 @@ class ValueColors {
   private:
     static constexpr int kSteps = 4096;
     glm::vec3 below_{0.0f};          // the colour of what is less than the first
-    double first_ = 0;               // data value of the first colour
+    float first_ = 0;                // data value of the first colour, as values are
     double stepsPerUnit_ = 0;        // of data values
     std::vector<glm::vec3> colors_;  // [kSteps + 1], scene-linear
 };

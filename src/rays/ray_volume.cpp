@@ -8,6 +8,8 @@
 
 #include "delta/block_windows.h"
 
+#include "memory.h"
+
 namespace deltasplat {
 namespace {
 
@@ -53,6 +55,7 @@ std::vector<Slot> readValues(const Volume& volume, RayRule rule, RayVolume& rays
 void sortByLayer(const std::vector<CodeBlock>& blocks, RayVolume& rays) {
     const int first = rays.box.min.x >> 3;
     const int layers = (rays.box.max.x >> 3) - first + 1;
+    requireMemory("list of layers", 16.0 * layers);
     rays.begins.assign(std::size_t(layers) + 1, 0);
     for (const CodeBlock& block : blocks) ++rays.begins[std::size_t(block.position.x - first) + 1];
     std::partial_sum(rays.begins.begin(), rays.begins.end(), rays.begins.begin());

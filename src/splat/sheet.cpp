@@ -16,11 +16,13 @@ int roundUpToTile(int pixels) {
     return (pixels + kTilePixels - 1) / kTilePixels * kTilePixels;
 }
 
-// Stamps name their place with 32 bits, and rows and columns are counted with 31.
-void requireCountable(const glm::i64vec2& size) {
+// Stamps name their place with 32 bits, and rows and columns are counted with 31, wherever a slice
+// may be shifted to.
+void requireCountable(const glm::i64vec2& size, std::int64_t shift) {
     const std::string text = std::to_string(size.x) + "x" + std::to_string(size.y);
     requireMemory("sheet of " + text + " pixels", 16.0 * double(size.x) * double(size.y));
-    const double longest = std::numeric_limits<std::int32_t>::max() - 2 * kTilePixels;
+    const double longest =
+        double(std::numeric_limits<std::int32_t>::max() - 2 * kTilePixels) - 2.0 * double(shift);
     const double most = std::numeric_limits<std::uint32_t>::max();
     if (double(std::max(size.x, size.y)) <= longest &&
         double(size.x + kTilePixels) * double(size.y) <= most) {
@@ -49,7 +51,8 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int cha
     layout.firstVoxel = 8 * firstBlock;
     const glm::i64vec2 size =
         std::int64_t{8 * footprint.resolution} * blocks + std::int64_t{2 * layout.marginPixels};
-    requireCountable(size);
+    const std::int64_t slices = std::int64_t{box.max.x} - box.min.x + 1;
+    requireCountable(size, slices * footprint.resolution);
     layout.blocks = glm::ivec2(blocks);
     layout.sizePixels = glm::ivec2(size);
     return layout;

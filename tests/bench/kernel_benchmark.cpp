@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "composite/over_kernels.h"
+#include "deltasplat/threads.h"
 #include "image/warp.h"
-#include "parallel.h"
 #include "splat/stamp_kernels.h"
 #include "splat/tile_kernels.h"
 
@@ -103,6 +103,7 @@ void warpPicture(benchmark::State& state) {
     const Raster raster{{0, 0}, {256, 256}, values.data(), channels, {1, 1, 1}};
     const glm::dmat3 map(0.45, 0.1, 0, -0.1, 0.45, 0, 40, -10, 1);
     Image picture({512, 512});
+    const ThreadLimit limit(1);
     for (auto _ : state) {
         warp(raster, map, picture);
         benchmark::ClobberMemory();

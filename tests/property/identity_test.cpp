@@ -82,13 +82,16 @@ TEST(Identity, AlsoOfOneColorAndUnderATolerance) {
     for (const IndexBox& box : kBoxes) {
         const Volume volume = test::randomVolume(box, 18, 0.5, {1, 1.5, 0.8});
         for (const glm::dvec3& direction : kDirections) {
-            RenderOptions options = optionsFor(direction);
             for (const int resolution : {1, 2, 3}) {
+                RenderOptions options = optionsFor(direction);
                 options.resolution = resolution;
                 options.tolerance = {0.05, 0};
                 expectSamePixels(volume, options);
-                options.tolerance = {};
+                options.tolerance = {0.1, 12};
+                expectSamePixels(volume, options);
                 options.optics.transferFunction.colors = {{0, {0.5, 0.7, 0.2}}};
+                expectSamePixels(volume, options);
+                options.tolerance = {};
                 expectSamePixels(volume, options);
             }
         }

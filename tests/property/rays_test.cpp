@@ -7,6 +7,7 @@
 
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
+#include "optics/value_colors.h"
 #include "property/ray_scene.h"
 
 namespace deltasplat::test {
@@ -190,6 +191,19 @@ TEST(Rays, ColoursOfLargestValuesAreTheTransferFunctions) {
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(rgba[c], expected[c], 1e-4) << x;
         EXPECT_EQ(rgba[3], x < 2 ? 0 : 1);
     }
+}
+
+// 0.7 is no float: the picture's is a little smaller than the volume's own.
+TEST(Rays, ConstantThatIsNoFloatHasItsColour) {
+    Volume volume = test::makeVolume({{0, 0, 0}, {7, 7, 7}}, [](int, int, int) { return 0; });
+    volume.codeBook = CodeBook::ofTable({0.7});
+    volume.valueMin = volume.valueMax = 0.7;
+    Optics optics;
+    optics.transferFunction.linearColors = true;
+    optics.transferFunction.colors = {{0.7, {0, 0, 0}}, {0.7, {0.25, 0.5, 1}}};
+    optics.transferFunction.opacities = {{0, 1, 0.5, 0}};
+    const glm::vec3 color = ValueColors(volume, optics).colorOf(float(0.7));
+    EXPECT_EQ(color, glm::vec3(0.25f, 0.5f, 1));
 }
 
 TEST(Rays, CountsSayWhatWasDone) {

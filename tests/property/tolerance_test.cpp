@@ -93,6 +93,7 @@ TEST(ToleranceBound, IsReachedByOneSlice) {
     // filter does to edges.
     EXPECT_NEAR(held.image.pixel(16, 16)[3] - exact.image.pixel(16, 16)[3], 0.89 * (0.9 - 0.89),
                 1e-4);
+    EXPECT_LT(0.0089, held.stats.errorBoundAlpha);
     EXPECT_EQ(held.stats.deltas, 256u);
     EXPECT_EQ(exact.stats.deltas, 512u);
 }

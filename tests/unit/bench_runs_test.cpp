@@ -92,8 +92,13 @@ TEST(MeasureMethods, RendersWhatRenderRenders) {
 }
 
 TEST(MeasureMethods, MeasuresTheExactPictureBesideATolerance) {
-    const Volume volume = twoBlocks();
+    // Two values near enough for one to be held in place of the other.
+    const Volume volume =
+        test::makeVolume({glm::ivec3(0), glm::ivec3(19, 15, 39)}, [](int x, int y, int z) {
+            return z > 10 && z < 30 && (x < 4 || y > 12) ? 180 + 20 * (z % 2) : 0;
+        });
     RenderOptions options = optionsFor(volume);
+    options.optics.transferFunction.colors = {{0, {1, 1, 1}}};
     options.tolerance.relative = 0.25;
     const BenchRun run = measureMethods(volume, options, 1);
     ASSERT_TRUE(run.tolerance);
@@ -103,6 +108,8 @@ TEST(MeasureMethods, MeasuresTheExactPictureBesideATolerance) {
     const RenderResult exact = render(volume, options);
     EXPECT_EQ(run.tolerance->exact.rgba, exact.image.rgba);
     EXPECT_EQ(run.tolerance->exactStamps, exact.stats.stamps);
+    EXPECT_GT(run.tolerance->exactStamps, run.stats.stamps);
+    EXPECT_GT(run.tolerance->measured.alpha, 0);
     EXPECT_LE(run.tolerance->measured.color, run.tolerance->bound.color);
     EXPECT_LE(run.tolerance->measured.alpha, run.tolerance->bound.alpha);
 }

@@ -161,6 +161,36 @@ TEST(SheetLayout, EveryFootprintStaysWithinTheSheet) {
     }
 }
 
+// The rows that a part of a sheet was asked for: no block outside of it reaches them, and it has no
+// block more than it needs.
+TEST(SheetLayout, PartsHaveTheBlocksThatReachTheirRows) {
+    for (const int r : {1, 2, 3}) {
+        for (const int width : {r + 1, 2 * r + 1, 4 * r + 2, 40}) {
+            const SheetLayout whole = layoutSheet(kBox, makeFootprint(0.5, {0.3, 0.9}, r, width));
+            const auto reaches = [&](int block, int first, int last) {
+                const int begin = whole.marginPixels - whole.reachPixels + 8 * r * block;
+                return begin < last && begin + 7 * r + width > first;
+            };
+            for (int first = 0; first < whole.sizePixels.y; first += 5) {
+                for (int last = first + 1; last <= whole.sizePixels.y; last += 7) {
+                    const SheetLayout part = layoutRows(whole, first, last);
+                    const int firstBlock = (part.firstVoxel.y - whole.firstVoxel.y) / 8;
+                    for (int block = 0; block < whole.blocks.y; ++block) {
+                        const bool has = block >= firstBlock && block < firstBlock + part.blocks.y;
+                        EXPECT_EQ(has, reaches(block, first, last)) << block;
+                    }
+                    EXPECT_EQ(part.originRow, 8 * r * firstBlock);
+                    EXPECT_EQ(part.sizePixels.y, 8 * r * part.blocks.y + 2 * whole.marginPixels);
+                    // A voxel's stamp lies where it lies in the whole.
+                    const glm::ivec2 voxel = part.firstVoxel;
+                    EXPECT_EQ(part.stampPlace(voxel) + part.originRow * whole.pitchPixels(),
+                              whole.stampPlace(voxel));
+                }
+            }
+        }
+    }
+}
+
 TEST(Sheet, TouchesNoMoreThanItIsTold) {
     const IndexBox wide{{0, 0, 0}, {0, 7, 2000}};
     Sheet sheet(layoutSheet(wide, makeFootprint(0.4, {0, 0}, 1)));

@@ -16,9 +16,9 @@ struct DeltaTree;
 
 /// Whether slices are stored whole or as their change from the slice before.
 enum class Encoding {
-    kChanges,  ///< one key slice a slab, then deltas (method `delta`)
-    kWhole,    ///< every slice is a key slice (methods `sparse` and `traditional`)
-    kSmaller   ///< for each slab kWhole if it has fewer active voxels by a tenth (method `auto`)
+    kChanges,  ///< one key slice a slab, then deltas (as the method `delta` stamps)
+    kWhole,    ///< every slice is a key slice (as `sparse` and `traditional` stamp)
+    kSmaller   ///< for each slab kWhole if it has fewer active voxels by a tenth (as `auto` stamps)
 };
 
 /// A run of slices that can be read on its own, because its first slice is a key slice.

@@ -24,7 +24,7 @@ struct Footprint {
 
     /// Sheet pixels from the one at the voxel's centre, or half a pixel behind it, to the first.
     int reach() const { return width / 2; }
-    /// How far before a voxel's centre its sheet pixel lies: 0, or half a pixel.
+    /// How far behind a voxel's centre its sheet pixel lies: 0, or half a pixel.
     double offsetPixels() const { return width % 2 == 0 ? 0.5 : 0; }
     std::int32_t at(int x, int y) const { return weights[y * width + x]; }
 };
