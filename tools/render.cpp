@@ -49,7 +49,8 @@ ImageFileOptions imageOptions(const RenderCommand& command, const RenderResult& 
 void boundOver(const std::optional<glm::vec4>& background, RenderStats& stats) {
     if (!background || stats.tolerance.isExact()) return;
     const glm::dvec4 color(*background);
-    stats.errorBoundColor += stats.errorBoundAlpha * std::max({color.r, color.g, color.b});
+    stats.errorBoundColor +=
+        stats.errorBoundAlpha * color.a * std::max({color.r, color.g, color.b});
     stats.errorBoundAlpha *= 1 - color.a;
 }
 
