@@ -218,8 +218,8 @@ void requireSlabMemory(const PackedDeltas& deltas, const PlaneView& view,
     int longest = 0;
     for (const Slab& slab : deltas.slabs) longest = std::max(longest, slab.sliceCount);
     // A strip's rows, those that its slabs are shifted by, and whole blocks and margins around.
-    const double partRows =
-        rows / strips + 1.0 * (longest + 16) * layout.resolution + 2.0 * layout.marginPixels;
+    const double partRows = double(rows) / strips + 1.0 * (longest + 16) * layout.resolution +
+                            2.0 * layout.marginPixels;
     const double share = std::min(1.0, partRows / layout.sizePixels.y);
     double bytes = share * Splatter::bytes(layout) *
                    std::min<double>(threadCount(), double(strips) * double(deltas.slabs.size()));
