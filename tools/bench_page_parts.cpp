@@ -26,7 +26,9 @@ std::string pictureFigure(const std::string& uri, const std::string& alternative
 
 std::string tableRow(const std::string& tag, const std::vector<std::string>& cells) {
     std::string row = "<tr>";
-    for (const std::string& cell : cells) row += "<" + tag + ">" + cell + "</" + tag + ">";
+    const std::string open = "<" + tag + ">";
+    const std::string close = "</" + tag + ">";
+    for (const std::string& cell : cells) row.append(open).append(cell).append(close);
     return row + "</tr>\n";
 }
 

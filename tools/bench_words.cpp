@@ -65,7 +65,8 @@ std::string hardwareText(const Machine& machine) {
 
 std::string softwareText(const Machine& machine) {
     std::string text = "deltasplat " + programVersion();
-    for (const auto& [library, version] : libraryVersions()) text += ", " + library + " " + version;
+    for (const auto& [library, version] : libraryVersions())
+        text.append(", ").append(library).append(" ").append(version);
     return text + "; " + machine.compiler + "; " + machine.os;
 }
 

@@ -30,7 +30,8 @@ std::vector<std::pair<std::string, std::string>> libraryVersions() {
 
 std::string versionText() {
     std::string text = "deltasplat " + programVersion() + "\n";
-    for (const auto& [library, version] : libraryVersions()) text += library + " " + version + "\n";
+    for (const auto& [library, version] : libraryVersions())
+        text.append(library).append(" ").append(version).append("\n");
     std::string levels;
     for (const std::string& level : simdLevels()) levels += (levels.empty() ? "" : ", ") + level;
     return text + "SIMD level " + simdLevel() + " (of " + levels + ")";

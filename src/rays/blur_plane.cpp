@@ -18,13 +18,14 @@ RayPlane blurPlane(const RayPlane& plane, const Footprint& footprint, float scal
     RayPlane blurred(plane.box);
     const glm::ivec2 size = plane.box.size();
     if (size.x < width || size.y < width) return blurred;
-    parallelForChunks(std::size_t(size.y - width + 1), [&](std::size_t begin, std::size_t end) {
+    const glm::ivec2 inner = size - width + 1;
+    parallelForChunks(std::size_t(inner.y), [&](std::size_t begin, std::size_t end) {
         std::vector<const float*> rows(std::size_t(width), nullptr);
         for (std::size_t i = begin; i < end; ++i) {
             const int y = plane.box.min.y + before + int(i);
             for (int j = 0; j < width; ++j)
                 rows[std::size_t(j)] = plane.row(y + reach - j) + width - 1;
-            weighRow(rows.data(), weights.data(), width, scale, std::size_t(size.x - width + 1),
+            weighRow(rows.data(), weights.data(), width, scale, std::size_t(inner.x),
                      blurred.row(y) + before);
         }
     });
