@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_options.h"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "deltasplat/error.h"
 #include "deltasplat/splat/footprint.h"
 #include "input_options.h"
@@ -10,29 +14,27 @@
 namespace deltasplat {
 namespace {
 
+// One of some values, by their names.
+template <typename T, typename NameOf>
+Parser<T> named(std::vector<T> values, const NameOf& nameOf) {
+    return
+        [values = std::move(values), nameOf](const std::string& option, const std::string& text) {
+            std::vector<std::string> names;
+            for (const T value : values) {
+                if (nameOf(value) == text) return value;
+                names.push_back(nameOf(value));
+            }
+            throw Error(ErrorCode::kUsage, gotExpected(option, text, joinWords(names, "or")));
+        };
+}
+
 Parser<Method> method() {
-    return [](const std::string& option, const std::string& text) {
-        const Method methods[] = {Method::kAuto, Method::kDelta, Method::kSparse,
-                                  Method::kTraditional};
-        std::vector<std::string> names;
-        for (const Method candidate : methods) {
-            if (methodName(candidate) == text) return candidate;
-            names.push_back(methodName(candidate));
-        }
-        throw Error(ErrorCode::kUsage, gotExpected(option, text, joinWords(names, "or")));
-    };
+    return named<Method>({Method::kAuto, Method::kDelta, Method::kSparse, Method::kTraditional},
+                         methodName);
 }
 
 Parser<Mode> mode() {
-    return [](const std::string& option, const std::string& text) {
-        const Mode modes[] = {Mode::kComposite, Mode::kXray, Mode::kMip};
-        std::vector<std::string> names;
-        for (const Mode candidate : modes) {
-            if (modeName(candidate) == text) return candidate;
-            names.push_back(modeName(candidate));
-        }
-        throw Error(ErrorCode::kUsage, gotExpected(option, text, joinWords(names, "or")));
-    };
+    return named<Mode>({Mode::kComposite, Mode::kXray, Mode::kMip}, modeName);
 }
 
 Parser<std::int64_t> bits() {

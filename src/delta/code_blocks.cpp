@@ -2,6 +2,7 @@
 #include "delta/code_blocks.h"
 
 #include <algorithm>
+#include <iterator>
 #include <tuple>
 
 #include "memory.h"
@@ -27,14 +28,15 @@ void forVisibleTiles(const CodeTree& codes, const SlotOf& slotOf, const Use& use
 
 // Returns the leaves with active voxels whose slots may be other than empty.
 std::vector<CodeLeaf> visibleLeaves(const CodeTree& codes, std::span<const Slot> slotMap) {
-    std::vector<CodeLeaf> leaves = *codes.leaves();
-    if (slotMap.empty()) return leaves;
+    const auto all = codes.leaves();
+    if (slotMap.empty()) return *all;
     // How many codes before each have a slot.
     std::vector<int> before(kSlotCount, 0);
     for (int code = 0; code < kCodeCount; ++code)
         before[code + 1] = before[code] + (slotMap[code + 1] != kEmptySlot);
-    std::erase_if(leaves, [&](const CodeLeaf& leaf) {
-        return before[leaf.highest + 1] == before[leaf.lowest];
+    std::vector<CodeLeaf> leaves;
+    std::copy_if(all->begin(), all->end(), std::back_inserter(leaves), [&](const CodeLeaf& leaf) {
+        return before[leaf.highest + 1] != before[leaf.lowest];
     });
     return leaves;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "reference/reference_renderer.h"
@@ -21,6 +22,18 @@ inline Vector indexComponents(const std::array<Vector, 3>& axes, const Vector& w
     return {dot(world, cross(axes[1], axes[2])) / determinant,
             dot(world, cross(axes[2], axes[0])) / determinant,
             dot(world, cross(axes[0], axes[1])) / determinant};
+}
+
+// The index position of a pixel's centre on the plane through the camera's target.
+inline Vector indexOfPixel(const View& view, const std::array<Vector, 3>& axes,
+                           const Vector& origin, int x, int y) {
+    const double toRight = (x + 0.5 - 0.5 * view.width) * view.pixelWorld;
+    const double toTop = (0.5 * view.height - (y + 0.5)) * view.pixelWorld;
+    Vector world{};
+    for (int i = 0; i < 3; ++i) {
+        world[i] = view.target[i] - origin[i] + toRight * view.right[i] + toTop * view.up[i];
+    }
+    return indexComponents(axes, world);
 }
 
 inline double tent(double x) {

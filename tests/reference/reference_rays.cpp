@@ -100,14 +100,7 @@ class Rays {
 
     // What a pixel shows of a lattice on the first slice.
     double seen(const Lattice& lattice, int x, int y) const {
-        const double toRight = (x + 0.5 - 0.5 * view_.width) * view_.pixelWorld;
-        const double toTop = (0.5 * view_.height - (y + 0.5)) * view_.pixelWorld;
-        Vector world{};
-        for (int i = 0; i < 3; ++i) {
-            world[i] = view_.target[i] - volume_.origin[i] + toRight * view_.right[i] +
-                       toTop * view_.up[i];
-        }
-        const Vector index = indexComponents(volume_.axes, world);
+        const Vector index = indexOfPixel(view_, volume_.axes, volume_.origin, x, y);
         const double u = index[u_] + (volume_.first[s_] - index[s_]) * du_;
         const double v = index[v_] + (volume_.first[s_] - index[s_]) * dv_;
         double sum = 0;

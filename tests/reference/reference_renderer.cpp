@@ -36,14 +36,7 @@ class SliceView {
 
     // Where the ray of a pixel's centre goes through slice `slice`.
     std::array<double, 2> crossing(int x, int y, double slice) const {
-        const double toRight = (x + 0.5 - 0.5 * view_.width) * view_.pixelWorld;
-        const double toTop = (0.5 * view_.height - (y + 0.5)) * view_.pixelWorld;
-        Vector world{};
-        for (int i = 0; i < 3; ++i) {
-            world[i] = view_.target[i] - volume_.origin[i] + toRight * view_.right[i] +
-                       toTop * view_.up[i];
-        }
-        const Vector index = indexComponents(volume_.axes, world);
+        const Vector index = indexOfPixel(view_, volume_.axes, volume_.origin, x, y);
         return slid({index[u_], index[v_]}, slice - index[s_]);
     }
 
