@@ -19,6 +19,10 @@ struct SlabLayout {
 
     int slabOf(int block) const { return (block - firstBlock) / blocksPerSlab; }
     bool startsSlab(int block) const { return (block - firstBlock) % blocksPerSlab == 0; }
+    /// Whether a slice is the first of a slab behind another.
+    bool beginsWith(int slice) const {
+        return slice % 8 == 0 && slice > 8 * firstBlock && startsSlab(slice / 8);
+    }
     int count() const { return slabOf(lastBlock) + 1; }
     /// Slices of a block that exist: behind the last one nothing needs to be taken away.
     int slicesOf(int block) const { return std::min(7, lastSlice - 8 * block) + 1; }
@@ -27,6 +31,12 @@ struct SlabLayout {
 /// Returns the layout of a box in (slice, u, v) order that is not empty.
 inline SlabLayout layoutOf(const IndexBox& box, int keyInterval) {
     return {box.min.x >> 3, keyInterval / 8, box.max.x >> 3, box.max.x};
+}
+
+inline SliceCounts& operator+=(SliceCounts& sum, const SliceCounts& counts) {
+    sum.visible += counts.visible;
+    sum.deltas += counts.deltas;
+    return sum;
 }
 
 /// Returns the slabs of a layout, with what was counted in them, and which of them are whole.

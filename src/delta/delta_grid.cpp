@@ -59,9 +59,8 @@ struct Differences {
 std::vector<SliceCounts> countSlabs(const Differences& differences) {
     std::vector<SliceCounts> counts(differences.layout.count());
     for (std::size_t i = 0; i < differences.changes.size(); ++i) {
-        SliceCounts& slab = counts[differences.slabOf(i)];
-        slab.visible += countBits(differences.changes[i].visible);
-        slab.deltas += countBits(differences.changes[i].changed);
+        counts[differences.slabOf(i)] += {countBits(differences.changes[i].visible),
+                                          countBits(differences.changes[i].changed)};
     }
     return counts;
 }

@@ -49,6 +49,17 @@ struct PendingWord {
     glm::ivec2 block;
 };
 
+// The most slabs: each costs a layer, and more give no thread more to do (src/composite_render.cpp).
+constexpr int kMostSlabs = 8;
+// The most deltas that key slices may add, as a share of all others.
+constexpr double kMostKeyDeltas = 0.03;
+
+// What is in the slabs of a layout, as if only the first began with a key slice.
+struct RunCounts {
+    SliceCounts all;
+    SliceCounts firstSlice;  // of which in the first slice; 0 for the first slab
+};
+
 // Words that a block may make: its slices, and one behind it that takes away what it showed.
 constexpr std::size_t kMostWords = 9;
 constexpr double kBytesPerBlock =
@@ -57,6 +68,7 @@ constexpr double kBytesPerBlock =
 // Packs columns of blocks (same u and v), slices in increasing order.
 class ColumnPacker {
   public:
+    // layout: of the shortest slabs that there may be
     ColumnPacker(const BlockReader& reader, const SlabLayout& layout, const PackOptions& options)
         : reader_(reader), layout_(layout), options_(options), counts_(layout.count()) {}
 
@@ -74,8 +86,7 @@ class ColumnPacker {
             add(block->position, layout_.slicesOf(block->position.x));
             // What a block showed must be taken away behind it.
             const int next = block->position.x + 1;
-            const bool ends = next <= layout_.lastBlock && !layout_.startsSlab(next);
-            if (!ends || (block + 1 != end && follows(block + 1))) continue;
+            if (next > layout_.lastBlock || (block + 1 != end && follows(block + 1))) continue;
             classes_.fill(kEmptySlot);
             add({next, block->position.y, block->position.z}, 1);
         }
@@ -83,12 +94,11 @@ class ColumnPacker {
 
     const std::vector<PendingWord>& words() const { return words_; }
     std::vector<ClassIndex>& storage() { return storage_; }
-    const std::vector<SliceCounts>& countsOfSlabs() const { return counts_; }
+    const std::vector<RunCounts>& counts() const { return counts_; }
 
   private:
-    bool follows(const CodeBlock* block) const {
-        return block->position == block[-1].position + glm::ivec3(1, 0, 0) &&
-               !layout_.startsSlab(block->position.x);
+    static bool follows(const CodeBlock* block) {
+        return block->position == block[-1].position + glm::ivec3(1, 0, 0);
     }
 
     void read(const CodeBlock& block) {
@@ -119,14 +129,18 @@ class ColumnPacker {
         BlockChanges changes;
         compareClasses(before_.data(), classes_.data(), changes.visible.data(),
                        changes.changed.data());
-        SliceCounts& counts = counts_[layout_.slabOf(position.x)];
+        RunCounts& counts = counts_[layout_.slabOf(position.x)];
         for (int s = 0; s < slices; ++s) {
             const std::uint64_t visible = changes.visible[s];
             const std::uint64_t changed = changes.changed[s];
-            counts.visible += std::popcount(visible);
-            counts.deltas += std::popcount(changed);
-            const bool needed = (options_.encoding != Encoding::kWhole && changed != 0) ||
-                                (options_.encoding != Encoding::kChanges && visible != 0);
+            const SliceCounts found{std::uint64_t(std::popcount(visible)),
+                                    std::uint64_t(std::popcount(changed))};
+            const bool isKey = layout_.beginsWith(8 * position.x + s);
+            counts.all += found;
+            if (isKey) counts.firstSlice += found;
+            const bool needed =
+                (options_.encoding != Encoding::kWhole && changed != 0) ||
+                ((options_.encoding != Encoding::kChanges || isKey) && visible != 0);
             if (!needed) continue;
             words_.push_back(
                 {visible, changed, storage_.size(), 8 * position.x + s, {position.y, position.z}});
@@ -141,7 +155,7 @@ class ColumnPacker {
     BlockClasses classes_{};  // of the block in hand
     SliceClasses before_{};   // of the slice before it
     std::array<Slot, 64> held_{};
-    std::vector<SliceCounts> counts_;
+    std::vector<RunCounts> counts_;
     std::vector<PendingWord> words_;
     std::vector<ClassIndex> storage_;
 };
@@ -160,8 +174,31 @@ std::vector<std::size_t> cutAtColumns(const std::vector<CodeBlock>& blocks) {
     return cuts;
 }
 
-bool isNeeded(const PendingWord& word, bool whole) {
-    return (whole ? word.visible : word.changed) != 0;
+// Returns how many of the shortest slabs make one, so that key slices cost little.
+int chooseLength(const std::vector<RunCounts>& counts) {
+    double deltas = 0;
+    for (const RunCounts& slab : counts) deltas += double(slab.all.deltas);
+    for (std::size_t length = 1;; length *= 2) {
+        double added = 0;
+        for (std::size_t i = length; i < counts.size(); i += length) {
+            const SliceCounts& key = counts[i].firstSlice;
+            added += double(key.visible) - double(key.deltas);
+        }
+        if (length >= counts.size() || added <= kMostKeyDeltas * deltas) return int(length);
+    }
+}
+
+// Returns what is in slabs of `length` of those that were counted.
+std::vector<SliceCounts> countsOfSlabs(const std::vector<RunCounts>& counts, int length) {
+    std::vector<SliceCounts> slabs((counts.size() - 1) / length + 1);
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        SliceCounts& slab = slabs[i / length];
+        slab += counts[i].all;
+        if (i % length != 0) continue;
+        slab.deltas += counts[i].firstSlice.visible;
+        slab.deltas -= counts[i].firstSlice.deltas;
+    }
+    return slabs;
 }
 
 // Puts the packers' words in the order of slices.
@@ -170,8 +207,12 @@ void collectWords(std::vector<ColumnPacker>& packers, const SlabLayout& layout,
     const auto sliceOf = [&](const PendingWord& word) {
         return std::size_t(word.slice - packed.box.min.x);
     };
+    const auto changed = [&](const PendingWord& word) {
+        return layout.beginsWith(word.slice) ? word.visible : word.changed;
+    };
     const auto needed = [&](const PendingWord& word) {
-        return isNeeded(word, packed.slabs[layout.slabOf(word.slice >> 3)].whole);
+        const bool whole = packed.slabs[layout.slabOf(word.slice >> 3)].whole;
+        return (whole ? word.visible : changed(word)) != 0;
     };
     packed.begins.resize(std::size_t(packed.box.dims().x) + 1);
     for (const ColumnPacker& packer : packers) {
@@ -186,7 +227,7 @@ void collectWords(std::vector<ColumnPacker>& packers, const SlabLayout& layout,
         const ClassIndex* classes = packed.storage.back().data();
         for (const PendingWord& word : packer.words()) {
             if (!needed(word)) continue;
-            packed.words[next[sliceOf(word)]++] = {word.visible, word.changed,
+            packed.words[next[sliceOf(word)]++] = {word.visible, changed(word),
                                                    classes + word.classes, word.block};
         }
     }
@@ -214,27 +255,31 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     packed.sliceAxis = options.sliceAxis;
     packed.box = permutedBox(volume.box, options.sliceAxis);
     if (volume.empty()) return packed;
-    const SlabLayout layout = layoutOf(packed.box, defaultKeyInterval(packed.box.dims().x));
+    const int slices = packed.box.dims().x;
+    SlabLayout layout = layoutOf(packed.box, 8 * ((slices - 1) / (8 * kMostSlabs) + 1));
     const std::span<const Slot> slotMap =
         options.holds ? std::span<const Slot>() : options.classOfSlot;
     const BlockReader reader(*volume.codes, nullptr, options.sliceAxis, slotMap);
     const std::vector<CodeBlock>& blocks = reader.blocks();
-    requireMemory("delta grid",
-                  double(blocks.size()) * kBytesPerBlock + 16.0 * packed.box.dims().x);
+    requireMemory("delta grid", double(blocks.size()) * kBytesPerBlock + 16.0 * slices);
 
     const std::vector<std::size_t> cuts = cutAtColumns(blocks);
     std::vector<ColumnPacker> packers(cuts.size() - 1, ColumnPacker(reader, layout, options));
     parallelFor(packers.size(), [&](std::size_t i) {
         packers[i].run(blocks.data() + cuts[i], blocks.data() + cuts[i + 1]);
     });
-    std::vector<SliceCounts> counts(layout.count());
+    std::vector<RunCounts> counts(layout.count());
     for (const ColumnPacker& packer : packers) {
         for (std::size_t i = 0; i < counts.size(); ++i) {
-            counts[i].visible += packer.countsOfSlabs()[i].visible;
-            counts[i].deltas += packer.countsOfSlabs()[i].deltas;
+            counts[i].all += packer.counts()[i].all;
+            counts[i].firstSlice += packer.counts()[i].firstSlice;
         }
     }
-    packed.slabs = makeSlabs(packed.box, layout, counts, options.encoding);
+    const int length = chooseLength(counts);
+    layout.blocksPerSlab *= length;
+    packed.keyInterval = 8 * layout.blocksPerSlab;
+    packed.slabs =
+        makeSlabs(packed.box, layout, countsOfSlabs(counts, length), options.encoding);
     collectWords(packers, layout, packed);
     return packed;
 }
