@@ -160,11 +160,18 @@ class SlabRenderer {
         const SheetLayout layout = layoutOf(strip, slab);
         if (!box.empty() && layout.blocks.y > 0) {
             Compositor compositor(scale_, view_.frontToBack);
-            splatter.run(slab, layout, [&](int slice, const Sheet& sheet) {
+            splatter.begin(layout);
+            for (int i = 0; i < slab.sliceCount; ++i) {
+                const int slice = slab.firstSlice + i;
+                const SheetShift shift = shiftOf(layout, view_.shiftPerSlice, slice);
+                // Reading takes in the row behind the last as well.
+                const Sheet& sheet = splatter.splat(slice, slab.whole, box.min.y + shift.offset.y,
+                                                    box.max.y + shift.offset.y + 1);
                 const Clock::time_point before = Clock::now();
-                compositor.composite(sheet, shiftOf(layout, view_.shiftPerSlice, slice), layer);
+                compositor.composite(sheet, shift, layer);
                 compositeSeconds += secondsSince(before);
-            });
+            }
+            splatter.end();
         }
         const Clock::time_point before = Clock::now();
         strip.layers->add(number, std::move(layer));

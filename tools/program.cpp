@@ -15,6 +15,7 @@
 #include "interrupt.h"
 #include "listener.h"
 #include "printable.h"
+#include "reuse_memory.h"
 #include "suggest.h"
 
 namespace deltasplat {
@@ -210,6 +211,7 @@ int fail(const std::vector<std::string>& arguments, const std::string& what, Err
 
 int runProgram(const std::vector<std::string>& arguments,
                const std::vector<AddSubcommand>& addSubcommands) {
+    reuseMemory();
     handleSignals();
     std::optional<int> errorExit;
     try {

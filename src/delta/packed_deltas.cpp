@@ -49,9 +49,12 @@ struct PendingWord {
     glm::ivec2 block;
 };
 
-// The most slabs: each costs a layer, and more give no thread more to do (src/composite_render.cpp).
+// How many slabs there are: each costs a layer, and the fewer there are, the farther a strip's rows
+// move along a sheet (src/composite_render.cpp). Short ones can be fewer.
 constexpr int kMostSlabs = 8;
-// The most deltas that key slices may add, as a share of all others.
+constexpr int kLeastSlabs = 4;
+constexpr int kShortSlab = 32;
+// The most deltas that key slices may add, as a share of all others, as long as there may be fewer.
 constexpr double kMostKeyDeltas = 0.03;
 
 // What is in the slabs of a layout, as if only the first began with a key slice.
@@ -174,18 +177,27 @@ std::vector<std::size_t> cutAtColumns(const std::vector<CodeBlock>& blocks) {
     return cuts;
 }
 
-// Returns how many of the shortest slabs make one, so that key slices cost little.
-int chooseLength(const std::vector<RunCounts>& counts) {
+// Returns the share of deltas that key slices add, if `length` of the shortest slabs make one.
+double keyShare(const std::vector<RunCounts>& counts, std::size_t length) {
     double deltas = 0;
     for (const RunCounts& slab : counts) deltas += double(slab.all.deltas);
-    for (std::size_t length = 1;; length *= 2) {
-        double added = 0;
-        for (std::size_t i = length; i < counts.size(); i += length) {
-            const SliceCounts& key = counts[i].firstSlice;
-            added += double(key.visible) - double(key.deltas);
-        }
-        if (length >= counts.size() || added <= kMostKeyDeltas * deltas) return int(length);
+    double added = 0;
+    for (std::size_t i = length; i < counts.size(); i += length) {
+        const SliceCounts& key = counts[i].firstSlice;
+        added += double(key.visible) - double(key.deltas);
     }
+    return deltas > 0 ? added / deltas : 0;
+}
+
+// Returns how many of the shortest slabs make one.
+int chooseLength(const std::vector<RunCounts>& counts, const SlabLayout& shortest, int slices) {
+    const int longest = std::max(kShortSlab, slices / kLeastSlabs + 7);
+    int length = 1;
+    while (2 * length * 8 * shortest.blocksPerSlab <= longest &&
+           keyShare(counts, std::size_t(length)) > kMostKeyDeltas) {
+        length *= 2;
+    }
+    return length;
 }
 
 // Returns what is in slabs of `length` of those that were counted.
@@ -275,11 +287,10 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
             counts[i].firstSlice += packer.counts()[i].firstSlice;
         }
     }
-    const int length = chooseLength(counts);
+    const int length = chooseLength(counts, layout, slices);
     layout.blocksPerSlab *= length;
     packed.keyInterval = 8 * layout.blocksPerSlab;
-    packed.slabs =
-        makeSlabs(packed.box, layout, countsOfSlabs(counts, length), options.encoding);
+    packed.slabs = makeSlabs(packed.box, layout, countsOfSlabs(counts, length), options.encoding);
     collectWords(packers, layout, packed);
     return packed;
 }

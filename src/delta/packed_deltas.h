@@ -60,11 +60,11 @@ struct PackOptions {
 };
 
 /// Takes the differences of consecutive slices, in one pass over the leaves that can be seen. There
-/// are as many slabs, 8 at most, as make key slices cost no more than 3 % of the deltas: a function
-/// of the volume and the classes it shows, whatever the encoding, so that all methods merge the same
-/// layers. With `holds`, a voxel keeps its class along the slice axis as long as it may: compared
-/// with its true slot each time, so that errors never add up. Linear in the active voxels;
-/// deterministic; multi-threaded.
+/// are 8 slabs at most, and fewer (not below 4 of more than 32 slices) where key slices would add
+/// more than 3 % to the deltas: a function of the volume and the classes it shows, whatever the
+/// encoding, so that all methods merge the same layers. With `holds`, a voxel keeps its class along
+/// the slice axis as long as it may: compared with its true slot each time, so that errors never
+/// add up. Linear in the active voxels; deterministic; multi-threaded.
 PackedDeltas packDeltas(const Volume& volume, const PackOptions& options);
 
 }  // namespace deltasplat

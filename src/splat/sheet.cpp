@@ -58,18 +58,23 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int cha
     return layout;
 }
 
+glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last) {
+    const int blockPixels = 8 * layout.resolution;
+    // Of block b: [begin + b * blockPixels, end + b * blockPixels).
+    const int begin = layout.marginPixels - layout.reachPixels;
+    const int end = begin + blockPixels - layout.resolution + layout.footprintPixels;
+    const auto floorDiv = [](int a, int b) { return a / b - (a % b != 0 && a < 0); };
+    return {std::max(floorDiv(first - end, blockPixels) + 1, 0),
+            std::min(floorDiv(last - 1 - begin, blockPixels) + 1, layout.blocks.y)};
+}
+
 SheetLayout layoutRows(const SheetLayout& whole, int first, int last) {
     const int blockPixels = 8 * whole.resolution;
-    // Of block b: [begin + b * blockPixels, end + b * blockPixels).
-    const int begin = whole.marginPixels - whole.reachPixels;
-    const int end = begin + blockPixels - whole.resolution + whole.footprintPixels;
-    const auto floorDiv = [](int a, int b) { return a / b - (a % b != 0 && a < 0); };
-    const int firstBlock = std::max(floorDiv(first - end, blockPixels) + 1, 0);
-    const int lastBlock = std::min(floorDiv(last - 1 - begin, blockPixels), whole.blocks.y - 1);
+    const glm::ivec2 blocks = blocksReaching(whole, first, last);
     SheetLayout part = whole;
-    part.blocks.y = std::max(lastBlock - firstBlock + 1, 0);
-    part.firstVoxel.y += 8 * firstBlock;
-    part.originRow = blockPixels * firstBlock;
+    part.blocks.y = std::max(blocks.y - blocks.x, 0);
+    part.firstVoxel.y += 8 * blocks.x;
+    part.originRow = blockPixels * blocks.x;
     part.sizePixels.y += blockPixels * (part.blocks.y - whole.blocks.y);
     return part;
 }
@@ -99,6 +104,7 @@ void Sheet::touch(glm::ivec2 first, glm::ivec2 last) {
 
 void Sheet::settle() {
     refillTouched(
+        0, layout_.sizePixels.y,
         [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
             for (int column = 0; column < layout_.tiles().x; ++column) {
                 const std::uint8_t rows = touched[column];

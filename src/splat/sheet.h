@@ -44,6 +44,10 @@ struct SheetLayout {
     }
 };
 
+/// Returns the rows of blocks [x, y) whose footprints reach sheet rows [first, last); none if y <=
+/// x.
+glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last);
+
 /// Lays out the part of a sheet in which rows [first, last) of the whole are complete: the blocks
 /// whose footprints reach them. Without blocks if there are none.
 SheetLayout layoutRows(const SheetLayout& whole, int first, int last);
@@ -71,11 +75,12 @@ class Sheet {
 
     /// Says that pixels of [first, last], both inclusive, may have changed.
     void touch(glm::ivec2 first, glm::ivec2 last);
-    /// Calls `refill(tileRow, touched, full)` for every row of tiles that has touched ones. Of each
-    /// tile there is a byte, bit y for its row y: where `touched` has bits, `refill` puts into
-    /// `full` whether those rows are not all zero now.
+    /// Calls `refill(tileRow, touched, full)` for every row of tiles that has touched ones and in
+    /// which any of the pixel rows [first, last) lies; others stay touched. Of each tile there is a
+    /// byte, bit y for its row y: where `touched` has bits, `refill` puts into `full` whether those
+    /// rows are not all zero now.
     template <typename Refill>
-    void refillTouched(const Refill& refill);
+    void refillTouched(int first, int last, const Refill& refill);
     /// Finds out which of the touched rows are zero. Call it when all stamps of a slice are in.
     void settle();
     /// Makes every pixel zero.
@@ -99,8 +104,9 @@ class Sheet {
 };
 
 template <typename Refill>
-void Sheet::refillTouched(const Refill& refill) {
-    for (int row = 0; row < layout_.tiles().y; ++row) {
+void Sheet::refillTouched(int first, int last, const Refill& refill) {
+    const int end = (std::min(last, layout_.sizePixels.y) + kTilePixels - 1) / kTilePixels;
+    for (int row = std::max(first, 0) / kTilePixels; row < end; ++row) {
         if (touchedRows_[row] == 0) continue;
         touchedRows_[row] = 0;
         const std::span touched(&touched_[bytesPerRow_ * row], bytesPerRow_);

@@ -23,13 +23,13 @@ void SliceBlocks::touch(glm::ivec2 block, std::uint64_t word, Sheet& sheet) cons
                 origin + r * glm::ivec2(lastV, lastU) + layout_.footprintPixels - 1);
 }
 
-// The words of a slice whose blocks the layout has; they are ordered by u.
-std::span<const DeltaWord> SliceBlocks::wordsOf(int slice) const {
+// The words of a slice in rows of blocks; they are ordered by u.
+std::span<const DeltaWord> SliceBlocks::wordsOf(int slice, glm::ivec2 rows) const {
     const std::span<const DeltaWord> words = input_.deltas.slice(slice);
     const int firstU = layout_.firstVoxel.y / 8;
     const auto before = [](const DeltaWord& word, int u) { return word.block.x < u; };
-    const auto first = std::lower_bound(words.begin(), words.end(), firstU, before);
-    return {first, std::lower_bound(first, words.end(), firstU + layout_.blocks.y, before)};
+    const auto first = std::lower_bound(words.begin(), words.end(), firstU + rows.x, before);
+    return {first, std::lower_bound(first, words.end(), firstU + std::max(rows.x, rows.y), before)};
 }
 
 // Sheets run along v.

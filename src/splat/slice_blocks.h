@@ -37,8 +37,11 @@ class SliceBlocks {
 
     /// Calls `use(block, voxels, classes)` for the blocks (v, u) of a slice that have something to
     /// stamp: a mask word of voxels, and the classes of all 64.
+    /// @param rows  of blocks, [x, y)
     template <typename Use>
-    void forEach(int slice, bool whole, const Use& use) const;
+    void forEach(int slice, bool whole, glm::ivec2 rows, const Use& use) const;
+    /// All rows of blocks.
+    glm::ivec2 rows() const { return {0, layout_.blocks.y}; }
 
     std::size_t count() const { return std::size_t(layout_.blocks.x) * layout_.blocks.y; }
     /// Returns where what is kept of a block lies in an array of count().
@@ -50,7 +53,7 @@ class SliceBlocks {
     void touch(glm::ivec2 block, std::uint64_t voxels, Sheet& sheet) const;
 
   private:
-    std::span<const DeltaWord> wordsOf(int slice) const;
+    std::span<const DeltaWord> wordsOf(int slice, glm::ivec2 rows) const;
     glm::ivec2 blockOf(const DeltaWord& word) const;
     std::uint64_t voxelsInBox(glm::ivec2 block) const;
     static void prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words);
@@ -60,8 +63,8 @@ class SliceBlocks {
 };
 
 template <typename Use>
-void SliceBlocks::forEach(int slice, bool whole, const Use& use) const {
-    const std::span<const DeltaWord> words = wordsOf(slice);
+void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use) const {
+    const std::span<const DeltaWord> words = wordsOf(slice, rows);
     if (!input_.stampEmptyVoxels) {
         for (const DeltaWord& word : words) {
             prefetchClasses(&word, words);
@@ -70,7 +73,7 @@ void SliceBlocks::forEach(int slice, bool whole, const Use& use) const {
         return;
     }
     auto word = words.begin();
-    for (int u = 0; u < layout_.blocks.y; ++u) {
+    for (int u = rows.x; u < rows.y; ++u) {
         for (int v = 0; v < layout_.blocks.x; ++v) {
             const bool has = word != words.end() && blockOf(*word) == glm::ivec2(v, u);
             use(glm::ivec2(v, u), voxelsInBox({v, u}), has ? word->classes : kEmptyClasses.data());

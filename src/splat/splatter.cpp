@@ -20,18 +20,21 @@ Way wayFor(const SplatInput& input, const SheetLayout& largest) {
 Splatter::Splatter(const SplatInput& input, const SheetLayout& largest)
     : way_(wayFor(input, largest)) {}
 
-void Splatter::run(const Slab& slab, const SheetLayout& layout,
-                   const std::function<void(int, const Sheet&)>& eachSlice) {
-    std::visit(
-        [&](auto& way) {
-            way.setLayout(layout);
-            for (int i = 0; i < slab.sliceCount; ++i) {
-                way.splat(slab.firstSlice + i, slab.whole);
-                eachSlice(slab.firstSlice + i, way.sheet());
-            }
-            way.clear();
+void Splatter::begin(const SheetLayout& layout) {
+    std::visit([&](auto& way) { way.setLayout(layout); }, way_);
+}
+
+const Sheet& Splatter::splat(int slice, bool whole, int firstRow, int lastRow) {
+    return std::visit(
+        [&](auto& way) -> const Sheet& {
+            way.splat(slice, whole, firstRow, lastRow);
+            return way.sheet();
         },
         way_);
+}
+
+void Splatter::end() {
+    std::visit([](auto& way) { way.clear(); }, way_);
 }
 
 double Splatter::bytes(const SheetLayout& layout) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <variant>
 
 #include "splat/stamp_splatter.h"
@@ -16,12 +15,15 @@ class Splatter {
     /// @param largest  of the layouts to come
     Splatter(const SplatInput& input, const SheetLayout& largest);
 
-    /// Calls `eachSlice(slice, sheet)` for the slab's slices in increasing order, with the sheet
-    /// complete. Deltas are added to what the slice before left; of a whole slab, each slice starts
-    /// anew.
+    /// Begins with a slab.
     /// @param layout  of the whole sheet, or of a part of it (layoutRows)
-    void run(const Slab& slab, const SheetLayout& layout,
-             const std::function<void(int slice, const Sheet& sheet)>& eachSlice);
+    void begin(const SheetLayout& layout);
+    /// Makes the sheet of the slab's next slice, and returns it. Deltas are added to what the slice
+    /// before left; of a whole slab, each slice starts anew.
+    /// @param firstRow,lastRow  rows of the sheet that are needed: [firstRow, lastRow)
+    const Sheet& splat(int slice, bool whole, int firstRow, int lastRow);
+    /// Ends a slab.
+    void end();
 
     /// Bytes that a splatter takes.
     static double bytes(const SheetLayout& layout);

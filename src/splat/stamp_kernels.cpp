@@ -121,13 +121,11 @@ std::uint8_t findFullRowsKernel(const std::int32_t* HWY_RESTRICT tile, std::size
     unsigned full = 0;
     for (unsigned rest = rows; rest != 0; rest &= rest - 1) {
         const int y = std::countr_zero(rest);
-        bool any = false;
-        // Most rows are full, and their first vector shows it.
-        for (std::size_t x = 0; x < length && !any; x += hn::Lanes(tag)) {
-            const auto values = hn::LoadU(tag, tile + y * pitch + x);
-            any = !hn::AllTrue(tag, hn::Eq(values, hn::Zero(tag)));
-        }
-        full |= unsigned{any} << y;
+        // Whether a row is full is hard to foretell: looking at all of it is faster than stopping.
+        auto any = hn::Zero(tag);
+        for (std::size_t x = 0; x < length; x += hn::Lanes(tag))
+            any = hn::Or(any, hn::LoadU(tag, tile + y * pitch + x));
+        full |= unsigned{!hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)))} << y;
     }
     return std::uint8_t(full);
 }

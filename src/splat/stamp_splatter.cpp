@@ -23,7 +23,8 @@ void StampSplatter::setLayout(const SheetLayout& layout) {
     sheet_.setLayout(layout);
 }
 
-void StampSplatter::splat(int slice, bool whole) {
+// Changes have to be added wherever they are, for what is not read now may be later.
+void StampSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
     if (whole) {
         sheet_.clear();
     } else if (shown_.empty()) {
@@ -31,8 +32,9 @@ void StampSplatter::splat(int slice, bool whole) {
     }
     const ClassTable::Color* colors = input_.classes.colors.data();
     const SheetLayout& layout = sheet_.layout();
+    const glm::ivec2 rows = whole ? blocksReaching(layout, firstRow, lastRow) : blocks_.rows();
     blocks_.forEach(
-        slice, whole, [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
+        slice, whole, rows, [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
             if (list_.count + 64 > StampList::kCapacity) flush();
             blocks_.touch(block, active, sheet_);
             const std::size_t place = layout.stampPlace(layout.firstVoxel + 8 * block);

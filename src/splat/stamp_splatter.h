@@ -19,7 +19,8 @@ class StampSplatter {
     const Sheet& sheet() const { return sheet_; }
     void setLayout(const SheetLayout& layout);
     /// Makes the sheet that of the slice, after the one before it if it is not whole.
-    void splat(int slice, bool whole);
+    /// @param firstRow,lastRow  what will be read: rows of the sheet [firstRow, lastRow)
+    void splat(int slice, bool whole, int firstRow, int lastRow);
     /// Makes everything as it was before the first slice.
     void clear();
 

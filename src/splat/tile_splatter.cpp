@@ -22,14 +22,15 @@ void TileSplatter::setLayout(const SheetLayout& layout) {
     sheet_.setLayout(layout);
 }
 
-void TileSplatter::splat(int slice, bool whole) {
+void TileSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
     if (whole) {
-        paintWhole(slice);
+        paintWhole(slice, blocksReaching(sheet_.layout(), firstRow, lastRow));
     } else {
         paintChanges(slice);
     }
     const int resolution = sheet_.layout().resolution;
     sheet_.refillTouched(
+        firstRow, lastRow,
         [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
             splatTiles(weights_,
                        {planeAt({0, kTilePixels * row / resolution}), pitch_, sheet_.tile(row, 0),
@@ -45,7 +46,7 @@ void TileSplatter::clear() {
 }
 
 void TileSplatter::paintChanges(int slice) {
-    blocks_.forEach(slice, false,
+    blocks_.forEach(slice, false, blocks_.rows(),
                     [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
                         Shown& shown = shown_[blocks_.placeOf(block)];
                         if (shown.voxels == 0) shownBlocks_.push_back(block);
@@ -55,10 +56,10 @@ void TileSplatter::paintChanges(int slice) {
 }
 
 // Only what the slice before showed and this one does not paint over has to be taken away.
-void TileSplatter::paintWhole(int slice) {
+void TileSplatter::paintWhole(int slice, glm::ivec2 rows) {
     before_.swap(shownBlocks_);
     shownBlocks_.clear();
-    blocks_.forEach(slice, true,
+    blocks_.forEach(slice, true, rows,
                     [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
                         Shown& shown = shown_[blocks_.placeOf(block)];
                         paint(block, active | shown.voxels, classes);

@@ -19,7 +19,9 @@ class TileSplatter {
     const Sheet& sheet() const { return sheet_; }
     void setLayout(const SheetLayout& layout);
     /// Makes the sheet that of the slice, after the one before it if it is not whole.
-    void splat(int slice, bool whole);
+    /// @param firstRow,lastRow  what will be read: rows of the sheet [firstRow, lastRow); others
+    /// are made when they are
+    void splat(int slice, bool whole, int firstRow, int lastRow);
     /// Makes everything as it was before the first slice.
     void clear();
 
@@ -31,7 +33,7 @@ class TileSplatter {
     };
 
     void paintChanges(int slice);
-    void paintWhole(int slice);
+    void paintWhole(int slice, glm::ivec2 rows);
     void takeAway(glm::ivec2 block);
     void paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes);
     void paintColors(std::int16_t* plane, std::uint64_t voxels, const ClassIndex* classes) const;
