@@ -107,7 +107,7 @@ class SlabRenderer {
     }
 
   private:
-    const std::vector<Slab>& slabs() const { return input_.deltas.slabs; }
+    const std::vector<PlannedSlab>& slabs() const { return input_.deltas.slabs; }
 
     PlaneBox reachOfAll() const {
         const IndexBox& box = input_.deltas.box;
@@ -150,7 +150,7 @@ class SlabRenderer {
     void renderPiece(std::size_t piece, Splatter& splatter) {
         const Clock::time_point start = Clock::now();
         const std::size_t number = piece / strips_.size();
-        const Slab& slab = slabs()[view_.frontToBack ? number : slabs().size() - 1 - number];
+        const PlannedSlab& slab = slabs()[view_.frontToBack ? number : slabs().size() - 1 - number];
         const Strip& strip = strips_[piece % strips_.size()];
         double compositeSeconds = 0;
         PlaneBox box = reachOf(layout_, view_.shiftPerSlice, slab.firstSlice, slab.sliceCount);
@@ -205,7 +205,7 @@ class SlabRenderer {
 std::uint64_t stampsOf(const PackedDeltas& deltas, const RenderStats& stats) {
     if (stats.method == Method::kTraditional) return stats.voxels;
     std::uint64_t stamps = 0;
-    for (const Slab& slab : deltas.slabs) stamps += slab.whole ? slab.visible : slab.deltas;
+    for (const PlannedSlab& slab : deltas.slabs) stamps += slab.whole ? slab.visible : slab.deltas;
     return stamps;
 }
 

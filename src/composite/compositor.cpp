@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <optional>
 #include <span>
 
 #include "bit_matrix.h"
@@ -52,61 +53,68 @@ void Compositor::findSpans(const Sheet& sheet, const SheetShift& shift, bool str
     rows_.assign((kTilePixels + 1) * words_, 0);
     either_.resize(words_);
     spans_.clear();
-    bool anyBefore = false;
-    for (int tileRow = 0; tileRow < sheet.layout().tiles().y; ++tileRow) {
-        const bool any = findRows(sheet, tileRow);
-        // The row before reads into the first one as well.
+    // Rows of the sheet that the layer has.
+    const int begin = std::max(layer.box.min.y + shift.offset.y, 0);
+    const int end = std::min(layer.box.max.y + shift.offset.y, sheet.layout().sizePixels.y - 1);
+    // The row before reads into the first one as well. Bit 0: that of the tile row before.
+    unsigned rows = 0;
+    for (int tileRow = begin / kTilePixels; kTilePixels * tileRow <= end; ++tileRow) {
+        rows = rows >> kTilePixels | findRows(sheet, tileRow) << 1;
         const int first = kTilePixels * tileRow - 1;
-        if (any || anyBefore) {
-            for (int y = 0; y < (any ? kTilePixels : 1); ++y)
+        for (unsigned rest = (straight ? rows : rows | rows >> 1) & 0xFF; rest != 0;
+             rest &= rest - 1) {
+            const int y = std::countr_zero(rest);
+            if (first + y >= begin && first + y < end)
                 addSpans(sheet, shift, first + y, std::size_t(y), straight, layer);
         }
         std::copy_n(&rows_[kTilePixels * words_], words_, rows_.begin());
-        anyBefore = any;
     }
 }
 
-// Turns bytes of eight rows into words of 64 tiles.
-bool Compositor::findRows(const Sheet& sheet, int tileRow) {
+// Turns bytes of eight rows into words of 64 tiles. Returns which rows have any.
+unsigned Compositor::findRows(const Sheet& sheet, int tileRow) {
     const std::span<const std::uint8_t> tiles = sheet.fullRows(tileRow);
     std::fill(rows_.begin() + std::ptrdiff_t(words_), rows_.end(), 0);
-    bool any = false;
+    std::uint64_t any = 0;
     for (std::size_t i = 0; i < tiles.size(); i += 8) {
         std::uint64_t bytes;
         std::memcpy(&bytes, &tiles[i], sizeof bytes);
         if (bytes == 0) continue;
-        any = true;
+        any |= bytes;
         bytes = transposedBits(bytes);
         for (std::size_t y = 0; y < kTilePixels; ++y) {
             rows_[(y + 1) * words_ + i / 64] |= (bytes >> (8 * y) & 0xFF) << (i % 64);
         }
     }
-    return any;
+    any |= any >> 32;
+    any |= any >> 16;
+    return unsigned(any | any >> 8) & 0xFF;
 }
 
 // Adds what row y of the sheet reaches: `row` of rows_ says where it is full, the next one where
 // the row behind it is. Read straight, it reaches no more than itself.
 void Compositor::addSpans(const Sheet& sheet, const SheetShift& shift, int y, std::size_t row,
                           bool straight, Layer& layer) {
-    const int layerRow = y - shift.offset.y;
-    if (layerRow < layer.box.min.y || layerRow >= layer.box.max.y) return;
-    std::uint64_t any = 0;
     for (std::size_t i = 0; i < words_; ++i) {
         either_[i] = rows_[row * words_ + i];
         if (!straight) either_[i] |= rows_[(row + 1) * words_ + i];
-        any |= either_[i];
     }
-    if (any == 0) return;
     const int channels = sheet.layout().channels;
+    const std::int32_t* pixels = sheet.row(y);
+    const std::int32_t* nextPixels = sheet.row(y + 1);
+    const int layerRow = y - shift.offset.y;
+    std::optional<int> begin;
+    int end = 0;
     forEachRun(either_, [&](int firstTile, int lastTile) {
         // The pixel before the first one reads into it as well.
         const int first = kTilePixels * firstTile - (straight ? 0 : 1);
-        const int last = kTilePixels * lastTile;
-        const glm::ivec2 b = glm::ivec2(first, y) - shift.offset;
-        layer.extend(b.y, b.x, b.x + last - first);
-        spans_.push_back({sheet.row(y) + channels * first, sheet.row(y + 1) + channels * first,
-                          layer.pixel(b), std::size_t(last - first)});
+        end = kTilePixels * lastTile;
+        if (!begin) begin = first;
+        spans_.push_back({pixels + channels * first, nextPixels + channels * first,
+                          layer.pixel({first - shift.offset.x, layerRow}),
+                          std::size_t(end - first)});
     });
+    if (begin) layer.extend(layerRow, *begin - shift.offset.x, end - shift.offset.x);
 }
 
 }  // namespace deltasplat

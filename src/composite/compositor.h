@@ -27,7 +27,7 @@ class Compositor {
 
   private:
     void findSpans(const Sheet& sheet, const SheetShift& shift, bool straight, Layer& layer);
-    bool findRows(const Sheet& sheet, int tileRow);
+    unsigned findRows(const Sheet& sheet, int tileRow);
     void addSpans(const Sheet& sheet, const SheetShift& shift, int y, std::size_t row,
                   bool straight, Layer& layer);
 

@@ -39,9 +39,27 @@ inline SliceCounts& operator+=(SliceCounts& sum, const SliceCounts& counts) {
     return sum;
 }
 
-/// Returns the slabs of a layout, with what was counted in them, and which of them are whole.
-std::vector<Slab> makeSlabs(const IndexBox& box, const SlabLayout& layout,
-                            const std::vector<SliceCounts>& counts, Encoding encoding);
+/// Returns the layout of one slab of all slices.
+inline SlabLayout oneSlab(const IndexBox& box) {
+    SlabLayout layout = layoutOf(box, 8);
+    layout.blocksPerSlab = layout.lastBlock - layout.firstBlock + 1;
+    return layout;
+}
+
+/// Sets the slices of slab `i`.
+inline void placeSlab(const IndexBox& box, const SlabLayout& layout, int i, Slab& slab) {
+    const int begin = 8 * (layout.firstBlock + i * layout.blocksPerSlab);
+    slab.firstSlice = std::max(begin, box.min.x);
+    slab.sliceCount = std::min(begin + 8 * layout.blocksPerSlab, box.max.x + 1) - slab.firstSlice;
+}
+
+/// Returns the sum of one of the counts of all slabs.
+template <typename AnySlab>
+std::uint64_t sumOf(const std::vector<AnySlab>& slabs, std::uint64_t Slab::*count) {
+    std::uint64_t sum = 0;
+    for (const AnySlab& slab : slabs) sum += slab.*count;
+    return sum;
+}
 
 /// Returns a volume's box in (slice, u, v) order.
 inline IndexBox permutedBox(const IndexBox& box, int sliceAxis) {

@@ -9,7 +9,6 @@
 #include <array>
 #include <bit>
 #include <memory>
-#include <numeric>
 #include <string>
 
 #include "delta/block_windows.h"
@@ -22,12 +21,6 @@ namespace deltasplat {
 namespace {
 
 using Leaf = DeltaTree::Leaf;
-
-SlabLayout oneSlab(const IndexBox& box) {
-    SlabLayout layout = layoutOf(box, 8);
-    layout.blocksPerSlab = layout.lastBlock - layout.firstBlock + 1;
-    return layout;
-}
 
 std::uint64_t countBits(const std::array<std::uint64_t, 8>& words) {
     std::uint64_t count = 0;
@@ -59,15 +52,26 @@ struct Differences {
 std::vector<SliceCounts> countSlabs(const Differences& differences) {
     std::vector<SliceCounts> counts(differences.layout.count());
     for (std::size_t i = 0; i < differences.changes.size(); ++i) {
-        counts[differences.slabOf(i)] += {countBits(differences.changes[i].visible),
-                                          countBits(differences.changes[i].changed)};
+        counts[differences.slabOf(i)] +=
+            {countBits(differences.changes[i].visible), countBits(differences.changes[i].changed)};
     }
     return counts;
 }
 
-// Returns the leaf of a block's deltas, or of its whole slices, active where `words` says so.
+std::vector<Slab> makeSlabs(const Differences& differences, const IndexBox& box) {
+    const std::vector<SliceCounts> counts = countSlabs(differences);
+    std::vector<Slab> slabs(counts.size());
+    for (std::size_t i = 0; i < slabs.size(); ++i) {
+        placeSlab(box, differences.layout, int(i), slabs[i]);
+        slabs[i].visible = counts[i].visible;
+        slabs[i].deltas = counts[i].deltas;
+    }
+    return slabs;
+}
+
+// Returns the leaf of a block's deltas, active where `words` says so.
 std::unique_ptr<Leaf> makeLeaf(const glm::ivec3& position, const BlockWindow& window,
-                               const std::array<std::uint64_t, 8>& words, bool whole) {
+                               const std::array<std::uint64_t, 8>& words) {
     auto leaf = std::make_unique<Leaf>(
         openvdb::Coord(8 * position.x, 8 * position.y, 8 * position.z), 0, false);
     std::int32_t* values = leaf->buffer().data();
@@ -77,31 +81,26 @@ std::unique_ptr<Leaf> makeLeaf(const glm::ivec3& position, const BlockWindow& wi
         if (words[s] == 0) continue;
         const Slot* slice = window.slice(s);
         const Slot* before = window.sliceBefore(s);
-        for (int n = 0; n < 64; ++n) values[n] = whole ? slice[n] : slice[n] - before[n];
+        for (int n = 0; n < 64; ++n) values[n] = slice[n] - before[n];
     }
     leaf->setValueMask(mask);
     return leaf;
 }
 
-std::shared_ptr<DeltaTree> makeTree(const Differences& differences,
-                                    const std::vector<Slab>& slabs) {
+std::shared_ptr<DeltaTree> makeTree(const Differences& differences) {
     const BlockWindows& windows = differences.windows;
-    const auto wordsOf = [&](std::size_t i) -> const std::array<std::uint64_t, 8>& {
-        const BlockChanges& changes = differences.changes[i];
-        return slabs[differences.slabOf(i)].whole ? changes.visible : changes.changed;
-    };
+    const auto& changes = differences.changes;
     std::size_t needed = 0;
-    for (std::size_t i = 0; i < windows.count(); ++i) needed += countBits(wordsOf(i)) != 0;
+    for (const BlockChanges& block : changes) needed += countBits(block.changed) != 0;
     requireMemory("delta grid", double(needed) * (sizeof(Leaf) + Leaf::NUM_VALUES * sizeof(Slot)));
 
     std::vector<std::unique_ptr<Leaf>> leaves(windows.count());
     parallelForChunks(windows.count(), [&](std::size_t begin, std::size_t end) {
         BlockWindow window;
         for (std::size_t i = begin; i < end; ++i) {
-            if (countBits(wordsOf(i)) == 0) continue;
+            if (countBits(changes[i].changed) == 0) continue;
             windows.read(i, window);
-            const bool whole = slabs[differences.slabOf(i)].whole;
-            leaves[i] = makeLeaf(windows.position(i), window, wordsOf(i), whole);
+            leaves[i] = makeLeaf(windows.position(i), window, changes[i].changed);
         }
     });
     auto tree = std::make_shared<DeltaTree>();
@@ -132,32 +131,12 @@ DeltaGrid gridWithoutSlabs(const Volume& volume, const DeltaOptions& options) {
 
 }  // namespace
 
-std::vector<Slab> makeSlabs(const IndexBox& box, const SlabLayout& layout,
-                            const std::vector<SliceCounts>& counts, Encoding encoding) {
-    std::vector<Slab> slabs(layout.count());
-    for (int i = 0; i < layout.count(); ++i) {
-        const int begin = 8 * (layout.firstBlock + i * layout.blocksPerSlab);
-        Slab& slab = slabs[i];
-        slab.firstSlice = std::max(begin, box.min.x);
-        slab.sliceCount =
-            std::min(begin + 8 * layout.blocksPerSlab, box.max.x + 1) - slab.firstSlice;
-        slab.visible = counts[i].visible;
-        slab.deltas = counts[i].deltas;
-        // A stamp of a whole slice costs a little more: what it replaces must be taken away.
-        slab.whole = encoding == Encoding::kWhole ||
-                     (encoding == Encoding::kSmaller && 10 * slab.visible < 9 * slab.deltas);
-    }
-    return slabs;
-}
-
 std::uint64_t DeltaGrid::visible() const {
-    return std::accumulate(slabs.begin(), slabs.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, const Slab& slab) { return sum + slab.visible; });
+    return sumOf(slabs, &Slab::visible);
 }
 
 std::uint64_t DeltaGrid::deltas() const {
-    return std::accumulate(slabs.begin(), slabs.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, const Slab& slab) { return sum + slab.deltas; });
+    return sumOf(slabs, &Slab::deltas);
 }
 
 int defaultKeyInterval(int sliceCount) {
@@ -170,18 +149,9 @@ DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options) {
     if (grid.box.empty()) return grid;
     const Differences differences(volume, options.sliceAxis, options.slotMap,
                                   layoutOf(grid.box, grid.keyInterval), options.inactive);
-    grid.slabs = makeSlabs(grid.box, differences.layout, countSlabs(differences), options.encoding);
-    grid.tree = makeTree(differences, grid.slabs);
+    grid.slabs = makeSlabs(differences, grid.box);
+    grid.tree = makeTree(differences);
     return grid;
-}
-
-std::vector<Slab> planSlabs(const Volume& volume, const DeltaOptions& options) {
-    const DeltaGrid grid = gridWithoutSlabs(volume, options);
-    if (volume.empty()) return {};
-    const SlabLayout layout = layoutOf(grid.box, grid.keyInterval);
-    return makeSlabs(grid.box, layout,
-                     countSlabs(Differences(volume, options.sliceAxis, options.slotMap, layout)),
-                     options.encoding);
 }
 
 // Not the sum over slices: a few voxels far apart make a box of more slices than memory holds.

@@ -49,20 +49,6 @@ struct PendingWord {
     glm::ivec2 block;
 };
 
-// How many slabs there are: each costs a layer, and the fewer there are, the farther a strip's rows
-// move along a sheet (src/composite_render.cpp). Short ones can be fewer.
-constexpr int kMostSlabs = 8;
-constexpr int kLeastSlabs = 4;
-constexpr int kShortSlab = 32;
-// The most deltas that key slices may add, as a share of all others, as long as there may be fewer.
-constexpr double kMostKeyDeltas = 0.03;
-
-// What is in the slabs of a layout, as if only the first began with a key slice.
-struct RunCounts {
-    SliceCounts all;
-    SliceCounts firstSlice;  // of which in the first slice; 0 for the first slab
-};
-
 // Words that a block may make: its slices, and one behind it that takes away what it showed.
 constexpr std::size_t kMostWords = 9;
 constexpr double kBytesPerBlock =
@@ -71,9 +57,8 @@ constexpr double kBytesPerBlock =
 // Packs columns of blocks (same u and v), slices in increasing order.
 class ColumnPacker {
   public:
-    // layout: of the shortest slabs that there may be
-    ColumnPacker(const BlockReader& reader, const SlabLayout& layout, const PackOptions& options)
-        : reader_(reader), layout_(layout), options_(options), counts_(layout.count()) {}
+    ColumnPacker(const BlockReader& reader, const IndexBox& box, const PackOptions& options)
+        : reader_(reader), options_(options), planner_(box), layout_(planner_.shortest()) {}
 
     // Packs blocks [begin, end), which are whole columns.
     void run(const CodeBlock* begin, const CodeBlock* end) {
@@ -97,7 +82,7 @@ class ColumnPacker {
 
     const std::vector<PendingWord>& words() const { return words_; }
     std::vector<ClassIndex>& storage() { return storage_; }
-    const std::vector<RunCounts>& counts() const { return counts_; }
+    const SlabPlanner& planner() const { return planner_; }
 
   private:
     static bool follows(const CodeBlock* block) {
@@ -132,33 +117,29 @@ class ColumnPacker {
         BlockChanges changes;
         compareClasses(before_.data(), classes_.data(), changes.visible.data(),
                        changes.changed.data());
-        RunCounts& counts = counts_[layout_.slabOf(position.x)];
         for (int s = 0; s < slices; ++s) {
             const std::uint64_t visible = changes.visible[s];
             const std::uint64_t changed = changes.changed[s];
-            const SliceCounts found{std::uint64_t(std::popcount(visible)),
-                                    std::uint64_t(std::popcount(changed))};
-            const bool isKey = layout_.beginsWith(8 * position.x + s);
-            counts.all += found;
-            if (isKey) counts.firstSlice += found;
+            const int slice = 8 * position.x + s;
+            const bool isKey = layout_.beginsWith(slice);
+            planner_.add(slice, visible, changed);
             const bool needed =
                 (options_.encoding != Encoding::kWhole && changed != 0) ||
                 ((options_.encoding != Encoding::kChanges || isKey) && visible != 0);
             if (!needed) continue;
-            words_.push_back(
-                {visible, changed, storage_.size(), 8 * position.x + s, {position.y, position.z}});
+            words_.push_back({visible, changed, storage_.size(), slice, {position.y, position.z}});
             storage_.insert(storage_.end(), &classes_[64 * s], &classes_[64 * s] + 64);
         }
         std::copy_n(&classes_[7 * 64], 64, before_.begin());
     }
 
     const BlockReader& reader_;
-    const SlabLayout& layout_;
     const PackOptions& options_;
+    SlabPlanner planner_;
+    SlabLayout layout_;       // of the shortest slabs that there may be
     BlockClasses classes_{};  // of the block in hand
     SliceClasses before_{};   // of the slice before it
     std::array<Slot, 64> held_{};
-    std::vector<RunCounts> counts_;
     std::vector<PendingWord> words_;
     std::vector<ClassIndex> storage_;
 };
@@ -175,42 +156,6 @@ std::vector<std::size_t> cutAtColumns(const std::vector<CodeBlock>& blocks) {
     }
     if (!blocks.empty()) cuts.push_back(blocks.size());
     return cuts;
-}
-
-// Returns the share of deltas that key slices add, if `length` of the shortest slabs make one.
-double keyShare(const std::vector<RunCounts>& counts, std::size_t length) {
-    double deltas = 0;
-    for (const RunCounts& slab : counts) deltas += double(slab.all.deltas);
-    double added = 0;
-    for (std::size_t i = length; i < counts.size(); i += length) {
-        const SliceCounts& key = counts[i].firstSlice;
-        added += double(key.visible) - double(key.deltas);
-    }
-    return deltas > 0 ? added / deltas : 0;
-}
-
-// Returns how many of the shortest slabs make one.
-int chooseLength(const std::vector<RunCounts>& counts, const SlabLayout& shortest, int slices) {
-    const int longest = std::max(kShortSlab, slices / kLeastSlabs + 7);
-    int length = 1;
-    while (2 * length * 8 * shortest.blocksPerSlab <= longest &&
-           keyShare(counts, std::size_t(length)) > kMostKeyDeltas) {
-        length *= 2;
-    }
-    return length;
-}
-
-// Returns what is in slabs of `length` of those that were counted.
-std::vector<SliceCounts> countsOfSlabs(const std::vector<RunCounts>& counts, int length) {
-    std::vector<SliceCounts> slabs((counts.size() - 1) / length + 1);
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-        SliceCounts& slab = slabs[i / length];
-        slab += counts[i].all;
-        if (i % length != 0) continue;
-        slab.deltas += counts[i].firstSlice.visible;
-        slab.deltas -= counts[i].firstSlice.deltas;
-    }
-    return slabs;
 }
 
 // Puts the packers' words in the order of slices.
@@ -248,13 +193,11 @@ void collectWords(std::vector<ColumnPacker>& packers, const SlabLayout& layout,
 }  // namespace
 
 std::uint64_t PackedDeltas::visible() const {
-    return std::accumulate(slabs.begin(), slabs.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, const Slab& slab) { return sum + slab.visible; });
+    return sumOf(slabs, &Slab::visible);
 }
 
 std::uint64_t PackedDeltas::deltas() const {
-    return std::accumulate(slabs.begin(), slabs.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, const Slab& slab) { return sum + slab.deltas; });
+    return sumOf(slabs, &Slab::deltas);
 }
 
 std::span<const DeltaWord> PackedDeltas::slice(int index) const {
@@ -267,31 +210,24 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     packed.sliceAxis = options.sliceAxis;
     packed.box = permutedBox(volume.box, options.sliceAxis);
     if (volume.empty()) return packed;
-    const int slices = packed.box.dims().x;
-    SlabLayout layout = layoutOf(packed.box, 8 * ((slices - 1) / (8 * kMostSlabs) + 1));
     const std::span<const Slot> slotMap =
         options.holds ? std::span<const Slot>() : options.classOfSlot;
     const BlockReader reader(*volume.codes, nullptr, options.sliceAxis, slotMap);
     const std::vector<CodeBlock>& blocks = reader.blocks();
-    requireMemory("delta grid", double(blocks.size()) * kBytesPerBlock + 16.0 * slices);
+    requireMemory("delta grid",
+                  double(blocks.size()) * kBytesPerBlock + 16.0 * packed.box.dims().x);
 
     const std::vector<std::size_t> cuts = cutAtColumns(blocks);
-    std::vector<ColumnPacker> packers(cuts.size() - 1, ColumnPacker(reader, layout, options));
+    std::vector<ColumnPacker> packers(cuts.size() - 1, ColumnPacker(reader, packed.box, options));
     parallelFor(packers.size(), [&](std::size_t i) {
         packers[i].run(blocks.data() + cuts[i], blocks.data() + cuts[i + 1]);
     });
-    std::vector<RunCounts> counts(layout.count());
-    for (const ColumnPacker& packer : packers) {
-        for (std::size_t i = 0; i < counts.size(); ++i) {
-            counts[i].all += packer.counts()[i].all;
-            counts[i].firstSlice += packer.counts()[i].firstSlice;
-        }
-    }
-    const int length = chooseLength(counts, layout, slices);
-    layout.blocksPerSlab *= length;
-    packed.keyInterval = 8 * layout.blocksPerSlab;
-    packed.slabs = makeSlabs(packed.box, layout, countsOfSlabs(counts, length), options.encoding);
-    collectWords(packers, layout, packed);
+    SlabPlanner planner(packed.box);
+    for (const ColumnPacker& packer : packers) planner.add(packer.planner());
+    SlabPlan plan = planner.plan(options.encoding);
+    packed.keyInterval = 8 * plan.layout.blocksPerSlab;
+    packed.slabs = std::move(plan.slabs);
+    collectWords(packers, plan.layout, packed);
     return packed;
 }
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "deltasplat/delta/delta_grid.h"
+#include "delta/slab_plan.h"
 
 namespace deltasplat {
 
@@ -34,9 +34,10 @@ struct PackedDeltas {
     PackedDeltas& operator=(PackedDeltas&&) = default;
 
     int sliceAxis = 2;
-    int keyInterval = 8;      ///< slices a slab, a multiple of 8
-    IndexBox box;             ///< the volume's box in (slice, u, v) order
-    std::vector<Slab> slabs;  ///< in increasing order, covering `box`; none for an empty volume
+    int keyInterval = 8;  ///< slices a slab, a multiple of 8
+    IndexBox box;         ///< the volume's box in (slice, u, v) order
+    std::vector<PlannedSlab>
+        slabs;  ///< in increasing order, covering `box`; none for an empty volume
 
     std::uint64_t visible() const;  ///< visible voxels, all slabs together
     std::uint64_t deltas() const;   ///< deltas, all slabs together
@@ -59,12 +60,10 @@ struct PackOptions {
     std::function<bool(Slot held, Slot slot)> holds;
 };
 
-/// Takes the differences of consecutive slices, in one pass over the leaves that can be seen. There
-/// are 8 slabs at most, and fewer (not below 4 of more than 32 slices) where key slices would add
-/// more than 3 % to the deltas: a function of the volume and the classes it shows, whatever the
-/// encoding, so that all methods merge the same layers. With `holds`, a voxel keeps its class along
-/// the slice axis as long as it may: compared with its true slot each time, so that errors never
-/// add up. Linear in the active voxels; deterministic; multi-threaded.
+/// Takes the differences of consecutive slices, in one pass over the leaves that can be seen, and
+/// cuts them into slabs (SlabPlanner). With `holds`, a voxel keeps its class along the slice axis
+/// as long as it may: compared with its true slot each time, so that errors never add up. Linear in
+/// the active voxels; deterministic; multi-threaded.
 PackedDeltas packDeltas(const Volume& volume, const PackOptions& options);
 
 }  // namespace deltasplat

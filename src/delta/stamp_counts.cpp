@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/delta/stamp_counts.h"
 
+#include "delta/slab_plan.h"
+
 namespace deltasplat {
 
 StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap) {
     StampCounts stamps;
+    if (volume.empty()) return stamps;
     stamps.traditional = std::uint64_t(volume.box.voxels());
-    for (const Slab& slab : planSlabs(volume, {sliceAxis, 0, Encoding::kSmaller, slotMap})) {
+    const IndexBox box = permutedBox(volume.box, sliceAxis);
+    const SlabLayout layout = oneSlab(box);
+    const BlockReader reader(*volume.codes, nullptr, sliceAxis, slotMap);
+    const BlockWindows windows(reader, layout);
+    const std::vector<BlockChanges> changes = findChanges(windows, layout);
+    SlabPlanner planner(box);
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+        const int block = windows.position(i).x;
+        for (int s = 0; s < layout.slicesOf(block); ++s)
+            planner.add(8 * block + s, changes[i].visible[s], changes[i].changed[s]);
+    }
+    for (const PlannedSlab& slab : planner.plan(Encoding::kSmaller).slabs) {
         stamps.sparse += slab.visible;
         stamps.delta += slab.deltas;
         stamps.automatic += slab.whole ? slab.visible : slab.deltas;

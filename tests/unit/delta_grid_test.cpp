@@ -44,7 +44,7 @@ SlotMap sumOfDeltas(const DeltaGrid& grid) {
                 Slot slot = kEmptySlot;
                 for (int s = slab.firstSlice; s < slab.firstSlice + slab.sliceCount; ++s) {
                     const Slot value = accessor.getValue(openvdb::Coord(s, u, v));
-                    slot = slab.whole ? value : slot + value;
+                    slot += value;
                     if (slot != kEmptySlot) slots[{s, u, v}] = slot;
                 }
             }
@@ -65,12 +65,9 @@ TEST(DeltaGrid, SumOfDeltasGivesBackTheVolume) {
     for (std::size_t b = 0; b < boxes().size(); ++b) {
         const Volume volume = test::randomVolume(boxes()[b], std::uint32_t(b));
         for (int axis = 0; axis < 3; ++axis) {
-            for (const Encoding encoding :
-                 {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller}) {
-                const DeltaGrid grid = makeDeltaGrid(volume, {axis, 8, encoding, {}});
-                EXPECT_EQ(sumOfDeltas(grid), slotsOf(volume, axis)) << b << " axis " << axis;
-                EXPECT_EQ(grid.visible(), volume.activeCount);
-            }
+            const DeltaGrid grid = makeDeltaGrid(volume, {axis, 8, {}});
+            EXPECT_EQ(sumOfDeltas(grid), slotsOf(volume, axis)) << b << " axis " << axis;
+            EXPECT_EQ(grid.visible(), volume.activeCount);
         }
     }
 }
@@ -78,7 +75,7 @@ TEST(DeltaGrid, SumOfDeltasGivesBackTheVolume) {
 TEST(DeltaGrid, ActiveVoxelsAreExactlyTheChanges) {
     const Volume volume = test::randomVolume(boxes()[2], 7);
     const SlotMap slots = slotsOf(volume, 1);
-    const DeltaGrid grid = makeDeltaGrid(volume, {1, 8, Encoding::kChanges, {}});
+    const DeltaGrid grid = makeDeltaGrid(volume, {1, 8, {}});
     const auto slotAt = [&](int s, int u, int v) {
         const auto found = slots.find({s, u, v});
         return found == slots.end() ? kEmptySlot : found->second;
@@ -109,7 +106,7 @@ TEST(DeltaGrid, TilesCountAsTheirVoxels) {
     volume.activeCount = 512 + 128 * 128 * 128 + 1;
     volume.box = {{0, 0, -128}, {255, 127, 7}};
     for (int axis = 0; axis < 3; ++axis) {
-        const DeltaGrid grid = makeDeltaGrid(volume, {axis, 64, Encoding::kChanges, {}});
+        const DeltaGrid grid = makeDeltaGrid(volume, {axis, 64, {}});
         EXPECT_EQ(sumOfDeltas(grid), slotsOf(volume, axis)) << "axis " << axis;
     }
     // Along x: 64 + 128 * 128 enter at key slices only, 64 - 1 leave after x = 7 and the last one
@@ -132,8 +129,8 @@ TEST(DeltaGrid, LeavesWithoutActiveVoxelsCountForNothing) {
     ASSERT_EQ(codes->tree.leafCount(), plain.codes->tree.leafCount() + 3);
     volume.codes = codes;
     for (int axis = 0; axis < 3; ++axis) {
-        const DeltaGrid grid = makeDeltaGrid(volume, {axis, 8, Encoding::kChanges, {}});
-        const DeltaGrid expected = makeDeltaGrid(plain, {axis, 8, Encoding::kChanges, {}});
+        const DeltaGrid grid = makeDeltaGrid(volume, {axis, 8, {}});
+        const DeltaGrid expected = makeDeltaGrid(plain, {axis, 8, {}});
         EXPECT_EQ(sumOfDeltas(grid), slotsOf(plain, axis));
         EXPECT_EQ(grid.tree->grid->tree().leafCount(), expected.tree->grid->tree().leafCount());
         EXPECT_EQ(grid.deltas(), expected.deltas());
@@ -146,32 +143,16 @@ TEST(DeltaGrid, SlotMapMergesAndHides) {
     std::vector<Slot> slotMap(kSlotCount, 0);
     for (Slot slot = 1; slot < kSlotCount; ++slot) slotMap[slot] = slot <= 100 ? 0 : slot & ~15;
     for (int axis = 0; axis < 3; ++axis) {
-        const DeltaGrid grid = makeDeltaGrid(volume, {axis, 8, Encoding::kChanges, slotMap});
+        const DeltaGrid grid = makeDeltaGrid(volume, {axis, 8, slotMap});
         EXPECT_EQ(sumOfDeltas(grid), slotsOf(volume, axis, slotMap));
-        const DeltaGrid plain = makeDeltaGrid(volume, {axis, 8, Encoding::kChanges, {}});
+        const DeltaGrid plain = makeDeltaGrid(volume, {axis, 8, {}});
         EXPECT_LT(grid.deltas(), plain.deltas());
     }
 }
 
-TEST(DeltaGrid, SmallerTakesTheEncodingWithFewerActiveVoxels) {
-    // The first eight slices never change; the others change everywhere and are mostly empty.
-    const IndexBox box{{0, 0, 0}, {7, 7, 15}};
-    const Volume volume = test::makeVolume(box, [](int x, int y, int z) {
-        if (z < 8) return 40;
-        return (x + y + z) % 4 == 0 ? 7 : test::kInactive;
-    });
-    const DeltaGrid grid = makeDeltaGrid(volume, {2, 8, Encoding::kSmaller, {}});
-    ASSERT_EQ(grid.slabs.size(), 2u);
-    EXPECT_FALSE(grid.slabs[0].whole);
-    EXPECT_TRUE(grid.slabs[1].whole);
-    EXPECT_EQ(grid.slabs[0].deltas, 64u);
-    EXPECT_EQ(grid.slabs[1].visible, 128u);
-    EXPECT_EQ(grid.tree->grid->activeVoxelCount(), 64u + 128u);
-}
-
 TEST(DeltaGrid, SlabsCoverTheBoxAndStartAtMultiplesOfEight) {
     const Volume volume = test::randomVolume({{-9, 0, 0}, {30, 3, 3}}, 1);
-    const DeltaGrid grid = makeDeltaGrid(volume, {0, 16, Encoding::kChanges, {}});
+    const DeltaGrid grid = makeDeltaGrid(volume, {0, 16, {}});
     int next = -9;
     for (const Slab& slab : grid.slabs) {
         EXPECT_EQ(slab.firstSlice, next);
@@ -186,7 +167,7 @@ TEST(DeltaGrid, SameOnEveryNumberOfThreads) {
     const Volume volume = test::randomVolume({{-20, -20, -20}, {40, 40, 40}}, 11);
     const auto grid = [&](int threads) {
         const ThreadLimit limit(threads);
-        return sumOfDeltas(makeDeltaGrid(volume, {2, 16, Encoding::kChanges, {}}));
+        return sumOfDeltas(makeDeltaGrid(volume, {2, 16, {}}));
     };
     EXPECT_EQ(grid(1), grid(2));
 }
@@ -202,7 +183,7 @@ TEST(DeltaGrid, RefusesKeyIntervalsThatCutLeaves) {
     const Volume volume = test::randomVolume(boxes()[1], 3);
     for (const int interval : {-8, 1, 12}) {
         try {
-            makeDeltaGrid(volume, {2, interval, Encoding::kChanges, {}});
+            makeDeltaGrid(volume, {2, interval, {}});
             FAIL() << interval;
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::kUsage);

@@ -43,7 +43,7 @@ Classes classesOf(const Volume& volume, int axis, const std::vector<Slot>& class
 Classes walk(const PackedDeltas& packed) {
     Classes all;
     std::map<std::tuple<int, int>, ClassIndex> plane;
-    for (const Slab& slab : packed.slabs) {
+    for (const PlannedSlab& slab : packed.slabs) {
         plane.clear();
         for (int s = slab.firstSlice; s < slab.firstSlice + slab.sliceCount; ++s) {
             if (slab.whole) plane.clear();
@@ -88,13 +88,15 @@ TEST(PackedDeltas, CountWhatTheDeltaGridCounts) {
     for (int axis = 0; axis < 3; ++axis) {
         for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller}) {
             const PackedDeltas packed = packDeltas(volume, {axis, encoding, classes, {}});
-            const DeltaGrid grid = makeDeltaGrid(volume, {axis, packed.keyInterval, encoding, classes});
+            const DeltaGrid grid = makeDeltaGrid(volume, {axis, packed.keyInterval, classes});
             EXPECT_EQ(packed.visible(), grid.visible());
             EXPECT_EQ(packed.deltas(), grid.deltas());
             ASSERT_EQ(packed.slabs.size(), grid.slabs.size());
             for (std::size_t i = 0; i < grid.slabs.size(); ++i) {
-                EXPECT_EQ(packed.slabs[i].whole, grid.slabs[i].whole);
                 EXPECT_EQ(packed.slabs[i].firstSlice, grid.slabs[i].firstSlice);
+                EXPECT_EQ(packed.slabs[i].sliceCount, grid.slabs[i].sliceCount);
+                EXPECT_EQ(packed.slabs[i].visible, grid.slabs[i].visible);
+                EXPECT_EQ(packed.slabs[i].deltas, grid.slabs[i].deltas);
             }
         }
     }

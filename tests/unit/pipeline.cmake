@@ -1,5 +1,6 @@
 deltasplat_test(unit/delta_grid_test.cpp)
 deltasplat_test(unit/slice_counts_test.cpp)
+deltasplat_test(unit/slab_plan_test.cpp)
 deltasplat_test(unit/footprint_test.cpp)
 deltasplat_test(unit/packed_deltas_test.cpp)
 deltasplat_test(unit/sheet_test.cpp)

@@ -147,28 +147,7 @@ TEST(SliceCounts, EmptyVolumeHasNone) {
     Volume volume;
     volume.codes = std::make_shared<CodeTree>();
     EXPECT_TRUE(countDeltasPerSlice(volume, 0).empty());
-    EXPECT_TRUE(planSlabs(volume, {}).empty());
     EXPECT_EQ(predictStamps(volume, 0).automatic, 0u);
-}
-
-TEST(StampCounts, SlabsArePlannedAsTheyAreMade) {
-    const std::vector<Slot> slotMap = someSlotMap();
-    const Volume volume = test::randomVolume(boxes()[3], 31);
-    for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller}) {
-        for (const int interval : {0, 8, 24}) {
-            const DeltaOptions options{2, interval, encoding, slotMap};
-            const std::vector<Slab> planned = planSlabs(volume, options);
-            const std::vector<Slab> made = makeDeltaGrid(volume, options).slabs;
-            ASSERT_EQ(planned.size(), made.size());
-            for (std::size_t i = 0; i < made.size(); ++i) {
-                EXPECT_EQ(planned[i].firstSlice, made[i].firstSlice);
-                EXPECT_EQ(planned[i].sliceCount, made[i].sliceCount);
-                EXPECT_EQ(planned[i].whole, made[i].whole);
-                EXPECT_EQ(planned[i].visible, made[i].visible);
-                EXPECT_EQ(planned[i].deltas, made[i].deltas);
-            }
-        }
-    }
 }
 
 TEST(StampCounts, KnownInClosedForm) {

@@ -14,21 +14,12 @@ namespace deltasplat {
 /// The OpenVDB Int32Grid of deltas; defined in src/delta/delta_tree.h for the stage that walks it.
 struct DeltaTree;
 
-/// Whether slices are stored whole or as their change from the slice before.
-enum class Encoding {
-    kChanges,  ///< one key slice a slab, then deltas (as the method `delta` stamps)
-    kWhole,    ///< every slice is a key slice (as `sparse` and `traditional` stamp)
-    kSmaller   ///< for each slab kWhole if it has fewer active voxels by a tenth (as `auto` stamps)
-};
-
 /// A run of slices that can be read on its own, because its first slice is a key slice.
 struct Slab {
     int firstSlice = 0;  ///< index along the slice axis
     int sliceCount = 0;
-    bool whole = false;         ///< every slice is stored whole
     std::uint64_t visible = 0;  ///< voxels whose slot is not empty
-    std::uint64_t deltas =
-        0;  ///< active voxels if stored as changes, those of its key slice included
+    std::uint64_t deltas = 0;   ///< active voxels, those of its key slice included
 };
 
 /// Slice-to-slice differences of a volume as a sparse grid in (slice, u, v) index space.
@@ -40,14 +31,13 @@ struct DeltaGrid {
     std::shared_ptr<const DeltaTree> tree;
 
     std::uint64_t visible() const;  ///< visible voxels, all slabs together
-    std::uint64_t deltas() const;   ///< deltas, all slabs together, however they are stored
+    std::uint64_t deltas() const;   ///< deltas, all slabs together
 };
 
 /// How to take differences.
 struct DeltaOptions {
     int sliceAxis = 2;
     int keyInterval = 0;  ///< a multiple of 8; 0 = defaultKeyInterval of the volume's slices
-    Encoding encoding = Encoding::kChanges;
     /// [kSlotCount] or empty: the slot to use in place of each slot, so that codes which look alike
     /// make no deltas, and invisible ones are empty. Entry 0 must be 0.
     std::span<const Slot> slotMap;
@@ -55,18 +45,13 @@ struct DeltaOptions {
     const CodeTree* inactive = nullptr;
 };
 
-/// Returns the slices a slab gets by default: a function of the volume alone, so that pixels never
-/// depend on the machine. At least 8, and never more than 16 slabs: each costs a layer.
+/// Returns the slices a slab gets by default: at least 8, and never more than 16 slabs.
 int defaultKeyInterval(int sliceCount);
 
 /// Takes the differences of consecutive slices. Linear in the active voxels; deterministic;
 /// multi-threaded.
 /// @throw Error(kUsage) if the key interval is not a positive multiple of 8
 DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options);
-
-/// Returns the slabs that makeDeltaGrid would give with the same options, without storing deltas.
-/// @throw as makeDeltaGrid
-std::vector<Slab> planSlabs(const Volume& volume, const DeltaOptions& options);
 
 /// Counts visible voxels and deltas without storing them (one slab over all slices).
 struct SliceCounts {

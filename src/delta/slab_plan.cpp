@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/slab_plan.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace deltasplat {
+namespace {
+
+// How many slabs there are: each costs a layer, and the fewer there are, the farther a strip's rows
+// move along a sheet (src/composite_render.cpp). Short ones can be fewer.
+constexpr int kMostSlabs = 8;
+constexpr int kLeastSlabs = 4;
+constexpr int kShortSlab = 32;
+// The most deltas that key slices may add, as a share of all others, as long as there may be fewer.
+constexpr double kMostKeyDeltas = 0.03;
+
+}  // namespace
+
+SlabPlanner::SlabPlanner(const IndexBox& box)
+    : box_(box),
+      shortest_(layoutOf(box, 8 * ((box.dims().x - 1) / (8 * kMostSlabs) + 1))),
+      counts_(shortest_.count()) {}
+
+void SlabPlanner::add(int slice, std::uint64_t visible, std::uint64_t changed) {
+    const SliceCounts found{std::uint64_t(std::popcount(visible)),
+                            std::uint64_t(std::popcount(changed))};
+    Counts& counts = counts_[shortest_.slabOf(slice >> 3)];
+    counts.all += found;
+    if (shortest_.beginsWith(slice)) counts.firstSlice += found;
+}
+
+void SlabPlanner::add(const SlabPlanner& other) {
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+        counts_[i].all += other.counts_[i].all;
+        counts_[i].firstSlice += other.counts_[i].firstSlice;
+    }
+}
+
+SlabPlan SlabPlanner::plan(Encoding encoding) const {
+    const int length = chooseLength();
+    SlabPlan plan{shortest_, {}};
+    plan.layout.blocksPerSlab *= length;
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+        const Counts& counts = counts_[i];
+        const bool begins = i % length == 0;
+        if (begins) plan.slabs.emplace_back();
+        PlannedSlab& slab = plan.slabs.back();
+        slab.visible += counts.all.visible;
+        slab.deltas += counts.all.deltas;
+        if (begins) slab.deltas += counts.firstSlice.visible - counts.firstSlice.deltas;
+    }
+    for (int i = 0; i < plan.layout.count(); ++i) {
+        PlannedSlab& slab = plan.slabs[i];
+        placeSlab(box_, plan.layout, i, slab);
+        // A stamp of a whole slice costs a little more: what it replaces must be taken away.
+        slab.whole = encoding == Encoding::kWhole ||
+                     (encoding == Encoding::kSmaller && 10 * slab.visible < 9 * slab.deltas);
+    }
+    return plan;
+}
+
+// Returns how many of the shortest slabs make one.
+int SlabPlanner::chooseLength() const {
+    const int slicesLeast = 8 * ((box_.dims().x - 1) / (8 * kLeastSlabs) + 1);
+    const int longest = std::max(kShortSlab, slicesLeast);
+    int length = 1;
+    while (2 * length * 8 * shortest_.blocksPerSlab <= longest &&
+           keyShare(std::size_t(length)) > kMostKeyDeltas) {
+        length *= 2;
+    }
+    return length;
+}
+
+// Returns the share of deltas that key slices add if `length` of the shortest slabs make one.
+double SlabPlanner::keyShare(std::size_t length) const {
+    double deltas = 0;
+    double added = 0;
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+        deltas += double(counts_[i].all.deltas);
+        const SliceCounts& key = counts_[i].firstSlice;
+        if (i % length == 0) added += double(key.visible) - double(key.deltas);
+    }
+    return deltas > 0 ? added / deltas : 0;
+}
+
+}  // namespace deltasplat

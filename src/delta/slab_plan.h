@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "delta/block_windows.h"
+#include "deltasplat/delta/delta_grid.h"
+
+namespace deltasplat {
+
+/// How the slices of a picture's slabs are splatted.
+enum class Encoding {
+    kChanges,  ///< as one key slice a slab, then deltas (method `delta`)
+    kWhole,    ///< every slice anew (`sparse` and `traditional`)
+    kSmaller   ///< for each slab kWhole if that takes fewer stamps by a tenth (`auto`)
+};
+
+/// A slab as a picture is rendered from it.
+struct PlannedSlab : Slab {
+    bool whole = false;  ///< every slice is splatted anew
+};
+
+/// The slabs that a picture is rendered from.
+struct SlabPlan {
+    SlabLayout layout;
+    std::vector<PlannedSlab> slabs;  ///< in increasing order
+};
+
+/// Counts what is in the slices of a volume, and cuts it into slabs by it. There are 8 at most, and
+/// fewer (not below 4 of more than 32 slices) where key slices would add more than 3 % to the
+/// deltas: a function of the volume and the classes it shows, whatever the encoding, so that all
+/// methods merge the same layers.
+class SlabPlanner {
+  public:
+    /// @param box  in (slice, u, v) order, not empty
+    explicit SlabPlanner(const IndexBox& box);
+
+    /// Of the shortest slabs that there may be.
+    const SlabLayout& shortest() const { return shortest_; }
+    /// Adds voxels of a slice: mask words of visible ones, and of those that differ from the slice
+    /// before.
+    void add(int slice, std::uint64_t visible, std::uint64_t changed);
+    /// Adds what another planner of the same box has counted.
+    void add(const SlabPlanner& other);
+    SlabPlan plan(Encoding encoding) const;
+
+  private:
+    // What is in one of the shortest slabs, as if no key slice began it.
+    struct Counts {
+        SliceCounts all;
+        SliceCounts firstSlice;  // of which in its first slice; 0 for the first slab
+    };
+
+    int chooseLength() const;
+    double keyShare(std::size_t length) const;
+
+    IndexBox box_;
+    SlabLayout shortest_;
+    std::vector<Counts> counts_;
+};
+
+}  // namespace deltasplat

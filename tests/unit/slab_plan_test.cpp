@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/slab_plan.h"
+
+#include <gtest/gtest.h>
+
+namespace deltasplat {
+namespace {
+
+// A planner that has counted `visible` voxels a slice, of which `changed` differ from the slice
+// before; in the first slice all do.
+SlabPlanner planned(int firstSlice, int slices, int visible, int changed) {
+    const auto mask = [](int count) {
+        return count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
+    };
+    SlabPlanner planner({{firstSlice, 0, 0}, {firstSlice + slices - 1, 7, 7}});
+    for (int i = 0; i < slices; ++i)
+        planner.add(firstSlice + i, mask(visible), mask(i == 0 ? visible : changed));
+    return planner;
+}
+
+std::size_t slabCount(int slices, int visible, int changed) {
+    return planned(0, slices, visible, changed).plan(Encoding::kChanges).slabs.size();
+}
+
+TEST(SlabPlan, HasEightSlabsWhereKeySlicesCostLittle) {
+    EXPECT_EQ(slabCount(128, 20, 20), 8u);
+    EXPECT_EQ(slabCount(225, 20, 20), 8u);
+    EXPECT_EQ(slabCount(1024, 64, 64), 8u);
+    EXPECT_EQ(slabCount(30, 20, 20), 4u);  // no fewer than eight slices each
+    EXPECT_EQ(slabCount(1, 1, 0), 1u);
+}
+
+TEST(SlabPlan, HasFewerWhereTheyCostMuch) {
+    EXPECT_EQ(slabCount(128, 60, 2), 4u);
+    EXPECT_EQ(slabCount(225, 60, 2), 4u);
+    EXPECT_EQ(slabCount(1024, 60, 2), 4u);
+    EXPECT_EQ(slabCount(30, 60, 2), 1u);
+    EXPECT_EQ(slabCount(64, 60, 2), 2u);
+}
+
+TEST(SlabPlan, IsTheSameForEveryEncodingButForWhatIsWhole) {
+    const SlabPlanner planner = planned(-5, 200, 60, 30);
+    const SlabPlan changes = planner.plan(Encoding::kChanges);
+    for (const Encoding encoding : {Encoding::kWhole, Encoding::kSmaller}) {
+        const SlabPlan plan = planner.plan(encoding);
+        ASSERT_EQ(plan.slabs.size(), changes.slabs.size());
+        for (std::size_t i = 0; i < plan.slabs.size(); ++i) {
+            EXPECT_EQ(plan.slabs[i].firstSlice, changes.slabs[i].firstSlice);
+            EXPECT_EQ(plan.slabs[i].deltas, changes.slabs[i].deltas);
+            EXPECT_EQ(plan.slabs[i].whole, encoding == Encoding::kWhole);
+            EXPECT_FALSE(changes.slabs[i].whole);
+        }
+    }
+}
+
+TEST(SlabPlan, CoversTheBoxAndCountsKeySlices) {
+    const SlabPlan plan = planned(-5, 200, 60, 58).plan(Encoding::kChanges);
+    int next = -5;
+    for (const PlannedSlab& slab : plan.slabs) {
+        EXPECT_EQ(slab.firstSlice, next);
+        EXPECT_TRUE(next == -5 || next % 8 == 0) << next;
+        EXPECT_EQ(slab.visible, 60u * slab.sliceCount);
+        EXPECT_EQ(slab.deltas, 60u + 58 * (slab.sliceCount - 1));
+        next += slab.sliceCount;
+    }
+    EXPECT_EQ(next, 195);
+}
+
+TEST(SlabPlan, TakesTheEncodingWithFewerStamps) {
+    // The first half never changes; of the other, all voxels of a quarter go and come.
+    SlabPlanner planner({{0, 0, 0}, {15, 7, 7}});
+    constexpr std::uint64_t kQuarter = 0x1111111111111111;
+    for (int slice = 0; slice < 16; ++slice) {
+        const std::uint64_t visible = slice < 8 ? ~std::uint64_t{0} : kQuarter << slice % 4;
+        const std::uint64_t changed = slice == 0   ? visible
+                                      : slice < 8  ? 0
+                                      : slice == 8 ? ~kQuarter
+                                                   : visible | kQuarter << (slice - 1) % 4;
+        planner.add(slice, visible, changed);
+    }
+    const SlabPlan plan = planner.plan(Encoding::kSmaller);
+    ASSERT_EQ(plan.slabs.size(), 2u);
+    EXPECT_FALSE(plan.slabs[0].whole);
+    EXPECT_TRUE(plan.slabs[1].whole);
+    EXPECT_EQ(plan.slabs[0].deltas, 64u);
+    EXPECT_EQ(plan.slabs[1].visible, 128u);
+}
+
+}  // namespace
+}  // namespace deltasplat
