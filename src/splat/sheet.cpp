@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <limits>
 #include <string>
 
@@ -83,22 +84,43 @@ Sheet::Sheet(const SheetLayout& layout)
     : layout_(layout),
       bytesPerRow_((layout.tiles().x + 7) / 8 * 8),
       pixels_(layout.bytes() / sizeof(std::int32_t)),
-      full_(bytesPerRow_ * layout.tiles().y),
+      full_(bytesPerRow_ * layout.tiles().y + sizeof(std::uint64_t)),
       touched_(full_.size()),
       touchedRows_(layout.tiles().y) {}
 
-void Sheet::touch(glm::ivec2 first, glm::ivec2 last) {
+void Sheet::touch(const SheetBox& box) {
+    mark<false>(box);
+}
+
+void Sheet::touchUnlessFull(const SheetBox& box) {
+    mark<true>(box);
+}
+
+// Eight tiles at a time.
+template <bool kUnlessFull>
+void Sheet::mark(const SheetBox& box) {
     // Shifts, for dividing a signed number takes longer.
     static_assert(kTilePixels == 8);
-    const int firstColumn = first.x >> 3;
-    const int lastColumn = last.x >> 3;
-    for (int row = first.y >> 3; row <= last.y >> 3; ++row) {
-        const int low = std::max(first.y - 8 * row, 0);
-        const int high = std::min(last.y - 8 * row, 7);
-        const auto rows = std::uint8_t(0xFFu >> (7 - high + low) << low);
+    const int firstColumn = box.first.x >> 3;
+    const int lastColumn = box.last.x >> 3;
+    for (int row = box.first.y >> 3; row <= box.last.y >> 3; ++row) {
+        const int low = std::max(box.first.y - 8 * row, 0);
+        const int high = std::min(box.last.y - 8 * row, 7);
+        const std::uint64_t rows = (0xFFu >> (7 - high + low) << low) * 0x0101010101010101;
         touchedRows_[row] = 1;
-        std::uint8_t* touched = &touched_[bytesPerRow_ * row];
-        for (int column = firstColumn; column <= lastColumn; ++column) touched[column] |= rows;
+        for (int column = firstColumn; column <= lastColumn; column += 8) {
+            const std::size_t place = bytesPerRow_ * row + column;
+            const int unused = std::max(column + 7 - lastColumn, 0);
+            std::uint64_t added = rows & ~std::uint64_t{0} >> 8 * unused;
+            std::uint64_t word;
+            if constexpr (kUnlessFull) {
+                std::memcpy(&word, &full_[place], sizeof word);
+                added &= ~word;
+            }
+            std::memcpy(&word, &touched_[place], sizeof word);
+            word |= added;
+            std::memcpy(&touched_[place], &word, sizeof word);
+        }
     }
 }
 

@@ -57,6 +57,12 @@ SheetLayout layoutRows(const SheetLayout& whole, int first, int last);
 /// fit into memory
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels = 4);
 
+/// Pixels of a sheet, both corners inclusive.
+struct SheetBox {
+    glm::ivec2 first;
+    glm::ivec2 last;
+};
+
 /// The running splat of the current slice: 32-bit integers `[row][pitch][channels]`, in slice
 /// coordinates. Knows which rows of which tiles hold anything but zeros: integers return to exact
 /// zero, so that can be told exactly.
@@ -73,8 +79,10 @@ class Sheet {
     std::int32_t* pixels() { return pixels_.data(); }
     const std::int32_t* row(int y) const { return &pixels_[pitch() * y]; }
 
-    /// Says that pixels of [first, last], both inclusive, may have changed.
-    void touch(glm::ivec2 first, glm::ivec2 last);
+    /// Says that pixels may have changed.
+    void touch(const SheetBox& box);
+    /// Says the same of what may have changed, but not to nothing: full rows stay full.
+    void touchUnlessFull(const SheetBox& box);
     /// Calls `refill(tileRow, touched, full)` for every row of tiles that has touched ones and in
     /// which any of the pixel rows [first, last) lies; others stay touched. Of each tile there is a
     /// byte, bit y for its row y: where `touched` has bits, `refill` puts into `full` whether those
@@ -95,10 +103,13 @@ class Sheet {
     }
 
   private:
+    template <bool kUnlessFull>
+    void mark(const SheetBox& box);
+
     SheetLayout layout_;
     std::size_t bytesPerRow_;
     std::vector<std::int32_t> pixels_;
-    std::vector<std::uint8_t> full_;         // [tile row][bytesPerRow_]
+    std::vector<std::uint8_t> full_;         // [tile row][bytesPerRow_], and a word more
     std::vector<std::uint8_t> touched_;      // likewise
     std::vector<std::uint8_t> touchedRows_;  // [tile row]: whether any is
 };

@@ -8,7 +8,7 @@
 
 namespace deltasplat {
 
-void SliceBlocks::touch(glm::ivec2 block, std::uint64_t word, Sheet& sheet) const {
+SheetBox SliceBlocks::reachOf(glm::ivec2 block, std::uint64_t word) const {
     const int firstU = std::countr_zero(word) >> 3;
     const int lastU = (63 - std::countl_zero(word)) >> 3;
     word |= word >> 32;
@@ -19,8 +19,8 @@ void SliceBlocks::touch(glm::ivec2 block, std::uint64_t word, Sheet& sheet) cons
     const int lastV = 7 - std::countl_zero(columns);
     const int r = layout_.resolution;
     const glm::ivec2 origin = 8 * r * block + layout_.marginPixels - layout_.reachPixels;
-    sheet.touch(origin + r * glm::ivec2(firstV, firstU),
-                origin + r * glm::ivec2(lastV, lastU) + layout_.footprintPixels - 1);
+    return {origin + r * glm::ivec2(firstV, firstU),
+            origin + r * glm::ivec2(lastV, lastU) + layout_.footprintPixels - 1};
 }
 
 // The words of a slice in rows of blocks; they are ordered by u.

@@ -35,8 +35,8 @@ class SliceBlocks {
     void setLayout(const SheetLayout& layout) { layout_ = layout; }
     const SheetLayout& layout() const { return layout_; }
 
-    /// Calls `use(block, voxels, classes)` for the blocks (v, u) of a slice that have something to
-    /// stamp: a mask word of voxels, and the classes of all 64.
+    /// Calls `use(block, voxels, word)` for the blocks (v, u) of a slice that have something to
+    /// stamp: a mask word of voxels, and what else is known of them.
     /// @param rows  of blocks, [x, y)
     template <typename Use>
     void forEach(int slice, bool whole, glm::ivec2 rows, const Use& use) const;
@@ -49,8 +49,8 @@ class SliceBlocks {
         return std::size_t(block.y) * layout_.blocks.x + block.x;
     }
 
-    /// Tells a sheet which pixels the voxels of a block's mask word reach.
-    void touch(glm::ivec2 block, std::uint64_t voxels, Sheet& sheet) const;
+    /// Returns the pixels that the voxels of a block's mask word, which is not zero, reach.
+    SheetBox reachOf(glm::ivec2 block, std::uint64_t voxels) const;
 
   private:
     std::span<const DeltaWord> wordsOf(int slice, glm::ivec2 rows) const;
@@ -68,15 +68,16 @@ void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use
     if (!input_.stampEmptyVoxels) {
         for (const DeltaWord& word : words) {
             prefetchClasses(&word, words);
-            use(blockOf(word), whole ? word.visible : word.changed, word.classes);
+            use(blockOf(word), whole ? word.visible : word.changed, word);
         }
         return;
     }
+    const DeltaWord nothing{0, 0, kEmptyClasses.data(), {}};
     auto word = words.begin();
     for (int u = rows.x; u < rows.y; ++u) {
         for (int v = 0; v < layout_.blocks.x; ++v) {
             const bool has = word != words.end() && blockOf(*word) == glm::ivec2(v, u);
-            use(glm::ivec2(v, u), voxelsInBox({v, u}), has ? word->classes : kEmptyClasses.data());
+            use(glm::ivec2(v, u), voxelsInBox({v, u}), has ? *word : nothing);
             if (has) ++word;
         }
     }

@@ -34,11 +34,14 @@ void StampSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
     const SheetLayout& layout = sheet_.layout();
     const glm::ivec2 rows = whole ? blocksReaching(layout, firstRow, lastRow) : blocks_.rows();
     blocks_.forEach(
-        slice, whole, rows, [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
+        slice, whole, rows, [&](glm::ivec2 block, std::uint64_t active, const DeltaWord& word) {
             if (list_.count + 64 > StampList::kCapacity) flush();
-            blocks_.touch(block, active, sheet_);
+            sheet_.touchUnlessFull(blocks_.reachOf(block, active));
+            const std::uint64_t gone = active & ~word.visible;
+            if (!whole && gone != 0) sheet_.touch(blocks_.reachOf(block, gone));
             const std::size_t place = layout.stampPlace(layout.firstVoxel + 8 * block);
-            const BlockSlice voxels{classes, active, std::uint32_t(place), placeInBlock_.data()};
+            const BlockSlice voxels{word.classes, active, std::uint32_t(place),
+                                    placeInBlock_.data()};
             if (whole) {
                 listWhole(voxels, colors, list_);
             } else {

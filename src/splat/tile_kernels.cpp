@@ -35,13 +35,14 @@ class TileSums {
         load(weights.between, between_);
     }
 
-    // Makes rows [first, last] of a tile and returns which of them are not all zero. Inlined, so
-    // that the loops unroll where all rows are asked for.
-    HWY_INLINE unsigned run(const std::int16_t* plane, std::size_t planePitch,
-                            std::int32_t* HWY_RESTRICT sheet, std::size_t sheetPitch, int first,
-                            int last) const {
-        HWY_ALIGN std::int32_t pairs[kTilePixels + 2][kPairs];
-        // Pairs of rows, from the one before the first voxel's.
+    using PairRow = std::int32_t[kPairs];
+    // Rows of pairs for one tile: from the one before the first voxel's.
+    using Pairs = PairRow[kTilePixels + 2];
+
+    // Pairs up the rows of voxels that rows [first, last] of a tile take. Inlined, so that the
+    // loops unroll where all rows are asked for.
+    static HWY_INLINE void pairUp(const std::int16_t* plane, std::size_t planePitch, int first,
+                                  int last, Pairs& pairs) {
         const int firstVoxel = first / kResolution;
         const int rows = last / kResolution - firstVoxel + 3;
         const std::int16_t* voxels = plane + (firstVoxel - 1) * std::ptrdiff_t(planePitch);
@@ -50,6 +51,12 @@ class TileSums {
         } else {
             pairDoubledRows(voxels - kChannels, planePitch, rows, pairs);
         }
+    }
+
+    // Makes rows [first, last] of a tile and returns which of them are not all zero.
+    HWY_INLINE unsigned makeRows(const Pairs& pairs, std::int32_t* HWY_RESTRICT sheet,
+                                 std::size_t sheetPitch, int first, int last) const {
+        const int firstVoxel = first / kResolution;
         unsigned full = 0;
         sheet += first * sheetPitch;
         for (int y = first; y <= last; ++y, sheet += sheetPitch) {
@@ -61,8 +68,6 @@ class TileSums {
     }
 
   private:
-    using PairRow = std::int32_t[kPairs];
-
     // Makes one row of pixels; `pairs` begins with the pair before the voxels' row.
     HWY_INLINE bool makeRow(const PairRow* pairs, bool between,
                             std::int32_t* HWY_RESTRICT sheet) const {
@@ -155,19 +160,37 @@ class TileSums {
 template <int kChannels, int kResolution>
 void splatTilesOf(const TileWeights& weights, const TileRow& row,
                   std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-    const TileSums<kChannels, kResolution> sums(weights);
-    for (std::size_t i = 0; i < touched.size(); ++i) {
+    using Sums = TileSums<kChannels, kResolution>;
+    const Sums sums(weights);
+    // Two tiles are in work: rows are made while the pairs of the next tile are on their way to the
+    // cache, for they are read otherwise than they were written.
+    HWY_ALIGN typename Sums::Pairs pairs[2];
+    const auto columnOf = [](std::size_t i) { return std::size_t{kTilePixels} * kChannels * i; };
+    const auto forRows = [](unsigned rows, const auto& use) HWY_ATTR {
+        return rows == 0xFF ? use(0, kTilePixels - 1)
+                            : use(std::countr_zero(rows), int(std::bit_width(rows)) - 1);
+    };
+    const auto finish = [&](std::size_t i, const typename Sums::Pairs& paired) HWY_ATTR {
         const unsigned rows = touched[i];
-        if (rows == 0) continue;
-        const std::size_t column = std::size_t{kTilePixels} * kChannels * i;
-        const auto run = [&](int first, int last) HWY_ATTR {
-            return sums.run(row.plane + column / kResolution, row.planePitch, row.sheet + column,
-                            row.sheetPitch, first, last);
-        };
-        const unsigned found = rows == 0xFF ? run(0, kTilePixels - 1)
-                                            : run(std::countr_zero(rows), std::bit_width(rows) - 1);
+        const unsigned found = forRows(rows, [&](int first, int last) HWY_ATTR {
+            return sums.makeRows(paired, row.sheet + columnOf(i), row.sheetPitch, first, last);
+        });
         full[i] = std::uint8_t((full[i] & ~rows) | (found & rows));
+    };
+    std::size_t before = touched.size();
+    int buffer = 0;
+    for (std::size_t i = 0; i < touched.size(); ++i) {
+        if (touched[i] == 0) continue;
+        forRows(touched[i], [&](int first, int last) HWY_ATTR {
+            Sums::pairUp(row.plane + columnOf(i) / kResolution, row.planePitch, first, last,
+                         pairs[buffer]);
+            return 0u;
+        });
+        buffer ^= 1;
+        if (before < touched.size()) finish(before, pairs[buffer]);
+        before = i;
     }
+    if (before < touched.size()) finish(before, pairs[buffer ^ 1]);
 }
 
 void splatTilesKernel(const TileWeights& weights, const TileRow& row,

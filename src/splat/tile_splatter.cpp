@@ -47,11 +47,11 @@ void TileSplatter::clear() {
 
 void TileSplatter::paintChanges(int slice) {
     blocks_.forEach(slice, false, blocks_.rows(),
-                    [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
+                    [&](glm::ivec2 block, std::uint64_t active, const DeltaWord& word) {
                         Shown& shown = shown_[blocks_.placeOf(block)];
                         if (shown.voxels == 0) shownBlocks_.push_back(block);
                         shown.voxels |= active;
-                        paint(block, active, classes);
+                        paint(block, active, word.classes);
                     });
 }
 
@@ -60,9 +60,9 @@ void TileSplatter::paintWhole(int slice, glm::ivec2 rows) {
     before_.swap(shownBlocks_);
     shownBlocks_.clear();
     blocks_.forEach(slice, true, rows,
-                    [&](glm::ivec2 block, std::uint64_t active, const ClassIndex* classes) {
+                    [&](glm::ivec2 block, std::uint64_t active, const DeltaWord& word) {
                         Shown& shown = shown_[blocks_.placeOf(block)];
-                        paint(block, active | shown.voxels, classes);
+                        paint(block, active | shown.voxels, word.classes);
                         shown = {active, slice};
                         shownBlocks_.push_back(block);
                     });
@@ -79,7 +79,7 @@ void TileSplatter::takeAway(glm::ivec2 block) {
 
 // Writes the colours of voxels of a block.
 void TileSplatter::paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes) {
-    blocks_.touch(block, voxels, sheet_);
+    sheet_.touch(blocks_.reachOf(block, voxels));
     const SheetLayout& layout = sheet_.layout();
     std::int16_t* first = planeAt(8 * block + layout.marginPixels / layout.resolution);
     if (layout.channels == 4) {

@@ -111,7 +111,7 @@ TEST_P(SheetOnEveryLevel, SettleFindsTheRowsThatAreNotZero) {
                 std::int32_t& value =
                     sheet.pixels()[sheet.pitch() * p.y + channels * (p.x + 1) - 1];
                 value = -1;
-                sheet.touch(p, p);
+                sheet.touch({p, p});
                 sheet.settle();
                 for (int row = 0; row < tiles.y; ++row) {
                     for (int x = 0; x < tiles.x; ++x) {
@@ -120,7 +120,7 @@ TEST_P(SheetOnEveryLevel, SettleFindsTheRowsThatAreNotZero) {
                     }
                 }
                 value = 0;
-                sheet.touch(p, p);
+                sheet.touch({p, p});
                 sheet.settle();
                 EXPECT_EQ(sheet.fullRows(column.y)[column.x], 0);
             }
@@ -132,7 +132,7 @@ TEST_P(SheetOnEveryLevel, ClearMakesTouchedPixelsZero) {
     for (const int channels : {1, 4}) {
         StampedPair pair(makeFootprint(0.4, {0, 0}, 1), 500, 9, channels);
         const glm::ivec2 size = pair.sheet.layout().sizePixels;
-        pair.sheet.touch({0, 0}, size - 1);
+        pair.sheet.touch({{0, 0}, size - 1});
         pair.sheet.clear();
         for (int y = 0; y < size.y; ++y) {
             for (int i = 0; i < channels * size.x; ++i) ASSERT_EQ(pair.sheet.row(y)[i], 0);
@@ -198,7 +198,7 @@ TEST(Sheet, TouchesNoMoreThanItIsTold) {
     for (int x = 0; x < width; ++x) {
         for (const int y : {2, 3, 4}) sheet.pixels()[y * sheet.pitch() + 4 * x] = 1;
     }
-    sheet.touch({100, 2}, {width - 1, 3});
+    sheet.touch({{100, 2}, {width - 1, 3}});
     sheet.settle();
     for (int x = 0; x < sheet.layout().tiles().x; ++x) {
         EXPECT_EQ(sheet.fullRows(0)[x] & 0b1100, x >= 100 / 8 ? 0b1100 : 0) << x;
