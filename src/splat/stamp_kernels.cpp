@@ -4,6 +4,7 @@
 #include "splat/stamp_kernels.h"
 
 #include <bit>
+#include <cstring>
 
 #include "bit_matrix.h"
 #include "simd_targets.h"
@@ -24,94 +25,135 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t kMaxLanes = 8;
 using IntTag = hn::CappedTag<std::int32_t, kMaxLanes>;
 
-HWY_INLINE auto loadStamp(IntTag tag, const std::array<std::int32_t, 4>& color, int channels) {
-    return channels == 4 ? hn::LoadDup128(tag, color.data()) : hn::Set(tag, color[3]);
+// A class's colour as stamps multiply it: for every pixel of a vector, in 16-bit integers.
+template <int kChannels>
+HWY_INLINE auto loadColor(const ClassTable::Color& color) {
+    const hn::Rebind<std::int16_t, IntTag> tag;
+    if constexpr (kChannels == 4) {
+        std::uint64_t bits;
+        static_assert(sizeof bits == sizeof color);
+        std::memcpy(&bits, color.data(), sizeof bits);
+        return hn::BitCast(tag, hn::Set(hn::Repartition<std::uint64_t, decltype(tag)>(), bits));
+    } else {
+        return hn::Set(tag, color[3]);
+    }
 }
 
-// Adds stamps whose rows take `vectors` vectors: known at compile time for the usual footprints, so
-// that the loops over a row unroll.
-template <int kVectors>
-void addStampsOfWidth(std::int32_t* HWY_RESTRICT sheet, std::size_t pitch,
-                      const StampWeights& weights, const StampList& stamps, int vectors) {
-    const IntTag tag;
-    const std::size_t lanes = hn::Lanes(tag);
-    const std::int32_t* HWY_RESTRICT table = weights.weights.data();
-    const std::size_t rowLength = weights.rowLength;
-    const int rows = weights.rows;
-    const int channels = weights.channels;
-    for (std::size_t i = 0; i < stamps.count; ++i) {
-        const auto color = loadStamp(tag, stamps.colors[i], channels);
-        std::int32_t* HWY_RESTRICT row = sheet + std::size_t(channels) * stamps.places[i];
-        const std::int32_t* HWY_RESTRICT w = table;
-        for (int y = 0; y < rows; ++y, row += pitch, w += rowLength) {
-            for (int x = 0; x < (kVectors ? kVectors : vectors); ++x) {
-                const auto weight = hn::LoadU(tag, w + x * lanes);
-                const auto sum = hn::LoadU(tag, row + x * lanes);
-                hn::StoreU(hn::Add(sum, hn::Mul(color, weight)), tag, row + x * lanes);
+// Rows of a footprint as vectors: in registers where the width is known at compile time and small,
+// for a stamp is bound by its loads and stores.
+template <int kChannels, int kWidth>
+class Rows {
+    static constexpr int kLanes = int(hn::MaxLanes(IntTag()));
+    static constexpr int kVectors = (kWidth * kChannels + kLanes - 1) / kLanes;
+
+  public:
+    explicit Rows(const StampWeights& weights) {
+        for (int y = 0; y < kWidth; ++y) {
+            for (int x = 0; x < kVectors; ++x) {
+                held_[y][x] =
+                    hn::LoadU(IntTag(), &weights.weights[y * weights.rowLength + x * kLanes]);
             }
         }
     }
-}
 
-void addStampsKernel(std::int32_t* HWY_RESTRICT sheet, std::size_t pitch,
-                     const StampWeights& weights, const StampList& stamps) {
-    const int lanes = int(hn::Lanes(IntTag()));
-    const int vectors = (weights.channels * weights.rows + lanes - 1) / lanes;
-    switch (vectors) {
-        case 1:
-            return addStampsOfWidth<1>(sheet, pitch, weights, stamps, 1);
-        case 2:
-            return addStampsOfWidth<2>(sheet, pitch, weights, stamps, 2);
-        case 3:
-            return addStampsOfWidth<3>(sheet, pitch, weights, stamps, 3);
-        case 4:
-            return addStampsOfWidth<4>(sheet, pitch, weights, stamps, 4);
-        default:
-            return addStampsOfWidth<0>(sheet, pitch, weights, stamps, vectors);
+    // Adds color * weight to the pixels from `row` on.
+    HWY_INLINE void stamp(hn::Vec<IntTag> color, std::int32_t* HWY_RESTRICT row,
+                          std::size_t pitch) const {
+        const IntTag tag;
+        for (int y = 0; y < kWidth; ++y, row += pitch) {
+            for (int x = 0; x < kVectors; ++x) {
+                const auto sum = hn::LoadU(tag, row + x * kLanes);
+                hn::StoreU(hn::Add(sum, hn::Mul(color, held_[y][x])), tag, row + x * kLanes);
+            }
+        }
     }
-}
 
-// Calls list(n) for the active voxels of a slice, along u first: that is down the rows of the
-// sheet, where consecutive stamps meet the very vectors that were just stored.
-template <typename List>
-HWY_INLINE void forActive(std::uint64_t active, const List& list) {
+  private:
+    hn::Vec<IntTag> held_[kWidth][kVectors];
+};
+
+// Of any width.
+template <int kChannels>
+class Rows<kChannels, 0> {
+  public:
+    explicit Rows(const StampWeights& weights)
+        : table_(weights.weights.data()), rowLength_(weights.rowLength), rows_(weights.rows) {}
+
+    HWY_INLINE void stamp(hn::Vec<IntTag> color, std::int32_t* HWY_RESTRICT row,
+                          std::size_t pitch) const {
+        const IntTag tag;
+        const std::int32_t* HWY_RESTRICT weights = table_;
+        for (int y = 0; y < rows_; ++y, row += pitch, weights += rowLength_) {
+            for (std::size_t x = 0; x < rowLength_; x += hn::Lanes(tag)) {
+                const auto sum = hn::LoadU(tag, row + x);
+                const auto product = hn::Mul(color, hn::LoadU(tag, weights + x));
+                hn::StoreU(hn::Add(sum, product), tag, row + x);
+            }
+        }
+    }
+
+  private:
+    const std::int32_t* table_;
+    std::size_t rowLength_;
+    int rows_;
+};
+
+// Calls use(n) for the active voxels of a slice, along u first: that is down the rows of the sheet,
+// where consecutive stamps meet the very vectors that were just stored.
+template <typename Use>
+HWY_INLINE void forActive(std::uint64_t active, const Use& use) {
     for (std::uint64_t rest = transposedBits(active); rest != 0; rest &= rest - 1) {
         const int n = std::countr_zero(rest);
-        list(8 * (n & 7) + (n >> 3));
+        use(8 * (n & 7) + (n >> 3));
     }
 }
 
-// One pixel's worth of integers, and as many of a class table's entries.
-using ColorTag = hn::FixedTag<std::int32_t, 4>;
-using EntryTag = hn::Rebind<std::int16_t, ColorTag>;
-
-HWY_INLINE auto loadColor(const ClassTable::Color& color) {
-    return hn::PromoteTo(ColorTag(), hn::LoadU(EntryTag(), color.data()));
-}
-
-void listWholeKernel(const BlockSlice& slice, const ClassTable::Color* HWY_RESTRICT colors,
-                     StampList& stamps) {
-    std::size_t count = stamps.count;
-    forActive(slice.active, [&](int n) {
-        stamps.places[count] = slice.place + slice.placeInBlock[n];
-        hn::Store(loadColor(colors[slice.classes[n]]), ColorTag(), stamps.colors[count].data());
-        ++count;
-    });
-    stamps.count = count;
-}
-
-void listChangesKernel(const BlockSlice& slice, const ClassTable::Color* HWY_RESTRICT colors,
-                       std::uint16_t* HWY_RESTRICT shown, StampList& stamps) {
-    std::size_t count = stamps.count;
-    forActive(slice.active, [&](int n) {
-        const auto before = loadColor(colors[shown[n]]);
+template <int kChannels, int kWidth>
+void stampBlockOf(const BlockSlice& slice, const ClassTable::Color* HWY_RESTRICT colors,
+                  std::uint16_t* HWY_RESTRICT shown, const StampWeights& weights,
+                  const StampTarget& target) {
+    const Rows<kChannels, kWidth> rows(weights);
+    const auto stamp = [&](int n, auto color) HWY_ATTR {
+        rows.stamp(hn::PromoteTo(IntTag(), color),
+                   target.first + std::size_t(kChannels) * slice.placeInBlock[n], target.pitch);
+    };
+    if (shown == nullptr) {
+        forActive(slice.active, [&](int n) HWY_ATTR {
+            stamp(n, loadColor<kChannels>(colors[slice.classes[n]]));
+        });
+        return;
+    }
+    forActive(slice.active, [&](int n) HWY_ATTR {
+        const auto before = loadColor<kChannels>(colors[shown[n]]);
         shown[n] = slice.classes[n];
-        stamps.places[count] = slice.place + slice.placeInBlock[n];
-        hn::Store(hn::Sub(loadColor(colors[shown[n]]), before), ColorTag(),
-                  stamps.colors[count].data());
-        ++count;
+        stamp(n, hn::Sub(loadColor<kChannels>(colors[shown[n]]), before));
     });
-    stamps.count = count;
+}
+
+template <int kChannels>
+void stampBlockIn(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
+                  const StampWeights& weights, const StampTarget& target) {
+    switch (weights.rows) {
+        case 3:
+            return stampBlockOf<kChannels, 3>(slice, colors, shown, weights, target);
+        case 4:
+            return stampBlockOf<kChannels, 4>(slice, colors, shown, weights, target);
+        case 5:
+            return stampBlockOf<kChannels, 5>(slice, colors, shown, weights, target);
+        case 6:
+            return stampBlockOf<kChannels, 6>(slice, colors, shown, weights, target);
+        case 7:
+            return stampBlockOf<kChannels, 7>(slice, colors, shown, weights, target);
+        default:
+            return stampBlockOf<kChannels, 0>(slice, colors, shown, weights, target);
+    }
+}
+
+void stampBlockKernel(const BlockSlice& slice, const ClassTable::Color* colors,
+                      std::uint16_t* shown, const StampWeights& weights,
+                      const StampTarget& target) {
+    return weights.channels == 4 ? stampBlockIn<4>(slice, colors, shown, weights, target)
+                                 : stampBlockIn<1>(slice, colors, shown, weights, target);
 }
 
 std::uint8_t findFullRowsKernel(const std::int32_t* HWY_RESTRICT tile, std::size_t pitch,
@@ -136,9 +178,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace deltasplat {
 
-HWY_EXPORT(listWholeKernel);
-HWY_EXPORT(listChangesKernel);
-HWY_EXPORT(addStampsKernel);
+HWY_EXPORT(stampBlockKernel);
 HWY_EXPORT(findFullRowsKernel);
 
 StampWeights::StampWeights(const Footprint& footprint, int sheetChannels)
@@ -154,19 +194,14 @@ StampWeights::StampWeights(const Footprint& footprint, int sheetChannels)
     }
 }
 
-void listWhole(const BlockSlice& slice, const ClassTable::Color* colors, StampList& stamps) {
-    HWY_DYNAMIC_DISPATCH(listWholeKernel)(slice, colors, stamps);
+void stampWhole(const BlockSlice& slice, const ClassTable::Color* colors,
+                const StampWeights& weights, const StampTarget& target) {
+    HWY_DYNAMIC_DISPATCH(stampBlockKernel)(slice, colors, nullptr, weights, target);
 }
 
-void listChanges(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
-                 StampList& stamps) {
-    HWY_DYNAMIC_DISPATCH(listChangesKernel)(slice, colors, shown, stamps);
-}
-
-void addStamps(std::int32_t* sheet, std::size_t pitch, const StampWeights& weights,
-               StampList& stamps) {
-    HWY_DYNAMIC_DISPATCH(addStampsKernel)(sheet, pitch, weights, stamps);
-    stamps.count = 0;
+void stampChanges(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
+                  const StampWeights& weights, const StampTarget& target) {
+    HWY_DYNAMIC_DISPATCH(stampBlockKernel)(slice, colors, shown, weights, target);
 }
 
 std::uint8_t findFullRows(const std::int32_t* tile, std::size_t pitch, int channels,

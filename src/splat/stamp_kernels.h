@@ -11,16 +11,6 @@
 
 namespace deltasplat {
 
-/// Stamps that wait to be added: colours in units of the class table, and where they go. Fixed
-/// size, so that it stays in the first-level cache and nothing is allocated on the way.
-struct StampList {
-    static constexpr std::size_t kCapacity = 512;
-
-    std::size_t count = 0;
-    std::array<std::uint32_t, kCapacity> places;  ///< pixel of the footprint's corner
-    alignas(64) std::array<std::array<std::int32_t, 4>, kCapacity> colors;  ///< RGBA
-};
-
 /// Footprint weights laid out for the kernels: each repeated for all channels, rows padded with
 /// zeros to whole vectors.
 struct StampWeights {
@@ -36,26 +26,26 @@ struct StampWeights {
 struct BlockSlice {
     const std::uint16_t* classes;       ///< [64]
     std::uint64_t active;               ///< bit n: voxel n counts
-    std::uint32_t place;                ///< of the first voxel's footprint
-    const std::uint32_t* placeInBlock;  ///< [64]: of each voxel's footprint, from the first one's
+    const std::uint32_t* placeInBlock;  ///< [64]: pixels from the first voxel's footprint to each
 };
 
-/// Lists a stamp for every active voxel, in the colour of its class. The list must have room for
-/// 64.
+/// Where a block is stamped.
+struct StampTarget {
+    std::int32_t* first;  ///< of the first voxel's footprint, `[row][pitch / channels][channels]`
+    std::size_t pitch;    ///< integers from one row to the next
+};
+
+/// Adds a stamp for every active voxel, in the colour of its class: sheet += colour * weight, in
+/// 32-bit integers, so that the order of stamps does not matter. Vectors may reach over a row's
+/// end, where they add zeros.
 /// @param colors  of the class table
-void listWhole(const BlockSlice& slice, const ClassTable::Color* colors, StampList& stamps);
+void stampWhole(const BlockSlice& slice, const ClassTable::Color* colors,
+                const StampWeights& weights, const StampTarget& target);
 
-/// Lists a stamp for every active voxel, in the difference between the colour of its class and that
+/// Adds a stamp for every active voxel, in the difference between the colour of its class and that
 /// of the class it showed before ([64]), which is replaced.
-void listChanges(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
-                 StampList& stamps);
-
-/// Adds every stamp of the list to the sheet: sheet += colour * weight, in 32-bit integers, so that
-/// the order of stamps does not matter. Empties the list.
-/// @param sheet  `[row][pitch / channels][channels]`
-/// @param pitch  integers from one row to the next
-void addStamps(std::int32_t* sheet, std::size_t pitch, const StampWeights& weights,
-               StampList& stamps);
+void stampChanges(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
+                  const StampWeights& weights, const StampTarget& target);
 
 /// Returns which of the rows of a tile that `rows` has bits for are not all zero, bit y for row y.
 /// Rows are `pitch` integers apart.

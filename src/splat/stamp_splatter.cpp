@@ -35,25 +35,20 @@ void StampSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
     const glm::ivec2 rows = whole ? blocksReaching(layout, firstRow, lastRow) : blocks_.rows();
     blocks_.forEach(
         slice, whole, rows, [&](glm::ivec2 block, std::uint64_t active, const DeltaWord& word) {
-            if (list_.count + 64 > StampList::kCapacity) flush();
             sheet_.touchUnlessFull(blocks_.reachOf(block, active));
             const std::uint64_t gone = active & ~word.visible;
             if (!whole && gone != 0) sheet_.touch(blocks_.reachOf(block, gone));
             const std::size_t place = layout.stampPlace(layout.firstVoxel + 8 * block);
-            const BlockSlice voxels{word.classes, active, std::uint32_t(place),
-                                    placeInBlock_.data()};
+            const BlockSlice voxels{word.classes, active, placeInBlock_.data()};
+            const StampTarget target{sheet_.pixels() + layout.channels * place, sheet_.pitch()};
             if (whole) {
-                listWhole(voxels, colors, list_);
+                stampWhole(voxels, colors, weights_, target);
             } else {
-                listChanges(voxels, colors, &shown_[64 * blocks_.placeOf(block)], list_);
+                stampChanges(voxels, colors, &shown_[64 * blocks_.placeOf(block)], weights_,
+                             target);
             }
         });
-    flush();
     sheet_.settle();
-}
-
-void StampSplatter::flush() {
-    addStamps(sheet_.pixels(), sheet_.pitch(), weights_, list_);
 }
 
 void StampSplatter::clear() {

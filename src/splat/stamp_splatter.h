@@ -25,8 +25,6 @@ class StampSplatter {
     void clear();
 
   private:
-    void flush();
-
     const SplatInput& input_;
     SliceBlocks blocks_;
     Sheet sheet_;
@@ -35,7 +33,6 @@ class StampSplatter {
     /// Of a voxel's footprint, from its block's first one.
     std::array<std::uint32_t, 64> placeInBlock_;
     std::vector<ClassIndex> shown_;  // [block][64], of slabs that are not whole
-    StampList list_;
 };
 
 }  // namespace deltasplat

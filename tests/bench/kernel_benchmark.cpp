@@ -5,6 +5,7 @@
 //   kernel_benchmark --benchmark_filter=stamps
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <random>
 #include <vector>
 
@@ -23,32 +24,28 @@ void countItems(benchmark::State& state, std::size_t itemsEach) {
     state.SetItemsProcessed(state.iterations() * std::int64_t(itemsEach));
 }
 
-// Footprints of a slice of 64x64 voxels, column by column of 8x8 blocks as the splatter lists them.
+// Footprints of a slice of 64x64 voxels, block by block as the splatter stamps them.
 void stamps(benchmark::State& state) {
     const int channels = int(state.range(0));
     const Footprint footprint = makeFootprint(1, {0.5, -0.5}, 1, int(state.range(1)));
     const StampWeights weights(footprint, channels);
-    constexpr std::size_t kPitch = 128;  // pixels
-    std::vector<std::int32_t> sheet(channels * kPitch * 128);
-    std::vector<std::uint32_t> places;
-    for (int block = 0; block < 64; ++block) {
-        for (int n = 0; n < 64; ++n) {
-            const int x = 8 * (block % 8) + n / 8;
-            const int y = 8 * (block / 8) + n % 8;
-            places.push_back(std::uint32_t(y * kPitch + x));
-        }
-    }
-    StampList list;
-    list.colors.fill({3000, 2000, 1000, 500});
+    constexpr std::size_t kPitch =
+        136;  // pixels; of a power of two, rows would get in each other's way
+    std::vector<std::int32_t> sheet(channels * kPitch * 136);
+    const std::vector<ClassTable::Color> colors = {{}, {3000, 2000, 1000, 500}};
+    std::array<std::uint16_t, 64> classes;
+    classes.fill(1);
+    std::array<std::uint32_t, 64> places;
+    for (int n = 0; n < 64; ++n) places[n] = std::uint32_t(n / 8 * kPitch + n % 8);
     for (auto _ : state) {
-        for (std::size_t first = 0; first < places.size(); first += StampList::kCapacity) {
-            list.count = StampList::kCapacity;
-            std::copy_n(&places[first], list.count, list.places.begin());
-            addStamps(sheet.data(), channels * kPitch, weights, list);
+        for (std::size_t block = 0; block < 64; ++block) {
+            const std::size_t place = 8 * (block / 8) * kPitch + 8 * (block % 8);
+            stampWhole({classes.data(), ~std::uint64_t{0}, places.data()}, colors.data(), weights,
+                       {&sheet[channels * place], channels * kPitch});
         }
         benchmark::ClobberMemory();
     }
-    countItems(state, places.size());
+    countItems(state, std::size_t{64} * 64);
 }
 BENCHMARK(stamps)->ArgNames({"channels", "width"})->ArgsProduct({{1, 4}, {3, 5, 6, 13}});
 

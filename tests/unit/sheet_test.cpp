@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
 #include "deltasplat/simd.h"
@@ -21,28 +22,64 @@ INSTANTIATE_TEST_SUITE_P(Simd, SheetOnEveryLevel, testing::ValuesIn(simdLevels()
 
 constexpr IndexBox kBox{{0, -10, 3}, {0, 20, 17}};  // slice, u, v
 
-// Adds random stamps to a sheet and to a plain array at once.
+std::vector<ClassTable::Color> randomColors(std::mt19937& random) {
+    std::uniform_int_distribution<int> value(0, ClassTable::kMax);
+    std::vector<ClassTable::Color> colors(100);
+    for (ClassTable::Color& color : colors) {
+        for (std::int16_t& channel : color) channel = std::int16_t(value(random));
+    }
+    return colors;
+}
+
+// Where the stamps of a block's voxels go, from its first one's.
+std::array<std::uint32_t, 64> placesInBlock(const SheetLayout& layout) {
+    std::array<std::uint32_t, 64> places;
+    for (int n = 0; n < 64; ++n) {
+        const glm::ivec2 voxel = layout.firstVoxel + glm::ivec2(n % 8, n / 8);
+        places[n] = std::uint32_t(layout.stampPlace(voxel) - layout.stampPlace(layout.firstVoxel));
+    }
+    return places;
+}
+
+// Adds stamps of random blocks to a sheet and to a plain array at once.
 struct StampedPair {
-    StampedPair(const Footprint& footprint, int stamps, std::uint32_t seed, int channelCount = 4)
+    StampedPair(const Footprint& footprint, int blocks, std::uint32_t seed, int channelCount = 4)
         : channels(channelCount),
           sheet(layoutSheet(kBox, footprint, channels)),
           plain(sheet.pitch() * sheet.layout().sizePixels.y) {
         std::mt19937 random(seed);
-        std::uniform_int_distribution<int> color(-ClassTable::kMax, ClassTable::kMax);
-        std::uniform_int_distribution<int> u(kBox.min.y, kBox.max.y);
-        std::uniform_int_distribution<int> v(kBox.min.z, kBox.max.z);
+        const SheetLayout& layout = sheet.layout();
+        const std::vector<ClassTable::Color> colors = randomColors(random);
+        const std::array<std::uint32_t, 64> places = placesInBlock(layout);
         const StampWeights weights(footprint, channels);
-        StampList list;
-        for (int i = 0; i < stamps; ++i) {
-            const std::size_t place = sheet.layout().stampPlace({v(random), u(random)});
-            list.places[list.count] = std::uint32_t(place);
-            for (int& value : list.colors[list.count]) value = color(random);
-            for (int c = 0; c < channels; ++c) {
-                addPlain(footprint, place, c, list.colors[list.count][channels == 4 ? c : 3]);
+        std::array<std::uint16_t, 64> classes;
+        std::array<std::uint16_t, 64> shown;
+        for (int i = 0; i < blocks; ++i) {
+            for (std::uint16_t& next : classes) next = std::uint16_t(random() % colors.size());
+            for (std::uint16_t& last : shown) last = std::uint16_t(random() % colors.size());
+            const auto before = shown;
+            std::uint64_t active = random();
+            active = active << 32 | random();
+            const glm::ivec2 block(random() % layout.blocks.x, random() % layout.blocks.y);
+            const std::size_t first = layout.stampPlace(layout.firstVoxel + 8 * block);
+            const BlockSlice voxels{classes.data(), active, places.data()};
+            const StampTarget target{sheet.pixels() + channels * first, sheet.pitch()};
+            const bool whole = i % 2 == 0;
+            if (whole) {
+                stampWhole(voxels, colors.data(), weights, target);
+            } else {
+                stampChanges(voxels, colors.data(), shown.data(), weights, target);
             }
-            if (++list.count == StampList::kCapacity || i + 1 == stamps) {
-                addStamps(sheet.pixels(), sheet.pitch(), weights, list);
-                EXPECT_EQ(list.count, 0u);
+            for (int n = 0; n < 64; ++n) {
+                const bool counts = active >> n & 1;
+                EXPECT_EQ(shown[n], counts && !whole ? classes[n] : before[n]);
+                if (!counts) continue;
+                for (int c = 0; c < channels; ++c) {
+                    const int channel = channels == 4 ? c : 3;
+                    const int color = colors[classes[n]][channel];
+                    addPlain(footprint, first + places[n], c,
+                             whole ? color : color - colors[before[n]][channel]);
+                }
             }
         }
     }
@@ -72,9 +109,18 @@ TEST_P(SheetOnEveryLevel, StampsAddColourTimesWeight) {
     for (const int r : {1, 2, 5}) {
         for (const double sigma : {0.3, 0.6, 1.5}) {
             for (const int channels : {1, 4}) {
-                const StampedPair pair(makeFootprint(sigma, {0.4, -0.9}, r), 700, 5, channels);
+                const StampedPair pair(makeFootprint(sigma, {0.4, -0.9}, r), 20, 5, channels);
                 EXPECT_TRUE(pair.equal()) << "r " << r << " sigma " << sigma << ' ' << channels;
             }
+        }
+    }
+}
+
+TEST_P(SheetOnEveryLevel, StampsOfEveryWidth) {
+    for (int width = 1; width <= 9; ++width) {
+        for (const int channels : {1, 4}) {
+            const StampedPair pair(makeFootprint(1, {0.4, -0.9}, 1, width), 20, 6, channels);
+            EXPECT_TRUE(pair.equal()) << width << ' ' << channels;
         }
     }
 }
@@ -83,13 +129,16 @@ TEST_P(SheetOnEveryLevel, FullSliceOfTheLargestColourFitsThirtyTwoBits) {
     const Footprint footprint = makeFootprint(0.5, {1, 1}, 2);
     Sheet sheet(layoutSheet(kBox, footprint));
     const StampWeights weights(footprint, 4);
-    StampList list;
-    for (int u = kBox.min.y; u <= kBox.max.y; ++u) {
-        for (int v = kBox.min.z; v <= kBox.max.z; ++v) {
-            list.places[0] = std::uint32_t(sheet.layout().stampPlace({v, u}));
-            list.colors[0] = {ClassTable::kMax, 1, 0, ClassTable::kMax};
-            list.count = 1;
-            addStamps(sheet.pixels(), sheet.pitch(), weights, list);
+    const std::vector<ClassTable::Color> colors = {{}, {ClassTable::kMax, 1, 0, ClassTable::kMax}};
+    const std::array<std::uint32_t, 64> places = placesInBlock(sheet.layout());
+    std::array<std::uint16_t, 64> classes;
+    classes.fill(1);
+    for (int v = 0; v < sheet.layout().blocks.x; ++v) {
+        for (int u = 0; u < sheet.layout().blocks.y; ++u) {
+            const glm::ivec2 voxel = sheet.layout().firstVoxel + 8 * glm::ivec2(v, u);
+            const std::size_t place = sheet.layout().stampPlace(voxel);
+            stampWhole({classes.data(), ~std::uint64_t{0}, places.data()}, colors.data(), weights,
+                       {sheet.pixels() + 4 * place, sheet.pitch()});
         }
     }
     // Away from the edge every sheet pixel is the colour itself.
@@ -130,7 +179,7 @@ TEST_P(SheetOnEveryLevel, SettleFindsTheRowsThatAreNotZero) {
 
 TEST_P(SheetOnEveryLevel, ClearMakesTouchedPixelsZero) {
     for (const int channels : {1, 4}) {
-        StampedPair pair(makeFootprint(0.4, {0, 0}, 1), 500, 9, channels);
+        StampedPair pair(makeFootprint(0.4, {0, 0}, 1), 12, 9, channels);
         const glm::ivec2 size = pair.sheet.layout().sizePixels;
         pair.sheet.touch({{0, 0}, size - 1});
         pair.sheet.clear();
