@@ -205,7 +205,7 @@ class SlabRenderer {
 std::uint64_t stampsOf(const PackedDeltas& deltas, const RenderStats& stats) {
     if (stats.method == Method::kTraditional) return stats.voxels;
     std::uint64_t stamps = 0;
-    for (const PlannedSlab& slab : deltas.slabs) stamps += slab.whole ? slab.visible : slab.deltas;
+    for (const PlannedSlab& slab : deltas.slabs) stamps += slab.stamps();
     return stamps;
 }
 

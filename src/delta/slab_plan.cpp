@@ -55,7 +55,7 @@ SlabPlan SlabPlanner::plan(Encoding encoding) const {
         placeSlab(box_, plan.layout, i, slab);
         // A stamp of a whole slice costs a little more: what it replaces must be taken away.
         slab.whole = encoding == Encoding::kWhole ||
-                     (encoding == Encoding::kSmaller && 10 * slab.visible < 9 * slab.deltas);
+                     (encoding == Encoding::kSmaller && 5 * slab.visible < 4 * slab.deltas);
     }
     return plan;
 }

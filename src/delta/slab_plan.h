@@ -13,12 +13,14 @@ namespace deltasplat {
 enum class Encoding {
     kChanges,  ///< as one key slice a slab, then deltas (method `delta`)
     kWhole,    ///< every slice anew (`sparse` and `traditional`)
-    kSmaller   ///< for each slab kWhole if that takes fewer stamps by a tenth (`auto`)
+    kSmaller   ///< for each slab kWhole if that takes fewer stamps by a fifth (`auto`)
 };
 
 /// A slab as a picture is rendered from it.
 struct PlannedSlab : Slab {
     bool whole = false;  ///< every slice is splatted anew
+
+    std::uint64_t stamps() const { return whole ? visible : deltas; }
 };
 
 /// The slabs that a picture is rendered from.

@@ -23,7 +23,7 @@ StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const S
     for (const PlannedSlab& slab : planner.plan(Encoding::kSmaller).slabs) {
         stamps.sparse += slab.visible;
         stamps.delta += slab.deltas;
-        stamps.automatic += slab.whole ? slab.visible : slab.deltas;
+        stamps.automatic += slab.stamps();
     }
     return stamps;
 }

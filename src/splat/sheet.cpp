@@ -125,30 +125,23 @@ void Sheet::mark(const SheetBox& box) {
 }
 
 void Sheet::settle() {
-    refillTouched(
-        0, layout_.sizePixels.y,
-        [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-            for (int column = 0; column < layout_.tiles().x; ++column) {
-                const std::uint8_t rows = touched[column];
-                if (rows == 0) continue;
-                full[column] =
-                    std::uint8_t((full[column] & ~rows) |
-                                 findFullRows(tile(row, column), pitch(), layout_.channels, rows));
-            }
-        });
+    refillTouched(0, layout_.sizePixels.y,
+                  [&](int row, std::span<const std::uint8_t> touched,
+                      std::span<std::uint8_t> full) { findFullRows(tileRow(row), touched, full); });
 }
 
 void Sheet::clear() {
     settle();
     for (int row = 0; row < layout_.tiles().y; ++row) {
-        for (int column = 0; column < layout_.tiles().x; ++column) {
-            std::uint8_t& full = full_[bytesPerRow_ * row + column];
-            for (unsigned rest = full; rest != 0; rest &= rest - 1) {
-                std::fill_n(tile(row, column) + std::countr_zero(rest) * pitch(),
-                            kTilePixels * layout_.channels, 0);
+        const std::span full(&full_[bytesPerRow_ * row], bytesPerRow_);
+        const std::size_t length = std::size_t{kTilePixels} * layout_.channels;
+        forTiles(full, [&](std::size_t column) {
+            for (unsigned rest = full[column]; rest != 0; rest &= rest - 1) {
+                const int y = kTilePixels * row + std::countr_zero(rest);
+                std::fill_n(&pixels_[pitch() * y + length * column], length, 0);
             }
-            full = 0;
-        }
+            full[column] = 0;
+        });
     }
 }
 

@@ -98,8 +98,8 @@ class Sheet {
     std::span<const std::uint8_t> fullRows(int tileRow) const {
         return {&full_[bytesPerRow_ * tileRow], bytesPerRow_};
     }
-    std::int32_t* tile(int tileRow, int column) {
-        return &pixels_[(pitch() * tileRow + std::size_t(layout_.channels) * column) * kTilePixels];
+    TileRow tileRow(int row) {
+        return {&pixels_[pitch() * row * kTilePixels], pitch(), layout_.channels};
     }
 
   private:

@@ -8,10 +8,21 @@ namespace {
 
 using Way = std::variant<StampSplatter, TileSplatter>;
 
-Way wayFor(const SplatInput& input, const SheetLayout& largest) {
-    if (TileWeights::fits(input.footprint)) {
-        return Way(std::in_place_type<TileSplatter>, input, largest);
+// Where a block changes in no more places on average, summing tiles takes longer than stamping.
+// What is splatted anew for each slice has to be cleared as well, which tiles do by the way.
+constexpr double kFewChanges = 12;
+
+bool hasFewChanges(const PackedDeltas& deltas) {
+    for (const PlannedSlab& slab : deltas.slabs) {
+        if (slab.whole) return false;
     }
+    return double(deltas.deltas()) < kFewChanges * double(deltas.words.size());
+}
+
+// Both ways give the same integers.
+Way wayFor(const SplatInput& input, const SheetLayout& largest) {
+    if (TileWeights::fits(input.footprint) && !hasFewChanges(input.deltas))
+        return Way(std::in_place_type<TileSplatter>, input, largest);
     return Way(std::in_place_type<StampSplatter>, input, largest);
 }
 

@@ -8,7 +8,6 @@
 
 #include "bit_matrix.h"
 #include "simd_targets.h"
-#include "splat/tile_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "splat/stamp_kernels.cpp"
@@ -156,22 +155,6 @@ void stampBlockKernel(const BlockSlice& slice, const ClassTable::Color* colors,
                                  : stampBlockIn<1>(slice, colors, shown, weights, target);
 }
 
-std::uint8_t findFullRowsKernel(const std::int32_t* HWY_RESTRICT tile, std::size_t pitch,
-                                int channels, std::uint8_t rows) {
-    const hn::CappedTag<std::int32_t, 8> tag;
-    const std::size_t length = std::size_t{kTilePixels} * channels;
-    unsigned full = 0;
-    for (unsigned rest = rows; rest != 0; rest &= rest - 1) {
-        const int y = std::countr_zero(rest);
-        // Whether a row is full is hard to foretell: looking at all of it is faster than stopping.
-        auto any = hn::Zero(tag);
-        for (std::size_t x = 0; x < length; x += hn::Lanes(tag))
-            any = hn::Or(any, hn::LoadU(tag, tile + y * pitch + x));
-        full |= unsigned{!hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)))} << y;
-    }
-    return std::uint8_t(full);
-}
-
 }  // namespace deltasplat::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -179,7 +162,6 @@ HWY_AFTER_NAMESPACE();
 namespace deltasplat {
 
 HWY_EXPORT(stampBlockKernel);
-HWY_EXPORT(findFullRowsKernel);
 
 StampWeights::StampWeights(const Footprint& footprint, int sheetChannels)
     : channels(sheetChannels),
@@ -202,11 +184,6 @@ void stampWhole(const BlockSlice& slice, const ClassTable::Color* colors,
 void stampChanges(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
                   const StampWeights& weights, const StampTarget& target) {
     HWY_DYNAMIC_DISPATCH(stampBlockKernel)(slice, colors, shown, weights, target);
-}
-
-std::uint8_t findFullRows(const std::int32_t* tile, std::size_t pitch, int channels,
-                          std::uint8_t rows) {
-    return HWY_DYNAMIC_DISPATCH(findFullRowsKernel)(tile, pitch, channels, rows);
 }
 
 }  // namespace deltasplat

@@ -47,9 +47,4 @@ void stampWhole(const BlockSlice& slice, const ClassTable::Color* colors,
 void stampChanges(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
                   const StampWeights& weights, const StampTarget& target);
 
-/// Returns which of the rows of a tile that `rows` has bits for are not all zero, bit y for row y.
-/// Rows are `pitch` integers apart.
-std::uint8_t findFullRows(const std::int32_t* tile, std::size_t pitch, int channels,
-                          std::uint8_t rows);
-
 }  // namespace deltasplat

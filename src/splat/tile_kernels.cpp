@@ -158,7 +158,7 @@ class TileSums {
 };
 
 template <int kChannels, int kResolution>
-void splatTilesOf(const TileWeights& weights, const TileRow& row,
+void splatTilesOf(const TileWeights& weights, const PlaneRow& plane, const TileRow& row,
                   std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
     using Sums = TileSums<kChannels, kResolution>;
     const Sums sums(weights);
@@ -179,28 +179,47 @@ void splatTilesOf(const TileWeights& weights, const TileRow& row,
     };
     std::size_t before = touched.size();
     int buffer = 0;
-    for (std::size_t i = 0; i < touched.size(); ++i) {
-        if (touched[i] == 0) continue;
+    forTiles(touched, [&](std::size_t i) HWY_ATTR {
         forRows(touched[i], [&](int first, int last) HWY_ATTR {
-            Sums::pairUp(row.plane + columnOf(i) / kResolution, row.planePitch, first, last,
+            Sums::pairUp(plane.first + columnOf(i) / kResolution, plane.pitch, first, last,
                          pairs[buffer]);
             return 0u;
         });
         buffer ^= 1;
         if (before < touched.size()) finish(before, pairs[buffer]);
         before = i;
-    }
+    });
     if (before < touched.size()) finish(before, pairs[buffer ^ 1]);
 }
 
-void splatTilesKernel(const TileWeights& weights, const TileRow& row,
+void splatTilesKernel(const TileWeights& weights, const PlaneRow& plane, const TileRow& row,
                       std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
     if (weights.resolution == 1) {
-        return weights.channels == 4 ? splatTilesOf<4, 1>(weights, row, touched, full)
-                                     : splatTilesOf<1, 1>(weights, row, touched, full);
+        return row.channels == 4 ? splatTilesOf<4, 1>(weights, plane, row, touched, full)
+                                 : splatTilesOf<1, 1>(weights, plane, row, touched, full);
     }
-    return weights.channels == 4 ? splatTilesOf<4, 2>(weights, row, touched, full)
-                                 : splatTilesOf<1, 2>(weights, row, touched, full);
+    return row.channels == 4 ? splatTilesOf<4, 2>(weights, plane, row, touched, full)
+                             : splatTilesOf<1, 2>(weights, plane, row, touched, full);
+}
+
+void findFullRowsKernel(const TileRow& row, std::span<const std::uint8_t> touched,
+                        std::span<std::uint8_t> full) {
+    const hn::CappedTag<std::int32_t, 8> tag;
+    const std::size_t length = std::size_t{kTilePixels} * row.channels;
+    forTiles(touched, [&](std::size_t i) HWY_ATTR {
+        const std::int32_t* tile = row.sheet + length * i;
+        unsigned found = 0;
+        for (unsigned rest = touched[i]; rest != 0; rest &= rest - 1) {
+            const int y = std::countr_zero(rest);
+            // Whether a row is full is hard to foretell: looking at all of it is faster than
+            // stopping.
+            auto any = hn::Zero(tag);
+            for (std::size_t x = 0; x < length; x += hn::Lanes(tag))
+                any = hn::Or(any, hn::LoadU(tag, tile + y * row.sheetPitch + x));
+            found |= unsigned{!hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)))} << y;
+        }
+        full[i] = std::uint8_t((full[i] & ~touched[i]) | found);
+    });
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -210,6 +229,7 @@ HWY_AFTER_NAMESPACE();
 namespace deltasplat {
 
 HWY_EXPORT(splatTilesKernel);
+HWY_EXPORT(findFullRowsKernel);
 
 bool TileWeights::fits(const Footprint& footprint) {
     return footprint.resolution <= 2 && footprint.width % 2 == 1 &&
@@ -217,7 +237,7 @@ bool TileWeights::fits(const Footprint& footprint) {
 }
 
 TileWeights::TileWeights(const Footprint& footprint, int sheetChannels)
-    : resolution(footprint.resolution), channels(sheetChannels) {
+    : resolution(footprint.resolution) {
     // What a voxel gives to the pixel at (x, y) from it.
     const auto weightAt = [&](int x, int y) {
         const int column = x + footprint.reach();
@@ -229,7 +249,7 @@ TileWeights::TileWeights(const Footprint& footprint, int sheetChannels)
     for (int column = 0; column < 3; ++column) {
         for (int lane = 0; lane < 16; ++lane) {
             // The pixel's place behind a voxel, and behind the voxel of this column.
-            const int phase = lane / channels % resolution;
+            const int phase = lane / sheetChannels % resolution;
             const int x = phase - resolution * (column - 1);
             const auto pair = [&](int y, int yBehind) {
                 return std::int32_t(weightAt(x, yBehind) << 16 | weightAt(x, y));
@@ -241,9 +261,14 @@ TileWeights::TileWeights(const Footprint& footprint, int sheetChannels)
     }
 }
 
-void splatTiles(const TileWeights& weights, const TileRow& row,
+void splatTiles(const TileWeights& weights, const PlaneRow& plane, const TileRow& row,
                 std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-    HWY_DYNAMIC_DISPATCH(splatTilesKernel)(weights, row, touched, full);
+    HWY_DYNAMIC_DISPATCH(splatTilesKernel)(weights, plane, row, touched, full);
+}
+
+void findFullRows(const TileRow& row, std::span<const std::uint8_t> touched,
+                  std::span<std::uint8_t> full) {
+    HWY_DYNAMIC_DISPATCH(findFullRowsKernel)(row, touched, full);
 }
 
 }  // namespace deltasplat

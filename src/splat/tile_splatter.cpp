@@ -32,10 +32,8 @@ void TileSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
     sheet_.refillTouched(
         firstRow, lastRow,
         [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-            splatTiles(weights_,
-                       {planeAt({0, kTilePixels * row / resolution}), pitch_, sheet_.tile(row, 0),
-                        sheet_.pitch()},
-                       touched, full);
+            const PlaneRow plane{planeAt({0, kTilePixels * row / resolution}), pitch_};
+            splatTiles(weights_, plane, sheet_.tileRow(row), touched, full);
         });
 }
 

@@ -33,7 +33,7 @@ Sheet randomSheet(std::uint32_t seed, int channels = 4) {
                     pixel[c] = std::int32_t(uniform(random) * ClassTable::kMax * Footprint::kOne);
                 }
             }
-            sheet.touch(8 * glm::ivec2(x, y), 8 * glm::ivec2(x, y) + 7);
+            sheet.touch({8 * glm::ivec2(x, y), 8 * glm::ivec2(x, y) + 7});
         }
     }
     sheet.settle();

@@ -62,13 +62,14 @@ struct Scene {
     std::vector<std::int32_t> sums;
 };
 
-const std::vector<std::uint8_t> kTouched = {0xFF, 0x01, 0, 0x80, 0x18};
+constexpr int kTiles = 5;
+const std::vector<std::uint8_t> kTouched = {0xFF, 0x01, 0, 0x80, 0x18, 0, 0, 0};
 
 // Compares every pixel of the tiles and around them, and what is said to be full.
 void expectSums(const Scene& scene, const std::vector<std::int32_t>& sheet,
                 const std::vector<std::uint8_t>& full) {
     for (int y = 0; y < kHeight; ++y) {
-        for (int tile = 0; tile < int(kTouched.size()); ++tile) {
+        for (int tile = 0; tile < kTiles; ++tile) {
             const int row = y - kFirst;
             const bool inTile = row >= 0 && row < 8;
             const bool made = inTile && (kTouched[tile] >> row & 1);
@@ -101,9 +102,9 @@ TEST_P(TilesOnEveryLevel, TouchedRowsAreTheSumsOfStamps) {
                         const std::size_t voxel = kFirst / resolution;
                         splatTiles(TileWeights(footprint, channels),
                                    {&scene.plane[channels * voxel * (scene.width + 1)],
-                                    std::size_t(channels * scene.width),
-                                    &sheet[kFirst * (pitch + channels)], pitch},
-                                   kTouched, full);
+                                    std::size_t(channels * scene.width)},
+                                   {&sheet[kFirst * (pitch + channels)], pitch, channels}, kTouched,
+                                   full);
                         expectSums(scene, sheet, full);
                     }
                 }

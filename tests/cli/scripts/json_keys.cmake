@@ -60,13 +60,13 @@ expect_value("${text}" 7 files 0 grids 0 bbox 1 2)
 expect_value("${text}" 960 files 0 grids 0 active)
 expect_value("${text}" integer files 0 grids 0 code_book)
 
-# The slab is 10 x 8 x 4 voxels of 255 in the middle, all else is 0. Along y it ends in a slab of
-# its own: 40 voxels come, 40 are in the key slice, 40 go, where the whole slices have just 40.
+# The slab is 10 x 8 x 4 voxels of 255 in the middle, all else is 0. Along y there are 8 slices of
+# it: 40 voxels come, and 40 go.
 expect_value("${text}" 0.0 files 0 grids 0 background_guess)
 expect_value("${text}" "" files 0 grids 0 transfer_function)
 expect_value("${text}" 960 files 0 grids 0 axes z visible)
 expect_value("${text}" 280 files 0 grids 0 axes z deltas)
-foreach(stamps "traditional;960" "sparse;320" "delta;120" "auto;80")
+foreach(stamps "traditional;960" "sparse;320" "delta;80" "auto;80")
     list(GET stamps 0 method)
     list(GET stamps 1 count)
     expect_value("${text}" ${count} files 0 grids 0 stamps y ${method})
