@@ -211,6 +211,7 @@ std::uint64_t stampsOf(const PackedDeltas& deltas, const RenderStats& stats) {
 
 Raster rasterOf(const Layer& layer, const ClassTable& classes) {
     Raster raster{layer.box.min, layer.box.size(), layer.values.data(), layer.channels};
+    raster.spans = layer.spans;
     // Of one colour, every channel is a fixed share of the opacity.
     if (classes.oneColor) raster.color = glm::dvec3(classes.scale) / classes.scale.a;
     return raster;

@@ -77,7 +77,10 @@ std::string humanBytes(double bytes) {
 }
 
 void requireMemory(const std::string& what, double bytes) {
+    // Asking the system takes longer than some pictures.
+    constexpr double kLittle = 64 << 20;
     const double left = double(limitAvailable());
+    if (bytes <= std::min(left, kLittle)) return;
     const double available = std::min(left, double(availableMemory()));
     if (bytes <= available) return;
     throw Error(ErrorCode::kUsage,

@@ -64,11 +64,15 @@ class RasterTiles {
     void findRow(const Raster& raster, int row) {
         const int lastY = std::min((row + 1) * kTile, raster.size.y);
         for (int y = row * kTile; y < lastY; ++y) {
-            const float* pixel = raster.values + std::size_t(raster.channels) * raster.size.x * y;
-            for (int column = 0; column < tiles_.x; ++column) {
-                const int count = raster.channels * std::min(kTile, raster.size.x - column * kTile);
+            const glm::ivec2 span =
+                raster.spans.empty() ? glm::ivec2(0, raster.size.x) : raster.spans[std::size_t(y)];
+            if (span.x >= span.y) continue;
+            const float* pixels = raster.values + std::size_t(raster.channels) * raster.size.x * y;
+            for (int column = span.x / kTile; column <= (span.y - 1) / kTile; ++column) {
+                const int first = raster.channels * column * kTile;
+                const int last = raster.channels * std::min((column + 1) * kTile, raster.size.x);
                 std::uint32_t bits = 0;  // of all values: faster than comparing each
-                for (int i = 0; i < count; ++i) bits |= std::bit_cast<std::uint32_t>(*pixel++);
+                for (int i = first; i < last; ++i) bits |= std::bit_cast<std::uint32_t>(pixels[i]);
                 full_[std::size_t(words_) * row + column / 64] |= std::uint64_t{bits != 0}
                                                                   << (column % 64);
             }

@@ -3,6 +3,7 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 
 #include "deltasplat/image/image.h"
 
@@ -20,6 +21,8 @@ struct Raster {
     /// What a value that stands alone is clamped to: where it is no opacity, the raster's own range
     /// and 0.
     glm::vec2 range{0.0f, 1.0f};
+    /// [size.y], or empty: columns [x, y) outside of which a row is zero.
+    std::span<const glm::ivec2> spans{};
 };
 
 /// Resamples a raster under an affine map with a Catmull-Rom filter, widened where the picture is

@@ -9,14 +9,20 @@ namespace {
 using Way = std::variant<StampSplatter, TileSplatter>;
 
 // Where a block changes in no more places on average, summing tiles takes longer than stamping.
-// What is splatted anew for each slice has to be cleared as well, which tiles do by the way.
+// What is splatted anew for each slice has to be cleared as well, which tiles do by the way: of
+// that there may be little.
 constexpr double kFewChanges = 12;
+constexpr double kMostWhole = 0.1;
 
 bool hasFewChanges(const PackedDeltas& deltas) {
+    std::uint64_t stamps = 0;
+    std::uint64_t whole = 0;
     for (const PlannedSlab& slab : deltas.slabs) {
-        if (slab.whole) return false;
+        stamps += slab.stamps();
+        if (slab.whole) whole += slab.stamps();
     }
-    return double(deltas.deltas()) < kFewChanges * double(deltas.words.size());
+    return double(stamps) < kFewChanges * double(deltas.words.size()) &&
+           double(whole) <= kMostWhole * double(stamps);
 }
 
 // Both ways give the same integers.
