@@ -22,6 +22,8 @@ using RestTag = hn::FixedTag<float, kChannels == 4 ? 4 : 1>;
 
 // Pixels that are read at a time, so that they stay in the first-level cache.
 constexpr std::size_t kStretch = 128;
+// A span of no more pixels is over before what it stores can be loaded again.
+constexpr std::size_t kShort = 32;
 
 template <class Tag>
 auto readSheet(Tag tag, const std::int32_t* sheet) {
@@ -95,12 +97,32 @@ HWY_INLINE void overStretch(const OverSpan& span, const OverWeights& weights) {
     });
 }
 
+// The same arithmetic, each column read twice and nothing stored on the way.
+template <int kChannels, bool kFrontToBack>
+HWY_INLINE void overShort(const OverSpan& span, const OverWeights& weights) {
+    forVectors<kChannels>(kChannels * span.pixels, [&](auto tag, std::size_t i) {
+        const auto thisRow = loadScale<kChannels>(tag, weights.thisRow);
+        const auto nextRow = loadScale<kChannels>(tag, weights.nextRow);
+        const auto column = [&](std::size_t place) HWY_ATTR {
+            return hn::Add(hn::Mul(readSheet(tag, span.row + place), thisRow),
+                           hn::Mul(readSheet(tag, span.nextRow + place), nextRow));
+        };
+        const auto here = hn::Mul(column(i), hn::Set(tag, weights.thisColumn));
+        const auto next = hn::Mul(column(i + kChannels), hn::Set(tag, weights.nextColumn));
+        over<kChannels, kFrontToBack>(tag, hn::Add(here, next), span.layer + i);
+    });
+}
+
 template <int kChannels, bool kFrontToBack>
 void overSpansOf(const std::vector<OverSpan>& spans, const OverWeights& weights) {
     const bool straight = weights.straight();
     for (OverSpan span : spans) {
         if (straight) {
             overStraight<kChannels, kFrontToBack>(span, weights);
+            continue;
+        }
+        if (span.pixels <= kShort) {
+            overShort<kChannels, kFrontToBack>(span, weights);
             continue;
         }
         for (std::size_t rest = span.pixels; rest > 0; rest -= span.pixels) {
