@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <fstream>
 #include <limits>
@@ -48,6 +49,19 @@ std::uint64_t systemAvailable() {
     return std::numeric_limits<std::uint64_t>::max();
 }
 
+// Asking the system takes longer than some pictures: it is asked again when so much has been
+// granted since.
+constexpr std::uint64_t kLittle = 64 << 20;
+std::atomic<std::uint64_t> grantedUnasked = 0;
+
+bool isLittle(double bytes) {
+    if (bytes > double(kLittle)) return false;
+    const auto whole = std::uint64_t(bytes);
+    if (grantedUnasked.fetch_add(whole) + whole <= kLittle) return true;
+    grantedUnasked = 0;
+    return false;
+}
+
 }  // namespace
 
 void setMemoryLimit(std::uint64_t bytes) {
@@ -77,10 +91,8 @@ std::string humanBytes(double bytes) {
 }
 
 void requireMemory(const std::string& what, double bytes) {
-    // Asking the system takes longer than some pictures.
-    constexpr double kLittle = 64 << 20;
     const double left = double(limitAvailable());
-    if (bytes <= std::min(left, kLittle)) return;
+    if (bytes <= left && isLittle(bytes)) return;
     const double available = std::min(left, double(availableMemory()));
     if (bytes <= available) return;
     throw Error(ErrorCode::kUsage,

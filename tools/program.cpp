@@ -187,6 +187,8 @@ int execute(const std::vector<std::string>& arguments,
     setSimdLevel(session.common.simd);
     const ThreadLimit limit(session.common.threads);
     setMemoryLimit(session.common.maxMemory);
+    // What is kept counts as taken.
+    if (session.common.maxMemory == 0) reuseMemory();
     subcommand->run(session);
     return subcommand->exitCode ? subcommand->exitCode() : 0;
 }
@@ -211,7 +213,6 @@ int fail(const std::vector<std::string>& arguments, const std::string& what, Err
 
 int runProgram(const std::vector<std::string>& arguments,
                const std::vector<AddSubcommand>& addSubcommands) {
-    reuseMemory();
     handleSignals();
     std::optional<int> errorExit;
     try {

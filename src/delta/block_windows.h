@@ -20,10 +20,11 @@ struct SlabLayout {
     int slabOf(int block) const { return (block - firstBlock) / blocksPerSlab; }
     bool startsSlab(int block) const { return (block - firstBlock) % blocksPerSlab == 0; }
     /// Whether a slice is the first of a slab behind another.
-    bool beginsWith(int slice) const {
+    bool startsLaterSlab(int slice) const {
         return slice % 8 == 0 && slice > 8 * firstBlock && startsSlab(slice / 8);
     }
     int count() const { return slabOf(lastBlock) + 1; }
+    int blocks() const { return lastBlock - firstBlock + 1; }
     /// Slices of a block that exist: behind the last one nothing needs to be taken away.
     int slicesOf(int block) const { return std::min(7, lastSlice - 8 * block) + 1; }
 };
@@ -42,7 +43,7 @@ inline SliceCounts& operator+=(SliceCounts& sum, const SliceCounts& counts) {
 /// Returns the layout of one slab of all slices.
 inline SlabLayout oneSlab(const IndexBox& box) {
     SlabLayout layout = layoutOf(box, 8);
-    layout.blocksPerSlab = layout.lastBlock - layout.firstBlock + 1;
+    layout.blocksPerSlab = layout.blocks();
     return layout;
 }
 

@@ -121,7 +121,7 @@ class ColumnPacker {
             const std::uint64_t visible = changes.visible[s];
             const std::uint64_t changed = changes.changed[s];
             const int slice = 8 * position.x + s;
-            const bool isKey = layout_.beginsWith(slice);
+            const bool isKey = layout_.startsLaterSlab(slice);
             planner_.add(slice, visible, changed);
             const bool needed =
                 (options_.encoding != Encoding::kWhole && changed != 0) ||
@@ -165,7 +165,7 @@ void collectWords(std::vector<ColumnPacker>& packers, const SlabLayout& layout,
         return std::size_t(word.slice - packed.box.min.x);
     };
     const auto changed = [&](const PendingWord& word) {
-        return layout.beginsWith(word.slice) ? word.visible : word.changed;
+        return layout.startsLaterSlab(word.slice) ? word.visible : word.changed;
     };
     const auto needed = [&](const PendingWord& word) {
         const bool whole = packed.slabs[layout.slabOf(word.slice >> 3)].whole;

@@ -17,8 +17,8 @@ using ClassIndex = std::uint16_t;
 /// One slice of an 8x8x8 block: its 64 voxels, bit 8 * u + v of the masks, as OpenVDB's leaves have
 /// them.
 struct DeltaWord {
-    std::uint64_t visible;      ///< whose class is not empty
-    std::uint64_t changed;      ///< whose class differs from the slice before
+    std::uint64_t visible;  ///< whose class is not empty
+    std::uint64_t changed;  ///< whose class differs from the slice before; in a key slice, visible
     const ClassIndex* classes;  ///< [64]: of all voxels in this slice
     glm::ivec2 block;           ///< (u, v) of the first voxel divided by 8
 };

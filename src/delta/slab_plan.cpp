@@ -8,26 +8,26 @@ namespace deltasplat {
 namespace {
 
 // How many slabs there are: each costs a layer, and the fewer there are, the farther a strip's rows
-// move along a sheet (src/composite_render.cpp). Short ones can be fewer.
+// move along a sheet (src/composite_render.cpp).
 constexpr int kMostSlabs = 8;
 constexpr int kLeastSlabs = 4;
-constexpr int kShortSlab = 32;
+constexpr int kShortSlab = 4;  // blocks of 8 slices: slabs up to this length may be fewer
 // The most deltas that key slices may add, as a share of all others, as long as there may be fewer.
 constexpr double kMostKeyDeltas = 0.03;
 
 }  // namespace
 
-SlabPlanner::SlabPlanner(const IndexBox& box)
-    : box_(box),
-      shortest_(layoutOf(box, 8 * ((box.dims().x - 1) / (8 * kMostSlabs) + 1))),
-      counts_(shortest_.count()) {}
+SlabPlanner::SlabPlanner(const IndexBox& box) : box_(box), shortest_(layoutOf(box, 8)) {
+    shortest_.blocksPerSlab = (shortest_.blocks() - 1) / kMostSlabs + 1;
+    counts_.resize(shortest_.count());
+}
 
 void SlabPlanner::add(int slice, std::uint64_t visible, std::uint64_t changed) {
     const SliceCounts found{std::uint64_t(std::popcount(visible)),
                             std::uint64_t(std::popcount(changed))};
     Counts& counts = counts_[shortest_.slabOf(slice >> 3)];
     counts.all += found;
-    if (shortest_.beginsWith(slice)) counts.firstSlice += found;
+    if (shortest_.startsLaterSlab(slice)) counts.firstSlice += found;
 }
 
 void SlabPlanner::add(const SlabPlanner& other) {
@@ -62,10 +62,9 @@ SlabPlan SlabPlanner::plan(Encoding encoding) const {
 
 // Returns how many of the shortest slabs make one.
 int SlabPlanner::chooseLength() const {
-    const int slicesLeast = 8 * ((box_.dims().x - 1) / (8 * kLeastSlabs) + 1);
-    const int longest = std::max(kShortSlab, slicesLeast);
+    const int longest = std::max(kShortSlab, (shortest_.blocks() - 1) / kLeastSlabs + 1);
     int length = 1;
-    while (2 * length * 8 * shortest_.blocksPerSlab <= longest &&
+    while (2 * length * shortest_.blocksPerSlab <= longest &&
            keyShare(std::size_t(length)) > kMostKeyDeltas) {
         length *= 2;
     }

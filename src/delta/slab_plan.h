@@ -29,10 +29,10 @@ struct SlabPlan {
     std::vector<PlannedSlab> slabs;  ///< in increasing order
 };
 
-/// Counts what is in the slices of a volume, and cuts it into slabs by it. There are 8 at most, and
-/// fewer (not below 4 of more than 32 slices) where key slices would add more than 3 % to the
-/// deltas: a function of the volume and the classes it shows, whatever the encoding, so that all
-/// methods merge the same layers.
+/// Counts what is in the slices of a volume, and cuts it into slabs by it. There are 8 at most.
+/// Where key slices would add more than 3 % to the deltas, they are joined two and two as long as
+/// that is so; but slabs of more than 32 slices never become fewer than 4. A function of the volume
+/// and the classes it shows, whatever the encoding, so that all methods merge the same layers.
 class SlabPlanner {
   public:
     /// @param box  in (slice, u, v) order, not empty

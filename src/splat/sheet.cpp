@@ -106,7 +106,8 @@ void Sheet::mark(const SheetBox& box) {
     for (int row = box.first.y >> 3; row <= box.last.y >> 3; ++row) {
         const int low = std::max(box.first.y - 8 * row, 0);
         const int high = std::min(box.last.y - 8 * row, 7);
-        const std::uint64_t rows = (0xFFu >> (7 - high + low) << low) * 0x0101010101010101;
+        const std::uint64_t rows =
+            std::uint64_t{0xFFu >> (7 - high + low) << low} * 0x0101010101010101u;
         touchedRows_[row] = 1;
         for (int column = firstColumn; column <= lastColumn; column += 8) {
             const std::size_t place = bytesPerRow_ * row + column;
@@ -125,23 +126,25 @@ void Sheet::mark(const SheetBox& box) {
 }
 
 void Sheet::settle() {
-    refillTouched(0, layout_.sizePixels.y,
-                  [&](int row, std::span<const std::uint8_t> touched,
-                      std::span<std::uint8_t> full) { findFullRows(tileRow(row), touched, full); });
+    refillTouched(
+        0, layout_.sizePixels.y,
+        [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
+            findFullRows(tileRow(row), layout_.channels, touched, full);
+        });
 }
 
 void Sheet::clear() {
     settle();
     for (int row = 0; row < layout_.tiles().y; ++row) {
-        const std::span full(&full_[bytesPerRow_ * row], bytesPerRow_);
-        const std::size_t length = std::size_t{kTilePixels} * layout_.channels;
-        forTiles(full, [&](std::size_t column) {
-            for (unsigned rest = full[column]; rest != 0; rest &= rest - 1) {
+        for (int column = 0; column < layout_.tiles().x; ++column) {
+            std::uint8_t& full = full_[bytesPerRow_ * row + column];
+            const std::size_t length = std::size_t{kTilePixels} * layout_.channels;
+            for (unsigned rest = full; rest != 0; rest &= rest - 1) {
                 const int y = kTilePixels * row + std::countr_zero(rest);
                 std::fill_n(&pixels_[pitch() * y + length * column], length, 0);
             }
-            full[column] = 0;
-        });
+            full = 0;
+        }
     }
 }
 

@@ -81,7 +81,9 @@ class Sheet {
 
     /// Says that pixels may have changed.
     void touch(const SheetBox& box);
-    /// Says the same of what may have changed, but not to nothing: full rows stay full.
+    /// Says the same of what may have changed, but not to nothing: full rows stay full, as long as
+    /// colours and weights are not negative, what is visible has a colour, and all rows touched
+    /// before have been settled.
     void touchUnlessFull(const SheetBox& box);
     /// Calls `refill(tileRow, touched, full)` for every row of tiles that has touched ones and in
     /// which any of the pixel rows [first, last) lies; others stay touched. Of each tile there is a
@@ -98,9 +100,7 @@ class Sheet {
     std::span<const std::uint8_t> fullRows(int tileRow) const {
         return {&full_[bytesPerRow_ * tileRow], bytesPerRow_};
     }
-    TileRow tileRow(int row) {
-        return {&pixels_[pitch() * row * kTilePixels], pitch(), layout_.channels};
-    }
+    TileRow tileRow(int row) { return {&pixels_[pitch() * row * kTilePixels], pitch()}; }
 
   private:
     template <bool kUnlessFull>

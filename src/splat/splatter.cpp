@@ -8,9 +8,9 @@ namespace {
 
 using Way = std::variant<StampSplatter, TileSplatter>;
 
-// Where a block changes in no more places on average, summing tiles takes longer than stamping.
-// What is splatted anew for each slice has to be cleared as well, which tiles do by the way: of
-// that there may be little.
+// Where a block changes in fewer places a slice on average, summing tiles takes longer than
+// stamping. What is splatted anew for each slice has to be cleared as well, which tiles do by the
+// way: of that there may be little.
 constexpr double kFewChanges = 12;
 constexpr double kMostWhole = 0.1;
 

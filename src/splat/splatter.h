@@ -8,8 +8,8 @@
 
 namespace deltasplat {
 
-/// Turns slabs into sheets, in the way that suits the footprint. Holds what that takes, to be used
-/// for one slab after the other; not thread-safe.
+/// Turns slabs into sheets, in the way that suits the footprint and how much changes. Holds what
+/// that takes, to be used for one slab after the other; not thread-safe.
 class Splatter {
   public:
     /// @param largest  of the layouts to come
@@ -20,7 +20,8 @@ class Splatter {
     void begin(const SheetLayout& layout);
     /// Makes the sheet of the slab's next slice, and returns it. Deltas are added to what the slice
     /// before left; of a whole slab, each slice starts anew.
-    /// @param firstRow,lastRow  rows of the sheet that are needed: [firstRow, lastRow)
+    /// @param firstRow,lastRow  rows of the sheet that are needed: [firstRow, lastRow). Others may
+    /// hold an earlier slice, or part of this one
     const Sheet& splat(int slice, bool whole, int firstRow, int lastRow);
     /// Ends a slab.
     void end();

@@ -4,6 +4,7 @@
 #include "splat/tile_kernels.h"
 
 #include <bit>
+#include <cstring>
 
 #include "simd_targets.h"
 
@@ -16,6 +17,28 @@
 HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+
+// Calls use(i) for the tiles whose bytes are not zero, of which there are few in most rows of
+// tiles.
+template <typename Use>
+HWY_INLINE void forTiles(std::span<const std::uint8_t> tiles, const Use& use) {
+    for (std::size_t first = 0; first < tiles.size(); first += 8) {
+        std::uint64_t word;
+        std::memcpy(&word, &tiles[first], sizeof word);
+        if (word == 0) continue;
+        for (std::size_t i = first; i < first + 8; ++i) {
+            if (tiles[i] != 0) use(i);
+        }
+    }
+}
+
+// Calls use(first, last) for the rows that a byte has bits for, and those between them: with
+// constants if it has all, so that loops unroll.
+template <typename Use>
+HWY_INLINE auto forRows(unsigned rows, const Use& use) {
+    return rows == 0xFF ? use(0, kTilePixels - 1)
+                        : use(std::countr_zero(rows), int(std::bit_width(rows)) - 1);
+}
 
 template <int kChannels, int kResolution>
 class TileSums {
@@ -166,10 +189,6 @@ void splatTilesOf(const TileWeights& weights, const PlaneRow& plane, const TileR
     // cache, for they are read otherwise than they were written.
     HWY_ALIGN typename Sums::Pairs pairs[2];
     const auto columnOf = [](std::size_t i) { return std::size_t{kTilePixels} * kChannels * i; };
-    const auto forRows = [](unsigned rows, const auto& use) HWY_ATTR {
-        return rows == 0xFF ? use(0, kTilePixels - 1)
-                            : use(std::countr_zero(rows), int(std::bit_width(rows)) - 1);
-    };
     const auto finish = [&](std::size_t i, const typename Sums::Pairs& paired) HWY_ATTR {
         const unsigned rows = touched[i];
         const unsigned found = forRows(rows, [&](int first, int last) HWY_ATTR {
@@ -183,7 +202,6 @@ void splatTilesOf(const TileWeights& weights, const PlaneRow& plane, const TileR
         forRows(touched[i], [&](int first, int last) HWY_ATTR {
             Sums::pairUp(plane.first + columnOf(i) / kResolution, plane.pitch, first, last,
                          pairs[buffer]);
-            return 0u;
         });
         buffer ^= 1;
         if (before < touched.size()) finish(before, pairs[buffer]);
@@ -195,17 +213,17 @@ void splatTilesOf(const TileWeights& weights, const PlaneRow& plane, const TileR
 void splatTilesKernel(const TileWeights& weights, const PlaneRow& plane, const TileRow& row,
                       std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
     if (weights.resolution == 1) {
-        return row.channels == 4 ? splatTilesOf<4, 1>(weights, plane, row, touched, full)
-                                 : splatTilesOf<1, 1>(weights, plane, row, touched, full);
+        return weights.channels == 4 ? splatTilesOf<4, 1>(weights, plane, row, touched, full)
+                                     : splatTilesOf<1, 1>(weights, plane, row, touched, full);
     }
-    return row.channels == 4 ? splatTilesOf<4, 2>(weights, plane, row, touched, full)
-                             : splatTilesOf<1, 2>(weights, plane, row, touched, full);
+    return weights.channels == 4 ? splatTilesOf<4, 2>(weights, plane, row, touched, full)
+                                 : splatTilesOf<1, 2>(weights, plane, row, touched, full);
 }
 
-void findFullRowsKernel(const TileRow& row, std::span<const std::uint8_t> touched,
+void findFullRowsKernel(const TileRow& row, int channels, std::span<const std::uint8_t> touched,
                         std::span<std::uint8_t> full) {
     const hn::CappedTag<std::int32_t, 8> tag;
-    const std::size_t length = std::size_t{kTilePixels} * row.channels;
+    const std::size_t length = std::size_t{kTilePixels} * channels;
     forTiles(touched, [&](std::size_t i) HWY_ATTR {
         const std::int32_t* tile = row.sheet + length * i;
         unsigned found = 0;
@@ -237,7 +255,7 @@ bool TileWeights::fits(const Footprint& footprint) {
 }
 
 TileWeights::TileWeights(const Footprint& footprint, int sheetChannels)
-    : resolution(footprint.resolution) {
+    : resolution(footprint.resolution), channels(sheetChannels) {
     // What a voxel gives to the pixel at (x, y) from it.
     const auto weightAt = [&](int x, int y) {
         const int column = x + footprint.reach();
@@ -249,7 +267,7 @@ TileWeights::TileWeights(const Footprint& footprint, int sheetChannels)
     for (int column = 0; column < 3; ++column) {
         for (int lane = 0; lane < 16; ++lane) {
             // The pixel's place behind a voxel, and behind the voxel of this column.
-            const int phase = lane / sheetChannels % resolution;
+            const int phase = lane / channels % resolution;
             const int x = phase - resolution * (column - 1);
             const auto pair = [&](int y, int yBehind) {
                 return std::int32_t(weightAt(x, yBehind) << 16 | weightAt(x, y));
@@ -266,9 +284,9 @@ void splatTiles(const TileWeights& weights, const PlaneRow& plane, const TileRow
     HWY_DYNAMIC_DISPATCH(splatTilesKernel)(weights, plane, row, touched, full);
 }
 
-void findFullRows(const TileRow& row, std::span<const std::uint8_t> touched,
+void findFullRows(const TileRow& row, int channels, std::span<const std::uint8_t> touched,
                   std::span<std::uint8_t> full) {
-    HWY_DYNAMIC_DISPATCH(findFullRowsKernel)(row, touched, full);
+    HWY_DYNAMIC_DISPATCH(findFullRowsKernel)(row, channels, touched, full);
 }
 
 }  // namespace deltasplat

@@ -4,11 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <span>
 
 #include "deltasplat/splat/footprint.h"
-#include "hwy/base.h"
 
 namespace deltasplat {
 
@@ -29,31 +27,16 @@ struct TileWeights {
     TileWeights(const Footprint& footprint, int sheetChannels);
 
     int resolution;       ///< 1 or 2 sheet pixels a voxel
+    int channels;         ///< of plane and sheet: 1 or 4
     Columns firstRows{};  ///< for pixels at voxels' rows: the row before and the row itself
     Columns lastRow{};    ///< likewise: the row behind (low 16 bits)
     Columns between{};    ///< for pixels between two rows of voxels: these two
 };
 
-/// Calls use(i) for the tiles whose bytes are not zero, of which there are few in most rows of
-/// tiles.
-/// @param tiles  a byte for each tile, and zeros up to a multiple of eight
-template <typename Use>
-HWY_INLINE void forTiles(std::span<const std::uint8_t> tiles, const Use& use) {
-    for (std::size_t first = 0; first < tiles.size(); first += 8) {
-        std::uint64_t word;
-        std::memcpy(&word, &tiles[first], sizeof word);
-        if (word == 0) continue;
-        for (std::size_t i = first; i < first + 8; ++i) {
-            if (tiles[i] != 0) use(i);
-        }
-    }
-}
-
 /// Where a row of tiles lies.
 struct TileRow {
     std::int32_t* sheet;     ///< the first tile, `[row][pitch]`
     std::size_t sheetPitch;  ///< 32-bit integers from one row to the next
-    int channels;            ///< of sheet and plane: 1 or 4
 };
 
 /// What its pixels are summed from.
@@ -72,7 +55,7 @@ void splatTiles(const TileWeights& weights, const PlaneRow& plane, const TileRow
 
 /// Finds out of touched rows whether they are not all zero.
 /// @param touched,full  as for splatTiles
-void findFullRows(const TileRow& row, std::span<const std::uint8_t> touched,
+void findFullRows(const TileRow& row, int channels, std::span<const std::uint8_t> touched,
                   std::span<std::uint8_t> full);
 
 }  // namespace deltasplat

@@ -62,8 +62,7 @@ void tiles(benchmark::State& state) {
     const std::vector<std::uint8_t> touched(kTiles, 0xFF);
     std::vector<std::uint8_t> full(kTiles);
     for (auto _ : state) {
-        splatTiles(weights, {&plane[8 * pitch + 64], pitch}, {sheet.data(), pitch, channels},
-                   touched, full);
+        splatTiles(weights, {&plane[8 * pitch + 64], pitch}, {sheet.data(), pitch}, touched, full);
         benchmark::ClobberMemory();
     }
     countItems(state, kTiles);

@@ -177,6 +177,45 @@ TEST_P(SheetOnEveryLevel, SettleFindsTheRowsThatAreNotZero) {
     }
 }
 
+TEST_P(SheetOnEveryLevel, FullRowsAreLookedAtAgainOnlyIfTouched) {
+    Sheet sheet(layoutSheet(kBox, makeFootprint(0.4, {0, 0}, 1)));
+    const glm::ivec2 p(17, 20);
+    const SheetBox all{{0, 0}, sheet.layout().sizePixels - 1};
+    const auto full = [&] { return sheet.fullRows(p.y / 8)[std::size_t(p.x / 8)]; };
+    std::int32_t& value = sheet.pixels()[sheet.pitch() * p.y + 4 * p.x];
+    value = 5;
+    sheet.touchUnlessFull(all);
+    sheet.settle();
+    EXPECT_EQ(full(), 1 << p.y % 8);
+    value = 0;
+    sheet.touchUnlessFull(all);
+    sheet.settle();
+    EXPECT_EQ(full(), 1 << p.y % 8);
+    sheet.touch({p, p});
+    sheet.settle();
+    EXPECT_EQ(full(), 0);
+}
+
+TEST(Sheet, RefillsRowsOfTilesOnceTheyAreAskedFor) {
+    Sheet sheet(layoutSheet(kBox, makeFootprint(0.4, {0, 0}, 1)));
+    const int rows = sheet.layout().tiles().y;
+    ASSERT_GE(rows, 5);
+    sheet.touch({{0, 0}, sheet.layout().sizePixels - 1});
+    const auto refilled = [&](int first, int last) {
+        std::vector<int> found;
+        sheet.refillTouched(first, last, [&](int row, const auto& touched, const auto&) {
+            EXPECT_EQ(touched[0], 0xFF);
+            found.push_back(row);
+        });
+        return found;
+    };
+    EXPECT_EQ(refilled(10, 17), (std::vector<int>{1, 2}));
+    EXPECT_EQ(refilled(-9, 9), std::vector<int>{0});
+    EXPECT_EQ(refilled(5, 5), std::vector<int>{});
+    EXPECT_EQ(refilled(24, 25), std::vector<int>{3});
+    EXPECT_EQ(refilled(0, 40), std::vector<int>{4});
+}
+
 TEST_P(SheetOnEveryLevel, ClearMakesTouchedPixelsZero) {
     for (const int channels : {1, 4}) {
         StampedPair pair(makeFootprint(0.4, {0, 0}, 1), 12, 9, channels);

@@ -30,6 +30,14 @@ TEST(SlabPlan, HasEightSlabsWhereKeySlicesCostLittle) {
     EXPECT_EQ(slabCount(1, 1, 0), 1u);
 }
 
+TEST(SlabPlan, HasNoMoreWhereTheyBeginBetweenBlocks) {
+    for (const int first : {-1, -5, 3, 7}) {
+        for (const int slices : {1, 57, 64, 128, 129, 1000}) {
+            EXPECT_LE(planned(first, slices, 20, 20).plan(Encoding::kChanges).slabs.size(), 8u);
+        }
+    }
+}
+
 TEST(SlabPlan, HasFewerWhereTheyCostMuch) {
     EXPECT_EQ(slabCount(128, 60, 2), 4u);
     EXPECT_EQ(slabCount(225, 60, 2), 4u);

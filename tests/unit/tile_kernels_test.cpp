@@ -103,8 +103,7 @@ TEST_P(TilesOnEveryLevel, TouchedRowsAreTheSumsOfStamps) {
                         splatTiles(TileWeights(footprint, channels),
                                    {&scene.plane[channels * voxel * (scene.width + 1)],
                                     std::size_t(channels * scene.width)},
-                                   {&sheet[kFirst * (pitch + channels)], pitch, channels}, kTouched,
-                                   full);
+                                   {&sheet[kFirst * (pitch + channels)], pitch}, kTouched, full);
                         expectSums(scene, sheet, full);
                     }
                 }

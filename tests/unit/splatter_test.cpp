@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "splat/splatter.h"
+
+#include <gtest/gtest.h>
+
+#include "deltasplat/optics/class_table.h"
+#include "support/make_volume.h"
+
+namespace deltasplat {
+namespace {
+
+// What a picture along x is splatted from.
+struct Scene {
+    Scene(const Volume& volume, Encoding encoding, const Footprint& print, bool oneColor)
+        : classes(classesOf(volume, oneColor)),
+          deltas(packDeltas(volume, {0, encoding, classes.classOfSlot, {}})),
+          footprint(print),
+          layout(layoutSheet(deltas.box, footprint, oneColor ? 1 : 4)),
+          input{deltas, classes, footprint, false} {}
+
+    static ClassTable classesOf(const Volume& volume, bool oneColor) {
+        Optics optics;
+        optics.transferFunction.colors = {{0, {1, 0, 0.5}}};
+        if (!oneColor) optics.transferFunction.colors.push_back({255, {0.2, 1, 0}});
+        optics.transferFunction.opacities = {{60, 0, 0.5, 0}, {200, 0.4, 0.5, 0}, {255, 1, 0.5, 0}};
+        return classify(volume, optics, 1);
+    }
+
+    ClassTable classes;
+    PackedDeltas deltas;
+    Footprint footprint;
+    SheetLayout layout;
+    SplatInput input;
+};
+
+// The sheet of a slice, all voxels of which are stamped one by one.
+std::vector<std::int32_t> stampedSheet(const Scene& scene, int slice) {
+    StampSplatter splatter(scene.input, scene.layout);
+    splatter.setLayout(scene.layout);
+    splatter.splat(slice, true, 0, scene.layout.sizePixels.y);
+    const Sheet& sheet = splatter.sheet();
+    return {sheet.row(0), sheet.row(0) + sheet.pitch() * scene.layout.sizePixels.y};
+}
+
+const IndexBox kBox{{-19, -11, 2}, {20, 50, 25}};
+
+// Few voxels change in the first, most in the second.
+std::vector<Volume> volumes() {
+    return {test::makeVolume(kBox,
+                             [](int x, int y, int z) {
+                                 const int d =
+                                     (x - 3) * (x - 3) + (y - 20) * (y - 20) + (z - 12) * (z - 12);
+                                 if (d < 150) return d < 70 ? 220 : 90;
+                                 return (x + 3 * y + 5 * z) % 211 == 0 ? 150 : test::kInactive;
+                             }),
+            test::randomVolume(kBox, 4, 0.4)};
+}
+
+// A window of rows that moves over the sheet from slice to slice and comes back: in it the sheet is
+// that of the slice, whatever was passed over meanwhile, and in the end nothing is left.
+TEST(Splatter, RowsOfAMovingWindowAreThoseOfTheSlice) {
+    for (const Volume& volume : volumes()) {
+        for (const bool oneColor : {false, true}) {
+            for (const int width : {3, 6}) {
+                const Footprint footprint = makeFootprint(0.5, {0.3, -0.6}, 1, width);
+                const Scene whole(volume, Encoding::kWhole, footprint, oneColor);
+                for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole}) {
+                    const Scene scene(volume, encoding, footprint, oneColor);
+                    Splatter splatter(scene.input, scene.layout);
+                    const int height = scene.layout.sizePixels.y;
+                    const std::size_t pitch = scene.layout.channels * scene.layout.pitchPixels();
+                    for (const PlannedSlab& slab : scene.deltas.slabs) {
+                        splatter.begin(scene.layout);
+                        const Sheet* sheet = nullptr;
+                        for (int i = 0; i < slab.sliceCount; ++i) {
+                            const int first = 11 * i % (height - 15);
+                            const int slice = slab.firstSlice + i;
+                            sheet = &splatter.splat(slice, slab.whole, first, first + 15);
+                            const std::vector<std::int32_t> expected = stampedSheet(whole, slice);
+                            for (int y = first; y < first + 15; ++y) {
+                                ASSERT_TRUE(std::equal(sheet->row(y), sheet->row(y) + pitch,
+                                                       &expected[pitch * y]))
+                                    << "slice " << slice << " row " << y << " width " << width;
+                            }
+                        }
+                        splatter.end();
+                        for (std::size_t p = 0; p < pitch * height; ++p)
+                            ASSERT_EQ(sheet->row(0)[p], 0);
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace deltasplat
