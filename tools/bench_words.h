@@ -30,7 +30,7 @@ std::string softwareText(const Machine& machine);
 /// Returns "256 x 256 x 128 voxels, 14.41 % visible, 13.36 % deltas (comparability 0.8664)".
 std::string volumeText(const BenchRun& run);
 
-/// Returns "512 x 512 pixels, composite, 1 thread; 128 slices along z in 16 slabs, ...".
+/// Returns "512 x 512 pixels, composite, 1 thread; 128 slices along z in 8 slabs, ...".
 std::string pictureText(const BenchEntry& entry);
 
 /// Returns whether all pixels are the same, and if not, how far apart they are.
