@@ -9,6 +9,7 @@
 
 #include "deltasplat/error.h"
 #include "memory.h"
+#include "splat/tile_bytes.h"
 
 namespace deltasplat {
 namespace {
@@ -136,15 +137,15 @@ void Sheet::settle() {
 void Sheet::clear() {
     settle();
     for (int row = 0; row < layout_.tiles().y; ++row) {
-        for (int column = 0; column < layout_.tiles().x; ++column) {
-            std::uint8_t& full = full_[bytesPerRow_ * row + column];
-            const std::size_t length = std::size_t{kTilePixels} * layout_.channels;
-            for (unsigned rest = full; rest != 0; rest &= rest - 1) {
+        const std::span full(&full_[bytesPerRow_ * row], bytesPerRow_);
+        const std::size_t length = std::size_t{kTilePixels} * layout_.channels;
+        forTiles(full, [&](std::size_t column) {
+            for (unsigned rest = full[column]; rest != 0; rest &= rest - 1) {
                 const int y = kTilePixels * row + std::countr_zero(rest);
                 std::fill_n(&pixels_[pitch() * y + length * column], length, 0);
             }
-            full = 0;
-        }
+            full[column] = 0;
+        });
     }
 }
 

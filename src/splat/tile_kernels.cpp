@@ -4,9 +4,9 @@
 #include "splat/tile_kernels.h"
 
 #include <bit>
-#include <cstring>
 
 #include "simd_targets.h"
+#include "splat/tile_bytes.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "splat/tile_kernels.cpp"
@@ -17,20 +17,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-// Calls use(i) for the tiles whose bytes are not zero, of which there are few in most rows of
-// tiles.
-template <typename Use>
-HWY_INLINE void forTiles(std::span<const std::uint8_t> tiles, const Use& use) {
-    for (std::size_t first = 0; first < tiles.size(); first += 8) {
-        std::uint64_t word;
-        std::memcpy(&word, &tiles[first], sizeof word);
-        if (word == 0) continue;
-        for (std::size_t i = first; i < first + 8; ++i) {
-            if (tiles[i] != 0) use(i);
-        }
-    }
-}
 
 // Calls use(first, last) for the rows that a byte has bits for, and those between them: with
 // constants if it has all, so that loops unroll.
