@@ -13,8 +13,8 @@ std::uint64_t availableMemory();
 /// Returns "512 bytes", "1.5 MiB", "23.4 GiB", ...
 std::string humanBytes(double bytes);
 
-/// Throws unless `bytes` more fit into memory. Asks the system once for every 64 MiB or more, so that
-/// many little requests cost little.
+/// Throws unless `bytes` more fit into memory. Asks the system once for every 64 MiB or more, so
+/// that many little requests cost little.
 /// @throw Error(kUsage) "<what>: needs 12.0 GiB of memory; expected at most 3.4 GiB, which is
 /// available"
 void requireMemory(const std::string& what, double bytes);
