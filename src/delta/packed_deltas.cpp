@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <numeric>
+#include <optional>
 
 #include "delta/block_kernels.h"
 #include "delta/block_windows.h"
@@ -22,14 +23,14 @@ namespace {
 using BlockClasses = std::array<ClassIndex, 512>;
 using SliceClasses = std::array<ClassIndex, 64>;
 
-// Reads a leaf in (slice, u, v) order. kStep: how far neighbours along x, y and z lie in `out`.
-template <int kStepX, int kStepY, int kStepZ>
-void readLeaf(const CodeTree::Leaf& leaf, const Slot* classOfSlot, ClassIndex* out) {
+// Reads a leaf, kStep: how far neighbours along x, y and z lie in `out`.
+template <int kStepX, int kStepY, int kStepZ, typename Out>
+void readLeafInSteps(const CodeTree::Leaf& leaf, const Slot* slotMap, Out* out) {
     const Code* codes = leaf.buffer().data();
     for (int x = 0; x < 8; ++x) {
         for (int y = 0; y < 8; ++y) {
             for (int z = 0; z < 8; ++z) {
-                out[x * kStepX + y * kStepY + z * kStepZ] = ClassIndex(classOfSlot[*codes++ + 1]);
+                out[x * kStepX + y * kStepY + z * kStepZ] = Out(slotMap[*codes++ + 1]);
             }
         }
     }
@@ -39,6 +40,63 @@ void readLeaf(const CodeTree::Leaf& leaf, const Slot* classOfSlot, ClassIndex* o
         out[(n >> 6) * kStepX + (n >> 3 & 7) * kStepY + (n & 7) * kStepZ] = kEmptySlot;
     }
 }
+
+// Reads a leaf in (slice, u, v) order.
+template <typename Out>
+void readLeaf(const CodeTree::Leaf& leaf, int sliceAxis, const Slot* slotMap, Out* out) {
+    if (sliceAxis == 0) return readLeafInSteps<64, 8, 1>(leaf, slotMap, out);
+    if (sliceAxis == 1) return readLeafInSteps<1, 64, 8>(leaf, slotMap, out);
+    readLeafInSteps<8, 1, 64>(leaf, slotMap, out);
+}
+
+// Holds voxels along the slice axis. Slots that are seen are numbered, 0 for all others; what a
+// voxel goes on as is looked up if there are few of them, and asked for otherwise.
+class Holder {
+  public:
+    Holder(const Volume& volume, const PackOptions& options) : options_(options) {
+        std::vector<Slot> slots{kEmptySlot};
+        for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+            const Slot slot = Slot(code + 1);
+            if (volume.histogram[code] != 0 && options.classOfSlot[slot] != kEmptySlot)
+                slots.push_back(slot);
+        }
+        numberOf_.resize(kSlotCount);
+        for (std::size_t i = 0; i < slots.size(); ++i) numberOf_[slots[i]] = Slot(i);
+        for (const Slot slot : slots) classOf_.push_back(ClassIndex(options.classOfSlot[slot]));
+        slots_ = std::move(slots);
+        if (slots_.size() > kMostInTable) return;
+        next_.resize(slots_.size() * slots_.size());
+        for (std::size_t held = 0; held < slots_.size(); ++held) {
+            for (std::size_t slot = 0; slot < slots_.size(); ++slot)
+                next_[held * slots_.size() + slot] = std::uint16_t(ask(Slot(held), Slot(slot)));
+        }
+    }
+
+    // [kSlotCount]: the number of each slot.
+    std::span<const Slot> numberOfSlot() const { return numberOf_; }
+    ClassIndex classOf(Slot number) const { return classOf_[number]; }
+    // Returns what a voxel goes on as.
+    Slot next(Slot held, Slot slot) const {
+        return next_.empty() ? ask(held, slot)
+                             : next_[std::size_t(held) * slots_.size() + std::size_t(slot)];
+    }
+
+  private:
+    static constexpr std::size_t kMostInTable = 512;
+
+    // Slots of one class need no tolerance: the later one goes on.
+    Slot ask(Slot held, Slot slot) const {
+        const bool keeps = held != 0 && slot != 0 && classOf_[held] != classOf_[slot] &&
+                           options_.holds(slots_[held], slots_[slot]);
+        return keeps ? held : slot;
+    }
+
+    const PackOptions& options_;
+    std::vector<Slot> numberOf_;
+    std::vector<Slot> slots_;          // by number
+    std::vector<ClassIndex> classOf_;  // likewise
+    std::vector<std::uint16_t> next_;  // [held][slot], or empty
+};
 
 // A word before all words are in one place.
 struct PendingWord {
@@ -57,8 +115,14 @@ constexpr double kBytesPerBlock =
 // Packs columns of blocks (same u and v), slices in increasing order.
 class ColumnPacker {
   public:
-    ColumnPacker(const BlockReader& reader, const IndexBox& box, const PackOptions& options)
-        : reader_(reader), options_(options), planner_(box), layout_(planner_.shortest()) {}
+    // holder: null if nothing is held
+    ColumnPacker(const IndexBox& box, const PackOptions& options, const Holder* holder,
+                 std::span<const Slot> slotMap)
+        : options_(options),
+          holder_(holder),
+          slotMap_(slotMap),
+          planner_(box),
+          layout_(planner_.shortest()) {}
 
     // Packs blocks [begin, end), which are whole columns.
     void run(const CodeBlock* begin, const CodeBlock* end) {
@@ -90,25 +154,22 @@ class ColumnPacker {
     }
 
     void read(const CodeBlock& block) {
-        if (options_.holds) return readHolding(block);
+        if (holder_) return readHolding(block);
         if (!block.leaf) return classes_.fill(ClassIndex(block.tileSlot));
-        const Slot* map = options_.classOfSlot.data();
-        if (options_.sliceAxis == 0) return readLeaf<64, 8, 1>(*block.leaf, map, classes_.data());
-        if (options_.sliceAxis == 1) return readLeaf<1, 64, 8>(*block.leaf, map, classes_.data());
-        readLeaf<8, 1, 64>(*block.leaf, map, classes_.data());
+        readLeaf(*block.leaf, options_.sliceAxis, slotMap_.data(), classes_.data());
     }
 
     void readHolding(const CodeBlock& block) {
         BlockSlots slots;
-        reader_.readBlock(block, slots);
+        if (block.leaf) {
+            readLeaf(*block.leaf, options_.sliceAxis, slotMap_.data(), slots.data());
+        } else {
+            slots.fill(block.tileSlot);
+        }
         for (std::size_t i = 0; i < slots.size(); ++i) {
             Slot& held = held_[i & 63];
-            const Slot was = options_.classOfSlot[held];
-            const Slot is = options_.classOfSlot[slots[i]];
-            const bool keeps = was != is && was != kEmptySlot && is != kEmptySlot &&
-                               options_.holds(held, slots[i]);
-            if (!keeps) held = slots[i];
-            classes_[i] = ClassIndex(keeps ? was : is);
+            held = holder_->next(held, slots[i]);
+            classes_[i] = holder_->classOf(held);
         }
     }
 
@@ -133,8 +194,9 @@ class ColumnPacker {
         std::copy_n(&classes_[7 * 64], 64, before_.begin());
     }
 
-    const BlockReader& reader_;
     const PackOptions& options_;
+    const Holder* holder_;
+    std::span<const Slot> slotMap_;
     SlabPlanner planner_;
     SlabLayout layout_;       // of the shortest slabs that there may be
     BlockClasses classes_{};  // of the block in hand
@@ -210,15 +272,17 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     packed.sliceAxis = options.sliceAxis;
     packed.box = permutedBox(volume.box, options.sliceAxis);
     if (volume.empty()) return packed;
-    const std::span<const Slot> slotMap =
-        options.holds ? std::span<const Slot>() : options.classOfSlot;
+    std::optional<Holder> holder;
+    if (options.holds) holder.emplace(volume, options);
+    const std::span<const Slot> slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
     const BlockReader reader(*volume.codes, nullptr, options.sliceAxis, slotMap);
     const std::vector<CodeBlock>& blocks = reader.blocks();
     requireMemory("delta grid",
                   double(blocks.size()) * kBytesPerBlock + 16.0 * packed.box.dims().x);
 
     const std::vector<std::size_t> cuts = cutAtColumns(blocks);
-    std::vector<ColumnPacker> packers(cuts.size() - 1, ColumnPacker(reader, packed.box, options));
+    std::vector<ColumnPacker> packers(
+        cuts.size() - 1, ColumnPacker(packed.box, options, holder ? &*holder : nullptr, slotMap));
     parallelFor(packers.size(), [&](std::size_t i) {
         packers[i].run(blocks.data() + cuts[i], blocks.data() + cuts[i + 1]);
     });

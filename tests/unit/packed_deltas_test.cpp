@@ -147,6 +147,30 @@ TEST(PackedDeltas, HoldsAgainstTheTrueSlot) {
     }
 }
 
+// What is held is looked up if few codes are seen, and asked for if a far corner has many more.
+TEST(PackedDeltas, HoldsTheSameWhereManyCodesAreSeen) {
+    const auto code = [](int x, int y, int z) { return 100 + (x * 5 + y * 3 + z * z) % 97; };
+    const auto volumeOf = [&](bool manyMore) {
+        return test::makeVolume({{-9, 0, 0}, {30, 60, 20}}, [&](int x, int y, int z) {
+            if (y < 24) return (x + y + z) % 5 == 0 ? test::kInactive : code(x, y, z);
+            return manyMore && y > 40 ? 300 + (x + 9) + 40 * z : test::kInactive;
+        });
+    };
+    std::vector<Slot> classes(kSlotCount, 0);
+    for (Slot slot = 1; slot < kSlotCount; ++slot) classes[slot] = slot < 65536 ? slot : 1;
+    const auto holds = [](Slot held, Slot slot) { return std::abs(held - slot) <= 6; };
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto shown = [&](bool manyMore) {
+            const Volume volume = volumeOf(manyMore);
+            return walk(packDeltas(volume, {axis, Encoding::kChanges, classes, holds}));
+        };
+        const Classes few = shown(false);
+        const Classes many = shown(true);
+        EXPECT_GT(many.size(), few.size() + 512);
+        for (const auto& [place, found] : few) EXPECT_EQ(many.at(place), found);
+    }
+}
+
 TEST(PackedDeltas, EmptyVolumeHasNoSlabs) {
     Volume volume;
     volume.codes = std::make_shared<CodeTree>();
