@@ -112,12 +112,12 @@ void runBench(const CLI::App& app, const BenchCommand& command, const Session& s
 
 Subcommand addBench(CLI::App& program) {
     const auto command = std::make_shared<BenchCommand>();
-    CLI::App& app =
-        addSubcommand(program, "bench", "Measures the four methods side by side on volumes.",
-                      {"deltasplat bench smoke.vdb --view iso --threads 1 --report out",
-                       "deltasplat bench engine_256x256x128_uint8.raw.gz head.vdb --tf ct.json "
-                       "--repeats 9 --json",
-                       "deltasplat bench table1 data"});
+    CLI::App& app = addSubcommand(
+        program, "bench", "Measures the four methods side by side on volumes.",
+        {"deltasplat bench smoke.vdb --view iso --threads 1 --report out",
+         "deltasplat bench engine_256x256x128_uint8.raw.gz head.vdb --tf examples/ct.json "
+         "--repeats 9 --json",
+         "deltasplat bench table1 data"});
     addBenchOptions(app, *command);
     Subcommand bench{&app,
                      [&app, command](const Session& session) { runBench(app, *command, session); }};

@@ -22,7 +22,7 @@ const char* stampedBy(Method method) {
         case Method::kAuto:
             break;
     }
-    return "for each slab the fewer stamps of sparse and delta";
+    return "sparse for slabs where that saves a fifth of the stamps, else delta";
 }
 
 std::string fileName(const std::string& input) {

@@ -124,7 +124,7 @@ Subcommand addInfo(CLI::App& program) {
     CLI::App& app = addSubcommand(
         program, "info", "Tells what is in volume files, and how alike their slices are.",
         {"deltasplat info smoke.vdb --plot smoke.svg",
-         "deltasplat info --json engine_256x256x128_uint8.raw.gz --tf ct.json"});
+         "deltasplat info --json engine_256x256x128_uint8.raw.gz --tf examples/ct.json"});
     app.add_option("INPUT", options->inputs, std::string("Files to describe: ") + kInputFormats)
         ->type_name("FILE")
         ->required()

@@ -123,7 +123,7 @@ Subcommand addRender(CLI::App& program) {
         program, "render", "Renders one picture of a volume.",
         {"deltasplat render smoke.vdb -o smoke.png --view iso --size 1024x1024 "
          "--background 0,0,0",
-         "deltasplat render engine_256x256x128_uint8.raw.gz -o engine.exr --tf ct.json "
+         "deltasplat render engine_256x256x128_uint8.raw.gz -o engine.exr --tf examples/ct.json "
          "--direction=-1,0.8,-0.6 --up 0,0,1"});
     addRenderOptions(app, *command);
     return {&app, [&app, command](const Session& session) { runRender(app, *command, session); }};

@@ -91,13 +91,14 @@ std::string errorBoundText(const RenderStats& stats) {
 std::string statsSummary(const RenderStats& stats, const RenderTimes& times) {
     char text[512];
     std::snprintf(text, sizeof text,
-                  "%s%d slices along %s in %d slabs, %d sheet pixels a voxel, footprint %dx%d\n"
+                  "%s%d slices along %s in %d slabs, %d sheet pixel%s a voxel, footprint %dx%d\n"
                   "seconds: read %.3f, prepare %.3f, render %.3f (splat %.3f, composite %.3f, "
                   "warp %.3f), write %.3f, total %.3f\n",
                   workSummary(stats).c_str(), stats.slices, axisName(stats.sliceAxis).c_str(),
-                  stats.slabs, stats.resolution, stats.footprint, stats.footprint, times.read,
-                  stats.prepareSeconds, stats.renderSeconds, stats.splatSeconds,
-                  stats.compositeSeconds, stats.warpSeconds, times.write, times.total);
+                  stats.slabs, stats.resolution, stats.resolution == 1 ? "" : "s", stats.footprint,
+                  stats.footprint, times.read, stats.prepareSeconds, stats.renderSeconds,
+                  stats.splatSeconds, stats.compositeSeconds, stats.warpSeconds, times.write,
+                  times.total);
     return text;
 }
 

@@ -147,7 +147,7 @@ const char* footnotes() {
            "  Footprints of up to 3 x 3, the default at one sheet pixel a voxel, are summed tile "
            "by "
            "tile\n"
-           "  instead, which helps dense work (traditional) most.\n";
+           "  instead where much changes, which helps dense work (traditional) most.\n";
 }
 
 }  // namespace
