@@ -16,14 +16,29 @@ constexpr glm::ivec3 kLeafStride{64, 8, 1};
 // What the stage keeps for each block: itself, its place and its changes.
 constexpr double kBytesPerBlock = sizeof(CodeBlock) + 16 + 128;
 
-// Calls use(box, slot) for every active tile whose slot is not empty.
+// Calls use(box, slot) for every active tile in a node whose slot is not empty.
+template <typename Node, typename SlotOf, typename Use>
+void forVisibleTilesOf(const Node& node, const SlotOf& slotOf, const Use& use) {
+    for (auto tile = node.cbeginValueOn(); tile; ++tile) {
+        const Slot slot = slotOf(*tile);
+        if (slot == kEmptySlot) continue;
+        use(openvdb::CoordBBox::createCube(tile.getCoord(), Node::ChildNodeType::DIM), slot);
+    }
+}
+
+// Calls use(box, slot) for every active tile whose slot is not empty. Node by node: OpenVDB's
+// iterators over a whole tree stop at every leaf on the way.
 template <typename SlotOf, typename Use>
 void forVisibleTiles(const CodeTree& codes, const SlotOf& slotOf, const Use& use) {
-    auto tile = codes.tree.cbeginValueOn();
-    tile.setMaxDepth(CodeTree::Tree::ValueOnCIter::LEAF_DEPTH - 1);
-    for (; tile; ++tile) {
-        if (slotOf(*tile) != kEmptySlot) use(tile.getBoundingBox(), slotOf(*tile));
-    }
+    using Upper = CodeTree::Tree::RootNodeType::ChildNodeType;
+    using Lower = Upper::ChildNodeType;
+    forVisibleTilesOf(codes.tree.root(), slotOf, use);
+    std::vector<const Upper*> uppers;
+    codes.tree.getNodes(uppers);
+    for (const Upper* node : uppers) forVisibleTilesOf(*node, slotOf, use);
+    std::vector<const Lower*> lowers;
+    codes.tree.getNodes(lowers);
+    for (const Lower* node : lowers) forVisibleTilesOf(*node, slotOf, use);
 }
 
 // Returns the leaves with active voxels whose slots may be other than empty.
