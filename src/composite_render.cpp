@@ -160,12 +160,12 @@ class SlabRenderer {
         const SheetLayout layout = layoutOf(strip, slab);
         if (!box.empty() && layout.blocks.y > 0) {
             Compositor compositor(scale_, view_.frontToBack);
-            splatter.begin(layout);
+            splatter.begin(slab, layout);
             for (int i = 0; i < slab.sliceCount; ++i) {
                 const int slice = slab.firstSlice + i;
                 const SheetShift shift = shiftOf(layout, view_.shiftPerSlice, slice);
                 // Reading takes in the row behind the last as well.
-                const Sheet& sheet = splatter.splat(slice, slab.whole, box.min.y + shift.offset.y,
+                const Sheet& sheet = splatter.splat(slice, box.min.y + shift.offset.y,
                                                     box.max.y + shift.offset.y + 1);
                 const Clock::time_point before = Clock::now();
                 compositor.composite(sheet, shift, layer);
@@ -218,8 +218,8 @@ Raster rasterOf(const Layer& layer, const ClassTable& classes) {
 }
 
 // What all slabs together take: splatters for each thread, layers, and the merged one.
-void requireSlabMemory(const PackedDeltas& deltas, const PlaneView& view,
-                       const SheetLayout& layout) {
+void requireSlabMemory(const SplatInput& input, const PlaneView& view, const SheetLayout& layout) {
+    const PackedDeltas& deltas = input.deltas;
     const IndexBox& box = deltas.box;
     const int rows = reachOf(layout, view.shiftPerSlice, box.min.x, box.dims().x).size().y;
     const int strips = stripCount(rows, deltas.slabs.size());
@@ -229,7 +229,7 @@ void requireSlabMemory(const PackedDeltas& deltas, const PlaneView& view,
     const double partRows = double(rows) / strips + 1.0 * (longest + 16) * layout.resolution +
                             2.0 * layout.marginPixels;
     const double share = std::min(1.0, partRows / layout.sizePixels.y);
-    double bytes = share * Splatter::bytes(layout) *
+    double bytes = share * Splatter::bytes(input, layout) *
                    std::min<double>(threadCount(), double(strips) * double(deltas.slabs.size()));
     const auto layerBytes = [&](int firstSlice, int sliceCount) {
         const glm::dvec2 size = reachOf(layout, view.shiftPerSlice, firstSlice, sliceCount).size();
@@ -250,8 +250,8 @@ void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const F
         makeFootprint(options.sigma.value_or(defaultSigma(resolution)), planeView.shiftPerSlice,
                       resolution, options.footprintWidth);
     const SheetLayout layout = layoutSheet(deltas.box, footprint, classes.oneColor ? 1 : 4);
-    requireSlabMemory(deltas, planeView, layout);
     const SplatInput input{deltas, classes, footprint, options.method == Method::kTraditional};
+    requireSlabMemory(input, planeView, layout);
     SlabRenderer slabs(input, layout, planeView, listener);
     slabs.run();
     const double slabSeconds = secondsSince(start);

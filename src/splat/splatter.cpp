@@ -6,58 +6,46 @@
 namespace deltasplat {
 namespace {
 
-using Way = std::variant<StampSplatter, TileSplatter>;
-
 // Where a block changes in fewer places a slice on average, summing tiles takes longer than
 // stamping. What is splatted anew for each slice has to be cleared as well, which tiles do by the
-// way: of that there may be little.
+// way.
 constexpr double kFewChanges = 12;
-constexpr double kMostWhole = 0.1;
 
-bool hasFewChanges(const PackedDeltas& deltas) {
-    std::uint64_t stamps = 0;
-    std::uint64_t whole = 0;
-    for (const PlannedSlab& slab : deltas.slabs) {
-        stamps += slab.stamps();
-        if (slab.whole) whole += slab.stamps();
-    }
-    return double(stamps) < kFewChanges * double(deltas.words.size()) &&
-           double(whole) <= kMostWhole * double(stamps);
-}
-
-// Both ways give the same integers.
-Way wayFor(const SplatInput& input, const SheetLayout& largest) {
-    if (TileWeights::fits(input.footprint) && !hasFewChanges(input.deltas))
-        return Way(std::in_place_type<TileSplatter>, input, largest);
-    return Way(std::in_place_type<StampSplatter>, input, largest);
+bool hasFewChanges(const PackedDeltas& deltas, const PlannedSlab& slab) {
+    if (slab.whole) return false;
+    const auto first = std::size_t(slab.firstSlice - deltas.box.min.x);
+    const std::size_t words = deltas.begins[first + slab.sliceCount] - deltas.begins[first];
+    return double(slab.deltas) < kFewChanges * double(words);
 }
 
 }  // namespace
 
-Splatter::Splatter(const SplatInput& input, const SheetLayout& largest)
-    : way_(wayFor(input, largest)) {}
-
-void Splatter::begin(const SheetLayout& layout) {
-    std::visit([&](auto& way) { way.setLayout(layout); }, way_);
+// Both ways give the same integers.
+void Splatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
+    whole_ = slab.whole;
+    stamping_ = !TileWeights::fits(input_.footprint) || hasFewChanges(input_.deltas, slab);
+    if (stamping_ && !stamps_) stamps_.emplace(input_, largest_);
+    if (!stamping_ && !tiles_) tiles_.emplace(input_, largest_);
+    withWay([&](auto& way) { way.setLayout(layout); });
 }
 
-const Sheet& Splatter::splat(int slice, bool whole, int firstRow, int lastRow) {
-    return std::visit(
-        [&](auto& way) -> const Sheet& {
-            way.splat(slice, whole, firstRow, lastRow);
-            return way.sheet();
-        },
-        way_);
+const Sheet& Splatter::splat(int slice, int firstRow, int lastRow) {
+    return withWay([&](auto& way) -> const Sheet& {
+        way.splat(slice, whole_, firstRow, lastRow);
+        return way.sheet();
+    });
 }
 
 void Splatter::end() {
-    std::visit([](auto& way) { way.clear(); }, way_);
+    withWay([](auto& way) { way.clear(); });
 }
 
-double Splatter::bytes(const SheetLayout& layout) {
-    // The sheet, and what is shown: half the sheet's size at most, or 2 bytes a voxel.
+double Splatter::bytes(const SplatInput& input, const SheetLayout& layout) {
+    // The sheet, and what is shown: half the sheet's size at most, or 2 bytes a voxel. There may be
+    // one for each way.
     const double voxels = 64.0 * layout.blocks.x * layout.blocks.y;
-    return 1.5 * double(layout.bytes()) + (2 + 0.25) * voxels;
+    const double ways = TileWeights::fits(input.footprint) ? 2 : 1;
+    return ways * (1.5 * double(layout.bytes()) + (2 + 0.25) * voxels);
 }
 
 }  // namespace deltasplat

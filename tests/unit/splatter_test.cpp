@@ -70,12 +70,12 @@ TEST(Splatter, RowsOfAMovingWindowAreThoseOfTheSlice) {
                     const int height = scene.layout.sizePixels.y;
                     const std::size_t pitch = scene.layout.channels * scene.layout.pitchPixels();
                     for (const PlannedSlab& slab : scene.deltas.slabs) {
-                        splatter.begin(scene.layout);
+                        splatter.begin(slab, scene.layout);
                         const Sheet* sheet = nullptr;
                         for (int i = 0; i < slab.sliceCount; ++i) {
                             const int first = 11 * i % (height - 15);
                             const int slice = slab.firstSlice + i;
-                            sheet = &splatter.splat(slice, slab.whole, first, first + 15);
+                            sheet = &splatter.splat(slice, first, first + 15);
                             const std::vector<std::int32_t> expected = stampedSheet(whole, slice);
                             for (int y = first; y < first + 15; ++y) {
                                 ASSERT_TRUE(std::equal(sheet->row(y), sheet->row(y) + pitch,
