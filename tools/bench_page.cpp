@@ -22,7 +22,7 @@ const char* stampedBy(Method method) {
         case Method::kAuto:
             break;
     }
-    return "sparse for slabs where that saves a fifth of the stamps, else delta";
+    return "sparse for slabs where that saves a fifth of the stamps or more, else delta";
 }
 
 std::string fileName(const std::string& input) {

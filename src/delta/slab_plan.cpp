@@ -15,6 +15,12 @@ constexpr int kShortSlab = 4;  // blocks of 8 slices: slabs up to this length ma
 // The most deltas that key slices may add, as a share of all others, as long as there may be fewer.
 constexpr double kMostKeyDeltas = 0.03;
 
+// A stamp of a whole slice costs a little more: what it replaces must be taken away.
+bool isSmallerWhole(const PlannedSlab& slab) {
+    return slab.changesLittle() ? 8 * slab.visible < 5 * slab.deltas
+                                : 5 * slab.visible < 4 * slab.deltas;
+}
+
 }  // namespace
 
 SlabPlanner::SlabPlanner(const IndexBox& box) : box_(box), shortest_(layoutOf(box, 8)) {
@@ -27,12 +33,14 @@ void SlabPlanner::add(int slice, std::uint64_t visible, std::uint64_t changed) {
                             std::uint64_t(std::popcount(changed))};
     Counts& counts = counts_[shortest_.slabOf(slice >> 3)];
     counts.all += found;
+    counts.words += changed != 0;
     if (shortest_.startsLaterSlab(slice)) counts.firstSlice += found;
 }
 
 void SlabPlanner::add(const SlabPlanner& other) {
     for (std::size_t i = 0; i < counts_.size(); ++i) {
         counts_[i].all += other.counts_[i].all;
+        counts_[i].words += other.counts_[i].words;
         counts_[i].firstSlice += other.counts_[i].firstSlice;
     }
 }
@@ -48,14 +56,14 @@ SlabPlan SlabPlanner::plan(Encoding encoding) const {
         PlannedSlab& slab = plan.slabs.back();
         slab.visible += counts.all.visible;
         slab.deltas += counts.all.deltas;
+        slab.words += counts.words;
         if (begins) slab.deltas += counts.firstSlice.visible - counts.firstSlice.deltas;
     }
     for (int i = 0; i < plan.layout.count(); ++i) {
         PlannedSlab& slab = plan.slabs[i];
         placeSlab(box_, plan.layout, i, slab);
-        // A stamp of a whole slice costs a little more: what it replaces must be taken away.
         slab.whole = encoding == Encoding::kWhole ||
-                     (encoding == Encoding::kSmaller && 5 * slab.visible < 4 * slab.deltas);
+                     (encoding == Encoding::kSmaller && isSmallerWhole(slab));
     }
     return plan;
 }

@@ -4,26 +4,12 @@
 #include "splat/splatter.h"
 
 namespace deltasplat {
-namespace {
-
-// Where a block changes in fewer places a slice on average, summing tiles takes longer than
-// stamping. What is splatted anew for each slice has to be cleared as well, which tiles do by the
-// way.
-constexpr double kFewChanges = 12;
-
-bool hasFewChanges(const PackedDeltas& deltas, const PlannedSlab& slab) {
-    if (slab.whole) return false;
-    const auto first = std::size_t(slab.firstSlice - deltas.box.min.x);
-    const std::size_t words = deltas.begins[first + slab.sliceCount] - deltas.begins[first];
-    return double(slab.deltas) < kFewChanges * double(words);
-}
-
-}  // namespace
 
 // Both ways give the same integers.
 void Splatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     whole_ = slab.whole;
-    stamping_ = !TileWeights::fits(input_.footprint) || hasFewChanges(input_.deltas, slab);
+    // What is splatted anew for each slice has to be cleared as well, which tiles do by the way.
+    stamping_ = !TileWeights::fits(input_.footprint) || (slab.changesLittle() && !slab.whole);
     if (stamping_ && !stamps_) stamps_.emplace(input_, largest_);
     if (!stamping_ && !tiles_) tiles_.emplace(input_, largest_);
     withWay([&](auto& way) { way.setLayout(layout); });
