@@ -289,7 +289,6 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     SlabPlanner planner(packed.box);
     for (const ColumnPacker& packer : packers) planner.add(packer.planner());
     SlabPlan plan = planner.plan(options.encoding);
-    packed.keyInterval = 8 * plan.layout.blocksPerSlab;
     packed.slabs = std::move(plan.slabs);
     collectWords(packers, plan.layout, packed);
     return packed;

@@ -34,8 +34,7 @@ struct PackedDeltas {
     PackedDeltas& operator=(PackedDeltas&&) = default;
 
     int sliceAxis = 2;
-    int keyInterval = 8;  ///< slices a slab, a multiple of 8
-    IndexBox box;         ///< the volume's box in (slice, u, v) order
+    IndexBox box;  ///< the volume's box in (slice, u, v) order
     std::vector<PlannedSlab>
         slabs;  ///< in increasing order, covering `box`; none for an empty volume
 

@@ -9,7 +9,6 @@
 
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/splat/footprint.h"
-#include "splat/stamp_kernels.h"
 #include "splat/tile_kernels.h"
 
 namespace deltasplat {
@@ -100,6 +99,7 @@ class Sheet {
     std::span<const std::uint8_t> fullRows(int tileRow) const {
         return {&full_[bytesPerRow_ * tileRow], bytesPerRow_};
     }
+    /// Returns where a row of tiles lies.
     TileRow tileRow(int row) { return {&pixels_[pitch() * row * kTilePixels], pitch()}; }
 
   private:

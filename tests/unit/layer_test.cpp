@@ -7,6 +7,7 @@
 #include <random>
 
 #include "composite/layer_fold.h"
+#include "deltasplat/optics/class_table.h"
 #include "deltasplat/simd.h"
 
 namespace deltasplat {

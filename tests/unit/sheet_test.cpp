@@ -7,6 +7,7 @@
 #include <random>
 
 #include "deltasplat/simd.h"
+#include "splat/stamp_kernels.h"
 
 namespace deltasplat {
 namespace {

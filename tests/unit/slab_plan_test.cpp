@@ -94,5 +94,17 @@ TEST(SlabPlan, TakesTheEncodingWithFewerStamps) {
     EXPECT_EQ(plan.slabs[1].visible, 128u);
 }
 
+// Of few changes in a block, whole slices have to save more.
+TEST(SlabPlan, KeepsFewChangesUnlessWholeSlicesSaveMuch) {
+    const auto isWhole = [](int visible, int changed) {
+        const SlabPlan plan = planned(0, 16, visible, changed).plan(Encoding::kSmaller);
+        return plan.slabs.back().whole;
+    };
+    EXPECT_FALSE(isWhole(5, 7));
+    EXPECT_TRUE(isWhole(5, 9));
+    EXPECT_TRUE(isWhole(20, 28));
+    EXPECT_FALSE(isWhole(20, 22));
+}
+
 }  // namespace
 }  // namespace deltasplat
