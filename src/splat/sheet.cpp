@@ -83,47 +83,43 @@ SheetLayout layoutRows(const SheetLayout& whole, int first, int last) {
 
 Sheet::Sheet(const SheetLayout& layout)
     : layout_(layout),
+      reach_(layout.resolution, layout.reachPixels, layout.footprintPixels),
       bytesPerRow_((layout.tiles().x + 7) / 8 * 8),
       pixels_(layout.bytes() / sizeof(std::int32_t)),
       full_(bytesPerRow_ * layout.tiles().y + sizeof(std::uint64_t)),
       touched_(full_.size()),
       touchedRows_(layout.tiles().y) {}
 
-void Sheet::touch(const SheetBox& box) {
-    mark<false>(box);
+// Blocks and margins begin at tiles.
+glm::ivec2 Sheet::firstTileOf(glm::ivec2 block) const {
+    return layout_.resolution * block + layout_.marginPixels / kTilePixels + reach_.firstTile();
 }
 
-void Sheet::touchUnlessFull(const SheetBox& box) {
-    mark<true>(box);
-}
-
-// Eight tiles at a time.
-template <bool kUnlessFull>
-void Sheet::mark(const SheetBox& box) {
-    // Shifts, for dividing a signed number takes longer.
-    static_assert(kTilePixels == 8);
-    const int firstColumn = box.first.x >> 3;
-    const int lastColumn = box.last.x >> 3;
-    for (int row = box.first.y >> 3; row <= box.last.y >> 3; ++row) {
-        const int low = std::max(box.first.y - 8 * row, 0);
-        const int high = std::min(box.last.y - 8 * row, 7);
-        const std::uint64_t rows =
-            std::uint64_t{0xFFu >> (7 - high + low) << low} * 0x0101010101010101u;
-        touchedRows_[row] = 1;
-        for (int column = firstColumn; column <= lastColumn; column += 8) {
-            const std::size_t place = bytesPerRow_ * row + column;
-            const int unused = std::max(column + 7 - lastColumn, 0);
-            std::uint64_t added = rows & ~std::uint64_t{0} >> 8 * unused;
-            std::uint64_t word;
-            if constexpr (kUnlessFull) {
-                std::memcpy(&word, &full_[place], sizeof word);
-                added &= ~word;
-            }
-            std::memcpy(&word, &touched_[place], sizeof word);
-            word |= added;
-            std::memcpy(&touched_[place], &word, sizeof word);
+void Sheet::touch(glm::ivec2 block, std::uint64_t voxels) {
+    const glm::ivec2 tile = firstTileOf(block);
+    for (int x = 0; x < reach_.tiles(); ++x) {
+        const std::uint8_t rows = reach_.rowsReaching(x, voxels);
+        for (int y = 0; y < reach_.tiles(); ++y) {
+            touched_[bytesPerRow_ * (tile.y + y) + tile.x + x] |= reach_.pixelRows(y, rows);
         }
     }
+    for (int y = 0; y < reach_.tiles(); ++y) touchedRows_[tile.y + y] = 1;
+}
+
+void Sheet::show(glm::ivec2 block, std::uint64_t seen, std::uint64_t gone) {
+    const glm::ivec2 tile = firstTileOf(block);
+    for (int x = 0; x < reach_.tiles(); ++x) {
+        const std::uint8_t rowsSeen = reach_.rowsReaching(x, seen);
+        const std::uint8_t rowsGone = reach_.rowsReaching(x, gone);
+        for (int y = 0; y < reach_.tiles(); ++y) {
+            const std::size_t place = bytesPerRow_ * (tile.y + y) + tile.x + x;
+            const std::uint8_t full = reach_.pixelRows(y, rowsSeen);
+            full_[place] |= full;
+            touched_[place] |= reach_.pixelRows(y, rowsGone) & ~full;
+        }
+    }
+    if (gone == 0) return;
+    for (int y = 0; y < reach_.tiles(); ++y) touchedRows_[tile.y + y] = 1;
 }
 
 void Sheet::settle() {

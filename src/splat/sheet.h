@@ -9,6 +9,7 @@
 
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/splat/footprint.h"
+#include "splat/block_reach.h"
 #include "splat/tile_kernels.h"
 
 namespace deltasplat {
@@ -56,15 +57,9 @@ SheetLayout layoutRows(const SheetLayout& whole, int first, int last);
 /// fit into memory
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels = 4);
 
-/// Pixels of a sheet, both corners inclusive.
-struct SheetBox {
-    glm::ivec2 first;
-    glm::ivec2 last;
-};
-
 /// The running splat of the current slice: 32-bit integers `[row][pitch][channels]`, in slice
-/// coordinates. Knows which rows of which tiles hold anything but zeros: integers return to exact
-/// zero, so that can be told exactly.
+/// coordinates. Knows which rows of which tiles may hold anything but zeros: integers return to
+/// exact zero, so that can be told.
 class Sheet {
   public:
     explicit Sheet(const SheetLayout& layout);
@@ -78,12 +73,12 @@ class Sheet {
     std::int32_t* pixels() { return pixels_.data(); }
     const std::int32_t* row(int y) const { return &pixels_[pitch() * y]; }
 
-    /// Says that pixels may have changed.
-    void touch(const SheetBox& box);
-    /// Says the same of what may have changed, but not to nothing: full rows stay full, as long as
-    /// colours and weights are not negative, what is visible has a colour, and all rows touched
-    /// before have been settled.
-    void touchUnlessFull(const SheetBox& box);
+    /// Says that what voxels of a block (v, u) show may have changed: a mask word, bit 8 * u + v.
+    void touch(glm::ivec2 block, std::uint64_t voxels);
+    /// Says that voxels of a block are seen now, and that others, `gone`, are not any more. Rows
+    /// that the former reach are full, for no colour or weight is negative; those that only the
+    /// latter reach are touched.
+    void show(glm::ivec2 block, std::uint64_t seen, std::uint64_t gone);
     /// Calls `refill(tileRow, touched, full)` for every row of tiles that has touched ones and in
     /// which any of the pixel rows [first, last) lies; others stay touched. Of each tile there is a
     /// byte, bit y for its row y: where `touched` has bits, `refill` puts into `full` whether those
@@ -95,7 +90,7 @@ class Sheet {
     /// Makes every pixel zero.
     void clear();
     /// Returns a byte for each tile of a tile row, and zeros up to a multiple of eight: bit y is
-    /// set where row y of the tile is not all zero.
+    /// set where row y of the tile may be other than zero.
     std::span<const std::uint8_t> fullRows(int tileRow) const {
         return {&full_[bytesPerRow_ * tileRow], bytesPerRow_};
     }
@@ -103,10 +98,10 @@ class Sheet {
     TileRow tileRow(int row) { return {&pixels_[pitch() * row * kTilePixels], pitch()}; }
 
   private:
-    template <bool kUnlessFull>
-    void mark(const SheetBox& box);
+    glm::ivec2 firstTileOf(glm::ivec2 block) const;
 
     SheetLayout layout_;
+    BlockReach reach_;
     std::size_t bytesPerRow_;
     std::vector<std::int32_t> pixels_;
     std::vector<std::uint8_t> full_;         // [tile row][bytesPerRow_], and a word more

@@ -2,26 +2,10 @@
 #include "splat/slice_blocks.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "hwy/cache_control.h"
 
 namespace deltasplat {
-
-SheetBox SliceBlocks::reachOf(glm::ivec2 block, std::uint64_t word) const {
-    const int firstU = std::countr_zero(word) >> 3;
-    const int lastU = (63 - std::countl_zero(word)) >> 3;
-    word |= word >> 32;
-    word |= word >> 16;
-    word |= word >> 8;
-    const auto columns = std::uint8_t(word);
-    const int firstV = std::countr_zero(columns);
-    const int lastV = 7 - std::countl_zero(columns);
-    const int r = layout_.resolution;
-    const glm::ivec2 origin = 8 * r * block + layout_.marginPixels - layout_.reachPixels;
-    return {origin + r * glm::ivec2(firstV, firstU),
-            origin + r * glm::ivec2(lastV, lastU) + layout_.footprintPixels - 1};
-}
 
 // The words of a slice in rows of blocks; they are ordered by u.
 std::span<const DeltaWord> SliceBlocks::wordsOf(int slice, glm::ivec2 rows) const {
@@ -41,13 +25,14 @@ glm::ivec2 SliceBlocks::blockOf(const DeltaWord& word) const {
 std::uint64_t SliceBlocks::voxelsInBox(glm::ivec2 block) const {
     const IndexBox& box = input_.deltas.box;
     const glm::ivec2 first = layout_.firstVoxel + 8 * block;
+    // The rows or columns first..last of the block.
+    const auto inside = [](int first, int last) {
+        return 0xFFu >> (7 - std::min(last, 7)) & 0xFFu << std::max(first, 0) & 0xFFu;
+    };
+    const std::uint64_t columns = inside(box.min.z - first.x, box.max.z - first.x);
+    const unsigned rows = inside(box.min.y - first.y, box.max.y - first.y);
     std::uint64_t word = 0;
-    for (int n = 0; n < 64; ++n) {
-        const int u = first.y + (n >> 3);
-        const int v = first.x + (n & 7);
-        const bool inside = u >= box.min.y && u <= box.max.y && v >= box.min.z && v <= box.max.z;
-        word |= std::uint64_t{inside} << n;
-    }
+    for (int u = 0; u < 8; ++u) word |= (rows >> u & 1) * columns << 8 * u;
     return word;
 }
 

@@ -49,9 +49,6 @@ class SliceBlocks {
         return std::size_t(block.y) * layout_.blocks.x + block.x;
     }
 
-    /// Returns the pixels that the voxels of a block's mask word, which is not zero, reach.
-    SheetBox reachOf(glm::ivec2 block, std::uint64_t voxels) const;
-
   private:
     std::span<const DeltaWord> wordsOf(int slice, glm::ivec2 rows) const;
     glm::ivec2 blockOf(const DeltaWord& word) const;

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cstring>
 
-#include "bit_matrix.h"
 #include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -97,62 +96,95 @@ class Rows<kChannels, 0> {
     int rows_;
 };
 
-// Calls use(n) for the active voxels of a slice, along u first: that is down the rows of the sheet,
-// where consecutive stamps meet the very vectors that were just stored.
-template <typename Use>
-HWY_INLINE void forActive(std::uint64_t active, const Use& use) {
-    for (std::uint64_t rest = transposedBits(active); rest != 0; rest &= rest - 1) {
-        const int n = std::countr_zero(rest);
-        use(8 * (n & 7) + (n >> 3));
-    }
-}
+// Goes through the active voxels of blocks, along u first: that is down the rows of the sheet,
+// where consecutive stamps meet the very vectors that were just stored. Blocks follow each other
+// without a branch, for which voxel is the last of one cannot be foretold.
+class ActiveVoxels {
+  public:
+    explicit ActiveVoxels(std::span<const BlockStamps> blocks)
+        : block_(blocks.data()), last_(block_ + blocks.size() - 1), rest_(block_->active) {}
 
-template <int kChannels, int kWidth>
-void stampBlockOf(const BlockSlice& slice, const ClassTable::Color* HWY_RESTRICT colors,
-                  std::uint16_t* HWY_RESTRICT shown, const StampWeights& weights,
-                  const StampTarget& target) {
+    const BlockStamps& block() const { return *block_; }
+    int voxel() const {
+        const int n = std::countr_zero(rest_);
+        return 8 * (n & 7) + (n >> 3);
+    }
+    void next() {
+        rest_ &= rest_ - 1;
+        const bool done = rest_ == 0;
+        block_ += std::size_t{done && block_ != last_};
+        rest_ |= block_->active & -std::uint64_t{done};
+    }
+
+  private:
+    const BlockStamps* block_;
+    const BlockStamps* last_;
+    std::uint64_t rest_;
+};
+
+template <int kChannels, int kWidth, bool kChanges>
+void stampBlocksOf(std::span<const BlockStamps> blocks,
+                   const ClassTable::Color* HWY_RESTRICT colors, const StampWeights& weights,
+                   const StampPlaces& places) {
+    std::size_t count = 0;
+    for (const BlockStamps& block : blocks) count += std::size_t(std::popcount(block.active));
     const Rows<kChannels, kWidth> rows(weights);
-    const auto stamp = [&](int n, auto color) HWY_ATTR {
-        rows.stamp(hn::PromoteTo(IntTag(), color),
-                   target.first + std::size_t(kChannels) * slice.placeInBlock[n], target.pitch);
+    const std::size_t pitch = places.pitch;
+    ActiveVoxels voxels(blocks);
+    hn::Vec<IntTag> color;
+    std::int32_t* row;
+    // Colour and place are loaded one stamp ahead, or the stamp would wait for them.
+    const auto load = [&]() HWY_ATTR {
+        const BlockStamps& block = voxels.block();
+        const int n = voxels.voxel();
+        auto bits = loadColor<kChannels>(colors[block.classes[n]]);
+        if constexpr (kChanges) {
+            bits = hn::Sub(bits, loadColor<kChannels>(colors[block.shown[n]]));
+            block.shown[n] = block.classes[n];
+        }
+        color = hn::PromoteTo(IntTag(), bits);
+        row = block.first + std::size_t(kChannels) * places.inBlock[n];
+        voxels.next();
     };
-    if (shown == nullptr) {
-        forActive(slice.active, [&](int n) HWY_ATTR {
-            stamp(n, loadColor<kChannels>(colors[slice.classes[n]]));
-        });
-        return;
+    load();
+    for (; count > 1; --count) {
+        const auto thisColor = color;
+        std::int32_t* thisRow = row;
+        load();
+        rows.stamp(thisColor, thisRow, pitch);
     }
-    forActive(slice.active, [&](int n) HWY_ATTR {
-        const auto before = loadColor<kChannels>(colors[shown[n]]);
-        shown[n] = slice.classes[n];
-        stamp(n, hn::Sub(loadColor<kChannels>(colors[shown[n]]), before));
-    });
+    rows.stamp(color, row, pitch);
 }
 
-template <int kChannels>
-void stampBlockIn(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
-                  const StampWeights& weights, const StampTarget& target) {
+template <int kChannels, bool kChanges>
+void stampBlocksIn(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
+                   const StampWeights& weights, const StampPlaces& places) {
     switch (weights.rows) {
         case 3:
-            return stampBlockOf<kChannels, 3>(slice, colors, shown, weights, target);
+            return stampBlocksOf<kChannels, 3, kChanges>(blocks, colors, weights, places);
         case 4:
-            return stampBlockOf<kChannels, 4>(slice, colors, shown, weights, target);
+            return stampBlocksOf<kChannels, 4, kChanges>(blocks, colors, weights, places);
         case 5:
-            return stampBlockOf<kChannels, 5>(slice, colors, shown, weights, target);
+            return stampBlocksOf<kChannels, 5, kChanges>(blocks, colors, weights, places);
         case 6:
-            return stampBlockOf<kChannels, 6>(slice, colors, shown, weights, target);
+            return stampBlocksOf<kChannels, 6, kChanges>(blocks, colors, weights, places);
         case 7:
-            return stampBlockOf<kChannels, 7>(slice, colors, shown, weights, target);
+            return stampBlocksOf<kChannels, 7, kChanges>(blocks, colors, weights, places);
         default:
-            return stampBlockOf<kChannels, 0>(slice, colors, shown, weights, target);
+            return stampBlocksOf<kChannels, 0, kChanges>(blocks, colors, weights, places);
     }
 }
 
-void stampBlockKernel(const BlockSlice& slice, const ClassTable::Color* colors,
-                      std::uint16_t* shown, const StampWeights& weights,
-                      const StampTarget& target) {
-    return weights.channels == 4 ? stampBlockIn<4>(slice, colors, shown, weights, target)
-                                 : stampBlockIn<1>(slice, colors, shown, weights, target);
+void stampWholeKernel(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
+                      const StampWeights& weights, const StampPlaces& places) {
+    return weights.channels == 4 ? stampBlocksIn<4, false>(blocks, colors, weights, places)
+                                 : stampBlocksIn<1, false>(blocks, colors, weights, places);
+}
+
+void stampChangesKernel(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
+                        const StampWeights& weights, const StampPlaces& places) {
+    return weights.channels == 4 ? stampBlocksIn<4, true>(blocks, colors, weights, places)
+                                 : stampBlocksIn<1, true>(blocks, colors, weights, places);
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -161,7 +193,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace deltasplat {
 
-HWY_EXPORT(stampBlockKernel);
+HWY_EXPORT(stampWholeKernel);
+HWY_EXPORT(stampChangesKernel);
 
 StampWeights::StampWeights(const Footprint& footprint, int sheetChannels)
     : channels(sheetChannels),
@@ -176,14 +209,16 @@ StampWeights::StampWeights(const Footprint& footprint, int sheetChannels)
     }
 }
 
-void stampWhole(const BlockSlice& slice, const ClassTable::Color* colors,
-                const StampWeights& weights, const StampTarget& target) {
-    HWY_DYNAMIC_DISPATCH(stampBlockKernel)(slice, colors, nullptr, weights, target);
+void stampWhole(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
+                const StampWeights& weights, const StampPlaces& places) {
+    if (blocks.empty()) return;
+    HWY_DYNAMIC_DISPATCH(stampWholeKernel)(blocks, colors, weights, places);
 }
 
-void stampChanges(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
-                  const StampWeights& weights, const StampTarget& target) {
-    HWY_DYNAMIC_DISPATCH(stampBlockKernel)(slice, colors, shown, weights, target);
+void stampChanges(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
+                  const StampWeights& weights, const StampPlaces& places) {
+    if (blocks.empty()) return;
+    HWY_DYNAMIC_DISPATCH(stampChangesKernel)(blocks, colors, weights, places);
 }
 
 }  // namespace deltasplat

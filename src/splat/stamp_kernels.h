@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "deltasplat/optics/class_table.h"
@@ -22,29 +23,31 @@ struct StampWeights {
     std::vector<std::int32_t> weights;  ///< [rows][rowLength]
 };
 
-/// The 64 voxels of one slice of a block, and where their stamps go.
-struct BlockSlice {
-    const std::uint16_t* classes;       ///< [64]
-    std::uint64_t active;               ///< bit n: voxel n counts
-    const std::uint32_t* placeInBlock;  ///< [64]: pixels from the first voxel's footprint to each
+/// The voxels of one slice of a block that are stamped.
+struct BlockStamps {
+    std::uint64_t active;          ///< bit 8 * v + u: voxel (u, v) is stamped; not zero
+    const std::uint16_t* classes;  ///< [64]
+    std::uint16_t* shown;          ///< [64]: the classes of the slice before, for stampChanges
+    std::int32_t*
+        first;  ///< sheet: of the first voxel's footprint, `[row][pitch / channels][channels]`
 };
 
-/// Where a block is stamped.
-struct StampTarget {
-    std::int32_t* first;  ///< of the first voxel's footprint, `[row][pitch / channels][channels]`
-    std::size_t pitch;    ///< integers from one row to the next
+/// Where stamps go.
+struct StampPlaces {
+    const std::uint32_t* inBlock;  ///< [64]: pixels from the first voxel's footprint to each
+    std::size_t pitch;             ///< integers from one row of the sheet to the next
 };
 
 /// Adds a stamp for every active voxel, in the colour of its class: sheet += colour * weight, in
 /// 32-bit integers, so that the order of stamps does not matter. Vectors may reach over a row's
 /// end, where they add zeros.
 /// @param colors  of the class table
-void stampWhole(const BlockSlice& slice, const ClassTable::Color* colors,
-                const StampWeights& weights, const StampTarget& target);
+void stampWhole(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
+                const StampWeights& weights, const StampPlaces& places);
 
 /// Adds a stamp for every active voxel, in the difference between the colour of its class and that
-/// of the class it showed before ([64]), which is replaced.
-void stampChanges(const BlockSlice& slice, const ClassTable::Color* colors, std::uint16_t* shown,
-                  const StampWeights& weights, const StampTarget& target);
+/// of the class it showed before, which is replaced.
+void stampChanges(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
+                  const StampWeights& weights, const StampPlaces& places);
 
 }  // namespace deltasplat

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "bit_matrix.h"
+
 namespace deltasplat {
 
 StampSplatter::StampSplatter(const SplatInput& input, const SheetLayout& largest)
@@ -32,22 +34,22 @@ void StampSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
     }
     const ClassTable::Color* colors = input_.classes.colors.data();
     const SheetLayout& layout = sheet_.layout();
+    stamped_.clear();
     const glm::ivec2 rows = whole ? blocksReaching(layout, firstRow, lastRow) : blocks_.rows();
-    blocks_.forEach(
-        slice, whole, rows, [&](glm::ivec2 block, std::uint64_t active, const DeltaWord& word) {
-            sheet_.touchUnlessFull(blocks_.reachOf(block, active));
-            const std::uint64_t gone = active & ~word.visible;
-            if (!whole && gone != 0) sheet_.touch(blocks_.reachOf(block, gone));
-            const std::size_t place = layout.stampPlace(layout.firstVoxel + 8 * block);
-            const BlockSlice voxels{word.classes, active, placeInBlock_.data()};
-            const StampTarget target{sheet_.pixels() + layout.channels * place, sheet_.pitch()};
-            if (whole) {
-                stampWhole(voxels, colors, weights_, target);
-            } else {
-                stampChanges(voxels, colors, &shown_[64 * blocks_.placeOf(block)], weights_,
-                             target);
-            }
-        });
+    blocks_.forEach(slice, whole, rows,
+                    [&](glm::ivec2 block, std::uint64_t active, const DeltaWord& word) {
+                        sheet_.show(block, word.visible, whole ? 0 : active & ~word.visible);
+                        const std::size_t place = layout.stampPlace(layout.firstVoxel + 8 * block);
+                        stamped_.push_back({transposedBits(active), word.classes,
+                                            whole ? nullptr : &shown_[64 * blocks_.placeOf(block)],
+                                            sheet_.pixels() + layout.channels * place});
+                    });
+    const StampPlaces places{placeInBlock_.data(), sheet_.pitch()};
+    if (whole) {
+        stampWhole(stamped_, colors, weights_, places);
+    } else {
+        stampChanges(stamped_, colors, weights_, places);
+    }
     sheet_.settle();
 }
 

@@ -32,7 +32,8 @@ class StampSplatter {
     std::size_t mostBlocks_;  // of any layout
     /// Of a voxel's footprint, from its block's first one.
     std::array<std::uint32_t, 64> placeInBlock_;
-    std::vector<ClassIndex> shown_;  // [block][64], of slabs that are not whole
+    std::vector<BlockStamps> stamped_;  // of the slice in hand
+    std::vector<ClassIndex> shown_;     // [block][64], of slabs that are not whole
 };
 
 }  // namespace deltasplat

@@ -77,7 +77,7 @@ void TileSplatter::takeAway(glm::ivec2 block) {
 
 // Writes the colours of voxels of a block.
 void TileSplatter::paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes) {
-    sheet_.touch(blocks_.reachOf(block, voxels));
+    sheet_.touch(block, voxels);
     const SheetLayout& layout = sheet_.layout();
     std::int16_t* first = planeAt(8 * block + layout.marginPixels / layout.resolution);
     if (layout.channels == 4) {

@@ -6,7 +6,9 @@
 #include <array>
 #include <random>
 
+#include "bit_matrix.h"
 #include "deltasplat/simd.h"
+#include "splat/block_reach.h"
 #include "splat/stamp_kernels.h"
 
 namespace deltasplat {
@@ -63,13 +65,14 @@ struct StampedPair {
             active = active << 32 | random();
             const glm::ivec2 block(random() % layout.blocks.x, random() % layout.blocks.y);
             const std::size_t first = layout.stampPlace(layout.firstVoxel + 8 * block);
-            const BlockSlice voxels{classes.data(), active, places.data()};
-            const StampTarget target{sheet.pixels() + channels * first, sheet.pitch()};
+            const BlockStamps stamps{transposedBits(active), classes.data(), shown.data(),
+                                     sheet.pixels() + channels * first};
+            const StampPlaces in{places.data(), sheet.pitch()};
             const bool whole = i % 2 == 0;
             if (whole) {
-                stampWhole(voxels, colors.data(), weights, target);
+                stampWhole({&stamps, 1}, colors.data(), weights, in);
             } else {
-                stampChanges(voxels, colors.data(), shown.data(), weights, target);
+                stampChanges({&stamps, 1}, colors.data(), weights, in);
             }
             for (int n = 0; n < 64; ++n) {
                 const bool counts = active >> n & 1;
@@ -126,6 +129,42 @@ TEST_P(SheetOnEveryLevel, StampsOfEveryWidth) {
     }
 }
 
+// Blocks with one, all, and some voxels, in one call and in one for each.
+TEST_P(SheetOnEveryLevel, BlocksAreStampedOneAfterTheOther) {
+    for (const int width : {3, 6, 9}) {
+        const Footprint footprint = makeFootprint(1, {0.4, -0.9}, 1, width);
+        const StampWeights weights(footprint, 4);
+        Sheet together(layoutSheet(kBox, footprint));
+        Sheet alone(layoutSheet(kBox, footprint));
+        const SheetLayout& layout = alone.layout();
+        std::mt19937 random(3);
+        const std::vector<ClassTable::Color> colors = randomColors(random);
+        const std::array<std::uint32_t, 64> places = placesInBlock(layout);
+        const std::uint64_t actives[] = {1, ~std::uint64_t{0}, std::uint64_t{1} << 63, 0x8100,
+                                         0x123456789ABCDEF0};
+        std::vector<std::array<std::uint16_t, 64>> classes(std::size(actives));
+        std::vector<std::array<std::uint16_t, 64>> shown(std::size(actives));
+        std::vector<std::array<std::uint16_t, 64>> shownAlone(std::size(actives));
+        std::vector<BlockStamps> stamps;
+        for (std::size_t i = 0; i < std::size(actives); ++i) {
+            for (std::uint16_t& next : classes[i]) next = std::uint16_t(random() % colors.size());
+            const glm::ivec2 block(i % layout.blocks.x, i / 2 % layout.blocks.y);
+            const std::size_t first = 4 * layout.stampPlace(layout.firstVoxel + 8 * block);
+            stamps.push_back(
+                {actives[i], classes[i].data(), shown[i].data(), together.pixels() + first});
+            const BlockStamps one{actives[i], classes[i].data(), shownAlone[i].data(),
+                                  alone.pixels() + first};
+            stampChanges({&one, 1}, colors.data(), weights, {places.data(), alone.pitch()});
+        }
+        stampChanges(stamps, colors.data(), weights, {places.data(), together.pitch()});
+        stampChanges({}, colors.data(), weights, {places.data(), together.pitch()});
+        stampWhole({}, colors.data(), weights, {places.data(), together.pitch()});
+        EXPECT_EQ(shown, shownAlone);
+        const std::size_t count = together.pitch() * layout.sizePixels.y;
+        EXPECT_TRUE(std::equal(alone.row(0), alone.row(0) + count, together.row(0))) << width;
+    }
+}
+
 TEST_P(SheetOnEveryLevel, FullSliceOfTheLargestColourFitsThirtyTwoBits) {
     const Footprint footprint = makeFootprint(0.5, {1, 1}, 2);
     Sheet sheet(layoutSheet(kBox, footprint));
@@ -138,8 +177,9 @@ TEST_P(SheetOnEveryLevel, FullSliceOfTheLargestColourFitsThirtyTwoBits) {
         for (int u = 0; u < sheet.layout().blocks.y; ++u) {
             const glm::ivec2 voxel = sheet.layout().firstVoxel + 8 * glm::ivec2(v, u);
             const std::size_t place = sheet.layout().stampPlace(voxel);
-            stampWhole({classes.data(), ~std::uint64_t{0}, places.data()}, colors.data(), weights,
-                       {sheet.pixels() + 4 * place, sheet.pitch()});
+            const BlockStamps stamps{~std::uint64_t{0}, classes.data(), nullptr,
+                                     sheet.pixels() + 4 * place};
+            stampWhole({&stamps, 1}, colors.data(), weights, {places.data(), sheet.pitch()});
         }
     }
     // Away from the edge every sheet pixel is the colour itself.
@@ -149,79 +189,141 @@ TEST_P(SheetOnEveryLevel, FullSliceOfTheLargestColourFitsThirtyTwoBits) {
     EXPECT_EQ(sheet.pixels()[4 * middle + 2], 0);
 }
 
+// Of one pixel, so that a voxel reaches one row of one tile.
+const Footprint& pixelFootprint() {
+    static const Footprint footprint = makeFootprint(0.4, {0, 0}, 1, 1);
+    return footprint;
+}
+
+// Where a voxel of a block is: a tile, as there is one pixel a voxel.
+struct VoxelPlace {
+    VoxelPlace(Sheet& sheet, glm::ivec2 inBlock, int voxel)
+        : block(inBlock),
+          bit(std::uint64_t{1} << voxel),
+          tile(inBlock + sheet.layout().marginPixels / kTilePixels) {
+        const glm::ivec2 p = 8 * tile + glm::ivec2(voxel % 8, voxel / 8);
+        const int channels = sheet.layout().channels;
+        value = &sheet.pixels()[sheet.pitch() * p.y + channels * (p.x + 1) - 1];
+    }
+
+    glm::ivec2 block;
+    std::uint64_t bit;
+    glm::ivec2 tile;
+    std::int32_t* value;  // the last channel
+};
+
 TEST_P(SheetOnEveryLevel, SettleFindsTheRowsThatAreNotZero) {
-    const Footprint footprint = makeFootprint(0.4, {0, 0}, 1);
     for (const int channels : {1, 4}) {
-        Sheet sheet(layoutSheet(kBox, footprint, channels));
+        Sheet sheet(layoutSheet(kBox, pixelFootprint(), channels));
         const glm::ivec2 tiles = sheet.layout().tiles();
-        for (int tile = 0; tile < tiles.x * tiles.y; ++tile) {
-            const glm::ivec2 column(tile % tiles.x, tile / tiles.x);
-            for (const int corner : {0, 7, 27, 63}) {
-                const glm::ivec2 p = 8 * column + glm::ivec2(corner % 8, corner / 8);
-                std::int32_t& value =
-                    sheet.pixels()[sheet.pitch() * p.y + channels * (p.x + 1) - 1];
-                value = -1;
-                sheet.touch({p, p});
+        const glm::ivec2 blocks = sheet.layout().blocks;
+        for (int block = 0; block < blocks.x * blocks.y; ++block) {
+            for (const int voxel : {0, 7, 27, 63}) {
+                const VoxelPlace place(sheet, {block % blocks.x, block / blocks.x}, voxel);
+                *place.value = -1;
+                sheet.touch(place.block, place.bit);
                 sheet.settle();
                 for (int row = 0; row < tiles.y; ++row) {
                     for (int x = 0; x < tiles.x; ++x) {
-                        const int expected = glm::ivec2(x, row) == column ? 1 << (corner / 8) : 0;
-                        EXPECT_EQ(sheet.fullRows(row)[x], expected);
+                        const bool here = glm::ivec2(x, row) == place.tile;
+                        EXPECT_EQ(sheet.fullRows(row)[x], here ? 1 << (voxel / 8) : 0);
                     }
                 }
-                value = 0;
-                sheet.touch({p, p});
+                *place.value = 0;
+                sheet.touch(place.block, place.bit);
                 sheet.settle();
-                EXPECT_EQ(sheet.fullRows(column.y)[column.x], 0);
+                EXPECT_EQ(sheet.fullRows(place.tile.y)[place.tile.x], 0);
             }
         }
     }
 }
 
-TEST_P(SheetOnEveryLevel, FullRowsAreLookedAtAgainOnlyIfTouched) {
-    Sheet sheet(layoutSheet(kBox, makeFootprint(0.4, {0, 0}, 1)));
-    const glm::ivec2 p(17, 20);
-    const SheetBox all{{0, 0}, sheet.layout().sizePixels - 1};
-    const auto full = [&] { return sheet.fullRows(p.y / 8)[std::size_t(p.x / 8)]; };
-    std::int32_t& value = sheet.pixels()[sheet.pitch() * p.y + 4 * p.x];
-    value = 5;
-    sheet.touchUnlessFull(all);
+TEST_P(SheetOnEveryLevel, RowsAreFullWhereVoxelsAreSeenAndLookedAtWhereTheyAreGone) {
+    Sheet sheet(layoutSheet(kBox, pixelFootprint()));
+    const VoxelPlace place(sheet, {1, 2}, 27);
+    const auto full = [&] { return sheet.fullRows(place.tile.y)[std::size_t(place.tile.x)]; };
+    *place.value = 5;
+    sheet.show(place.block, place.bit, 0);
     sheet.settle();
-    EXPECT_EQ(full(), 1 << p.y % 8);
-    value = 0;
-    sheet.touchUnlessFull(all);
+    EXPECT_EQ(full(), 1 << 3);
+    // Another voxel of the row is seen still, so that nobody looks.
+    *place.value = 0;
+    sheet.show(place.block, place.bit << 1, place.bit);
     sheet.settle();
-    EXPECT_EQ(full(), 1 << p.y % 8);
-    sheet.touch({p, p});
+    EXPECT_EQ(full(), 1 << 3);
+    sheet.show(place.block, 0, place.bit << 1);
     sheet.settle();
     EXPECT_EQ(full(), 0);
+    *place.value = 5;
+    sheet.show(place.block, 0, place.bit);
+    sheet.settle();
+    EXPECT_EQ(full(), 1 << 3);
+}
+
+// Every pixel that any of some voxels' footprints covers, and no other row of a tile.
+TEST(BlockReach, IsThatOfItsVoxelsFootprints) {
+    std::mt19937_64 random(1);
+    for (const int r : {1, 2, 3, 5}) {
+        for (const int width : {r, 2 * r + 1, 6 * r, 40}) {
+            const BlockReach reach(r, width / 2, width);
+            for (int i = 0; i < 50; ++i) {
+                const std::uint64_t voxels = random() & random() & random() & random();
+                const int tiles = reach.tiles();
+                std::vector<unsigned> expected(std::size_t(tiles) * tiles);
+                for (int n = 0; n < 64; ++n) {
+                    if ((voxels >> n & 1) == 0) continue;
+                    const glm::ivec2 first =
+                        r * glm::ivec2(n % 8, n / 8) - width / 2 - 8 * reach.firstTile();
+                    ASSERT_GE(std::min(first.x, first.y), 0);
+                    ASSERT_LE(std::max(first.x, first.y) + width, 8 * tiles);
+                    for (int y = first.y; y < first.y + width; ++y) {
+                        for (int x = first.x; x < first.x + width; ++x)
+                            expected[std::size_t(y / 8 * tiles + x / 8)] |= 1u << y % 8;
+                    }
+                }
+                for (int x = 0; x < tiles; ++x) {
+                    const std::uint8_t rows = reach.rowsReaching(x, voxels);
+                    for (int y = 0; y < tiles; ++y) {
+                        EXPECT_EQ(reach.pixelRows(y, rows), expected[std::size_t(y * tiles + x)]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+// Touches all that voxels may reach.
+void touchAll(Sheet& sheet) {
+    const glm::ivec2 blocks = sheet.layout().blocks;
+    for (int i = 0; i < blocks.x * blocks.y; ++i)
+        sheet.touch({i % blocks.x, i / blocks.x}, ~std::uint64_t{0});
 }
 
 TEST(Sheet, RefillsRowsOfTilesOnceTheyAreAskedFor) {
-    Sheet sheet(layoutSheet(kBox, makeFootprint(0.4, {0, 0}, 1)));
-    const int rows = sheet.layout().tiles().y;
-    ASSERT_GE(rows, 5);
-    sheet.touch({{0, 0}, sheet.layout().sizePixels - 1});
+    Sheet sheet(layoutSheet(kBox, pixelFootprint()));
+    ASSERT_EQ(sheet.layout().tiles().y, 7);
+    touchAll(sheet);
     const auto refilled = [&](int first, int last) {
         std::vector<int> found;
         sheet.refillTouched(first, last, [&](int row, const auto& touched, const auto&) {
-            EXPECT_EQ(touched[0], 0xFF);
+            EXPECT_EQ(touched[1], 0xFF);
             found.push_back(row);
         });
         return found;
     };
     EXPECT_EQ(refilled(10, 17), (std::vector<int>{1, 2}));
-    EXPECT_EQ(refilled(-9, 9), std::vector<int>{0});
-    EXPECT_EQ(refilled(5, 5), std::vector<int>{});
+    EXPECT_EQ(refilled(-9, 9), std::vector<int>{});
+    EXPECT_EQ(refilled(24, 24), std::vector<int>{});
     EXPECT_EQ(refilled(24, 25), std::vector<int>{3});
-    EXPECT_EQ(refilled(0, 40), std::vector<int>{4});
+    // Voxels do not reach the outermost tiles.
+    EXPECT_EQ(refilled(0, 90), (std::vector<int>{4, 5}));
 }
 
 TEST_P(SheetOnEveryLevel, ClearMakesTouchedPixelsZero) {
     for (const int channels : {1, 4}) {
         StampedPair pair(makeFootprint(0.4, {0, 0}, 1), 12, 9, channels);
         const glm::ivec2 size = pair.sheet.layout().sizePixels;
-        pair.sheet.touch({{0, 0}, size - 1});
+        touchAll(pair.sheet);
         pair.sheet.clear();
         for (int y = 0; y < size.y; ++y) {
             for (int i = 0; i < channels * size.x; ++i) ASSERT_EQ(pair.sheet.row(y)[i], 0);
@@ -277,20 +379,6 @@ TEST(SheetLayout, PartsHaveTheBlocksThatReachTheirRows) {
                 }
             }
         }
-    }
-}
-
-TEST(Sheet, TouchesNoMoreThanItIsTold) {
-    const IndexBox wide{{0, 0, 0}, {0, 7, 2000}};
-    Sheet sheet(layoutSheet(wide, makeFootprint(0.4, {0, 0}, 1)));
-    const int width = sheet.layout().sizePixels.x;
-    for (int x = 0; x < width; ++x) {
-        for (const int y : {2, 3, 4}) sheet.pixels()[y * sheet.pitch() + 4 * x] = 1;
-    }
-    sheet.touch({{100, 2}, {width - 1, 3}});
-    sheet.settle();
-    for (int x = 0; x < sheet.layout().tiles().x; ++x) {
-        EXPECT_EQ(sheet.fullRows(0)[x] & 0b1100, x >= 100 / 8 ? 0b1100 : 0) << x;
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "deltasplat/optics/class_table.h"
 #include "support/make_volume.h"
 
@@ -40,6 +42,17 @@ std::vector<std::int32_t> stampedSheet(const Scene& scene, int slice) {
     splatter.splat(slice, true, 0, scene.layout.sizePixels.y);
     const Sheet& sheet = splatter.sheet();
     return {sheet.row(0), sheet.row(0) + sheet.pitch() * scene.layout.sizePixels.y};
+}
+
+bool isFullWhereNotZero(const Sheet& sheet, int row) {
+    const std::size_t length = std::size_t{kTilePixels} * sheet.layout().channels;
+    for (int tile = 0; tile < sheet.layout().tiles().x; ++tile) {
+        const std::int32_t* first = sheet.row(row) + length * tile;
+        const bool zero = std::all_of(first, first + length, [](int value) { return value == 0; });
+        const bool full = sheet.fullRows(row / kTilePixels)[tile] >> row % kTilePixels & 1;
+        if (!zero && !full) return false;
+    }
+    return true;
 }
 
 const IndexBox kBox{{-19, -11, 2}, {20, 50, 25}};
@@ -81,6 +94,7 @@ TEST(Splatter, RowsOfAMovingWindowAreThoseOfTheSlice) {
                                 ASSERT_TRUE(std::equal(sheet->row(y), sheet->row(y) + pitch,
                                                        &expected[pitch * y]))
                                     << "slice " << slice << " row " << y << " width " << width;
+                                ASSERT_TRUE(isFullWhereNotZero(*sheet, y)) << slice << ' ' << y;
                             }
                         }
                         splatter.end();
@@ -91,6 +105,32 @@ TEST(Splatter, RowsOfAMovingWindowAreThoseOfTheSlice) {
             }
         }
     }
+}
+
+// Without a volume's words, so that every mask is that of the box alone.
+TEST(SliceBlocks, TraditionalTakesEveryVoxelOfTheBox) {
+    const Volume volume = test::makeVolume(kBox, [](int, int, int) { return 200; });
+    const Scene scene(volume, Encoding::kWhole, makeFootprint(0.5, {0, 0}, 1), false);
+    PackedDeltas nothing;
+    nothing.box = scene.deltas.box;
+    nothing.begins.resize(std::size_t(nothing.box.dims().x) + 1);
+    const SplatInput input{nothing, scene.classes, scene.footprint, true};
+    const SliceBlocks blocks(input, scene.layout);
+    std::vector<glm::ivec2> found;
+    blocks.forEach(kBox.min.x, true, blocks.rows(),
+                   [&](glm::ivec2 block, std::uint64_t voxels, const DeltaWord&) {
+                       const glm::ivec2 first = scene.layout.firstVoxel + 8 * block;
+                       for (int n = 0; n < 64; ++n) {
+                           if (voxels >> n & 1) found.push_back(first + glm::ivec2(n % 8, n / 8));
+                       }
+                   });
+    const auto inside = [&](glm::ivec2 voxel) {
+        return voxel.x >= kBox.min.z && voxel.x <= kBox.max.z && voxel.y >= kBox.min.y &&
+               voxel.y <= kBox.max.y;
+    };
+    EXPECT_TRUE(std::all_of(found.begin(), found.end(), inside));
+    const glm::ivec3 dims = kBox.dims();
+    EXPECT_EQ(found.size(), std::size_t(dims.y) * dims.z);
 }
 
 }  // namespace

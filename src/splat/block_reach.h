@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace deltasplat {
+
+/// Which rows of which tiles the footprints of a block's 8x8 voxels reach. Tiles are counted from
+/// the first that any of them reaches.
+class BlockReach {
+  public:
+    /// @param resolution   sheet pixels a voxel
+    /// @param reachPixels  as Footprint::reach
+    /// @param width        of the footprint, in pixels
+    BlockReach(int resolution, int reachPixels, int width);
+
+    /// The first tile reached, counted from the one in which the block's first voxel lies; <= 0.
+    int firstTile() const { return firstTile_; }
+    /// Tiles reached along a row, and along a column.
+    int tiles() const { return int(columns_.size()); }
+
+    /// Returns the rows of voxels, bit u, in which any of `voxels` (bit 8 * u + v) reaches a column
+    /// of tiles.
+    std::uint8_t rowsReaching(int tileColumn, std::uint64_t voxels) const {
+        // Into the highest bit of each byte whether it is not zero, then the eight together.
+        constexpr std::uint64_t kLow = 0x7F7F7F7F7F7F7F7F;
+        const std::uint64_t reaching = voxels & columns_[tileColumn];
+        const std::uint64_t any = (((reaching & kLow) + kLow) | reaching) & ~kLow;
+        return std::uint8_t((any >> 7) * 0x0102040810204080 >> 56);
+    }
+    /// Returns the pixel rows of a tile, bit y, that footprints reach from rows of voxels.
+    std::uint8_t pixelRows(int tileRow, std::uint8_t voxelRows) const {
+        return pixelRows_[tileRow][voxelRows];
+    }
+
+  private:
+    int firstTile_;
+    std::vector<std::uint64_t> columns_;  // [tile column]: the voxels that reach it
+    std::vector<std::array<std::uint8_t, 256>> pixelRows_;  // [tile row][rows of voxels]
+};
+
+}  // namespace deltasplat
