@@ -34,7 +34,9 @@ Sheet randomSheet(std::uint32_t seed, int channels = 4) {
                     pixel[c] = std::int32_t(uniform(random) * ClassTable::kMax * Footprint::kOne);
                 }
             }
-            sheet.touch({8 * glm::ivec2(x, y), 8 * glm::ivec2(x, y) + 7});
+            // At one pixel a voxel, blocks are as large as tiles.
+            sheet.touch(glm::ivec2(x, y) - sheet.layout().marginPixels / kTilePixels,
+                        ~std::uint64_t{0});
         }
     }
     sheet.settle();
