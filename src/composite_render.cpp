@@ -72,7 +72,7 @@ class SlabRenderer {
           layout_(layout),
           listener_(listener),
           scale_(input.classes.scale / double(Footprint::kOne)),
-          merged_(reachOfAll(), layout_.channels) {
+          merged_({}, layout_.channels) {
         cutIntoStrips();
     }
 
@@ -115,14 +115,15 @@ class SlabRenderer {
     }
 
     void cutIntoStrips() {
-        const int rows = merged_.box.size().y;
+        const PlaneBox box = reachOfAll();
+        const int rows = box.size().y;
         const int count = stripCount(rows, slabs().size());
         for (int i = 0; i < count; ++i) {
             const auto edge = [&](int n) {
-                return merged_.box.min.y + int(std::int64_t{rows} * n / count);
+                return box.min.y + int(std::int64_t{rows} * n / count);
             };
             strips_.push_back(
-                {edge(i), edge(i + 1), std::make_unique<LayerFold>(slabs().size(), merged_)});
+                {edge(i), edge(i + 1), std::make_unique<LayerFold>(slabs().size() - 1, merged_)});
         }
     }
 
@@ -147,36 +148,50 @@ class SlabRenderer {
         return largest;
     }
 
+    // The front slab goes straight into the merged layer, the others into layers of their own.
     void renderPiece(std::size_t piece, Splatter& splatter) {
         const Clock::time_point start = Clock::now();
         const std::size_t number = piece / strips_.size();
         const PlannedSlab& slab = slabs()[view_.frontToBack ? number : slabs().size() - 1 - number];
         const Strip& strip = strips_[piece % strips_.size()];
-        double compositeSeconds = 0;
         PlaneBox box = reachOf(layout_, view_.shiftPerSlice, slab.firstSlice, slab.sliceCount);
         box.min.y = std::clamp(strip.first, box.min.y, box.max.y);
         box.max.y = std::clamp(strip.last, box.min.y, box.max.y);
-        Layer layer = strip.layers->take(box);
-        const SheetLayout layout = layoutOf(strip, slab);
-        if (!box.empty() && layout.blocks.y > 0) {
-            Compositor compositor(scale_, view_.frontToBack);
-            splatter.begin(slab, layout);
-            for (int i = 0; i < slab.sliceCount; ++i) {
-                const int slice = slab.firstSlice + i;
-                const SheetShift shift = shiftOf(layout, view_.shiftPerSlice, slice);
-                // Reading takes in the row behind the last as well.
-                const Sheet& sheet = splatter.splat(slice, box.min.y + shift.offset.y,
-                                                    box.max.y + shift.offset.y + 1);
-                const Clock::time_point before = Clock::now();
-                compositor.composite(sheet, shift, layer);
-                compositeSeconds += secondsSince(before);
-            }
-            splatter.end();
+        double compositeSeconds = 0;
+        if (number == 0) {
+            std::call_once(hasMerged_, [&] { merged_.reset(reachOfAll()); });
+            compositeSeconds = renderSlab(slab, strip, box, splatter, merged_);
+            strip.layers->addFront();
+        } else {
+            Layer layer = strip.layers->take(box);
+            compositeSeconds = renderSlab(slab, strip, box, splatter, layer);
+            const Clock::time_point before = Clock::now();
+            strip.layers->add(number - 1, std::move(layer));
+            compositeSeconds += secondsSince(before);
         }
-        const Clock::time_point before = Clock::now();
-        strip.layers->add(number, std::move(layer));
-        compositeSeconds += secondsSince(before);
         count(slab, compositeSeconds, secondsSince(start));
+    }
+
+    // Returns the seconds that compositing took.
+    double renderSlab(const PlannedSlab& slab, const Strip& strip, const PlaneBox& box,
+                      Splatter& splatter, Layer& layer) {
+        double compositeSeconds = 0;
+        const SheetLayout layout = layoutOf(strip, slab);
+        if (box.empty() || layout.blocks.y == 0) return compositeSeconds;
+        Compositor compositor(scale_, view_.frontToBack);
+        splatter.begin(slab, layout);
+        for (int i = 0; i < slab.sliceCount; ++i) {
+            const int slice = slab.firstSlice + i;
+            const SheetShift shift = shiftOf(layout, view_.shiftPerSlice, slice);
+            // Reading takes in the row behind the last as well.
+            const Sheet& sheet =
+                splatter.splat(slice, box.min.y + shift.offset.y, box.max.y + shift.offset.y + 1);
+            const Clock::time_point before = Clock::now();
+            compositor.composite(sheet, shift, box.min.y, box.max.y, layer);
+            compositeSeconds += secondsSince(before);
+        }
+        splatter.end();
+        return compositeSeconds;
     }
 
     void count(const Slab& slab, double compositeSeconds, double pieceSeconds) {
@@ -193,6 +208,7 @@ class SlabRenderer {
     const Listener& listener_;
     glm::vec4 scale_;
     Layer merged_;
+    std::once_flag hasMerged_;
     std::vector<Strip> strips_;
     std::atomic<std::size_t> next_ = 0;
     std::mutex mutex_;  // guards all below

@@ -40,22 +40,23 @@ void forEachRun(std::span<const std::uint64_t> words, const Emit& emit) {
 
 }  // namespace
 
-void Compositor::composite(const Sheet& sheet, const SheetShift& shift, Layer& layer) {
+void Compositor::composite(const Sheet& sheet, const SheetShift& shift, int firstRow, int lastRow,
+                           Layer& layer) {
     const OverWeights weights(glm::vec2(shift.fraction), scale_, layer.channels, frontToBack_);
-    findSpans(sheet, shift, weights.straight(), layer);
+    findSpans(sheet, shift, firstRow, lastRow, weights.straight(), layer);
     overSpans(spans_, weights);
 }
 
 // Finds the runs of pixels that the sheet reaches.
-void Compositor::findSpans(const Sheet& sheet, const SheetShift& shift, bool straight,
-                           Layer& layer) {
+void Compositor::findSpans(const Sheet& sheet, const SheetShift& shift, int firstRow, int lastRow,
+                           bool straight, Layer& layer) {
     words_ = (sheet.fullRows(0).size() + 63) / 64;
     rows_.assign((kTilePixels + 1) * words_, 0);
     either_.resize(words_);
     spans_.clear();
-    // Rows of the sheet that the layer has.
-    const int begin = std::max(layer.box.min.y + shift.offset.y, 0);
-    const int end = std::min(layer.box.max.y + shift.offset.y, sheet.layout().sizePixels.y - 1);
+    // Rows of the sheet.
+    const int begin = std::max(firstRow + shift.offset.y, 0);
+    const int end = std::min(lastRow + shift.offset.y, sheet.layout().sizePixels.y - 1);
     // The row before reads into the first one as well. Bit 0: that of the tile row before.
     unsigned rows = 0;
     for (int tileRow = begin / kTilePixels; kTilePixels * tileRow <= end; ++tileRow) {

@@ -22,11 +22,13 @@ class Compositor {
 
     /// Composites one slice: its sheet, read bilinearly at the layer's pixels, goes behind what the
     /// layer holds (front to back) or in front of it. Only what the sheet's full rows reach is
-    /// touched; of that, the rows that the layer has.
-    void composite(const Sheet& sheet, const SheetShift& shift, Layer& layer);
+    /// touched; of that, rows [firstRow, lastRow) of the base plane, which the layer has.
+    void composite(const Sheet& sheet, const SheetShift& shift, int firstRow, int lastRow,
+                   Layer& layer);
 
   private:
-    void findSpans(const Sheet& sheet, const SheetShift& shift, bool straight, Layer& layer);
+    void findSpans(const Sheet& sheet, const SheetShift& shift, int firstRow, int lastRow,
+                   bool straight, Layer& layer);
     unsigned findRows(const Sheet& sheet, int tileRow);
     void addSpans(const Sheet& sheet, const SheetShift& shift, int y, std::size_t row,
                   bool straight, Layer& layer);

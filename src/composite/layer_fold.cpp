@@ -8,23 +8,32 @@ namespace deltasplat {
 Layer LayerFold::take(const PlaneBox& box) {
     std::unique_lock lock(mutex_);
     ++taken_;
+    Layer layer({}, channels_);
     if (idle_.empty()) {
-        const int channels = merged_.channels;
         lock.unlock();
-        return Layer(box, channels);
+        // Slabs of the same length reach boxes that differ by a pixel.
+        const glm::ivec2 size = box.size() + 1;
+        layer.values.reserve(std::size_t(channels_) * size.x * size.y);
+    } else {
+        layer = std::move(idle_.back());
+        idle_.pop_back();
+        lock.unlock();
     }
-    Layer layer = std::move(idle_.back());
-    idle_.pop_back();
-    lock.unlock();
     layer.reset(box);
     return layer;
+}
+
+void LayerFold::addFront() {
+    std::unique_lock lock(mutex_);
+    hasFront_ = true;
+    if (taken_ < done_.size()) mergeReady(lock);
 }
 
 void LayerFold::add(std::size_t number, Layer layer) {
     std::unique_lock lock(mutex_);
     done_[number] = std::move(layer);
     // The last ones are merged by all threads together.
-    if (!merging_ && taken_ < done_.size()) mergeReady(lock);
+    if (hasFront_ && !merging_ && taken_ < done_.size()) mergeReady(lock);
 }
 
 void LayerFold::mergeReady(std::unique_lock<std::mutex>& lock) {
@@ -33,7 +42,7 @@ void LayerFold::mergeReady(std::unique_lock<std::mutex>& lock) {
         Layer layer = std::move(*done_[next_]);
         done_[next_++].reset();
         lock.unlock();
-        for (int y = layer.box.min.y; y < layer.box.max.y; ++y) mergeRowBehind(merged_, layer, y);
+        for (int y = layer.box.min.y; y < layer.box.max.y; ++y) mergeRowBehind(front_, layer, y);
         lock.lock();
         idle_.push_back(std::move(layer));
     }
@@ -41,7 +50,7 @@ void LayerFold::mergeReady(std::unique_lock<std::mutex>& lock) {
 }
 
 void LayerFold::finishRow(int y) {
-    for (std::size_t i = next_; i < done_.size(); ++i) mergeRowBehind(merged_, *done_[i], y);
+    for (std::size_t i = next_; i < done_.size(); ++i) mergeRowBehind(front_, *done_[i], y);
 }
 
 }  // namespace deltasplat

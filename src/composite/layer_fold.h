@@ -10,17 +10,21 @@
 
 namespace deltasplat {
 
-/// Merges layers front to back, in whatever order they are done: the order of the arithmetic is
+/// Puts layers behind a front one, in whatever order they are done: the order of the arithmetic is
 /// fixed by their numbers alone. As long as more are to come, layers are merged as soon as those in
 /// front of them are, so that few are in memory. Thread-safe but for finishRow().
 class LayerFold {
   public:
-    /// @param count   layers to come, numbered from the front
-    /// @param merged  what they are put behind; folds may share it if their layers share no row
-    LayerFold(std::size_t count, Layer& merged) : merged_(merged), done_(count) {}
+    /// @param count  layers to come, numbered from the front
+    /// @param front  what they are put behind, once addFront() is called; folds may share it if
+    /// their layers share no row
+    LayerFold(std::size_t count, Layer& front)
+        : front_(front), channels_(front.channels), done_(count) {}
 
     /// Returns an empty layer. Call it once for each number.
     Layer take(const PlaneBox& box);
+    /// Says that the front layer is finished.
+    void addFront();
     /// Takes a finished layer back.
     void add(std::size_t number, Layer layer);
     /// Merges row y of the layers that are left, when all have been added.
@@ -29,12 +33,14 @@ class LayerFold {
   private:
     void mergeReady(std::unique_lock<std::mutex>& lock);
 
-    Layer& merged_;
+    Layer& front_;
+    int channels_;
     std::mutex mutex_;                        // guards all below
     std::vector<std::optional<Layer>> done_;  // [count]: not yet merged
     std::vector<Layer> idle_;
     std::size_t taken_ = 0;
     std::size_t next_ = 0;  // the first that is not merged
+    bool hasFront_ = false;
     bool merging_ = false;
 };
 

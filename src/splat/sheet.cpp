@@ -2,6 +2,7 @@
 #include "splat/sheet.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -32,6 +33,15 @@ void requireCountable(const glm::i64vec2& size, std::int64_t shift) {
     }
     throw Error(ErrorCode::kUsage, gotExpected("sheet", text + " pixels",
                                                "at most 4294967295, a smaller --resolution"));
+}
+
+// Sets bits of the eight bytes from `first` on, each in a byte of `bits`.
+void addBytes(std::uint8_t* first, std::uint64_t bits) {
+    static_assert(std::endian::native == std::endian::little);
+    std::uint64_t word;
+    std::memcpy(&word, first, sizeof word);
+    word |= bits;
+    std::memcpy(first, &word, sizeof word);
 }
 
 }  // namespace
@@ -96,30 +106,44 @@ glm::ivec2 Sheet::firstTileOf(glm::ivec2 block) const {
 }
 
 void Sheet::touch(glm::ivec2 block, std::uint64_t voxels) {
-    const glm::ivec2 tile = firstTileOf(block);
-    for (int x = 0; x < reach_.tiles(); ++x) {
-        const std::uint8_t rows = reach_.rowsReaching(x, voxels);
-        for (int y = 0; y < reach_.tiles(); ++y) {
-            touched_[bytesPerRow_ * (tile.y + y) + tile.x + x] |= reach_.pixelRows(y, rows);
-        }
-    }
-    for (int y = 0; y < reach_.tiles(); ++y) touchedRows_[tile.y + y] = 1;
+    forReach(block, {voxels}, [&](std::size_t place, const auto& reached) {
+        addBytes(&touched_[place], reached[0]);
+    });
+    touchRows(block);
 }
 
 void Sheet::show(glm::ivec2 block, std::uint64_t seen, std::uint64_t gone) {
-    const glm::ivec2 tile = firstTileOf(block);
-    for (int x = 0; x < reach_.tiles(); ++x) {
-        const std::uint8_t rowsSeen = reach_.rowsReaching(x, seen);
-        const std::uint8_t rowsGone = reach_.rowsReaching(x, gone);
+    forReach(block, {seen, gone}, [&](std::size_t place, const auto& reached) {
+        addBytes(&full_[place], reached[0]);
+        addBytes(&touched_[place], reached[1] & ~reached[0]);
+    });
+    if (gone != 0) touchRows(block);
+}
+
+// Calls use(place, reached) for every row of eight tiles that a block may reach: where it lies in
+// full_ and touched_, and a byte for each tile, for each of some masks of voxels.
+template <std::size_t kMasks, typename Use>
+void Sheet::forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks], const Use& use) {
+    const glm::ivec2 first = firstTileOf(block);
+    for (int column = 0; column < reach_.tiles(); column += 8) {
+        const int count = std::min(reach_.tiles() - column, 8);
+        std::array<std::array<std::uint8_t, 8>, kMasks> rows;
+        for (std::size_t i = 0; i < kMasks; ++i) {
+            for (int x = 0; x < count; ++x) rows[i][x] = reach_.rowsReaching(column + x, voxels[i]);
+        }
         for (int y = 0; y < reach_.tiles(); ++y) {
-            const std::size_t place = bytesPerRow_ * (tile.y + y) + tile.x + x;
-            const std::uint8_t full = reach_.pixelRows(y, rowsSeen);
-            full_[place] |= full;
-            touched_[place] |= reach_.pixelRows(y, rowsGone) & ~full;
+            std::array<std::uint64_t, kMasks> reached{};
+            for (std::size_t i = 0; i < kMasks; ++i) {
+                for (int x = 0; x < count; ++x)
+                    reached[i] |= std::uint64_t{reach_.pixelRows(y, rows[i][x])} << 8 * x;
+            }
+            use(bytesPerRow_ * (first.y + y) + first.x + column, reached);
         }
     }
-    if (gone == 0) return;
-    for (int y = 0; y < reach_.tiles(); ++y) touchedRows_[tile.y + y] = 1;
+}
+
+void Sheet::touchRows(glm::ivec2 block) {
+    std::fill_n(&touchedRows_[firstTileOf(block).y], reach_.tiles(), std::uint8_t{1});
 }
 
 void Sheet::settle() {

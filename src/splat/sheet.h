@@ -99,6 +99,9 @@ class Sheet {
 
   private:
     glm::ivec2 firstTileOf(glm::ivec2 block) const;
+    template <std::size_t kMasks, typename Use>
+    void forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks], const Use& use);
+    void touchRows(glm::ivec2 block);
 
     SheetLayout layout_;
     BlockReach reach_;

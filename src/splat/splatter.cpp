@@ -10,16 +10,15 @@ void Splatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     whole_ = slab.whole;
     // What is splatted anew for each slice has to be cleared as well, which tiles do by the way.
     stamping_ = !TileWeights::fits(input_.footprint) || (slab.changesLittle() && !slab.whole);
-    if (stamping_ && !stamps_) stamps_.emplace(input_, largest_);
-    if (!stamping_ && !tiles_) tiles_.emplace(input_, largest_);
+    if (stamping_ && !stamps_) stamps_.emplace(input_, largest_, sheet_);
+    if (!stamping_ && !tiles_) tiles_.emplace(input_, largest_, sheet_);
+    sheet_.setLayout(layout);
     withWay([&](auto& way) { way.setLayout(layout); });
 }
 
 const Sheet& Splatter::splat(int slice, int firstRow, int lastRow) {
-    return withWay([&](auto& way) -> const Sheet& {
-        way.splat(slice, whole_, firstRow, lastRow);
-        return way.sheet();
-    });
+    withWay([&](auto& way) { way.splat(slice, whole_, firstRow, lastRow); });
+    return sheet_;
 }
 
 void Splatter::end() {
@@ -27,11 +26,10 @@ void Splatter::end() {
 }
 
 double Splatter::bytes(const SplatInput& input, const SheetLayout& layout) {
-    // The sheet, and what is shown: half the sheet's size at most, or 2 bytes a voxel. There may be
-    // one for each way.
+    // The sheet, and what each way shows: half the sheet's size at most, or 2 bytes a voxel.
     const double voxels = 64.0 * layout.blocks.x * layout.blocks.y;
-    const double ways = TileWeights::fits(input.footprint) ? 2 : 1;
-    return ways * (1.5 * double(layout.bytes()) + (2 + 0.25) * voxels);
+    const double tiles = TileWeights::fits(input.footprint) ? 0.5 * double(layout.bytes()) : 0;
+    return double(layout.bytes()) + tiles + 2 * (2 + 0.25) * voxels;
 }
 
 }  // namespace deltasplat

@@ -14,7 +14,7 @@ class Splatter {
   public:
     /// @param largest  of the layouts to come
     Splatter(const SplatInput& input, const SheetLayout& largest)
-        : input_(input), largest_(largest) {}
+        : input_(input), largest_(largest), sheet_(largest) {}
 
     /// Begins with a slab.
     /// @param layout  of the whole sheet, or of a part of it (layoutRows)
@@ -38,6 +38,7 @@ class Splatter {
 
     const SplatInput& input_;
     SheetLayout largest_;
+    Sheet sheet_;
     std::optional<StampSplatter> stamps_;  // each made when it is first needed
     std::optional<TileSplatter> tiles_;
     bool stamping_ = false;  // of the slab in hand

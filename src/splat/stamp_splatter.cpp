@@ -8,21 +8,16 @@
 
 namespace deltasplat {
 
-StampSplatter::StampSplatter(const SplatInput& input, const SheetLayout& largest)
+StampSplatter::StampSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet)
     : input_(input),
       blocks_(input, largest),
-      sheet_(largest),
+      sheet_(sheet),
       weights_(input.footprint, largest.channels),
       mostBlocks_(blocks_.count()) {
     for (int n = 0; n < 64; ++n) {
         const std::size_t pixels = std::size_t(n >> 3) * largest.pitchPixels() + (n & 7);
         placeInBlock_[n] = std::uint32_t(pixels * largest.resolution);
     }
-}
-
-void StampSplatter::setLayout(const SheetLayout& layout) {
-    blocks_.setLayout(layout);
-    sheet_.setLayout(layout);
 }
 
 // Changes have to be added wherever they are, for what is not read now may be later.

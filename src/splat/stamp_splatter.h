@@ -14,10 +14,11 @@ namespace deltasplat {
 class StampSplatter {
   public:
     /// @param largest  of the layouts to come
-    StampSplatter(const SplatInput& input, const SheetLayout& largest);
+    /// @param sheet    of that layout; zero whenever a slab begins
+    StampSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet);
 
-    const Sheet& sheet() const { return sheet_; }
-    void setLayout(const SheetLayout& layout);
+    /// Takes on a layout, which the sheet must have by then.
+    void setLayout(const SheetLayout& layout) { blocks_.setLayout(layout); }
     /// Makes the sheet that of the slice, after the one before it if it is not whole.
     /// @param firstRow,lastRow  what will be read: rows of the sheet [firstRow, lastRow)
     void splat(int slice, bool whole, int firstRow, int lastRow);
@@ -27,7 +28,7 @@ class StampSplatter {
   private:
     const SplatInput& input_;
     SliceBlocks blocks_;
-    Sheet sheet_;
+    Sheet& sheet_;
     StampWeights weights_;
     std::size_t mostBlocks_;  // of any layout
     /// Of a voxel's footprint, from its block's first one.

@@ -8,19 +8,14 @@
 
 namespace deltasplat {
 
-TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest)
+TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet)
     : input_(input),
       blocks_(input, largest),
-      sheet_(largest),
+      sheet_(sheet),
       weights_(input.footprint, largest.channels),
       pitch_(largest.channels * (largest.pitchPixels() / largest.resolution)),
       plane_(pitch_ * (largest.sizePixels.y / largest.resolution)),
       shown_(blocks_.count()) {}
-
-void TileSplatter::setLayout(const SheetLayout& layout) {
-    blocks_.setLayout(layout);
-    sheet_.setLayout(layout);
-}
 
 void TileSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
     if (whole) {

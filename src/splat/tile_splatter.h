@@ -14,10 +14,11 @@ namespace deltasplat {
 class TileSplatter {
   public:
     /// @param largest  of the layouts to come
-    TileSplatter(const SplatInput& input, const SheetLayout& largest);
+    /// @param sheet    of that layout; zero whenever a slab begins
+    TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet);
 
-    const Sheet& sheet() const { return sheet_; }
-    void setLayout(const SheetLayout& layout);
+    /// Takes on a layout, which the sheet must have by then.
+    void setLayout(const SheetLayout& layout) { blocks_.setLayout(layout); }
     /// Makes the sheet that of the slice, after the one before it if it is not whole.
     /// @param firstRow,lastRow  what will be read: rows of the sheet [firstRow, lastRow); others
     /// are made when they are
@@ -42,7 +43,7 @@ class TileSplatter {
 
     const SplatInput& input_;
     SliceBlocks blocks_;
-    Sheet sheet_;
+    Sheet& sheet_;
     TileWeights weights_;
     std::size_t pitch_;                    // of the plane
     std::vector<std::int16_t> plane_;      // colours shown, a margin around them as in the sheet

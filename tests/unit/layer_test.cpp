@@ -68,7 +68,8 @@ Layer compositeSlices(glm::dvec2 d, bool frontToBack, int channels, int first = 
     Compositor compositor(glm::vec4(scale), frontToBack);
     for (int slice = first; slice < first + count; ++slice) {
         const Sheet sheet = randomSheet(std::uint32_t(slice), channels);
-        compositor.composite(sheet, shiftOf(sheet.layout(), d, slice), layer);
+        compositor.composite(sheet, shiftOf(sheet.layout(), d, slice), layer.box.min.y,
+                             layer.box.max.y, layer);
     }
     return layer;
 }
@@ -163,24 +164,29 @@ Layer randomLayer(const PlaneBox& box, int channels, std::uint32_t seed) {
 TEST(LayerFold, IsOverFromTheFront) {
     const PlaneBox all{{-4, -5}, {30, 70}};
     const PlaneBox boxes[] = {{{0, 0}, {9, 70}}, {{-4, 3}, {6, 12}}, {{2, -5}, {30, 20}}, all};
+    constexpr std::size_t kFront = 4;
     const std::vector<std::vector<std::size_t>> orders = {
-        {0, 1, 2, 3}, {3, 2, 1, 0}, {1, 0, 3, 2}, {2, 0, 1, 3}};
+        {kFront, 0, 1, 2, 3}, {3, 2, 1, 0, kFront}, {1, 0, kFront, 3, 2}, {2, 0, 1, 3, kFront}};
     for (const int channels : {1, 4}) {
         for (const auto& order : orders) {
             for (const bool takeAllFirst : {false, true}) {
-                Layer merged(all, channels);
+                Layer merged = randomLayer(all, channels, 99);
                 LayerFold fold(4, merged);
                 if (takeAllFirst) {
                     for (const PlaneBox& box : boxes) fold.take(box);
                 }
                 for (const std::size_t i : order) {
+                    if (i == kFront) {
+                        fold.addFront();
+                        continue;
+                    }
                     const Layer empty =
                         takeAllFirst ? Layer(boxes[i], channels) : fold.take(boxes[i]);
                     for (const float value : empty.values) ASSERT_EQ(value, 0);
                     fold.add(i, randomLayer(boxes[i], channels, std::uint32_t(i)));
                 }
                 for (int y = all.min.y; y < all.max.y; ++y) fold.finishRow(y);
-                std::vector<Layer> layers;
+                std::vector<Layer> layers = {randomLayer(all, channels, 99)};
                 for (std::uint32_t i = 0; i < 4; ++i)
                     layers.push_back(randomLayer(boxes[i], channels, i));
                 for (int y = all.min.y; y < all.max.y; ++y) {
@@ -206,10 +212,10 @@ TEST(LayerFold, IsOverFromTheFront) {
 // Merging layers is the same as compositing on, but for rounding.
 TEST(Layer, OverIsAssociativeWithinRounding) {
     const glm::dvec2 d(0.25, 0.5);
-    Layer merged(reachOf(randomSheet(0).layout(), d, 0, 6));
-    LayerFold halves(2, merged);
-    halves.add(0, compositeSlices(d, true, 4, 0, 3, kScale / 8));
-    halves.add(1, compositeSlices(d, true, 4, 3, 3, kScale / 8));
+    Layer merged = compositeSlices(d, true, 4, 0, 3, kScale / 8);
+    LayerFold halves(1, merged);
+    halves.addFront();
+    halves.add(0, compositeSlices(d, true, 4, 3, 3, kScale / 8));
     for (int y = merged.box.min.y; y < merged.box.max.y; ++y) halves.finishRow(y);
     const Layer whole = compositeSlices(d, true, 4, 0, 6, kScale / 8);
     for (std::size_t i = 0; i < whole.values.size(); ++i) {

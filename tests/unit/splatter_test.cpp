@@ -37,10 +37,9 @@ struct Scene {
 
 // The sheet of a slice, all voxels of which are stamped one by one.
 std::vector<std::int32_t> stampedSheet(const Scene& scene, int slice) {
-    StampSplatter splatter(scene.input, scene.layout);
-    splatter.setLayout(scene.layout);
+    Sheet sheet(scene.layout);
+    StampSplatter splatter(scene.input, scene.layout, sheet);
     splatter.splat(slice, true, 0, scene.layout.sizePixels.y);
-    const Sheet& sheet = splatter.sheet();
     return {sheet.row(0), sheet.row(0) + sheet.pitch() * scene.layout.sizePixels.y};
 }
 
