@@ -50,7 +50,7 @@ int stripCount(int rows, std::size_t slabs) {
     constexpr std::size_t kPiecesPerThread = 4;
     constexpr int kLeastRows = 48;
     if (threadCount() == 1) return 1;
-    const std::size_t wanted = (kPiecesPerThread * std::size_t(threadCount()) + slabs - 1) / slabs;
+    const std::size_t wanted = (kPiecesPerThread * std::size_t(threadCount()) + slabs / 2) / slabs;
     return std::clamp(int(std::min<std::size_t>(wanted, 1024)), 1, std::max(1, rows / kLeastRows));
 }
 
