@@ -104,10 +104,12 @@ class TileSums {
     static HWY_INLINE V addPairs(V sum, const std::int32_t* colors, V weights) {
         const Tag tag;
         const hn::Repartition<std::int16_t, Tag> half;
+        // Into sums that begin at zero, for NEON adds up neighbouring lanes of both.
         V odd = hn::Zero(tag);
-        sum = hn::ReorderWidenMulAccumulate(tag, hn::BitCast(half, hn::LoadU(tag, colors)),
-                                            hn::BitCast(half, weights), sum, odd);
-        return hn::RearrangeToOddPlusEven(sum, odd);
+        const V even =
+            hn::ReorderWidenMulAccumulate(tag, hn::BitCast(half, hn::LoadU(tag, colors)),
+                                          hn::BitCast(half, weights), hn::Zero(tag), odd);
+        return hn::Add(sum, hn::RearrangeToOddPlusEven(even, odd));
     }
 
     template <class T>
