@@ -35,9 +35,12 @@ void readLeafInSteps(const CodeTree::Leaf& leaf, const Slot* slotMap, Out* out) 
         }
     }
     if (leaf.isDense()) return;
-    for (auto off = leaf.getValueMask().beginOff(); off; ++off) {
-        const openvdb::Index n = off.pos();
-        out[(n >> 6) * kStepX + (n >> 3 & 7) * kStepY + (n & 7) * kStepZ] = kEmptySlot;
+    for (int x = 0; x < 8; ++x) {
+        std::uint64_t inactive = ~leaf.getValueMask().getWord<std::uint64_t>(openvdb::Index(x));
+        for (; inactive != 0; inactive &= inactive - 1) {
+            const int n = std::countr_zero(inactive);
+            out[x * kStepX + (n >> 3) * kStepY + (n & 7) * kStepZ] = kEmptySlot;
+        }
     }
 }
 
