@@ -11,6 +11,7 @@
 
 #include "deltasplat/error.h"
 #include "number_text.h"
+#include "parallel.h"
 
 namespace deltasplat {
 namespace {
@@ -47,7 +48,7 @@ double alphaOf(double opacity, double unitDistancesPerSlice) {
     return -std::expm1(std::log1p(-opacity) * unitDistancesPerSlice);
 }
 
-// A code that can be seen: its light for one slice, before it is rounded.
+// A code's light for one slice, before it is rounded.
 struct VisibleCode {
     Code code;
     double alpha;
@@ -59,17 +60,25 @@ std::vector<VisibleCode> classifyExactly(const Volume& volume, const Optics& opt
     const TransferFunction& function = optics.transferFunction;
     const glm::dvec2 range =
         function.normalized ? optics.range.value_or(defaultRange(volume)) : glm::dvec2(0, 1);
-    std::vector<VisibleCode> visible;
+    std::vector<VisibleCode> codes;
     for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] == 0) continue;
-        const double value = volume.codeBook.valueOf(Code(code));
-        const double x = function.normalized
-                             ? (0.5 * value - 0.5 * range.x) / (0.5 * range.y - 0.5 * range.x)
-                             : value;
-        const double alpha = alphaOf(function.opacityAt(x), unitDistancesPerSlice);
-        if (alpha > 0) visible.push_back({Code(code), alpha, function.colorAt(x)});
+        if (volume.histogram[code] != 0) codes.push_back({Code(code), 0, {}});
     }
-    return visible;
+    // A volume of floats may have tens of thousands.
+    constexpr std::size_t kRun = 4096;
+    parallelFor((codes.size() + kRun - 1) / kRun, [&](std::size_t run) {
+        const std::size_t end = std::min((run + 1) * kRun, codes.size());
+        for (std::size_t i = run * kRun; i < end; ++i) {
+            const double value = volume.codeBook.valueOf(codes[i].code);
+            const double x = function.normalized
+                                 ? (0.5 * value - 0.5 * range.x) / (0.5 * range.y - 0.5 * range.x)
+                                 : value;
+            codes[i].alpha = alphaOf(function.opacityAt(x), unitDistancesPerSlice);
+            codes[i].color = function.colorAt(x);
+        }
+    });
+    std::erase_if(codes, [](const VisibleCode& one) { return !(one.alpha > 0); });
+    return codes;
 }
 
 // Rounds the colours of all visible codes with one scale a channel.
@@ -89,13 +98,15 @@ class ColorRounder {
 
     ClassTable::Color operator()(const VisibleCode& one) const {
         const glm::dvec4 exact = premultiplied(one);
+        const auto rounded = [&](int c) {
+            if (scale()[c] == 0) return std::int16_t{0};
+            return std::int16_t(std::lround(exact[c] / largest_[c] * ClassTable::kMax));
+        };
         ClassTable::Color color{};
-        for (int c = 0; c < 4; ++c) {
-            if (scale()[c] == 0) continue;
+        color[3] = rounded(3);
+        for (int c = 0; c < 3; ++c) {
             // Of one colour, all channels are the opacity: equal, however division rounds.
-            const int channel = oneColor_ ? 3 : c;
-            color[c] =
-                std::int16_t(std::lround(exact[channel] / largest_[channel] * ClassTable::kMax));
+            if (scale()[c] != 0) color[c] = oneColor_ ? color[3] : rounded(c);
         }
         // What lets all light through shows nothing.
         return color[3] == 0 ? ClassTable::Color{} : color;
