@@ -24,9 +24,8 @@ struct PlannedSlab : Slab {
     std::uint64_t words = 0;  ///< mask words in which anything changes, but for key slices
 
     std::uint64_t stamps() const { return whole ? visible : deltas; }
-    /// Whether so few voxels of a block change in a slice that it is faster to stamp these than to
-    /// make all of the block anew.
-    bool changesLittle() const { return deltas < 12 * words; }
+    /// Whether fewer voxels change in a slice of a block that changes, on average.
+    bool changesFewerThan(std::uint64_t voxels) const { return deltas < voxels * words; }
 };
 
 /// The slabs that a picture is rendered from.

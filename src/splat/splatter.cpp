@@ -9,7 +9,9 @@ namespace deltasplat {
 void Splatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     whole_ = slab.whole;
     // What is splatted anew for each slice has to be cleared as well, which tiles do by the way.
-    stamping_ = !TileWeights::fits(input_.footprint) || (slab.changesLittle() && !slab.whole);
+    stamping_ = !TileSplatter::fits(input_.footprint) ||
+                (!slab.whole && slab.changesFewerThan(
+                                    TileSplatter::leastChanges(input_.footprint, layout.channels)));
     if (stamping_ && !stamps_) stamps_.emplace(input_, largest_, sheet_);
     if (!stamping_ && !tiles_) tiles_.emplace(input_, largest_, sheet_);
     sheet_.setLayout(layout);
@@ -28,7 +30,7 @@ void Splatter::end() {
 double Splatter::bytes(const SplatInput& input, const SheetLayout& layout) {
     // The sheet, and what each way shows: half the sheet's size at most, or 2 bytes a voxel.
     const double voxels = 64.0 * layout.blocks.x * layout.blocks.y;
-    const double tiles = TileWeights::fits(input.footprint) ? 0.5 * double(layout.bytes()) : 0;
+    const double tiles = TileSplatter::fits(input.footprint) ? 0.5 * double(layout.bytes()) : 0;
     return double(layout.bytes()) + tiles + 2 * (2 + 0.25) * voxels;
 }
 

@@ -7,14 +7,36 @@
 #include <cstring>
 
 namespace deltasplat {
+namespace {
+
+std::variant<TileWeights, CellWeights> weightsOf(const Footprint& footprint, int channels) {
+    if (TileWeights::fits(footprint)) return TileWeights(footprint, channels);
+    return CellWeights(footprint, channels);
+}
+
+// Voxels before the first block and behind the last. Cells need not begin where tiles do, and take
+// voxels farther away.
+int marginOf(const SheetLayout& layout) {
+    constexpr int kAround = CellWeights::kTaps;
+    return layout.marginPixels / layout.resolution + (layout.resolution > 2 ? kAround : 0);
+}
+
+}  // namespace
+
+// Measured (docs/performance.md).
+std::uint64_t TileSplatter::leastChanges(const Footprint& footprint, int channels) {
+    if (TileWeights::fits(footprint)) return 12;
+    return channels == 4 ? 14 : 28;
+}
 
 TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet)
     : input_(input),
       blocks_(input, largest),
       sheet_(sheet),
-      weights_(input.footprint, largest.channels),
-      pitch_(largest.channels * (largest.pitchPixels() / largest.resolution)),
-      plane_(pitch_ * (largest.sizePixels.y / largest.resolution)),
+      weights_(weightsOf(input.footprint, largest.channels)),
+      marginVoxels_(marginOf(largest)),
+      pitch_(std::size_t(largest.channels) * (8 * largest.blocks.x + 2 * marginVoxels_ + 8)),
+      plane_(pitch_ * (8 * largest.blocks.y + 2 * marginVoxels_)),
       shown_(blocks_.count()) {}
 
 void TileSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
@@ -23,13 +45,24 @@ void TileSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
     } else {
         paintChanges(slice);
     }
-    const int resolution = sheet_.layout().resolution;
-    sheet_.refillTouched(
-        firstRow, lastRow,
-        [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-            const PlaneRow plane{planeAt({0, kTilePixels * row / resolution}), pitch_};
-            splatTiles(weights_, plane, sheet_.tileRow(row), touched, full);
-        });
+    sheet_.refillTouched(firstRow, lastRow,
+                         [&](int row, std::span<const std::uint8_t> touched,
+                             std::span<std::uint8_t> full) { sumTiles(row, touched, full); });
+}
+
+void TileSplatter::sumTiles(int row, std::span<const std::uint8_t> touched,
+                            std::span<std::uint8_t> full) {
+    const SheetLayout& layout = sheet_.layout();
+    const TileRow tiles = sheet_.tileRow(row);
+    if (const auto* cells = std::get_if<CellWeights>(&weights_)) {
+        const glm::ivec2 pixel(0, kTilePixels * row);
+        const CellPlane plane{planeAt(glm::ivec2(marginVoxels_)), pitch_,
+                              pixel - layout.marginPixels};
+        splatCells(*cells, plane, tiles, touched, full);
+    } else {
+        const PlaneRow plane{planeAt({0, kTilePixels * row / layout.resolution}), pitch_};
+        splatTiles(std::get<TileWeights>(weights_), plane, tiles, touched, full);
+    }
 }
 
 void TileSplatter::clear() {
@@ -74,7 +107,7 @@ void TileSplatter::takeAway(glm::ivec2 block) {
 void TileSplatter::paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes) {
     sheet_.touch(block, voxels);
     const SheetLayout& layout = sheet_.layout();
-    std::int16_t* first = planeAt(8 * block + layout.marginPixels / layout.resolution);
+    std::int16_t* first = planeAt(8 * block + marginVoxels_);
     if (layout.channels == 4) {
         paintColors(first, voxels, classes);
     } else {

@@ -2,17 +2,30 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <variant>
 #include <vector>
 
+#include "splat/cell_kernels.h"
 #include "splat/slice_blocks.h"
 #include "splat/tile_kernels.h"
 
 namespace deltasplat {
 
-/// Makes sheets of small footprints (TileWeights::fits): writes what changes to a plane of colours,
-/// and sums up the tiles of the sheet that it reaches.
+/// Makes sheets of footprints that reach few voxels: writes what changes to a plane of colours, and
+/// sums up the tiles of the sheet that it reaches.
 class TileSplatter {
   public:
+    /// Whether a footprint is small enough: as TileWeights or CellWeights say.
+    static bool fits(const Footprint& footprint) {
+        return TileWeights::fits(footprint) || CellWeights::fits(footprint);
+    }
+
+    /// Returns how many voxels of a block have to change in a slice for it to be faster than
+    /// stamping them.
+    static std::uint64_t leastChanges(const Footprint& footprint, int channels);
+
+    /// @param input    with a footprint that fits
     /// @param largest  of the layouts to come
     /// @param sheet    of that layout; zero whenever a slab begins
     TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet);
@@ -36,6 +49,7 @@ class TileSplatter {
     void paintChanges(int slice);
     void paintWhole(int slice, glm::ivec2 rows);
     void takeAway(glm::ivec2 block);
+    void sumTiles(int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
     void paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes);
     void paintColors(std::int16_t* plane, std::uint64_t voxels, const ClassIndex* classes) const;
     void paintOpacities(std::int16_t* plane, const ClassIndex* classes) const;
@@ -44,8 +58,9 @@ class TileSplatter {
     const SplatInput& input_;
     SliceBlocks blocks_;
     Sheet& sheet_;
-    TileWeights weights_;
-    std::size_t pitch_;                    // of the plane
+    std::variant<TileWeights, CellWeights> weights_;
+    int marginVoxels_;                     // of the plane
+    std::size_t pitch_;                    // likewise
     std::vector<std::int16_t> plane_;      // colours shown, a margin around them as in the sheet
     std::vector<Shown> shown_;             // [block]
     std::vector<glm::ivec2> shownBlocks_;  // those with voxels

@@ -12,6 +12,7 @@
 #include "composite/over_kernels.h"
 #include "deltasplat/threads.h"
 #include "image/warp.h"
+#include "splat/cell_kernels.h"
 #include "splat/stamp_kernels.h"
 #include "splat/tile_kernels.h"
 
@@ -69,6 +70,28 @@ void tiles(benchmark::State& state) {
     countItems(state, kTiles);
 }
 BENCHMARK(tiles)->ArgNames({"channels", "r"})->ArgsProduct({{1, 4}, {1, 2}});
+
+// Likewise, at three and four pixels a voxel.
+void cells(benchmark::State& state) {
+    const int channels = int(state.range(0));
+    const int resolution = int(state.range(1));
+    const Footprint footprint =
+        makeFootprint(0.4, {0.5, -0.5}, resolution, 3 * resolution + (resolution % 2 == 0));
+    const CellWeights weights(footprint, channels);
+    constexpr int kTiles = 32;
+    const std::size_t pitch = std::size_t(channels) * 8 * (kTiles + 4);
+    std::vector<std::int16_t> plane(pitch * 24, 1234);
+    std::vector<std::int32_t> sheet(pitch * 8);
+    const std::vector<std::uint8_t> touched(kTiles, 0xFF);
+    std::vector<std::uint8_t> full(kTiles);
+    for (auto _ : state) {
+        splatCells(weights, {&plane[8 * pitch + 64], pitch, {0, 0}}, {sheet.data(), pitch}, touched,
+                   full);
+        benchmark::ClobberMemory();
+    }
+    countItems(state, kTiles);
+}
+BENCHMARK(cells)->ArgNames({"channels", "r"})->ArgsProduct({{1, 4}, {3, 4}});
 
 // Spans of so many pixels of a sheet, read between its pixels or straight.
 void over(benchmark::State& state) {

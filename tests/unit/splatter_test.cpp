@@ -68,13 +68,20 @@ std::vector<Volume> volumes() {
             test::randomVolume(kBox, 4, 0.4)};
 }
 
+// Of a footprint.
+struct Kind {
+    int resolution;
+    int width;
+};
+
 // A window of rows that moves over the sheet from slice to slice and comes back: in it the sheet is
 // that of the slice, whatever was passed over meanwhile, and in the end nothing is left.
 TEST(Splatter, RowsOfAMovingWindowAreThoseOfTheSlice) {
     for (const Volume& volume : volumes()) {
         for (const bool oneColor : {false, true}) {
-            for (const int width : {3, 6}) {
-                const Footprint footprint = makeFootprint(0.5, {0.3, -0.6}, 1, width);
+            for (const Kind kind : {Kind{1, 3}, {1, 6}, {2, 5}, {3, 9}, {4, 13}}) {
+                const auto [resolution, width] = kind;
+                const Footprint footprint = makeFootprint(0.5, {0.3, -0.6}, resolution, width);
                 const Scene whole(volume, Encoding::kWhole, footprint, oneColor);
                 for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole}) {
                     const Scene scene(volume, encoding, footprint, oneColor);

@@ -8,6 +8,7 @@
 
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/simd.h"
+#include "splat/cell_kernels.h"
 
 namespace deltasplat {
 namespace {
@@ -50,6 +51,7 @@ struct Scene {
             for (int i = 0; i < footprint.width; ++i) {
                 const int column = footprint.resolution * x + i - footprint.reach();
                 const int row = footprint.resolution * y + j - footprint.reach();
+                if (column < 0 || column >= kWidth || row < 0 || row >= kHeight) continue;
                 sums[channels * (row * kWidth + column) + c] += color * footprint.at(i, j);
             }
         }
@@ -110,6 +112,42 @@ TEST_P(TilesOnEveryLevel, TouchedRowsAreTheSumsOfStamps) {
             }
         }
     }
+}
+
+TEST_P(TilesOnEveryLevel, TouchedRowsOfCellsAreTheSumsOfStamps) {
+    std::uint32_t seed = 100;
+    for (const int resolution : {3, 4}) {
+        for (const int width :
+             {resolution, 2 * resolution + 1, 3 * resolution + 1, 4 * resolution}) {
+            for (const glm::dvec2 d : {glm::dvec2(0), glm::dvec2(0.8, -0.6)}) {
+                const Footprint footprint = makeFootprint(0.4, d, resolution, width);
+                ASSERT_TRUE(CellWeights::fits(footprint));
+                for (const int channels : {1, 4}) {
+                    for (const double empty : {0.0, 0.97}) {
+                        const Scene scene(footprint, channels, empty, ++seed);
+                        std::vector<std::int32_t> sheet(scene.sums.size(), -7);
+                        std::vector<std::uint8_t> full(kTouched.size(), 0xFF);
+                        const std::size_t pitch = channels * kWidth;
+                        splatCells(CellWeights(footprint, channels),
+                                   {scene.plane.data(), std::size_t(channels * scene.width),
+                                    glm::ivec2(kFirst)},
+                                   {&sheet[kFirst * (pitch + channels)], pitch}, kTouched, full);
+                        expectSums(scene, sheet, full);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(CellWeights, FitFootprintsThatReachTwoVoxels) {
+    EXPECT_TRUE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 3, 9)));
+    EXPECT_TRUE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 3, 12)));
+    EXPECT_FALSE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 3, 13)));
+    EXPECT_TRUE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 4, 16)));
+    EXPECT_FALSE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 4, 17)));
+    EXPECT_FALSE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 2, 5)));
+    EXPECT_FALSE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 5, 5)));
 }
 
 TEST(TileWeights, FitFootprintsThatReachNoFartherThanTheNextVoxel) {

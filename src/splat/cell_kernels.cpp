@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sums sheets of three pixels a voxel and more, compiled once for each SIMD level. Integer
+// arithmetic throughout, so that every level gives the same bits.
+#include "splat/cell_kernels.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "simd_targets.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "splat/cell_kernels.cpp"
+#include "hwy/foreach_target.h"
+// After foreach_target.h, as Highway asks.
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace deltasplat::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Tiles that are made at a time, so that what they are made from stays in the first-level cache.
+constexpr int kRun = 16;
+
+inline int floorDiv(int a, int b) {
+    return (a >= 0 ? a : a - b + 1) / b;
+}
+
+// Calls use(first, last) for the rows that a byte has bits for, and those between them: with
+// constants if it has all, so that loops unroll.
+template <typename Use>
+HWY_INLINE auto forRows(unsigned rows, const Use& use) {
+    return rows == 0xFF ? use(0, kTilePixels - 1)
+                        : use(std::countr_zero(rows), int(std::bit_width(rows)) - 1);
+}
+
+template <int kChannels, int kResolution>
+class CellSums {
+    static constexpr int kRow = kTilePixels * kChannels;
+    // Vectors never reach over a tile's end.
+    using Tag = hn::CappedTag < std::int32_t, kRow<16 ? kRow : 16>;
+    using V = hn::Vec<Tag>;
+    static constexpr int kTaps = CellWeights::kTaps;
+    // From one voxel to the next along a row.
+    static constexpr int kStep = kResolution * kChannels;
+    // Rows of cells that a tile may lie in, and the rows of pairs that they take.
+    static constexpr int kMostCells = (kTilePixels - 2) / kResolution + 2;
+    static constexpr int kMostPairs = kMostCells + 2;
+    // Pixels of a run, of the cells around it, and what a vector may reach over the last.
+    static constexpr int kMostPixels = kRun * kTilePixels + 5 * kResolution + 8;
+
+  public:
+    CellSums(const CellWeights& weights, const CellPlane& plane, const TileRow& row)
+        : weights_(weights), plane_(plane), row_(row) {
+        const int first = floorDiv(plane.pixel.y, kResolution);
+        for (int y = 0; y < kTilePixels; ++y) {
+            const int cell = floorDiv(plane.pixel.y + y, kResolution);
+            cells_[y] = cell - first;
+            rowsInCell_[y] = plane.pixel.y + y - cell * kResolution;
+        }
+        voxels_ = plane.voxel + (first - 1) * std::ptrdiff_t(plane.pitch);
+    }
+
+    // Makes the touched rows of tiles [first, last).
+    HWY_INLINE void makeRun(int first, int last, std::span<const std::uint8_t> touched,
+                            std::span<std::uint8_t> full) {
+        unsigned rows = 0;
+        for (int i = first; i < last; ++i) rows |= touched[i];
+        pairUp(first, last, rows);
+        for (int i = first; i < last; ++i) {
+            const int pixel = plane_.pixel.x + kTilePixels * i;
+            const int x = pixel - kResolution * floorDiv(pixel, kResolution);
+            const unsigned found = forRows(touched[i], [&](int low, int high) HWY_ATTR {
+                unsigned any = 0;
+                for (int y = low; y <= high; ++y) any |= unsigned{makeRow(i, x, y)} << y;
+                return any;
+            });
+            full[i] = std::uint8_t((full[i] & ~touched[i]) | (found & touched[i]));
+        }
+    }
+
+  private:
+    // Repeats the pairs of voxels for each pixel of their cells, as far as rows of tiles [first,
+    // last) take them.
+    HWY_INLINE void pairUp(int first, int last, unsigned rows) {
+        const int firstPixel = plane_.pixel.x + kTilePixels * first - kResolution;
+        const int lastPixel = plane_.pixel.x + kTilePixels * last - 1 + 2 * kResolution;
+        const int firstVoxel = floorDiv(firstPixel, kResolution);
+        const int lastVoxel = floorDiv(lastPixel, kResolution);
+        pairsBegin_ = firstVoxel * kResolution - plane_.pixel.x;
+        const int end = cells_[std::bit_width(rows | 1u) - 1] + 2;
+        for (int row = cells_[std::countr_zero(rows | 0x80u)]; row <= end; ++row) {
+            std::int32_t* out = pairs_[row];
+            const std::int16_t* voxel = voxels_ + row * std::ptrdiff_t(plane_.pitch) +
+                                        kChannels * std::ptrdiff_t(firstVoxel);
+            for (int v = firstVoxel; v <= lastVoxel; ++v, voxel += kChannels, out += kStep)
+                repeat(voxel, out);
+        }
+    }
+
+    // Writes a voxel and the one behind it for each pixel of a cell; what is too much is written
+    // over.
+    HWY_INLINE void repeat(const std::int16_t* voxel, std::int32_t* HWY_RESTRICT out) const {
+        if constexpr (kChannels == 4) {
+            const hn::FixedTag<std::int32_t, 4> tag;
+            const hn::Rebind<std::int16_t, decltype(tag)> half;
+            const auto here = hn::PromoteTo(tag, hn::LoadU(half, voxel));
+            const auto behind = hn::PromoteTo(tag, hn::LoadU(half, voxel + plane_.pitch));
+            const auto pair = hn::Or(here, hn::ShiftLeft<16>(behind));
+            for (int i = 0; i < kStep; i += 4) hn::StoreU(pair, tag, out + i);
+        } else {
+            const hn::FixedTag<std::int32_t, 4> tag;
+            const std::int32_t pair = voxel[0] | std::int32_t{voxel[plane_.pitch]} << 16;
+            hn::StoreU(hn::Set(tag, pair), tag, out);
+        }
+    }
+
+    // Makes row y of a tile whose first pixel is the x-th of its cell, and returns whether it is
+    // not all zero.
+    HWY_INLINE bool makeRow(int tile, int x, int y) const {
+        const Tag tag;
+        std::int32_t* sheet = row_.sheet + kRow * std::size_t(tile) + y * row_.sheetPitch;
+        const int first = kChannels * (kTilePixels * tile - kResolution - pairsBegin_);
+        const std::int32_t* before = &pairs_[cells_[y]][first];
+        const std::int32_t* behind = &pairs_[cells_[y] + 2][first];
+        V any = hn::Zero(tag);
+        for (int i = 0; i < kRow; i += int(hn::Lanes(tag))) {
+            const CellWeights::Lines& weights = weights_.from(x, rowsInCell_[y]);
+            V sum = hn::Zero(tag);
+            for (int tap = 0; tap < kTaps; ++tap) {
+                sum = addPairs(sum, before + i + tap * kStep, weights[tap].data());
+                sum = addPairs(sum, behind + i + tap * kStep, weights[kTaps + tap].data());
+            }
+            hn::StoreU(sum, tag, sheet + i);
+            any = hn::Or(any, sum);
+            x = (x + int(hn::Lanes(tag)) / kChannels) % kResolution;
+        }
+        return !hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)));
+    }
+
+    // Adds the products of the two 16-bit halves of each lane, into sums that begin at zero, for
+    // NEON adds up neighbouring lanes of both.
+    static HWY_INLINE V addPairs(V sum, const std::int32_t* pairs, const std::int32_t* weights) {
+        const Tag tag;
+        const hn::Repartition<std::int16_t, Tag> half;
+        V odd = hn::Zero(tag);
+        const V even = hn::ReorderWidenMulAccumulate(tag, hn::BitCast(half, hn::LoadU(tag, pairs)),
+                                                     hn::BitCast(half, hn::Load(tag, weights)),
+                                                     hn::Zero(tag), odd);
+        return hn::Add(sum, hn::RearrangeToOddPlusEven(even, odd));
+    }
+
+    const CellWeights& weights_;
+    const CellPlane& plane_;
+    const TileRow& row_;
+    std::array<int, kTilePixels> cells_;       // [row]: its row of cells, from the first one's on
+    std::array<int, kTilePixels> rowsInCell_;  // [row]: where in it
+    const std::int16_t* voxels_;               // of the row before the first row of cells
+    int pairsBegin_ = 0;  // the pixel that pairs_ begin with, counted from the tiles' first
+    // [row]: of voxels in a row, from voxels_ on, and behind it, for every pixel.
+    HWY_ALIGN std::int32_t pairs_[kMostPairs][kChannels * kMostPixels];
+};
+
+template <int kChannels, int kResolution>
+void splatCellsOf(const CellWeights& weights, const CellPlane& plane, const TileRow& row,
+                  std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
+    CellSums<kChannels, kResolution> sums(weights, plane, row);
+    const int tiles = int(touched.size());
+    for (int first = 0; first < tiles;) {
+        int last = first;
+        while (last < tiles && last - first < kRun && touched[last] != 0) ++last;
+        if (last > first) sums.makeRun(first, last, touched, full);
+        first = std::max(last, first + 1);
+    }
+}
+
+void splatCellsKernel(const CellWeights& weights, const CellPlane& plane, const TileRow& row,
+                      std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
+    if (weights.resolution == 3) {
+        return weights.channels == 4 ? splatCellsOf<4, 3>(weights, plane, row, touched, full)
+                                     : splatCellsOf<1, 3>(weights, plane, row, touched, full);
+    }
+    return weights.channels == 4 ? splatCellsOf<4, 4>(weights, plane, row, touched, full)
+                                 : splatCellsOf<1, 4>(weights, plane, row, touched, full);
+}
+
+}  // namespace deltasplat::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace deltasplat {
+
+HWY_EXPORT(splatCellsKernel);
+
+bool CellWeights::fits(const Footprint& footprint) {
+    const int r = footprint.resolution;
+    const int reachBehind = footprint.width - 1 - footprint.reach();
+    return (r == 3 || r == 4) && footprint.reach() <= 2 * r && reachBehind < 2 * r;
+}
+
+CellWeights::CellWeights(const Footprint& footprint, int sheetChannels)
+    : resolution(footprint.resolution), channels(sheetChannels) {
+    // What a voxel gives to a pixel of a cell, the voxel's place counted from the cell's.
+    const auto weightAt = [&](glm::ivec2 pixel, glm::ivec2 voxel) {
+        const glm::ivec2 p = pixel - resolution * voxel + footprint.reach();
+        const bool inside = p.x >= 0 && p.y >= 0 && p.x < footprint.width && p.y < footprint.width;
+        return inside ? footprint.at(p.x, p.y) : 0;
+    };
+    for (int n = 0; n < resolution * resolution; ++n) {
+        Lines& next = lines.emplace_back();
+        for (int tap = 0; tap < 2 * kTaps; ++tap) {
+            const glm::ivec2 voxel(tap % kTaps - 1, 2 * (tap / kTaps) - 1);
+            for (int i = 0; i < int(next[tap].size()); ++i) {
+                const glm::ivec2 pixel((n + i / channels) % resolution, n / resolution);
+                next[tap][i] = weightAt(pixel, voxel) | weightAt(pixel, voxel + glm::ivec2(0, 1))
+                                                            << 16;
+            }
+        }
+    }
+}
+
+void splatCells(const CellWeights& weights, const CellPlane& plane, const TileRow& row,
+                std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
+    HWY_DYNAMIC_DISPATCH(splatCellsKernel)(weights, plane, row, touched, full);
+}
+
+}  // namespace deltasplat
+#endif
