@@ -116,8 +116,7 @@ class Rows<kChannels, 0> {
 };
 
 // Goes through the active voxels of blocks, along u first: that is down the rows of the sheet,
-// where consecutive stamps meet the very vectors that were just stored. Blocks follow each other
-// without a branch, for which voxel is the last of one cannot be foretold.
+// where consecutive stamps meet the very vectors that were just stored.
 class ActiveVoxels {
   public:
     explicit ActiveVoxels(std::span<const BlockStamps> blocks)
@@ -128,17 +127,18 @@ class ActiveVoxels {
         const int n = std::countr_zero(rest_);
         return 8 * (n & 7) + (n >> 3);
     }
+    // The last voxel's next one is any of its block's.
     void next() {
         rest_ &= rest_ - 1;
-        const bool done = rest_ == 0;
-        block_ += std::size_t{done && block_ != last_};
-        rest_ |= block_->active & -std::uint64_t{done};
+        if (rest_ != 0) return;
+        if (block_ != last_) ++block_;
+        rest_ = block_->active;
     }
 
   private:
     const BlockStamps* block_;
     const BlockStamps* last_;
-    std::uint64_t rest_;
+    std::uint64_t rest_;  // of the block's voxels
 };
 
 template <int kChannels, int kWidth, bool kChanges>
