@@ -32,7 +32,7 @@ struct CellWeights {
     CellWeights(const Footprint& footprint, int sheetChannels);
 
     /// Returns those of a cell's row `y`, from its pixel `x` on.
-    const Lines& from(int x, int y) const { return lines[std::size_t(y * resolution + x)]; }
+    const Lines& from(int x, int y) const { return lines[std::size_t(y) * resolution + x]; }
 
     int resolution;  ///< r
     int channels;    ///< of plane and sheet: 1 or 4
