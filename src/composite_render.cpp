@@ -5,6 +5,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -74,6 +75,7 @@ class SlabRenderer {
           scale_(input.classes.scale / double(Footprint::kOne)),
           merged_({}, layout_.channels) {
         cutIntoStrips();
+        largest_ = largestLayout();
     }
 
     // Renders all slabs, from the front on.
@@ -81,8 +83,12 @@ class SlabRenderer {
         const std::size_t pieces = strips_.size() * slabs().size();
         const auto workers = std::min<std::size_t>(std::size_t(threadCount()), pieces);
         parallelFor(workers, [&](std::size_t) {
-            Splatter splatter(input_, largestLayout());
-            for (std::size_t i = next_++; i < pieces; i = next_++) renderPiece(i, splatter);
+            // Whoever comes too late needs none.
+            std::optional<Splatter> splatter;
+            for (std::size_t i = next_++; i < pieces; i = next_++) {
+                if (!splatter) splatter.emplace(input_, largest_);
+                renderPiece(i, *splatter);
+            }
         });
     }
 
@@ -158,16 +164,20 @@ class SlabRenderer {
         box.min.y = std::clamp(strip.first, box.min.y, box.max.y);
         box.max.y = std::clamp(strip.last, box.min.y, box.max.y);
         double compositeSeconds = 0;
+        const auto timed = [&](const auto& use) {
+            const Clock::time_point before = Clock::now();
+            use();
+            compositeSeconds += secondsSince(before);
+        };
         if (number == 0) {
-            std::call_once(hasMerged_, [&] { merged_.reset(reachOfAll()); });
-            compositeSeconds = renderSlab(slab, strip, box, splatter, merged_);
-            strip.layers->addFront();
+            // Not made before there are threads, so that others may begin meanwhile.
+            timed([&] { std::call_once(mergedOnce_, [&] { merged_.reset(reachOfAll()); }); });
+            compositeSeconds += renderSlab(slab, strip, box, splatter, merged_);
+            timed([&] { strip.layers->addFront(); });
         } else {
             Layer layer = strip.layers->take(box);
-            compositeSeconds = renderSlab(slab, strip, box, splatter, layer);
-            const Clock::time_point before = Clock::now();
-            strip.layers->add(number - 1, std::move(layer));
-            compositeSeconds += secondsSince(before);
+            compositeSeconds += renderSlab(slab, strip, box, splatter, layer);
+            timed([&] { strip.layers->add(number - 1, std::move(layer)); });
         }
         count(slab, compositeSeconds, secondsSince(start));
     }
@@ -208,8 +218,9 @@ class SlabRenderer {
     const Listener& listener_;
     glm::vec4 scale_;
     Layer merged_;
-    std::once_flag hasMerged_;
+    std::once_flag mergedOnce_;
     std::vector<Strip> strips_;
+    SheetLayout largest_;
     std::atomic<std::size_t> next_ = 0;
     std::mutex mutex_;  // guards all below
     double compositeSeconds_ = 0;
@@ -252,6 +263,9 @@ void requireSlabMemory(const SplatInput& input, const PlaneView& view, const She
         return sizeof(float) * layout.channels * size.x * size.y;
     };
     for (const Slab& slab : deltas.slabs) bytes += layerBytes(slab.firstSlice, slab.sliceCount);
+    // The front slab's is the merged one.
+    const Slab& front = view.frontToBack ? deltas.slabs.front() : deltas.slabs.back();
+    bytes -= layerBytes(front.firstSlice, front.sliceCount);
     bytes += layerBytes(deltas.box.min.x, deltas.box.dims().x);
     requireMemory("sheets and layers at " + std::to_string(layout.resolution) + " pixels a voxel",
                   bytes);

@@ -23,11 +23,12 @@ class LayerFold {
 
     /// Returns an empty layer. Call it once for each number.
     Layer take(const PlaneBox& box);
-    /// Says that the front layer is finished.
+    /// Says that the front layer is finished, and may be written to from now on by others than who
+    /// made it. Call it once.
     void addFront();
     /// Takes a finished layer back.
     void add(std::size_t number, Layer layer);
-    /// Merges row y of the layers that are left, when all have been added.
+    /// Merges row y of the layers that are left, when all have been added, the front one included.
     void finishRow(int y);
 
   private:

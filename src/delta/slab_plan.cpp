@@ -16,7 +16,8 @@ constexpr int kShortSlab = 4;  // blocks of 8 slices: slabs up to this length ma
 constexpr double kMostKeyDeltas = 0.03;
 
 // A stamp of a whole slice costs a little more: what it replaces must be taken away. Where few
-// voxels change, they are stamped (Splatter), which is faster still.
+// voxels change, they are stamped, which is faster still; from how many on depends on the footprint
+// (TileSplatter::leastChanges), which is not known here: the least is right for the smallest ones.
 bool isSmallerWhole(const PlannedSlab& slab) {
     constexpr std::uint64_t kFew = 12;
     return slab.changesFewerThan(kFew) ? 8 * slab.visible < 5 * slab.deltas

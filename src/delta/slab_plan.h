@@ -24,7 +24,7 @@ struct PlannedSlab : Slab {
     std::uint64_t words = 0;  ///< mask words in which anything changes, but for key slices
 
     std::uint64_t stamps() const { return whole ? visible : deltas; }
-    /// Whether fewer voxels change in a slice of a block that changes, on average.
+    /// Whether there are fewer deltas than so many voxels for each of `words`.
     bool changesFewerThan(std::uint64_t voxels) const { return deltas < voxels * words; }
 };
 

@@ -48,19 +48,19 @@ double alphaOf(double opacity, double unitDistancesPerSlice) {
     return -std::expm1(std::log1p(-opacity) * unitDistancesPerSlice);
 }
 
-// A code's light for one slice, before it is rounded.
-struct VisibleCode {
+// A code's light for one slice, before it is rounded; that of codes that cannot be seen is 0.
+struct CodeLight {
     Code code;
     double alpha;
     glm::dvec3 color;  // not multiplied by alpha
 };
 
-std::vector<VisibleCode> classifyExactly(const Volume& volume, const Optics& optics,
-                                         double unitDistancesPerSlice) {
+std::vector<CodeLight> classifyExactly(const Volume& volume, const Optics& optics,
+                                       double unitDistancesPerSlice) {
     const TransferFunction& function = optics.transferFunction;
     const glm::dvec2 range =
         function.normalized ? optics.range.value_or(defaultRange(volume)) : glm::dvec2(0, 1);
-    std::vector<VisibleCode> codes;
+    std::vector<CodeLight> codes;
     for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
         if (volume.histogram[code] != 0) codes.push_back({Code(code), 0, {}});
     }
@@ -77,16 +77,16 @@ std::vector<VisibleCode> classifyExactly(const Volume& volume, const Optics& opt
             codes[i].color = function.colorAt(x);
         }
     });
-    std::erase_if(codes, [](const VisibleCode& one) { return !(one.alpha > 0); });
+    std::erase_if(codes, [](const CodeLight& one) { return !(one.alpha > 0); });
     return codes;
 }
 
 // Rounds the colours of all visible codes with one scale a channel.
 class ColorRounder {
   public:
-    explicit ColorRounder(const std::vector<VisibleCode>& visible) {
+    explicit ColorRounder(const std::vector<CodeLight>& visible) {
         oneColor_ = !visible.empty();
-        for (const VisibleCode& one : visible) {
+        for (const CodeLight& one : visible) {
             largest_ = glm::max(largest_, premultiplied(one));
             oneColor_ = oneColor_ && one.color == visible.front().color;
         }
@@ -96,7 +96,7 @@ class ColorRounder {
     // What is too small for a scale is nothing.
     glm::dvec4 scale() const { return largest_ / double(ClassTable::kMax); }
 
-    ClassTable::Color operator()(const VisibleCode& one) const {
+    ClassTable::Color operator()(const CodeLight& one) const {
         const glm::dvec4 exact = premultiplied(one);
         const auto rounded = [&](int c) {
             if (scale()[c] == 0) return std::int16_t{0};
@@ -113,7 +113,7 @@ class ColorRounder {
     }
 
   private:
-    static glm::dvec4 premultiplied(const VisibleCode& one) {
+    static glm::dvec4 premultiplied(const CodeLight& one) {
         return {one.alpha * one.color, one.alpha};
     }
 
@@ -150,7 +150,7 @@ class ColorNumbers {
 };
 
 // Of one colour, the opacity says all.
-void numberByOpacity(const std::vector<VisibleCode>& visible, const ColorRounder& rounded,
+void numberByOpacity(const std::vector<CodeLight>& visible, const ColorRounder& rounded,
                      ClassTable& table) {
     table.colors.resize(ClassTable::kMax + 1);
     for (int opacity = 0; opacity <= ClassTable::kMax; ++opacity) {
@@ -158,7 +158,7 @@ void numberByOpacity(const std::vector<VisibleCode>& visible, const ColorRounder
             table.colors[opacity][c] = std::int16_t(table.scale[c] == 0 ? 0 : opacity);
         }
     }
-    for (const VisibleCode& one : visible) table.classOfSlot[one.code + 1] = rounded(one)[3];
+    for (const CodeLight& one : visible) table.classOfSlot[one.code + 1] = rounded(one)[3];
 }
 
 }  // namespace
@@ -166,7 +166,7 @@ void numberByOpacity(const std::vector<VisibleCode>& visible, const ColorRounder
 ClassTable classify(const Volume& volume, const Optics& optics, double sliceStepWorld) {
     checkOptics(optics);
     const double unitDistance = optics.unitDistance.value_or(smallest(volume.voxelSize()));
-    const std::vector<VisibleCode> visible =
+    const std::vector<CodeLight> visible =
         classifyExactly(volume, optics, optics.extinctionScale * (sliceStepWorld / unitDistance));
     const ColorRounder rounded(visible);
     ClassTable table;
@@ -177,7 +177,7 @@ ClassTable classify(const Volume& volume, const Optics& optics, double sliceStep
         numberByOpacity(visible, rounded, table);
     } else {
         ColorNumbers numbers(visible.size());
-        for (const VisibleCode& one : visible) {
+        for (const CodeLight& one : visible) {
             table.classOfSlot[one.code + 1] = numbers.numberOf(rounded(one), table.colors);
         }
     }

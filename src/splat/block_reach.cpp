@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "splat/block_reach.h"
 
+#include "floor_div.h"
 #include "splat/tile_kernels.h"
 
 namespace deltasplat {
-namespace {
-
-int floorToTile(int pixel) {
-    return (pixel - (pixel % kTilePixels + kTilePixels) % kTilePixels) / kTilePixels;
-}
-
-}  // namespace
 
 BlockReach::BlockReach(int resolution, int reachPixels, int width)
-    : firstTile_(floorToTile(-reachPixels)) {
-    const int lastTile = floorToTile(7 * resolution - reachPixels + width - 1);
+    : firstTile_(floorDiv(-reachPixels, kTilePixels)) {
+    const int lastTile = floorDiv(7 * resolution - reachPixels + width - 1, kTilePixels);
     columns_.resize(lastTile - firstTile_ + 1);
     pixelRows_.resize(columns_.size());
     for (int tile = 0; tile < tiles(); ++tile) {

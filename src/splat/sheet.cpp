@@ -9,6 +9,7 @@
 #include <string>
 
 #include "deltasplat/error.h"
+#include "floor_div.h"
 #include "memory.h"
 #include "splat/tile_bytes.h"
 
@@ -75,7 +76,6 @@ glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last) {
     // Of block b: [begin + b * blockPixels, end + b * blockPixels).
     const int begin = layout.marginPixels - layout.reachPixels;
     const int end = begin + blockPixels - layout.resolution + layout.footprintPixels;
-    const auto floorDiv = [](int a, int b) { return a / b - (a % b != 0 && a < 0); };
     return {std::max(floorDiv(first - end, blockPixels) + 1, 0),
             std::min(floorDiv(last - 1 - begin, blockPixels) + 1, layout.blocks.y)};
 }
@@ -112,12 +112,12 @@ void Sheet::touch(glm::ivec2 block, std::uint64_t voxels) {
     touchRows(block);
 }
 
-void Sheet::show(glm::ivec2 block, std::uint64_t seen, std::uint64_t gone) {
-    forReach(block, {seen, gone}, [&](std::size_t place, const auto& reached) {
+void Sheet::show(glm::ivec2 block, std::uint64_t visible, std::uint64_t vanished) {
+    forReach(block, {visible, vanished}, [&](std::size_t place, const auto& reached) {
         addBytes(&full_[place], reached[0]);
         addBytes(&touched_[place], reached[1] & ~reached[0]);
     });
-    if (gone != 0) touchRows(block);
+    if (vanished != 0) touchRows(block);
 }
 
 // Calls use(place, reached) for every row of eight tiles that a block may reach: where it lies in

@@ -73,12 +73,13 @@ class Sheet {
     std::int32_t* pixels() { return pixels_.data(); }
     const std::int32_t* row(int y) const { return &pixels_[pitch() * y]; }
 
-    /// Says that what voxels of a block (v, u) show may have changed: a mask word, bit 8 * u + v.
+    /// Says that what voxels of a block (v, u) of the layout show may have changed: a mask word,
+    /// bit 8 * u + v.
     void touch(glm::ivec2 block, std::uint64_t voxels);
-    /// Says that voxels of a block are seen now, and that others, `gone`, are not any more. Rows
-    /// that the former reach are full, for no colour or weight is negative; those that only the
-    /// latter reach are touched.
-    void show(glm::ivec2 block, std::uint64_t seen, std::uint64_t gone);
+    /// Says which voxels of a block are visible now, and which are not any more. Rows that the
+    /// former reach are full, for no colour or weight is negative; those that only the latter reach
+    /// are touched.
+    void show(glm::ivec2 block, std::uint64_t visible, std::uint64_t vanished);
     /// Calls `refill(tileRow, touched, full)` for every row of tiles that has touched ones and in
     /// which any of the pixel rows [first, last) lies; others stay touched. Of each tile there is a
     /// byte, bit y for its row y: where `touched` has bits, `refill` puts into `full` whether those
@@ -114,6 +115,7 @@ class Sheet {
 
 template <typename Refill>
 void Sheet::refillTouched(int first, int last, const Refill& refill) {
+    if (last <= first) return;
     const int end = (std::min(last, layout_.sizePixels.y) + kTilePixels - 1) / kTilePixels;
     for (int row = std::max(first, 0) / kTilePixels; row < end; ++row) {
         if (touchedRows_[row] == 0) continue;

@@ -25,9 +25,9 @@ glm::ivec2 SliceBlocks::blockOf(const DeltaWord& word) const {
 std::uint64_t SliceBlocks::voxelsInBox(glm::ivec2 block) const {
     const IndexBox& box = input_.deltas.box;
     const glm::ivec2 first = layout_.firstVoxel + 8 * block;
-    // The rows or columns first..last of the block.
-    const auto inside = [](int first, int last) {
-        return 0xFFu >> (7 - std::min(last, 7)) & 0xFFu << std::max(first, 0) & 0xFFu;
+    // Of the block's rows or columns, of which there are some: those of the box.
+    const auto inside = [](int from, int to) {
+        return 0xFFu >> (7 - std::min(to, 7)) & 0xFFu << std::max(from, 0) & 0xFFu;
     };
     const std::uint64_t columns = inside(box.min.z - first.x, box.max.z - first.x);
     const unsigned rows = inside(box.min.y - first.y, box.max.y - first.y);

@@ -28,10 +28,12 @@ void Splatter::end() {
 }
 
 double Splatter::bytes(const SplatInput& input, const SheetLayout& layout) {
-    // The sheet, and what each way shows: half the sheet's size at most, or 2 bytes a voxel.
-    const double voxels = 64.0 * layout.blocks.x * layout.blocks.y;
-    const double tiles = TileSplatter::fits(input.footprint) ? 0.5 * double(layout.bytes()) : 0;
-    return double(layout.bytes()) + tiles + 2 * (2 + 0.25) * voxels;
+    const double blocks = double(layout.blocks.x) * layout.blocks.y;
+    // The classes that stamps show, and their list as it grows.
+    const double stamps = blocks * (64 * sizeof(ClassIndex) + 3 * sizeof(BlockStamps));
+    // The plane, which is at most half as large as the sheet, and two lists of blocks.
+    const double tiles = 0.5 * double(layout.bytes()) + 48 * blocks;
+    return double(layout.bytes()) + stamps + (TileSplatter::fits(input.footprint) ? tiles : 0);
 }
 
 }  // namespace deltasplat

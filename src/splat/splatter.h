@@ -15,6 +15,9 @@ class Splatter {
     /// @param largest  of the layouts to come
     Splatter(const SplatInput& input, const SheetLayout& largest)
         : input_(input), largest_(largest), sheet_(largest) {}
+    // Both ways refer to the sheet.
+    Splatter(const Splatter&) = delete;
+    Splatter& operator=(const Splatter&) = delete;
 
     /// Begins with a slab.
     /// @param layout  of the whole sheet, or of a part of it (layoutRows)

@@ -13,6 +13,7 @@
 #include "hwy/foreach_target.h"
 // After foreach_target.h, as Highway asks.
 #include "hwy/highway.h"
+#include "splat/pair_products-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
@@ -47,13 +48,9 @@ HWY_INLINE hn::Vec<PairTag> asPairs(V values) {
     return hn::BitCast(PairTag(), hn::PromoteTo(wide, hn::BitCast(narrow, values)));
 }
 
-// Multiplies the low halves of lanes; half the work of multiplying 32-bit integers on x86.
+// Half the work of multiplying 32-bit integers on x86.
 HWY_INLINE hn::Vec<IntTag> products(hn::Vec<PairTag> color, hn::Vec<IntTag> weights) {
-    const IntTag tag;
-    auto odd = hn::Zero(tag);
-    const auto even = hn::ReorderWidenMulAccumulate(tag, color, hn::BitCast(PairTag(), weights),
-                                                    hn::Zero(tag), odd);
-    return hn::RearrangeToOddPlusEven(even, odd);
+    return productsOfPairs(IntTag(), hn::BitCast(IntTag(), color), weights);
 }
 
 // Rows of a footprint as vectors: in registers where the width is known at compile time and small,
@@ -120,19 +117,20 @@ class Rows<kChannels, 0> {
 class ActiveVoxels {
   public:
     explicit ActiveVoxels(std::span<const BlockStamps> blocks)
-        : block_(blocks.data()), last_(block_ + blocks.size() - 1), rest_(block_->active) {}
+        : block_(blocks.data()), last_(block_ + blocks.size() - 1), rest_(block_->byColumn) {}
 
     const BlockStamps& block() const { return *block_; }
     int voxel() const {
         const int n = std::countr_zero(rest_);
         return 8 * (n & 7) + (n >> 3);
     }
-    // The last voxel's next one is any of its block's.
+    // Behind the last voxel comes the last block's first one again, so that loading ahead reads
+    // something that is there.
     void next() {
         rest_ &= rest_ - 1;
         if (rest_ != 0) return;
         if (block_ != last_) ++block_;
-        rest_ = block_->active;
+        rest_ = block_->byColumn;
     }
 
   private:
@@ -146,7 +144,7 @@ void stampBlocksOf(std::span<const BlockStamps> blocks,
                    const ClassTable::Color* HWY_RESTRICT colors, const StampWeights& weights,
                    const StampPlaces& places) {
     std::size_t count = 0;
-    for (const BlockStamps& block : blocks) count += std::size_t(std::popcount(block.active));
+    for (const BlockStamps& block : blocks) count += std::size_t(std::popcount(block.byColumn));
     const Rows<kChannels, kWidth> rows(weights);
     const std::size_t pitch = places.pitch;
     ActiveVoxels voxels(blocks);

@@ -25,8 +25,8 @@ struct StampWeights {
 
 /// The voxels of one slice of a block that are stamped.
 struct BlockStamps {
-    std::uint64_t active;          ///< bit 8 * v + u: voxel (u, v) is stamped; not zero
-    const std::uint16_t* classes;  ///< [64]
+    std::uint64_t byColumn;        ///< bit 8 * v + u: voxel (u, v) is stamped; not zero
+    const std::uint16_t* classes;  ///< [64], n = 8 * u + v
     std::uint16_t* shown;          ///< [64]: the classes of the slice before, for stampChanges
     std::int32_t*
         first;  ///< sheet: of the first voxel's footprint, `[row][pitch / channels][channels]`
@@ -38,15 +38,15 @@ struct StampPlaces {
     std::size_t pitch;             ///< integers from one row of the sheet to the next
 };
 
-/// Adds a stamp for every active voxel, in the colour of its class: sheet += colour * weight, in
-/// 32-bit integers, so that the order of stamps does not matter. Vectors may reach over a row's
-/// end, where they add zeros.
+/// Adds a stamp for every voxel of the blocks' masks, in the colour of its class: sheet += colour *
+/// weight, in 32-bit integers, so that the order of stamps does not matter. Vectors may reach over
+/// a row's end, where they add zeros.
 /// @param colors  of the class table
 void stampWhole(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
                 const StampWeights& weights, const StampPlaces& places);
 
-/// Adds a stamp for every active voxel, in the difference between the colour of its class and that
-/// of the class it showed before, which is replaced.
+/// Adds a stamp for every voxel of the blocks' masks, in the difference between the colour of its
+/// class and that of the class it showed before, which is replaced.
 void stampChanges(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
                   const StampWeights& weights, const StampPlaces& places);
 

@@ -13,18 +13,11 @@
 #include "hwy/foreach_target.h"
 // After foreach_target.h, as Highway asks.
 #include "hwy/highway.h"
+#include "splat/pair_products-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-// Calls use(first, last) for the rows that a byte has bits for, and those between them: with
-// constants if it has all, so that loops unroll.
-template <typename Use>
-HWY_INLINE auto forRows(unsigned rows, const Use& use) {
-    return rows == 0xFF ? use(0, kTilePixels - 1)
-                        : use(std::countr_zero(rows), int(std::bit_width(rows)) - 1);
-}
 
 template <int kChannels, int kResolution>
 class TileSums {
@@ -100,16 +93,9 @@ class TileSums {
         return !hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)));
     }
 
-    // Adds the products of the two 16-bit halves of each lane.
     static HWY_INLINE V addPairs(V sum, const std::int32_t* colors, V weights) {
         const Tag tag;
-        const hn::Repartition<std::int16_t, Tag> half;
-        // Into sums that begin at zero, for NEON adds up neighbouring lanes of both.
-        V odd = hn::Zero(tag);
-        const V even =
-            hn::ReorderWidenMulAccumulate(tag, hn::BitCast(half, hn::LoadU(tag, colors)),
-                                          hn::BitCast(half, weights), hn::Zero(tag), odd);
-        return hn::Add(sum, hn::RearrangeToOddPlusEven(even, odd));
+        return hn::Add(sum, productsOfPairs(tag, hn::LoadU(tag, colors), weights));
     }
 
     template <class T>

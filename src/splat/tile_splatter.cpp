@@ -14,16 +14,16 @@ std::variant<TileWeights, CellWeights> weightsOf(const Footprint& footprint, int
     return CellWeights(footprint, channels);
 }
 
-// Voxels before the first block and behind the last. Cells need not begin where tiles do, and take
-// voxels farther away.
-int marginOf(const SheetLayout& layout) {
-    constexpr int kAround = CellWeights::kTaps;
-    return layout.marginPixels / layout.resolution + (layout.resolution > 2 ? kAround : 0);
+// Voxels before the first block and behind the last. Tiles take one more than lie in them, which
+// the outermost, never touched, leaves room for. Cells need not begin where tiles do, and take up
+// to three more.
+int marginOf(const SheetLayout& layout, bool ofCells) {
+    return layout.marginPixels / layout.resolution + (ofCells ? CellWeights::kTaps : 0);
 }
 
 }  // namespace
 
-// Measured (docs/performance.md).
+// Measured (docs/decisions.md, "Few changes are stamped").
 std::uint64_t TileSplatter::leastChanges(const Footprint& footprint, int channels) {
     if (TileWeights::fits(footprint)) return 12;
     return channels == 4 ? 14 : 28;
@@ -34,7 +34,7 @@ TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, 
       blocks_(input, largest),
       sheet_(sheet),
       weights_(weightsOf(input.footprint, largest.channels)),
-      marginVoxels_(marginOf(largest)),
+      marginVoxels_(marginOf(largest, std::holds_alternative<CellWeights>(weights_))),
       pitch_(std::size_t(largest.channels) * (8 * largest.blocks.x + 2 * marginVoxels_ + 8)),
       plane_(pitch_ * (8 * largest.blocks.y + 2 * marginVoxels_)),
       shown_(blocks_.count()) {}

@@ -61,7 +61,7 @@ class TileSplatter {
     std::variant<TileWeights, CellWeights> weights_;
     int marginVoxels_;                     // of the plane
     std::size_t pitch_;                    // likewise
-    std::vector<std::int16_t> plane_;      // colours shown, a margin around them as in the sheet
+    std::vector<std::int16_t> plane_;      // colours shown, a margin around them
     std::vector<Shown> shown_;             // [block]
     std::vector<glm::ivec2> shownBlocks_;  // those with voxels
     std::vector<glm::ivec2> before_;       // likewise, in the slice before

@@ -59,13 +59,13 @@ void expectSamePixels(const Volume& volume, RenderOptions options) {
 
 const IndexBox kBoxes[] = {{{0, 0, 0}, {40, 21, 33}}, {{-19, 5, -60}, {0, 70, 2}}};
 
-// Resolutions 1 and 2 sum up tiles, 3 stamps footprints, and so does a wide footprint.
+// Resolutions 1 and 2 sum up tiles, 3 and 4 cells, 5 stamps footprints, and so does a wide one.
 TEST(Identity, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
     for (const IndexBox& box : kBoxes) {
         const Volume volume = test::randomVolume(box, 17, 0.5, {1, 1.5, 0.8});
         for (const glm::dvec3& direction : kDirections) {
             RenderOptions options = optionsFor(direction);
-            for (const int resolution : {1, 2, 3}) {
+            for (const int resolution : {1, 2, 3, 4, 5}) {
                 options.resolution = resolution;
                 expectSamePixels(volume, options);
             }
@@ -82,7 +82,7 @@ TEST(Identity, AlsoOfOneColorAndUnderATolerance) {
     for (const IndexBox& box : kBoxes) {
         const Volume volume = test::randomVolume(box, 18, 0.5, {1, 1.5, 0.8});
         for (const glm::dvec3& direction : kDirections) {
-            for (const int resolution : {1, 2, 3}) {
+            for (const int resolution : {1, 2, 4}) {
                 RenderOptions options = optionsFor(direction);
                 options.resolution = resolution;
                 options.tolerance = {0.05, 0};
@@ -125,7 +125,7 @@ TEST(Identity, AlsoWhereLittleChanges) {
         const RenderStats stats = render(volume, options).stats;
         EXPECT_LE(stats.slabs, 3);
         EXPECT_LT(6 * stats.deltas, stats.visible);
-        for (const int resolution : {1, 2, 3}) {
+        for (const int resolution : {1, 2, 4}) {
             options.resolution = resolution;
             expectSamePixels(volume, options);
         }

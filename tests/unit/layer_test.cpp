@@ -21,9 +21,11 @@ Sheet randomSheet(std::uint32_t seed, int channels = 4) {
     Sheet sheet(layoutSheet(kBox, makeFootprint(0.4, {0, 0}, 1), channels));
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(0, 1);
-    const glm::ivec2 tiles = sheet.layout().tiles();
-    for (int y = 1; y + 1 < tiles.y; ++y) {
-        for (int x = 1; x + 1 < tiles.x; ++x) {
+    // At one pixel a voxel, blocks are as large as tiles.
+    const glm::ivec2 blocks = sheet.layout().blocks;
+    const int margin = sheet.layout().marginPixels / kTilePixels;
+    for (int y = margin; y < margin + blocks.y; ++y) {
+        for (int x = margin; x < margin + blocks.x; ++x) {
             if (uniform(random) > 0.5) continue;
             for (int n = 0; n < 64; ++n) {
                 const glm::ivec2 p = 8 * glm::ivec2(x, y) + glm::ivec2(n % 8, n / 8);
@@ -34,9 +36,7 @@ Sheet randomSheet(std::uint32_t seed, int channels = 4) {
                     pixel[c] = std::int32_t(uniform(random) * ClassTable::kMax * Footprint::kOne);
                 }
             }
-            // At one pixel a voxel, blocks are as large as tiles.
-            sheet.touch(glm::ivec2(x, y) - sheet.layout().marginPixels / kTilePixels,
-                        ~std::uint64_t{0});
+            sheet.touch(glm::ivec2(x, y) - margin, ~std::uint64_t{0});
         }
     }
     sheet.settle();
@@ -170,16 +170,26 @@ TEST(LayerFold, IsOverFromTheFront) {
     for (const int channels : {1, 4}) {
         for (const auto& order : orders) {
             for (const bool takeAllFirst : {false, true}) {
-                Layer merged = randomLayer(all, channels, 99);
+                Layer merged(all, channels);
                 LayerFold fold(4, merged);
+                std::size_t taken = takeAllFirst ? 4 : 0;
                 if (takeAllFirst) {
                     for (const PlaneBox& box : boxes) fold.take(box);
                 }
                 for (const std::size_t i : order) {
                     if (i == kFront) {
+                        // Nobody else writes to the front layer before it is finished.
+                        for (const float value : merged.values) ASSERT_EQ(value, 0);
+                        merged = randomLayer(all, channels, 99);
                         fold.addFront();
+                        // What waits is merged at once as long as more is to come.
+                        const bool waits = order[0] == 0 || order[1] == 0;
+                        if (waits && taken > 0 && taken < 4) {
+                            EXPECT_NE(merged.values, randomLayer(all, channels, 99).values);
+                        }
                         continue;
                     }
+                    ++taken;
                     const Layer empty =
                         takeAllFirst ? Layer(boxes[i], channels) : fold.take(boxes[i]);
                     for (const float value : empty.values) ASSERT_EQ(value, 0);

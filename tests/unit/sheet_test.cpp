@@ -313,7 +313,7 @@ TEST(Sheet, RefillsRowsOfTilesOnceTheyAreAskedFor) {
     };
     EXPECT_EQ(refilled(10, 17), (std::vector<int>{1, 2}));
     EXPECT_EQ(refilled(-9, 9), std::vector<int>{});
-    EXPECT_EQ(refilled(24, 24), std::vector<int>{});
+    EXPECT_EQ(refilled(25, 25), std::vector<int>{});
     EXPECT_EQ(refilled(24, 25), std::vector<int>{3});
     // Voxels do not reach the outermost tiles.
     EXPECT_EQ(refilled(0, 90), (std::vector<int>{4, 5}));

@@ -135,6 +135,11 @@ TEST(SliceBlocks, TraditionalTakesEveryVoxelOfTheBox) {
                voxel.y <= kBox.max.y;
     };
     EXPECT_TRUE(std::all_of(found.begin(), found.end(), inside));
+    const auto before = [](glm::ivec2 a, glm::ivec2 b) {
+        return a.y != b.y ? a.y < b.y : a.x < b.x;
+    };
+    std::sort(found.begin(), found.end(), before);
+    EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
     const glm::ivec3 dims = kBox.dims();
     EXPECT_EQ(found.size(), std::size_t(dims.y) * dims.z);
 }

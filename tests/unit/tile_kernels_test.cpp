@@ -140,6 +140,54 @@ TEST_P(TilesOnEveryLevel, TouchedRowsOfCellsAreTheSumsOfStamps) {
     }
 }
 
+// More tiles than are made at a time, with holes between them, in rows that begin anywhere in a
+// cell.
+TEST_P(TilesOnEveryLevel, CellsOfLongRowsAreTheSumsOfStamps) {
+    constexpr int kLong = 48;
+    constexpr int kEdge = 8;  // voxels around the one that places are counted from
+    std::vector<std::uint8_t> touched(kLong, 0xFF);
+    touched[0] = touched[16] = touched[33] = touched[35] = 0;
+    touched[20] = 0x24;
+    std::mt19937 random(7);
+    for (const int resolution : {3, 4}) {
+        const Footprint footprint = makeFootprint(0.4, {0.8, -0.6}, resolution, 3 * resolution + 1);
+        const int width = 8 * kLong / resolution + 2 * kEdge;
+        const int height = 2 * kEdge;
+        for (const int channels : {1, 4}) {
+            const CellWeights weights(footprint, channels);
+            std::vector<std::int16_t> plane(std::size_t(channels) * width * height);
+            for (std::int16_t& color : plane)
+                color = std::int16_t(random() % 3 == 0 ? random() % (ClassTable::kMax + 1) : 0);
+            for (const glm::ivec2 first : {glm::ivec2(0), {-8, -8}, {-5, 1}, {2, -7}, {1, 5}}) {
+                std::vector<std::int32_t> sheet(std::size_t(channels) * 8 * kLong * 8, -7);
+                std::vector<std::uint8_t> full(kLong, 0);
+                const std::size_t pitch = std::size_t(channels) * 8 * kLong;
+                splatCells(weights,
+                           {&plane[std::size_t(channels) * kEdge * (width + 1)],
+                            std::size_t(channels) * width, first},
+                           {sheet.data(), pitch}, touched, full);
+                for (std::size_t i = 0; i < sheet.size(); ++i) {
+                    const int c = int(i % channels);
+                    const glm::ivec2 p(i % pitch / channels, i / pitch);
+                    // Rows between touched ones may be made too.
+                    const bool made = touched[p.x / 8] >> p.y & 1;
+                    if (!made && touched[p.x / 8] != 0) continue;
+                    std::int32_t expected = made ? 0 : -7;
+                    for (int n = 0; made && n < footprint.width * footprint.width; ++n) {
+                        const glm::ivec2 at(n % footprint.width, n / footprint.width);
+                        const glm::ivec2 q = p + first + footprint.reach() - at;
+                        if (q.x % resolution != 0 || q.y % resolution != 0) continue;
+                        const glm::ivec2 voxel = q / resolution + kEdge;
+                        expected += plane[channels * (std::size_t(voxel.y) * width + voxel.x) + c] *
+                                    footprint.at(at.x, at.y);
+                    }
+                    ASSERT_EQ(sheet[i], expected) << p.x << ' ' << p.y << " r " << resolution;
+                }
+            }
+        }
+    }
+}
+
 TEST(CellWeights, FitFootprintsThatReachTwoVoxels) {
     EXPECT_TRUE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 3, 9)));
     EXPECT_TRUE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 3, 12)));

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the kernels of splatting share, compiled once for each SIMD level: include it after Highway.
+// No #pragma once, for each level includes it anew.
+#if defined(DELTASPLAT_PAIR_PRODUCTS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef DELTASPLAT_PAIR_PRODUCTS_INL_H
+#undef DELTASPLAT_PAIR_PRODUCTS_INL_H
+#else
+#define DELTASPLAT_PAIR_PRODUCTS_INL_H
+#endif
+
+#include <bit>
+
+#include "hwy/highway.h"
+#include "splat/tile_kernels.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace deltasplat::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Multiplies the 16-bit halves of 32-bit lanes, and adds up the two products of each.
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> productsOfPairs(Tag tag, hn::Vec<Tag> a, hn::Vec<Tag> b) {
+    const hn::Repartition<std::int16_t, Tag> half;
+    // Into sums that begin at zero, for NEON adds up neighbouring lanes of both.
+    auto odd = hn::Zero(tag);
+    const auto even = hn::ReorderWidenMulAccumulate(tag, hn::BitCast(half, a), hn::BitCast(half, b),
+                                                    hn::Zero(tag), odd);
+    return hn::RearrangeToOddPlusEven(even, odd);
+}
+
+// Calls use(first, last) for the rows that a tile's byte has bits for, and those between them: with
+// constants if it has all, so that loops unroll.
+template <typename Use>
+HWY_INLINE auto forRows(unsigned rows, const Use& use) {
+    return rows == 0xFF ? use(0, kTilePixels - 1)
+                        : use(std::countr_zero(rows), int(std::bit_width(rows)) - 1);
+}
+
+}  // namespace deltasplat::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
