@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -46,13 +47,21 @@ int sheetResolution(const Factorization& view, const ClassTable& classes,
 }
 
 // Into how many strips rows of the base plane are cut: enough pieces for every thread to take some,
-// and strips that are not much smaller than the rows at their edges, which belong to two.
-int stripCount(int rows, std::size_t slabs) {
+// and enough for a strip's part of sheet and layer to stay in a second-level cache; but not so many
+// that strips get much smaller than the rows at their edges, which belong to two. If all of sheet
+// and layer hardly overflow that cache, such rows cost more than they help.
+int stripCount(const SheetLayout& layout, int rows, std::size_t slabs) {
     constexpr std::size_t kPiecesPerThread = 4;
     constexpr int kLeastRows = 48;
-    if (threadCount() == 1) return 1;
-    const std::size_t wanted = (kPiecesPerThread * std::size_t(threadCount()) + slabs / 2) / slabs;
-    return std::clamp(int(std::min<std::size_t>(wanted, 1024)), 1, std::max(1, rows / kLeastRows));
+    constexpr double kStripBytes = 1.5e6;
+    constexpr double kMostWholeBytes = 6e6;
+    const auto threads = std::size_t(threadCount());
+    const std::size_t forThreads =
+        threads == 1 ? 1 : (kPiecesPerThread * threads + slabs / 2) / slabs;
+    const double bytes = 2.0 * sizeof(float) * layout.channels * layout.sizePixels.x * rows;
+    const double forCache = bytes > kMostWholeBytes ? bytes / kStripBytes : 1;
+    const double wanted = std::min(std::max(double(forThreads), forCache), 1024.0);
+    return std::clamp(int(std::lround(wanted)), 1, std::max(1, rows / kLeastRows));
 }
 
 // Rows of the base plane that are worked on by themselves.
@@ -123,7 +132,7 @@ class SlabRenderer {
     void cutIntoStrips() {
         const PlaneBox box = reachOfAll();
         const int rows = box.size().y;
-        const int count = stripCount(rows, slabs().size());
+        const int count = stripCount(layout_, rows, slabs().size());
         for (int i = 0; i < count; ++i) {
             const auto edge = [&](int n) {
                 return box.min.y + int(std::int64_t{rows} * n / count);
@@ -249,7 +258,7 @@ void requireSlabMemory(const SplatInput& input, const PlaneView& view, const She
     const PackedDeltas& deltas = input.deltas;
     const IndexBox& box = deltas.box;
     const int rows = reachOf(layout, view.shiftPerSlice, box.min.x, box.dims().x).size().y;
-    const int strips = stripCount(rows, deltas.slabs.size());
+    const int strips = stripCount(layout, rows, deltas.slabs.size());
     int longest = 0;
     for (const Slab& slab : deltas.slabs) longest = std::max(longest, slab.sliceCount);
     // A strip's rows, those that its slabs are shifted by, and whole blocks and margins around.
