@@ -66,6 +66,8 @@ TEST(Identity, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
         for (const glm::dvec3& direction : kDirections) {
             RenderOptions options = optionsFor(direction);
             for (const int resolution : {1, 2, 3, 4, 5}) {
+                // Large sheets, of which one view has to do.
+                if (resolution > 3 && direction != kDirections[0]) continue;
                 options.resolution = resolution;
                 expectSamePixels(volume, options);
             }
@@ -82,7 +84,7 @@ TEST(Identity, AlsoOfOneColorAndUnderATolerance) {
     for (const IndexBox& box : kBoxes) {
         const Volume volume = test::randomVolume(box, 18, 0.5, {1, 1.5, 0.8});
         for (const glm::dvec3& direction : kDirections) {
-            for (const int resolution : {1, 2, 4}) {
+            for (const int resolution : {1, 2, 3}) {
                 RenderOptions options = optionsFor(direction);
                 options.resolution = resolution;
                 options.tolerance = {0.05, 0};
@@ -125,7 +127,7 @@ TEST(Identity, AlsoWhereLittleChanges) {
         const RenderStats stats = render(volume, options).stats;
         EXPECT_LE(stats.slabs, 3);
         EXPECT_LT(6 * stats.deltas, stats.visible);
-        for (const int resolution : {1, 2, 4}) {
+        for (const int resolution : {1, 2, 3}) {
             options.resolution = resolution;
             expectSamePixels(volume, options);
         }
