@@ -49,7 +49,8 @@ struct Optics {
 
 /// Classifies every code that occurs in the volume: extinction per world unit sigma_t = -ln(1 -
 /// opacity) / unitDistance * extinctionScale, alpha = 1 - exp(-sigma_t * sliceStepWorld). Opacity 1
-/// stays 1 at any step, as long as the extinction is not scaled to 0. Deterministic; multi-threaded.
+/// stays 1 at any step, as long as the extinction is not scaled to 0. Deterministic;
+/// multi-threaded.
 /// @param sliceStepWorld  world distance between consecutive slices along the line of sight, > 0
 /// @throw Error(kUsage) naming the option if unit distance, extinction or range is out of range
 ClassTable classify(const Volume& volume, const Optics& optics, double sliceStepWorld);
