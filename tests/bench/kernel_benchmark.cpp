@@ -51,45 +51,48 @@ void stamps(benchmark::State& state) {
 }
 BENCHMARK(stamps)->ArgNames({"channels", "width"})->ArgsProduct({{1, 4}, {3, 5, 6, 13}});
 
-// Rows of tiles that are touched all over.
+// Makes a row of tiles that are touched all over, again and again.
+// @param splat  (plane of colours, its pitch, row, touched, full)
+template <typename Splat>
+void makeTiles(benchmark::State& state, int channels, const Splat& splat) {
+    constexpr int kTiles = 32;
+    const std::size_t pitch = std::size_t(channels) * 8 * (kTiles + 4);
+    const std::vector<std::int16_t> plane(pitch * 24, 1234);
+    std::vector<std::int32_t> sheet(pitch * 8);
+    const std::vector<std::uint8_t> touched(kTiles, 0xFF);
+    std::vector<std::uint8_t> full(kTiles);
+    for (auto _ : state) {
+        splat(&plane[8 * pitch + 64], pitch, TileRow{sheet.data(), pitch}, touched, full);
+        benchmark::ClobberMemory();
+    }
+    countItems(state, kTiles);
+}
+
 void tiles(benchmark::State& state) {
     const int channels = int(state.range(0));
     const int resolution = int(state.range(1));
     const Footprint footprint = makeFootprint(0.3, {0.5, -0.5}, resolution, 2 * resolution + 1);
     const TileWeights weights(footprint, channels);
-    constexpr int kTiles = 32;
-    const std::size_t pitch = std::size_t(channels) * 8 * (kTiles + 4);
-    std::vector<std::int16_t> plane(pitch * 24, 1234);
-    std::vector<std::int32_t> sheet(pitch * 8);
-    const std::vector<std::uint8_t> touched(kTiles, 0xFF);
-    std::vector<std::uint8_t> full(kTiles);
-    for (auto _ : state) {
-        splatTiles(weights, {&plane[8 * pitch + 64], pitch}, {sheet.data(), pitch}, touched, full);
-        benchmark::ClobberMemory();
-    }
-    countItems(state, kTiles);
+    makeTiles(state, channels,
+              [&](const std::int16_t* plane, std::size_t pitch, const TileRow& row,
+                  const auto& touched, auto& full) {
+                  splatTiles(weights, {plane, pitch}, row, touched, full);
+              });
 }
 BENCHMARK(tiles)->ArgNames({"channels", "r"})->ArgsProduct({{1, 4}, {1, 2}});
 
-// Likewise, at three and four pixels a voxel.
+// At three and four pixels a voxel.
 void cells(benchmark::State& state) {
     const int channels = int(state.range(0));
     const int resolution = int(state.range(1));
     const Footprint footprint =
         makeFootprint(0.4, {0.5, -0.5}, resolution, 3 * resolution + (resolution % 2 == 0));
     const CellWeights weights(footprint, channels);
-    constexpr int kTiles = 32;
-    const std::size_t pitch = std::size_t(channels) * 8 * (kTiles + 4);
-    std::vector<std::int16_t> plane(pitch * 24, 1234);
-    std::vector<std::int32_t> sheet(pitch * 8);
-    const std::vector<std::uint8_t> touched(kTiles, 0xFF);
-    std::vector<std::uint8_t> full(kTiles);
-    for (auto _ : state) {
-        splatCells(weights, {&plane[8 * pitch + 64], pitch, {0, 0}}, {sheet.data(), pitch}, touched,
-                   full);
-        benchmark::ClobberMemory();
-    }
-    countItems(state, kTiles);
+    makeTiles(state, channels,
+              [&](const std::int16_t* plane, std::size_t pitch, const TileRow& row,
+                  const auto& touched, auto& full) {
+                  splatCells(weights, {plane, pitch, {0, 0}}, row, touched, full);
+              });
 }
 BENCHMARK(cells)->ArgNames({"channels", "r"})->ArgsProduct({{1, 4}, {3, 4}});
 

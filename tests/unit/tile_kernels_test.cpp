@@ -88,27 +88,41 @@ void expectSums(const Scene& scene, const std::vector<std::int32_t>& sheet,
     }
 }
 
+// Compares what `splat(channels, scene, row, full)` makes with stamps, of full and nearly empty
+// planes of one channel and four.
+template <typename Splat>
+void expectSumsOfStamps(const Footprint& footprint, std::uint32_t& seed, const Splat& splat) {
+    for (const int channels : {1, 4}) {
+        for (const double empty : {0.0, 0.97}) {
+            const Scene scene(footprint, channels, empty, ++seed);
+            std::vector<std::int32_t> sheet(scene.sums.size(), -7);
+            std::vector<std::uint8_t> full(kTouched.size(), 0xFF);
+            const std::size_t pitch = channels * kWidth;
+            splat(channels, scene, TileRow{&sheet[kFirst * (pitch + channels)], pitch}, full);
+            expectSums(scene, sheet, full);
+        }
+    }
+}
+
+const glm::dvec2 kShifts[] = {{0, 0}, {0.8, -0.6}};
+
 TEST_P(TilesOnEveryLevel, TouchedRowsAreTheSumsOfStamps) {
     std::uint32_t seed = 0;
     for (const int resolution : {1, 2}) {
         for (int width = 2 * resolution - 1; width <= 2 * resolution + 1; width += 2) {
-            for (const glm::dvec2 d : {glm::dvec2(0), glm::dvec2(0.8, -0.6)}) {
+            for (const glm::dvec2 d : kShifts) {
                 const Footprint footprint = makeFootprint(0.4, d, resolution, width);
                 ASSERT_TRUE(TileWeights::fits(footprint));
-                for (const int channels : {1, 4}) {
-                    for (const double empty : {0.0, 0.97}) {
-                        const Scene scene(footprint, channels, empty, ++seed);
-                        std::vector<std::int32_t> sheet(scene.sums.size(), -7);
-                        std::vector<std::uint8_t> full(kTouched.size(), 0xFF);
-                        const std::size_t pitch = channels * kWidth;
-                        const std::size_t voxel = kFirst / resolution;
-                        splatTiles(TileWeights(footprint, channels),
-                                   {&scene.plane[channels * voxel * (scene.width + 1)],
-                                    std::size_t(channels * scene.width)},
-                                   {&sheet[kFirst * (pitch + channels)], pitch}, kTouched, full);
-                        expectSums(scene, sheet, full);
-                    }
-                }
+                const std::size_t voxel = kFirst / resolution;
+                expectSumsOfStamps(footprint, seed,
+                                   [&](int channels, const Scene& scene, const TileRow& row,
+                                       std::vector<std::uint8_t>& full) {
+                                       splatTiles(
+                                           TileWeights(footprint, channels),
+                                           {&scene.plane[channels * voxel * (scene.width + 1)],
+                                            std::size_t(channels * scene.width)},
+                                           row, kTouched, full);
+                                   });
             }
         }
     }
@@ -119,22 +133,18 @@ TEST_P(TilesOnEveryLevel, TouchedRowsOfCellsAreTheSumsOfStamps) {
     for (const int resolution : {3, 4}) {
         for (const int width :
              {resolution, 2 * resolution + 1, 3 * resolution + 1, 4 * resolution}) {
-            for (const glm::dvec2 d : {glm::dvec2(0), glm::dvec2(0.8, -0.6)}) {
+            for (const glm::dvec2 d : kShifts) {
                 const Footprint footprint = makeFootprint(0.4, d, resolution, width);
                 ASSERT_TRUE(CellWeights::fits(footprint));
-                for (const int channels : {1, 4}) {
-                    for (const double empty : {0.0, 0.97}) {
-                        const Scene scene(footprint, channels, empty, ++seed);
-                        std::vector<std::int32_t> sheet(scene.sums.size(), -7);
-                        std::vector<std::uint8_t> full(kTouched.size(), 0xFF);
-                        const std::size_t pitch = channels * kWidth;
-                        splatCells(CellWeights(footprint, channels),
-                                   {scene.plane.data(), std::size_t(channels * scene.width),
-                                    glm::ivec2(kFirst)},
-                                   {&sheet[kFirst * (pitch + channels)], pitch}, kTouched, full);
-                        expectSums(scene, sheet, full);
-                    }
-                }
+                expectSumsOfStamps(footprint, seed,
+                                   [&](int channels, const Scene& scene, const TileRow& row,
+                                       std::vector<std::uint8_t>& full) {
+                                       splatCells(
+                                           CellWeights(footprint, channels),
+                                           {scene.plane.data(), std::size_t(channels * scene.width),
+                                            glm::ivec2(kFirst)},
+                                           row, kTouched, full);
+                                   });
             }
         }
     }
