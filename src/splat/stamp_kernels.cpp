@@ -38,19 +38,13 @@ HWY_INLINE auto loadColor(const ClassTable::Color& color) {
     }
 }
 
-using PairTag = hn::Repartition<std::int16_t, IntTag>;
-
-// Sixteen-bit integers, each followed by a zero, so that multiplying pairs multiplies them.
+// Sixteen-bit integers, each followed by a zero, so that multiplying pairs multiplies them: half
+// the work of multiplying 32-bit integers on x86.
 template <class V>
-HWY_INLINE hn::Vec<PairTag> asPairs(V values) {
+HWY_INLINE hn::Vec<IntTag> asPairs(V values) {
     const hn::Rebind<std::uint16_t, IntTag> narrow;
     const hn::Rebind<std::uint32_t, IntTag> wide;
-    return hn::BitCast(PairTag(), hn::PromoteTo(wide, hn::BitCast(narrow, values)));
-}
-
-// Half the work of multiplying 32-bit integers on x86.
-HWY_INLINE hn::Vec<IntTag> products(hn::Vec<PairTag> color, hn::Vec<IntTag> weights) {
-    return productsOfPairs(IntTag(), hn::BitCast(IntTag(), color), weights);
+    return hn::BitCast(IntTag(), hn::PromoteTo(wide, hn::BitCast(narrow, values)));
 }
 
 // Rows of a footprint as vectors: in registers where the width is known at compile time and small,
@@ -70,14 +64,15 @@ class Rows {
         }
     }
 
-    // Adds color * weight to the pixels from `row` on.
-    HWY_INLINE void stamp(hn::Vec<PairTag> color, std::int32_t* HWY_RESTRICT row,
+    // Adds color * weight to the pixels from `row` on; `color` as pairs.
+    HWY_INLINE void stamp(hn::Vec<IntTag> color, std::int32_t* HWY_RESTRICT row,
                           std::size_t pitch) const {
         const IntTag tag;
         for (int y = 0; y < kWidth; ++y, row += pitch) {
             for (int x = 0; x < kVectors; ++x) {
                 const auto sum = hn::LoadU(tag, row + x * kLanes);
-                hn::StoreU(hn::Add(sum, products(color, held_[y][x])), tag, row + x * kLanes);
+                hn::StoreU(hn::Add(sum, productsOfPairs(tag, color, held_[y][x])), tag,
+                           row + x * kLanes);
             }
         }
     }
@@ -93,14 +88,14 @@ class Rows<kChannels, 0> {
     explicit Rows(const StampWeights& weights)
         : table_(weights.weights.data()), rowLength_(weights.rowLength), rows_(weights.rows) {}
 
-    HWY_INLINE void stamp(hn::Vec<PairTag> color, std::int32_t* HWY_RESTRICT row,
+    HWY_INLINE void stamp(hn::Vec<IntTag> color, std::int32_t* HWY_RESTRICT row,
                           std::size_t pitch) const {
         const IntTag tag;
         const std::int32_t* HWY_RESTRICT weights = table_;
         for (int y = 0; y < rows_; ++y, row += pitch, weights += rowLength_) {
             for (std::size_t x = 0; x < rowLength_; x += hn::Lanes(tag)) {
                 const auto sum = hn::LoadU(tag, row + x);
-                const auto added = products(color, hn::LoadU(tag, weights + x));
+                const auto added = productsOfPairs(tag, color, hn::LoadU(tag, weights + x));
                 hn::StoreU(hn::Add(sum, added), tag, row + x);
             }
         }
@@ -148,7 +143,7 @@ void stampBlocksOf(std::span<const BlockStamps> blocks,
     const Rows<kChannels, kWidth> rows(weights);
     const std::size_t pitch = places.pitch;
     ActiveVoxels voxels(blocks);
-    hn::Vec<PairTag> color;
+    hn::Vec<IntTag> color;
     std::int32_t* row;
     // Colour and place are loaded one stamp ahead, or the stamp would wait for them.
     const auto load = [&]() HWY_ATTR {
