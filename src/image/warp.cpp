@@ -13,6 +13,7 @@
 
 #include "image/warp_kernels.h"
 #include "parallel.h"
+#include "portable_math.h"
 
 namespace deltasplat {
 namespace {
@@ -109,7 +110,9 @@ class Warper {
 
     // How far a step of one picture pixel, in whichever direction is worst, moves along one raster
     // axis.
-    static double stretchOf(double alongX, double alongY) { return std::hypot(alongX, alongY); }
+    static double stretchOf(double alongX, double alongY) {
+        return portable::hypot(alongX, alongY);
+    }
 
     // The usual filter is made once.
     static const FilterTable& narrowest() {

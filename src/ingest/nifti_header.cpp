@@ -17,6 +17,7 @@
 #include "ingest/file_name.h"
 #include "ingest/placement.h"
 #include "number_text.h"
+#include "portable_math.h"
 
 namespace deltasplat {
 namespace {
@@ -237,7 +238,7 @@ double distance(const glm::dmat4& a, const glm::dmat4& b, const glm::i64vec3& di
                                (corner & 4) != 0 ? double(dims.z - 1) : 0.0, 1);
         farthest = std::max(farthest, glm::length(glm::dvec3(a * index - b * index)));
     }
-    return farthest / std::cbrt(std::abs(glm::determinant(glm::dmat3(a))));
+    return farthest / portable::pow(std::abs(glm::determinant(glm::dmat3(a))), 1 / 3.0);
 }
 
 void place(const Fields& fields, const Listener& listener, NiftiHeader& header) {

@@ -12,6 +12,7 @@
 #include "deltasplat/error.h"
 #include "number_text.h"
 #include "parallel.h"
+#include "portable_math.h"
 
 namespace deltasplat {
 namespace {
@@ -45,7 +46,7 @@ double smallest(const glm::dvec3& v) {
 double alphaOf(double opacity, double unitDistancesPerSlice) {
     if (opacity <= 0 || unitDistancesPerSlice <= 0) return 0;
     if (opacity >= 1) return 1;
-    return -std::expm1(std::log1p(-opacity) * unitDistancesPerSlice);
+    return -portable::expm1(portable::log1p(-opacity) * unitDistancesPerSlice);
 }
 
 // A code's light for one slice, before it is rounded; that of codes that cannot be seen is 0.

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "deltasplat/ingest/value_statistics.h"
+#include "portable_math.h"
 #include "srgb.h"
 
 namespace deltasplat {
@@ -37,7 +38,7 @@ double bendToMidpoint(double s, double midpoint) {
 double sharpBlend(double from, double to, double s, double sharpness) {
     const double power = 1 + 10 * sharpness;
     const double t =
-        s < 0.5 ? 0.5 * std::pow(2 * s, power) : 1 - 0.5 * std::pow(2 * (1 - s), power);
+        s < 0.5 ? 0.5 * portable::pow(2 * s, power) : 1 - 0.5 * portable::pow(2 * (1 - s), power);
     const double rise = t * t * (3 - 2 * t);
     const double slopes = t * (t - 1) * (2 * t - 1);
     const double value = from + (to - from) * (rise + (1 - sharpness) * slopes);

@@ -12,6 +12,7 @@
 
 #include "deltasplat/error.h"
 #include "number_text.h"
+#include "portable_math.h"
 
 namespace deltasplat {
 namespace {
@@ -25,7 +26,7 @@ struct SlicePlaneGaussian {
     double at(double u, double v) const {
         const double along = d.x * u + d.y * v;
         const double squared = u * u + v * v - along * along / (1 + d.x * d.x + d.y * d.y);
-        return std::exp(-squared / (2 * sigma * sigma));
+        return portable::exp(-squared / (2 * sigma * sigma));
     }
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "portable_math.h"
 #include "synth/volumes.h"
 
 namespace deltasplat {
@@ -15,8 +16,8 @@ ValueAt makeMarschnerLobb() {
         constexpr double kFrequency = 6;  // f_M
         constexpr double kAlpha = 0.25;
         const double radius = std::sqrt(p.x * p.x + p.y * p.y);
-        const double ripple = std::cos(2 * kPi * kFrequency * std::cos(kPi * radius / 2));
-        return (1 - std::sin(kPi * p.z / 2) + kAlpha * (1 + ripple)) / (2 * (1 + kAlpha));
+        const double ripple = portable::cos(2 * kPi * kFrequency * portable::cos(kPi * radius / 2));
+        return (1 - portable::sin(kPi * p.z / 2) + kAlpha * (1 + ripple)) / (2 * (1 + kAlpha));
     };
 }
 
@@ -27,9 +28,9 @@ ValueAt makeHydrogen() {
         constexpr double kHalfEdge = 20;
         const glm::dvec3 q = p * kHalfEdge;
         const double radius = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
-        const double psi = (2 * q.y * q.y - q.x * q.x - q.z * q.z) * std::exp(-radius / 3);
+        const double psi = (2 * q.y * q.y - q.x * q.x - q.z * q.z) * portable::exp(-radius / 3);
         // On the y axis psi is 2 y^2 exp(-y/3), which is largest at y = 6.
-        const double largest = 72 * std::exp(-2.0);
+        const double largest = 72 * portable::exp(-2.0);
         return (psi / largest) * (psi / largest);
     };
 }

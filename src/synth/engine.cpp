@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "portable_math.h"
 #include "synth/hash.h"
 #include "synth/volumes.h"
 
@@ -84,8 +85,8 @@ double engineValue(const glm::dvec3& p) {
 double gaussianAt(std::uint64_t seed, const glm::dvec3& p) {
     const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 is 0
     const std::uint64_t hash = hash3(seed, bits(p.x), bits(p.y), bits(p.z));
-    const double radius = std::sqrt(-2 * std::log(1 - unitFromBits(hash)));
-    return radius * std::cos(2 * std::numbers::pi * unitFromBits(mixBits(hash + 1)));
+    const double radius = std::sqrt(-2 * portable::log(1 - unitFromBits(hash)));
+    return radius * portable::cos(2 * std::numbers::pi * unitFromBits(mixBits(hash + 1)));
 }
 
 }  // namespace

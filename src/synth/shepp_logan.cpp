@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "portable_math.h"
 #include "synth/volumes.h"
 
 namespace deltasplat {
@@ -32,8 +33,8 @@ const Ellipsoid kHead[] = {{10, {0.69, 0.92, 0.81}, {0, 0, 0}, 0},           // 
 bool isInside(const Ellipsoid& ellipsoid, const glm::dvec3& p) {
     const double turn = ellipsoid.turnDegrees * std::numbers::pi / 180;
     const glm::dvec3 d = p - ellipsoid.centre;
-    const double x = (d.x * std::cos(turn) + d.y * std::sin(turn)) / ellipsoid.halfAxes.x;
-    const double y = (d.y * std::cos(turn) - d.x * std::sin(turn)) / ellipsoid.halfAxes.y;
+    const double x = (d.x * portable::cos(turn) + d.y * portable::sin(turn)) / ellipsoid.halfAxes.x;
+    const double y = (d.y * portable::cos(turn) - d.x * portable::sin(turn)) / ellipsoid.halfAxes.y;
     const double z = d.z / ellipsoid.halfAxes.z;
     return x * x + y * y + z * z <= 1;
 }

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "portable_math.h"
 #include "synth/hash.h"
 #include "synth/volumes.h"
 
@@ -57,14 +58,15 @@ class TreeGrower {
         const glm::dvec3 u = glm::normalize(glm::cross(direction, helper));
         const glm::dvec3 v = glm::cross(direction, u);
         const double turn = 2 * std::numbers::pi * random();
-        const glm::dvec3 side = u * std::cos(turn) + v * std::sin(turn);
+        const glm::dvec3 side = u * portable::cos(turn) + v * portable::sin(turn);
         const double share = 0.35 + 0.3 * random();  // of the cube of the radius
         const double angle = 0.45 + 0.4 * random();  // radians between the two
         for (const bool first : {true, false}) {
             const double part = first ? share : 1 - share;
             const double bend = first ? angle * (1 - share) * 2 : -angle * share * 2;
-            const glm::dvec3 on = direction * std::cos(bend) + side * std::sin(bend);
-            add(end, on, length * (0.72 + 0.16 * random()), radius * std::cbrt(part), forks - 1);
+            const glm::dvec3 on = direction * portable::cos(bend) + side * portable::sin(bend);
+            add(end, on, length * (0.72 + 0.16 * random()), radius * portable::pow(part, 1 / 3.0),
+                forks - 1);
         }
     }
 

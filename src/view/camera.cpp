@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "deltasplat/error.h"
 #include "number_text.h"
+#include "portable_math.h"
 #include "view/affine.h"
 
 namespace deltasplat {
@@ -76,10 +78,11 @@ void checkOptions(const CameraOptions& options) {
 // Turns v about a unit axis by the right-hand rule (O. Rodrigues, 1840). Quarter turns are exact,
 // so that a view turned by 90 degrees is as straight as a named one.
 glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double degrees) {
-    static const double kRadians = std::acos(-1.0) / 180;
+    constexpr double kRadians = std::numbers::pi / 180;
     int quarters = 0;
     const double rest = std::remquo(degrees, 90.0, &quarters) * kRadians;
-    const double cosines[] = {std::cos(rest), -std::sin(rest), -std::cos(rest), std::sin(rest)};
+    const double cosines[] = {portable::cos(rest), -portable::sin(rest), -portable::cos(rest),
+                              portable::sin(rest)};
     const double cosine = cosines[quarters & 3];
     const double sine = cosines[(quarters + 3) & 3];
     return v * cosine + glm::cross(axis, v) * sine + axis * (glm::dot(axis, v) * (1 - cosine));

@@ -12,6 +12,7 @@
 
 #include "deltasplat/delta/delta_grid.h"
 #include "deltasplat/error.h"
+#include "portable_math.h"
 #include "view/affine.h"
 
 namespace deltasplat {
@@ -46,7 +47,7 @@ glm::dvec2 onBasePlane(const glm::dvec3& index, const glm::ivec3& order, const g
 double largestSingularValue(const glm::dmat2& m) {
     const double half = 0.5 * (glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]));
     const double difference = 0.5 * (glm::dot(m[0], m[0]) - glm::dot(m[1], m[1]));
-    return std::sqrt(half + std::hypot(difference, glm::dot(m[0], m[1])));
+    return std::sqrt(half + portable::hypot(difference, glm::dot(m[0], m[1])));
 }
 
 int screenResolution(const glm::dmat3& baseFromPixel) {

@@ -1,0 +1,1 @@
+deltasplat_test(unit/portable_math_test.cpp)
