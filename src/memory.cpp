@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "memory.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,34 +11,43 @@
 #include <limits>
 #include <string>
 
+#include "cgroup.h"
 #include "deltasplat/error.h"
 #include "deltasplat/memory_limit.h"
 
 namespace deltasplat {
 namespace {
 
-// Reads one number from a file of the kernel; the largest number if there is none ("max", no such
-// file).
-std::uint64_t readNumber(const char* file) {
-    std::ifstream in(file);
-    std::uint64_t number = 0;
-    return in >> number ? number : std::numeric_limits<std::uint64_t>::max();
-}
+constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
 std::uint64_t limit = 0;  // as setMemoryLimit says
 
-// What the process holds now: the second number of its statm, in pages.
-std::uint64_t residentBytes() {
+struct OwnMemory {
+    std::uint64_t addresses = 0;  // bytes
+    std::uint64_t resident = 0;   // bytes
+};
+
+// What the process holds now: the first two numbers of its statm, in pages.
+OwnMemory ownMemory() {
     std::ifstream in("/proc/self/statm");
-    std::uint64_t total = 0, resident = 0;
-    in >> total >> resident;
-    return resident * std::uint64_t(sysconf(_SC_PAGESIZE));
+    OwnMemory own;
+    in >> own.addresses >> own.resident;
+    const auto page = std::uint64_t(sysconf(_SC_PAGESIZE));
+    return {own.addresses * page, own.resident * page};
 }
 
 std::uint64_t limitAvailable() {
-    if (limit == 0) return std::numeric_limits<std::uint64_t>::max();
-    const std::uint64_t taken = residentBytes();
+    if (limit == 0) return kNoLimit;
+    const std::uint64_t taken = ownMemory().resident;
     return limit > taken ? limit - taken : 0;
+}
+
+// What `ulimit -v` leaves.
+std::uint64_t addressesAvailable() {
+    rlimit most{};
+    if (::getrlimit(RLIMIT_AS, &most) != 0 || most.rlim_cur == RLIM_INFINITY) return kNoLimit;
+    const std::uint64_t taken = ownMemory().addresses;
+    return most.rlim_cur > taken ? most.rlim_cur - taken : 0;
 }
 
 std::uint64_t systemAvailable() {
@@ -46,7 +56,7 @@ std::uint64_t systemAvailable() {
         unsigned long long kib = 0;
         if (std::sscanf(line.c_str(), "MemAvailable: %llu kB", &kib) == 1) return kib * 1024;
     }
-    return std::numeric_limits<std::uint64_t>::max();
+    return kNoLimit;
 }
 
 // Asking the system takes longer than some pictures: it is asked again when so much has been
@@ -62,6 +72,16 @@ bool isLittle(double bytes) {
     return false;
 }
 
+void require(ErrorCode code, const std::string& what, double bytes) {
+    const double left = double(limitAvailable());
+    if (bytes <= left && isLittle(bytes)) return;
+    const double available = std::min(left, double(availableMemory()));
+    if (bytes <= available) return;
+    throw Error(code, what + ": needs " + humanBytes(bytes) + " of memory; expected at most " +
+                          humanBytes(available) + ", which " +
+                          (available == left ? "--max-memory leaves" : "is available"));
+}
+
 }  // namespace
 
 void setMemoryLimit(std::uint64_t bytes) {
@@ -73,9 +93,8 @@ std::uint64_t memoryLimit() {
 }
 
 std::uint64_t availableMemory() {
-    // What a cgroup has in use counts its page cache, so only its limit is a fact.
-    return std::min({limitAvailable(), systemAvailable(), readNumber("/sys/fs/cgroup/memory.max"),
-                     readNumber("/sys/fs/cgroup/memory/memory.limit_in_bytes")});
+    return std::min(
+        {limitAvailable(), addressesAvailable(), systemAvailable(), cgroupAvailable("/")});
 }
 
 std::string humanBytes(double bytes) {
@@ -91,14 +110,11 @@ std::string humanBytes(double bytes) {
 }
 
 void requireMemory(const std::string& what, double bytes) {
-    const double left = double(limitAvailable());
-    if (bytes <= left && isLittle(bytes)) return;
-    const double available = std::min(left, double(availableMemory()));
-    if (bytes <= available) return;
-    throw Error(ErrorCode::kUsage,
-                what + ": needs " + humanBytes(bytes) + " of memory; expected at most " +
-                    humanBytes(available) + ", which " +
-                    (available == left ? "--max-memory leaves" : "is available"));
+    require(ErrorCode::kFailed, what, bytes);
+}
+
+void requireClaimedMemory(const std::string& what, double bytes) {
+    require(ErrorCode::kInput, what, bytes);
 }
 
 }  // namespace deltasplat

@@ -15,8 +15,13 @@ std::string humanBytes(double bytes);
 
 /// Throws unless `bytes` more fit into memory. Asks the system once for every 64 MiB or more, so
 /// that many little requests cost little.
-/// @throw Error(kUsage) "<what>: needs 12.0 GiB of memory; expected at most 3.4 GiB, which is
+/// @throw Error(kFailed) "<what>: needs 12.0 GiB of memory; expected at most 3.4 GiB, which is
 /// available"
 void requireMemory(const std::string& what, double bytes);
+
+/// The same for memory that no more than a number in an input's header asks for, not its bytes:
+/// where that does not fit, the number is taken for what is wrong.
+/// @throw Error(kInput) as requireMemory
+void requireClaimedMemory(const std::string& what, double bytes);
 
 }  // namespace deltasplat

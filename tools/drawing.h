@@ -56,7 +56,7 @@ std::string svgText(const Drawing& drawing);
 
 /// Returns an opaque picture at `scale` > 0 pixels a unit. Needs no font: text is drawn with
 /// strokes of our own, characters beyond ASCII as boxes. The same drawing gives the same pixels.
-/// @throw Error(kUsage) if it does not fit into memory
+/// @throw Error(kFailed) if it does not fit into memory
 Image rasterize(const Drawing& drawing, double scale);
 
 }  // namespace deltasplat

@@ -14,7 +14,7 @@ void checkDrawingFile(const std::filesystem::path& file);
 
 /// Writes a drawing as `.svg`, or as `.png` at two pixels a unit, by extension in any case. The
 /// file appears under its final name only when it is whole. The same drawing gives the same bytes.
-/// @throw as checkDrawingFile; Error(kUsage) if a .png does not fit into memory
+/// @throw as checkDrawingFile; Error(kFailed) if a .png does not fit into memory
 void writeDrawing(const std::filesystem::path& file, const Drawing& drawing);
 
 }  // namespace deltasplat

@@ -209,7 +209,7 @@ class Decoder {
 void voxelizeTiles(openvdb::Int32Tree& tree, const std::string& where) {
     const double voxels = double(tree.activeVoxelCount()) - double(tree.activeLeafVoxelCount());
     if (voxels == 0) return;
-    requireMemory(where, voxels * sizeof(Slot));
+    requireClaimedMemory(where, voxels * sizeof(Slot));
     tree.voxelizeActiveTiles();
 }
 
@@ -323,8 +323,8 @@ void fillRest(const DeltaHeader& header, Code restCode, const std::string& where
     // A filled box has leaves at its faces and, within, a root tile for each 4096^3 voxels.
     const glm::dvec3 dims(header.box.dims());
     const double faces = 2 * (dims.x * dims.y + dims.y * dims.z + dims.z * dims.x);
-    requireMemory(where, faces / 64 * (sizeof(Leaf) + Leaf::SIZE * sizeof(Code)) +
-                             double(header.box.voxels()) / 0x1p36 * 100);
+    requireClaimedMemory(where, faces / 64 * (sizeof(Leaf) + Leaf::SIZE * sizeof(Code)) +
+                                    double(header.box.voxels()) / 0x1p36 * 100);
     tree.fill({{low.x, low.y, low.z}, {high.x, high.y, high.z}}, restCode, true);
 }
 
@@ -348,7 +348,7 @@ DecodedDeltas decodeDeltas(openvdb::Int32Grid& grid, const DeltaHeader& header,
     for (std::size_t begin = 0; begin + 1 < columns.size(); begin += kPortion) {
         const std::size_t count = std::min(kPortion, columns.size() - 1 - begin);
         const int blocksPerColumn = header.keyInterval / 8;
-        requireMemory(where, double(count) * blocksPerColumn * sizeof(Block));
+        requireClaimedMemory(where, double(count) * blocksPerColumn * sizeof(Block));
         std::vector<std::vector<Block>> blocks(count);
         parallelForChunks(count, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {

@@ -22,8 +22,9 @@ struct DecodedDeltas {
 
 /// Adds up the deltas along the slices, slab by slab. Active tiles of `grid` become voxels.
 /// Multi-threaded; deterministic.
-/// @throw Error(kInput) if the deltas contradict the header or lead outside of the code book,
-///        Error(kUsage) if the codes do not fit into memory, whatever the listener throws
+/// @throw Error(kInput) if the deltas contradict the header or lead outside of the code book, or if
+///        the header alone asks for more than memory holds; Error(kFailed) if the codes do not fit
+///        into memory, whatever the listener throws
 DecodedDeltas decodeDeltas(openvdb::Int32Grid& grid, const DeltaHeader& header,
                            const std::string& where, const Listener& listener);
 

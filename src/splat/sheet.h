@@ -53,8 +53,8 @@ glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last);
 SheetLayout layoutRows(const SheetLayout& whole, int first, int last);
 
 /// Lays out a sheet for the voxels of a (slice, u, v) box.
-/// @throw Error(kUsage) if it would have more pixels than can be counted in 32 bits, or does not
-/// fit into memory
+/// @throw Error(kUsage) if it would have more pixels than can be counted in 32 bits;
+/// Error(kFailed) if it does not fit into memory
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels = 4);
 
 /// The running splat of the current slice: 32-bit integers `[row][pitch][channels]`, in slice

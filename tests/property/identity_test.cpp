@@ -203,7 +203,7 @@ TEST(Identity, SheetsTooLargeToCountAreRefused) {
             render(volume, options);
             FAIL() << resolution;
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ErrorCode::kUsage) << error.what();
+            EXPECT_EQ(error.code(), ErrorCode::kFailed) << error.what();
         }
     }
 }

@@ -149,7 +149,7 @@ TEST(Raster, TooLargeIsRefused) {
         rasterize(drawingOf({}, {1e7, 1e7}), 1);
         FAIL();
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::kUsage);
+        EXPECT_EQ(error.code(), ErrorCode::kFailed);
     }
 }
 

@@ -185,7 +185,7 @@ TEST(ReadDeltaError, BoxesThatMemoryCannotHold) {
     const Damaged files([](openvdb::Int32Grid& grid) {
         with<openvdb::Vec3i>("delta_box_max", {1 << 20, 1 << 20, 11})(grid);
     });
-    expectError(ErrorCode::kUsage, "", [] {
+    expectError(ErrorCode::kInput, "", [] {
         try {
             readVolume("a.vdb");
         } catch (const Error& error) {

@@ -63,7 +63,7 @@ SliceCounts countDeltas(const Volume& volume, int sliceAxis, std::span<const Slo
 /// Returns what countDeltas counts, slice by slice of the volume's box: entry 0 is its first slice,
 /// whose visible voxels are all deltas. Empty for an empty volume.
 /// @param slicesEach  >= 1: each entry is the sum of so many slices, the last one of what is left
-/// @throw Error(kUsage) if the entries do not fit into memory
+/// @throw Error(kFailed) if the entries do not fit into memory
 std::vector<SliceCounts> countDeltasPerSlice(const Volume& volume, int sliceAxis,
                                              std::span<const Slot> slotMap = {},
                                              int slicesEach = 1);

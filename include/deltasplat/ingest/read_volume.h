@@ -56,8 +56,8 @@ struct ReadOptions {
 /// background is taken as `nanValue` or 0, with a warning. An empty grid is a valid, empty volume,
 /// with a warning. Deterministic; not affected by the number of threads.
 /// @throw Error(kInput) if the file is missing, truncated, of the wrong size or not what it claims;
-///        Error(kUsage) if the options cannot be meant (zero dims, an overflow, an unknown type) or
-///        the volume does not fit into memory; whatever `listener.progress` throws
+///        Error(kUsage) if the options cannot be meant (zero dims, an overflow, an unknown type);
+///        Error(kFailed) if the volume does not fit into memory; whatever `listener.progress` throws
 Volume readVolume(const std::filesystem::path& file, const ReadOptions& options = {},
                   const Listener& listener = {});
 

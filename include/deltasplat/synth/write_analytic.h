@@ -21,8 +21,8 @@ struct AnalyticFileOptions {
 /// `.raw` (little endian; 0..1 becomes 0..255 or 0..65535, rounded to nearest) or `.vdb` (a fog
 /// volume named "density" with background 0; zeros are inactive). Needs memory for a few slices
 /// (.raw) or for what is not zero (.vdb).
-/// @throw Error(kUsage) for another extension, type or dims, or for more than memory holds;
-/// Error(kOutput) if the file cannot be written
+/// @throw Error(kUsage) for another extension, type or dims; Error(kFailed) for more than
+/// memory holds; Error(kOutput) if the file cannot be written
 void writeAnalytic(const AnalyticVolume& volume, const std::filesystem::path& file,
                    const AnalyticFileOptions& options, const Listener& listener = {});
 

@@ -1,0 +1,1 @@
+deltasplat_test(unit/cgroup_test.cpp)
