@@ -8,6 +8,7 @@
 #include "diff_options.h"
 #include "diff_report.h"
 #include "ingest/file_name.h"
+#include "ingest/not_finite.h"
 #include "input_options.h"
 #include "listener.h"
 #include "subcommands.h"
@@ -24,7 +25,7 @@ constexpr double kReadA = 0.45;
 constexpr double kReadB = 0.9;
 
 struct GridPair {
-    std::string a;  // empty: the first scalar grid
+    std::string a;  // empty: the default grid
     std::string b;
 };
 
@@ -55,10 +56,24 @@ void requireNames(const std::filesystem::path& file, const std::vector<std::stri
     }
 }
 
+// Notes the scalar grids of a .vdb that stand beside the one compared.
+void noteOthers(const std::filesystem::path& file, std::vector<std::string>& onlyHere,
+                std::vector<std::string>& notCompared) {
+    if (!isVdb(file)) return;
+    const GridList grids = listGrids(file);
+    notCompared.insert(notCompared.end(), grids.others.begin(), grids.others.end());
+    if (!grids.preferred.empty()) onlyHere = without(grids.scalar, {grids.preferred});
+}
+
 // Finds what is to be compared with what, and notes what is in one file only.
 std::vector<GridPair> pairGrids(const DiffOptions& options, FileDiff& diff) {
     const std::string& asked = options.read.gridName;
-    if (!asked.empty() || !isVdb(options.a) || !isVdb(options.b)) return {{asked, asked}};
+    if (!asked.empty()) return {{asked, asked}};
+    if (!isVdb(options.a) || !isVdb(options.b)) {
+        noteOthers(options.a, diff.onlyInA, diff.notCompared);
+        noteOthers(options.b, diff.onlyInB, diff.notCompared);
+        return {{"", ""}};
+    }
     const GridList a = listGrids(options.a);
     const GridList b = listGrids(options.b);
     for (const std::string& grid : a.others) diff.notCompared.push_back(grid);
@@ -100,6 +115,17 @@ GridDiff compareGrids(const DiffOptions& options, const GridPair& pair,
     return diff;
 }
 
+// Compares two grids of several; undefined distances of solvers do not keep the others from it.
+void addComparison(const DiffOptions& options, const GridPair& pair, bool amongOthers,
+                   const std::function<Listener(double begin, double end)>& stage, FileDiff& diff) {
+    try {
+        diff.grids.push_back(compareGrids(options, pair, stage));
+    } catch (const NotFinite&) {
+        if (!amongOthers) throw;
+        diff.notCompared.push_back(pair.a + " (NaN or infinite values)");
+    }
+}
+
 Verdict runDiff(const CLI::App& app, const DiffOptions& options, const Session& session) {
     FileDiff diff;
     {
@@ -107,13 +133,16 @@ Verdict runDiff(const CLI::App& app, const DiffOptions& options, const Session& 
         warnOfUnusedInputOptions(app, {options.a, options.b}, display);
         const std::vector<GridPair> pairs = pairGrids(options, diff);
         const double count = double(pairs.size());
+        double done = 0;
         for (const GridPair& pair : pairs) {
-            const double done = double(diff.grids.size());
-            diff.grids.push_back(compareGrids(options, pair, [&](double begin, double end) {
+            const auto stage = [&](double begin, double end) {
                 return display.stage((done + begin) / count, (done + end) / count);
-            }));
+            };
+            addComparison(options, pair, pairs.size() > 1, stage, diff);
+            ++done;
         }
     }
+    diff.incompleteCounts = !options.limits.ignoreMissing;
     if (options.json) {
         printOut(jsonText(diff));
     } else if (!session.common.quiet) {

@@ -44,6 +44,10 @@ void addDiffOptions(CLI::App& app, DiffOptions& options) {
                                numberText(compare.shift)));
     group.addFlag("--ignore-active", limits.ignoreActive,
                   "Active states may differ (a dense volume has no inactive voxels)");
+    group.addFlag("--ignore-missing", limits.ignoreMissing,
+                  "Grids that are compared with nothing do not matter: those that\n"
+                  "only one file has, vectors, points, and those with NaN (default:\n"
+                  "they make files different, unless --grid asks for another one)");
     OptionGroup(app, "Output").addFlag("--json", options.json, "Print one JSON object");
     addInputOptions(app, options.read);
 }

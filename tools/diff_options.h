@@ -17,6 +17,7 @@ struct DiffLimits {
     double hardFail = std::numeric_limits<double>::infinity();  ///< no voxel may be over it
     double hardWarn = std::numeric_limits<double>::infinity();  ///< no voxel may be over it
     bool ignoreActive = false;                                  ///< active states do not matter
+    bool ignoreMissing = false;  ///< grids that are compared with nothing do not matter
 };
 
 struct DiffOptions {

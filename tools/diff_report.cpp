@@ -169,16 +169,17 @@ Verdict judge(const VolumeComparison& c, const CompareOptions& thresholds,
 }
 
 Verdict FileDiff::verdict() const {
-    Verdict worst = onlyInA.empty() && onlyInB.empty() ? Verdict::kPass : Verdict::kFailure;
+    Verdict worst = isIncomplete() && incompleteCounts ? Verdict::kFailure : Verdict::kPass;
     for (const GridDiff& grid : grids) worst = std::max(worst, grid.verdict);
     return worst;
 }
 
 std::string jsonText(const FileDiff& diff) {
     Json json = toJson(worstOf(diff.grids), diff.verdict());
-    json["equal"] = json["equal"] && diff.onlyInA.empty() && diff.onlyInB.empty();
+    json["equal"] = json["equal"] && !diff.isIncomplete();
     json["only_in_a"] = diff.onlyInA;
     json["only_in_b"] = diff.onlyInB;
+    json["not_compared"] = diff.notCompared;
     json["grids"] = Json::array();
     for (const GridDiff& grid : diff.grids) {
         const glm::ivec3& offset = grid.comparison.offset;

@@ -25,9 +25,14 @@ struct FileDiff {
     std::vector<GridDiff> grids;
     std::vector<std::string> onlyInA;      ///< scalar grids of A that B has not
     std::vector<std::string> onlyInB;      ///< scalar grids of B that A has not
-    std::vector<std::string> notCompared;  ///< grids that are not scalar, as "velocity (vec3s)"
+    std::vector<std::string> notCompared;  ///< as "velocity (vec3s)": not scalar, or not finite
+    bool incompleteCounts = true;          ///< whether any of these make the files different
 
-    /// The worst verdict; a failure if a grid is in one file only.
+    /// Whether a grid of either file was compared with nothing.
+    bool isIncomplete() const {
+        return !onlyInA.empty() || !onlyInB.empty() || !notCompared.empty();
+    }
+    /// The worst verdict; a failure if a grid was compared with nothing and that counts.
     Verdict verdict() const;
 };
 

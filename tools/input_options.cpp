@@ -34,9 +34,10 @@ Parser<bool> endian() {
 void addInputOptions(CLI::App& app, ReadOptions& options) {
     OptionGroup vdb(app, "Input, .vdb");
     vdb.addValue("--grid", "NAME", options.gridName, anyText(),
-                 "Grid to read (default: the first scalar grid, where one is\n"
-                 "wanted, otherwise all of them;\n"
-                 "vector and point grids are never read)");
+                 "Grid to read (default where one is wanted: the one named\n"
+                 "density, else the first fog volume, else the first other scalar\n"
+                 "grid, phi_*, flags, shadow and other helpers last; otherwise all\n"
+                 "of them; vector and point grids are never read)");
     vdb.addValue("--level-set", "fog|keep", options.levelSetToFog, levelSet(),
                  withDefault("Turn level sets into fog, or keep their distances",
                              levelSetName(options.levelSetToFog)));

@@ -13,6 +13,7 @@
 #include "ingest/code_statistics.h"
 #include "ingest/code_tree.h"
 #include "ingest/grid_values.h"
+#include "ingest/not_finite.h"
 #include "ingest/readers.h"
 #include "ingest/scalar_grids.h"
 #include "number_text.h"
@@ -30,11 +31,13 @@ std::uint64_t settleNonFinite(Grid& grid, const GridCodesOptions& options) {
     const GridScan range = scanTree(grid.tree(), /*distinct=*/false);
     if (range.nonFinite == 0) return 0;
     if (!options.reading.nanValue) {
-        fail(options.where,
-             std::to_string(range.nonFinite) + " NaN or infinite active values, the first at (" +
-                 std::to_string(range.first.x()) + ", " + std::to_string(range.first.y()) + ", " +
-                 std::to_string(range.first.z()) + ")",
-             "finite values (--nan VALUE replaces them)");
+        const std::string got =
+            std::to_string(range.nonFinite) + " NaN or infinite active values, the first at (" +
+            std::to_string(range.first.x()) + ", " + std::to_string(range.first.y()) + ", " +
+            std::to_string(range.first.z()) + ")";
+        throw NotFinite(
+            ErrorCode::kInput,
+            gotExpected(options.where, got, "finite values (--nan VALUE replaces them)"));
     }
     if constexpr (std::is_same_v<typename Grid::ValueType, float>) {
         requireFloatNan(*options.reading.nanValue);

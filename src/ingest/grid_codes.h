@@ -22,7 +22,8 @@ struct GridCodesOptions {
 /// The grid may be changed on the way. A level set
 /// without a band (background not above 0) cannot become fog: it is kept, with a warning. Active
 /// tiles stay tiles at their level. Deterministic.
-/// @throw Error(kInput) if values are NaN or infinite and not replaced, or lie too far apart
+/// @throw NotFinite if values are NaN or infinite and not replaced; Error(kInput) if they lie too
+///        far apart
 void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume);
 
 }  // namespace deltasplat

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/ingest/list_grids.h"
 
+#include "ingest/default_grid.h"
 #include "ingest/delta_format.h"
 #include "ingest/file_name.h"
 #include "ingest/vdb_file.h"
@@ -11,6 +12,7 @@ GridList listGrids(const std::filesystem::path& file) {
     requireRegularFile(file);
     GridList list;
     const VdbFile vdb(file);
+    if (const VdbGrid* const preferred = defaultGrid(vdb)) list.preferred = preferred->name;
     for (const VdbGrid& grid : vdb.grids()) {
         if (grid.isScalar()) {
             list.scalar.push_back(grid.name);

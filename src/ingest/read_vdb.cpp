@@ -10,9 +10,11 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "ingest/default_grid.h"
 #include "ingest/delta_format.h"
 #include "ingest/grid_codes.h"
 #include "ingest/grid_metadata.h"
+#include "ingest/not_finite.h"
 #include "ingest/read_delta_grid.h"
 #include "ingest/readers.h"
 #include "ingest/source_grid.h"
@@ -44,8 +46,7 @@ const VdbGrid& findGrid(const std::string& file, const std::vector<VdbGrid>& gri
                         const std::string& name) {
     const VdbGrid* found = nullptr;
     for (const VdbGrid& grid : grids) {
-        const std::string plain = grid.uniqueName.substr(0, grid.uniqueName.find('\x1e'));
-        if (grid.name == name || (found == nullptr && plain == name)) found = &grid;
+        if (grid.name == name || (found == nullptr && grid.plainName() == name)) found = &grid;
         if (grid.name == name) break;
     }
     if (found == nullptr) {
@@ -58,15 +59,18 @@ const VdbGrid& findGrid(const std::string& file, const std::vector<VdbGrid>& gri
     return *found;
 }
 
-std::vector<const VdbGrid*> chooseGrids(const std::string& file, const std::vector<VdbGrid>& grids,
+std::vector<const VdbGrid*> chooseGrids(const std::string& where, const VdbFile& file,
                                         const std::string& name, bool all) {
-    if (!name.empty()) return {&findGrid(file, grids, name)};
+    const std::vector<VdbGrid>& grids = file.grids();
+    if (!name.empty()) return {&findGrid(where, grids, name)};
+    const VdbGrid* const preferred = defaultGrid(file);
+    if (preferred == nullptr) {
+        fail(where, grids.empty() ? "no grids" : "only " + listOf(grids), kScalarGrid);
+    }
+    if (!all) return {preferred};
     std::vector<const VdbGrid*> chosen;
     for (const VdbGrid& grid : grids) {
-        if (grid.isScalar() && (all || chosen.empty())) chosen.push_back(&grid);
-    }
-    if (chosen.empty()) {
-        fail(file, grids.empty() ? "no grids" : "only " + listOf(grids), kScalarGrid);
+        if (grid.isScalar()) chosen.push_back(&grid);
     }
     return chosen;
 }
@@ -132,42 +136,89 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
     return volume;
 }
 
-// Reads a grid, or tells the visitor why not.
-std::optional<Volume> tryGrid(const VdbFile& file, const VdbGrid& grid, const std::string& where,
-                              const ReadOptions& options, const VolumeVisitor& visitor,
-                              const Listener& listener) {
-    try {
-        return readGrid(file, grid, where, options, listener);
-    } catch (const Error& error) {
-        if (!visitor.invalid || error.code() != ErrorCode::kInput) throw;
-        visitor.invalid(error);
+bool isLevelSet(const VdbFile& file, const VdbGrid& grid) {
+    return textMetadata(*file.metadata(grid), openvdb::GridBase::META_GRID_CLASS) ==
+           openvdb::GridBase::gridClassToString(openvdb::GRID_LEVEL_SET);
+}
+
+// Reads grids one after the other and hands them to a visitor.
+class GridReader {
+  public:
+    GridReader(const VdbFile& file, const ReadOptions& options, const VolumeVisitor& visitor)
+        : file_(file), options_(options), visitor_(visitor) {}
+
+    // @param amongOthers  whether it is one of several that nobody asked for by name
+    void read(const VdbGrid& grid, const std::string& where, bool amongOthers,
+              const Listener& listener) {
+        std::optional<Volume> volume = tryRead(grid, where, amongOthers, listener);
+        if (!volume) return;
+        anyTold_ = true;
+        if (visitor_.volume) visitor_.volume(std::move(*volume));
+    }
+
+    // A file of nothing but what is passed over is no valid one.
+    void finish() {
+        if (!anyTold_ && passedOver_) refuse(*passedOver_);
+    }
+
+  private:
+    std::optional<Volume> tryRead(const VdbGrid& grid, const std::string& where, bool amongOthers,
+                                  const Listener& listener) {
+        try {
+            return readGrid(file_, grid, where, options_, listener);
+        } catch (const NotFinite& error) {
+            // Solvers leave undefined distances in caches, which are of use to nobody else.
+            if (!amongOthers || !visitor_.other || !isLevelSet(file_, grid)) {
+                refuse(error);
+            } else {
+                passedOver_ = error;
+                visitor_.other(grid.name, "level set with NaN or infinite values");
+            }
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::kInput) throw;
+            refuse(error);
+        }
         return {};
     }
-}
+
+    template <typename Refused>
+    void refuse(const Refused& error) {
+        if (!visitor_.invalid) throw error;
+        anyTold_ = true;
+        visitor_.invalid(error);
+    }
+
+    const VdbFile& file_;
+    const ReadOptions& options_;
+    const VolumeVisitor& visitor_;
+    bool anyTold_ = false;
+    std::optional<NotFinite> passedOver_;
+};
 
 }  // namespace
 
 void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool all,
              const VolumeVisitor& visitor, const Listener& listener) {
     const VdbFile file(path);
-    const auto chosen = chooseGrids(path.string(), file.grids(), options.gridName, all);
+    const auto chosen = chooseGrids(path.string(), file, options.gridName, all);
     if (!all && options.gridName.empty()) {
         const auto scalars = std::count_if(file.grids().begin(), file.grids().end(),
                                            [](const VdbGrid& grid) { return grid.isScalar(); });
         if (scalars > 1) {
-            listener.warn(path.string() + ": reading grid \"" + chosen[0]->name +
-                          "\", the first of " + std::to_string(scalars) + " scalar grids");
+            listener.warn(path.string() + ": reading grid \"" + chosen[0]->name + "\" of " +
+                          std::to_string(scalars) + " scalar grids (--grid chooses another)");
         }
     }
+    GridReader reader(file, options, visitor);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         Listener part = listener;
         part.progress = [&, i](double share) {
             listener.report((double(i) + share) / double(chosen.size()));
         };
         const std::string where = path.string() + ": grid \"" + chosen[i]->name + "\"";
-        auto volume = tryGrid(file, *chosen[i], where, options, visitor, part);
-        if (volume && visitor.volume) visitor.volume(std::move(*volume));
+        reader.read(*chosen[i], where, chosen.size() > 1, part);
     }
+    reader.finish();
     if (!all || !options.gridName.empty() || !visitor.other) return;
     for (const VdbGrid& grid : file.grids()) {
         if (!grid.isScalar()) visitor.other(grid.name, grid.type);

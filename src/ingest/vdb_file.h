@@ -31,6 +31,8 @@ struct VdbGrid {
     std::string valueType() const;
     /// Returns for example `density (float)`.
     std::string describe() const { return name + " (" + valueType() + ")"; }
+    /// Returns the name without what tells grids of one name apart.
+    std::string plainName() const { return uniqueName.substr(0, uniqueName.find('\x1e')); }
 };
 
 /// A .vdb file that is checked before OpenVDB sees any of it, since OpenVDB 10 crashes on damaged
@@ -44,7 +46,7 @@ class VdbFile {
     const std::vector<VdbGrid>& grids() const { return grids_; }
     /// Returns the metadata of the file itself.
     openvdb::MetaMap::ConstPtr metadata() const;
-    /// Returns the metadata of an int32 grid of grids(), which says whether it holds deltas.
+    /// Returns the metadata of a scalar grid of grids().
     /// @throw Error(kInput) if its bytes are not a sound grid
     openvdb::MetaMap::ConstPtr metadata(const VdbGrid& grid) const;
     /// Reads one grid of grids().

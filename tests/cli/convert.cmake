@@ -33,7 +33,7 @@ deltasplat_cli_test(convert.other_grids ARGS convert mixed.vdb out.vdb CREATES o
     STDERR "deltasplat: warning: mixed.vdb: left out velocity (vec3s)")
 deltasplat_cli_test(convert.first_grid ARGS convert two.vdb out_13x13x13_float32.raw
     CREATES out_13x13x13_float32.raw
-    STDERR "deltasplat: warning: two.vdb: reading grid \"density\", the first of 2 scalar grids
+    STDERR "deltasplat: warning: two.vdb: reading grid \"density\" of 2 scalar grids (--grid chooses another)
 deltasplat: warning: out_13x13x13_float32.raw: no header; read it with --origin -6,-6,-6
 deltasplat: warning: out_13x13x13_float32.raw: 1272 inactive voxels become voxels like the others, with the value they hold (background 0)
 deltasplat: warning: out_13x13x13_float32.raw: the grid's name \"density\", class \"fog volume\" and other metadata are left out")

@@ -85,7 +85,27 @@ deltasplat_diff(grids 2 "grid          density.*Max error = 0
 .*grid          heat.*Max error = 0.25 @ [(]1,2,3[)].*only in B     smoke
   not compared  velocity [(]vec3s[)]
 FAILURE" two.vdb three.vdb)
+deltasplat_cli_test(diff.grids_and_none EXIT 2 ARGS diff three.vdb ${cube}
+    STDERR "deltasplat: warning: three.vdb: reading grid \"density\" of 3 scalar grids (--grid chooses another)"
+    STDOUT_MATCHES "only in A     heat
+  only in A     smoke
+  not compared  velocity [(]vec3s[)]
+FAILURE")
 deltasplat_diff(grids_reversed 2 "only in A     smoke" three.vdb two.vdb)
+deltasplat_diff(missing_in_b 2 "grid          density.*Max error = 0.*only in A     heat
+FAILURE" two.vdb ball.vdb)
+deltasplat_diff(missing_ignored 0 "only in A     heat
+PASS" two.vdb ball.vdb --ignore-missing)
+deltasplat_diff(others_not_compared 2 "Max error = 0.*not compared  velocity [(]vec3s[)]
+FAILURE" mixed.vdb mixed.vdb)
+deltasplat_diff(others_ignored 0 "not compared  velocity [(]vec3s[)]
+PASS" mixed.vdb mixed.vdb --ignore-missing)
+deltasplat_diff(others_not_asked_for 0 "grid          density.*PASS" mixed.vdb mixed.vdb
+    --grid density)
+# Undefined distances do not keep densities from being compared.
+deltasplat_diff(cache 2 "grid          flags.*grid          density.*not compared  phi_obstacle [(]NaN or infinite values[)]
+FAILURE" cache.vdb cache.vdb)
+deltasplat_diff(cache_ignored 0 "PASS" cache.vdb cache.vdb --ignore-missing)
 deltasplat_diff(one_grid 0 "grid          density.*PASS" two.vdb three.vdb --grid density)
 deltasplat_diff(other_grid 2 "grid          heat.*FAILURE" two.vdb three.vdb --grid heat)
 deltasplat_diff(no_common_grid 2 "only in A     density
@@ -97,6 +117,8 @@ FAILURE" two.vdb ball_named.vdb)
 deltasplat_diff(json 2 "\"over\": 1,.*\"active_mismatch\": 0,.*\"transform_equal\": true,.*\"equal\": false,.*\"result\": \"FAILURE\""
     ${cube} ${changed} --json)
 deltasplat_diff(json_same 0 "\"max_at\": null,.*\"equal\": true" ${cube} ${cube} --json -q)
+deltasplat_diff(json_not_compared 2 "\"equal\": false,.*\"not_compared\": .[^]]*velocity"
+    mixed.vdb mixed.vdb --json)
 deltasplat_diff(json_only_in_one 2 "\"equal\": false,.*\"only_in_b\": .[^]]*\"smoke\""
     ball.vdb three.vdb --json)
 deltasplat_diff(quiet 2 "^$" ${cube} ${changed} -q)

@@ -104,3 +104,19 @@ deltasplat_bad_transfer_function(falling "tf_falling.json:4: got 0; expected x n
 deltasplat_cli_test(input.tf.range ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_good.json
     --range 0,1 CREATES out.exr
     STDERR "deltasplat: warning: --range: has no effect without a normalized transfer function")
+
+# A simulation's cache: its density is taken, wherever it stands and whatever its solver left.
+foreach(grid "cache;density" "cache_named;steam")
+    list(GET grid 0 file)
+    list(GET grid 1 name)
+    deltasplat_cli_test(input.${file}.render ARGS render ${file}.vdb -o out.exr CREATES out.exr
+        STDERR "deltasplat: warning: ${file}.vdb: reading grid \"${name}\" of 5 scalar grids (--grid chooses another)")
+endforeach()
+deltasplat_cli_test(input.cache.info ARGS info cache.vdb
+    STDOUT_MATCHES "flags.*shadow.*speed.*density.*not read +phi_obstacle [(]level set with NaN or infinite values[)]")
+foreach(command convert delta)
+    deltasplat_cli_test(input.cache.${command} ARGS ${command} cache.vdb out.vdb CREATES out.vdb
+        STDERR "deltasplat: warning: cache.vdb: left out phi_obstacle (level set with NaN or infinite values)")
+endforeach()
+deltasplat_cli_test(input.cache.asked EXIT 3 ARGS render cache.vdb -o out.exr --grid phi_obstacle
+    STDERR "deltasplat: cache.vdb: grid \"phi_obstacle\": got 7 NaN or infinite active values, the first at (2, 3, 3); expected finite values (--nan VALUE replaces them)")

@@ -80,6 +80,30 @@ openvdb::GridBase::Ptr notNumbers() {
     return grid;
 }
 
+template <typename Grid>
+typename Grid::Ptr filled(const std::string& name, openvdb::GridClass gridClass,
+                          typename Grid::ValueType value) {
+    auto grid = Grid::create();
+    grid->setName(name);
+    grid->setGridClass(gridClass);
+    grid->tree().fill(openvdb::CoordBBox({0, 0, 0}, {11, 11, 11}), value, /*active=*/true);
+    return grid;
+}
+
+// What a smoke simulation keeps: its solver's fields first, those over the whole domain; undefined
+// distances near obstacles, and in fog as well where nothing is active.
+openvdb::GridPtrVec cache(const std::string& density) {
+    const auto obstacle =
+        filled<openvdb::FloatGrid>("phi_obstacle", openvdb::GRID_LEVEL_SET, 10000);
+    for (int x = 2; x < 9; ++x) obstacle->getAccessor().setValue({x, 3, 3}, std::nanf(""));
+    openvdb::FloatGrid::Ptr fog = ball(density);
+    fog->getAccessor().setValueOff({6, 6, 6}, std::nanf(""));
+    fog->getAccessor().setValueOff({5, 6, 6}, std::numeric_limits<float>::infinity());
+    return {obstacle, filled<openvdb::Int32Grid>("flags", openvdb::GRID_UNKNOWN, 1),
+            filled<openvdb::FloatGrid>("shadow", openvdb::GRID_FOG_VOLUME, 1),
+            filled<openvdb::FloatGrid>("speed", openvdb::GRID_UNKNOWN, 2), fog};
+}
+
 // Balls that differ from ball.vdb, each in one way.
 void writeOtherBalls() {
     writeVdb("ball_named.vdb", {ball("smoke")});
@@ -115,6 +139,8 @@ void writeOtherBalls() {
 void writeVdbFiles() {
     writeVdb("ball.vdb", {ball("density")});
     writeVdb("two.vdb", {ball("density"), ball("heat")});
+    writeVdb("cache.vdb", cache("density"));
+    writeVdb("cache_named.vdb", cache("steam"));
     writeVdb("mixed.vdb", {vectors(), ball("density")});
     writeVdb("none.vdb", {});
     writeVdb("empty.vdb", {emptyFog<openvdb::FloatGrid>("density")});

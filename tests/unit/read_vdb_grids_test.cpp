@@ -3,6 +3,7 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "deltasplat/ingest/read_volume.h"
@@ -35,6 +36,82 @@ TEST(ReadVdbGrids, TakesTheFirstScalarGridOfTheFile) {
     options.gridName = "b";
     EXPECT_EQ(readVolume("a.vdb", options).valueMax, 5);
     EXPECT_EQ(readAllVolumes("a.vdb", options).size(), 1u);
+}
+
+openvdb::FloatGrid::Ptr withClass(const std::string& name, openvdb::GridClass gridClass) {
+    auto grid = oneVoxel(name, 1);
+    grid->setGridClass(gridClass);
+    return grid;
+}
+
+std::string defaultGridOf(const openvdb::GridCPtrVec& grids) {
+    writeGrids("a.vdb", grids);
+    return readVolume("a.vdb").name;
+}
+
+TEST(ReadVdbGrids, TheDefaultIsDensityThenFogThenWhatHelpsNoSolver) {
+    const TempFolder folder;
+    const auto phi = withClass("phi_obstacle", openvdb::GRID_LEVEL_SET);
+    const auto flags = oneVoxel("flags", 1);
+    const auto shadow = withClass("shadow", openvdb::GRID_FOG_VOLUME);
+    const auto noise = withClass("density_noise", openvdb::GRID_FOG_VOLUME);
+    const auto speed = oneVoxel("speed", 1);
+    const auto surface = withClass("surface", openvdb::GRID_LEVEL_SET);
+    const auto heat = withClass("heat", openvdb::GRID_FOG_VOLUME);
+    const auto density = oneVoxel("density", 1);
+    EXPECT_EQ(defaultGridOf({phi, flags, shadow, noise, speed, heat, density}), "density");
+    EXPECT_EQ(defaultGridOf({phi, flags, shadow, noise, speed, heat}), "heat");
+    EXPECT_EQ(defaultGridOf({phi, flags, shadow, noise, speed, surface}), "speed");
+    EXPECT_EQ(defaultGridOf({phi, flags, shadow, noise, surface}), "surface");
+    EXPECT_EQ(defaultGridOf({phi, flags, shadow, noise}), "shadow");
+    EXPECT_EQ(defaultGridOf({flags, phi}), "flags");
+    EXPECT_EQ(defaultGridOf({heat, oneVoxel("density", 2), density}), "density[0]");
+}
+
+TEST(ReadVdbGrids, AGridNamedDensityHasToBeScalar) {
+    const TempFolder folder;
+    auto vectors = openvdb::Vec3SGrid::create();
+    vectors->setName("density");
+    EXPECT_EQ(defaultGridOf({vectors, oneVoxel("phi", 1), oneVoxel("b", 5)}), "b");
+}
+
+// One grid's undefined values are no reason to refuse another one.
+TEST(ReadVdbGrids, LevelSetsWithNaNAreAmongTheOthers) {
+    const TempFolder folder;
+    auto broken = withClass("phi", openvdb::GRID_LEVEL_SET);
+    broken->tree().setValue(Coord(4, 5, 6), std::nanf(""));
+    writeGrids("a.vdb", {broken, oneVoxel("density", 2)});
+    std::vector<std::string> read;
+    std::vector<std::string> others;
+    VolumeVisitor visitor;
+    visitor.volume = [&](const Volume& volume) { read.push_back(volume.name); };
+    visitor.other = [&](const std::string& name, const std::string&) { others.push_back(name); };
+    forEachVolume("a.vdb", {}, visitor);
+    EXPECT_EQ(read, std::vector<std::string>{"density"});
+    EXPECT_EQ(others, std::vector<std::string>{"phi"});
+
+    // Asked for, alone, or of another class, it is an error.
+    ReadOptions options;
+    options.gridName = "phi";
+    EXPECT_THROW(forEachVolume("a.vdb", options, visitor), Error);
+    writeGrids("a.vdb", {broken});
+    EXPECT_THROW(forEachVolume("a.vdb", {}, visitor), Error);
+    writeGrids("a.vdb", {broken, broken->deepCopy()});
+    EXPECT_THROW(forEachVolume("a.vdb", {}, visitor), Error);
+    broken->setGridClass(openvdb::GRID_FOG_VOLUME);
+    writeGrids("a.vdb", {broken, oneVoxel("density", 2)});
+    EXPECT_THROW(forEachVolume("a.vdb", {}, visitor), Error);
+    EXPECT_EQ(readVolume("a.vdb").valueMax, 2);
+}
+
+TEST(ReadVdbGrids, InactiveNaNIsNobodysValue) {
+    const TempFolder folder;
+    auto grid = oneVoxel("density", 3);
+    grid->tree().setValueOff(Coord(2, 2, 3), std::nanf(""));
+    writeGrids("a.vdb", {grid});
+    const Volume volume = readVolume("a.vdb");
+    EXPECT_EQ(volume.activeCount, 1u);
+    EXPECT_EQ(volume.valueMax, 3);
 }
 
 TEST(ReadVdbGrids, NamesThatRepeat) {

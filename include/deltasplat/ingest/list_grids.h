@@ -10,6 +10,7 @@ namespace deltasplat {
 /// Names of the grids of a .vdb file, in file order.
 struct GridList {
     std::vector<std::string> scalar;  ///< as ReadOptions::gridName takes them
+    std::string preferred;            ///< of the scalar ones, that read by default; or empty
     std::vector<std::string> others;  ///< with their types, as "velocity (vec3s)"
     std::vector<std::string> deltas;  ///< of the scalar ones, those that are delta grids
     /// All that are no delta grids, with their types.

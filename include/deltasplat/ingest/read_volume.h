@@ -29,7 +29,9 @@ struct RawFormat {
 
 /// How to read a volume.
 struct ReadOptions {
-    std::string gridName;            ///< .vdb: which grid; empty: the first scalar one
+    /// .vdb: which grid; empty: `density`, else the first fog volume, else the first other scalar
+    /// grid, those that help solvers ("phi_obstacle", "flags", "shadow", ...) last.
+    std::string gridName;
     bool levelSetToFog = true;       ///< .vdb: turn level sets into fog volumes; one whose
                                      ///< background is not above 0 is kept, with a warning
     std::optional<double> nanValue;  ///< replaces NaN and infinities; empty: they are an error
@@ -66,7 +68,8 @@ struct VolumeVisitor {
     std::function<void(Volume)> volume;  ///< a scalar grid
     /// A scalar grid that is no valid volume; the others follow. Empty: the error is thrown.
     std::function<void(const Error&)> invalid;
-    /// Name and value type of a grid that is not scalar.
+    /// Name and value type of a grid that is not scalar. Also that of a level set with NaN or
+    /// infinite values among other scalar grids, which is passed over like those.
     std::function<void(const std::string& name, const std::string& type)> other;
 };
 

@@ -105,7 +105,7 @@ expect_value("${text}" 0.0 files 0 grids 0 delta max_error)
 run(diff slab_12x10x8_uint8.raw slab_12x10x8_uint8.raw --json -q)
 set(numbers "mean_error;rms_error;max_error;max_at;over;over_warn;voxels;active_mismatch;\
 background_error;shift;transform_equal;size_equal;type_equal;class_equal;equal;result")
-expect_keys("${text}" "" "${numbers};only_in_a;only_in_b;grids")
+expect_keys("${text}" "" "${numbers};only_in_a;only_in_b;not_compared;grids")
 expect_keys("${text}" "grids;0" "${numbers};name;name_b;offset")
 expect_value("${text}" 960 voxels)
 expect_value("${text}" 0 over)

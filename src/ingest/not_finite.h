@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "deltasplat/error.h"
+
+namespace deltasplat {
+
+/// Says that a sound grid holds values that are NaN or infinite.
+struct NotFinite : Error {
+    using Error::Error;
+};
+
+}  // namespace deltasplat
