@@ -5,84 +5,200 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
-#include <cstdio>
+#include <optional>
 #include <string>
-#include <system_error>
+#include <utility>
 
-#include "output_file.h"
+#include "cannot_write.h"
+#include "deltasplat/error.h"
+#include "output_target.h"
+#include "temporary_file.h"
 
 namespace deltasplat {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the file that a symbolic link stands for, whether it exists or not.
-fs::path followLinks(fs::path file) {
-    constexpr int kMaxLinks = 40;  // as many as Linux follows
-    std::error_code error;
-    for (int i = 0; i < kMaxLinks && fs::is_symlink(fs::symlink_status(file, error)); ++i) {
-        const fs::path target = fs::read_symlink(file, error);
-        if (error) break;
-        file = file.parent_path() / target;
-    }
-    return file;
-}
-
-// Creates an empty file of its own beside `target`, never touching one that exists.
-fs::path createBeside(const fs::path& target, const fs::path& finalPath) {
-    static std::atomic<unsigned> counter{0};
-    for (;;) {
-        const std::string name = ".deltasplat." + std::to_string(::getpid()) + "." +
-                                 std::to_string(++counter) + ".tmp" + target.extension().string();
-        const fs::path path = target.parent_path() / name;
-        const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor >= 0) {
-            ::close(descriptor);
-            return path;
-        }
-        if (errno != EEXIST) throwCannotWrite(finalPath, errno);
-    }
-}
+void (*commitGate)() = nullptr;
+bool syncFiles = false;
 
 }  // namespace
 
-AtomicFile::AtomicFile(fs::path finalPath) : final_(std::move(finalPath)) {
-    std::error_code ignored;
-    const fs::file_status status = fs::status(final_, ignored);
-    if (fs::is_directory(status)) throwCannotWrite(final_, EISDIR);
-    if (!final_.has_filename()) throwCannotWrite(final_, ENOENT);
+struct AtomicFile::Impl {
+    explicit Impl(fs::path path) : finalPath(std::move(path)), target(findTarget(finalPath)) {
+        if (target.isDevice) return;
+        // What replaces a file may be as private as that was; the system knows about other files.
+        const mode_t mode = target.existing ? 0600 : 0666;
+        temporary.emplace(target.folder.get(), target.name, mode, finalPath);
+    }
 
-    // Renaming would replace a file that its owner made read-only.
-    if (fs::exists(status) && ::access(final_.c_str(), W_OK) != 0) throwCannotWrite(final_, errno);
+    void openDevice() {
+        do {
+            device = Descriptor(::open(finalPath.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
+        } while (!device && errno == EINTR);
+        struct stat status {};
+        if (!device || ::fstat(device.get(), &status) != 0) throwCannotWrite(finalPath, errno);
+        // Nothing that it was exchanged for is overwritten.
+        if (S_ISREG(status.st_mode)) throwCannotWrite(finalPath, EEXIST);
+    }
 
-    if (fs::exists(status) && !fs::is_regular_file(status)) {
-        path_ = final_;
-        committed_ = true;
-    } else {
-        path_ = createBeside(followLinks(final_), final_);
+    // Makes the new file as accessible as the old one was, and no more.
+    void takePermissions() const {
+        struct stat old {
+        }, own{};
+        const int file = temporary->descriptor();
+        if (::fstatat(target.folder.get(), target.name.c_str(), &old, AT_SYMLINK_NOFOLLOW) != 0 ||
+            !S_ISREG(old.st_mode)) {
+            // Gone since: its permissions are known.
+            if (target.existing) (void)!::fchmod(file, target.existing->st_mode & 0777);
+            return;
+        }
+        mode_t mode = old.st_mode & 0777;
+        if (::fchown(file, old.st_uid, old.st_gid) != 0)
+            (void)!::fchown(file, uid_t(-1), old.st_gid);
+        // Another group gets no more than everybody.
+        if (::fstat(file, &own) == 0 && own.st_gid != old.st_gid)
+            mode = (mode & 0707) | (mode & 07) << 3;
+        (void)!::fchmod(file, mode);
+    }
+
+    void syncFile() const {
+        if (syncFiles && ::fsync(temporary->descriptor()) != 0) throwCannotWrite(finalPath, errno);
+    }
+
+    // Folders that cannot be read cannot be asked.
+    void syncFolder() const {
+        if (!syncFiles) return;
+        const int flags = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
+        const Descriptor folder(::openat(target.folder.get(), ".", flags));
+        if (folder && ::fsync(folder.get()) != 0) throwCannotWrite(finalPath, errno);
+    }
+
+    void requireAt(const std::string& name) const {
+        if (!temporary->isAt(name)) {
+            throw Error(ErrorCode::kOutput,
+                        gotExpected(finalPath.string(), "another file in place of the one written",
+                                    "a folder in which others leave files alone"));
+        }
+    }
+
+    void dropAside() {
+        if (!aside) return;
+        ::unlinkat(target.folder.get(), aside->name().c_str(), 0);
+        aside.reset();
+    }
+
+    fs::path finalPath;
+    OutputTarget target;
+    std::optional<TemporaryFile> temporary;
+    std::optional<TemporaryFile> aside;  // lends its name to the old file
+    Descriptor device;
+    bool closed = false;
+    bool committed = false;
+};
+
+AtomicFile::AtomicFile(fs::path finalPath) : impl_(std::make_unique<Impl>(std::move(finalPath))) {}
+
+AtomicFile::~AtomicFile() {
+    impl_->dropAside();
+}
+
+int AtomicFile::descriptor() {
+    if (!impl_->target.isDevice) return impl_->temporary->descriptor();
+    if (!impl_->device) impl_->openDevice();
+    return impl_->device.get();
+}
+
+bool AtomicFile::isDevice() const {
+    return impl_->target.isDevice;
+}
+
+const fs::path& AtomicFile::finalPath() const {
+    return impl_->finalPath;
+}
+
+void AtomicFile::write(const void* bytes, std::size_t size) {
+    const char* next = static_cast<const char*>(bytes);
+    while (size > 0) {
+        const ssize_t written = ::write(descriptor(), next, size);
+        if (written < 0 && errno == EINTR) continue;
+        // Nothing written without an error happens on devices that are full.
+        if (written <= 0) throwCannotWrite(finalPath(), written < 0 ? errno : ENOSPC);
+        next += written;
+        size -= std::size_t(written);
     }
 }
 
-AtomicFile::~AtomicFile() {
-    if (!committed_) ::unlink(path_.c_str());
+void AtomicFile::close() {
+    if (std::exchange(impl_->closed, true)) return;
+    // Network file systems report a full disk when a descriptor is closed, each time.
+    if (impl_->target.isDevice) {
+        if (impl_->device.reset() != 0) throwCannotWrite(finalPath(), errno);
+        return;
+    }
+    Descriptor copy(::fcntl(descriptor(), F_DUPFD_CLOEXEC, 0));
+    if (!copy || copy.reset() != 0) throwCannotWrite(finalPath(), errno);
+}
+
+void AtomicFile::setAside() {
+    Impl& file = *impl_;
+    if (file.target.isDevice || !file.target.existing) return;
+    if (commitGate) commitGate();
+    file.aside.emplace(file.target.folder.get(), file.target.name, 0600, file.finalPath);
+    const int folder = file.target.folder.get();
+    if (::renameat(folder, file.target.name.c_str(), folder, file.aside->name().c_str()) != 0) {
+        const int problem = errno;
+        file.aside.reset();
+        if (problem != ENOENT) throwCannotWrite(file.finalPath, problem);
+    }
+    file.syncFolder();
+}
+
+void AtomicFile::putBack() noexcept {
+    Impl& file = *impl_;
+    if (!file.aside) return;
+    const int folder = file.target.folder.get();
+    const char* const name = file.target.name.c_str();
+    if (::renameat(folder, file.aside->name().c_str(), folder, name) == 0) file.aside->release();
+    file.aside.reset();
 }
 
 void AtomicFile::commit() {
-    if (committed_) return;
-    const fs::path target = followLinks(final_);
-    // A file that is replaced keeps its permissions; where that fails, the usual ones are fine.
-    struct stat old {};
-    if (::stat(target.c_str(), &old) == 0) (void)!::chmod(path_.c_str(), old.st_mode & 0777);
-    if (std::rename(path_.c_str(), target.c_str()) != 0) throwCannotWrite(final_, errno);
-    committed_ = true;
+    Impl& file = *impl_;
+    close();
+    if (file.target.isDevice || file.committed) return;
+    file.takePermissions();
+    file.syncFile();
+    if (commitGate) commitGate();
+    file.requireAt(file.temporary->name());
+    const int folder = file.target.folder.get();
+    if (::renameat(folder, file.temporary->name().c_str(), folder, file.target.name.c_str()) != 0)
+        throwCannotWrite(file.finalPath, errno);
+    file.temporary->release();
+    file.committed = true;
+    // In a folder that others may write, somebody may have been quicker.
+    file.requireAt(file.target.name);
+    file.syncFolder();
+    file.dropAside();
+}
+
+bool AtomicFile::isCommitted() const {
+    return impl_->committed;
 }
 
 void writeFileAtomically(const fs::path& file, std::string_view bytes) {
-    OutputFile out(file);
+    AtomicFile out(file);
     out.write(bytes.data(), bytes.size());
     out.commit();
+}
+
+void setCommitGate(void (*gate)()) {
+    commitGate = gate;
+}
+
+void setSyncFiles(bool sync) {
+    syncFiles = sync;
 }
 
 }  // namespace deltasplat

@@ -3,20 +3,24 @@
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
+#include <ios>
 #include <memory>
+#include <ostream>
+#include <streambuf>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "cannot_write.h"
+#include "deltasplat/atomic_file.h"
 #include "ingest/scalar_grids.h"
-#include "output_file.h"
 #include "parallel_grid.h"
 
 namespace deltasplat {
@@ -31,39 +35,98 @@ class SeekableArchive : public openvdb::io::Archive {
     }
 };
 
-// A file that tells how far it is in filling up to the size expected.
-class ReportingFile : public std::filebuf {
+// A file of which a stream may write any part, and that tells how far it is in filling up to the
+// size expected.
+class FileBuffer : public std::streambuf {
   public:
-    ReportingFile(const Listener& listener, double expectedBytes)
-        : listener_(listener), expectedBytes_(expectedBytes) {}
+    FileBuffer(AtomicFile& file, const Listener& listener, double expectedBytes)
+        : file_(file), listener_(listener), expectedBytes_(expectedBytes) {
+        setp(buffer_.data(), buffer_.data() + buffer_.size());
+    }
 
   protected:
+    int_type overflow(int_type next) override {
+        flush();
+        if (traits_type::eq_int_type(next, traits_type::eof())) return 0;
+        return sputc(traits_type::to_char_type(next));
+    }
+
     std::streamsize xsputn(const char* bytes, std::streamsize count) override {
         written_ += double(count);
         listener_.report(std::min(1.0, written_ / expectedBytes_));
-        return std::filebuf::xsputn(bytes, count);
+        if (count < epptr() - pptr()) {
+            std::memcpy(pptr(), bytes, std::size_t(count));
+            pbump(int(count));
+            return count;
+        }
+        flush();
+        file_.write(bytes, std::size_t(count));
+        begin_ += count;
+        return count;
+    }
+
+    int sync() override {
+        flush();
+        return 0;
+    }
+
+    pos_type seekpos(pos_type place, std::ios_base::openmode) override {
+        return seekoff(off_type(place), std::ios_base::beg, std::ios_base::out);
+    }
+
+    pos_type seekoff(off_type offset, std::ios_base::seekdir from,
+                     std::ios_base::openmode) override {
+        const off_type now = begin_ + (pptr() - pbase());
+        if (from == std::ios_base::end) return pos_type(off_type(-1));
+        if (from == std::ios_base::cur) offset += now;
+        if (offset == now) return now;
+        flush();
+        begin_ = ::lseek(file_.descriptor(), offset, SEEK_SET);
+        return begin_;
     }
 
   private:
+    void flush() {
+        file_.write(pbase(), std::size_t(pptr() - pbase()));
+        begin_ += pptr() - pbase();
+        setp(buffer_.data(), buffer_.data() + buffer_.size());
+    }
+
+    AtomicFile& file_;
     const Listener& listener_;
     double expectedBytes_;
     double written_ = 0;
+    off_type begin_ = 0;  // where in the file the buffer is to go
+    std::vector<char> buffer_ = std::vector<char>(std::size_t{1} << 16);
 };
 
 // Where a .vdb has its tag: after magic number (8 bytes), file version, library version (4 bytes
 // each of three numbers) and the flag for grid offsets (1 byte).
 constexpr std::streamoff kTagPosition = 21;
 
+// Returns how many bytes there were to read from a place on.
+std::size_t readAt(AtomicFile& file, off_t place, std::vector<char>& bytes) {
+    std::size_t count = 0;
+    while (count < bytes.size()) {
+        const ssize_t read = ::pread(file.descriptor(), bytes.data() + count, bytes.size() - count,
+                                     place + off_t(count));
+        if (read < 0 && errno == EINTR) continue;
+        if (read < 0) throwCannotWrite(file.finalPath(), errno);
+        if (read == 0) break;
+        count += std::size_t(read);
+    }
+    return count;
+}
+
 // Returns a hash of all bytes of a file but the `skipped` ones from kTagPosition on: FNV-1a, eight
 // bytes at a time, with the upper half of each product mixed into the lower.
-std::uint64_t hashContent(std::istream& in, std::size_t skipped) {
+std::uint64_t hashContent(AtomicFile& file, std::size_t skipped) {
     std::uint64_t hash = 0xcbf29ce484222325u;
     std::vector<char> block(std::size_t{1} << 20);
-    for (bool first = true; in.read(block.data(), std::streamsize(block.size())), in.gcount() > 0;
-         first = false) {
-        const auto count = std::size_t(in.gcount());
+    off_t place = 0;
+    while (const std::size_t count = readAt(file, place, block)) {
         std::fill(block.begin() + std::ptrdiff_t(count), block.end(), '\0');
-        if (first) std::fill_n(block.begin() + kTagPosition, skipped, '\0');
+        if (place == 0) std::fill_n(block.begin() + kTagPosition, skipped, '\0');
         for (std::size_t i = 0; i < count; i += sizeof hash) {
             std::uint64_t word = 0;
             std::memcpy(&word, &block[i], sizeof word);
@@ -71,6 +134,7 @@ std::uint64_t hashContent(std::istream& in, std::size_t skipped) {
             hash ^= hash >> 32;
         }
         hash ^= count;
+        place += off_t(count);
     }
     return hash;
 }
@@ -86,19 +150,15 @@ std::string tagFrom(std::uint64_t hash) {
 }
 
 // Replaces the file's random tag, if it is where this program knows it to be.
-void makeTagReproducible(std::iostream& stream, const std::string& randomTag) {
-    std::string found(randomTag.size(), '\0');
-    stream.seekg(kTagPosition);
-    stream.read(found.data(), std::streamsize(found.size()));
-    if (found != randomTag) return;
+void makeTagReproducible(AtomicFile& file, const std::string& randomTag) {
+    std::vector<char> found(randomTag.size());
+    readAt(file, kTagPosition, found);
+    if (!std::equal(found.begin(), found.end(), randomTag.begin())) return;
 
-    stream.seekg(0);
-    stream.exceptions(std::ios::badbit);
-    const std::string tag = tagFrom(hashContent(stream, randomTag.size()));
-    stream.clear();
-    stream.exceptions(std::ios::badbit | std::ios::failbit);
-    stream.seekp(kTagPosition);
-    stream.write(tag.data(), std::streamsize(tag.size()));
+    const std::string tag = tagFrom(hashContent(file, randomTag.size()));
+    if (::lseek(file.descriptor(), kTagPosition, SEEK_SET) != kTagPosition)
+        throwCannotWrite(file.finalPath(), errno);
+    file.write(tag.data(), tag.size());
 }
 
 // Grids of the types that this program writes, as grids that are packed on all threads.
@@ -121,20 +181,17 @@ double memoryBytes(const openvdb::GridCPtrVec& grids) {
     return bytes;
 }
 
-void writeStream(const AtomicFile& file, const openvdb::GridCPtrVec& grids,
+void writeStream(AtomicFile& file, const openvdb::GridCPtrVec& grids,
                  const openvdb::MetaMap& metadata, const Listener& listener) {
-    ReportingFile buffer(listener, memoryBytes(grids));
-    std::iostream stream(&buffer);
+    FileBuffer buffer(file, listener, memoryBytes(grids));
+    std::ostream stream(&buffer);
     // With exceptions the first byte that cannot be written ends the work, and errno is still its.
     stream.exceptions(std::ios::badbit | std::ios::failbit);
-    const auto mode = std::ios::in | std::ios::out | std::ios::binary | std::ios::trunc;
-    if (!buffer.open(file.path(), mode)) stream.setstate(std::ios::failbit);
     SeekableArchive archive;
     archive.writeTo(stream, parallelGrids(grids), metadata);
     stream.flush();
     // Only a regular file can be read back.
-    if (file.path() != file.finalPath()) makeTagReproducible(stream, archive.getUniqueTag());
-    if (!buffer.close()) stream.setstate(std::ios::failbit);
+    if (!file.isDevice()) makeTagReproducible(file, archive.getUniqueTag());
 }
 
 }  // namespace

@@ -43,6 +43,8 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
                    "Refuse up front what would take more memory than this, the\n"
                    "program itself (about 150M) included, such as 4G (default: what\n"
                    "the machine has)");
+    group.addFlag("--fsync", options.fsync,
+                  "End only when what was written would outlive a power failure");
     group.addValue(
         "--simd", "LEVEL", options.simd, anyText(),
         withDefault("SIMD level, a name from --version; never changes a pixel", options.simd));

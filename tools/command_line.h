@@ -20,6 +20,7 @@ struct CommonOptions {
     int threads = 0;
     std::uint64_t maxMemory = 0;  ///< bytes; 0: no limit
     std::string simd = "auto";
+    bool fsync = false;
 };
 
 /// What a subcommand knows about the run it is part of.

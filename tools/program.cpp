@@ -8,6 +8,7 @@
 #include <new>
 #include <optional>
 
+#include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/simd.h"
@@ -186,6 +187,7 @@ int execute(const std::vector<std::string>& arguments,
     if (subcommand == nullptr) return 0;
     setSimdLevel(session.common.simd);
     const ThreadLimit limit(session.common.threads);
+    setSyncFiles(session.common.fsync);
     setMemoryLimit(session.common.maxMemory);
     // What is kept counts as taken.
     if (session.common.maxMemory == 0) reuseMemory();

@@ -7,15 +7,15 @@
 #include <filesystem>
 #include <vector>
 
-#include "output_file.h"
+#include "deltasplat/atomic_file.h"
 
 namespace deltasplat {
 
-/// An OutputFile whose bytes pass through gzip from some point on. The same bytes in give the same
+/// An AtomicFile whose bytes pass through gzip from some point on. The same bytes in give the same
 /// bytes out: the gzip header holds neither a time nor a name.
 class PackedOutput {
   public:
-    /// @throw Error(kOutput) as OutputFile
+    /// @throw Error(kOutput) as AtomicFile
     explicit PackedOutput(const std::filesystem::path& finalPath);
     ~PackedOutput();
     PackedOutput(const PackedOutput&) = delete;
@@ -30,11 +30,15 @@ class PackedOutput {
     void close();
     /// Gives the file its final name. close() comes first.
     void commit() { file_.commit(); }
+    /// As AtomicFile has them.
+    void setAside() { file_.setAside(); }
+    void putBack() noexcept { file_.putBack(); }
+    bool isCommitted() const { return file_.isCommitted(); }
 
   private:
     void deflateInput(int flush);
 
-    OutputFile file_;
+    AtomicFile file_;
     std::vector<unsigned char> packed_;  // empty: not packing
     z_stream stream_{};
 };

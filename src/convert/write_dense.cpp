@@ -157,6 +157,17 @@ double writeValues(const Volume& volume, const IndexBox& box, RawType type, Pack
     return error;
 }
 
+// The header comes last: who finds it finds the values. An old header must not describe new ones.
+void commitData(PackedOutput& data, PackedOutput& head) {
+    head.setAside();
+    try {
+        data.commit();
+    } catch (...) {
+        if (!data.isCommitted()) head.putBack();
+        throw;
+    }
+}
+
 }  // namespace
 
 WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& format,
@@ -186,10 +197,9 @@ WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& for
     report.maxError =
         std::max(facts.doubleError, writeValues(volume, box, layout.type, data, listener));
 
-    // The header comes last: who finds it finds the values.
     head.close();
     data.close();
-    if (separate) separate->commit();
+    if (separate) commitData(*separate, head);
     head.commit();
     report.files = {file};
     if (separate) report.files.push_back(dataFile);

@@ -114,19 +114,22 @@ void checkImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
     const AtomicFile probe(file);
 }
 
-void writeImage(const std::filesystem::path& file, const Image& image,
-                const ImageFileOptions& options) {
+std::string encodeImage(const std::filesystem::path& file, const Image& image,
+                        const ImageFileOptions& options) {
     checkOptions(file, image.size, options);
     if (image.size.x < 1 || image.size.y < 1) {
         const std::string got =
             std::to_string(image.size.x) + "x" + std::to_string(image.size.y) + " pixels";
         throw Error(ErrorCode::kUsage, gotExpected(file.string(), got, "at least 1x1"));
     }
-    const bool exr = formatOf(file) == Format::kExr;
-    writeFileAtomically(file, exr ? encodeExr(file, image, options)
-                              : options.bits == 16
-                                  ? encodePng<std::uint16_t>(file, image, OIIO::TypeUInt16, options)
-                                  : encodePng<std::uint8_t>(file, image, OIIO::TypeUInt8, options));
+    if (formatOf(file) == Format::kExr) return encodeExr(file, image, options);
+    return options.bits == 16 ? encodePng<std::uint16_t>(file, image, OIIO::TypeUInt16, options)
+                              : encodePng<std::uint8_t>(file, image, OIIO::TypeUInt8, options);
+}
+
+void writeImage(const std::filesystem::path& file, const Image& image,
+                const ImageFileOptions& options) {
+    writeFileAtomically(file, encodeImage(file, image, options));
 }
 
 void compositeOver(Image& image, const glm::vec4& background) {

@@ -10,13 +10,13 @@
 #include <memory>
 #include <vector>
 
+#include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "ingest/raw_format.h"
 #include "little_endian.h"
 #include "lower_case.h"
 #include "memory.h"
 #include "number_text.h"
-#include "output_file.h"
 #include "parallel.h"
 #include "write_vdb.h"
 
@@ -61,7 +61,7 @@ void writeRaw(const AnalyticVolume& volume, const std::filesystem::path& file,
 
     saysLayout(file, {dims, type.raw, false, 0});
 
-    OutputFile out(file);
+    AtomicFile out(file);
     std::vector<std::byte> slice(rowBytes * std::size_t(dims.y));
     for (int z = 0; z < dims.z; ++z) {
         parallelFor(std::size_t(dims.y), [&](std::size_t y) {

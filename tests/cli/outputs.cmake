@@ -30,6 +30,7 @@ endforeach()
 deltasplat_cli_test(output.fine.bits ARGS render ball.vdb -o out.png --bits 16 CREATES out.png)
 deltasplat_cli_test(output.fine.stats CREATES out.exr stats.json
     ARGS render ball.vdb -o out.exr --float --stats stats.json --background 0.1,0.2,0.3,0.5)
+deltasplat_cli_test(output.fine.fsync ARGS render ball.vdb -o out.exr --fsync CREATES out.exr)
 deltasplat_cli_test(output.fine.verbose CREATES out.exr ARGS render ball.vdb -o out.exr -v
     STDERR_MATCHES "method auto: .* stamps.*slices along z.*seconds: read .*")
 # A tolerance says what it may do to the picture.

@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
-#include "output_file.h"
+#include "deltasplat/error.h"
 #include "unit/file_limits.h"
 #include "unit/temp_folder.h"
 
@@ -16,13 +17,17 @@ namespace fs = std::filesystem;
 using test::errorOf;
 using test::readBytes;
 
+// What was asked to be on the disk, in this order.
+std::string synced;
+
 TEST(AtomicFile, AppearsOnlyWhenCommitted) {
     const test::TempFolder folder;
     AtomicFile file(folder / "out.exr");
-    std::ofstream(file.path()) << "whole";
+    file.write("wh", 2);
+    file.write("", 0);
+    file.write("ole", 3);
     EXPECT_FALSE(fs::exists(folder / "out.exr"));
-    EXPECT_EQ(file.path().extension(), ".exr");
-    EXPECT_EQ(file.path().parent_path(), folder.path());
+    EXPECT_TRUE(fs::exists(folder / ".deltasplat.out.exr.0.tmp"));
     file.commit();
     EXPECT_EQ(readBytes(folder / "out.exr"), "whole");
     EXPECT_EQ(folder.count(), 1);
@@ -31,8 +36,8 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
 TEST(AtomicFile, LeavesNothingWithoutCommit) {
     const test::TempFolder folder;
     {
-        const AtomicFile file(folder / "out.exr");
-        std::ofstream(file.path()) << "half";
+        AtomicFile file(folder / "out.exr");
+        file.write("half", 4);
         EXPECT_EQ(folder.count(), 1);
     }
     EXPECT_EQ(folder.count(), 0);
@@ -49,9 +54,16 @@ TEST(AtomicFile, KeepsTheOldFileUntilTheNewOneIsWhole) {
 
 TEST(AtomicFile, TwoAtOnceDoNotShareAName) {
     const test::TempFolder folder;
-    const AtomicFile first(folder / "out.raw");
-    const AtomicFile second(folder / "out.raw");
-    EXPECT_NE(first.path(), second.path());
+    AtomicFile first(folder / "out.raw");
+    AtomicFile second(folder / "out.raw");
+    EXPECT_EQ(folder.count(), 2);
+    first.write("first", 5);
+    second.write("second", 6);
+    second.commit();
+    EXPECT_EQ(readBytes(folder / "out.raw"), "second");
+    first.commit();
+    EXPECT_EQ(readBytes(folder / "out.raw"), "first");
+    EXPECT_EQ(folder.count(), 1);
 }
 
 TEST(AtomicFile, KeepsPermissionsOfTheFileItReplaces) {
@@ -60,6 +72,42 @@ TEST(AtomicFile, KeepsPermissionsOfTheFileItReplaces) {
     fs::permissions(folder / "out.raw", fs::perms(0640));
     writeFileAtomically(folder / "out.raw", "new");
     EXPECT_EQ(fs::status(folder / "out.raw").permissions(), fs::perms(0640));
+}
+
+TEST(AtomicFile, GivesNewFilesWhatTheUmaskLeaves) {
+    const test::TempFolder folder;
+    const mode_t before = ::umask(027);
+    writeFileAtomically(folder / "out.raw", "new");
+    ::umask(before);
+    EXPECT_EQ(fs::status(folder / "out.raw").permissions(), fs::perms(0640));
+}
+
+// While a private file is replaced, nobody else may read the new one, either.
+TEST(AtomicFile, IsAsPrivateAsTheFileItReplaces) {
+    const test::TempFolder folder;
+    const mode_t before = ::umask(0);
+    writeFileAtomically(folder / "out.raw", "secret");
+    EXPECT_EQ(fs::status(folder / "out.raw").permissions(), fs::perms(0666));
+    fs::permissions(folder / "out.raw", fs::perms(0600));
+    AtomicFile file(folder / "out.raw");
+    ::umask(before);
+    struct stat status {};
+    ASSERT_EQ(::fstat(file.descriptor(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777, 0600u);
+    file.commit();
+    EXPECT_EQ(fs::status(folder / "out.raw").permissions(), fs::perms(0600));
+}
+
+TEST(AtomicFile, KeepsOwnerAndGroupOfTheFileItReplaces) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only the superuser gives files away";
+    const test::TempFolder folder;
+    writeFileAtomically(folder / "out.raw", "old");
+    ASSERT_EQ(::chown((folder / "out.raw").c_str(), 12345, 23456), 0);
+    writeFileAtomically(folder / "out.raw", "new");
+    struct stat status {};
+    ASSERT_EQ(::stat((folder / "out.raw").c_str(), &status), 0);
+    EXPECT_EQ(status.st_uid, 12345u);
+    EXPECT_EQ(status.st_gid, 23456u);
 }
 
 TEST(AtomicFile, WritesWhatALinkPointsTo) {
@@ -136,16 +184,75 @@ TEST(AtomicFile, RefusesReadOnlyFilesAndFolders) {
     ::chmod(folder.path().c_str(), 0700);
 }
 
-TEST(OutputFile, WritesPiecesInOrder) {
+TEST(AtomicFile, HoldsBackWhatTheGateHoldsBack) {
     const test::TempFolder folder;
-    OutputFile out(folder / "out.raw");
-    out.write("ab", 2);
-    out.write("", 0);
-    out.write("c", 1);
-    EXPECT_FALSE(fs::exists(folder / "out.raw"));
-    out.commit();
-    EXPECT_EQ(readBytes(folder / "out.raw"), "abc");
+    writeFileAtomically(folder / "out.raw", "old");
+    setCommitGate([] { throw Error(ErrorCode::kInterrupted, "not now"); });
+    EXPECT_EQ(errorOf([&] { writeFileAtomically(folder / "out.raw", "new"); }), "130: not now");
+    setCommitGate(nullptr);
+    EXPECT_EQ(readBytes(folder / "out.raw"), "old");
+    EXPECT_EQ(folder.count(), 1);
+}
+
+TEST(AtomicFile, TakesAnOldFileAwayAndPutsItBack) {
+    const test::TempFolder folder;
+    writeFileAtomically(folder / "head", "old");
+    {
+        AtomicFile head(folder / "head");
+        head.setAside();
+        EXPECT_FALSE(fs::exists(folder / "head"));
+        head.putBack();
+        EXPECT_EQ(readBytes(folder / "head"), "old");
+    }
+    EXPECT_EQ(folder.count(), 1);
+    {
+        AtomicFile head(folder / "head");
+        head.setAside();
+        head.write("new", 3);
+        head.commit();
+    }
+    EXPECT_EQ(readBytes(folder / "head"), "new");
+    EXPECT_EQ(folder.count(), 1);
+    AtomicFile none(folder / "none");
+    none.setAside();
+    none.putBack();
+    EXPECT_EQ(folder.count(), 2);
+}
+
+TEST(AtomicFile, RemovesWhatIsLeftWhenTheProcessHasToEnd) {
+    const test::TempFolder folder;
+    const AtomicFile first(folder / "a.raw");
+    AtomicFile second(folder / "b.raw");
+    second.commit();
+    EXPECT_EQ(folder.count(), 2);
+    removeTemporaryFiles();
+    EXPECT_EQ(folder.count(), 1);
+    EXPECT_TRUE(fs::exists(folder / "b.raw"));
+}
+
+TEST(AtomicFile, IsOnTheDiskBeforeItGetsItsNameIfAsked) {
+    const test::TempFolder folder;
+    synced.clear();
+    writeFileAtomically(folder / "out.raw", "soon");
+    EXPECT_EQ(synced, "");
+    setSyncFiles(true);
+    writeFileAtomically(folder / "out.raw", "now");
+    setSyncFiles(false);
+    EXPECT_EQ(synced, "file folder ");
 }
 
 }  // namespace
+
+void noteSync(bool folder) {
+    synced += folder ? "folder " : "file ";
+}
+
 }  // namespace deltasplat
+
+// Stands in for the C library's.
+extern "C" int fsync(int descriptor) {
+    struct stat status {};
+    ::fstat(descriptor, &status);
+    deltasplat::noteSync(S_ISDIR(status.st_mode));
+    return int(::syscall(SYS_fsync, descriptor));
+}

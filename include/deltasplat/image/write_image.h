@@ -47,6 +47,11 @@ void checkImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
 void writeImage(const std::filesystem::path& file, const Image& image,
                 const ImageFileOptions& options);
 
+/// Returns the bytes of the file that writeImage would write, without writing any.
+/// @throw as writeImage
+std::string encodeImage(const std::filesystem::path& file, const Image& image,
+                        const ImageFileOptions& options);
+
 /// Puts a background colour (scene-linear, straight alpha) behind the picture:
 /// C += (1 - A) * background.rgb * background.a; A += (1 - A) * background.a.
 void compositeOver(Image& image, const glm::vec4& background);

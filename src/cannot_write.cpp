@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cannot_write.h"
+
+#include <system_error>
+
+#include "deltasplat/error.h"
+
+namespace deltasplat {
+
+void throwCannotWrite(const std::filesystem::path& file, int systemError) {
+    throw Error(ErrorCode::kOutput, file.string() + ": cannot be written: " +
+                                        std::generic_category().message(systemError));
+}
+
+}  // namespace deltasplat
