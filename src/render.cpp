@@ -48,7 +48,7 @@ std::string modeName(Mode mode) {
 
 RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {
     RenderResult result;
-    result.camera = makeCamera(options.camera, volume.box, volume.worldFromIndex);
+    result.camera = makeCamera(options.camera, volume.box, volume.worldFromIndex, volume.space);
     requireImageMemory(result.camera.sizePixels);
     result.image = Image(result.camera.sizePixels);
     const Factorization view = factorize(result.camera, volume.worldFromIndex, options.resolution);

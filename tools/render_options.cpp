@@ -99,7 +99,9 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
                    withDefault("Parallel lines of sight", options.projection));
     group.addValue("--view", "NAME", camera.view, anyText(),
                    withDefault("Where the camera is, y up: front (+z) back (-z) right (+x)\n"
-                               "left (-x) top (+y) bottom (-y) or iso (+x +y +z)",
+                               "left (-x) top (+y) bottom (-y) or iso (+x +y +z). Where the file\n"
+                               "says how a patient lies (RAS, LPS): up is the head's direction,\n"
+                               "front looks at the face, left and right at the patient's",
                                camera.view));
     group.addValue("--azimuth", "DEG", camera.azimuthDegrees, number(),
                    withDefault("Turns the camera to its right, about the up axis",
@@ -114,7 +116,8 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
                    "The way the line of sight travels, in world space; replaces\n"
                    "--view");
     group.addValue("--up", "X,Y,Z", camera.up, vector3(),
-                   "What is up in the picture (default 0,1,0)");
+                   "What is up in the picture, in world space (default: the view's;\n"
+                   "with --direction 0,1,0, or a patient's head)");
     group.addValue("--target", "X,Y,Z", camera.targetWorld, vector3(),
                    "World position in the middle of the picture (default: the\n"
                    "middle of the volume)");
@@ -177,8 +180,18 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
 }
 
 void checkCamera(const CameraOptions& camera) {
-    // Any box will do to have the camera's own options checked.
-    makeCamera(camera, IndexBox{glm::ivec3(0), glm::ivec3(1)}, glm::dmat4(1));
+    // Any box will do to have the camera's own options checked; whether up is along the line of
+    // sight may depend on whether the volume is a patient.
+    const IndexBox box{glm::ivec3(0), glm::ivec3(1)};
+    try {
+        makeCamera(camera, box, glm::dmat4(1));
+    } catch (const Error& error) {
+        try {
+            makeCamera(camera, box, glm::dmat4(1), "RAS");
+        } catch (const Error&) {
+            throw error;
+        }
+    }
 }
 
 void warnOfUnusedCameraOptions(const CLI::App& app, ProgressDisplay& display) {

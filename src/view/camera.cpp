@@ -14,6 +14,7 @@
 namespace deltasplat {
 namespace {
 
+// Both vectors in the space of who looks at the front: x to the right, y up, z towards the eye.
 struct NamedView {
     const char* name;
     glm::dvec3 direction;
@@ -38,6 +39,29 @@ const NamedView& namedView(const std::string& name) {
         known += (known.empty() ? "" : ", ") + std::string(view.name);
     }
     refuse("--view", name, "one of " + known);
+}
+
+// How who looks at the front of the volume stands in the world.
+struct Viewer {
+    glm::dmat3 worldFromViewer{1.0};
+    bool facesPatient = false;
+
+    // Sums with 0 have no -0.
+    glm::dvec3 toWorld(const glm::dvec3& v) const { return worldFromViewer * v + 0.0; }
+};
+
+Viewer viewerOf(const std::string& space) {
+    // The patient's left, head and front are at the right, above and nearer.
+    if (space == "RAS") return {glm::dmat3(-1, 0, 0, 0, 0, 1, 0, 1, 0), true};
+    if (space == "LPS") return {glm::dmat3(1, 0, 0, 0, 0, 1, 0, -1, 0), true};
+    return {};
+}
+
+// The left of a patient who is faced is at the right.
+std::string viewFrom(const Viewer& viewer, const std::string& view) {
+    if (!viewer.facesPatient) return view;
+    if (view == "left") return "right";
+    return view == "right" ? "left" : view;
 }
 
 bool isFinite(const glm::dvec3& v) {
@@ -89,11 +113,10 @@ glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double degrees) {
 }
 
 // Sets the three axes as a person turns a camera that looks along `direction`, head towards `up`.
-void orient(Camera& camera, const CameraOptions& options) {
-    const NamedView& view = namedView(options.direction ? "front" : options.view);
-    const glm::dvec3 givenUp =
-        options.up.value_or(options.direction ? glm::dvec3(0, 1, 0) : view.up);
-    const glm::dvec3 givenDirection = options.direction.value_or(view.direction);
+void orient(Camera& camera, const CameraOptions& options, const Viewer& viewer) {
+    const NamedView& view = namedView(options.direction ? "front" : viewFrom(viewer, options.view));
+    const glm::dvec3 givenUp = options.up.value_or(viewer.toWorld(view.up));
+    const glm::dvec3 givenDirection = options.direction.value_or(viewer.toWorld(view.direction));
     const glm::dvec3 up = unitVector("--up", givenUp);
     glm::dvec3 direction = unitVector("--direction", givenDirection);
     if (glm::length(glm::cross(direction, up)) < 1e-9) {
@@ -133,6 +156,20 @@ double fittingFrame(const Camera& camera, const IndexBox& box, const glm::dmat4&
     return width > 1e-6 * voxel ? width : voxel;
 }
 
+// How far before the target the camera has to be for all voxels of the box to lie beyond it, edges
+// and footprints included.
+double clearDistance(const Camera& camera, const IndexBox& box, const glm::dmat4& worldFromIndex) {
+    const glm::dmat3 linear(worldFromIndex);
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
+    double distance =
+        glm::dot(camera.targetWorld - transformed(worldFromIndex, middle), camera.direction);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double halfEdge = 0.5 * (double(box.max[axis]) - box.min[axis]) + 1;
+        distance += halfEdge * std::abs(glm::dot(linear[axis], camera.direction));
+    }
+    return distance;
+}
+
 }  // namespace
 
 glm::dvec3 Camera::worldFromPixel(glm::dvec2 pixel) const {
@@ -146,25 +183,25 @@ glm::dvec2 Camera::pixelFromWorld(const glm::dvec3& world) const {
            glm::dvec2(glm::dot(offset, right), -glm::dot(offset, up)) / pixelWorld();
 }
 
+// Based on: the OpenEXR project, "Standard Attributes" (worldToCamera, worldToNDC).
 glm::dmat4 Camera::cameraFromWorld() const {
-    const glm::dmat3 rotation = glm::transpose(glm::dmat3(right, up, -direction));
+    const glm::dmat3 rotation = glm::transpose(glm::dmat3(right, up, direction));
     glm::dmat4 matrix(rotation);
-    matrix[3] = glm::dvec4(-(rotation * targetWorld), 1);
+    matrix[3] = glm::dvec4(glm::dvec3(0, 0, targetDistanceWorld) - rotation * targetWorld, 1);
     return matrix;
 }
 
 glm::dmat4 Camera::ndcFromWorld() const {
-    const double halfWidth = 0.5 * frameWidthWorld;
-    const double halfHeight = halfWidth * sizePixels.y / sizePixels.x;
+    const double frameHeightWorld = frameWidthWorld * sizePixels.y / sizePixels.x;
     glm::dmat4 ndcFromCamera(1);
-    ndcFromCamera[0][0] = 1 / halfWidth;
-    ndcFromCamera[1][1] = 1 / halfHeight;
-    ndcFromCamera[2][2] = 1 / halfWidth;
+    ndcFromCamera[0][0] = 1 / frameWidthWorld;
+    ndcFromCamera[1][1] = -1 / frameHeightWorld;
+    ndcFromCamera[3] = glm::dvec4(0.5, 0.5, 0, 1);
     return ndcFromCamera * cameraFromWorld();
 }
 
 Camera makeCamera(const CameraOptions& options, const IndexBox& box,
-                  const glm::dmat4& worldFromIndex) {
+                  const glm::dmat4& worldFromIndex, const std::string& space) {
     checkOptions(options);
     requireInvertible(worldFromIndex);
     const IndexBox framed = box.empty() ? IndexBox{glm::ivec3(0), glm::ivec3(0)} : box;
@@ -172,10 +209,11 @@ Camera makeCamera(const CameraOptions& options, const IndexBox& box,
 
     Camera camera;
     camera.sizePixels = options.sizePixels;
-    orient(camera, options);
+    orient(camera, options, viewerOf(space));
     camera.targetWorld = options.targetWorld.value_or(transformed(worldFromIndex, middle));
     camera.frameWidthWorld =
         options.frameWidthWorld.value_or(fittingFrame(camera, framed, worldFromIndex));
+    camera.targetDistanceWorld = clearDistance(camera, framed, worldFromIndex);
     return camera;
 }
 

@@ -139,6 +139,9 @@ void writeOtherBalls() {
 void writeVdbFiles() {
     writeVdb("ball.vdb", {ball("density")});
     writeVdb("two.vdb", {ball("density"), ball("heat")});
+    const auto patient = ball("density");
+    patient->insertMeta("deltasplat_space", openvdb::StringMetadata("LPS"));
+    writeVdb("patient.vdb", {patient});
     writeVdb("cache.vdb", cache("density"));
     writeVdb("cache_named.vdb", cache("steam"));
     writeVdb("mixed.vdb", {vectors(), ball("density")});

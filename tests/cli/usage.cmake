@@ -122,6 +122,14 @@ deltasplat_refusal(direction_nan
     "--direction: got 1,nan,0; expected X,Y,Z, three finite numbers" --direction=1,nan,0)
 deltasplat_refusal(up_zero "--up: got 0,0,0; expected three finite numbers, not all of them 0"
     --up 0,0,0)
+# What is up, and so what may not be the direction, may depend on the file.
+deltasplat_cli_test(patient.direction CREATES out.exr
+    ARGS render patient.vdb -o out.exr --direction 0,1,0)
+deltasplat_cli_test(patient.up CREATES out.exr
+    ARGS render patient.vdb -o out.exr --view front --up 0,0,1)
+deltasplat_cli_test(patient.direction_parallel_to_up EXIT 2
+    ARGS render patient.vdb -o out.exr --direction 0,0,1
+    STDERR "deltasplat: --direction: got 0,0,1 as direction, parallel to up 0,0,1; expected directions that differ (another --view, --direction or --up)")
 deltasplat_cli_test(negative_vectors CREATES out.exr
     ARGS render ${cube} -o out.exr --direction -1,0.8,-0.6 --up=-.5,1,0 --target -1,2,-.25)
 foreach(width 1e-300 1e300)

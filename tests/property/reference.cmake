@@ -3,5 +3,6 @@ deltasplat_test(property/reference_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
 deltasplat_test(property/slab_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
 deltasplat_test(property/placement_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
 deltasplat_test(property/rays_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
+deltasplat_test(property/picture_place_test.cpp)
 deltasplat_test(property/rays_reference_test.cpp
     SOURCES ${DELTASPLAT_SCENE_SOURCES} reference/reference_rays.cpp)

@@ -150,14 +150,131 @@ TEST(Camera, matricesAgreeWithPixels) {
     const glm::dvec3 offset = world - camera.targetWorld;
     expectNear(glm::dvec3(inCamera),
                {glm::dot(offset, camera.right), glm::dot(offset, camera.up),
-                -glm::dot(offset, camera.direction)},
+                glm::dot(offset, camera.direction) + camera.targetDistanceWorld},
                1e-11);
     EXPECT_EQ(inCamera.w, 1);
     const glm::dvec4 inNdc = camera.ndcFromWorld() * glm::dvec4(world, 1);
     const glm::dvec2 pixel = camera.pixelFromWorld(world);
-    EXPECT_NEAR(inNdc.x, pixel.x / 150 - 1, 1e-12);
-    EXPECT_NEAR(inNdc.y, 1 - pixel.y / 100, 1e-12);
-    EXPECT_NEAR(inNdc.z, inCamera.z / (camera.frameWidthWorld / 2), 1e-12);
+    EXPECT_NEAR(inNdc.x, pixel.x / 300, 1e-12);
+    EXPECT_NEAR(inNdc.y, pixel.y / 200, 1e-12);
+    EXPECT_EQ(inNdc.w, 1);
+}
+
+// What the OpenEXR project says of worldToCamera and worldToNDC.
+TEST(Camera, matricesAreThoseOfOpenExr) {
+    const Camera camera = cameraOf([](CameraOptions& o) {
+        o.direction = glm::dvec3(-2, 1, -3);
+        o.azimuthDegrees = 12;
+        o.sizePixels = {300, 200};
+    });
+    const glm::dmat4 matrix = camera.cameraFromWorld();
+    EXPECT_NEAR(glm::determinant(glm::dmat3(matrix)), -1, 1e-12);  // left-handed, same units
+    const auto inCamera = [&](const glm::dvec3& world) {
+        return glm::dvec3(matrix * glm::dvec4(world, 1));
+    };
+    const glm::dvec3 ahead =
+        inCamera(camera.targetWorld + 7.0 * camera.direction) - inCamera(camera.targetWorld);
+    expectNear(ahead, {0, 0, 7});
+    const auto inNdc = [&](glm::dvec2 pixel) {
+        return glm::dvec2(camera.ndcFromWorld() * glm::dvec4(camera.worldFromPixel(pixel), 1));
+    };
+    EXPECT_LE(glm::distance(inNdc({0, 0}), glm::dvec2(0, 0)), 1e-12);
+    EXPECT_LE(glm::distance(inNdc({300, 200}), glm::dvec2(1, 1)), 1e-12);
+    EXPECT_LE(glm::distance(inNdc({300, 0}), glm::dvec2(1, 0)), 1e-12);
+}
+
+TEST(Camera, allOfTheVolumeIsBeforeTheCamera) {
+    glm::dmat4 worldFromIndex(1);
+    worldFromIndex[0] = {-3, 0.5, 0, 0};
+    worldFromIndex[2] = {0, 0.25, 4, 0};
+    for (const glm::dvec3& target : {glm::dvec3(0), glm::dvec3(1e3, -2e3, 5e3)}) {
+        const auto set = [&](CameraOptions& o) {
+            o.view = "iso";
+            o.targetWorld = target;
+        };
+        const Camera camera = cameraOf(set, kBox, worldFromIndex);
+        double nearest = 1e300;
+        for (int corner = 0; corner < 8; ++corner) {
+            // Corners of voxels, half an index beyond their centres.
+            const glm::dvec4 index(corner & 1 ? kBox.max.x + 0.5 : kBox.min.x - 0.5,
+                                   corner & 2 ? kBox.max.y + 0.5 : kBox.min.y - 0.5,
+                                   corner & 4 ? kBox.max.z + 0.5 : kBox.min.z - 0.5, 1);
+            nearest = std::min(nearest, (camera.cameraFromWorld() * (worldFromIndex * index)).z);
+        }
+        EXPECT_GT(nearest, 0);
+        EXPECT_LT(nearest, 10);  // no farther off than the voxels are large
+    }
+}
+
+// Written down from what the letters mean: in RAS x grows to the patient's right, y to the front
+// and z to the head, in LPS x to the left and y to the back.
+TEST(Camera, viewsOfAPatientAreThePatients) {
+    const glm::dvec3 right(1, 0, 0), front(0, 1, 0), head(0, 0, 1);
+    const struct {
+        const char* name;
+        glm::dvec3 direction, pictureRight, pictureUp;
+    } views[] = {
+        {"front", -front, -right, head}, {"back", front, right, head},
+        {"left", right, -front, head},   {"right", -right, front, head},
+        {"top", -head, -right, -front},  {"bottom", head, -right, front},
+    };
+    const glm::dvec3 lpsFromRas(-1, -1, 1);
+    for (const auto& view : views) {
+        SCOPED_TRACE(view.name);
+        CameraOptions options;
+        options.view = view.name;
+        const Camera ras = makeCamera(options, kBox, kUnit, "RAS");
+        EXPECT_EQ(ras.direction, view.direction);
+        EXPECT_EQ(ras.right, view.pictureRight);
+        EXPECT_EQ(ras.up, view.pictureUp);
+        const Camera lps = makeCamera(options, kBox, kUnit, "LPS");
+        EXPECT_EQ(lps.direction, view.direction * lpsFromRas);
+        EXPECT_EQ(lps.right, view.pictureRight * lpsFromRas);
+        EXPECT_EQ(lps.up, view.pictureUp * lpsFromRas);
+        for (int axis = 0; axis < 3; ++axis)
+            EXPECT_FALSE(std::signbit(ras.direction[axis]) && ras.direction[axis] == 0);
+        const Camera elsewhere = makeCamera(options, kBox, kUnit, "scanner-xyz");
+        EXPECT_EQ(elsewhere.direction, makeCamera(options, kBox, kUnit).direction);
+    }
+    CameraOptions iso;
+    iso.view = "iso";
+    // From the patient's front, left and above.
+    expectNear(makeCamera(iso, kBox, kUnit, "RAS").direction,
+               glm::normalize(-(front - right + head)));
+    expectNear(makeCamera(iso, kBox, kUnit, "LPS").direction,
+               glm::normalize(-(front - right + head) * lpsFromRas));
+}
+
+TEST(Camera, aPatientIsTurnedAboutTheHeadsDirection) {
+    CameraOptions options;
+    options.azimuthDegrees = 90;  // to the right of who faces the patient
+    const Camera turned = makeCamera(options, kBox, kUnit, "LPS");
+    options.azimuthDegrees = 0;
+    options.view = "left";
+    const Camera left = makeCamera(options, kBox, kUnit, "LPS");
+    EXPECT_EQ(turned.direction, left.direction);
+    EXPECT_EQ(turned.up, left.up);
+    options.view = "front";
+    options.elevationDegrees = 90;
+    const Camera raised = makeCamera(options, kBox, kUnit, "LPS");
+    options.elevationDegrees = 0;
+    options.view = "top";
+    const Camera top = makeCamera(options, kBox, kUnit, "LPS");
+    EXPECT_EQ(raised.direction, top.direction);
+    EXPECT_EQ(raised.up, top.up);
+}
+
+TEST(Camera, directionsStayTheWorldsForAPatient) {
+    CameraOptions options;
+    options.direction = glm::dvec3(0, 1, 0);
+    const Camera camera = makeCamera(options, kBox, kUnit, "LPS");
+    EXPECT_EQ(camera.direction, glm::dvec3(0, 1, 0));
+    EXPECT_EQ(camera.up, glm::dvec3(0, 0, 1));
+    options.up = glm::dvec3(1, 0, 0);
+    EXPECT_EQ(makeCamera(options, kBox, kUnit, "LPS").up, glm::dvec3(1, 0, 0));
+    options.direction = glm::dvec3(0, 0, -1);
+    options.up.reset();
+    EXPECT_THROW(makeCamera(options, kBox, kUnit, "RAS"), Error);
 }
 
 // How far the projected box reaches from the picture's edges: 0 = touches, negative = sticks out.

@@ -15,7 +15,10 @@ namespace deltasplat {
 /// VTK's camera turns; quarter turns are exact.
 struct CameraOptions {
     /// front (looks along -z), back (+z), left (from -x along +x), right (-x), top (down -y, up is
-    /// -z), bottom (up +y, up is +z) or iso (along (-1,-1,-1)).
+    /// -z), bottom (up +y, up is +z) or iso (along (-1,-1,-1)). In a patient's space up is the
+    /// head's direction, front looks at the face, left and right at the patient's left and right,
+    /// top down on the head, iso at face, left and head; top and bottom have the back and the face
+    /// at the top of the picture.
     std::string view = "front";
     double azimuthDegrees =
         0;  ///< turns the camera about the up axis through the target, towards its right
@@ -24,7 +27,8 @@ struct CameraOptions {
     double elevationDegrees = 0;
     double rollDegrees = 0;  ///< then turns it clockwise (seen from behind) about the line of sight
     std::optional<glm::dvec3> direction;  ///< the way the line of sight travels; replaces `view`
-    /// Default: the view's, or +y where `direction` is given; not parallel to the direction.
+    /// Default: the view's; where `direction` is given +y, or in a patient's space the head's
+    /// direction. Not parallel to the direction.
     std::optional<glm::dvec3> up;
     std::optional<glm::dvec3>
         targetWorld;  ///< falls on the middle of the picture; default: middle of the box
@@ -42,6 +46,9 @@ struct Camera {
     glm::dvec3 up{0, 1, 0};
     glm::dvec3 targetWorld{0.0};
     double frameWidthWorld = 1;
+    /// From the plane of the camera to that of the target: all of the volume lies beyond the
+    /// former. It moves no pixel.
+    double targetDistanceWorld = 0;
     glm::ivec2 sizePixels{512, 512};
 
     /// World units a pixel, the same both ways.
@@ -50,18 +57,21 @@ struct Camera {
     glm::dvec3 worldFromPixel(glm::dvec2 pixel) const;
     /// Continuous pixel coordinates of a world position.
     glm::dvec2 pixelFromWorld(const glm::dvec3& world) const;
-    /// Camera space: x right, y up, looking along -z, the target at the origin.
+    /// OpenEXR's worldToCamera: left-handed, x right, y up, z along the line of sight, in world
+    /// units; the target lies at (0, 0, targetDistanceWorld).
     glm::dmat4 cameraFromWorld() const;
-    /// x and y run over -1..1 across the picture (y up); z is camera z over half the frame width.
+    /// OpenEXR's worldToNDC: (0, 0) is the upper left corner of the picture, (1, 1) the lower right
+    /// one; z, which has no meaning there, is that of cameraFromWorld.
     glm::dmat4 ndcFromWorld() const;
 };
 
 /// Places the camera on a volume. What projects to one point (one voxel, an empty box, a line seen
 /// end-on) is framed as one voxel of the smallest size.
+/// @param space  as Volume::space: "RAS", "LPS", or anything else for no patient
 /// @throw Error(kUsage) naming the option if the view's name is unknown, a number is not finite,
 ///        the direction is zero or parallel to up, or the frame width or the size is not positive;
 ///        Error(kInput) if worldFromIndex is not finite or cannot be inverted
 Camera makeCamera(const CameraOptions& options, const IndexBox& box,
-                  const glm::dmat4& worldFromIndex);
+                  const glm::dmat4& worldFromIndex, const std::string& space = "");
 
 }  // namespace deltasplat
