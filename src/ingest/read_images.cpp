@@ -13,27 +13,20 @@
 #include "deltasplat/error.h"
 #include "ingest/dense_source.h"
 #include "ingest/file_name.h"
+#include "ingest/image_file.h"
 #include "ingest/readers.h"
-#include "ingest/silent_stderr.h"
 #include "memory.h"
 #include "parallel.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {
 
-using OIIO::ImageInput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
                          const std::string& expected) {
     throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
-}
-
-// OpenImageIO repeats itself on further lines.
-std::string firstLine(const std::string& text) {
-    return printable(text.substr(0, text.find('\n')));
 }
 
 struct ImageType {
@@ -68,34 +61,17 @@ std::optional<ImageType> imageType(const TypeDesc& type) {
 // What all slices have to have in common, and where they are.
 struct Stack {
     std::vector<std::filesystem::path> files;
-    int pages = 1;  // of the only file
+    ImagePages pages;  // of the only file
     int width = 0;
     int height = 0;
     int channels = 1;  // that are read: 1, or 3 which become one
     TypeDesc stored;
     ImageType type{RawType::kUint8, TypeDesc::UINT8};
 
-    int slices() const { return files.size() == 1 ? pages : int(files.size()); }
+    int slices() const { return files.size() == 1 ? pages.count() : int(files.size()); }
     std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
     std::size_t sliceBytes() const { return pixels() * std::size_t(rawTypeBytes(type.raw)); }
 };
-
-std::unique_ptr<ImageInput> openImage(const std::filesystem::path& file) {
-    requireRegularFile(file);
-    ImageSpec config;
-    config["oiio:UnassociatedAlpha"] = 1;  // alpha is not asked for, so it must change nothing
-    const SilentStderr silent;             // libpng prints what OpenImageIO then reports
-    // Asked for by the name of a file that its format's reader refuses, OpenImageIO would hand it
-    // to all of its readers, those of DICOM and films too.
-    auto input = ImageInput::create(lowerExtension(file).substr(1));
-    ImageSpec spec;
-    if (!input || !input->open(file.string(), spec, config)) {
-        const std::string error = input ? input->geterror() : OIIO::geterror();
-        const std::string reason = error.empty() ? "no reason given" : firstLine(error);
-        refuse(file, "what OpenImageIO refuses (" + reason + ")", "an image");
-    }
-    return input;
-}
 
 std::string sizeText(const ImageSpec& spec) {
     return std::to_string(spec.width) + "x" + std::to_string(spec.height) + " " +
@@ -156,13 +132,6 @@ void warnOfLosses(const std::filesystem::path& file, const ImageSpec& spec,
     }
 }
 
-void readPage(const Stack& stack, ImageInput& input, const std::filesystem::path& file, int page,
-              void* to) {
-    const SilentStderr silent;
-    if (input.read_image(page, 0, 0, stack.channels, stack.type.oiio, to)) return;
-    refuse(file, "what OpenImageIO refuses (" + firstLine(input.geterror()) + ")", "a whole image");
-}
-
 // The weights are those of Rec. 709; they add up to 1, so a grey keeps its value.
 template <typename T>
 void toLuminance(const std::byte* colors, std::size_t pixels, std::byte* to) {
@@ -200,31 +169,29 @@ void mixColors(const Stack& stack, const std::byte* colors, std::byte* to) {
     }
 }
 
-// Reads slices one after the other; the pages of one file through one opening of it.
+// Reads slices one after the other.
 class SliceReader {
   public:
     explicit SliceReader(const Stack& stack) : stack_(stack) {
         if (stack.channels > 1) {
-            colors_ = std::make_unique_for_overwrite<std::byte[]>(stack.sliceBytes() * 3);
+            colors_ = std::make_unique<std::byte[]>(stack.sliceBytes() * 3);
         }
     }
     void read(int slice, std::byte* to) {
         const bool pages = stack_.files.size() == 1;
         const std::filesystem::path& file = stack_.files[pages ? 0 : std::size_t(slice)];
-        if (!pages || !input_) input_ = openImage(file);
-        const int page = pages ? slice : 0;
-        const ImageSpec spec = input_->spec_dimensions(page);
+        ImageFile image(file, pages ? stack_.pages : ImagePages(file), pages ? slice : 0);
+        const ImageSpec& spec = image.spec();
         if (spec.width != stack_.width || spec.height != stack_.height ||
             spec.format != stack_.stored || spec.nchannels < stack_.channels) {
             refuse(file, "an image that changes while it is read", "one that stays as it is");
         }
-        readPage(stack_, *input_, file, page, colors_ ? colors_.get() : to);
+        image.read(stack_.channels, stack_.type.oiio, colors_ ? colors_.get() : to);
         if (colors_) mixColors(stack_, colors_.get(), to);
     }
 
   private:
     const Stack& stack_;
-    std::unique_ptr<ImageInput> input_;
     std::unique_ptr<std::byte[]> colors_;
 };
 
@@ -233,8 +200,7 @@ void readLayers(const Stack& stack, const std::string& where, const DenseSource:
     const int most = std::min(stack.slices(), DenseSource::kLayerSlices);
     requireMemory(where, double(stack.sliceBytes()) * (most + 3));
     SliceReader reader(stack);
-    const auto bytes =
-        std::make_unique_for_overwrite<std::byte[]>(stack.sliceBytes() * std::size_t(most));
+    const auto bytes = std::make_unique<std::byte[]>(stack.sliceBytes() * std::size_t(most));
     for (int first = 0; first < stack.slices(); first += DenseSource::kLayerSlices) {
         const int count = std::min(DenseSource::kLayerSlices, stack.slices() - first);
         for (int i = 0; i < count; ++i) {
@@ -251,22 +217,21 @@ Stack surveyStack(const std::vector<std::filesystem::path>& files, const Listene
     stack.files = files;
     ImageSpec first;
     for (const std::filesystem::path& file : files) {
-        const auto input = openImage(file);
-        int pages = 0;
-        for (; input->seek_subimage(pages, 0); ++pages) {
-            const ImageSpec spec = input->spec();
+        ImagePages pages(file);
+        if (files.size() > 1 && pages.count() != 1) {
+            refuse(file, std::to_string(pages.count()) + " pages", "one in each file of a stack");
+        }
+        for (int page = 0; page < pages.count(); ++page) {
+            const ImageSpec spec = ImageFile(file, pages, page).spec();
             if (stack.width == 0) {
                 first = spec;
                 stack.width = spec.width;
                 stack.height = spec.height;
             }
-            requireAlike(stack, file, pages, spec, first);
+            requireAlike(stack, file, page, spec, first);
+            listener.report(0);
         }
-        input->geterror();
-        if (files.size() > 1 && pages != 1) {
-            refuse(file, std::to_string(pages) + " pages", "one in each file of a stack");
-        }
-        stack.pages = pages;
+        stack.pages = std::move(pages);
     }
     const std::optional<ImageType> type = imageType(first.format);
     if (!type) refuse(files.front(), sizeText(first), "whole or real numbers");

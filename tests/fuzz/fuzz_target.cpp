@@ -8,8 +8,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "deltasplat/error.h"
 #include "deltasplat/render.h"
@@ -29,6 +31,28 @@ void check(const Volume& volume) {
             "box holds all active voxels");
 }
 
+std::uint64_t& digestSum() {
+    static std::uint64_t sum = 0;
+    return sum;
+}
+
+// Based on: FNV-1a (Fowler, Noll, Vo), 64 bits.
+template <typename T>
+void digest(const T& value) {
+    unsigned char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    for (const unsigned char byte : bytes) digestSum() = (digestSum() ^ byte) * 0x100000001b3;
+}
+
+void digest(const Volume& volume) {
+    digest(volume.box.dims());
+    digest(volume.worldFromIndex);
+    for (auto voxel = volume.codes->tree.cbeginValueOn(); voxel; ++voxel) {
+        digest(voxel.getCoord().asVec3i());
+        digest(volume.codeBook.valueOf(voxel.getValue()));
+    }
+}
+
 // Renders what is small enough to be done in a moment.
 void renderSmall(const Volume& volume) {
     const glm::ivec3 dims = volume.box.dims();
@@ -38,7 +62,10 @@ void renderSmall(const Volume& volume) {
     options.camera.sizePixels = {8, 8};
     options.optics.transferFunction = defaultRamp(volume);
     const RenderResult result = render(volume, options);
-    for (const float value : result.image.rgba) require(std::isfinite(value), "finite pixels");
+    for (const float value : result.image.rgba) {
+        require(std::isfinite(value), "finite pixels");
+        digest(value);
+    }
 }
 
 }  // namespace
@@ -85,10 +112,15 @@ std::string fileWith(const std::string& extension, const std::uint8_t* data, std
     return path;
 }
 
+std::uint64_t takeDigest() {
+    return std::exchange(digestSum(), 0);
+}
+
 void readAndCheck(const std::string& file, const ReadOptions& options) {
     expectErrorsOfOneLine([&] {
         for (const Volume& volume : readAllVolumes(file, options)) {
             check(volume);
+            digest(volume);
             renderSmall(volume);
         }
     });

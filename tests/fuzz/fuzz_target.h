@@ -34,4 +34,8 @@ void expectErrorsOfOneLine(const std::function<void()>& work);
 /// contradicts itself, if a pixel is no finite number or if anything but an Error comes out.
 void readAndCheck(const std::string& file, const ReadOptions& options);
 
+/// Returns a digest of every volume that readAndCheck has read, and of its picture, since the last
+/// call; 0 if all was refused.
+std::uint64_t takeDigest();
+
 }  // namespace deltasplat::fuzz

@@ -2,10 +2,13 @@
 // Runs a fuzz target without a fuzzer: on the files named, or on seeded mutations of its own seeds.
 //   TARGET_replay [FILE...]          replays files
 //   TARGET_replay --count N          N mutations of every seed (default 300)
+//   TARGET_replay --digests N        the same, and prints what became of those that were accepted
+//   TARGET_replay --mutation S I FILE  writes mutation I of seed S, as --digests names them
 //   TARGET_replay --write FOLDER     writes the seeds, as a corpus for libFuzzer
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cinttypes>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -74,12 +77,26 @@ void writeSeeds(const std::string& folder) {
     }
 }
 
-void replayMutations(int count) {
+// Writes what replayMutations calls mutation `index` of a seed.
+void writeMutation(int seed, int index, const char* file) {
+    const std::string sound = seeds().at(std::size_t(seed) - 1);
+    std::mt19937 random{unsigned(seed)};
+    std::string bytes = sound;
+    for (int i = 0; i < index; ++i) bytes = mutated(sound, random);
+    std::ofstream(file, std::ios::binary) << bytes;
+}
+
+void replayMutations(int count, bool digests) {
     int number = 0;
     for (const std::string& seed : seeds()) {
         std::mt19937 random(unsigned(++number));
-        run(seed);
-        for (int i = 0; i < count; ++i) run(mutated(seed, random));
+        for (int i = 0; i <= count; ++i) {
+            run(i == 0 ? seed : mutated(seed, random));
+            const std::uint64_t digest = deltasplat::fuzz::takeDigest();
+            if (digests && digest != 0) {
+                std::printf("seed %d mutation %d: %016" PRIx64 "\n", number, i, digest);
+            }
+        }
     }
     std::printf("%d seeds, %d mutations each\n", number, count);
 }
@@ -91,9 +108,13 @@ int main(int argc, char** argv) {
     if (argc == 3 && std::strcmp(argv[1], "--write") == 0) {
         writeSeeds(argv[2]);
     } else if (argc == 3 && std::strcmp(argv[1], "--count") == 0) {
-        replayMutations(std::stoi(argv[2]));
+        replayMutations(std::stoi(argv[2]), false);
+    } else if (argc == 3 && std::strcmp(argv[1], "--digests") == 0) {
+        replayMutations(std::stoi(argv[2]), true);
+    } else if (argc == 5 && std::strcmp(argv[1], "--mutation") == 0) {
+        writeMutation(std::stoi(argv[2]), std::stoi(argv[3]), argv[4]);
     } else if (argc == 1) {
-        replayMutations(300);
+        replayMutations(300, false);
     }
     for (int i = 1; i < argc && argv[i][0] != '-' && argv[1][0] != '-'; ++i) replayFile(argv[i]);
     return 0;

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+
+namespace deltasplat {
+
+/// The bytes of a regular file, in any order. Several threads may read at once.
+class FileBytes {
+  public:
+    /// @throw Error(kInput) if the file is missing, not regular or cannot be opened
+    explicit FileBytes(const std::filesystem::path& file);
+    ~FileBytes();
+    FileBytes(const FileBytes&) = delete;
+    FileBytes& operator=(const FileBytes&) = delete;
+
+    std::uint64_t size() const { return size_; }
+    /// Reads `bytes` bytes from `place` on; returns how many there were.
+    std::size_t read(std::uint64_t place, void* to, std::size_t bytes) const;
+
+  private:
+    int handle_ = -1;
+    std::uint64_t size_ = 0;
+};
+
+}  // namespace deltasplat
