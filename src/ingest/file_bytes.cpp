@@ -13,7 +13,7 @@
 
 namespace deltasplat {
 
-FileBytes::FileBytes(const std::filesystem::path& file) {
+FileBytes::FileBytes(const std::filesystem::path& file) : path_(file) {
     requireRegularFile(file);
     handle_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
     if (handle_ < 0) {
@@ -35,7 +35,11 @@ std::size_t FileBytes::read(std::uint64_t place, void* to, std::size_t bytes) co
         const ssize_t got =
             ::pread(handle_, static_cast<char*>(to) + done, bytes - done, off_t(place + done));
         if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) break;
+        if (got < 0) {
+            throw Error(ErrorCode::kInput,
+                        gotExpected(path_.string(), "a read error", "a readable file"));
+        }
+        if (got == 0) break;
         done += std::size_t(got);
     }
     return done;

@@ -16,11 +16,14 @@ class FileBytes {
     FileBytes(const FileBytes&) = delete;
     FileBytes& operator=(const FileBytes&) = delete;
 
+    const std::filesystem::path& path() const { return path_; }
     std::uint64_t size() const { return size_; }
     /// Reads `bytes` bytes from `place` on; returns how many there were.
+    /// @throw Error(kInput) if they cannot be read
     std::size_t read(std::uint64_t place, void* to, std::size_t bytes) const;
 
   private:
+    std::filesystem::path path_;
     int handle_ = -1;
     std::uint64_t size_ = 0;
 };

@@ -73,14 +73,21 @@ class OnePageProxy : public OIIO::Filesystem::IOProxy {
         return got;
     }
     std::size_t pread(void* to, std::size_t bytes, std::int64_t place) override {
-        if (place < 0) return 0;
-        const std::size_t got = bytes_.read(std::uint64_t(place), to, bytes);
+        const std::size_t got = readPlain(to, bytes, place);
         replace(firstField_, page_.table, std::uint64_t(place), got, to);
         replace(page_.nextField, 0, std::uint64_t(place), got, to);
         return got;
     }
 
   private:
+    // libtiff is C, through which nothing may be thrown.
+    std::size_t readPlain(void* to, std::size_t bytes, std::int64_t place) const {
+        try {
+            return place < 0 ? 0 : bytes_.read(std::uint64_t(place), to, bytes);
+        } catch (const Error&) {
+            return 0;
+        }
+    }
     // Writes a number over those of its bytes that have been read.
     void replace(std::uint64_t field, std::uint64_t number, std::uint64_t place, std::size_t got,
                  void* to) const {

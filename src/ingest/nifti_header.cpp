@@ -91,7 +91,8 @@ class Fields {
 Fields readFields(const std::filesystem::path& file) {
     Fields fields;
     fields.where = file.string();
-    ByteSource source(file, lowerExtension(file) == ".nii.gz");
+    const bool gzip = lowerExtension(file) == ".nii.gz";
+    ByteSource source(file, gzip ? Packing::kGzip : Packing::kNone);
     const std::size_t got = source.read(fields.bytes.data(), kBytes2);
     for (const std::size_t size : {kBytes1, kBytes2}) {
         for (const bool bigEndian : {false, true}) {

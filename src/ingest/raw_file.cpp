@@ -40,7 +40,7 @@ void requireRawSize(const RawFile& file) {
 
 void readRawLayers(const RawFile& file, const DenseSource::LayerUse& use,
                    const Listener& listener) {
-    ByteSource source(file.path, file.gzip);
+    ByteSource source(file.path, file.gzip ? Packing::kGzip : Packing::kNone);
     const auto beat = [&](double share) { return [&listener, share] { listener.report(share); }; };
     std::uint64_t done = source.skip(file.layout.skipBytes, beat(0));
     const int slices = int(file.layout.dims.z);

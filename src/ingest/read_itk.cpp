@@ -8,169 +8,27 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
-#include <cstring>
 #include <memory>
 #include <optional>
-#include <system_error>
 #include <vector>
 
 #include "deltasplat/error.h"
+#include "ingest/byte_source.h"
+#include "ingest/data_claim.h"
 #include "ingest/dense_source.h"
 #include "ingest/file_name.h"
 #include "ingest/itk_calls.h"
 #include "ingest/itk_types.h"
 #include "ingest/placement.h"
 #include "ingest/readers.h"
-#include "ingest/text_header.h"
-#include "ingest/zlib_check.h"
-#include "lower_case.h"
 #include "memory.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {
 
-enum class Encoding { kRaw, kGzip, kText };
-
-// ITK writes an orientation wherever it takes world space for a patient's, which is then LPS.
-bool isOrientation(const std::string& text) {
-    return text.size() == 3 && text.find_first_not_of("RLAPSI") == std::string::npos;
-}
-
-// What a header says about its data, before ITK has seen it.
-struct Claim {
-    std::vector<std::int64_t> sizes;
-    std::filesystem::path dataFile;
-    std::uint64_t dataStart = 0;  // place in that file
-    std::uint64_t dataBytes = 0;  // as they lie there
-    Encoding encoding = Encoding::kRaw;
-    std::string space;
-};
-
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
                          const std::string& expected) {
     throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
-}
-
-// Data in a list or a numbered series of files, or on standard input, is not read.
-void setDetached(const std::filesystem::path& file, const std::string& name, Claim& claim) {
-    if (name.empty() || name == "-" || lowerCase(name).rfind("list", 0) == 0 ||
-        name.find('%') != std::string::npos) {
-        refuse(file, "data in \"" + printable(name) + "\"", "the name of one data file");
-    }
-    claim.dataFile = file.parent_path() / name;
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(claim.dataFile, error)) {
-        refuse(file, "no data file \"" + printable(name) + "\"", "a readable file");
-    }
-    claim.dataBytes = std::filesystem::file_size(claim.dataFile);
-}
-
-void setAttached(const std::filesystem::path& file, const TextHeader& header, Claim& claim) {
-    claim.dataFile = file;
-    claim.dataStart = header.dataStart;
-    claim.dataBytes = std::filesystem::file_size(file) - header.dataStart;
-}
-
-const std::string& require(const std::filesystem::path& file, const TextHeader& header,
-                           const std::string& field) {
-    const std::string* value = header.find(field);
-    if (value == nullptr) refuse(file, "a header without " + field, "a whole one");
-    return *value;
-}
-
-std::string withoutBlanksAndDashes(const std::string& text) {
-    std::string letters;
-    for (const char c : lowerCase(text)) {
-        if (c != ' ' && c != '-') letters += c;
-    }
-    return letters;
-}
-
-Claim claimOfNrrd(const std::filesystem::path& file) {
-    const TextHeader header = readNrrdHeader(file);
-    Claim claim;
-    claim.sizes = parseSizes(file.string(), require(file, header, "sizes"));
-    const std::string* name = header.find("datafile");
-    if (name != nullptr) {
-        setDetached(file, *name, claim);
-    } else {
-        setAttached(file, header, claim);
-    }
-    const std::string encoding = lowerCase(require(file, header, "encoding"));
-    if (encoding == "gzip" || encoding == "gz") {
-        claim.encoding = Encoding::kGzip;
-    } else if (encoding != "raw") {
-        claim.encoding = Encoding::kText;
-    }
-    if (const std::string* space = header.find("space")) {
-        const std::string letters = withoutBlanksAndDashes(*space);
-        if (letters == "ras" || letters == "rightanteriorsuperior") claim.space = "RAS";
-        if (letters == "las" || letters == "leftanteriorsuperior") claim.space = "LAS";
-        if (letters == "lps" || letters == "leftposteriorsuperior") claim.space = "LPS";
-    }
-    return claim;
-}
-
-// Returns the whole number of a field, or `missing`.
-std::int64_t numberOf(const std::filesystem::path& file, const TextHeader& header,
-                      const std::string& field, std::int64_t missing) {
-    const std::string* value = header.find(field);
-    if (value == nullptr) return missing;
-    std::int64_t number = 0;
-    const char* const end = value->data() + value->size();
-    const auto result = std::from_chars(value->data(), end, number);
-    if (result.ec != std::errc{} || result.ptr != end) {
-        refuse(file, field + " " + printable(*value), "a whole number");
-    }
-    return number;
-}
-
-// Bytes to pass over in the data file, and of packed data: MetaIO allocates what they say.
-void checkMetaData(const std::filesystem::path& file, const TextHeader& header, Claim& claim) {
-    const std::int64_t skipped = numberOf(file, header, "headersize", 0);
-    const std::int64_t packed = numberOf(file, header, "compresseddatasize", 0);
-    const auto held = std::int64_t(claim.dataBytes);
-    if (skipped < -1 || skipped > held || packed < 0 ||
-        packed > held - std::max<std::int64_t>(skipped, 0)) {
-        refuse(file,
-               "HeaderSize " + std::to_string(skipped) + " and CompressedDataSize " +
-                   std::to_string(packed),
-               "at most the " + std::to_string(held) + " bytes of data");
-    }
-    if (skipped > 0 && claim.dataFile == file) {
-        refuse(file, "HeaderSize " + std::to_string(skipped) + " for data in the same file", "0");
-    }
-    if (skipped <= 0) return;
-    claim.dataStart += std::uint64_t(skipped);
-    claim.dataBytes -= std::uint64_t(skipped);
-}
-
-Claim claimOfMeta(const std::filesystem::path& file) {
-    const TextHeader header = readMetaHeader(file);
-    Claim claim;
-    claim.sizes = parseSizes(file.string(), require(file, header, "dimsize"));
-    const std::string name = header.fields.back().value;
-    if (lowerCase(name) == "local") {
-        setAttached(file, header, claim);
-    } else {
-        setDetached(file, name, claim);
-    }
-    const std::string* orientation = header.find("anatomicalorientation");
-    if (orientation != nullptr && isOrientation(*orientation)) claim.space = "LPS";
-    const auto isTrue = [&](const std::string& field) {
-        const std::string* value = header.find(field);
-        return value != nullptr && !value->empty() && std::strchr("Tt1", (*value)[0]) != nullptr;
-    };
-    checkMetaData(file, header, claim);
-    const std::string* binary = header.find("binarydata");
-    if (isTrue("compresseddata")) {
-        claim.encoding = Encoding::kGzip;
-    } else if (binary != nullptr && !isTrue("binarydata")) {
-        claim.encoding = Encoding::kText;
-    }
-    return claim;
 }
 
 std::string sizesText(const std::vector<std::int64_t>& sizes) {
@@ -182,7 +40,7 @@ std::string sizesText(const std::vector<std::int64_t>& sizes) {
 // A file that ITK has opened, and which of its axes are the volume's.
 struct ItkFile {
     std::filesystem::path path;
-    Claim claim;
+    DataClaim claim;
     itk::ImageIOBase::Pointer io;
     std::vector<unsigned> axes;  // at most three; the others are one voxel long
     RawType type = RawType::kUint8;
@@ -238,20 +96,23 @@ void requireData(const ItkFile& file) {
     constexpr double kMostGzipRatio = 1032;
     const double held = double(file.claim.dataBytes);
     const double values = file.bytes() / rawTypeBytes(file.type);
-    const bool gzip = file.claim.encoding == Encoding::kGzip;
-    const bool holds = file.claim.encoding == Encoding::kText ? (held + 1) / 2 >= values
-                       : gzip ? (held + 1) * kMostGzipRatio >= file.bytes()
-                              : held >= file.bytes();
+    const bool gzip = file.claim.encoding == DataClaim::Encoding::kGzip;
+    const bool holds =
+        file.claim.encoding == DataClaim::Encoding::kText ? (held + 1) / 2 >= values
+        : gzip ? (held + 1) * kMostGzipRatio >= file.bytes() + double(file.claim.skippedBytes)
+               : held >= file.bytes();
     if (holds) return;
     refuse(file.claim.dataFile, std::to_string(file.claim.dataBytes) + " bytes of data",
            (gzip ? "enough gzip for " : "enough for ") + sizesText(file.claim.sizes) + " " +
                rawTypeName(file.type));
 }
 
-// MetaIO takes packed data that are corrupt or too short without a word.
-void requireUnpackedSize(const ItkFile& file) {
-    const auto wanted = std::uint64_t(file.bytes());
-    const std::uint64_t got = unpackedBytes(file.claim.dataFile, file.claim.dataStart, wanted);
+// Neither MetaIO nor NrrdIO looks at the end of packed data, where count and checksum are; NrrdIO
+// takes what does not begin as gzip for plain.
+void requireUnpackedSize(const ItkFile& file, Packing packing) {
+    const auto wanted = file.claim.skippedBytes + std::uint64_t(file.bytes());
+    ByteSource source(file.claim.dataFile, packing, file.claim.dataStart);
+    const std::uint64_t got = source.skip(wanted + 1, [] {});
     if (got == wanted) return;
     refuse(file.claim.dataFile,
            (got > wanted ? "more than " : "") + std::to_string(std::min(got, wanted)) +
@@ -297,7 +158,8 @@ void readRegion(const ItkFile& file, int firstSlice, int slices, std::byte* to) 
 
 void readLayers(ItkFile& file, const DenseSource::LayerUse& use, const Listener& listener) {
     const int slices = int(file.size(2));
-    const bool inParts = file.io->CanStreamRead() && file.claim.encoding == Encoding::kRaw;
+    const bool inParts =
+        file.io->CanStreamRead() && file.claim.encoding == DataClaim::Encoding::kRaw;
     const int most = std::min(slices, DenseSource::kLayerSlices);
     std::shared_ptr<std::byte[]> bytes = file.whole;
     if (!bytes) {
@@ -340,7 +202,9 @@ void openFile(ItkFile& file) {
     file.sliceBytes =
         std::size_t(file.size(0)) * std::size_t(file.size(1)) * std::size_t(rawTypeBytes(*type));
     requireData(file);
-    if (!nrrd && file.claim.encoding == Encoding::kGzip) requireUnpackedSize(file);
+    if (file.claim.encoding == DataClaim::Encoding::kGzip) {
+        requireUnpackedSize(file, nrrd ? Packing::kGzip : Packing::kZlib);
+    }
 }
 
 }  // namespace

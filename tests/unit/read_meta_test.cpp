@@ -184,10 +184,13 @@ TEST(ReadMetaError, Headers) {
     meta.sizes = "4 x 2";
     expectRefusedMeta("got sizes 4 x 2; expected whole numbers from 1 to 1073741824", meta, data());
     meta = {};
-    meta.axes = 30;
-    expectRefusedMeta(
-        "got what ITK refuses (DimSize required and not defined); expected a sound file", meta,
-        data());
+    // MetaIO would count up to this number, for minutes.
+    for (const int axes : {30, 1000000, 2147483647, 0, -1, 2}) {
+        meta.axes = axes;
+        expectRefusedMeta(
+            "got NDims = " + std::to_string(axes) + "; expected 3, as many as there are sizes",
+            meta, data());
+    }
     meta = {};
     meta.type = "MET_FOO";
     expectRefusedMeta("got values of an unknown type; expected whole or real numbers", meta,

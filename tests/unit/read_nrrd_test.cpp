@@ -247,14 +247,46 @@ TEST(ReadNrrdError, Data) {
 TEST(ReadNrrdError, DamagedGzip) {
     const TempFolder folder;
     writeGzip("values.gz", data());
-    std::string packed = readBytes("values.gz");
+    const std::string packed = readBytes("values.gz");
     const std::string header = nrrd({{"encoding", "gzip"}}) + "\n";
-    writeBytes("a.nrrd", header + packed.substr(0, packed.size() - 12));
-    EXPECT_THROW(readVolume("a.nrrd"), Error);
-    packed[packed.size() - 6] = char(packed[packed.size() - 6] ^ 1);
-    writeBytes("b.nrrd", header + packed);
-    expectRefused("b.nrrd: got what ITK refuses (data read error); expected a sound file",
+    for (std::size_t size = 0; size < packed.size(); ++size) {
+        writeBytes("a.nrrd", header + packed.substr(0, size));
+        expectInputError("a.nrrd");
+    }
+    writeBytes("a.nrrd", header + packed.substr(0, packed.size() - 8));
+    expectRefused("a.nrrd: got a gzip stream that is cut short; expected a whole one", "a.nrrd");
+
+    // The ten bytes of the gzip header, of which only the time and the system may be anything.
+    for (const std::size_t place : {0, 1, 2, 3}) {
+        std::string damaged = packed;
+        damaged[place] = char(damaged[place] ^ 4);
+        writeBytes("b.nrrd", header + damaged);
+        expectInputError("b.nrrd");
+    }
+    std::string damaged = packed;
+    damaged[0] = char(damaged[0] ^ 1);
+    writeBytes("b.nrrd", header + damaged);
+    expectRefused("b.nrrd: got no gzip stream; expected a gzip file", "b.nrrd");
+    damaged = packed;
+    damaged[packed.size() - 6] = char(damaged[packed.size() - 6] ^ 1);
+    writeBytes("b.nrrd", header + damaged);
+    expectRefused("b.nrrd: got a corrupt gzip stream (incorrect data check); expected a sound one",
                   "b.nrrd");
+
+    writeGzip("values.gz", data() + "x");
+    writeBytes("c.nrrd", header + readBytes("values.gz"));
+    expectRefused("c.nrrd: got more than 48 bytes unpacked; expected 48 (4x3x2 uint16)", "c.nrrd");
+    writeGzip("values.gz", data().substr(0, 47));
+    writeBytes("c.nrrd", header + readBytes("values.gz"));
+    expectRefused("c.nrrd: got 47 bytes unpacked; expected 48 (4x3x2 uint16)", "c.nrrd");
+}
+
+TEST(ReadNrrd, SkipsInGzip) {
+    const TempFolder folder;
+    writeGzip("values.gz", "abc" + data());
+    const std::string fields = nrrd({{"encoding", "gzip"}}) + "line skip: 2\nbyte skip: 3\n\n";
+    writeBytes("a.nrrd", fields + "one\ntwo\n" + readBytes("values.gz"));
+    EXPECT_EQ(valuesOf(readVolume("a.nrrd")), ramp<double>(24));
 }
 
 TEST(ReadNrrdError, FlatDirections) {

@@ -99,6 +99,20 @@ TEST(ReadRawError, DamagedGzip) {
     writeBytes(file, whole.substr(0, whole.size() - 3));
     expectInput(file + ": got a gzip stream that is cut short; expected a whole one", file);
 
+    // The last values are there, but not what says that they are right.
+    for (std::size_t missing = 1; missing <= 8; ++missing) {
+        writeBytes(file, whole.substr(0, whole.size() - missing));
+        expectInput(file + ": got a gzip stream that is cut short; expected a whole one", file);
+    }
+    for (const std::string more : {"x", "\x1f\x8b", "\x1fxxxxxxxx"}) {
+        writeBytes(file, whole + more);
+        EXPECT_THROW(readVolume(file), Error) << more;
+    }
+    writeBytes(file, whole + "text");
+    expectInput(file + ": got bytes behind the gzip stream; expected nothing there", file);
+    writeBytes(file, whole + std::string(5, '\0') + whole);
+    expectInput(file + ": got bytes behind the gzip stream; expected nothing there", file);
+
     std::string wrongSum = whole;
     wrongSum[whole.size() - 6] = char(wrongSum[whole.size() - 6] ^ 1);
     writeBytes(file, wrongSum);
@@ -106,6 +120,19 @@ TEST(ReadRawError, DamagedGzip) {
                 file);
     writeBytes(file, bytes);
     expectInput(file + ": got no gzip stream; expected a gzip file", file);
+}
+
+// What `cat a.gz b.gz` makes, and what a block device fills up.
+TEST(ReadRaw, SeveralGzipMembersAndZeros) {
+    const TempFolder folder;
+    const std::string file = "a_4x4x4_uint8.raw.gz";
+    writeGzip(file, std::string(40, '\1'));
+    const std::string first = readBytes(file);
+    writeGzip(file, std::string(24, '\2'));
+    writeBytes(file, first + readBytes(file) + std::string(1000, '\0'));
+    const Volume volume = readVolume(file);
+    EXPECT_EQ(volume.histogram[1], 40u);
+    EXPECT_EQ(volume.histogram[2], 24u);
 }
 
 TEST(ReadRawError, NonFiniteValues) {
