@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 
+#include "default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 
@@ -56,6 +57,7 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
     const auto run = [&] {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1),
                           [&](const tbb::blocked_range<std::size_t>& range) {
+                              const DefaultFloats floats;
                               for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
                           });
     };

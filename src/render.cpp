@@ -4,6 +4,7 @@
 #include <string>
 
 #include "composite_render.h"
+#include "default_floats.h"
 #include "memory.h"
 #include "ray_render.h"
 
@@ -47,6 +48,7 @@ std::string modeName(Mode mode) {
 }
 
 RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {
+    const DefaultFloats floats;
     RenderResult result;
     result.camera = makeCamera(options.camera, volume.box, volume.worldFromIndex, volume.space);
     requireImageMemory(result.camera.sizePixels);

@@ -6,6 +6,7 @@
 #include "convert/dense_layout.h"
 #include "convert/write_dense.h"
 #include "convert/write_grids.h"
+#include "default_floats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "ingest/file_name.h"
@@ -53,6 +54,7 @@ void checkVolumeFile(const std::filesystem::path& file) {
 
 WriteReport writeVolumes(const std::filesystem::path& file, std::vector<Volume> volumes,
                          const WriteOptions& options, const Listener& listener) {
+    const DefaultFloats floats;
     if (isVdb(file)) return writeGrids(file, std::move(volumes), options, listener);
     const DenseFormat& format = formatOf(file);
     if (volumes.size() != 1) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "default_floats.h"
 #include "delta/delta_tree.h"
 #include "delta/hold_values.h"
 #include "delta/inactive_values.h"
@@ -157,6 +158,7 @@ DeltaFile::~DeltaFile() = default;
 
 DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& options,
                               const Listener& listener) {
+    const DefaultFloats floats;
     checkTolerance("--tolerance", options.tolerance.relative);
     checkTolerance("--tolerance-value", options.tolerance.value);
     requireRoom(options.tolerance, volume);

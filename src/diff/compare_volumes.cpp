@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 #include <limits>
 
+#include "default_floats.h"
 #include "diff/compare_trees.h"
 #include "diff/error_sums.h"
 #include "diff/voxel_source.h"
@@ -110,6 +111,7 @@ void takeSums(const ErrorSums& sums, VolumeComparison& result) {
 
 VolumeComparison compareVolumes(const Volume& a, const Volume& b, const CompareOptions& options,
                                 const Listener& listener) {
+    const DefaultFloats floats;
     const bool wide = holdsInt64(a) || holdsInt64(b);
     // A dense volume says nothing about a background, so it takes the other's.
     const WideValue backgroundA = backgroundOf(a.hasBackground ? a : b, wide);

@@ -10,6 +10,7 @@
 #include <memory>
 #include <string_view>
 
+#include "default_floats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
@@ -116,6 +117,7 @@ void checkImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
 
 std::string encodeImage(const std::filesystem::path& file, const Image& image,
                         const ImageFileOptions& options) {
+    const DefaultFloats floats;
     checkOptions(file, image.size, options);
     if (image.size.x < 1 || image.size.y < 1) {
         const std::string got =
@@ -133,6 +135,7 @@ void writeImage(const std::filesystem::path& file, const Image& image,
 }
 
 void compositeOver(Image& image, const glm::vec4& background) {
+    const DefaultFloats floats;
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
         float* rgba = &image.rgba[i];
         const float behind = (1 - rgba[3]) * background.a;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "default_floats.h"
 #include "deltasplat/error.h"
 #include "ingest/input_kind.h"
 #include "ingest/readers.h"
@@ -31,6 +32,7 @@ DenseSource openDense(const std::filesystem::path& input, const InputKind& kind,
 
 void read(const std::filesystem::path& file, const ReadOptions& options, bool all,
           const VolumeVisitor& visitor, const Listener& listener) {
+    const DefaultFloats floats;
     if (options.nanValue && !std::isfinite(*options.nanValue)) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--nan", numberText(*options.nanValue), "a finite number"));

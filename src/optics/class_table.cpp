@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "default_floats.h"
 #include "deltasplat/error.h"
 #include "number_text.h"
 #include "parallel.h"
@@ -165,6 +166,7 @@ void numberByOpacity(const std::vector<CodeLight>& visible, const ColorRounder& 
 }  // namespace
 
 ClassTable classify(const Volume& volume, const Optics& optics, double sliceStepWorld) {
+    const DefaultFloats floats;
     checkOptics(optics);
     const double unitDistance = optics.unitDistance.value_or(smallest(volume.voxelSize()));
     const std::vector<CodeLight> visible =

@@ -2,6 +2,7 @@
 #include <limits>
 #include <string>
 
+#include "default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/transfer_function.h"
 #include "number_text.h"
@@ -147,6 +148,7 @@ void readOpacities(const std::filesystem::path& file, const PresetReader& preset
 }  // namespace
 
 TransferFunction readTransferFunction(const std::filesystem::path& file, const Listener& listener) {
+    const DefaultFloats floats;
     const LocatedJson root = readLocatedJson(file);
     const PresetReader preset(file, firstPreset(file, root));
     TransferFunction function;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "default_floats.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "portable_math.h"
 #include "srgb.h"
@@ -96,6 +97,7 @@ double TransferFunction::opacityAt(double x) const {
 }
 
 TransferFunction defaultRamp(const Volume& volume) {
+    const DefaultFloats floats;
     const std::vector<std::uint64_t> counts = countsWithoutBackground(volume);
     if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t count) { return count == 0; })) {
         return greyRamp(volume.background, volume.background + 1);
@@ -105,6 +107,7 @@ TransferFunction defaultRamp(const Volume& volume) {
 }
 
 TransferFunction wholeRamp(const Volume& volume) {
+    const DefaultFloats floats;
     TransferFunction ramp = greyRamp(volume.valueMin, volume.valueMax);
     ramp.linearColors = false;
     return ramp;

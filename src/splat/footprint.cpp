@@ -10,6 +10,7 @@
 #include <numeric>
 #include <string>
 
+#include "default_floats.h"
 #include "deltasplat/error.h"
 #include "number_text.h"
 #include "portable_math.h"
@@ -75,6 +76,7 @@ void normalizePhase(const std::vector<double>& real, const std::vector<int>& pla
 
 Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolution,
                         std::optional<int> width) {
+    const DefaultFloats floats;
     if (!(sigmaVoxels >= kMinSigma && sigmaVoxels <= kMaxSigma)) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--sigma", numberText(sigmaVoxels),

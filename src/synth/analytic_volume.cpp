@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "default_floats.h"
 #include "deltasplat/error.h"
 #include "synth/volumes.h"
 
@@ -15,6 +16,7 @@ const std::vector<std::string>& analyticNames() {
 }
 
 AnalyticVolume makeAnalytic(const std::string& name, std::uint64_t seed, double noise) {
+    const DefaultFloats floats;
     if (!(noise >= 0) || !std::isfinite(noise)) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--noise", std::to_string(noise), "a number of at least 0"));

@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "default_floats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "ingest/raw_format.h"
@@ -163,6 +164,7 @@ void checkOptions(const AnalyticFileOptions& options) {
 
 void writeAnalytic(const AnalyticVolume& volume, const std::filesystem::path& file,
                    const AnalyticFileOptions& options, const Listener& listener) {
+    const DefaultFloats floats;
     checkOptions(options);
     const std::string extension = lowerCase(file.extension().string());
     if (extension == ".raw") {

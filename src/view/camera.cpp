@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "default_floats.h"
 #include "deltasplat/error.h"
 #include "number_text.h"
 #include "portable_math.h"
@@ -202,6 +203,7 @@ glm::dmat4 Camera::ndcFromWorld() const {
 
 Camera makeCamera(const CameraOptions& options, const IndexBox& box,
                   const glm::dmat4& worldFromIndex, const std::string& space) {
+    const DefaultFloats floats;
     checkOptions(options);
     requireInvertible(worldFromIndex);
     const IndexBox framed = box.empty() ? IndexBox{glm::ivec3(0), glm::ivec3(0)} : box;

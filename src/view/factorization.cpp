@@ -10,6 +10,7 @@
 #include <glm/matrix.hpp>
 #include <string>
 
+#include "default_floats.h"
 #include "deltasplat/delta/delta_grid.h"
 #include "deltasplat/error.h"
 #include "portable_math.h"
@@ -68,6 +69,7 @@ void checkResolution(int resolution) {
 
 Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
                         std::optional<int> resolution) {
+    const DefaultFloats floats;
     if (resolution) checkResolution(*resolution);
     requireInvertible(worldFromIndex);
     const glm::dmat3 worldFromIndexLinear(worldFromIndex);

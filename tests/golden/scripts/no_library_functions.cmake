@@ -1,0 +1,22 @@
+# Fails where a source of the library calls a function of the C library, or of GLM, whose last bit
+# depends on the processor: src/portable_math.h has those that are needed.
+# Usage: cmake -DSOURCES=FOLDER -P no_library_functions.cmake
+cmake_minimum_required(VERSION 3.25)
+file(GLOB_RECURSE files ${SOURCES}/*.cpp ${SOURCES}/*.h)
+list(LENGTH files count)
+if(count LESS 100)
+    message(FATAL_ERROR "got ${count} files in ${SOURCES}; expected the library's sources")
+endif()
+set(functions "exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot|sin|cos|tan|asin|acos|atan|atan2")
+string(APPEND functions "|sinh|cosh|tanh|asinh|acosh|atanh|erf|erfc|tgamma|lgamma|fma")
+string(APPEND functions "|rotate|angleAxis|slerp|sinf|cosf|expf|logf|powf")
+set(found)
+foreach(file ${files})
+    file(STRINGS ${file} lines REGEX "(std|glm)::(${functions})\\(")
+    foreach(line ${lines})
+        string(APPEND found "${file}: ${line}\n")
+    endforeach()
+endforeach()
+if(found)
+    message(FATAL_ERROR "These differ between processors; use portable:: of portable_math.h:\n${found}")
+endif()
