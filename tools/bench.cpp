@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include "bench_failures.h"
 #include "bench_page_file.h"
 #include "bench_report.h"
 #include "bench_table1.h"
 #include "input_options.h"
+#include "interrupt.h"
 #include "listener.h"
+#include "output_files.h"
 #include "render_input.h"
 #include "render_options.h"
 #include "subcommands.h"
@@ -93,16 +96,26 @@ Findings measureAll(const CLI::App& app, const BenchCommand& command, const Sess
     return found;
 }
 
+void checkReport(const BenchCommand& command) {
+    checkPageFolder(command.report, command.picture.render.camera.sizePixels);
+    const std::filesystem::path page = pageIn(command.report);
+    std::error_code ignored;
+    if (!exists(page, ignored)) return;
+    const Files inputs(command.inputs.begin(), command.inputs.end());
+    checkOutput("--report", page, filesRead(inputs, command.picture.transferFunction),
+                "the inputs and the transfer function");
+}
+
 void runBench(const CLI::App& app, const BenchCommand& command, const Session& session) {
     requireArgument(!command.inputs.empty(), "INPUT", "FILE (see 'deltasplat bench --help')");
     checkCamera(command.picture.render.camera);
-    if (!command.report.empty())
-        checkPageFolder(command.report, command.picture.render.camera.sizePixels);
+    if (!command.report.empty()) checkReport(command);
     Findings found = measureAll(app, command, session);
     if (!found.report.entries.empty()) {
         printOut(command.json ? jsonText(found.report) : plainText(found.report));
         if (!command.report.empty())
             writePage(command.report, pageText(found.report, command.picture.background));
+        allIsWritten();
     }
     for (const BenchEntry& entry : found.report.entries) addDifference(entry, found.failures);
     throwFailures(found.failures);

@@ -13,16 +13,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path pageIn(const fs::path& folder) {
-    return folder / "index.html";
-}
-
 // "out/" is the folder out.
 fs::path withoutSlash(const fs::path& folder) {
     return folder.has_filename() ? folder : folder.parent_path();
 }
 
 }  // namespace
+
+fs::path pageIn(const fs::path& folder) {
+    return folder / "index.html";
+}
 
 void checkPageFolder(const fs::path& folder, glm::ivec2 pictureSize) {
     if (pictureSize.x > kMaxPngSide || pictureSize.y > kMaxPngSide) {

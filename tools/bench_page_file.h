@@ -13,6 +13,9 @@ namespace deltasplat {
 /// one it is to be made in, cannot be written to
 void checkPageFolder(const std::filesystem::path& folder, glm::ivec2 pictureSize);
 
+/// Returns the page's file in the folder.
+std::filesystem::path pageIn(const std::filesystem::path& folder);
+
 /// Writes `index.html` into the folder, which is made if it does not exist. The page appears when
 /// it is whole; if it cannot be written, a folder that was made is removed.
 /// @throw Error(kOutput)

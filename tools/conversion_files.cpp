@@ -5,8 +5,7 @@
 
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
-#include "ingest/input_files.h"
-#include "stats_file.h"
+#include "output_files.h"
 
 namespace deltasplat {
 namespace {
@@ -20,7 +19,7 @@ namespace {
 std::vector<std::filesystem::path> checkConversionFiles(const std::filesystem::path& input,
                                                         const std::filesystem::path& output,
                                                         const std::filesystem::path& stats) {
-    const std::vector<std::filesystem::path> sources = filesOf(input);
+    const Files sources = filesRead({input}, {});
     const std::filesystem::path dataFile = dataFileOf(output);
     for (const std::filesystem::path& source : sources) {
         if (sameFile(output, source) && !sameFile(output, input)) {
@@ -30,10 +29,9 @@ std::vector<std::filesystem::path> checkConversionFiles(const std::filesystem::p
             refuse(output, "the input " + source.string() + " as its data file");
         }
     }
-    std::vector<std::filesystem::path> others = sources;
-    others.push_back(output);
-    if (!dataFile.empty()) others.push_back(dataFile);
-    checkStatsFile(stats, others, "the input and the output");
+    Files others = sources;
+    others.insert(others.end(), {output, dataFile});
+    checkOutput("--stats", stats, others, "the input and the output");
     return sources;
 }
 

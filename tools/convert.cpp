@@ -6,13 +6,13 @@
 
 #include "conversion_files.h"
 #include "conversion_stats.h"
-#include "deltasplat/atomic_file.h"
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "input_options.h"
 #include "listener.h"
 #include "lower_case.h"
+#include "output_files.h"
 #include "read_grids.h"
 #include "stopwatch.h"
 #include "subcommands.h"
@@ -127,7 +127,7 @@ void runConvert(const CLI::App& app, const ConvertCommand& command, const Sessio
         stats.lossless = stats.lossless && report.lossless && complete;
         stats.seconds = secondsSince(session.begin);
     }
-    if (!command.stats.empty()) writeFileAtomically(command.stats, statsJson(stats));
+    writeStats(command.stats, statsJson(stats));
     if (session.common.verbose) std::fputs(statsSummary(stats).c_str(), stderr);
 }
 

@@ -15,6 +15,7 @@
 #include "listener.h"
 #include "lower_case.h"
 #include "number_text.h"
+#include "output_files.h"
 #include "read_grids.h"
 #include "stopwatch.h"
 #include "subcommands.h"
@@ -163,7 +164,7 @@ void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& s
     }
     if (stats.maxError > 0 && !session.common.quiet)
         printOut("largest error " + numberText(stats.maxError) + "\n");
-    if (!command.stats.empty()) writeFileAtomically(command.stats, statsJson(stats));
+    writeStats(command.stats, statsJson(stats));
     if (session.common.verbose) std::fputs(statsSummary(stats).c_str(), stderr);
 }
 

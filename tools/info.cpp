@@ -7,7 +7,9 @@
 #include "describe_volume.h"
 #include "info_report.h"
 #include "input_options.h"
+#include "interrupt.h"
 #include "listener.h"
+#include "output_files.h"
 #include "plot_file.h"
 #include "slice_plot.h"
 #include "subcommands.h"
@@ -90,7 +92,12 @@ void writePlot(const std::filesystem::path& file, const Findings& found) {
 }
 
 void runInfo(const CLI::App& app, const InfoOptions& options, const Session& session) {
-    if (!options.plot.empty()) checkDrawingFile(options.plot);
+    if (!options.plot.empty()) {
+        checkDrawingFile(options.plot);
+        const Files inputs(options.inputs.begin(), options.inputs.end());
+        checkOutput("--plot", options.plot, filesRead(inputs, options.transferFunction),
+                    "the inputs and the transfer function");
+    }
     Findings found;
     {
         ProgressDisplay display(session.common.quiet);
@@ -109,6 +116,7 @@ void runInfo(const CLI::App& app, const InfoOptions& options, const Session& ses
                               : plainText(found.reports));
     }
     if (!options.plot.empty()) writePlot(options.plot, found);
+    allIsWritten();
     if (found.failures.empty()) return;
     // The last one ends the program, which shows it as it shows every error.
     for (std::size_t i = 0; i + 1 < found.failures.size(); ++i) showError(found.failures[i].what());

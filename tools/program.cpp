@@ -207,7 +207,7 @@ int complain(const std::vector<std::string>& arguments, const std::string& what,
 // An interrupt also makes a blocked system call fail, which is then not what went wrong.
 int fail(const std::vector<std::string>& arguments, const std::string& what, ErrorCode code,
          std::optional<int> errorExit) {
-    if (isInterrupted()) return complain(arguments, "interrupted", int(ErrorCode::kInterrupted));
+    if (isInterrupted()) return complain(arguments, "interrupted", interruptExitCode());
     return complain(arguments, what, errorExit.value_or(int(code)));
 }
 

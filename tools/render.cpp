@@ -5,12 +5,12 @@
 #include <cstdio>
 #include <memory>
 
-#include "deltasplat/atomic_file.h"
 #include "input_options.h"
 #include "interrupt.h"
 #include "listener.h"
 #include "lower_case.h"
 #include "number_text.h"
+#include "output_files.h"
 #include "render_input.h"
 #include "render_modes.h"
 #include "render_options.h"
@@ -107,8 +107,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         writeImage(command.output, result.image, image);
         times.write = secondsSince(beginWrite);
         times.total = secondsSince(session.begin);
-        if (!command.stats.empty())
-            writeFileAtomically(command.stats, statsJson(result.stats, times));
+        writeStats(command.stats, statsJson(result.stats, times));
         writing.report(1);
     }
     if (!result.stats.tolerance.isExact() && !session.common.quiet) showErrorBound(result.stats);

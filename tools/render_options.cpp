@@ -9,7 +9,7 @@
 #include "deltasplat/splat/footprint.h"
 #include "input_options.h"
 #include "number_text.h"
-#include "stats_file.h"
+#include "output_files.h"
 
 namespace deltasplat {
 namespace {
@@ -202,7 +202,11 @@ void warnOfUnusedCameraOptions(const CLI::App& app, ProgressDisplay& display) {
 void validate(const RenderCommand& command) {
     checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     checkCamera(command.picture.render.camera);
-    checkStatsFile(command.stats, {command.input, command.output}, "the input and the picture");
+    Files others = filesRead({command.input}, command.picture.transferFunction);
+    checkOutput("--output", command.output, others, "the input and the transfer function");
+    others.push_back(command.output);
+    checkOutput("--stats", command.stats, others,
+                "the input, the transfer function and the picture");
 }
 
 }  // namespace deltasplat

@@ -6,7 +6,6 @@
 
 #include "conversion_files.h"
 #include "conversion_stats.h"
-#include "deltasplat/atomic_file.h"
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
@@ -14,6 +13,7 @@
 #include "ingest/file_name.h"
 #include "listener.h"
 #include "lower_case.h"
+#include "output_files.h"
 #include "stopwatch.h"
 #include "subcommands.h"
 
@@ -124,7 +124,7 @@ void runRestore(const RestoreCommand& command, const Session& session) {
         stats.maxError = std::max(stats.maxError, report.maxError);
         stats.seconds = secondsSince(session.begin);
     }
-    if (!command.stats.empty()) writeFileAtomically(command.stats, statsJson(stats));
+    writeStats(command.stats, statsJson(stats));
     if (session.common.verbose) std::fputs(statsSummary(stats).c_str(), stderr);
 }
 

@@ -5,6 +5,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/synth/write_analytic.h"
+#include "interrupt.h"
 #include "listener.h"
 #include "lower_case.h"
 #include "number_text.h"
@@ -85,6 +86,7 @@ void runSynth(const CLI::App& app, const SynthOptions& options, const Session& s
     ProgressDisplay display(session.common.quiet);
     warnOfUnusedOptions(app, options, display);
     writeAnalytic(volume, options.output, options.file, display.stage(0, 1));
+    allIsWritten();
 }
 
 }  // namespace

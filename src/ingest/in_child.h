@@ -7,11 +7,12 @@
 namespace deltasplat {
 
 /// Runs `work` in a child process, so that what ends the process ends only that: for libraries that
-/// do so at foreign bytes. The child prints nothing, has one minute of processor time, and no
-/// thread but its own.
+/// do so at foreign bytes. The child prints nothing, has one minute of processor time, no thread
+/// but its own and no signal handlers, and ends with the thread that called this.
 /// @param work  writes `bytes` bytes to its argument; returns false, or throws, if it cannot
 /// @param to    what it wrote
 /// @return whether it was done
+/// @throw Error(kFailed) if there can be no child, or if somebody ended it
 bool inChild(std::size_t bytes, const std::function<bool(std::byte*)>& work, std::byte* to);
 
 }  // namespace deltasplat

@@ -14,10 +14,14 @@ foreach(extension exr png)
     deltasplat_script_test(same_bytes.${extension} same_bytes.sh
         ARGS ${tool} ${scratch}/same_bytes_${extension} ${extension})
 endforeach()
-foreach(signal INT TERM)
+foreach(signal INT TERM HUP)
     deltasplat_script_test(interrupt.${signal} interrupt.sh
         ARGS ${tool} ${scratch}/interrupt_${signal} ${signal})
 endforeach()
+deltasplat_script_test(interrupt.write interrupt_write.sh ARGS ${tool} ${scratch}/interrupt_write)
+deltasplat_script_test(killed killed.sh ARGS ${tool} ${scratch}/killed)
+deltasplat_script_test(inputs_kept inputs_kept.sh
+    ARGS ${tool} ${scratch}/inputs_kept $<BOOL:${DELTASPLAT_ITK}>)
 foreach(file full.exr full.png)
     deltasplat_script_test(full_disk.${file} full_disk.sh
         ARGS ${tool} ${scratch}/full_disk_${file} ${file}

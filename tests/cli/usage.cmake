@@ -241,10 +241,10 @@ deltasplat_cli_test(usage.picture_no_format EXIT 2 ARGS render ${cube} -o out
 deltasplat_cli_test(usage.float_png EXIT 2 ARGS render ${cube} -o out.png --float
     STDERR "deltasplat: --float: got out.png; expected an .exr file")
 deltasplat_refusal(stats_is_picture
-    "--stats: got ./out.exr; expected another file than the input and the picture"
+    "--stats: got ./out.exr; expected another file than the input, the transfer function and the picture"
     --stats ./out.exr)
 deltasplat_refusal(stats_is_input
-    "--stats: got ${cube}; expected another file than the input and the picture" --stats ${cube})
+    "--stats: got ${cube}; expected another file than the input, the transfer function and the picture" --stats ${cube})
 
 deltasplat_cli_test(synth_names ARGS synth STDOUT_MATCHES "marschner-lobb.*engine.*cloud")
 deltasplat_cli_test(usage.synth_name EXIT 2 ARGS synth ghost out.vdb

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "output_files.h"
+
+#include <sys/stat.h>
+
+#include <optional>
+#include <system_error>
+#include <tuple>
+
+#include "deltasplat/atomic_file.h"
+#include "deltasplat/error.h"
+#include "ingest/input_files.h"
+#include "interrupt.h"
+#include "output_target.h"
+
+namespace deltasplat {
+namespace {
+
+// Returns where a name leads to, links followed: a folder and a name in it.
+std::optional<std::tuple<dev_t, ino_t, std::string>> placeOf(const std::filesystem::path& file) {
+    try {
+        const OutputTarget target = findTarget(file);
+        struct stat folder {};
+        if (target.isDevice || ::fstat(target.folder.get(), &folder) != 0) return {};
+        return std::tuple(folder.st_dev, folder.st_ino, target.name);
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+}  // namespace
+
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code ignored;
+    // Names that differ may lead to one file: by a hard link, or where case does not count.
+    if (equivalent(a, b, ignored)) return true;
+    const auto place = placeOf(a);
+    return place && place == placeOf(b);
+}
+
+Files filesRead(const Files& inputs, const std::filesystem::path& transferFunction) {
+    Files files;
+    for (const std::filesystem::path& input : inputs) {
+        const Files parts = filesOf(input);
+        files.insert(files.end(), parts.begin(), parts.end());
+    }
+    if (!transferFunction.empty()) files.push_back(transferFunction);
+    return files;
+}
+
+void checkOutput(const std::string& option, const std::filesystem::path& file, const Files& others,
+                 const std::string& names) {
+    if (file.empty()) return;
+    for (const std::filesystem::path& other : others) {
+        if (other.empty() || !sameFile(file, other)) continue;
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(option, file.string(), "another file than " + names));
+    }
+    // Asked now, rather than after hours of work.
+    const AtomicFile probe(file);
+}
+
+void writeStats(const std::filesystem::path& file, std::string_view json) {
+    if (!file.empty()) writeFileAtomically(file, json);
+    allIsWritten();
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace deltasplat {
+
+using Files = std::vector<std::filesystem::path>;
+
+/// Returns whether two names are of one file, which need not exist.
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// Returns all files that are read: those that the inputs are made of (a header's data, a folder's
+/// slices), and a transfer function's unless its name is empty.
+Files filesRead(const Files& inputs, const std::filesystem::path& transferFunction);
+
+/// Checks an output (empty: none) before the work: that it can be written, and would not overwrite
+/// a file that is read or another output.
+/// @param option  gives the output's name, for messages
+/// @param others  the files that it must not be, called `names` in the message
+/// @throw Error(kUsage), Error(kOutput)
+void checkOutput(const std::string& option, const std::filesystem::path& file, const Files& others,
+                 const std::string& names);
+
+/// Writes what was asked for with --stats (empty: nothing), the last thing that a command writes.
+/// @throw Error(kOutput)
+void writeStats(const std::filesystem::path& file, std::string_view json);
+
+}  // namespace deltasplat
