@@ -1,20 +1,30 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Installs what building and testing deltasplat needs from Debian or Ubuntu packages.
-# Usage: bash scripts/install_dependencies.sh [--to-build]
-# With --to-build, leaves out what only running the tests and the checks needs.
+# Usage: bash scripts/install_dependencies.sh [--to-build | --aarch64]
+# With --to-build, leaves out what only running the checks needs; with --aarch64, installs what the
+# CMake preset aarch64 needs instead: a cross compiler, qemu and libraries of that architecture.
 # Does nothing, not even on the network, when nothing is missing.
 set -euo pipefail
 
-packages=(
-    g++ cmake ninja-build ccache git pkg-config
+tools=(g++ cmake ninja-build ccache git pkg-config)
+headers=(libglm-dev libcli11-dev nlohmann-json3-dev)
+# OpenImageIO's CMake files ask for its programs, used or not.
+libraries=(
     libopenvdb-dev libboost-dev libboost-iostreams-dev libblosc-dev libimath-dev libtbb-dev
-    libinsighttoolkit5-dev libopenimageio-dev libglm-dev libhwy-dev libcli11-dev nlohmann-json3-dev zlib1g-dev
-    libgtest-dev libbenchmark-dev
+    libopenimageio-dev openimageio-tools libhwy-dev zlib1g-dev libgtest-dev libbenchmark-dev
 )
-if [[ ${1:-} != --to-build ]]; then
-    packages+=(openimageio-tools clang-format clang-tidy)
-fi
+packages=("${tools[@]}" "${headers[@]}")
+case ${1:-} in
+    --to-build) packages+=("${libraries[@]}" libinsighttoolkit5-dev) ;;
+    --aarch64) packages+=(g++-aarch64-linux-gnu qemu-user "${libraries[@]/%/:arm64}") ;;
+    '') packages+=("${libraries[@]}" libinsighttoolkit5-dev clang-format clang-tidy debootstrap
+        debian-archive-keyring) ;;
+    *)
+        echo "install_dependencies.sh: got $1; expected nothing, --to-build or --aarch64" >&2
+        exit 2
+        ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do
@@ -40,5 +50,6 @@ apt_get() {
         apt-get -o DPkg::Lock::Timeout=600 "$@" </dev/null
 }
 echo "Installing ${missing[*]}"
+if [[ ${1:-} == --aarch64 ]]; then "${as_root[@]}" dpkg --add-architecture arm64; fi
 apt_get update
 apt_get install -y --no-install-recommends "${missing[@]}"
