@@ -6,14 +6,19 @@
 
 #include <gdcmImage.h>
 #include <gdcmImageReader.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <memory>
 #include <sstream>
 
 #include "deltasplat/error.h"
+#include "ingest/cleared_memory.h"
 #include "ingest/in_child.h"
 #include "ingest/itk_calls.h"
 
@@ -116,6 +121,24 @@ RawType storedType(const DicomPixels& pixels) {
     return pixels.isSigned ? RawType::kInt32 : RawType::kUint32;
 }
 
+// Where a child's libraries complain: libjpeg, inside of GDCM, makes up what a code stream lacks,
+// and prints that it did.
+class Complaints {
+  public:
+    Complaints() : file_(::memfd_create("complaints", 0)) {
+        std::fflush(stderr);
+        ::dup2(file_, STDERR_FILENO);
+    }
+    bool any() const {
+        std::fflush(stderr);
+        struct stat status {};
+        return ::fstat(file_, &status) != 0 || status.st_size != 0;
+    }
+
+  private:
+    int file_;
+};
+
 bool unpack(const DicomSlice& slice, const std::string& clean, std::size_t bytes, std::byte* out) {
     std::istringstream in(clean);
     gdcm::ImageReader reader;
@@ -141,18 +164,24 @@ void readDicomPixels(const DicomSlice& slice, std::byte* to) {
     const std::size_t count = std::size_t(slice.columns) * std::size_t(slice.rows);
     const RawType stored = storedType(slice.pixels);
     const std::size_t bytes = count * std::size_t(rawTypeBytes(stored));
-    const auto values = std::make_unique_for_overwrite<std::byte[]>(bytes);
+    const auto values = std::make_unique<std::byte[]>(bytes);
     const std::string clean = cleanFile(slice);
+    const ClearedMemory cleared;
     const auto work = [&](std::byte* out) { return unpack(slice, clean, bytes, out); };
     bool done = false;
     if (slice.pixels.packed) {
         // GDCM's codecs end the process where packed pixels are damaged.
-        done = inChild(bytes, work, values.get());
+        const auto complete = [&](std::byte* out) {
+            const Complaints complaints;
+            return work(out) && !complaints.any();
+        };
+        done = inChild(bytes, complete, values.get());
     } else {
         callItk(slice.file, Printed::kIsNothing, [&] { done = work(values.get()); });
     }
     if (!done) {
-        refuse(slice, "pixels that GDCM cannot unpack", "the pixels that the header names");
+        refuse(slice, "pixels that GDCM cannot unpack, or not all of them",
+               "the pixels that the header names");
     }
     constexpr bool kBigEndian = std::endian::native == std::endian::big;
     rescaleValues(values.get(), count, stored, kBigEndian, slice.pixels.rescale, slice.type, to);

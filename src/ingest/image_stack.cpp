@@ -129,11 +129,12 @@ std::vector<std::filesystem::path> stackFiles(const std::filesystem::path& input
     return files;
 }
 
+bool namedBefore(const std::filesystem::path& a, const std::filesystem::path& b) {
+    return comesBefore(a.filename().string(), b.filename().string());
+}
+
 void sortByNumbers(std::vector<std::filesystem::path>& files) {
-    std::sort(files.begin(), files.end(),
-              [](const std::filesystem::path& a, const std::filesystem::path& b) {
-                  return comesBefore(a.filename().string(), b.filename().string());
-              });
+    std::sort(files.begin(), files.end(), namedBefore);
 }
 
 }  // namespace deltasplat

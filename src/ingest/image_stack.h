@@ -29,6 +29,9 @@ std::optional<StackPattern> stackPattern(const std::filesystem::path& input);
 std::vector<std::filesystem::path> stackFiles(const std::filesystem::path& input,
                                               const StackPattern& pattern);
 
+/// The order of sortByNumbers.
+bool namedBefore(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// Sorts names so that numbers in them count as numbers: slice9 comes before slice10.
 void sortByNumbers(std::vector<std::filesystem::path>& files);
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <set>
 #include <system_error>
 
 #include "deltasplat/error.h"
@@ -68,9 +69,8 @@ Files filesIn(const std::filesystem::path& folder) {
 void warnOfOthers(const std::filesystem::path& folder, const Files& all, const Files& taken,
                   const std::string& what, const Listener& listener) {
     if (all.size() == taken.size()) return;
-    const auto other = std::find_if(all.begin(), all.end(), [&](const auto& file) {
-        return std::find(taken.begin(), taken.end(), file) == taken.end();
-    });
+    // Both are in one order.
+    const auto other = std::mismatch(all.begin(), all.end(), taken.begin(), taken.end()).first;
     listener.warn(folder.string() + ": " + std::to_string(all.size() - taken.size()) +
                   " files that are no " + what + " are passed over, the first " +
                   printable(other->filename().string()));
@@ -83,12 +83,55 @@ Files filesThat(const Files& files, const Test& test) {
     return taken;
 }
 
+// A file's name with each number in it as one "#".
+std::string withoutNumbers(const std::filesystem::path& file) {
+    std::string text;
+    for (const char c : file.filename().string()) {
+        const bool digit = c >= '0' && c <= '9';
+        if (!digit || !text.ends_with('#')) text += digit ? '#' : c;
+    }
+    return text;
+}
+
+// An extension that says what a file is, and does not count it.
+std::string kindExtension(const std::filesystem::path& file) {
+    const std::string extension = lowerExtension(file);
+    const bool word = std::any_of(extension.begin(), extension.end(),
+                                  [](char c) { return c >= 'a' && c <= 'z'; });
+    return word ? extension : "";
+}
+
+// What is named as slices are but has no DICOM header has lost it: a volume without it would look
+// right and be wrong.
+void requireNoCutSlice(const std::filesystem::path& folder, const Files& all, const Files& dicom) {
+    std::set<std::string> names;
+    std::set<std::string> extensions{".dcm"};
+    for (const std::filesystem::path& file : dicom) {
+        names.insert(withoutNumbers(file));
+        extensions.insert(kindExtension(file));
+    }
+    extensions.erase("");
+    Files others;
+    std::set_difference(all.begin(), all.end(), dicom.begin(), dicom.end(),
+                        std::back_inserter(others), namedBefore);
+    for (const std::filesystem::path& file : others) {
+        const bool alike =
+            names.contains(withoutNumbers(file)) || extensions.contains(kindExtension(file));
+        if (!alike || file.filename() == "DICOMDIR") continue;
+        refuse(folder,
+               printable(file.filename().string()) +
+                   ", which is named as its slices are but is no DICOM",
+               "whole slices");
+    }
+}
+
 InputKind findInFolder(const std::filesystem::path& folder, const Listener& listener) {
     const Files all = filesIn(folder);
     // A DICOMDIR is a table of contents in the same format.
     const Files dicom = filesThat(
         all, [](const auto& file) { return file.filename() != "DICOMDIR" && isDicom(file); });
     if (!dicom.empty()) {
+        requireNoCutSlice(folder, all, dicom);
         warnOfOthers(folder, all, dicom, "DICOM", listener);
         return {Format::kDicom, folderName(folder), dicom};
     }

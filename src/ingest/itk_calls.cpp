@@ -14,6 +14,7 @@
 #include <string>
 
 #include "deltasplat/error.h"
+#include "ingest/cleared_memory.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -89,6 +90,7 @@ std::string reasonOf(const std::string& text) {
 void callItk(const std::filesystem::path& file, Printed printed,
              const std::function<void()>& work) {
     const Silence silence;
+    const ClearedMemory cleared;
     try {
         work();
     } catch (const itk::ExceptionObject& error) {

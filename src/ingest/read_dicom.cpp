@@ -172,7 +172,7 @@ void readLayers(const DicomFiles& files, const DenseSource::LayerUse& use,
     const int slices = int(files.volume.slices.size());
     const std::size_t sliceBytes = files.slicePixels() * std::size_t(rawTypeBytes(files.type));
     const int most = std::min(slices, DenseSource::kLayerSlices);
-    const auto bytes = std::make_unique_for_overwrite<std::byte[]>(sliceBytes * std::size_t(most));
+    const auto bytes = std::make_unique<std::byte[]>(sliceBytes * std::size_t(most));
     for (int first = 0; first < slices; first += DenseSource::kLayerSlices) {
         const int count = std::min(DenseSource::kLayerSlices, slices - first);
         for (int i = 0; i < count; ++i) {

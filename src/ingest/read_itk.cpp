@@ -165,7 +165,7 @@ void readLayers(ItkFile& file, const DenseSource::LayerUse& use, const Listener&
     if (!bytes) {
         const int held = inParts ? most : slices;
         requireMemory(file.path.string(), double(file.sliceBytes) * held);
-        bytes = std::make_shared_for_overwrite<std::byte[]>(file.sliceBytes * std::size_t(held));
+        bytes = std::make_shared<std::byte[]>(file.sliceBytes * std::size_t(held));
         if (!inParts) {
             readRegion(file, 0, slices, bytes.get());
             file.whole = bytes;

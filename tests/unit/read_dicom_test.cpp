@@ -5,6 +5,7 @@
 
 #include "unit/dicom_helpers.h"
 #include "unit/format_helpers.h"
+#include "unit/lossless_jpeg.h"
 
 namespace deltasplat {
 namespace {
@@ -261,6 +262,100 @@ TEST(ReadDicomError, PixelsThatAreNotThere) {
         writeBytes("scan/a.dcm", whole.substr(0, size));
         expectInputError("scan");
     }
+}
+
+// Pixels that need many bytes of any code stream.
+std::vector<std::uint16_t> roughPixels(int count) {
+    std::vector<std::uint16_t> pixels;
+    for (int i = 0; i < count; ++i) pixels.push_back(std::uint16_t(i * 37 % 5000 + i * i % 777));
+    return pixels;
+}
+
+TEST(ReadDicom, LosslessJpeg) {
+    const TempFolder folder;
+    DicomFile file;
+    file.columns = 40;
+    file.rows = 30;
+    file.syntax = "1.2.840.10008.1.2.4.70";
+    const std::vector<std::uint16_t> pixels = roughPixels(1200);
+    file.fragments = {losslessJpeg(40, 30, pixels)};
+    writeBytes("a.dcm", file.bytes());
+    EXPECT_EQ(valuesOf(readVolume("a.dcm")), std::vector<double>(pixels.begin(), pixels.end()));
+}
+
+// The end of the file and of the image are there, and the header is right.
+TEST(ReadDicomError, LosslessJpegWithoutMuchOfItsCodes) {
+    const TempFolder folder;
+    DicomFile file;
+    file.columns = 40;
+    file.rows = 30;
+    file.syntax = "1.2.840.10008.1.2.4.70";
+    const std::string whole = losslessJpeg(40, 30, roughPixels(1200));
+    const std::size_t start = scanStart(whole);
+    const std::size_t codes = whole.size() - 2 - start;
+    for (const double kept : {0.0, 0.1, 0.3, 0.5, 0.9, 0.99}) {
+        for (const std::string end : {"\xff\xd9", ""}) {
+            file.fragments = {whole.substr(0, start + std::size_t(kept * double(codes))) + end};
+            writeBytes("a.dcm", file.bytes());
+            expectRefused(
+                "a.dcm: got pixels that GDCM cannot unpack, or not all of them; expected "
+                "the pixels that the header names",
+                "a.dcm");
+        }
+    }
+    // From the middle, so that even the last codes are there.
+    file.fragments = {whole.substr(0, start + 200) + whole.substr(start + 600)};
+    writeBytes("a.dcm", file.bytes());
+    expectInputError("a.dcm");
+}
+
+TEST(ReadDicomError, CutRuns) {
+    const TempFolder folder;
+    DicomFile file;
+    file.columns = 40;
+    file.rows = 30;
+    file.syntax = "1.2.840.10008.1.2.5";
+    std::string runs;  // twelve of a hundred equal bytes
+    for (int i = 0; i < 12; ++i) runs += std::string(1, char(-99)) + char(i);
+    std::vector<std::uint32_t> table(16, 0);
+    table[0] = 2;
+    table[1] = 64;
+    table[2] = 64 + std::uint32_t(runs.size());
+    const std::string whole = bytesOf(table) + runs + runs;
+    file.fragments = {whole};
+    writeBytes("a.dcm", file.bytes());
+    EXPECT_EQ(valuesOf(readVolume("a.dcm")).back(), 11 * 257.0);
+    for (std::size_t size = 0; size < whole.size(); size += 2) {
+        file.fragments = {whole.substr(0, size)};
+        writeBytes("a.dcm", file.bytes());
+        expectInputError("a.dcm");
+    }
+}
+
+// A first or last slice that has lost its header leaves no gap behind.
+TEST(ReadDicomError, CutSliceInAFolder) {
+    const TempFolder folder;
+    for (const std::string extension : {".dcm", "", ".IMA"}) {
+        for (const int cut : {0, 3}) {
+            for (const std::size_t left : {0, 20, 131, 200}) {
+                std::filesystem::remove_all("scan");
+                std::filesystem::create_directory("scan");
+                const std::vector<DicomFile> files = slices(4);
+                for (int i = 0; i < 4; ++i) {
+                    const std::string bytes = files[std::size_t(i)].bytes();
+                    writeBytes("scan/IM" + std::to_string(8 + i) + extension,
+                               i == cut ? bytes.substr(0, left) : bytes);
+                }
+                expectInputError("scan");
+            }
+        }
+    }
+    write(slices(3));
+    writeBytes("scan/zz.dcm", "");
+    expectRefused(
+        "scan: got zz.dcm, which is named as its slices are but is no DICOM; expected "
+        "whole slices",
+        "scan");
 }
 
 TEST(ReadDicomError, Structure) {
