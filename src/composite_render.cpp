@@ -81,8 +81,9 @@ class SlabRenderer {
           view_(view),
           layout_(layout),
           listener_(listener),
-          scale_(input.classes.scale / double(Footprint::kOne)),
           merged_({}, layout_.channels) {
+        for (int plane = 0; plane < int(input.classes.planes.size()); ++plane)
+            scales_.emplace_back(input.classes.scaleOf(plane) / double(Footprint::kOne));
         cutIntoStrips();
         largest_ = largestLayout();
     }
@@ -197,16 +198,16 @@ class SlabRenderer {
         double compositeSeconds = 0;
         const SheetLayout layout = layoutOf(strip, slab);
         if (box.empty() || layout.blocks.y == 0) return compositeSeconds;
-        Compositor compositor(scale_, view_.frontToBack);
+        Compositor compositor(scales_, view_.frontToBack);
         splatter.begin(slab, layout);
         for (int i = 0; i < slab.sliceCount; ++i) {
             const int slice = slab.firstSlice + i;
             const SheetShift shift = shiftOf(layout, view_.shiftPerSlice, slice);
             // Reading takes in the row behind the last as well.
-            const Sheet& sheet =
+            const Compositor::Sheets sheets =
                 splatter.splat(slice, box.min.y + shift.offset.y, box.max.y + shift.offset.y + 1);
             const Clock::time_point before = Clock::now();
-            compositor.composite(sheet, shift, box.min.y, box.max.y, layer);
+            compositor.composite(sheets, shift, box.min.y, box.max.y, layer);
             compositeSeconds += secondsSince(before);
         }
         splatter.end();
@@ -225,7 +226,7 @@ class SlabRenderer {
     const PlaneView& view_;
     const SheetLayout& layout_;
     const Listener& listener_;
-    glm::vec4 scale_;
+    std::vector<glm::vec4> scales_;  // of the planes of colours
     Layer merged_;
     std::once_flag mergedOnce_;
     std::vector<Strip> strips_;
@@ -289,7 +290,10 @@ void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const F
         makeFootprint(options.sigma.value_or(defaultSigma(resolution)), planeView.shiftPerSlice,
                       resolution, options.footprintWidth);
     const SheetLayout layout = layoutSheet(deltas.box, footprint, classes.oneColor ? 1 : 4);
-    const SplatInput input{deltas, classes, footprint, options.method == Method::kTraditional};
+    std::optional<DigitVoxels> digitVoxels;
+    if (!classes.oneDigit()) digitVoxels.emplace(deltas, classes);
+    const SplatInput input{deltas, classes, footprint, options.method == Method::kTraditional,
+                           digitVoxels ? &*digitVoxels : nullptr};
     requireSlabMemory(input, planeView, layout);
     SlabRenderer slabs(input, layout, planeView, listener);
     slabs.run();

@@ -40,19 +40,24 @@ void forEachRun(std::span<const std::uint64_t> words, const Emit& emit) {
 
 }  // namespace
 
-void Compositor::composite(const Sheet& sheet, const SheetShift& shift, int firstRow, int lastRow,
+void Compositor::composite(Sheets sheets, const SheetShift& shift, int firstRow, int lastRow,
                            Layer& layer) {
-    const OverWeights weights(glm::vec2(shift.fraction), scale_, layer.channels, frontToBack_);
-    findSpans(sheet, shift, firstRow, lastRow, weights.straight(), layer);
-    overSpans(spans_, weights);
+    const OverWeights weights(glm::vec2(shift.fraction), scales_, layer.channels, frontToBack_);
+    findSpans(sheets, shift, firstRow, lastRow, weights.straight, layer);
+    OverSheets pixels{{}, sheets.front()->pitch()};
+    for (std::size_t p = 0; p < sheets.size(); ++p) pixels.pixels[p] = sheets[p]->row(0);
+    overSpans(spans_, pixels, weights);
 }
 
-// Finds the runs of pixels that the sheet reaches.
-void Compositor::findSpans(const Sheet& sheet, const SheetShift& shift, int firstRow, int lastRow,
+// Finds the runs of pixels that the sheets reach.
+void Compositor::findSpans(Sheets sheets, const SheetShift& shift, int firstRow, int lastRow,
                            bool straight, Layer& layer) {
+    const Sheet& sheet = *sheets.front();
     words_ = (sheet.fullRows(0).size() + 63) / 64;
-    rows_.assign((kTilePixels + 1) * words_, 0);
-    either_.resize(words_);
+    rows_.resize(sheets.size());
+    for (Rows& rows : rows_) rows.assign((kTilePixels + 1) * words_, 0);
+    either_.resize(sheets.size() + 1);
+    for (Rows& row : either_) row.resize(words_);
     spans_.clear();
     // Rows of the sheet.
     const int begin = std::max(firstRow + shift.offset.y, 0);
@@ -60,7 +65,9 @@ void Compositor::findSpans(const Sheet& sheet, const SheetShift& shift, int firs
     // The row before reads into the first one as well. Bit 0: that of the tile row before.
     unsigned rows = 0;
     for (int tileRow = begin / kTilePixels; kTilePixels * tileRow <= end; ++tileRow) {
-        rows = rows >> kTilePixels | findRows(sheet, tileRow) << 1;
+        rows >>= kTilePixels;
+        for (std::size_t p = 0; p < sheets.size(); ++p)
+            rows |= findRows(*sheets[p], tileRow, rows_[p]) << 1;
         const int first = kTilePixels * tileRow - 1;
         for (unsigned rest = (straight ? rows : rows | rows >> 1) & 0xFF; rest != 0;
              rest &= rest - 1) {
@@ -68,14 +75,15 @@ void Compositor::findSpans(const Sheet& sheet, const SheetShift& shift, int firs
             if (first + y >= begin && first + y < end)
                 addSpans(sheet, shift, first + y, std::size_t(y), straight, layer);
         }
-        std::copy_n(&rows_[kTilePixels * words_], words_, rows_.begin());
+        for (Rows& ofPlane : rows_)
+            std::copy_n(&ofPlane[kTilePixels * words_], words_, ofPlane.begin());
     }
 }
 
 // Turns bytes of eight rows into words of 64 tiles. Returns which rows have any.
-unsigned Compositor::findRows(const Sheet& sheet, int tileRow) {
+unsigned Compositor::findRows(const Sheet& sheet, int tileRow, Rows& rows) const {
     const std::span<const std::uint8_t> tiles = sheet.fullRows(tileRow);
-    std::fill(rows_.begin() + std::ptrdiff_t(words_), rows_.end(), 0);
+    std::fill(rows.begin() + std::ptrdiff_t(words_), rows.end(), 0);
     std::uint64_t any = 0;
     for (std::size_t i = 0; i < tiles.size(); i += 8) {
         std::uint64_t bytes;
@@ -84,7 +92,7 @@ unsigned Compositor::findRows(const Sheet& sheet, int tileRow) {
         any |= bytes;
         bytes = transposedBits(bytes);
         for (std::size_t y = 0; y < kTilePixels; ++y) {
-            rows_[(y + 1) * words_ + i / 64] |= (bytes >> (8 * y) & 0xFF) << (i % 64);
+            rows[(y + 1) * words_ + i / 64] |= (bytes >> (8 * y) & 0xFF) << (i % 64);
         }
     }
     any |= any >> 32;
@@ -92,30 +100,78 @@ unsigned Compositor::findRows(const Sheet& sheet, int tileRow) {
     return unsigned(any | any >> 8) & 0xFF;
 }
 
-// Adds what row y of the sheet reaches: `row` of rows_ says where it is full, the next one where
-// the row behind it is. Read straight, it reaches no more than itself.
+// Adds what row y of the sheets reaches: `row` of rows_ says where they are full, the next one
+// where the row behind it is. Read straight, it reaches no more than itself.
 void Compositor::addSpans(const Sheet& sheet, const SheetShift& shift, int y, std::size_t row,
                           bool straight, Layer& layer) {
-    for (std::size_t i = 0; i < words_; ++i) {
-        either_[i] = rows_[row * words_ + i];
-        if (!straight) either_[i] |= rows_[(row + 1) * words_ + i];
+    for (std::size_t p = 0; p < rows_.size(); ++p) {
+        const std::uint64_t* here = &rows_[p][row * words_];
+        for (std::size_t i = 0; i < words_; ++i)
+            either_[p][i] = straight ? here[i] : here[i] | here[i + words_];
+    }
+    const bool onePlane = rows_.size() == 1;
+    Rows& all = either_[onePlane ? 0 : rows_.size()];
+    for (std::size_t i = 0; !onePlane && i < words_; ++i) {
+        all[i] = 0;
+        for (std::size_t p = 0; p < rows_.size(); ++p) all[i] |= either_[p][i];
     }
     const int channels = sheet.layout().channels;
-    const std::int32_t* pixels = sheet.row(y);
-    const std::int32_t* nextPixels = sheet.row(y + 1);
+    const std::size_t firstOfRow = std::size_t(y) * sheet.pitch();
     const int layerRow = y - shift.offset.y;
     std::optional<int> begin;
     int end = 0;
-    forEachRun(either_, [&](int firstTile, int lastTile) {
+    forEachRun(all, [&](int firstTile, int lastTile) {
         // The pixel before the first one reads into it as well.
         const int first = kTilePixels * firstTile - (straight ? 0 : 1);
         end = kTilePixels * lastTile;
         if (!begin) begin = first;
-        spans_.push_back({pixels + channels * first, nextPixels + channels * first,
-                          layer.pixel({first - shift.offset.x, layerRow}),
-                          std::size_t(end - first)});
+        const OverSpan span{firstOfRow + std::size_t(channels * first),
+                            layer.pixel({first - shift.offset.x, layerRow}),
+                            std::uint32_t(end - first), 1};
+        if (onePlane) {
+            spans_.push_back(span);
+        } else {
+            addRun(firstTile, lastTile, straight, span, channels);
+        }
     });
     if (begin) layer.extend(layerRow, *begin - shift.offset.x, end - shift.offset.x);
+}
+
+// Cuts a span where other planes are full.
+void Compositor::addRun(int firstTile, int lastTile, bool straight, OverSpan span, int channels) {
+    const int firstPixel = kTilePixels * lastTile - int(span.pixels);
+    int begin = firstPixel;
+    std::uint32_t planes = planesAt(firstTile);
+    const auto emit = [&](int end, std::uint32_t ofSpan) {
+        const int first = begin - firstPixel;
+        if (end > begin)
+            spans_.push_back({span.place + std::size_t(channels * first),
+                              span.layer + channels * first, std::uint32_t(end - begin), ofSpan});
+        begin = end;
+    };
+    for (int tile = firstTile + 1; tile < lastTile; ++tile) {
+        const std::uint32_t next = planesAt(tile);
+        if (next == planes) continue;
+        // The last pixel before a tile reads into it as well: it takes the planes of both.
+        const int edge = kTilePixels * tile;
+        if (!straight) {
+            const std::uint32_t both = planes | next;
+            emit(planes == both ? edge : edge - 1, planes);
+            if (next != both) emit(edge, both);
+        } else {
+            emit(edge, planes);
+        }
+        planes = next;
+    }
+    emit(kTilePixels * lastTile, planes);
+}
+
+// Returns the planes that are full in a tile of the row in hand.
+std::uint32_t Compositor::planesAt(int tile) const {
+    std::uint32_t planes = 0;
+    for (std::size_t p = 0; p < rows_.size(); ++p)
+        planes |= std::uint32_t(either_[p][std::size_t(tile) / 64] >> tile % 64 & 1) << p;
+    return planes;
 }
 
 }  // namespace deltasplat

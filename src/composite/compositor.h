@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec4.hpp>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "composite/layer.h"
@@ -16,30 +18,38 @@ namespace deltasplat {
 /// not thread-safe.
 class Compositor {
   public:
-    /// @param scale  what one unit of a sheet is worth in each channel
-    Compositor(const glm::vec4& scale, bool frontToBack)
-        : scale_(scale), frontToBack_(frontToBack) {}
+    /// Sheets of a slice, one for each plane of colours, all of one layout.
+    using Sheets = std::span<const Sheet* const>;
 
-    /// Composites one slice: its sheet, read bilinearly at the layer's pixels, goes behind what the
-    /// layer holds (front to back) or in front of it. Only what the sheet's full rows reach is
-    /// touched; of that, rows [firstRow, lastRow) of the base plane, which the layer has.
-    void composite(const Sheet& sheet, const SheetShift& shift, int firstRow, int lastRow,
-                   Layer& layer);
+    /// @param scales  what one unit of each sheet is worth in each channel
+    Compositor(std::vector<glm::vec4> scales, bool frontToBack)
+        : scales_(std::move(scales)), frontToBack_(frontToBack) {}
+
+    /// Composites one slice: the sum of its sheets, read bilinearly at the layer's pixels, goes
+    /// behind what the layer holds (front to back) or in front of it. Only what the sheets' full
+    /// rows reach is touched; of that, rows [firstRow, lastRow) of the base plane, which the layer
+    /// has.
+    void composite(Sheets sheets, const SheetShift& shift, int firstRow, int lastRow, Layer& layer);
 
   private:
-    void findSpans(const Sheet& sheet, const SheetShift& shift, int firstRow, int lastRow,
-                   bool straight, Layer& layer);
-    unsigned findRows(const Sheet& sheet, int tileRow);
+    // Rows of tiles as bits, 64 tiles a word.
+    using Rows = std::vector<std::uint64_t>;
+
+    void findSpans(Sheets sheets, const SheetShift& shift, int firstRow, int lastRow, bool straight,
+                   Layer& layer);
+    unsigned findRows(const Sheet& sheet, int tileRow, Rows& rows) const;
     void addSpans(const Sheet& sheet, const SheetShift& shift, int y, std::size_t row,
                   bool straight, Layer& layer);
+    void addRun(int firstTile, int lastTile, bool straight, OverSpan span, int channels);
+    std::uint32_t planesAt(int tile) const;
 
-    glm::vec4 scale_;
+    std::vector<glm::vec4> scales_;
     bool frontToBack_;
-    std::size_t words_ = 0;  // of 64 tiles, a row
-    /// [9][words_]: which tiles are full in the last row of the tile row before, and in the eight
-    /// rows of the one in hand.
-    std::vector<std::uint64_t> rows_;
-    std::vector<std::uint64_t> either_;  // [words_]
+    std::size_t words_ = 0;  // a row
+    /// [plane][9][words_]: which tiles are full in the last row of the tile row before, and in the
+    /// eight rows of the one in hand.
+    std::vector<Rows> rows_;
+    std::vector<Rows> either_;  // [plane][words_], and of all planes together behind them
     std::vector<OverSpan> spans_;
 };
 

@@ -2,6 +2,8 @@
 // The compositor's inner loops, compiled once for each SIMD level.
 #include "composite/over_kernels.h"
 
+#include <bit>
+
 #include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -68,80 +70,143 @@ HWY_INLINE void forVectors(std::size_t count, const Use& use) {
     for (; i < count; i += hn::Lanes(rest)) use(rest, i);
 }
 
+// A span of one plane.
+struct PlaneRun {
+    PlaneRun(const OverSpan& span, const OverSheets& sheets, const OverWeights& weights, int plane)
+        : row(sheets.pixels[std::size_t(plane)] + span.place),
+          nextRow(row + sheets.pitch),
+          thisWeight(weights.thisRow[std::size_t(plane)]),
+          nextWeight(weights.nextRow[std::size_t(plane)]) {}
+
+    const std::int32_t* row;
+    const std::int32_t* nextRow;
+    const glm::vec4& thisWeight;
+    const glm::vec4& nextWeight;
+};
+
+// Reads along the columns.
+template <int kChannels, class Tag>
+HWY_INLINE hn::Vec<Tag> readColumn(Tag tag, const PlaneRun& run, std::size_t i) {
+    const auto here =
+        hn::Mul(readSheet(tag, run.row + i), loadScale<kChannels>(tag, run.thisWeight));
+    const auto next =
+        hn::Mul(readSheet(tag, run.nextRow + i), loadScale<kChannels>(tag, run.nextWeight));
+    return hn::Add(here, next);
+}
+
 // Sheet pixels fall on the layer's.
 template <int kChannels, bool kFrontToBack>
-HWY_INLINE void overStraight(const OverSpan& span, const OverWeights& weights) {
-    forVectors<kChannels>(kChannels * span.pixels, [&](auto tag, std::size_t i) {
+HWY_INLINE void overStraight(const PlaneRun& run, float* layer, std::size_t pixels) {
+    forVectors<kChannels>(kChannels * pixels, [&](auto tag, std::size_t i) {
         const auto color =
-            hn::Mul(readSheet(tag, span.row + i), loadScale<kChannels>(tag, weights.thisRow));
-        over<kChannels, kFrontToBack>(tag, color, span.layer + i);
+            hn::Mul(readSheet(tag, run.row + i), loadScale<kChannels>(tag, run.thisWeight));
+        over<kChannels, kFrontToBack>(tag, color, layer + i);
+    });
+}
+
+// Reads columns that are ready along the rows.
+template <int kChannels, bool kFrontToBack>
+HWY_INLINE void overColumns(const float* columns, const OverWeights& weights, float* layer,
+                            std::size_t pixels) {
+    forVectors<kChannels>(kChannels * pixels, [&](auto tag, std::size_t i) {
+        const auto here = hn::Mul(hn::LoadU(tag, columns + i), hn::Set(tag, weights.thisColumn));
+        const auto next =
+            hn::Mul(hn::LoadU(tag, columns + i + kChannels), hn::Set(tag, weights.nextColumn));
+        over<kChannels, kFrontToBack>(tag, hn::Add(here, next), layer + i);
     });
 }
 
 // Reads along the columns first, then along the rows.
 template <int kChannels, bool kFrontToBack>
-HWY_INLINE void overStretch(const OverSpan& span, const OverWeights& weights) {
+HWY_INLINE void overStretch(const PlaneRun& run, const OverWeights& weights, float* layer,
+                            std::size_t pixels) {
     HWY_ALIGN float columns[(kStretch + 1) * kChannels];
-    forVectors<kChannels>(kChannels * (span.pixels + 1), [&](auto tag, std::size_t i) {
-        const auto here =
-            hn::Mul(readSheet(tag, span.row + i), loadScale<kChannels>(tag, weights.thisRow));
-        const auto next =
-            hn::Mul(readSheet(tag, span.nextRow + i), loadScale<kChannels>(tag, weights.nextRow));
-        hn::StoreU(hn::Add(here, next), tag, columns + i);
+    forVectors<kChannels>(kChannels * (pixels + 1), [&](auto tag, std::size_t i) {
+        hn::StoreU(readColumn<kChannels>(tag, run, i), tag, columns + i);
     });
-    forVectors<kChannels>(kChannels * span.pixels, [&](auto tag, std::size_t i) {
-        const auto here = hn::Mul(hn::LoadU(tag, columns + i), hn::Set(tag, weights.thisColumn));
-        const auto next =
-            hn::Mul(hn::LoadU(tag, columns + i + kChannels), hn::Set(tag, weights.nextColumn));
-        over<kChannels, kFrontToBack>(tag, hn::Add(here, next), span.layer + i);
-    });
+    overColumns<kChannels, kFrontToBack>(columns, weights, layer, pixels);
 }
 
 // The same arithmetic, each column read twice and nothing stored on the way.
 template <int kChannels, bool kFrontToBack>
-HWY_INLINE void overShort(const OverSpan& span, const OverWeights& weights) {
+HWY_INLINE void overShort(const PlaneRun& run, const OverWeights& weights, float* layer,
+                          std::size_t pixels) {
+    forVectors<kChannels>(kChannels * pixels, [&](auto tag, std::size_t i) {
+        const auto here =
+            hn::Mul(readColumn<kChannels>(tag, run, i), hn::Set(tag, weights.thisColumn));
+        const auto next = hn::Mul(readColumn<kChannels>(tag, run, i + kChannels),
+                                  hn::Set(tag, weights.nextColumn));
+        over<kChannels, kFrontToBack>(tag, hn::Add(here, next), layer + i);
+    });
+}
+
+// Adds up the columns of several planes first.
+template <int kChannels, bool kFrontToBack>
+void overPlanes(const OverSpan& span, const OverSheets& sheets, const OverWeights& weights) {
+    HWY_ALIGN float columns[(kStretch + 1) * kChannels];
+    const std::size_t behind = weights.straight ? 0 : 1;
+    for (unsigned rest = span.planes; rest != 0; rest &= rest - 1) {
+        const PlaneRun run(span, sheets, weights, std::countr_zero(rest));
+        const bool first = rest == span.planes;
+        forVectors<kChannels>(kChannels * (span.pixels + behind), [&](auto tag, std::size_t i) {
+            // Straight, the next row has no weight.
+            const auto column = weights.straight
+                                    ? hn::Mul(readSheet(tag, run.row + i),
+                                              loadScale<kChannels>(tag, run.thisWeight))
+                                    : readColumn<kChannels>(tag, run, i);
+            const auto sum = first ? column : hn::Add(hn::LoadU(tag, columns + i), column);
+            hn::StoreU(sum, tag, columns + i);
+        });
+    }
+    if (!weights.straight)
+        return overColumns<kChannels, kFrontToBack>(columns, weights, span.layer, span.pixels);
     forVectors<kChannels>(kChannels * span.pixels, [&](auto tag, std::size_t i) {
-        const auto thisRow = loadScale<kChannels>(tag, weights.thisRow);
-        const auto nextRow = loadScale<kChannels>(tag, weights.nextRow);
-        const auto column = [&](std::size_t place) HWY_ATTR {
-            return hn::Add(hn::Mul(readSheet(tag, span.row + place), thisRow),
-                           hn::Mul(readSheet(tag, span.nextRow + place), nextRow));
-        };
-        const auto here = hn::Mul(column(i), hn::Set(tag, weights.thisColumn));
-        const auto next = hn::Mul(column(i + kChannels), hn::Set(tag, weights.nextColumn));
-        over<kChannels, kFrontToBack>(tag, hn::Add(here, next), span.layer + i);
+        over<kChannels, kFrontToBack>(tag, hn::LoadU(tag, columns + i), span.layer + i);
     });
 }
 
 template <int kChannels, bool kFrontToBack>
-void overSpansOf(const std::vector<OverSpan>& spans, const OverWeights& weights) {
-    const bool straight = weights.straight();
+HWY_INLINE void overPlane(const OverSpan& span, PlaneRun run, const OverWeights& weights) {
+    if (weights.straight)
+        return overStraight<kChannels, kFrontToBack>(run, span.layer, span.pixels);
+    if (span.pixels <= kShort)
+        return overShort<kChannels, kFrontToBack>(run, weights, span.layer, span.pixels);
+    float* layer = span.layer;
+    std::size_t pixels;
+    for (std::size_t rest = span.pixels; rest > 0; rest -= pixels) {
+        pixels = rest < kStretch ? rest : kStretch;
+        overStretch<kChannels, kFrontToBack>(run, weights, layer, pixels);
+        run.row += kChannels * pixels;
+        run.nextRow += kChannels * pixels;
+        layer += kChannels * pixels;
+    }
+}
+
+template <int kChannels, bool kFrontToBack>
+void overSpansOf(const std::vector<OverSpan>& spans, const OverSheets& sheets,
+                 const OverWeights& weights) {
     for (OverSpan span : spans) {
-        if (straight) {
-            overStraight<kChannels, kFrontToBack>(span, weights);
+        if (span.planes == 1) {
+            overPlane<kChannels, kFrontToBack>(span, {span, sheets, weights, 0}, weights);
             continue;
         }
-        if (span.pixels <= kShort) {
-            overShort<kChannels, kFrontToBack>(span, weights);
-            continue;
-        }
-        for (std::size_t rest = span.pixels; rest > 0; rest -= span.pixels) {
+        for (std::uint32_t rest = span.pixels; rest > 0; rest -= span.pixels) {
             span.pixels = rest < kStretch ? rest : kStretch;
-            overStretch<kChannels, kFrontToBack>(span, weights);
-            span.row += kChannels * span.pixels;
-            span.nextRow += kChannels * span.pixels;
+            overPlanes<kChannels, kFrontToBack>(span, sheets, weights);
+            span.place += kChannels * span.pixels;
             span.layer += kChannels * span.pixels;
         }
     }
 }
 
-void overSpansKernel(const std::vector<OverSpan>& spans, const OverWeights& weights) {
+void overSpansKernel(const std::vector<OverSpan>& spans, const OverSheets& sheets,
+                     const OverWeights& weights) {
     if (weights.channels == 4) {
-        return weights.frontToBack ? overSpansOf<4, true>(spans, weights)
-                                   : overSpansOf<4, false>(spans, weights);
+        return weights.frontToBack ? overSpansOf<4, true>(spans, sheets, weights)
+                                   : overSpansOf<4, false>(spans, sheets, weights);
     }
-    return weights.frontToBack ? overSpansOf<1, true>(spans, weights)
-                               : overSpansOf<1, false>(spans, weights);
+    return weights.frontToBack ? overSpansOf<1, true>(spans, sheets, weights)
+                               : overSpansOf<1, false>(spans, sheets, weights);
 }
 
 template <int kChannels>
@@ -165,8 +230,9 @@ namespace deltasplat {
 HWY_EXPORT(overSpansKernel);
 HWY_EXPORT(mergeBehindKernel);
 
-void overSpans(const std::vector<OverSpan>& spans, const OverWeights& weights) {
-    HWY_DYNAMIC_DISPATCH(overSpansKernel)(spans, weights);
+void overSpans(const std::vector<OverSpan>& spans, const OverSheets& sheets,
+               const OverWeights& weights) {
+    HWY_DYNAMIC_DISPATCH(overSpansKernel)(spans, sheets, weights);
 }
 
 void mergeBehind(float* front, const float* layer, std::size_t pixels, int channels) {

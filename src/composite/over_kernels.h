@@ -1,48 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <span>
 #include <vector>
+
+#include "deltasplat/optics/class_table.h"
 
 namespace deltasplat {
 
 /// What compositing one slice multiplies with.
 struct OverWeights {
     /// @param fraction  how far base plane pixels lie behind sheet pixels, 0..1 along each axis
-    /// @param scale     sheet units to RGBA; of one channel only the last is used
-    OverWeights(glm::vec2 fraction, const glm::vec4& scale, int channelCount, bool order)
-        : thisRow((1 - fraction.y) * scale),
-          nextRow(fraction.y * scale),
+    /// @param scales    sheet units to RGBA, of each plane; of one channel only the last is used
+    OverWeights(glm::vec2 fraction, std::span<const glm::vec4> scales, int channelCount, bool order)
+        : straight(fraction == glm::vec2(0)),
           thisColumn(1 - fraction.x),
           nextColumn(fraction.x),
           channels(channelCount),
-          frontToBack(order) {}
+          frontToBack(order) {
+        for (std::size_t p = 0; p < scales.size(); ++p) {
+            thisRow[p] = (1 - fraction.y) * scales[p];
+            nextRow[p] = fraction.y * scales[p];
+        }
+    }
 
-    /// Whether sheet pixels fall on the layer's.
-    bool straight() const { return nextColumn == 0 && nextRow == glm::vec4(0); }
-
-    glm::vec4 thisRow;
-    glm::vec4 nextRow;
+    bool straight;  ///< whether sheet pixels fall on the layer's
+    std::array<glm::vec4, ClassTable::kMaxPlanes> thisRow;  ///< of each plane
+    std::array<glm::vec4, ClassTable::kMaxPlanes> nextRow;
     float thisColumn;
     float nextColumn;
-    int channels;  ///< of sheet and layer: 4 (RGBA) or 1 (opacity)
+    int channels;  ///< of sheets and layer: 4 (RGBA) or 1 (opacity)
     bool frontToBack;
+};
+
+/// The sheets of a slice, one for each plane of colours.
+struct OverSheets {
+    std::array<const std::int32_t*, ClassTable::kMaxPlanes> pixels;  ///< `[row][pitch]`
+    std::size_t pitch;  ///< integers from one row to the next
 };
 
 /// A run of pixels along one row.
 struct OverSpan {
-    const std::int32_t* row;      ///< the sheet at the run's first pixel
-    const std::int32_t* nextRow;  ///< the sheet one row further
-    float* layer;                 ///< the layer at the run's first pixel
-    std::size_t pixels;
+    std::size_t place;  ///< of the sheets' first pixel, in integers
+    float* layer;       ///< the layer at the run's first pixel
+    std::uint32_t pixels;
+    std::uint32_t planes;  ///< bit p: plane p may be other than zero; not 0
 };
 
-/// Reads the sheet bilinearly and composites it with the layer, for every span. Multiplications and
-/// additions are separate and per pixel, so that every SIMD level gives the same bits.
-void overSpans(const std::vector<OverSpan>& spans, const OverWeights& weights);
+/// Reads the sum of the sheets bilinearly and composites it with the layer, for every span.
+/// Multiplications and additions are separate and per pixel, and planes are added from the first to
+/// the last, so that every SIMD level gives the same bits, whether planes of zeros are read or not.
+void overSpans(const std::vector<OverSpan>& spans, const OverSheets& sheets,
+               const OverWeights& weights);
 
 /// Puts premultiplied `layer` behind `front`: front += (1 - front.a) * layer, for a row of pixels.
 void mergeBehind(float* front, const float* layer, std::size_t pixels, int channels);

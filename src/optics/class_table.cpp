@@ -5,13 +5,18 @@
 #include "deltasplat/optics/class_table.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
+#include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "number_text.h"
+#include "optics/color_digits.h"
 #include "parallel.h"
 #include "portable_math.h"
 
@@ -98,20 +103,16 @@ class ColorRounder {
     // What is too small for a scale is nothing.
     glm::dvec4 scale() const { return largest_ / double(ClassTable::kMax); }
 
-    ClassTable::Color operator()(const CodeLight& one) const {
-        const glm::dvec4 exact = premultiplied(one);
-        const auto rounded = [&](int c) {
-            if (scale()[c] == 0) return std::int16_t{0};
-            return std::int16_t(std::lround(exact[c] / largest_[c] * ClassTable::kMax));
-        };
-        ClassTable::Color color{};
-        color[3] = rounded(3);
-        for (int c = 0; c < 3; ++c) {
-            // Of one colour, all channels are the opacity: equal, however division rounds.
-            if (scale()[c] != 0) color[c] = oneColor_ ? color[3] : rounded(c);
-        }
+    ColorDigits operator()(const CodeLight& one) const {
+        glm::dvec4 exact = premultiplied(one);
+        for (int c = 0; c < 4; ++c)
+            exact[c] = scale()[c] == 0 ? 0 : exact[c] / largest_[c] * ClassTable::kMax;
+        // Of one colour, all channels are the opacity: equal, however division rounds.
+        for (int c = 0; oneColor_ && c < 3; ++c) exact[c] = scale()[c] == 0 ? 0 : exact.a;
+        const ColorDigits digits = digitsOf(exact);
+        const auto isClear = [](const ClassTable::Color& color) { return color[3] == 0; };
         // What lets all light through shows nothing.
-        return color[3] == 0 ? ClassTable::Color{} : color;
+        return std::all_of(digits.begin(), digits.end(), isClear) ? ColorDigits{} : digits;
     }
 
   private:
@@ -123,6 +124,17 @@ class ColorRounder {
     bool oneColor_;
 };
 
+// Returns what visible codes look like, in their order. A volume of floats may have tens of
+// thousands.
+std::vector<ColorDigits> roundColors(const std::vector<CodeLight>& visible,
+                                     const ColorRounder& rounded) {
+    std::vector<ColorDigits> digits(visible.size());
+    parallelForChunks(visible.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) digits[i] = rounded(visible[i]);
+    });
+    return digits;
+}
+
 // Gives equal colours equal numbers, in the order in which they come. An open hash table at most
 // half full: several times as fast as sorting.
 class ColorNumbers {
@@ -130,40 +142,161 @@ class ColorNumbers {
     explicit ColorNumbers(std::size_t colors)
         : placeBits_(std::bit_width(2 * colors)), classAt_(std::size_t{1} << placeBits_) {}
 
-    Slot numberOf(const ClassTable::Color& color, std::vector<ClassTable::Color>& colors) {
-        constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 / golden ratio (D. Knuth)
-        if (color == ClassTable::Color{}) return kEmptySlot;
-        const auto key = std::bit_cast<std::uint64_t>(color);
-        std::size_t place = key * kSpread >> (64 - placeBits_);
-        while (classAt_[place] != 0 && colors[classAt_[place]] != color) {
+    Slot numberOf(const ColorDigits& color) {
+        if (isSame(color, {})) return kEmptySlot;
+        std::size_t place = hashOf(color) >> (64 - placeBits_);
+        while (classAt_[place] != 0 && !isSame(colors_[classAt_[place]], color)) {
             place = (place + 1) % classAt_.size();
         }
         if (classAt_[place] == 0) {
-            if (colors.size() == ClassTable::kMaxClasses) return ClassTable::kMaxClasses - 1;
-            classAt_[place] = Slot(colors.size());
-            colors.push_back(color);
+            if (colors_.size() == ClassTable::kMaxClasses) return ClassTable::kMaxClasses - 1;
+            classAt_[place] = Slot(colors_.size());
+            colors_.push_back(color);
         }
         return classAt_[place];
     }
 
+    // [classes]: by number.
+    std::vector<ColorDigits> take() { return std::move(colors_); }
+
   private:
+    // As a call of the C library, comparing would take as long as all else.
+    static bool isSame(const ColorDigits& a, const ColorDigits& b) {
+        std::uint64_t differing = 0;
+        for (std::size_t i = 0; i < a.size(); ++i)
+            differing |= std::bit_cast<std::uint64_t>(a[i]) ^ std::bit_cast<std::uint64_t>(b[i]);
+        return differing == 0;
+    }
+    static std::uint64_t hashOf(const ColorDigits& color) {
+        constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 / golden ratio (D. Knuth)
+        std::uint64_t hash = 0;
+        for (const ClassTable::Color& digit : color) {
+            const auto bits = std::bit_cast<std::uint64_t>(digit);
+            if (bits != 0) hash = (hash ^ hash >> 32 ^ bits) * kSpread;
+        }
+        return hash;
+    }
+
     int placeBits_;
     std::vector<Slot> classAt_;  // 0 where nothing is
+    std::vector<ColorDigits> colors_{ColorDigits{}};
 };
 
 // Of one colour, the opacity says all.
-void numberByOpacity(const std::vector<CodeLight>& visible, const ColorRounder& rounded,
+void numberByOpacity(const std::vector<CodeLight>& visible, const std::vector<ColorDigits>& digits,
                      ClassTable& table) {
-    table.colors.resize(ClassTable::kMax + 1);
+    std::vector<ClassTable::Color>& colors = table.planes.front().high.colors;
+    colors.resize(ClassTable::kMax + 1);
     for (int opacity = 0; opacity <= ClassTable::kMax; ++opacity) {
         for (int c = 0; c < 4; ++c) {
-            table.colors[opacity][c] = std::int16_t(table.scale[c] == 0 ? 0 : opacity);
+            colors[opacity][c] = std::int16_t(table.scale[c] == 0 ? 0 : opacity);
         }
     }
-    for (const CodeLight& one : visible) table.classOfSlot[one.code + 1] = rounded(one)[3];
+    for (std::size_t i = 0; i < visible.size(); ++i)
+        table.classOfSlot[visible[i].code + 1] = digits[i][0][3];
+}
+
+// Orders classes so that those with the same digits lie together: by the first that is not zero,
+// then by the last. Returns the new number of each.
+std::vector<Slot> orderByDigits(std::vector<ColorDigits>& colors) {
+    constexpr std::size_t kUses = 1 << std::tuple_size_v<ColorDigits>;
+    std::array<unsigned, kUses> uses;
+    std::iota(uses.begin(), uses.end(), 0u);
+    std::sort(uses.begin(), uses.end(), [](unsigned a, unsigned b) {
+        const auto keyOf = [](unsigned use) {
+            return use == 0 ? std::pair(-1, 0)
+                            : std::pair(std::countr_zero(use), int(std::bit_width(use)));
+        };
+        return std::pair(keyOf(a), a) < std::pair(keyOf(b), b);
+    });
+    std::vector<std::uint8_t> useOf;
+    std::array<bool, kUses> occurs{};
+    for (const ColorDigits& color : colors) {
+        useOf.push_back(std::uint8_t(usedDigits(color)));
+        occurs[useOf.back()] = true;
+    }
+    std::vector<Slot> numbers(colors.size());
+    std::vector<ColorDigits> ordered;
+    ordered.reserve(colors.size());
+    for (const unsigned use : uses) {
+        for (std::size_t i = 0; occurs[use] && i < colors.size(); ++i) {
+            if (useOf[i] != use) continue;
+            numbers[i] = Slot(ordered.size());
+            ordered.push_back(colors[i]);
+        }
+    }
+    colors = std::move(ordered);
+    return numbers;
+}
+
+// Takes a digit of all classes. None are kept if all are zero, unless they must be.
+void takeDigit(const std::vector<ColorDigits>& colors, std::size_t i, bool always,
+               ClassTable::Digit& digit) {
+    digit.colors.clear();
+    for (const ColorDigits& color : colors) digit.colors.push_back(color[i]);
+    const auto isUsed = [](const ClassTable::Color& color) { return color != ClassTable::Color{}; };
+    const auto& all = digit.colors;
+    const auto first = std::find_if(all.begin(), all.end(), isUsed);
+    if (first == all.end()) {
+        if (!always) digit.colors.clear();
+        return;
+    }
+    digit.first = int(first - all.begin());
+    digit.last = int(std::find_if(all.rbegin(), all.rend(), isUsed).base() - all.begin());
+}
+
+void numberByColor(const std::vector<CodeLight>& visible, const std::vector<ColorDigits>& digits,
+                   ClassTable& table) {
+    ColorNumbers numbers(visible.size());
+    for (std::size_t i = 0; i < visible.size(); ++i)
+        table.classOfSlot[visible[i].code + 1] = numbers.numberOf(digits[i]);
+    std::vector<ColorDigits> colors = numbers.take();
+    const std::vector<Slot> numberOf = orderByDigits(colors);
+    for (const CodeLight& one : visible) {
+        Slot& number = table.classOfSlot[one.code + 1];
+        number = numberOf[std::size_t(number)];
+    }
+    for (std::size_t p = 0; p < table.planes.size(); ++p) {
+        takeDigit(colors, 2 * p, true, table.planes[p].high);
+        takeDigit(colors, 2 * p + 1, false, table.planes[p].low);
+    }
+}
+
+// Returns which digits any code has.
+unsigned digitsInUse(const std::vector<ColorDigits>& digits) {
+    unsigned used = 0;
+    for (const ColorDigits& one : digits) used |= usedDigits(one);
+    return used;
+}
+
+glm::dvec4 unitsOfDigit(const ClassTable::Digit& digit, Slot number) {
+    if (digit.colors.empty()) return glm::dvec4(0);
+    const ClassTable::Color& color = digit.colors[std::size_t(number)];
+    return {color[0], color[1], color[2], color[3]};
 }
 
 }  // namespace
+
+glm::dvec4 ClassTable::scaleOf(int plane) const {
+    return scale * std::ldexp(1.0, -kPlaneBits * plane);
+}
+
+glm::dvec4 ClassTable::unitsOf(Slot number) const {
+    constexpr double kLow = 1.0 / (1 << kDigitBits);
+    constexpr double kFiner = 1.0 / (1 << kPlaneBits);
+    glm::dvec4 units(0.0);
+    double scaleOfPlane = 1;
+    for (const Plane& plane : planes) {
+        units += scaleOfPlane *
+                 (unitsOfDigit(plane.high, number) + kLow * unitsOfDigit(plane.low, number));
+        scaleOfPlane *= kFiner;
+    }
+    return units;
+}
+
+glm::dvec4 ClassTable::lightOfCode(Code code) const {
+    return unitsOf(classOfSlot[code + 1]) * scale;
+}
 
 ClassTable classify(const Volume& volume, const Optics& optics, double sliceStepWorld) {
     const DefaultFloats floats;
@@ -172,17 +305,17 @@ ClassTable classify(const Volume& volume, const Optics& optics, double sliceStep
     const std::vector<CodeLight> visible =
         classifyExactly(volume, optics, optics.extinctionScale * (sliceStepWorld / unitDistance));
     const ColorRounder rounded(visible);
+    const std::vector<ColorDigits> digits = roundColors(visible, rounded);
     ClassTable table;
     table.scale = rounded.scale();
     table.oneColor = rounded.oneColor();
     table.classOfSlot.assign(kSlotCount, kEmptySlot);
-    if (table.oneColor) {
-        numberByOpacity(visible, rounded, table);
+    const unsigned used = digitsInUse(digits);
+    table.planes.resize(used < 4 ? 1 : 2);
+    if (table.oneColor && used < 2) {
+        numberByOpacity(visible, digits, table);
     } else {
-        ColorNumbers numbers(visible.size());
-        for (const CodeLight& one : visible) {
-            table.classOfSlot[one.code + 1] = numbers.numberOf(rounded(one), table.colors);
-        }
+        numberByColor(visible, digits, table);
     }
     return table;
 }

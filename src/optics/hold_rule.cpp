@@ -23,9 +23,9 @@ void checkTolerance(const Tolerance& tolerance) {
     }
 }
 
-bool looksWithin(const ClassTable::Color& held, const ClassTable::Color& color, double tolerance) {
+bool looksWithin(const glm::dvec4& held, const glm::dvec4& color, double tolerance) {
     for (int c = 0; c < 4; ++c) {
-        if (std::abs(int{held[c]} - int{color[c]}) > tolerance * color[c]) return false;
+        if (std::abs(held[c] - color[c]) > tolerance * color[c]) return false;
     }
     return true;
 }
@@ -46,7 +46,7 @@ std::function<bool(Slot, Slot)> holdRule(const Volume& volume, const ClassTable&
     checkTolerance(tolerance);
     if (tolerance.isExact()) return {};
     const auto looksAlike = [&classes, t = tolerance.relative](Slot held, Slot slot) {
-        const auto colorOf = [&](Slot s) { return classes.colors[classes.classOfSlot[s]]; };
+        const auto colorOf = [&](Slot s) { return classes.unitsOf(classes.classOfSlot[s]); };
         return looksWithin(colorOf(held), colorOf(slot), t);
     };
     if (tolerance.value == 0) return looksAlike;
@@ -63,9 +63,10 @@ ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance) {
         return {unknown, unknown};
     }
     double brightest = 0;
-    for (const ClassTable::Color& color : classes.colors) {
-        for (int c = 0; color[3] != 0 && c < 3; ++c) {
-            const double light = color[c] * classes.scale[c] / (color[3] * classes.scale.a);
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+        const glm::dvec4 color = classes.unitsOf(Slot(i));
+        for (int c = 0; color.a != 0 && c < 3; ++c) {
+            const double light = color[c] * classes.scale[c] / (color.a * classes.scale.a);
             brightest = std::max(brightest, light);
         }
     }

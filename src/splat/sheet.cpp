@@ -154,19 +154,37 @@ void Sheet::settle() {
         });
 }
 
+void Sheet::addDigits(const Sheet& high, const Sheet& low, int firstRow, int lastRow) {
+    const int first = std::max(firstRow, 0) / kTilePixels;
+    const int end = (std::min(lastRow, layout_.sizePixels.y) + kTilePixels - 1) / kTilePixels;
+    std::vector<std::uint8_t> rows(bytesPerRow_);
+    for (int row = first; row < end; ++row) {
+        clearRows(row);
+        const std::span highRows = high.fullRows(row);
+        const std::span lowRows = low.fullRows(row);
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            rows[i] = std::uint8_t(highRows[i] | lowRows[i]);
+        const int y = kTilePixels * row;
+        addLowDigits({high.row(y), low.row(y), pitch()}, layout_.channels, rows, tileRow(row).sheet,
+                     std::span(&full_[bytesPerRow_ * row], bytesPerRow_));
+    }
+}
+
+void Sheet::clearRows(int tileRow) {
+    const std::span full(&full_[bytesPerRow_ * tileRow], bytesPerRow_);
+    const std::size_t length = std::size_t{kTilePixels} * layout_.channels;
+    forTiles(full, [&](std::size_t column) {
+        for (unsigned rest = full[column]; rest != 0; rest &= rest - 1) {
+            const int y = kTilePixels * tileRow + std::countr_zero(rest);
+            std::fill_n(&pixels_[pitch() * y + length * column], length, 0);
+        }
+        full[column] = 0;
+    });
+}
+
 void Sheet::clear() {
     settle();
-    for (int row = 0; row < layout_.tiles().y; ++row) {
-        const std::span full(&full_[bytesPerRow_ * row], bytesPerRow_);
-        const std::size_t length = std::size_t{kTilePixels} * layout_.channels;
-        forTiles(full, [&](std::size_t column) {
-            for (unsigned rest = full[column]; rest != 0; rest &= rest - 1) {
-                const int y = kTilePixels * row + std::countr_zero(rest);
-                std::fill_n(&pixels_[pitch() * y + length * column], length, 0);
-            }
-            full[column] = 0;
-        });
-    }
+    for (int row = 0; row < layout_.tiles().y; ++row) clearRows(row);
 }
 
 }  // namespace deltasplat

@@ -88,6 +88,9 @@ class Sheet {
     void refillTouched(int first, int last, const Refill& refill);
     /// Finds out which of the touched rows are zero. Call it when all stamps of a slice are in.
     void settle();
+    /// Becomes the sum of the sheets of both digits of a colour (addLowDigits), of the same layout,
+    /// in the rows of tiles in which any of [firstRow, lastRow) lies.
+    void addDigits(const Sheet& high, const Sheet& low, int firstRow, int lastRow);
     /// Makes every pixel zero.
     void clear();
     /// Returns a byte for each tile of a tile row, and zeros up to a multiple of eight: bit y is
@@ -99,6 +102,7 @@ class Sheet {
     TileRow tileRow(int row) { return {&pixels_[pitch() * row * kTilePixels], pitch()}; }
 
   private:
+    void clearRows(int tileRow);
     glm::ivec2 firstTileOf(glm::ivec2 block) const;
     template <std::size_t kMasks, typename Use>
     void forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks], const Use& use);

@@ -21,6 +21,22 @@ glm::ivec2 SliceBlocks::blockOf(const DeltaWord& word) const {
     return glm::ivec2(word.block.y, word.block.x) - layout_.firstVoxel / 8;
 }
 
+// What a word is of the digit. Of changes, those of voxels that had it or have it.
+DeltaWord SliceBlocks::ofDigit(const DeltaWord& word, bool whole) {
+    DeltaWord here = word;
+    here.visible = voxels_[&word - input_.deltas.words.data()];
+    if (whole) return here;
+    if (shown_.size() < count()) shown_.resize(count());
+    std::uint64_t& shown = shown_[placeOf(blockOf(word))];
+    here.changed &= shown | here.visible;
+    shown = here.visible;
+    return here;
+}
+
+void SliceBlocks::clear() {
+    std::fill(shown_.begin(), shown_.end(), 0);
+}
+
 // Returns a mask word of the voxels of a block that lie in the volume's box.
 std::uint64_t SliceBlocks::voxelsInBox(glm::ivec2 block) const {
     const IndexBox& box = input_.deltas.box;

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <span>
+#include <vector>
 
 #include "delta/packed_deltas.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/splat/footprint.h"
+#include "splat/digit_voxels.h"
 #include "splat/sheet.h"
 
 namespace deltasplat {
@@ -21,25 +23,33 @@ struct SplatInput {
     /// Stamp every voxel of the box, the empty ones too (method `traditional`); all slabs must be
     /// whole.
     bool stampEmptyVoxels;
+    /// Which voxels have which digits of colours; null where there is but one.
+    const DigitVoxels* digitVoxels = nullptr;
 };
 
 /// Classes of 64 empty voxels.
 inline constexpr std::array<ClassIndex, 64> kEmptyClasses{};
 
-/// The blocks of slices that a sheet, or a part of it, is made of.
+/// The blocks of slices that a sheet of a digit of colours, or a part of it, is made of.
 class SliceBlocks {
   public:
-    SliceBlocks(const SplatInput& input, const SheetLayout& layout)
-        : input_(input), layout_(layout) {}
+    SliceBlocks(const SplatInput& input, const SheetLayout& layout, DigitPlace digit = {})
+        : input_(input),
+          layout_(layout),
+          stampEmptyVoxels_(input.stampEmptyVoxels && digit.plane == 0 && !digit.low),
+          voxels_(input.digitVoxels ? input.digitVoxels->of(digit) : nullptr) {}
 
     void setLayout(const SheetLayout& layout) { layout_ = layout; }
     const SheetLayout& layout() const { return layout_; }
 
     /// Calls `use(block, voxels, word)` for the blocks (v, u) of a slice that have something to
-    /// stamp: a mask word of voxels, and what else is known of them.
+    /// stamp: a mask word of voxels, and what else is known of them, as far as the digit goes.
+    /// Where colours have several, slices that are not whole come in order, with all their rows.
     /// @param rows  of blocks, [x, y)
     template <typename Use>
-    void forEach(int slice, bool whole, glm::ivec2 rows, const Use& use) const;
+    void forEach(int slice, bool whole, glm::ivec2 rows, const Use& use);
+    /// Makes everything as it was before the first slice.
+    void clear();
     /// All rows of blocks.
     glm::ivec2 rows() const { return {0, layout_.blocks.y}; }
 
@@ -52,20 +62,31 @@ class SliceBlocks {
   private:
     std::span<const DeltaWord> wordsOf(int slice, glm::ivec2 rows) const;
     glm::ivec2 blockOf(const DeltaWord& word) const;
+    DeltaWord ofDigit(const DeltaWord& word, bool whole);
     std::uint64_t voxelsInBox(glm::ivec2 block) const;
     static void prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words);
 
     const SplatInput& input_;
     SheetLayout layout_;
+    // Empty voxels are stamped once.
+    bool stampEmptyVoxels_;
+    const std::uint64_t* voxels_;       // [word]: that have the digit; null: all that are visible
+    std::vector<std::uint64_t> shown_;  // [block]: those that changes left so
 };
 
 template <typename Use>
-void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use) const {
+void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use) {
     const std::span<const DeltaWord> words = wordsOf(slice, rows);
-    if (!input_.stampEmptyVoxels) {
+    if (!stampEmptyVoxels_) {
         for (const DeltaWord& word : words) {
             prefetchClasses(&word, words);
-            use(blockOf(word), whole ? word.visible : word.changed, word);
+            if (!voxels_) {
+                use(blockOf(word), whole ? word.visible : word.changed, word);
+                continue;
+            }
+            const DeltaWord here = ofDigit(word, whole);
+            const std::uint64_t voxels = whole ? here.visible : here.changed;
+            if (voxels != 0) use(blockOf(word), voxels, here);
         }
         return;
     }

@@ -1,39 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: "Accelerating Footprint Method Based on Comparability of Consecutive Image Slices",
-// equation 9, and Lee Westover, "Footprint Evaluation for Volume Rendering", 1990, for the sheet.
 #include "splat/splatter.h"
 
 namespace deltasplat {
+namespace {
 
-// Both ways give the same integers.
-void Splatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
-    whole_ = slab.whole;
-    // What is splatted anew for each slice has to be cleared as well, which tiles do by the way.
-    stamping_ = !TileSplatter::fits(input_.footprint) ||
-                (!slab.whole && slab.changesFewerThan(
-                                    TileSplatter::leastChanges(input_.footprint, layout.channels)));
-    if (stamping_ && !stamps_) stamps_.emplace(input_, largest_, sheet_);
-    if (!stamping_ && !tiles_) tiles_.emplace(input_, largest_, sheet_);
-    sheet_.setLayout(layout);
-    withWay([&](auto& way) { way.setLayout(layout); });
+bool hasLow(const SplatInput& input, int plane) {
+    return !DigitPlace{plane, true}.of(input.classes).colors.empty();
 }
 
-const Sheet& Splatter::splat(int slice, int firstRow, int lastRow) {
-    withWay([&](auto& way) { way.splat(slice, whole_, firstRow, lastRow); });
-    return sheet_;
+}  // namespace
+
+PlaneSplatter::PlaneSplatter(const SplatInput& input, const SheetLayout& largest, int plane)
+    : high_(input, largest, {plane, false}, hasLow(input, plane)) {
+    if (!hasLow(input, plane)) return;
+    low_.emplace(input, largest, DigitPlace{plane, true}, false);
+    if (!TileSplatter::fits(input.footprint)) sum_.emplace(largest);
+}
+
+void PlaneSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
+    if (low_) low_->begin(slab, layout);
+    high_.begin(slab, layout);
+    if (sum_) sum_->setLayout(layout);
+}
+
+const Sheet& PlaneSplatter::splat(int slice, int firstRow, int lastRow) {
+    if (!low_) return high_.splat(slice, firstRow, lastRow);
+    const Sheet& low = low_->splat(slice, firstRow, lastRow);
+    const Sheet& high = high_.splat(slice, firstRow, lastRow, sum_ ? nullptr : &low);
+    if (!sum_) return high;
+    sum_->addDigits(high, low, firstRow, lastRow);
+    return *sum_;
+}
+
+void PlaneSplatter::end() {
+    if (low_) low_->end();
+    high_.end();
+    if (sum_) sum_->clear();
+}
+
+double PlaneSplatter::bytes(const SplatInput& input, const SheetLayout& layout, int plane) {
+    const double one = DigitSplatter::bytes(input, layout);
+    if (!hasLow(input, plane)) return one;
+    return 2 * one + (TileSplatter::fits(input.footprint) ? 0 : double(layout.bytes()));
+}
+
+Splatter::Splatter(const SplatInput& input, const SheetLayout& largest) {
+    for (int plane = 0; plane < int(input.classes.planes.size()); ++plane)
+        planes_.push_back(std::make_unique<PlaneSplatter>(input, largest, plane));
+    sheets_.resize(planes_.size());
+}
+
+void Splatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
+    for (const auto& plane : planes_) plane->begin(slab, layout);
+}
+
+std::span<const Sheet* const> Splatter::splat(int slice, int firstRow, int lastRow) {
+    for (std::size_t p = 0; p < planes_.size(); ++p)
+        sheets_[p] = &planes_[p]->splat(slice, firstRow, lastRow);
+    return sheets_;
 }
 
 void Splatter::end() {
-    withWay([](auto& way) { way.clear(); });
+    for (const auto& plane : planes_) plane->end();
 }
 
 double Splatter::bytes(const SplatInput& input, const SheetLayout& layout) {
-    const double blocks = double(layout.blocks.x) * layout.blocks.y;
-    // The classes that stamps show, and their list as it grows.
-    const double stamps = blocks * (64 * sizeof(ClassIndex) + 3 * sizeof(BlockStamps));
-    // The plane, which is at most half as large as the sheet, and two lists of blocks.
-    const double tiles = 0.5 * double(layout.bytes()) + 48 * blocks;
-    return double(layout.bytes()) + stamps + (TileSplatter::fits(input.footprint) ? tiles : 0);
+    double bytes = 0;
+    for (int plane = 0; plane < int(input.classes.planes.size()); ++plane)
+        bytes += PlaneSplatter::bytes(input, layout, plane);
+    return bytes;
 }
 
 }  // namespace deltasplat

@@ -8,9 +8,10 @@
 
 namespace deltasplat {
 
-StampSplatter::StampSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet)
-    : input_(input),
-      blocks_(input, largest),
+StampSplatter::StampSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
+                             DigitPlace digit)
+    : colors_(digit.of(input.classes).colors),
+      blocks_(input, largest, digit),
       sheet_(sheet),
       weights_(input.footprint, largest.channels),
       mostBlocks_(blocks_.count()) {
@@ -27,7 +28,6 @@ void StampSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
     } else if (shown_.empty()) {
         shown_.resize(64 * mostBlocks_);
     }
-    const ClassTable::Color* colors = input_.classes.colors.data();
     const SheetLayout& layout = sheet_.layout();
     stamped_.clear();
     const glm::ivec2 rows = whole ? blocksReaching(layout, firstRow, lastRow) : blocks_.rows();
@@ -41,14 +41,15 @@ void StampSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
                     });
     const StampPlaces places{placeInBlock_.data(), sheet_.pitch()};
     if (whole) {
-        stampWhole(stamped_, colors, weights_, places);
+        stampWhole(stamped_, colors_.data(), weights_, places);
     } else {
-        stampChanges(stamped_, colors, weights_, places);
+        stampChanges(stamped_, colors_.data(), weights_, places);
     }
     sheet_.settle();
 }
 
 void StampSplatter::clear() {
+    blocks_.clear();
     sheet_.clear();
     std::fill(shown_.begin(), shown_.end(), ClassIndex{kEmptySlot});
 }

@@ -15,7 +15,9 @@ class StampSplatter {
   public:
     /// @param largest  of the layouts to come
     /// @param sheet    of that layout; zero whenever a slab begins
-    StampSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet);
+    /// @param digit    of colours
+    StampSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
+                  DigitPlace digit = {});
 
     /// Takes on a layout, which the sheet must have by then.
     void setLayout(const SheetLayout& layout) { blocks_.setLayout(layout); }
@@ -26,7 +28,7 @@ class StampSplatter {
     void clear();
 
   private:
-    const SplatInput& input_;
+    const std::vector<ClassTable::Color>& colors_;
     SliceBlocks blocks_;
     Sheet& sheet_;
     StampWeights weights_;

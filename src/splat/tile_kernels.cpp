@@ -5,6 +5,7 @@
 
 #include <bit>
 
+#include "deltasplat/optics/class_table.h"
 #include "simd_targets.h"
 #include "splat/tile_bytes.h"
 
@@ -214,6 +215,29 @@ void findFullRowsKernel(const TileRow& row, int channels, std::span<const std::u
     });
 }
 
+void addLowDigitsKernel(const DigitRows& digits, int channels, std::span<const std::uint8_t> rows,
+                        std::int32_t* sheet, std::span<std::uint8_t> full) {
+    const hn::CappedTag<std::int32_t, 8> tag;
+    const std::size_t length = std::size_t{kTilePixels} * channels;
+    const auto half = hn::Set(tag, 1 << (ClassTable::kDigitBits - 1));
+    forTiles(rows, [&](std::size_t i) HWY_ATTR {
+        for (unsigned rest = rows[i]; rest != 0; rest &= rest - 1) {
+            const int y = std::countr_zero(rest);
+            const std::size_t first = length * i + std::size_t(y) * digits.pitch;
+            auto any = hn::Zero(tag);
+            for (std::size_t x = first; x < first + length; x += hn::Lanes(tag)) {
+                const auto low = hn::Add(hn::LoadU(tag, digits.low + x), half);
+                const auto sum = hn::Add(hn::LoadU(tag, digits.high + x),
+                                         hn::ShiftRight<ClassTable::kDigitBits>(low));
+                hn::StoreU(sum, tag, sheet + x);
+                any = hn::Or(any, sum);
+            }
+            const bool isFull = !hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)));
+            full[i] = std::uint8_t(full[i] | unsigned{isFull} << y);
+        }
+    });
+}
+
 }  // namespace deltasplat::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -222,6 +246,7 @@ namespace deltasplat {
 
 HWY_EXPORT(splatTilesKernel);
 HWY_EXPORT(findFullRowsKernel);
+HWY_EXPORT(addLowDigitsKernel);
 
 bool TileWeights::fits(const Footprint& footprint) {
     return footprint.resolution <= 2 && footprint.width % 2 == 1 &&
@@ -256,6 +281,11 @@ TileWeights::TileWeights(const Footprint& footprint, int sheetChannels)
 void splatTiles(const TileWeights& weights, const PlaneRow& plane, const TileRow& row,
                 std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
     HWY_DYNAMIC_DISPATCH(splatTilesKernel)(weights, plane, row, touched, full);
+}
+
+void addLowDigits(const DigitRows& digits, int channels, std::span<const std::uint8_t> rows,
+                  std::int32_t* sheet, std::span<std::uint8_t> full) {
+    HWY_DYNAMIC_DISPATCH(addLowDigitsKernel)(digits, channels, rows, sheet, full);
 }
 
 void findFullRows(const TileRow& row, int channels, std::span<const std::uint8_t> touched,

@@ -53,6 +53,20 @@ struct PlaneRow {
 void splatTiles(const TileWeights& weights, const PlaneRow& plane, const TileRow& row,
                 std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
 
+/// The digits that a row of tiles is put together from, `[row][pitch]`.
+struct DigitRows {
+    const std::int32_t* high;
+    const std::int32_t* low;
+    std::size_t pitch;  ///< as of the row of tiles
+};
+
+/// Adds low digits to high ones: high + low / 2^15, rounded, in rows of tiles.
+/// @param rows   a byte for each tile, as `touched` of splatTiles: which to make
+/// @param sheet  where they go; may be `digits.high`
+/// @param full   likewise; bits are set where a row is not all zero, and left as they are elsewhere
+void addLowDigits(const DigitRows& digits, int channels, std::span<const std::uint8_t> rows,
+                  std::int32_t* sheet, std::span<std::uint8_t> full);
+
 /// Finds out of touched rows whether they are not all zero.
 /// @param touched,full  as for splatTiles
 void findFullRows(const TileRow& row, int channels, std::span<const std::uint8_t> touched,

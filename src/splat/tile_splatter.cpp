@@ -6,6 +6,8 @@
 #include <bit>
 #include <cstring>
 
+#include "splat/tile_bytes.h"
+
 namespace deltasplat {
 namespace {
 
@@ -29,25 +31,47 @@ std::uint64_t TileSplatter::leastChanges(const Footprint& footprint, int channel
     return channels == 4 ? 14 : 28;
 }
 
-TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet)
-    : input_(input),
-      blocks_(input, largest),
+TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
+                           DigitPlace digit)
+    : colors_(digit.of(input.classes).colors),
+      blocks_(input, largest, digit),
       sheet_(sheet),
       weights_(weightsOf(input.footprint, largest.channels)),
       marginVoxels_(marginOf(largest, std::holds_alternative<CellWeights>(weights_))),
       pitch_(std::size_t(largest.channels) * (8 * largest.blocks.x + 2 * marginVoxels_ + 8)),
       plane_(pitch_ * (8 * largest.blocks.y + 2 * marginVoxels_)),
-      shown_(blocks_.count()) {}
+      shown_(blocks_.count()) {
+    if (largest.channels == 4 || input.classes.numberedByOpacity()) return;
+    for (const ClassTable::Color& color : colors_) opacities_.push_back(color[3]);
+}
 
-void TileSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
+void TileSplatter::splat(int slice, bool whole, int firstRow, int lastRow, const Sheet* low) {
     if (whole) {
         paintWhole(slice, blocksReaching(sheet_.layout(), firstRow, lastRow));
     } else {
         paintChanges(slice);
     }
-    sheet_.refillTouched(firstRow, lastRow,
-                         [&](int row, std::span<const std::uint8_t> touched,
-                             std::span<std::uint8_t> full) { sumTiles(row, touched, full); });
+    sheet_.refillTouched(
+        firstRow, lastRow,
+        [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
+            sumTiles(row, touched, full);
+            if (low) addLow(*low, row, touched, full);
+        });
+}
+
+// Rows between touched ones were made too.
+void TileSplatter::addLow(const Sheet& low, int row, std::span<const std::uint8_t> touched,
+                          std::span<std::uint8_t> full) {
+    lowRows_.assign(touched.size(), 0);
+    const std::span<const std::uint8_t> lowFull = low.fullRows(row);
+    forTiles(touched, [&](std::size_t i) {
+        const unsigned first = unsigned(std::countr_zero(touched[i]));
+        const unsigned made = 0xFFu << first & ((1u << std::bit_width(touched[i])) - 1);
+        lowRows_[i] = std::uint8_t(made & lowFull[i]);
+    });
+    const TileRow tiles = sheet_.tileRow(row);
+    addLowDigits({tiles.sheet, low.row(kTilePixels * row), tiles.sheetPitch},
+                 sheet_.layout().channels, lowRows_, tiles.sheet, full);
 }
 
 void TileSplatter::sumTiles(int row, std::span<const std::uint8_t> touched,
@@ -66,6 +90,7 @@ void TileSplatter::sumTiles(int row, std::span<const std::uint8_t> touched,
 }
 
 void TileSplatter::clear() {
+    blocks_.clear();
     for (const glm::ivec2 block : shownBlocks_) takeAway(block);
     shownBlocks_.clear();
     sheet_.clear();
@@ -117,7 +142,7 @@ void TileSplatter::paint(glm::ivec2 block, std::uint64_t voxels, const ClassInde
 
 void TileSplatter::paintColors(std::int16_t* plane, std::uint64_t voxels,
                                const ClassIndex* classes) const {
-    const ClassTable::Color* colors = input_.classes.colors.data();
+    const ClassTable::Color* colors = colors_.data();
     // Where most voxels change, it is faster to write all.
     constexpr int kFew = 24;
     if (std::popcount(voxels) >= kFew) {
@@ -133,11 +158,14 @@ void TileSplatter::paintColors(std::int16_t* plane, std::uint64_t voxels,
     }
 }
 
-// Of one colour, a class's number is its opacity.
 void TileSplatter::paintOpacities(std::int16_t* plane, const ClassIndex* classes) const {
     static_assert(sizeof *plane == sizeof *classes);
     for (int u = 0; u < 8; ++u, plane += pitch_, classes += 8) {
-        std::memcpy(plane, classes, 8 * sizeof *classes);
+        if (opacities_.empty()) {
+            std::memcpy(plane, classes, 8 * sizeof *classes);
+        } else {
+            for (int v = 0; v < 8; ++v) plane[v] = opacities_[classes[v]];
+        }
     }
 }
 

@@ -28,14 +28,17 @@ class TileSplatter {
     /// @param input    with a footprint that fits
     /// @param largest  of the layouts to come
     /// @param sheet    of that layout; zero whenever a slab begins
-    TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet);
+    /// @param digit    of colours
+    TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
+                 DigitPlace digit = {});
 
     /// Takes on a layout, which the sheet must have by then.
     void setLayout(const SheetLayout& layout) { blocks_.setLayout(layout); }
     /// Makes the sheet that of the slice, after the one before it if it is not whole.
     /// @param firstRow,lastRow  what will be read: rows of the sheet [firstRow, lastRow); others
     /// are made when they are
-    void splat(int slice, bool whole, int firstRow, int lastRow);
+    /// @param low  if not null, these rows of the sheet of the low digit, which is added
+    void splat(int slice, bool whole, int firstRow, int lastRow, const Sheet* low);
     /// Makes everything as it was before the first slice.
     void clear();
 
@@ -50,12 +53,14 @@ class TileSplatter {
     void paintWhole(int slice, glm::ivec2 rows);
     void takeAway(glm::ivec2 block);
     void sumTiles(int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
+    void addLow(const Sheet& low, int row, std::span<const std::uint8_t> touched,
+                std::span<std::uint8_t> full);
     void paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes);
     void paintColors(std::int16_t* plane, std::uint64_t voxels, const ClassIndex* classes) const;
     void paintOpacities(std::int16_t* plane, const ClassIndex* classes) const;
     std::int16_t* planeAt(glm::ivec2 voxel);
 
-    const SplatInput& input_;
+    const std::vector<ClassTable::Color>& colors_;
     SliceBlocks blocks_;
     Sheet& sheet_;
     std::variant<TileWeights, CellWeights> weights_;
@@ -65,6 +70,8 @@ class TileSplatter {
     std::vector<Shown> shown_;             // [block]
     std::vector<glm::ivec2> shownBlocks_;  // those with voxels
     std::vector<glm::ivec2> before_;       // likewise, in the slice before
+    std::vector<std::int16_t> opacities_;  // of one colour: [classes], if not their numbers
+    std::vector<std::uint8_t> lowRows_;    // [tile]: of the row of tiles in hand
 };
 
 }  // namespace deltasplat

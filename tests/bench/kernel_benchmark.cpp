@@ -107,11 +107,13 @@ void over(benchmark::State& state) {
     std::vector<float> layer(pitch * kRows, 0.25f);
     std::vector<OverSpan> spans;
     for (std::size_t y = 0; y < kRows; ++y) {
-        spans.push_back({&sheet[y * pitch], &sheet[(y + 1) * pitch], &layer[y * pitch], pixels});
+        spans.push_back({y * pitch, &layer[y * pitch], std::uint32_t(pixels), 1});
     }
-    const OverWeights weights({fraction, fraction}, glm::vec4(1e-12f), channels, true);
+    const OverSheets sheets{{sheet.data()}, pitch};
+    const std::vector<glm::vec4> scales{glm::vec4(1e-12f)};
+    const OverWeights weights({fraction, fraction}, scales, channels, true);
     for (auto _ : state) {
-        overSpans(spans, weights);
+        overSpans(spans, sheets, weights);
         benchmark::ClobberMemory();
     }
     countItems(state, kRows * pixels);

@@ -100,6 +100,40 @@ TEST(Identity, AlsoOfOneColorAndUnderATolerance) {
     }
 }
 
+// Opacities and colours over many powers of ten, so that colours take both digits, and both planes
+// if they are bright as well.
+void makeWide(TransferFunction& function, bool bright) {
+    function.linearColors = true;
+    function.colors = {{0, {1, 0, 0.001}}, {255, {0.2, bright ? 1e6 : 1, 0}}};
+    function.opacities = {{60, 0, 0.5, 0},      {61, 1e-6, 0.5, 0}, {100, 1e-5, 0.5, 0},
+                          {101, 0.002, 0.5, 0}, {200, 0.4, 0.5, 0}, {255, 1, 0.5, 0}};
+}
+
+TEST(Identity, AlsoOfColorsThatTakeSeveralDigits) {
+    for (const IndexBox& box : kBoxes) {
+        const Volume volume = test::randomVolume(box, 20, 0.5, {1, 1.5, 0.8});
+        for (const glm::dvec3& direction : {kDirections[0], kDirections[1]}) {
+            RenderOptions options = optionsFor(direction);
+            TransferFunction& function = options.optics.transferFunction;
+            for (const bool bright : {false, true}) {
+                makeWide(function, bright);
+                for (const int resolution : {1, 2, 3}) {
+                    options.resolution = resolution;
+                    options.tolerance = {resolution == 2 ? 0.1 : 0.0, 0};
+                    expectSamePixels(volume, options);
+                }
+                options.sigma = 0.9;
+                options.resolution = 1;
+                expectSamePixels(volume, options);
+                options.sigma.reset();
+            }
+            makeWide(function, false);
+            function.colors = {{0, {0.5, 0.7, 0.2}}};
+            expectSamePixels(volume, options);
+        }
+    }
+}
+
 // Of solid shapes little changes: slabs are joined, and small footprints are stamped too. They
 // begin and end between blocks, at negative indices; one hides the other, and a few voxels come and
 // go.
@@ -133,6 +167,8 @@ TEST(Identity, AlsoWhereLittleChanges) {
         }
         options.optics.transferFunction.colors = {{0, {0.5, 0.7, 0.2}}};
         options.resolution = 1;
+        expectSamePixels(volume, options);
+        makeWide(options.optics.transferFunction, true);
         expectSamePixels(volume, options);
     }
 }

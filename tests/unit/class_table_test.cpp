@@ -35,7 +35,12 @@ Optics ramp() {
 }
 
 double channel(const ClassTable& table, int code, int c) {
-    return table.colorOfCode(Code(code))[c] * table.scale[c];
+    return table.lightOfCode(Code(code))[c];
+}
+
+// The high digits of the first plane.
+ClassTable::Color colorOf(const ClassTable& table, int code) {
+    return table.planes.front().high.colors[table.classOfSlot[code + 1]];
 }
 
 TEST(Classify, followsTheFormulaWithinHalfAUnit) {
@@ -53,10 +58,10 @@ TEST(Classify, followsTheFormulaWithinHalfAUnit) {
         EXPECT_NEAR(channel(table, code, 3), alpha, table.scale.a * 0.501) << code;
         EXPECT_NEAR(channel(table, code, 0), alpha * code / 100, table.scale.r * 0.501) << code;
         EXPECT_NEAR(channel(table, code, 2), alpha, table.scale.b * 0.501) << code;
-        EXPECT_EQ(table.colorOfCode(Code(code))[1], 0);
+        EXPECT_EQ(colorOf(table, code)[1], 0);
     }
     EXPECT_EQ(table.scale.g, 0);
-    for (const int c : {0, 2, 3}) EXPECT_EQ(table.colorOfCode(60)[c], ClassTable::kMax) << c;
+    for (const int c : {0, 2, 3}) EXPECT_EQ(colorOf(table, 60)[c], ClassTable::kMax) << c;
 }
 
 TEST(Classify, leavesCodesThatDoNotOccurEmpty) {
@@ -79,7 +84,7 @@ TEST(Classify, keepsOpacityOneAndZeroAtAnyStep) {
     for (const double step : {1e-9, 1.0, 1e9}) {
         const ClassTable table = classify(volumeWithCodes({0, 100}), ramp(), step);
         EXPECT_EQ(channel(table, 100, 3), 1) << step;
-        EXPECT_EQ(table.colorOfCode(0)[3], 0) << step;
+        EXPECT_EQ(colorOf(table, 0)[3], 0) << step;
     }
 }
 
@@ -149,14 +154,16 @@ Optics steps() {
 TEST(Classify, codesThatLookAlikeShareAClass) {
     const ClassTable table =
         classify(volumeWithCodes({5, 101, 7000, 30001, 40000, 60000, 65535}), steps(), 1);
-    EXPECT_EQ(table.colors.size(), 4u);
-    EXPECT_EQ(table.colors[0], ClassTable::Color{});
+    EXPECT_EQ(table.size(), 4u);
+    EXPECT_TRUE(table.oneDigit());
+    const std::vector<ClassTable::Color>& colors = table.planes.front().high.colors;
+    EXPECT_EQ(colors[0], ClassTable::Color{});
     EXPECT_EQ(table.classOfSlot[6], kEmptySlot);
     EXPECT_EQ(table.classOfSlot[102], table.classOfSlot[7001]);
     EXPECT_EQ(table.classOfSlot[30002], table.classOfSlot[40001]);
     EXPECT_EQ(table.classOfSlot[60001], table.classOfSlot[65536]);
-    for (std::size_t i = 0; i < table.colors.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j) EXPECT_NE(table.colors[i], table.colors[j]);
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) EXPECT_NE(colors[i], colors[j]);
     }
 }
 
@@ -165,8 +172,9 @@ TEST(Classify, numbersClassesOfOneColorByTheirOpacity) {
     optics.transferFunction.colors = {{0, {0.7, 0, 0.3}}};
     const ClassTable table = classify(volumeWithCodes({0, 10, 30, 60}), optics, 1);
     EXPECT_TRUE(table.oneColor);
+    EXPECT_TRUE(table.numberedByOpacity());
     for (const int code : {0, 10, 30, 60}) {
-        const ClassTable::Color color = table.colorOfCode(Code(code));
+        const ClassTable::Color color = colorOf(table, code);
         EXPECT_EQ(table.classOfSlot[code + 1], color[3]);
         EXPECT_EQ(color[0], color[3]);
         EXPECT_EQ(color[1], 0);
@@ -174,7 +182,7 @@ TEST(Classify, numbersClassesOfOneColorByTheirOpacity) {
     }
     EXPECT_EQ(table.scale.g, 0);
     for (int opacity = 0; opacity <= ClassTable::kMax; ++opacity) {
-        ASSERT_EQ(table.colors[opacity][3], opacity);
+        ASSERT_EQ(table.planes.front().high.colors[opacity][3], opacity);
     }
 }
 
@@ -186,12 +194,95 @@ TEST(Classify, lastTwoOfAllCodesShareAClass) {
     optics.transferFunction.colors = {{0, {0, 1, 0}}, {32767, {1, 1, 0}}, {65535, {1, 0, 0}}};
     optics.transferFunction.opacities = {{0, 0.5, 0.5, 0}, {65535, 0.9, 0.5, 0}};
     const ClassTable table = classify(volume, optics, 1);
-    EXPECT_LE(table.colors.size(), std::size_t(ClassTable::kMaxClasses));
+    EXPECT_LE(table.size(), std::size_t(ClassTable::kMaxClasses));
     for (const Slot slot : table.classOfSlot) ASSERT_LT(slot, ClassTable::kMaxClasses);
     for (int code = 0; code < kCodeCount; ++code) {
         const double alpha = 0.5 + 0.4 * code / 65535;
         ASSERT_NEAR(channel(table, code, 3), alpha, table.scale.a * 1.01);
     }
+}
+
+// Codes 1, 2, ... of these opacities and scene-linear colours.
+struct Look {
+    double opacity;
+    glm::dvec3 color;
+};
+
+ClassTable classifyLooks(const std::vector<Look>& looks) {
+    std::vector<int> codes;
+    Optics optics;
+    optics.transferFunction.linearColors = true;
+    for (const Look& look : looks) {
+        const int code = int(codes.size()) + 1;
+        codes.push_back(code);
+        optics.transferFunction.colors.push_back({double(code), look.color});
+        optics.transferFunction.opacities.push_back({double(code), look.opacity, 0.5, 0});
+    }
+    return classify(volumeWithCodes(codes), optics, 1);
+}
+
+// Alpha, colours and their quotients are right to 2^-8; numbers of classes are those of their
+// digits.
+void expectLooks(const std::vector<Look>& looks, const ClassTable& table) {
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        const glm::dvec4 light = table.lightOfCode(Code(i + 1));
+        const double alpha = looks[i].opacity;
+        EXPECT_NEAR(light.a, alpha, alpha / 256) << alpha;
+        for (int c = 0; c < 3; ++c) {
+            const double color = looks[i].color[c];
+            EXPECT_NEAR(light[c], alpha * color, alpha * color / 256) << alpha << ' ' << color;
+            EXPECT_NEAR(light[c] / light.a, color, color / 256 * 1.0001) << alpha << ' ' << color;
+        }
+        const Slot number = table.classOfSlot[i + 2];
+        ASSERT_NE(number, kEmptySlot);
+        for (const ClassTable::Plane& plane : table.planes) {
+            for (const ClassTable::Digit* digit : {&plane.high, &plane.low}) {
+                if (digit->colors.empty()) continue;
+                const bool isZero = digit->colors[number] == ClassTable::Color{};
+                EXPECT_TRUE(isZero || (number >= digit->first && number < digit->last));
+            }
+        }
+    }
+}
+
+TEST(Classify, takesOneDigitWhereThatSaysEnough) {
+    // 256 units and more.
+    EXPECT_TRUE(classifyLooks({{1.0 / 128, {1, 1, 1}}, {1, {1, 1, 1}}}).oneDigit());
+    EXPECT_TRUE(classifyLooks({{1.0 / 128, {1, 0.5, 0}}, {0.5, {0.5, 1, 0}}}).oneDigit());
+    // 1/100 of a unit beside a whole number of them.
+    EXPECT_TRUE(classifyLooks({{3.01 / 32767, {1, 1, 1}}, {1, {1, 1, 1}}}).oneDigit());
+    EXPECT_FALSE(classifyLooks({{3.1 / 32767, {1, 1, 1}}, {1, {1, 1, 1}}}).oneDigit());
+    EXPECT_FALSE(classifyLooks({{0.3, {0.001, 1, 1}}, {1, {1, 1, 1}}}).oneDigit());
+}
+
+TEST(Classify, keepsWhatIsThinOrDarkBesideWhatIsOpaqueAndBright) {
+    std::vector<Look> looks;
+    for (int k = 0; k <= 60; ++k) looks.push_back({std::pow(10, -k / 10.0), {1, 1, 1}});
+    const ClassTable white = classifyLooks(looks);
+    EXPECT_TRUE(white.oneColor);
+    EXPECT_FALSE(white.numberedByOpacity());
+    EXPECT_EQ(white.planes.size(), 1u);
+    expectLooks(looks, white);
+    for (int k = 0; k <= 60; ++k) looks[k].color = {0.9, std::pow(10, k / 20.0), 0.001};
+    expectLooks(looks, classifyLooks(looks));
+    std::vector<Look> all;
+    for (const double opacity : {1.0, 0.3, 1e-3, 1e-6}) {
+        for (const double light : {1e-3, 0.7, 1e3}) {
+            all.push_back({opacity, {light, 1 / light, 0.5}});
+            all.push_back({opacity, {0, light, 1 / light}});
+        }
+    }
+    const ClassTable two = classifyLooks(all);
+    EXPECT_EQ(two.planes.size(), 2u);
+    expectLooks(all, two);
+}
+
+// Below 2^-40 of the largest, errors may grow; below 2^-51, nothing is seen.
+TEST(Classify, letsGoOfWhatIsNextToNothing) {
+    const ClassTable table =
+        classifyLooks({{1, {1, 1, 1}}, {1e-11, {1, 1, 1}}, {1e-17, {1, 1, 1}}});
+    EXPECT_NEAR(table.lightOfCode(2).a, 1e-11, 1e-14);
+    EXPECT_EQ(table.classOfSlot[4], kEmptySlot);
 }
 
 }  // namespace

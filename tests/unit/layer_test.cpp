@@ -65,10 +65,11 @@ double bilinearAt(const Sheet& sheet, glm::dvec2 d, int slice, glm::ivec2 b, int
 Layer compositeSlices(glm::dvec2 d, bool frontToBack, int channels, int first = 0, int count = 4,
                       float scale = kScale) {
     Layer layer(reachOf(randomSheet(0).layout(), d, 0, 6), channels);
-    Compositor compositor(glm::vec4(scale), frontToBack);
+    Compositor compositor({glm::vec4(scale)}, frontToBack);
     for (int slice = first; slice < first + count; ++slice) {
         const Sheet sheet = randomSheet(std::uint32_t(slice), channels);
-        compositor.composite(sheet, shiftOf(sheet.layout(), d, slice), layer.box.min.y,
+        const Sheet* const sheets[] = {&sheet};
+        compositor.composite(sheets, shiftOf(sheet.layout(), d, slice), layer.box.min.y,
                              layer.box.max.y, layer);
     }
     return layer;
@@ -104,6 +105,77 @@ TEST_P(LayerOfChannels, CompositesBilinearReadingsInOrder) {
                 }
             }
         }
+    }
+}
+
+// Two planes, the second of which is worth less and covers other tiles.
+Layer compositePlanes(glm::dvec2 d, bool frontToBack, int channels) {
+    Layer layer(reachOf(randomSheet(0).layout(), d, 0, 6), channels);
+    Compositor compositor({glm::vec4(kScale), glm::vec4(kScale / 64)}, frontToBack);
+    for (int slice = 0; slice < 3; ++slice) {
+        const Sheet first = randomSheet(std::uint32_t(slice), channels);
+        const Sheet second = randomSheet(std::uint32_t(slice + 50), channels);
+        const Sheet* const sheets[] = {&first, &second};
+        compositor.composite(sheets, shiftOf(first.layout(), d, slice), layer.box.min.y,
+                             layer.box.max.y, layer);
+    }
+    return layer;
+}
+
+TEST_P(LayerOfChannels, CompositesSumsOfPlanes) {
+    const int channels = GetParam();
+    for (const glm::dvec2 d : kShifts) {
+        for (const bool frontToBack : {true, false}) {
+            const Layer layer = compositePlanes(d, frontToBack, channels);
+            std::vector<Sheet> sheets;
+            for (std::uint32_t i : {0, 50, 1, 51, 2, 52})
+                sheets.push_back(randomSheet(i, channels));
+            for (int y = layer.box.min.y; y < layer.box.max.y; ++y) {
+                for (int x = layer.box.min.x; x < layer.box.max.x; ++x) {
+                    double expected[4] = {};
+                    for (int k = 0; k < 3; ++k) {
+                        const int slice = frontToBack ? k : 2 - k;
+                        const double clear = 1 - expected[channels - 1];
+                        for (int c = 0; c < channels; ++c) {
+                            const auto at = [&](int plane) {
+                                return bilinearAt(sheets[std::size_t(2 * slice + plane)], d, slice,
+                                                  {x, y}, c);
+                            };
+                            expected[c] += clear * (at(0) + at(1) / 64);
+                        }
+                    }
+                    for (int c = 0; c < channels; ++c) {
+                        ASSERT_NEAR(layer.pixel({x, y})[c], expected[c], 1e-5)
+                            << x << ' ' << y << ' ' << c;
+                    }
+                }
+            }
+            for (const std::string& level : simdLevels()) {
+                setSimdLevel(level);
+                EXPECT_EQ(compositePlanes(d, frontToBack, channels).values, layer.values) << level;
+            }
+            setSimdLevel("auto");
+        }
+    }
+}
+
+// A plane of zeros changes no bit, wherever it is said to be full.
+TEST_P(LayerOfChannels, PlanesOfZerosChangeNothing) {
+    const int channels = GetParam();
+    for (const glm::dvec2 d : kShifts) {
+        Layer layer(reachOf(randomSheet(0).layout(), d, 0, 6), channels);
+        Compositor compositor({glm::vec4(kScale), glm::vec4(kScale)}, true);
+        for (int slice = 0; slice < 4; ++slice) {
+            const Sheet sheet = randomSheet(std::uint32_t(slice), channels);
+            Sheet zeros(sheet.layout());
+            for (int x = slice % 2; x < sheet.layout().blocks.x; x += 2)
+                zeros.show({x, slice % 3}, ~std::uint64_t{0}, 0);
+            const Sheet* const sheets[] = {slice == 2 ? &zeros : &sheet,
+                                           slice == 2 ? &sheet : &zeros};
+            compositor.composite(sheets, shiftOf(sheet.layout(), d, slice), layer.box.min.y,
+                                 layer.box.max.y, layer);
+        }
+        EXPECT_EQ(layer.values, compositeSlices(d, true, channels).values);
     }
 }
 

@@ -11,36 +11,82 @@
 namespace deltasplat {
 namespace {
 
+// Of the colours of a picture: in one digit, in two, or on two planes as well.
+enum class Range { kOneDigit, kTwoDigits, kTwoPlanes };
+
 // What a picture along x is splatted from.
 struct Scene {
-    Scene(const Volume& volume, Encoding encoding, const Footprint& print, bool oneColor)
-        : classes(classesOf(volume, oneColor)),
+    Scene(const Volume& volume, Encoding encoding, const Footprint& print, bool oneColor,
+          Range range = Range::kOneDigit)
+        : classes(classesOf(volume, oneColor, range)),
           deltas(packDeltas(volume, {0, encoding, classes.classOfSlot, {}})),
           footprint(print),
           layout(layoutSheet(deltas.box, footprint, oneColor ? 1 : 4)),
-          input{deltas, classes, footprint, false} {}
+          digitVoxels(deltas, classes),
+          input{deltas, classes, footprint, false, classes.oneDigit() ? nullptr : &digitVoxels} {}
 
-    static ClassTable classesOf(const Volume& volume, bool oneColor) {
+    static ClassTable classesOf(const Volume& volume, bool oneColor, Range range) {
         Optics optics;
-        optics.transferFunction.colors = {{0, {1, 0, 0.5}}};
-        if (!oneColor) optics.transferFunction.colors.push_back({255, {0.2, 1, 0}});
-        optics.transferFunction.opacities = {{60, 0, 0.5, 0}, {200, 0.4, 0.5, 0}, {255, 1, 0.5, 0}};
-        return classify(volume, optics, 1);
+        TransferFunction& function = optics.transferFunction;
+        function.linearColors = true;
+        function.colors = {{0, {1, 0.1, 0.5}}};
+        if (!oneColor) function.colors.push_back({255, {0.2, 1, 0.1}});
+        const double least = range == Range::kOneDigit    ? 0.03
+                             : range == Range::kTwoDigits ? 1e-5
+                                                          : 1e-9;
+        function.opacities = {{60, 0, 0.5, 0},     {61, least, 0.5, 0}, {140, 2 * least, 0.5, 0},
+                              {150, 0.07, 0.5, 0}, {200, 0.4, 0.5, 0},  {255, 1, 0.5, 0}};
+        ClassTable classes = classify(volume, optics, 1);
+        EXPECT_EQ(classes.oneDigit(), range == Range::kOneDigit);
+        EXPECT_EQ(classes.planes.size(), range == Range::kTwoPlanes ? 2u : 1u);
+        return classes;
     }
 
     ClassTable classes;
     PackedDeltas deltas;
     Footprint footprint;
     SheetLayout layout;
+    DigitVoxels digitVoxels;
     SplatInput input;
 };
 
-// The sheet of a slice, all voxels of which are stamped one by one.
-std::vector<std::int32_t> stampedSheet(const Scene& scene, int slice) {
-    Sheet sheet(scene.layout);
-    StampSplatter splatter(scene.input, scene.layout, sheet);
-    splatter.splat(slice, true, 0, scene.layout.sizePixels.y);
-    return {sheet.row(0), sheet.row(0) + sheet.pitch() * scene.layout.sizePixels.y};
+// What the voxels of a slice add up to in one digit, by plain sums. The scene's slabs are whole.
+std::vector<std::int64_t> sumOfDigit(const Scene& scene, const ClassTable::Digit& digit,
+                                     int slice) {
+    const SheetLayout& layout = scene.layout;
+    const int channels = layout.channels;
+    const std::size_t pitch = channels * layout.pitchPixels();
+    std::vector<std::int64_t> sums(pitch * layout.sizePixels.y);
+    if (digit.colors.empty()) return sums;
+    for (const DeltaWord& word : scene.deltas.slice(slice)) {
+        for (int n = 0; n < 64; ++n) {
+            if ((word.visible >> n & 1) == 0) continue;
+            const glm::ivec2 voxel(8 * word.block.y + n % 8, 8 * word.block.x + n / 8);
+            const ClassTable::Color& color = digit.colors[word.classes[n]];
+            for (int y = 0; y < scene.footprint.width; ++y) {
+                for (int x = 0; x < scene.footprint.width; ++x) {
+                    std::int64_t* sum =
+                        &sums[channels * layout.stampPlace(voxel) + y * pitch + x * channels];
+                    for (int c = 0; c < channels; ++c)
+                        sum[c] += color[channels == 1 ? 3 : c] * scene.footprint.at(x, y);
+                }
+            }
+        }
+    }
+    return sums;
+}
+
+// The sheets of all planes of a slice.
+std::vector<std::vector<std::int32_t>> plainSheets(const Scene& scene, int slice) {
+    std::vector<std::vector<std::int32_t>> sheets;
+    for (const ClassTable::Plane& plane : scene.classes.planes) {
+        const std::vector<std::int64_t> high = sumOfDigit(scene, plane.high, slice);
+        const std::vector<std::int64_t> low = sumOfDigit(scene, plane.low, slice);
+        sheets.emplace_back();
+        for (std::size_t i = 0; i < high.size(); ++i)
+            sheets.back().push_back(std::int32_t(high[i] + ((low[i] + (1 << 14)) >> 15)));
+    }
+    return sheets;
 }
 
 bool isFullWhereNotZero(const Sheet& sheet, int row) {
@@ -76,38 +122,51 @@ struct Kind {
 
 // A window of rows that moves over the sheet from slice to slice and comes back: in it the sheet is
 // that of the slice, whatever was passed over meanwhile, and in the end nothing is left.
+void expectMovingWindow(const Volume& volume, bool oneColor, const Footprint& footprint,
+                        Range range) {
+    const Scene whole(volume, Encoding::kWhole, footprint, oneColor, range);
+    std::vector<std::vector<std::vector<std::int32_t>>> expected;
+    for (int slice = kBox.min.x; slice <= kBox.max.x; ++slice)
+        expected.push_back(plainSheets(whole, slice));
+    for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole}) {
+        const Scene scene(volume, encoding, footprint, oneColor, range);
+        Splatter splatter(scene.input, scene.layout);
+        const int height = scene.layout.sizePixels.y;
+        const std::size_t pitch = scene.layout.channels * scene.layout.pitchPixels();
+        for (const PlannedSlab& slab : scene.deltas.slabs) {
+            splatter.begin(slab, scene.layout);
+            std::span<const Sheet* const> sheets;
+            for (int i = 0; i < slab.sliceCount; ++i) {
+                const int first = 11 * i % (height - 15);
+                const int slice = slab.firstSlice + i;
+                sheets = splatter.splat(slice, first, first + 15);
+                ASSERT_EQ(sheets.size(), scene.classes.planes.size());
+                for (std::size_t p = 0; p < sheets.size(); ++p) {
+                    for (int y = first; y < first + 15; ++y) {
+                        ASSERT_TRUE(std::equal(sheets[p]->row(y), sheets[p]->row(y) + pitch,
+                                               &expected[slice - kBox.min.x][p][pitch * y]))
+                            << "slice " << slice << " row " << y << " plane " << p << " width "
+                            << footprint.width;
+                        ASSERT_TRUE(isFullWhereNotZero(*sheets[p], y)) << slice << ' ' << y;
+                    }
+                }
+            }
+            splatter.end();
+            for (const Sheet* sheet : sheets) {
+                for (std::size_t p = 0; p < pitch * height; ++p) ASSERT_EQ(sheet->row(0)[p], 0);
+            }
+        }
+    }
+}
+
 TEST(Splatter, RowsOfAMovingWindowAreThoseOfTheSlice) {
     for (const Volume& volume : volumes()) {
         for (const bool oneColor : {false, true}) {
             for (const Kind kind : {Kind{1, 3}, {1, 6}, {2, 5}, {3, 9}, {4, 13}}) {
-                const auto [resolution, width] = kind;
-                const Footprint footprint = makeFootprint(0.5, {0.3, -0.6}, resolution, width);
-                const Scene whole(volume, Encoding::kWhole, footprint, oneColor);
-                for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole}) {
-                    const Scene scene(volume, encoding, footprint, oneColor);
-                    Splatter splatter(scene.input, scene.layout);
-                    const int height = scene.layout.sizePixels.y;
-                    const std::size_t pitch = scene.layout.channels * scene.layout.pitchPixels();
-                    for (const PlannedSlab& slab : scene.deltas.slabs) {
-                        splatter.begin(slab, scene.layout);
-                        const Sheet* sheet = nullptr;
-                        for (int i = 0; i < slab.sliceCount; ++i) {
-                            const int first = 11 * i % (height - 15);
-                            const int slice = slab.firstSlice + i;
-                            sheet = &splatter.splat(slice, first, first + 15);
-                            const std::vector<std::int32_t> expected = stampedSheet(whole, slice);
-                            for (int y = first; y < first + 15; ++y) {
-                                ASSERT_TRUE(std::equal(sheet->row(y), sheet->row(y) + pitch,
-                                                       &expected[pitch * y]))
-                                    << "slice " << slice << " row " << y << " width " << width;
-                                ASSERT_TRUE(isFullWhereNotZero(*sheet, y)) << slice << ' ' << y;
-                            }
-                        }
-                        splatter.end();
-                        for (std::size_t p = 0; p < pitch * height; ++p)
-                            ASSERT_EQ(sheet->row(0)[p], 0);
-                    }
-                }
+                const Footprint footprint =
+                    makeFootprint(0.5, {0.3, -0.6}, kind.resolution, kind.width);
+                for (const Range range : {Range::kOneDigit, Range::kTwoDigits, Range::kTwoPlanes})
+                    expectMovingWindow(volume, oneColor, footprint, range);
             }
         }
     }
@@ -121,7 +180,7 @@ TEST(SliceBlocks, TraditionalTakesEveryVoxelOfTheBox) {
     nothing.box = scene.deltas.box;
     nothing.begins.resize(std::size_t(nothing.box.dims().x) + 1);
     const SplatInput input{nothing, scene.classes, scene.footprint, true};
-    const SliceBlocks blocks(input, scene.layout);
+    SliceBlocks blocks(input, scene.layout);
     std::vector<glm::ivec2> found;
     blocks.forEach(kBox.min.x, true, blocks.rows(),
                    [&](glm::ivec2 block, std::uint64_t voxels, const DeltaWord&) {

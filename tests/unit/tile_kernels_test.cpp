@@ -198,6 +198,38 @@ TEST_P(TilesOnEveryLevel, CellsOfLongRowsAreTheSumsOfStamps) {
     }
 }
 
+TEST_P(TilesOnEveryLevel, LowDigitsAreAddedRounded) {
+    std::mt19937 random(3);
+    for (const int channels : {1, 4}) {
+        const std::size_t pitch = channels * kWidth;
+        std::vector<std::int32_t> high(pitch * kTilePixels);
+        std::vector<std::int32_t> low(high.size());
+        for (std::size_t i = 0; i < high.size(); ++i) {
+            if (random() % 4 == 0) high[i] = std::int32_t(random() % (1u << 30));
+            if (random() % 2 == 0) low[i] = std::int32_t(random() % (1u << 30));
+        }
+        // Of the first tile one row is empty, and another holds what is rounded to nothing.
+        for (int i = 0; i < 8 * channels; ++i) {
+            high[i] = low[i] = 0;
+            high[pitch + i] = 0;
+            low[pitch + i] = (1 << 14) - 1;
+        }
+        std::vector<std::int32_t> sheet(high.size(), -7);
+        std::vector<std::uint8_t> full(kTouched.size(), 0);
+        std::vector<std::uint8_t> rows = kTouched;
+        rows[2] = 0x05;
+        addLowDigits({high.data(), low.data(), pitch}, channels, rows, sheet.data(), full);
+        for (std::size_t i = 0; i < sheet.size(); ++i) {
+            const std::size_t tile = i % pitch / (8 * channels);
+            const bool made = tile < rows.size() && (rows[tile] >> i / pitch & 1);
+            const auto sum = std::int32_t((std::int64_t{high[i]} * 32768 + low[i] + 16384) >> 15);
+            ASSERT_EQ(sheet[i], made ? sum : -7) << i;
+        }
+        EXPECT_EQ(full[0], 0xFC);
+        EXPECT_EQ(full[2], 0x05);
+    }
+}
+
 TEST(CellWeights, FitFootprintsThatReachTwoVoxels) {
     EXPECT_TRUE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 3, 9)));
     EXPECT_TRUE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 3, 12)));

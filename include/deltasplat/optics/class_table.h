@@ -13,27 +13,59 @@
 
 namespace deltasplat {
 
-/// Classified colours: premultiplied integer RGBA with one scale a channel. Codes that look alike
-/// share a class, so that they make no deltas; class 0 is what cannot be seen.
+/// Classified colours: premultiplied RGBA in integers. Codes that look alike share a class, so that
+/// they make no deltas; class 0 is what cannot be seen.
+///
+/// A channel is `high + low / 2^15` units of a plane, high and low digits being integers of
+/// 0..kMax. Where one digit on the first plane states alpha, colour and colour / alpha to 2^-8, low
+/// is 0, as it is for almost everything. What is less than 2^-20 of the channel's largest is on a
+/// second plane, whose units are 2^20 times as fine. So all that is at least 2^-40 of the largest
+/// is right to 2^-8.
 struct ClassTable {
     using Color = std::array<std::int16_t, 4>;
-    static constexpr int kMax = 32767;  ///< the largest value of each channel that is not all zero
+    static constexpr int kMax = 32767;  ///< the largest digit of each channel that is not all zero
+    static constexpr int kDigitBits = 15;
+    static constexpr int kPlaneBits = 20;
+    static constexpr int kMaxPlanes = 2;
     /// Classes are numbered with 16 bits. Where all 65536 codes look different, the last two share
     /// a class.
     static constexpr int kMaxClasses = 65536;
 
-    /// Premultiplied RGBA of each class for one slice; entry 0 is zero. No two are alike.
-    std::vector<Color> colors{Color{}};
+    /// A digit of each channel of every class.
+    struct Digit {
+        std::vector<Color> colors;  ///< [classes]; entry 0 is zero
+        /// All classes whose digits are not zero are in [first, last).
+        int first = 1;
+        int last = 1;
+    };
+    struct Plane {
+        Digit high{{Color{}}};
+        Digit low;  ///< without colours if all are zero
+    };
+    /// One or two, the coarser first. No two classes are alike in all digits.
+    std::vector<Plane> planes = std::vector<Plane>(1);
     /// [kSlotCount]: the class of every slot, the map that `DeltaOptions::slotMap` takes. 0 for
     /// slot 0, for codes that do not occur and for clear ones.
     std::vector<Slot> classOfSlot;
-    /// Value of one integer unit of each channel; 0 for a channel that is zero throughout.
+    /// Value of one unit of each channel on the first plane; 0 for a channel that is zero
+    /// throughout.
     glm::dvec4 scale{0.0};
-    /// All classes have one colour and differ in opacity alone. Then a class's number is its
-    /// opacity, and its channels are equal wherever the scale is not 0; all opacities have a class.
+    /// All classes have one colour and differ in opacity alone: channels are equal wherever the
+    /// scale is not 0.
     bool oneColor = false;
 
-    const Color& colorOfCode(Code code) const { return colors[classOfSlot[code + 1]]; }
+    std::size_t size() const { return planes.front().high.colors.size(); }
+    /// Whether one digit says all.
+    bool oneDigit() const { return planes.size() == 1 && planes.front().low.colors.empty(); }
+    /// Whether a class's number is its opacity: of one colour in one digit. All opacities have a
+    /// class then.
+    bool numberedByOpacity() const { return oneColor && oneDigit(); }
+    /// Returns the value of one unit of each channel on a plane.
+    glm::dvec4 scaleOf(int plane) const;
+    /// Returns what a class looks like, in units of the first plane.
+    glm::dvec4 unitsOf(Slot number) const;
+    /// Returns what a code looks like.
+    glm::dvec4 lightOfCode(Code code) const;
 };
 
 /// What turns data values into light.

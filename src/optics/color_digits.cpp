@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optics/color_digits.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace deltasplat {
+namespace {
+
+constexpr double kFiner = double(1 << ClassTable::kPlaneBits);
+// What is less belongs on the second plane.
+constexpr double kLeastOfPlane = ClassTable::kMax / kFiner;
+// Below 2^-40 of the largest, what is off by no more than at 2^-40 is right.
+constexpr double kLeastUnits = kLeastOfPlane / kFiner;
+constexpr double kColorShare = 0x1p-8;
+
+double nearest(double units) {
+    return std::min(std::round(units), double(ClassTable::kMax));
+}
+
+// The share of itself that rounding to one digit adds.
+double errorOf(double units) {
+    return (nearest(units) - units) / std::max(units, kLeastUnits);
+}
+
+// Of a fog, however deep, alpha is off by no more than one voxel's, and colour by no more than one
+// voxel's colour (thin fog) or its quotient by alpha (dense fog).
+bool oneDigitIsEnough(const glm::dvec4& units) {
+    const double alpha = errorOf(units.a);
+    if (std::abs(alpha) > kColorShare) return false;
+    for (int c = 0; c < 3; ++c) {
+        const double color = errorOf(units[c]);
+        const bool seen = units[c] >= kLeastUnits;
+        if (std::abs(color) > kColorShare) return false;
+        if (seen && std::abs(color - alpha) > kColorShare) return false;
+    }
+    return true;
+}
+
+void writeChannel(double units, int c, ColorDigits& digits) {
+    std::size_t high = 0;
+    if (units < kLeastOfPlane) {
+        units *= kFiner;
+        high = 2;
+    }
+    constexpr double kLow = double(1 << ClassTable::kDigitBits);
+    const auto whole = std::int64_t(std::round(units * kLow));
+    digits[high][c] = std::int16_t(whole >> ClassTable::kDigitBits);
+    digits[high + 1][c] = std::int16_t(whole & ClassTable::kMax);
+}
+
+}  // namespace
+
+ColorDigits digitsOf(const glm::dvec4& units) {
+    ColorDigits digits{};
+    if (oneDigitIsEnough(units)) {
+        for (int c = 0; c < 4; ++c) digits[0][c] = std::int16_t(nearest(units[c]));
+    } else {
+        for (int c = 0; c < 4; ++c) writeChannel(units[c], c, digits);
+    }
+    return digits;
+}
+
+unsigned usedDigits(const ColorDigits& digits) {
+    unsigned used = 0;
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        if (std::bit_cast<std::uint64_t>(digits[i]) != 0) used |= 1u << i;
+    }
+    return used;
+}
+
+}  // namespace deltasplat

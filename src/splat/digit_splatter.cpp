@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: "Accelerating Footprint Method Based on Comparability of Consecutive Image Slices",
+// equation 9, and Lee Westover, "Footprint Evaluation for Volume Rendering", 1990, for the sheet.
+#include "splat/digit_splatter.h"
+
+namespace deltasplat {
+
+// Both ways give the same integers.
+void DigitSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
+    whole_ = slab.whole;
+    const bool changesFew = isFew_.value_or(false) || slab.changesFewerThan(leastChanges());
+    // What is splatted anew for each slice has to be cleared as well, which tiles do by the way;
+    // and a low digit is added to what is summed anew.
+    stamping_ = !TileSplatter::fits(input_.footprint) || (!slab.whole && !addsLow_ && changesFew);
+    sheet_.setLayout(layout);
+    if (stamping_) {
+        if (!stamps_) stamps_.emplace(input_, largest_, sheet_, digit_);
+        stamps_->setLayout(layout);
+    } else {
+        if (!tiles_) tiles_.emplace(input_, largest_, sheet_, digit_);
+        tiles_->setLayout(layout);
+    }
+}
+
+const Sheet& DigitSplatter::splat(int slice, int firstRow, int lastRow, const Sheet* low) {
+    if (stamping_) {
+        stamps_->splat(slice, whole_, firstRow, lastRow);
+    } else {
+        tiles_->splat(slice, whole_, firstRow, lastRow, low);
+    }
+    return sheet_;
+}
+
+void DigitSplatter::end() {
+    if (stamping_) {
+        stamps_->clear();
+    } else {
+        tiles_->clear();
+    }
+}
+
+double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout) {
+    const double blocks = double(layout.blocks.x) * layout.blocks.y;
+    // The classes that stamps show, and their list as it grows.
+    const double stamps = blocks * (64 * sizeof(ClassIndex) + 3 * sizeof(BlockStamps));
+    // The plane, which is at most half as large as the sheet, and two lists of blocks.
+    const double tiles = 0.5 * double(layout.bytes()) + 48 * blocks;
+    const double shown = input.digitVoxels ? sizeof(std::uint64_t) * blocks : 0;
+    return double(layout.bytes()) + stamps + shown +
+           (TileSplatter::fits(input.footprint) ? tiles : 0);
+}
+
+}  // namespace deltasplat

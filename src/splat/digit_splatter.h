@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "splat/stamp_splatter.h"
+#include "splat/tile_splatter.h"
+
+namespace deltasplat {
+
+/// Turns slabs into sheets of one digit of colours, in the way that suits the footprint and how
+/// much changes. Holds what that takes, to be used for one slab after the other; not thread-safe.
+class DigitSplatter {
+  public:
+    /// @param largest  of the layouts to come
+    /// @param addsLow  whether sheets of the low digit are added to those that are summed
+    DigitSplatter(const SplatInput& input, const SheetLayout& largest, DigitPlace digit,
+                  bool addsLow)
+        : input_(input), largest_(largest), digit_(digit), addsLow_(addsLow), sheet_(largest) {
+        if (input.digitVoxels && input.digitVoxels->of(digit))
+            isFew_ = input.digitVoxels->fewerThan(leastChanges(), digit);
+    }
+    // Both ways refer to the sheet.
+    DigitSplatter(const DigitSplatter&) = delete;
+    DigitSplatter& operator=(const DigitSplatter&) = delete;
+
+    /// Begins with a slab.
+    /// @param layout  of the whole sheet, or of a part of it (layoutRows)
+    void begin(const PlannedSlab& slab, const SheetLayout& layout);
+    /// Makes the sheet of the slab's next slice, and returns it. Deltas are added to what the slice
+    /// before left; of a whole slab, each slice starts anew.
+    /// @param firstRow,lastRow  rows of the sheet that are needed: [firstRow, lastRow). Others may
+    /// hold an earlier slice, or part of this one
+    /// @param low  the sheet of the low digit, or null
+    const Sheet& splat(int slice, int firstRow, int lastRow, const Sheet* low = nullptr);
+    /// Ends a slab.
+    void end();
+
+    /// Bytes that it takes.
+    static double bytes(const SplatInput& input, const SheetLayout& layout);
+
+  private:
+    std::uint64_t leastChanges() const {
+        return TileSplatter::leastChanges(input_.footprint, largest_.channels);
+    }
+
+    const SplatInput& input_;
+    SheetLayout largest_;
+    DigitPlace digit_;
+    bool addsLow_;
+    std::optional<bool> isFew_;  // of several digits: whether few voxels of a block have this one
+    Sheet sheet_;
+    std::optional<StampSplatter> stamps_;  // each made when it is first needed
+    std::optional<TileSplatter> tiles_;
+    bool stamping_ = false;  // of the slab in hand
+    bool whole_ = false;     // likewise
+};
+
+}  // namespace deltasplat
