@@ -42,7 +42,11 @@ ThreadLimit::ThreadLimit(int threads) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("threads", std::to_string(threads), "at least 0 (0 = all)"));
     }
-    impl_ = std::make_unique<Impl>(threads == 0 ? tbb::info::default_concurrency() : threads);
+    impl_ = std::make_unique<Impl>(threads == 0 ? hardwareThreads() : threads);
+}
+
+int ThreadLimit::hardwareThreads() {
+    return tbb::info::default_concurrency();
 }
 
 ThreadLimit::~ThreadLimit() = default;

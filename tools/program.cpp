@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program.h"
 
+#include <stdlib.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -18,6 +20,7 @@
 #include "printable.h"
 #include "reuse_memory.h"
 #include "suggest.h"
+#include "terminate.h"
 
 namespace deltasplat {
 namespace {
@@ -158,6 +161,26 @@ const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcom
     return subcommand;
 }
 
+// Returns how many threads to use: fewer than asked for, or than there are cores, where so many
+// cannot be started.
+int threadsFor(const CommonOptions& options) {
+    const int wanted = options.threads > 0 ? options.threads : ThreadLimit::hardwareThreads();
+    // Beside the one there is, N threads mean N - 1 of the library's, N - 1 of OpenImageIO's and N
+    // of OpenEXR's.
+    const int startable = wanted > 1 ? startableThreads(3 * wanted - 2) : 0;
+    const int threads = std::clamp((startable + 2) / 3, 1, wanted);
+    if (threads == wanted) return wanted;
+    if (!options.quiet) {
+        std::fprintf(stderr,
+                     "deltasplat: warning: threads: %d instead of %d, for no more can be "
+                     "started\n",
+                     threads, wanted);
+    }
+    // What OpenImageIO makes for itself when it is first used.
+    ::setenv("OPENIMAGEIO_THREADS", std::to_string(threads).c_str(), 1);
+    return threads;
+}
+
 // Runs the program; returns its exit code. Sets `errorExit` as soon as there is a subcommand that
 // has one.
 int execute(const std::vector<std::string>& arguments,
@@ -178,7 +201,10 @@ int execute(const std::vector<std::string>& arguments,
         CLI::App& app = *subcommands.back().app;
         addCommonOptions(app, session.common);
         const auto code = subcommands.back().errorExit;
-        app.preparse_callback([&errorExit, code](std::size_t) { errorExit = code; });
+        app.preparse_callback([&errorExit, code](std::size_t) {
+            errorExit = code;
+            setTerminateExitCode(code.value_or(int(ErrorCode::kFailed)));
+        });
         for (const Subcommand& nested : subcommands.back().nested)
             addCommonOptions(*nested.app, session.common);
     }
@@ -186,7 +212,7 @@ int execute(const std::vector<std::string>& arguments,
     const Subcommand* const subcommand = parse(program, subcommands, arguments);
     if (subcommand == nullptr) return 0;
     setSimdLevel(session.common.simd);
-    const ThreadLimit limit(session.common.threads);
+    const ThreadLimit limit(threadsFor(session.common));
     setSyncFiles(session.common.fsync);
     setMemoryLimit(session.common.maxMemory);
     // What is kept counts as taken.
@@ -224,7 +250,7 @@ int runProgram(const std::vector<std::string>& arguments,
     } catch (const std::bad_alloc&) {
         return fail(arguments, "out of memory", ErrorCode::kFailed, errorExit);
     } catch (const std::exception& error) {
-        return fail(arguments, error.what(), ErrorCode::kFailed, errorExit);
+        return fail(arguments, describe(error), ErrorCode::kFailed, errorExit);
     }
 }
 

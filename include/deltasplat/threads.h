@@ -15,6 +15,9 @@ class ThreadLimit {
     ThreadLimit(const ThreadLimit&) = delete;
     ThreadLimit& operator=(const ThreadLimit&) = delete;
 
+    /// Returns how many threads 0 stands for.
+    static int hardwareThreads();
+
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;

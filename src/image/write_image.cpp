@@ -14,6 +14,7 @@
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
+#include "exr_threads.h"
 #include "image/quantize.h"
 #include "lower_case.h"
 #include "printable.h"
@@ -69,9 +70,14 @@ void setMatrix(OIIO::ImageSpec& spec, const char* name, const glm::dmat4& matrix
 std::string encode(const std::filesystem::path& file, const char* formatName,
                    const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
     OIIO::Filesystem::IOVecOutput memory;
+    limitExrThreads();
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(formatName);
-    if (!output)
-        throw Error(ErrorCode::kOutput, file.string() + ": " + printable(OIIO::geterror()));
+    if (!output) {
+        const std::string why = printable(OIIO::geterror());
+        throw Error(ErrorCode::kFailed,
+                    file.string() + ": cannot be encoded: " +
+                        (why.empty() ? "OpenImageIO's writer cannot be started" : why));
+    }
     output->threads(threadCount());
     const bool written = output->set_ioproxy(&memory) && output->open(file.string(), spec) &&
                          output->write_image(type, pixels) && output->close();

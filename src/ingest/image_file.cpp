@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "deltasplat/error.h"
+#include "exr_threads.h"
 #include "ingest/cleared_memory.h"
 #include "ingest/file_bytes.h"
 #include "ingest/file_name.h"
@@ -43,6 +44,7 @@ std::unique_ptr<ImageInput> openInput(const std::filesystem::path& file,
     const ClearedMemory cleared;
     // Asked for by the name of a file that its format's reader refuses, OpenImageIO would hand it
     // to all of its readers, those of DICOM and films too.
+    limitExrThreads();
     auto input = ImageInput::create(lowerExtension(file).substr(1));
     if (input && proxy != nullptr) input->set_ioproxy(proxy);
     if (!input || !input->open(file.string(), spec, config)) {

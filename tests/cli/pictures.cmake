@@ -20,6 +20,8 @@ foreach(signal INT TERM HUP)
 endforeach()
 deltasplat_script_test(interrupt.write interrupt_write.sh ARGS ${tool} ${scratch}/interrupt_write)
 deltasplat_script_test(killed killed.sh ARGS ${tool} ${scratch}/killed)
+deltasplat_script_test(few_threads few_threads.sh ARGS ${tool} ${scratch}/few_threads)
+set_tests_properties(cli.few_threads PROPERTIES SKIP_RETURN_CODE 77)
 deltasplat_script_test(inputs_kept inputs_kept.sh
     ARGS ${tool} ${scratch}/inputs_kept $<BOOL:${DELTASPLAT_ITK}>)
 foreach(file full.exr full.png)

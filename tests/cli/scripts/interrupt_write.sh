@@ -18,11 +18,11 @@ once() { # moment: a line of progress, "temporary" or "final"
     local job=$! code=0 line
     exec 3<progress
     case $1 in
-        temporary) while kill -0 $job 2>&- && ! compgen -G '.deltasplat.out.exr.*' >&-; do :; done ;;
-        final) while kill -0 $job 2>&- && [[ ! -e out.exr ]]; do :; done ;;
+        temporary) while kill -0 $job 2>/dev/null && ! compgen -G '.deltasplat.out.exr.*' >/dev/null; do :; done ;;
+        final) while kill -0 $job 2>/dev/null && [[ ! -e out.exr ]]; do :; done ;;
         *) while read -r line <&3 && [[ $line != "Progress: $1%" ]]; do :; done ;;
     esac
-    kill -TERM $job 2>&- || true
+    kill -TERM $job 2>/dev/null || true
     cat <&3 >rest
     wait $job || code=$?
     exec 3<&-

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include "deltasplat/threads.h"
+
+namespace deltasplat {
+
+/// Makes OpenEXR use as many threads as the library. It would start as many as there are cores.
+inline void limitExrThreads() {
+    constexpr int kNone = -1;  // but the caller
+    OIIO::attribute("exr_threads", threadCount() > 1 ? threadCount() : kNone);
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Runs the program where a user may have few threads (ulimit -u): whatever happens is an exit code
+# of its own and one line, and with a few threads more it works.
+# Usage: few_threads.sh PROGRAM SCRATCH
+set -uo pipefail
+program=$1 scratch=$2
+rm -rf "$scratch"
+mkdir -p "$scratch"
+cd "$scratch" || exit 1
+"$program" synth slab slab_8x8x8_uint8.raw --dims 8x8x8 -q || exit 1
+"$program" render slab_8x8x8_uint8.raw -o expected.exr -q || exit 1
+
+# The limit is on a user's threads altogether, and not on root's: a user who has none is needed.
+user=3123456780
+as_user=(setpriv --reuid=$user --regid=$user --clear-groups)
+if [[ $(id -u) != 0 ]] || ! "${as_user[@]}" true 2>/dev/null; then
+    echo "skipped: needs root and setpriv, to become a user without other processes"
+    exit 77
+fi
+cp "$program" program
+if ! "${as_user[@]}" ./program --version >/dev/null; then
+    echo "skipped: another user cannot reach $scratch"
+    exit 77
+fi
+if "${as_user[@]}" bash -c 'ulimit -u 1; (:) ' 2>/dev/null; then
+    echo "skipped: this system does not limit threads"
+    exit 77
+fi
+chmod 777 .
+
+worked=0
+for limit in 1 3 4 5 6 8 10 12 16 40 100; do
+    for threads in 2 16; do
+        for name in render version; do
+            command=(render slab_8x8x8_uint8.raw -o out.exr --threads $threads -q)
+            [[ $name == render ]] || command=(--version)
+            "${as_user[@]}" bash -c "ulimit -u $limit; exec ./program \"\$@\"" - "${command[@]}" \
+                >stdout 2>message
+            code=$?
+            [[ $code == 0 || $code == 1 ]] ||
+                { echo "ulimit -u $limit, ${command[*]}: exit code $code: $(cat message)"; exit 1; }
+            [[ $code == 0 || ($(wc -l <message) == 1 && $(cat message) == "deltasplat: "*) ]] ||
+                { echo "ulimit -u $limit, ${command[*]}: $(cat message)"; exit 1; }
+            if [[ $name == render ]]; then
+                [[ $code == 0 ]] && worked=$limit
+                [[ $code == 1 || -e out.exr ]] && [[ $code == 0 || ! -e out.exr ]] ||
+                    { echo "ulimit -u $limit: exit code $code and $(ls out.exr)"; exit 1; }
+            fi
+            rm -f out.exr
+        done
+    done
+    [[ $limit != 10 || $worked != 0 ]] || { echo "ten threads are not enough"; exit 1; }
+done
