@@ -84,7 +84,7 @@ Findings measureAll(const CLI::App& app, const BenchCommand& command, const Sess
     Findings found;
     found.report.machine = thisMachine();
     found.report.commandLine = session.commandLine;
-    ProgressDisplay display(session.common.quiet);
+    ProgressDisplay display(session.common);
     warnOfUnusedOptions(app, command, display);
     const RenderOptions options = readOptics(command.picture, display.stage(0, 0));
     const double count = double(command.inputs.size());

@@ -115,7 +115,7 @@ void runTable1(const CLI::App& app, const Table1Command& command, const Session&
     refuseOptionsOfBench(*app.get_parent());
     checkThreads(app, session.common.threads);
     const ThreadLimit limit(1);
-    ProgressDisplay display(session.common.quiet);
+    ProgressDisplay display(session.common);
     const bool ramp = command.transferFunction.empty();
     const TransferFunction transferFunction =
         ramp ? ctRamp() : readTransferFunction(command.transferFunction, display.stage(0, 0));

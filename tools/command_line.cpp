@@ -35,8 +35,11 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
     app.set_version_flag("--version", versionText, "Show the versions in use and end")
         ->group(title);
     OptionGroup group(app, title);
-    group.addFlag("-q,--quiet", options.quiet, "Show neither progress nor warnings");
+    group.addCount("-q,--quiet", options.quiet, "Show no progress; -qq: no warnings either");
     group.addFlag("-v,--verbose", options.verbose, "Say more about what is done and what failed");
+    group.addFlag("--progress", options.progress,
+                  "Show progress where standard error is no terminal, too: lines\n"
+                  "\"Progress: 10%\", as -v does");
     group.addValue("--threads", "N", options.threads, wholeNumber(0, 1024),
                    withDefault("Threads to use, 0 = all", std::to_string(options.threads)));
     group.addValue("--max-memory", "SIZE", options.maxMemory, byteCount(),

@@ -15,8 +15,9 @@ namespace deltasplat {
 
 /// Options that every subcommand has.
 struct CommonOptions {
-    bool quiet = false;
-    bool verbose = false;
+    int quiet = 0;          ///< how often -q was given: 1 hides progress, 2 warnings as well
+    bool verbose = false;   ///< say more
+    bool progress = false;  ///< show progress on a pipe too
     int threads = 0;
     std::uint64_t maxMemory = 0;  ///< bytes; 0: no limit
     std::string simd = "auto";
@@ -68,6 +69,12 @@ class OptionGroup {
     void addFlag(const std::string& names, bool& target, const std::string& help) {
         app_.add_flag(names, target, help)->group(title_);
     }
+    /// Declares a flag that counts how often it is given, here and wherever else `target` is.
+    void addCount(const std::string& names, int& target, const std::string& help) {
+        app_.add_flag_function(
+                names, [&target](std::int64_t count) { target += int(count); }, help)
+            ->group(title_);
+    }
 
   private:
     CLI::App& app_;
@@ -85,7 +92,7 @@ bool isGiven(const CLI::App& app, const std::string& name);
 CLI::App& addSubcommand(CLI::App& program, const std::string& name, const std::string& summary,
                         const std::vector<std::string>& examples);
 
-/// Declares `-h`, `--version`, `-q`, `-v`, `--threads` and `--simd`.
+/// Declares `-h`, `--version`, `-q`, `-v`, `--progress`, `--threads`, `--max-memory` and `--simd`.
 void addCommonOptions(CLI::App& app, CommonOptions& options);
 
 /// @throw Error(kUsage) if the argument was not given

@@ -113,7 +113,7 @@ void runConvert(const CLI::App& app, const ConvertCommand& command, const Sessio
     // Asked before writing, which may take the input's place.
     stats.inputBytes = bytesOf(checkConversionFiles(command.input, command.output, command.stats));
     {
-        ProgressDisplay display(session.common.quiet);
+        ProgressDisplay display(session.common);
         warnOfUnusedOptions(app, command, display);
         bool complete = true;
         std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare), complete);

@@ -137,7 +137,7 @@ void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& s
     if (relative > 0) reading.relativeError = relative / 2;
     if (!command.file.tolerance.isExact()) reading.bytesPerBlock += kBytesPerHeldBlock;
     {
-        ProgressDisplay display(session.common.quiet);
+        ProgressDisplay display(session.common);
         warnOfUnusedInputOptions(app, {command.input}, display);
         DeltaFile file;
         const Listener taking = display.stage(0, kTakeShare);

@@ -129,7 +129,7 @@ void addComparison(const DiffOptions& options, const GridPair& pair, bool amongO
 Verdict runDiff(const CLI::App& app, const DiffOptions& options, const Session& session) {
     FileDiff diff;
     {
-        ProgressDisplay display(session.common.quiet);
+        ProgressDisplay display(session.common);
         warnOfUnusedInputOptions(app, {options.a, options.b}, display);
         const std::vector<GridPair> pairs = pairGrids(options, diff);
         const double count = double(pairs.size());

@@ -100,7 +100,7 @@ void runInfo(const CLI::App& app, const InfoOptions& options, const Session& ses
     }
     Findings found;
     {
-        ProgressDisplay display(session.common.quiet);
+        ProgressDisplay display(session.common);
         warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()}, display);
         const DescribeOptions describe = describeOptions(options, display.stage(0, 0));
         const double count = double(options.inputs.size());

@@ -16,7 +16,10 @@ void showError(const std::string& what) {
     std::fprintf(stderr, "deltasplat: %s\n", printable(what).c_str());
 }
 
-ProgressDisplay::ProgressDisplay(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO)) {}
+ProgressDisplay::ProgressDisplay(const CommonOptions& options)
+    : terminal_(isatty(STDERR_FILENO)),
+      showsProgress_(options.quiet == 0 && (terminal_ || options.verbose || options.progress)),
+      showsWarnings_(options.quiet < 2) {}
 
 ProgressDisplay::~ProgressDisplay() {
     clearBar();
@@ -33,13 +36,13 @@ Listener ProgressDisplay::stage(double begin, double end) {
 }
 
 void ProgressDisplay::warn(const std::string& line) {
-    if (quiet_) return;
+    if (!showsWarnings_) return;
     clearBar();
     std::fprintf(stderr, "deltasplat: warning: %s\n", printable(line).c_str());
 }
 
 void ProgressDisplay::show(double share) {
-    if (quiet_) return;
+    if (!showsProgress_) return;
     const int percent = int(100 * std::clamp(share, 0.0, 1.0) + 1e-9);
     const int shown = terminal_ ? percent : percent / 10 * 10;
     if (shown <= shownPercent_) return;

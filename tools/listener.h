@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "command_line.h"
 #include "deltasplat/progress.h"
 
 namespace deltasplat {
@@ -12,11 +13,12 @@ namespace deltasplat {
 /// Shows on standard error, in one line, what went wrong.
 void showError(const std::string& what);
 
-/// Shows on standard error how far the work is: a bar with the time left on a terminal, lines
-/// `Progress: NN%` for every ten percent elsewhere. Quiet, it shows neither progress nor warnings.
+/// Shows on standard error how far the work is: a bar with the time left on a terminal; elsewhere,
+/// if asked for or verbose, lines `Progress: NN%` for every ten percent. Quiet, it shows no
+/// progress; quiet twice, no warnings either.
 class ProgressDisplay {
   public:
-    explicit ProgressDisplay(bool quiet);
+    explicit ProgressDisplay(const CommonOptions& options);
     ~ProgressDisplay();
     ProgressDisplay(const ProgressDisplay&) = delete;
     ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -33,8 +35,9 @@ class ProgressDisplay {
     void drawBar(int percent);
     void clearBar();
 
-    bool quiet_;
     bool terminal_;
+    bool showsProgress_;
+    bool showsWarnings_;
     int shownPercent_ = -1;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };

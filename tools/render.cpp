@@ -87,7 +87,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
     RenderTimes times;
     RenderResult result;
     {
-        ProgressDisplay display(session.common.quiet);
+        ProgressDisplay display(session.common);
         warnOfUnusedOptions(app, command, display);
         const auto beginRead = std::chrono::steady_clock::now();
         // Everything from here on is reading; what can be refused without it has been.

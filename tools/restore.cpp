@@ -112,7 +112,7 @@ void runRestore(const RestoreCommand& command, const Session& session) {
     // Asked before writing, which may take the input's place.
     stats.inputBytes = bytesOf(checkConversionFiles(command.input, command.output, command.stats));
     {
-        ProgressDisplay display(session.common.quiet);
+        ProgressDisplay display(session.common);
         std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare), stats);
         WriteOptions writing;
         writing.keepPrecision = true;

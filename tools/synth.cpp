@@ -83,7 +83,7 @@ void runSynth(const CLI::App& app, const SynthOptions& options, const Session& s
     }
     const AnalyticVolume volume = makeAnalytic(options.name, options.seed, options.noise);
     requireArgument(!options.output.empty(), "OUTPUT", "FILE (see 'deltasplat synth --help')");
-    ProgressDisplay display(session.common.quiet);
+    ProgressDisplay display(session.common);
     warnOfUnusedOptions(app, options, display);
     writeAnalytic(volume, options.output, options.file, display.stage(0, 1));
     allIsWritten();

@@ -35,7 +35,7 @@ deltasplat_cli_test(bench.tolerance ARGS bench ${cube} ${quick} --tolerance 0.1 
 deltasplat_cli_test(bench.empty ARGS bench empty.vdb ${quick}
     STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels"
     STDOUT_MATCHES "traditional +0 .* - +- .*auto +0 .*bit for bit")
-deltasplat_cli_test(bench.empty_json ARGS bench empty.vdb ${quick} --json -q
+deltasplat_cli_test(bench.empty_json ARGS bench empty.vdb ${quick} --json -qq
     STDOUT_MATCHES "\"sparse/auto\": null")
 deltasplat_cli_test(bench.report ARGS bench ${cube} ${quick} --report out -q CREATES out
     STDOUT_MATCHES "bit for bit")

@@ -33,7 +33,7 @@ foreach(file plot.png plot.svg PLOT.SVG)
     deltasplat_cli_test(info.plot.${file} ARGS info ball.vdb --plot ${file} CREATES ${file}
         STDOUT_MATCHES "grid +density")
 endforeach()
-deltasplat_cli_test(info.plot.empty ARGS info empty.vdb -q --plot plot.svg CREATES plot.svg)
+deltasplat_cli_test(info.plot.empty ARGS info empty.vdb -qq --plot plot.svg CREATES plot.svg)
 deltasplat_cli_test(info.plot.of_the_others EXIT 3 CREATES plot.png
     ARGS info nowhere.vdb ball.vdb --plot plot.png
     STDERR "deltasplat: nowhere.vdb: got no such file; expected a readable file")

@@ -75,7 +75,9 @@ deltasplat_cli_test(input.one_bad_grid EXIT 3 ARGS info one_bad.vdb
 # What looks alike and is fine.
 deltasplat_cli_test(input.fine.empty ARGS render empty.vdb -o out.exr CREATES out.exr
     STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels")
-deltasplat_cli_test(input.fine.empty_quiet ARGS render empty.vdb -o out.exr -q CREATES out.exr)
+deltasplat_cli_test(input.fine.empty_quiet ARGS render empty.vdb -o out.exr -qq CREATES out.exr)
+deltasplat_cli_test(input.fine.empty_no_progress ARGS render empty.vdb -o out.exr -q CREATES out.exr
+    STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels")
 deltasplat_cli_test(input.fine.nan ARGS render nan.vdb -o out.exr --nan 0 CREATES out.exr
     STDERR "deltasplat: warning: nan.vdb: grid \"density\": 2 NaN or infinite active values replaced by 0")
 deltasplat_cli_test(input.fine.mixed ARGS render mixed.vdb -o out.exr CREATES out.exr)

@@ -14,6 +14,8 @@ foreach(extension exr png)
     deltasplat_script_test(same_bytes.${extension} same_bytes.sh
         ARGS ${tool} ${scratch}/same_bytes_${extension} ${extension})
 endforeach()
+deltasplat_script_test(progress progress.sh ARGS ${tool} ${scratch}/progress ${DELTASPLAT_FIXTURES})
+set_tests_properties(cli.progress PROPERTIES FIXTURES_REQUIRED cli_files)
 foreach(signal INT TERM HUP)
     deltasplat_script_test(interrupt.${signal} interrupt.sh
         ARGS ${tool} ${scratch}/interrupt_${signal} ${signal})

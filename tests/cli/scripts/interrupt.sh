@@ -14,7 +14,7 @@ before=$(ls -A)
 # A wide footprint on fine sheets takes many seconds, so the signal is always early enough. Shells
 # have jobs in the background ignore SIGINT; env undoes that.
 env --default-signal=INT,TERM,HUP "$program" render cloud_96x96x96_uint8.raw -o cloud.exr \
-    --stats stats.json --method traditional --resolution 8 --sigma 2 2>progress &
+    --stats stats.json --method traditional --resolution 8 --sigma 2 --progress 2>progress &
 job=$!
 exec 3<progress
 while read -r line <&3 && [[ $line != "Progress: 30%" && $line != "Progress: 40%" ]]; do :; done
