@@ -5,6 +5,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "describe_volume.h"
+#include "info_list.h"
 #include "info_report.h"
 #include "input_options.h"
 #include "interrupt.h"
@@ -23,10 +24,34 @@ constexpr std::size_t kMaxPlots = 16;
 struct InfoOptions {
     std::vector<std::string> inputs;
     bool json = false;
+    bool list = false;
     std::filesystem::path plot;              // empty: none
     std::filesystem::path transferFunction;  // empty: none
     ReadOptions read;
 };
+
+// Tells the last failure by ending with it, which shows it as every error is shown.
+void throwFailures(const std::vector<Error>& failures) {
+    if (failures.empty()) return;
+    for (std::size_t i = 0; i + 1 < failures.size(); ++i) showError(failures[i].what());
+    throw failures.back();
+}
+
+void listInputs(const InfoOptions& options, const Session& session) {
+    std::vector<FileListing> files;
+    std::vector<Error> failures;
+    ProgressDisplay display(session.common);
+    for (const std::string& file : options.inputs) {
+        try {
+            files.push_back({file, listVolumes(file, options.read, display.stage(0, 0))});
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::kInterrupted) throw;
+            failures.push_back(error);
+        }
+    }
+    if (!files.empty()) printOut(options.json ? jsonText(files) : plainText(files));
+    throwFailures(failures);
+}
 
 // What has been found out, and what could not be: the rest is told all the same.
 struct Findings {
@@ -92,6 +117,7 @@ void writePlot(const std::filesystem::path& file, const Findings& found) {
 }
 
 void runInfo(const CLI::App& app, const InfoOptions& options, const Session& session) {
+    if (options.list) return listInputs(options, session);
     if (!options.plot.empty()) {
         checkDrawingFile(options.plot);
         const Files inputs(options.inputs.begin(), options.inputs.end());
@@ -117,10 +143,7 @@ void runInfo(const CLI::App& app, const InfoOptions& options, const Session& ses
     }
     if (!options.plot.empty()) writePlot(options.plot, found);
     allIsWritten();
-    if (found.failures.empty()) return;
-    // The last one ends the program, which shows it as it shows every error.
-    for (std::size_t i = 0; i + 1 < found.failures.size(); ++i) showError(found.failures[i].what());
-    throw found.failures.back();
+    throwFailures(found.failures);
 }
 
 }  // namespace
@@ -139,6 +162,9 @@ Subcommand addInfo(CLI::App& program) {
         ->group("Arguments");
     OptionGroup output(app, "Output");
     output.addFlag("--json", options->json, "Print one JSON object");
+    output.addFlag("--list", options->list,
+                   "Only list what the headers tell: a line for each grid with its\n"
+                   "name, type, class and box, and which one is read by default");
     output.addValue("--plot", "FILE", options->plot, anyText(),
                     "Picture to write, .png or .svg: which share of every slice's\n"
                     "voxels is visible and which changes, along x, y and z; a row\n"

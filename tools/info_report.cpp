@@ -5,6 +5,7 @@
 
 #include "deltasplat/ingest/value_statistics.h"
 #include "json_text.h"
+#include "volume_place.h"
 
 namespace deltasplat {
 namespace {
@@ -89,7 +90,10 @@ std::string jsonText(const std::vector<FileReport>& reports, const std::string& 
     Json files = Json::array();
     for (const FileReport& report : reports) {
         Json grids = Json::array();
-        for (const GridReport& grid : report.grids) grids.push_back(toJson(grid, usedFunction));
+        for (const GridReport& grid : report.grids) {
+            grids.push_back(toJson(grid, usedFunction));
+            grids.back().update(placeJson(grid.volume));
+        }
         files.push_back({{"file", report.file}, {"grids", grids}});
     }
     return dumpJson({{"files", files}});

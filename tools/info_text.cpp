@@ -7,6 +7,7 @@
 #include "info_report.h"
 #include "number_text.h"
 #include "parse.h"
+#include "volume_place.h"
 
 namespace deltasplat {
 namespace {
@@ -127,6 +128,24 @@ std::string stampsText(const GridReport& report) {
     return text;
 }
 
+std::string placeText(const Volume& volume) {
+    const VolumePlace place = placeOf(volume);
+    const Camera camera =
+        makeCamera(CameraOptions(), volume.box, volume.worldFromIndex, volume.space);
+    std::string directions;
+    for (int axis = 0; axis < 3; ++axis) {
+        directions += (axis > 0 ? ", " : "") + std::string(1, "ijk"[axis]) + " " +
+                      directionText(place, volume.space, axis);
+    }
+    std::string text =
+        line("world box", "(" + toText(place.min, ", ") + ") to (" + toText(place.max, ", ") + ")");
+    text += line("origin", "(" + toText(place.origin, ", ") + ")");
+    if (!volume.space.empty()) text += line("space", spaceText(volume.space));
+    text += line("directions", directions);
+    return text + line("front view", "target (" + toText(camera.targetWorld, ", ") +
+                                         "), frame width " + numberText(camera.frameWidthWorld));
+}
+
 std::string gridText(const GridReport& report) {
     const Volume& v = report.volume;
     std::string text = line("grid", v.name) + line("type", v.type) + line("class", v.gridClass);
@@ -134,7 +153,7 @@ std::string gridText(const GridReport& report) {
     text += line("box", v.empty() ? "empty"
                                   : "(" + toText(v.box.min, ", ") + ") to (" +
                                         toText(v.box.max, ", ") + ")");
-    text += line("voxel size", toText(v.voxelSize(), " x "));
+    text += line("voxel size", toText(v.voxelSize(), " x ")) + placeText(v);
     text += line("active", std::to_string(v.activeCount) + " (" +
                                percent(double(v.activeCount), double(v.box.voxels())) + ")");
     text += valuesText(v);

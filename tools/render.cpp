@@ -18,6 +18,7 @@
 #include "stopwatch.h"
 #include "subcommands.h"
 #include "version.h"
+#include "volume_place.h"
 
 namespace deltasplat {
 namespace {
@@ -36,6 +37,7 @@ ImageFileOptions imageOptions(const RenderCommand& command, const RenderResult& 
         {"commandLine", session.commandLine},
         {"input", command.input.string()},
         {"mode", modeName(result.stats.mode)},
+        {"camera", cameraOptionsText(result.camera)},
     };
     if (result.stats.mode != Mode::kComposite) return options;
     options.metadata.insert(options.metadata.end(),
@@ -107,11 +109,11 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         writeImage(command.output, result.image, image);
         times.write = secondsSince(beginWrite);
         times.total = secondsSince(session.begin);
-        writeStats(command.stats, statsJson(result.stats, times));
+        writeStats(command.stats, statsJson(result, volume, times));
         writing.report(1);
     }
     if (!result.stats.tolerance.isExact() && !session.common.quiet) showErrorBound(result.stats);
-    if (session.common.verbose) std::fputs(statsSummary(result.stats, times).c_str(), stderr);
+    if (session.common.verbose) std::fputs(statsSummary(result, times).c_str(), stderr);
 }
 
 }  // namespace

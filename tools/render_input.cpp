@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_input.h"
 
+#include "deltasplat/optics/default_ramp.h"
+
 namespace deltasplat {
 
 RenderOptions readOptics(const PictureOptions& picture, const Listener& listener) {
@@ -8,8 +10,8 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
     const bool ramp = picture.transferFunction.empty();
     if (!ramp)
         options.optics.transferFunction = readTransferFunction(picture.transferFunction, listener);
-    if (options.optics.range && (ramp || !options.optics.transferFunction.normalized))
-        listener.warn("--range: has no effect without a normalized transfer function");
+    if (options.optics.range && !ramp && !options.optics.transferFunction.normalized)
+        listener.warn("--range: has no effect on a transfer function that is not normalized");
     return options;
 }
 
@@ -18,7 +20,10 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     Volume volume = readVolume(input, picture.read, listener);
     if (!picture.transferFunction.empty()) return volume;
     const bool mip = picture.render.mode == Mode::kMip;
-    options.optics.transferFunction = mip ? wholeRamp(volume) : defaultRamp(volume);
+    const std::optional<glm::dvec2>& range = picture.render.optics.range;
+    options.optics.transferFunction =
+        range ? (mip ? wholeRamp(volume, *range) : defaultRamp(volume, *range))
+              : (mip ? wholeRamp(volume) : defaultRamp(volume));
     return volume;
 }
 

@@ -40,7 +40,8 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
     std::vector<std::string> unused = {"--method",     "--tolerance",  "--tolerance-value",
                                        "--resolution", "--extinction", "--unit-distance"};
     if (mode == Mode::kMip) unused.push_back("--sigma");
-    if (mode == Mode::kXray || isExr(command.output)) unused.push_back("--tf");
+    if (mode == Mode::kXray || isExr(command.output))
+        unused.insert(unused.end(), {"--tf", "--range"});
     for (const std::string& option : unused) {
         if (isGiven(app, option))
             display.warn(option + ": has no effect with --mode " + modeName(mode));

@@ -131,11 +131,13 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
     Optics& optics = options.render.optics;
     OptionGroup group(app, "Optics");
     group.addValue("--tf", "FILE", options.transferFunction, anyText(),
-                   "Transfer function, a ParaView JSON file (default: a grey ramp\n"
-                   "over the 1st to 99th percentile of the values)");
+                   "Transfer function, a ParaView JSON file (default: a ramp over the\n"
+                   "1st to 99th percentile of the values, white for fog, else from\n"
+                   "black to white)");
     group.addValue("--range", "LO,HI", optics.range, interval(),
                    "Data values that 0 and 1 of a normalized transfer function\n"
-                   "stand for (default: 0,255 for uint8, else all values)");
+                   "stand for (default: 0,255 for uint8, else all values), or\n"
+                   "without --tf the ends of the ramp");
     group.addValue("--unit-distance", "U", optics.unitDistance, positiveNumber(),
                    "World units over which a voxel has the transfer function's\n"
                    "opacity (default: the smallest voxel size)");

@@ -15,7 +15,7 @@ namespace deltasplat {
 
 /// What to make a picture of and how: what all subcommands that render are asked.
 struct PictureOptions {
-    std::filesystem::path transferFunction;  ///< empty: the grey ramp
+    std::filesystem::path transferFunction;  ///< empty: a ramp
     std::optional<glm::vec4> background;
     std::string projection = "ortho";
     ReadOptions read;

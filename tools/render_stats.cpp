@@ -11,6 +11,7 @@
 #include "json_text.h"
 #include "number_text.h"
 #include "peak_bytes.h"
+#include "volume_place.h"
 
 namespace deltasplat {
 namespace {
@@ -38,7 +39,8 @@ std::string workSummary(const RenderStats& stats) {
 
 }  // namespace
 
-std::string statsJson(const RenderStats& stats, const RenderTimes& times) {
+std::string statsJson(const RenderResult& result, const Volume& volume, const RenderTimes& times) {
+    const RenderStats& stats = result.stats;
     const nlohmann::ordered_json seconds = {
         {"read", times.read},
         {"prepare", stats.prepareSeconds},
@@ -49,7 +51,7 @@ std::string statsJson(const RenderStats& stats, const RenderTimes& times) {
         {"render", stats.renderSeconds},
         {"total", times.total},
     };
-    return dumpJson({
+    nlohmann::ordered_json json = {
         {"method", methodName(stats.method)},
         {"mode", modeName(stats.mode)},
         {"voxels", stats.voxels},
@@ -70,7 +72,13 @@ std::string statsJson(const RenderStats& stats, const RenderTimes& times) {
         {"error_bound",
          {{"color", boundJson(stats.errorBoundColor)},
           {"alpha", boundJson(stats.errorBoundAlpha)}}},
-    });
+    };
+    json.update(placeJson(volume));
+    // Not those of a front view, but the picture's own.
+    json["target"] = vectorJson(result.camera.targetWorld);
+    json["frame_width"] = result.camera.frameWidthWorld;
+    json["camera"] = cameraJson(result.camera);
+    return dumpJson(json);
 }
 
 std::string toleranceText(const Tolerance& tolerance) {
@@ -88,7 +96,8 @@ std::string errorBoundText(const RenderStats& stats) {
            numberText(stats.errorBoundAlpha);
 }
 
-std::string statsSummary(const RenderStats& stats, const RenderTimes& times) {
+std::string statsSummary(const RenderResult& result, const RenderTimes& times) {
+    const RenderStats& stats = result.stats;
     char text[512];
     std::snprintf(text, sizeof text,
                   "%s%d slices along %s in %d slabs, %d sheet pixel%s a voxel, footprint %dx%d\n"
@@ -99,7 +108,7 @@ std::string statsSummary(const RenderStats& stats, const RenderTimes& times) {
                   stats.footprint, times.read, stats.prepareSeconds, stats.renderSeconds,
                   stats.splatSeconds, stats.compositeSeconds, stats.warpSeconds, times.write,
                   times.total);
-    return text;
+    return text + ("camera: " + cameraOptionsText(result.camera)) + "\n";
 }
 
 }  // namespace deltasplat

@@ -15,7 +15,7 @@ struct RenderTimes {
 };
 
 /// Returns the JSON object of `render --stats`.
-std::string statsJson(const RenderStats& stats, const RenderTimes& times);
+std::string statsJson(const RenderResult& result, const Volume& volume, const RenderTimes& times);
 
 /// Returns "0.02 of the colour and 2 data units", or "0" where nothing is tolerated.
 std::string toleranceText(const Tolerance& tolerance);
@@ -25,6 +25,6 @@ std::string toleranceText(const Tolerance& tolerance);
 std::string errorBoundText(const RenderStats& stats);
 
 /// Returns a few lines for people.
-std::string statsSummary(const RenderStats& stats, const RenderTimes& times);
+std::string statsSummary(const RenderResult& result, const RenderTimes& times);
 
 }  // namespace deltasplat

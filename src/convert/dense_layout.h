@@ -15,6 +15,7 @@ namespace deltasplat {
 struct DenseLayout {
     glm::ivec3 dims{1};  ///< voxels along x, y, z
     RawType type = RawType::kUint8;
+    bool bigEndian = false;  ///< of values of several bytes
     glm::dmat4 worldFromIndex{1.0};  ///< maps the first voxel, (0, 0, 0), to its place
     std::string space;               ///< as Volume::space
 

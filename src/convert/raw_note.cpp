@@ -2,16 +2,35 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "convert/dense_layout.h"
+#include "deltasplat/error.h"
 #include "number_text.h"
 
 namespace deltasplat {
+namespace {
+
+// Whether the file's name says so: "head_uint16be.raw".
+bool namesBigEndian(const std::string& file, const DenseLayout& layout) {
+    RawFormat format;
+    format.dims = glm::i64vec3(layout.dims);
+    format.type = rawTypeName(layout.type);
+    try {
+        return resolveRawLayout(file, format).bigEndian;
+    } catch (const Error&) {
+        return false;  // 64-bit integers, which raw files are not read as
+    }
+}
+
+}  // namespace
+
 // A file without a header: what its name does not say, the options have to when it is read.
 void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
     const glm::dvec3 spacing = layout.spacing(), origin = layout.origin();
     std::string options;
-    if (!saysLayout(file, {layout.dims, layout.type, false, 0})) {
+    const bool ordered = rawTypeBytes(layout.type) > 1;
+    layout.bigEndian = ordered && namesBigEndian(file, layout);
+    if (!saysLayout(file, {layout.dims, layout.type, layout.bigEndian, 0})) {
         options += " --dims " + layout.dimsText() + " --type " + rawTypeName(layout.type);
-        if (rawTypeBytes(layout.type) > 1) options += " --endian little";
+        if (ordered) options += layout.bigEndian ? " --endian big" : " --endian little";
     }
     if (spacing != glm::dvec3(1)) options += " --spacing " + numberText(spacing);
     if (origin != glm::dvec3(0)) options += " --origin " + numberText(origin);

@@ -94,11 +94,19 @@ DenseLayout layoutOf(const Volume& volume, const IndexBox& box, const ValueFacts
     return layout;
 }
 
+void swapBytes(std::vector<std::byte>& data, std::size_t size) {
+    for (auto value = data.begin(); value != data.end(); value += std::ptrdiff_t(size))
+        std::reverse(value, value + std::ptrdiff_t(size));
+}
+
 // A run of slices that lie in the same layer of 8x8x8 blocks, as bytes of the file.
 class Layer {
   public:
-    Layer(const IndexBox& box, RawType type)
-        : box_(box), type_(type), rowBytes_(std::size_t(box.dims().x) * rawTypeBytes(type)) {}
+    Layer(const IndexBox& box, RawType type, bool bigEndian)
+        : box_(box),
+          type_(type),
+          bigEndian_(bigEndian),
+          rowBytes_(std::size_t(box.dims().x) * rawTypeBytes(type)) {}
 
     double bytes() const { return double(rowBytes_) * box_.dims().y * box_.dims().z; }
     const std::vector<std::byte>& data() const { return data_; }
@@ -114,6 +122,7 @@ class Layer {
             part.max.y = std::min(box_.max.y, firstStrip + int(strip) * kBlock + kBlock - 1);
             errors[strip] = fillStrip(part, read);
         });
+        if (bigEndian_) swapBytes(data_, rawTypeBytes(type_));
         return *std::max_element(errors.begin(), errors.end());
     }
 
@@ -137,19 +146,20 @@ class Layer {
 
     IndexBox box_;
     RawType type_;
+    bool bigEndian_;
     std::size_t rowBytes_;
     std::vector<std::byte> data_;
 };
 
-double writeValues(const Volume& volume, const IndexBox& box, RawType type, PackedOutput& out,
-                   const Listener& listener) {
+double writeValues(const Volume& volume, const IndexBox& box, const DenseLayout& layout,
+                   PackedOutput& out, const Listener& listener) {
     const ReadBox read = boxReader(volume);
     double error = 0;
     for (int first = box.min.z; first <= box.max.z; first = (first & ~(kBlock - 1)) + kBlock) {
         IndexBox slices = box;
         slices.min.z = first;
         slices.max.z = std::min(box.max.z, first | (kBlock - 1));
-        Layer layer(slices, type);
+        Layer layer(slices, layout.type, layout.bigEndian);
         error = std::max(error, layer.fill(read));
         out.write(layer.data().data(), layer.data().size());
         listener.report(double(slices.max.z - box.min.z + 1) / box.dims().z);
@@ -194,8 +204,7 @@ WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& for
     const std::string header = format.header(layout, dataFile.filename().string());
     head.write(header.data(), header.size());
     if (format.gzipData && !format.gzipHeader) data.beginGzip();
-    report.maxError =
-        std::max(facts.doubleError, writeValues(volume, box, layout.type, data, listener));
+    report.maxError = std::max(facts.doubleError, writeValues(volume, box, layout, data, listener));
 
     head.close();
     data.close();

@@ -8,11 +8,11 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "ingest/input_kind.h"
+#include "ingest/open_dense.h"
 #include "ingest/readers.h"
 #include "number_text.h"
 
 namespace deltasplat {
-namespace {
 
 DenseSource openDense(const std::filesystem::path& input, const InputKind& kind,
                       const ReadOptions& options, const Listener& listener) {
@@ -29,6 +29,8 @@ DenseSource openDense(const std::filesystem::path& input, const InputKind& kind,
             return openRaw(input, options.raw);
     }
 }
+
+namespace {
 
 void read(const std::filesystem::path& file, const ReadOptions& options, bool all,
           const VolumeVisitor& visitor, const Listener& listener) {

@@ -9,6 +9,7 @@
 
 #include "default_floats.h"
 #include "deltasplat/ingest/value_statistics.h"
+#include "deltasplat/optics/default_ramp.h"
 #include "portable_math.h"
 #include "srgb.h"
 
@@ -55,13 +56,22 @@ std::vector<std::uint64_t> countsWithoutBackground(const Volume& volume) {
     return counts;
 }
 
-TransferFunction greyRamp(double low, double high) {
+TransferFunction greyRamp(const glm::dvec2& range) {
     TransferFunction ramp;
     ramp.name = "grey ramp";
     ramp.linearColors = true;
-    ramp.colors = {{low, glm::dvec3(0)}, {high, glm::dvec3(1)}};
-    ramp.opacities = {{low, 0, 0.5, 0}, {high, kRampOpacity, 0.5, 0}};
+    ramp.colors = {{range.x, glm::dvec3(0)}, {range.y, glm::dvec3(1)}};
+    ramp.opacities = {{range.x, 0, 0.5, 0}, {range.y, kRampOpacity, 0.5, 0}};
     return ramp;
+}
+
+// From the 1st to the 99th percentile of all that is no background.
+glm::dvec2 bulkOf(const Volume& volume) {
+    const std::vector<std::uint64_t> counts = countsWithoutBackground(volume);
+    if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t count) { return count == 0; }))
+        return {volume.background, volume.background + 1};
+    return {volume.codeBook.valueOf(percentileCode(counts, 1)),
+            volume.codeBook.valueOf(percentileCode(counts, 99))};
 }
 
 }  // namespace
@@ -96,19 +106,33 @@ double TransferFunction::opacityAt(double x) const {
     return sharpBlend(left.opacity, right->opacity, s, left.sharpness);
 }
 
+bool isFog(const Volume& volume) {
+    return volume.gridClass == "fog volume" ||
+           (volume.hasBackground && volume.gridClass == "unknown" && volume.space.empty() &&
+            volume.name == "density");
+}
+
 TransferFunction defaultRamp(const Volume& volume) {
     const DefaultFloats floats;
-    const std::vector<std::uint64_t> counts = countsWithoutBackground(volume);
-    if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t count) { return count == 0; })) {
-        return greyRamp(volume.background, volume.background + 1);
-    }
-    return greyRamp(volume.codeBook.valueOf(percentileCode(counts, 1)),
-                    volume.codeBook.valueOf(percentileCode(counts, 99)));
+    return defaultRamp(volume, bulkOf(volume));
+}
+
+TransferFunction defaultRamp(const Volume& volume, const glm::dvec2& range) {
+    TransferFunction ramp = greyRamp(range);
+    if (!isFog(volume)) return ramp;
+    // Thin fog lets more of what is behind it through; it does not grow dark.
+    ramp.name = "white ramp";
+    ramp.colors = {{range.x, glm::dvec3(1)}};
+    return ramp;
 }
 
 TransferFunction wholeRamp(const Volume& volume) {
     const DefaultFloats floats;
-    TransferFunction ramp = greyRamp(volume.valueMin, volume.valueMax);
+    return wholeRamp(volume, {volume.valueMin, volume.valueMax});
+}
+
+TransferFunction wholeRamp(const Volume&, const glm::dvec2& range) {
+    TransferFunction ramp = greyRamp(range);
     ramp.linearColors = false;
     return ramp;
 }

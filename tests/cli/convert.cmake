@@ -10,7 +10,7 @@ deltasplat_cli_test(convert.vdb ARGS convert ${cube} out.vdb CREATES out.vdb
     STDERR "deltasplat: warning: out.vdb: ${half}")
 deltasplat_cli_test(convert.float ARGS convert ${cube} out.vdb --float CREATES out.vdb
     STDERR "deltasplat: warning: out.vdb: uint8 stored as float, which holds every value")
-deltasplat_cli_test(convert.quiet ARGS convert ${cube} out.vdb -q CREATES out.vdb)
+deltasplat_cli_test(convert.quiet ARGS convert ${cube} out.vdb -qq CREATES out.vdb)
 foreach(file out.nrrd out.mha OUT.NRRD out_8x8x8_uint8.raw out_8x8x8_uint8le.raw.gz)
     deltasplat_cli_test(convert.${file} ARGS convert ${cube} ${file} CREATES ${file})
 endforeach()
@@ -92,8 +92,13 @@ deltasplat_cli_test(convert.name_of_other_order EXIT 2
     ARGS convert cube_8x8x8_uint8.raw a_8x8x4_uint8.raw
     STDERR "deltasplat: a_8x8x4_uint8.raw: got a name that says 8x8x4 uint8; expected 8x8x8 uint8, or a name that says nothing")
 deltasplat_cli_test(convert.name_of_other_type EXIT 2
-    ARGS convert wide_48x48x32_int32.raw a_48x48x32_int32be.raw
-    STDERR "deltasplat: a_48x48x32_int32be.raw: got a name that says 48x48x32 int32be; expected 48x48x32 int32, or a name that says nothing")
+    ARGS convert wide_48x48x32_int32.raw a_48x48x32_uint32be.raw
+    STDERR "deltasplat: a_48x48x32_uint32be.raw: got a name that says 48x48x32 uint32be; expected 48x48x32 int32be, or a name that says nothing")
+add_test(NAME cli.convert.big_endian COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/big_endian.sh
+    $<TARGET_FILE:deltasplat_tool> ${CMAKE_CURRENT_BINARY_DIR}/cli/big_endian
+    ${DELTASPLAT_FIXTURES})
+set_tests_properties(cli.convert.big_endian PROPERTIES LABELS cli TIMEOUT 120
+                     FIXTURES_REQUIRED cli_files)
 deltasplat_cli_test(synth.name_of_other_dims EXIT 2
     ARGS synth slab a_8x8x4_uint8.raw --dims 8x8x8
     STDERR "deltasplat: a_8x8x4_uint8.raw: got a name that says 8x8x4 uint8; expected 8x8x8 uint8, or a name that says nothing")

@@ -28,6 +28,44 @@ deltasplat_cli_test(info.tf ARGS info ball.vdb --tf tf_good.json
 deltasplat_cli_test(info.tf_missing EXIT 3 ARGS info ball.vdb --tf tf_missing.json
     STDERR "deltasplat: tf_missing.json: got no file that can be read; expected a transfer function (ParaView's JSON)")
 
+# Where it lies, and what its axes mean.
+deltasplat_cli_test(info.place ARGS info ball.vdb
+    STDOUT_MATCHES "world box +[(]-6, -6, -6[)] to [(]6, 6, 6[)]
+  origin +[(]0, 0, 0[)]
+  directions +i to [+]x, j to [+]y, k to [+]z
+  front view +target [(]0, 0, 0[)], frame width 12
+")
+deltasplat_cli_test(info.patient ARGS info patient.vdb
+    STDOUT_MATCHES "space +LPS: x to the patient's left, y to the back, z to the head
+  directions +i to the patient's left, j to the back, k to the head
+")
+deltasplat_cli_test(info.oblique ARGS info tilted.vdb
+    STDOUT_MATCHES "space +RAS: x to the patient's right, y to the front, z to the head
+  directions +i to the patient's left, j 30.0 degrees off the front, k 30.0 degrees off the head
+")
+
+# Only headers: a line for each grid.
+deltasplat_cli_test(info.list ARGS info --list cache.vdb three.vdb empty.vdb ${cube}
+    STDOUT_MATCHES "^cache.vdb
+  phi_obstacle  float  level set   [(]0, 0, 0[)] to [(]11, 11, 11[)]
+  flags         int32  unknown     [(]0, 0, 0[)] to [(]11, 11, 11[)]
+  shadow        float  fog volume  [(]0, 0, 0[)] to [(]11, 11, 11[)]
+  speed         float  unknown     [(]0, 0, 0[)] to [(]11, 11, 11[)]
+  density       float  fog volume  [(]-6, -6, -6[)] to [(]6, 6, 6[)]  default
+three.vdb
+  density +float +fog volume +[(]-6, -6, -6[)] to [(]6, 6, 6[)] +default
+.*  velocity  vec3s  -           [(]1, 2, 3[)] to [(]1, 2, 3[)]     not read
+empty.vdb
+  density  float  fog volume  empty  default
+${cube}
+  cube_8x8x8_uint8  uint8  -  [(]0, 0, 0[)] to [(]7, 7, 7[)]  default$")
+deltasplat_cli_test(info.list_points ARGS info --list points.vdb
+    STDOUT_MATCHES "  points .* not read$")
+deltasplat_cli_test(info.list_others EXIT 3 ARGS info --list nowhere.vdb ball.vdb
+    STDERR "deltasplat: nowhere.vdb: got no such file; expected a readable file"
+    STDOUT_MATCHES "^ball.vdb
+  density")
+
 # Plots.
 foreach(file plot.png plot.svg PLOT.SVG)
     deltasplat_cli_test(info.plot.${file} ARGS info ball.vdb --plot ${file} CREATES ${file}

@@ -105,7 +105,14 @@ deltasplat_bad_transfer_function(opacity "tf_opacity.json:5: got 1.5; expected a
 deltasplat_bad_transfer_function(falling "tf_falling.json:4: got 0; expected x not below the 1 before it in RGBPoints")
 deltasplat_cli_test(input.tf.range ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_good.json
     --range 0,1 CREATES out.exr
-    STDERR "deltasplat: warning: --range: has no effect without a normalized transfer function")
+    STDERR "deltasplat: warning: --range: has no effect on a transfer function that is not normalized")
+deltasplat_cli_test(input.range.ramp ARGS render cube_8x8x8_uint8.raw -o out.exr --range 0,1
+    CREATES out.exr)
+foreach(mode xray mip)
+    deltasplat_cli_test(input.range.${mode} CREATES out.exr
+        ARGS render cube_8x8x8_uint8.raw -o out.exr --range 0,1 --mode ${mode}
+        STDERR "deltasplat: warning: --range: has no effect with --mode ${mode}")
+endforeach()
 
 # A simulation's cache: its density is taken, wherever it stands and whatever its solver left.
 foreach(grid "cache;density" "cache_named;steam")

@@ -142,6 +142,13 @@ void writeVdbFiles() {
     const auto patient = ball("density");
     patient->insertMeta("deltasplat_space", openvdb::StringMetadata("LPS"));
     writeVdb("patient.vdb", {patient});
+    // Nodding by 30 degrees, and counted from the right to the left.
+    const auto tilted = ball("density");
+    tilted->insertMeta("deltasplat_space", openvdb::StringMetadata("RAS"));
+    const double along = 2 * std::sqrt(0.75);
+    tilted->setTransform(openvdb::math::Transform::createLinearTransform(openvdb::math::Mat4d(
+        -2.0, 0.0, 0.0, 0.0, 0.0, along, 1.0, 0.0, 0.0, -1.0, along, 0.0, 5.0, 6.0, 7.0, 1.0)));
+    writeVdb("tilted.vdb", {tilted});
     writeVdb("cache.vdb", cache("density"));
     writeVdb("cache_named.vdb", cache("steam"));
     writeVdb("mixed.vdb", {vectors(), ball("density")});

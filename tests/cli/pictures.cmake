@@ -40,6 +40,11 @@ add_test(NAME cli.json_keys
                  -P ${DELTASPLAT_CLI_SCRIPTS}/json_keys.cmake)
 set_tests_properties(cli.json_keys PROPERTIES LABELS cli TIMEOUT 600)
 
+deltasplat_script_test(camera_lock camera_lock.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/camera_lock ${DELTASPLAT_FIXTURES})
+set_tests_properties(cli.camera_lock PROPERTIES FIXTURES_REQUIRED cli_files)
+deltasplat_script_test(fog_over_plate fog_over_plate.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/fog_over_plate)
 deltasplat_script_test(modes modes.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/modes)
 deltasplat_script_test(identity.simd identity.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/identity_simd every synth --size 90x70)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/optics/transfer_function.h"
 
+#include "deltasplat/optics/default_ramp.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -139,6 +141,50 @@ TEST(DefaultRamp, showsAVolumeOfOneValue) {
     EXPECT_EQ(ramp.opacityAt(1), kRampOpacity);
     EXPECT_EQ(ramp.colorAt(1), glm::dvec3(1));
     EXPECT_EQ(ramp.opacityAt(0), 0);
+}
+
+TEST(DefaultRamp, fogIsWhiteWhereItIsThinToo) {
+    Volume volume = volumeOf("half", {5000, 0, 0, 10, 0, 979, 0, 0, 11});
+    EXPECT_EQ(defaultRamp(volume).colorAt(3), glm::dvec3(0));
+    volume.gridClass = "fog volume";
+    const TransferFunction ramp = defaultRamp(volume);
+    for (const double x : {-1.0, 3.0, 4.0, 8.0, 100.0}) EXPECT_EQ(ramp.colorAt(x), glm::dvec3(1));
+    EXPECT_EQ(ramp.opacities[0].x, 3);
+    EXPECT_EQ(ramp.opacityAt(3), 0);
+    EXPECT_EQ(ramp.opacityAt(8), kRampOpacity);
+}
+
+TEST(DefaultRamp, knowsFogByItsClassOrItsName) {
+    Volume volume = volumeOf("float", {1});
+    volume.hasBackground = true;
+    volume.gridClass = "unknown";
+    volume.name = "density";
+    EXPECT_TRUE(isFog(volume));
+    volume.space = "LPS";  // a scan that has become a .vdb
+    EXPECT_FALSE(isFog(volume));
+    volume.space = "";
+    volume.name = "heat";
+    EXPECT_FALSE(isFog(volume));
+    volume.gridClass = "fog volume";
+    EXPECT_TRUE(isFog(volume));
+    volume.gridClass = "level set";
+    EXPECT_FALSE(isFog(volume));
+    volume.gridClass = "unknown";
+    volume.name = "density";
+    volume.hasBackground = false;  // a file density.nii
+    EXPECT_FALSE(isFog(volume));
+}
+
+TEST(DefaultRamp, takesTheRangeThatIsAskedFor) {
+    const Volume volume = volumeOf("uint16", {5000, 0, 0, 10, 0, 979, 0, 0, 11});
+    const TransferFunction ramp = defaultRamp(volume, glm::dvec2(-5, 20));
+    EXPECT_EQ(ramp.opacities.front().x, -5);
+    EXPECT_EQ(ramp.opacityAt(-5), 0);
+    EXPECT_EQ(ramp.opacityAt(20), kRampOpacity);
+    EXPECT_EQ(ramp.colorAt(7.5), glm::dvec3(0.5));
+    const TransferFunction whole = wholeRamp(volume, glm::dvec2(-5, 20));
+    EXPECT_EQ(whole.colors.front().x, -5);
+    EXPECT_EQ(whole.colors.back().x, 20);
 }
 
 TEST(DefaultRamp, leavesNothingButBackgroundClear) {

@@ -50,10 +50,10 @@ struct TransferFunction {
 TransferFunction readTransferFunction(const std::filesystem::path& file,
                                       const Listener& listener = {});
 
-/// Returns the grey ramp used when none is given: black and clear at the 1st, white and
-/// `kRampOpacity` at the 99th percentile of the active values other than the background. Where both
-/// are the same value, it is black and clear below that value, white from there on. A volume with
-/// nothing but background is clear throughout.
+/// Returns the ramp used when none is given: clear at the 1st, `kRampOpacity` at the 99th
+/// percentile of the active values other than the background; white for fog (isFog,
+/// default_ramp.h), otherwise from black to white. Where both are the same value, it is clear below
+/// it, dense from there on. A volume with nothing but background is clear throughout.
 TransferFunction defaultRamp(const Volume& volume);
 inline constexpr double kRampOpacity = 0.1;
 

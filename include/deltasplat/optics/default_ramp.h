@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include "deltasplat/optics/transfer_function.h"
+
+namespace deltasplat {
+
+/// Whether a volume's values say how much there is of something at a place, as smoke has more or
+/// less of it: a .vdb of class fog volume, or one that is named `density` and says nothing of a
+/// class. Other values (of a scanner, of a temperature) mean more than their amount.
+bool isFog(const Volume& volume);
+
+/// Returns defaultRamp(volume) with other ends.
+/// @param range  the values that are clear and as dense as the ramp gets; range.x < range.y
+TransferFunction defaultRamp(const Volume& volume, const glm::dvec2& range);
+
+/// Returns wholeRamp(volume) with other ends.
+/// @param range  the values that are black and white; range.x < range.y
+TransferFunction wholeRamp(const Volume& volume, const glm::dvec2& range);
+
+}  // namespace deltasplat

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <openvdb/Grid.h>
+
+#include "deltasplat/error.h"
+#include "deltasplat/ingest/list_grids.h"
+#include "ingest/default_grid.h"
+#include "ingest/delta_format.h"
+#include "ingest/grid_metadata.h"
+#include "ingest/input_kind.h"
+#include "ingest/open_dense.h"
+#include "ingest/vdb_file.h"
+
+namespace deltasplat {
+namespace {
+
+// The box that OpenVDB's writers note beside a grid.
+std::optional<IndexBox> notedBox(const openvdb::MetaMap& metadata) {
+    using Vector = openvdb::Vec3IMetadata;
+    const auto min = metadata.getMetadata<Vector>(openvdb::GridBase::META_FILE_BBOX_MIN);
+    const auto max = metadata.getMetadata<Vector>(openvdb::GridBase::META_FILE_BBOX_MAX);
+    if (!min || !max) return {};
+    const auto vector = [](const openvdb::Vec3i& v) { return glm::ivec3(v.x(), v.y(), v.z()); };
+    const IndexBox box{vector(min->value()), vector(max->value())};
+    return box.empty() ? IndexBox() : box;
+}
+
+void addMetadata(const openvdb::MetaMap& metadata, const VdbGrid& grid, const std::string& where,
+                 VolumeEntry& entry) {
+    entry.gridClass = textMetadata(metadata, openvdb::GridBase::META_GRID_CLASS);
+    entry.box = notedBox(metadata);
+    if (!isDeltaGrid(grid.type, metadata)) return;
+    entry.delta = true;
+    const DeltaHeader header = takeDeltaHeader(metadata, where);
+    entry.type = header.sourceType;
+    entry.gridClass.clear();
+    entry.box = header.box;
+}
+
+std::vector<VolumeEntry> listVdb(const std::filesystem::path& path) {
+    const VdbFile file(path);
+    const VdbGrid* const preferred = defaultGrid(file);
+    std::vector<VolumeEntry> entries;
+    for (const VdbGrid& grid : file.grids()) {
+        VolumeEntry entry;
+        entry.name = grid.name;
+        entry.type = grid.valueType();
+        entry.scalar = grid.isScalar();
+        entry.preferred = &grid == preferred;
+        try {
+            addMetadata(*file.metadata(grid), grid, path.string(), entry);
+        } catch (const Error&) {
+            // Grids of other kinds need not be understood; what is wrong with one is said when it
+            // is read.
+        }
+        entries.push_back(std::move(entry));
+    }
+    return entries;
+}
+
+}  // namespace
+
+std::vector<VolumeEntry> listVolumes(const std::filesystem::path& file, const ReadOptions& options,
+                                     const Listener& listener) {
+    const InputKind kind = findInput(file, listener);
+    if (kind.format == InputKind::Format::kVdb) return listVdb(file);
+    const DenseSource source = openDense(file, kind, options, listener);
+    VolumeEntry entry;
+    entry.name = source.name;
+    entry.type = rawTypeName(source.type);
+    entry.box = IndexBox{glm::ivec3(0), glm::ivec3(source.dims) - 1};
+    entry.preferred = true;
+    return {entry};
+}
+
+}  // namespace deltasplat

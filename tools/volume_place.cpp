@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volume_place.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "number_text.h"
+#include "parse.h"
+
+namespace deltasplat {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Names of the positive and the negative direction of each world axis.
+struct Side {
+    const char* positive;
+    const char* negative;
+};
+
+const Side kPatient[] = {{"the patient's right", "the patient's left"},
+                         {"the front", "the back"},
+                         {"the head", "the feet"}};
+const Side kWorld[] = {{"+x", "-x"}, {"+y", "-y"}, {"+z", "-z"}};
+
+bool isPatient(const std::string& space) {
+    return space == "RAS" || space == "LPS";
+}
+
+// In LPS, left and back are positive.
+std::string sideText(const std::string& space, int axis, bool positive) {
+    const Side& side = isPatient(space) ? kPatient[axis] : kWorld[axis];
+    const bool turned = space == "LPS" && axis < 2;
+    return positive != turned ? side.positive : side.negative;
+}
+
+std::string vectorOption(const std::string& name, const glm::dvec3& v) {
+    return " --" + name + "=" + joinNumbers({v.x, v.y, v.z}, ",");
+}
+
+}  // namespace
+
+Json vectorJson(const glm::dvec3& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+VolumePlace placeOf(const Volume& volume) {
+    VolumePlace place;
+    const glm::dmat4& matrix = volume.worldFromIndex;
+    place.origin = glm::dvec3(matrix[3]);
+    for (int axis = 0; axis < 3; ++axis)
+        place.directions[axis] = glm::dvec3(matrix[axis]) / volume.voxelSize()[axis];
+    const IndexBox box = volume.box.empty() ? IndexBox{glm::ivec3(0), glm::ivec3(0)} : volume.box;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 index(corner & 1 ? box.max.x : box.min.x,
+                               corner & 2 ? box.max.y : box.min.y,
+                               corner & 4 ? box.max.z : box.min.z, 1);
+        const glm::dvec3 world(matrix * index);
+        place.min = corner == 0 ? world : glm::min(place.min, world);
+        place.max = corner == 0 ? world : glm::max(place.max, world);
+    }
+    return place;
+}
+
+std::string spaceText(const std::string& space) {
+    if (!isPatient(space)) return "";
+    return space + ": x to " + sideText(space, 0, true) + ", y to " + sideText(space, 1, true) +
+           ", z to " + sideText(space, 2, true);
+}
+
+std::string directionText(const VolumePlace& place, const std::string& space, int axis) {
+    const glm::dvec3& direction = place.directions[axis];
+    int nearest = 0;
+    for (int world = 1; world < 3; ++world) {
+        if (std::abs(direction[world]) > std::abs(direction[nearest])) nearest = world;
+    }
+    const std::string side = sideText(space, nearest, direction[nearest] > 0);
+    const double off = std::acos(std::min(1.0, std::abs(direction[nearest])));
+    // File formats store directions to about six digits.
+    const double degrees = off * 180 / std::numbers::pi;
+    if (degrees < 0.05) return "to " + side;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f", degrees);
+    return std::string(text) + " degrees off " + side;
+}
+
+Json placeJson(const Volume& volume) {
+    const VolumePlace place = placeOf(volume);
+    const Camera camera =
+        makeCamera(CameraOptions(), volume.box, volume.worldFromIndex, volume.space);
+    const glm::dmat3& d = place.directions;
+    return {{"world_box", {vectorJson(place.min), vectorJson(place.max)}},
+            {"origin", vectorJson(place.origin)},
+            {"directions", {vectorJson(d[0]), vectorJson(d[1]), vectorJson(d[2])}},
+            {"space", volume.space.empty() ? Json() : Json(volume.space)},
+            {"target", vectorJson(camera.targetWorld)},
+            {"frame_width", camera.frameWidthWorld}};
+}
+
+std::string cameraOptionsText(const Camera& camera) {
+    const glm::ivec2 size = camera.sizePixels;
+    return "--projection ortho" + vectorOption("direction", camera.direction) +
+           vectorOption("up", camera.up) + vectorOption("target", camera.targetWorld) +
+           " --frame-width " + numberText(camera.frameWidthWorld) + " --size " +
+           joinNumbers({double(size.x), double(size.y)}, "x");
+}
+
+Json cameraJson(const Camera& camera) {
+    return {{"projection", "ortho"},
+            {"direction", vectorJson(camera.direction)},
+            {"right", vectorJson(camera.right)},
+            {"up", vectorJson(camera.up)},
+            {"target", vectorJson(camera.targetWorld)},
+            {"frame_width", camera.frameWidthWorld},
+            {"size", {camera.sizePixels.x, camera.sizePixels.y}},
+            {"options", cameraOptionsText(camera)}};
+}
+
+}  // namespace deltasplat
