@@ -61,7 +61,7 @@ void addInputOptions(CLI::App& app, ReadOptions& options) {
     place.addValue("--spacing", "X,Y,Z", raw.spacing, voxelSpacing(),
                    withDefault("World units per voxel", vectorText(raw.spacing)));
     place.addValue(
-        "--origin", "X,Y,Z", raw.origin, vector3(),
+        "--origin", "X,Y,Z", raw.origin, vector3(1e15),
         withDefault("World position of the centre of voxel 0,0,0", vectorText(raw.origin)));
 
     OptionGroup any(app, "Input");

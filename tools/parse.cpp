@@ -138,9 +138,17 @@ Parser<std::uint64_t> byteCount() {
     };
 }
 
-Parser<glm::dvec3> vector3() {
-    return threeNumbers(std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max(),
-                        "X,Y,Z, three finite numbers");
+Parser<glm::dvec3> vector3(double most) {
+    return threeNumbers(
+        -most, most, "X,Y,Z, three numbers from " + numberText(-most) + " to " + numberText(most));
+}
+
+Parser<double> positiveLength() {
+    return number(1e-30, 1e30);
+}
+
+Parser<double> angle() {
+    return number(-1e6, 1e6);
 }
 
 Parser<glm::dvec3> voxelSpacing() {

@@ -27,8 +27,12 @@ Parser<std::int64_t> wholeNumber(std::int64_t min = 0,
                                  std::int64_t max = std::numeric_limits<std::int64_t>::max());
 /// Bytes, with K, M, G or T for powers of 1024: "400M", "1.5G".
 Parser<std::uint64_t> byteCount();
-/// `X,Y,Z`, each finite.
-Parser<glm::dvec3> vector3();
+/// `X,Y,Z`, each within `most`, with which one can still reckon.
+Parser<glm::dvec3> vector3(double most = 1e30);
+/// A world length, or what is multiplied by one.
+Parser<double> positiveLength();
+/// Degrees of which the fractions still count.
+Parser<double> angle();
 /// `X,Y,Z`, world lengths of a voxel whose volume is still an ordinary number.
 Parser<glm::dvec3> voxelSpacing();
 /// `LO,HI` with LO < HI.

@@ -76,12 +76,15 @@ const Subcommand* called(const std::vector<Subcommand>& subcommands) {
 }
 
 // Spells a long option of the subcommand with two dashes where it was written with one, as users of
-// idiff and oiiotool do: "-fail" is no "-f ail".
+// idiff and oiiotool do: "-fail" is no "-f ail"; and what CLI11 takes for the value "=x" of "-o=x"
+// as
+// "-ox". What follows "--" is no option.
 void spellWithTwoDashes(std::vector<std::string>& arguments,
                         const std::vector<Subcommand>& subcommands) {
     const CLI::App* app = nullptr;
     const std::vector<Subcommand>* callable = &subcommands;
     for (std::string& argument : arguments) {
+        if (argument == "--") break;
         const auto named = std::find_if(callable->begin(), callable->end(), [&](const auto& s) {
             return s.app->get_name() == argument;
         });
@@ -92,12 +95,18 @@ void spellWithTwoDashes(std::vector<std::string>& arguments,
         if (app == nullptr || argument.size() < 3 || argument[0] != '-') continue;
         const std::string name = "-" + argument.substr(0, argument.find('='));
         if (app->get_option_no_throw(name) != nullptr) argument.insert(0, 1, '-');
+        const bool isShort = argument.size() > 3 && argument[1] != '-' && argument[2] == '=';
+        if (isShort && app->get_option_no_throw(argument.substr(0, 2)) != nullptr)
+            argument.erase(2, 1);
     }
 }
 
 // Refuses the first argument that the program or the subcommand does not know.
 void refuseExtras(const CLI::App& app, const std::vector<Subcommand>& subcommands) {
-    const std::vector<std::string> extras = app.remaining();
+    std::vector<std::string> extras = app.remaining();
+    // It has done its work.
+    const auto end = std::find(extras.begin(), extras.end(), "--");
+    if (end != extras.end()) extras.erase(end);
     if (extras.empty()) return;
     const auto option = std::find_if(extras.begin(), extras.end(), looksLikeOption);
     const bool isProgram = app.get_parent() == nullptr;

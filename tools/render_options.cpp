@@ -103,13 +103,13 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
                                "says how a patient lies (RAS, LPS): up is the head's direction,\n"
                                "front looks at the face, left and right at the patient's",
                                camera.view));
-    group.addValue("--azimuth", "DEG", camera.azimuthDegrees, number(),
+    group.addValue("--azimuth", "DEG", camera.azimuthDegrees, angle(),
                    withDefault("Turns the camera to its right, about the up axis",
                                numberText(camera.azimuthDegrees)));
     group.addValue(
-        "--elevation", "DEG", camera.elevationDegrees, number(),
+        "--elevation", "DEG", camera.elevationDegrees, angle(),
         withDefault("Then raises it over the target", numberText(camera.elevationDegrees)));
-    group.addValue("--roll", "DEG", camera.rollDegrees, number(),
+    group.addValue("--roll", "DEG", camera.rollDegrees, angle(),
                    withDefault("Then turns it clockwise about the line of sight",
                                numberText(camera.rollDegrees)));
     group.addValue("--direction", "X,Y,Z", camera.direction, vector3(),
@@ -121,7 +121,7 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
     group.addValue("--target", "X,Y,Z", camera.targetWorld, vector3(),
                    "World position in the middle of the picture (default: the\n"
                    "middle of the volume)");
-    group.addValue("--frame-width", "W", camera.frameWidthWorld, positiveNumber(),
+    group.addValue("--frame-width", "W", camera.frameWidthWorld, positiveLength(),
                    "Width of the picture in world units (default: the volume fits)");
     group.addValue("--size", "WxH", camera.sizePixels, pixelSize(),
                    withDefault("Width and height in pixels", sizeText(camera.sizePixels)));
@@ -138,10 +138,10 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
                    "Data values that 0 and 1 of a normalized transfer function\n"
                    "stand for (default: 0,255 for uint8, else all values), or\n"
                    "without --tf the ends of the ramp");
-    group.addValue("--unit-distance", "U", optics.unitDistance, positiveNumber(),
+    group.addValue("--unit-distance", "U", optics.unitDistance, positiveLength(),
                    "World units over which a voxel has the transfer function's\n"
                    "opacity (default: the smallest voxel size)");
-    group.addValue("--extinction", "S", optics.extinctionScale, number(0),
+    group.addValue("--extinction", "S", optics.extinctionScale, number(0, 1e30),
                    withDefault("Scales the extinction", numberText(optics.extinctionScale)));
     group.addValue("--background", "R,G,B[,A]", options.background, color(),
                    "Scene-linear colour behind the volume (default: transparent)");

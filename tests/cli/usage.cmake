@@ -74,12 +74,12 @@ foreach(resolution 0 17 1.5 -1)
         "--resolution: got ${resolution}; expected a whole number from 1 to 16"
         --resolution ${resolution})
 endforeach()
-deltasplat_refusal(azimuth "--azimuth: got 30deg; expected a finite number" --azimuth 30deg)
-deltasplat_refusal(frame_width "--frame-width: got 0; expected a finite number greater than 0"
+deltasplat_refusal(azimuth "--azimuth: got 30deg; expected a finite number from -1e+06 to 1e+06" --azimuth 30deg)
+deltasplat_refusal(frame_width "--frame-width: got 0; expected a finite number from 1e-30 to 1e+30"
     --frame-width 0)
 deltasplat_refusal(unit_distance
-    "--unit-distance: got -1; expected a finite number greater than 0" --unit-distance -1)
-deltasplat_refusal(extinction "--extinction: got -1; expected a finite number of at least 0"
+    "--unit-distance: got -1; expected a finite number from 1e-30 to 1e+30" --unit-distance -1)
+deltasplat_refusal(extinction "--extinction: got -1; expected a finite number from 0 to 1e+30"
     --extinction=-1)
 deltasplat_refusal(range "--range: got 5,5; expected LO,HI, two finite numbers with LO < HI"
     --range 5,5)
@@ -94,6 +94,29 @@ deltasplat_cli_test(usage.simd EXIT 2 ARGS render ${cube} -o out.exr --simd MMX
     STDERR_MATCHES "deltasplat: SIMD level: got MMX; expected one of auto, .*")
 deltasplat_refusal(control_characters "Unknown option '--a?b'." "--a\nb")
 deltasplat_refusal(nan "--nan: got inf; expected a finite number" --nan inf)
+
+# What no picture could be made with.
+foreach(option frame-width unit-distance)
+    deltasplat_refusal(${option}_out_of_range
+        "--${option}: got 1e308; expected a finite number from 1e-30 to 1e+30" --${option} 1e308)
+endforeach()
+deltasplat_refusal(azimuth_out_of_range
+    "--azimuth: got 1e308; expected a finite number from -1e+06 to 1e+06" --azimuth 1e308)
+deltasplat_refusal(origin_out_of_range
+    "--origin: got 1e308,0,0; expected X,Y,Z, three numbers from -1e+15 to 1e+15"
+    --origin 1e308,0,0)
+deltasplat_refusal(target_out_of_range
+    "--target: got 0,1e308,0; expected X,Y,Z, three numbers from -1e+30 to 1e+30"
+    --target 0,1e308,0)
+
+# Names that begin with a dash.
+deltasplat_cli_test(usage.dash_output ARGS render ${cube} -o=-x.png CREATES -x.png)
+deltasplat_cli_test(usage.dash_output_long ARGS render ${cube} --output=-x.png CREATES -x.png)
+deltasplat_cli_test(usage.dash_input EXIT 3 ARGS info -- -fail.vdb
+    STDERR_MATCHES "deltasplat: -fail.vdb: .*")
+deltasplat_cli_test(usage.dashes_end_options ARGS render -o out.png -- ${cube} CREATES out.png)
+deltasplat_cli_test(usage.dashes_for_outputs EXIT 2 ARGS convert -- ${cube} --float
+    STDERR_MATCHES "deltasplat: --float: got extension .*")
 
 # Words.
 deltasplat_refusal(method "--method: got fast; expected auto, delta, sparse or traditional"
@@ -116,10 +139,10 @@ deltasplat_refusal(direction_against_up
     --direction 0,0,-1 --up 0,0,2)
 deltasplat_refusal(direction_zero
     "--direction: got 0,0,0; expected three finite numbers, not all of them 0" --direction 0,0,0)
-deltasplat_refusal(direction_short "--direction: got 1,2; expected X,Y,Z, three finite numbers"
+deltasplat_refusal(direction_short "--direction: got 1,2; expected X,Y,Z, three numbers from -1e+30 to 1e+30"
     --direction 1,2)
 deltasplat_refusal(direction_nan
-    "--direction: got 1,nan,0; expected X,Y,Z, three finite numbers" --direction=1,nan,0)
+    "--direction: got 1,nan,0; expected X,Y,Z, three numbers from -1e+30 to 1e+30" --direction=1,nan,0)
 deltasplat_refusal(up_zero "--up: got 0,0,0; expected three finite numbers, not all of them 0"
     --up 0,0,0)
 # What is up, and so what may not be the direction, may depend on the file.
@@ -168,14 +191,14 @@ foreach(spacing 1e-15 1e15)
     deltasplat_cli_test(spacing_${spacing} CREATES out.exr
         ARGS render ${cube} -o out.exr --size 8x8 --spacing ${spacing},${spacing},${spacing})
 endforeach()
-foreach(origin 1e+300,0,0 0,8e+14,-8e+14)
+foreach(origin 7.5e+14,7.5e+14,0 0,8e+14,-8e+14)
     deltasplat_cli_test(usage.origin_${origin} EXIT 2
         ARGS delta ${cube} out.vdb --origin ${origin}
         STDERR "deltasplat: --origin: got ${origin}; expected a place within 1e+15 of 0,0,0")
 endforeach()
 deltasplat_cli_test(usage.origin_of_images EXIT 2
-    ARGS convert stack.\#.pgm out.vdb --origin 1e+16,0,0
-    STDERR "deltasplat: --origin: got 1e+16,0,0; expected a place within 1e+15 of 0,0,0")
+    ARGS convert stack.\#.pgm out.vdb --origin 9e+14,9e+14,0
+    STDERR "deltasplat: --origin: got 9e+14,9e+14,0; expected a place within 1e+15 of 0,0,0")
 deltasplat_cli_test(usage.skip_bytes EXIT 2 ARGS ${raw} --dims 8x8x8 --skip-bytes -1
     STDERR "deltasplat: --skip-bytes: got -1; expected a whole number of at least 0")
 
