@@ -304,7 +304,7 @@ void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const F
     listener.report(0.95);
 
     const glm::dmat3 map = planeFromPixel(planeView, layout);
-    warp(rasterOf(merged, classes), map, result.image);
+    warp(rasterOf(merged, classes), map, WarpFilter::kSharp, result.image);
 
     RenderStats& stats = result.stats;
     stats.stamps = stampsOf(deltas, stats);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "composite/plane_view.h"
 #include "image/warp.h"
@@ -16,14 +15,10 @@
 namespace deltasplat {
 namespace {
 
-// Sheet pixels a voxel: what is between them is for the warp to find.
+// Sheet pixels a voxel.
 constexpr int kResolution = 1;
 
-// What is divided by what is warped alike must not be clamped before.
-constexpr glm::vec2 kAnyValue{std::numeric_limits<float>::lowest(),
-                              std::numeric_limits<float>::max()};
-
-// Under the maximum a voxel stands for itself.
+// A voxel stands for itself: what is between is for the warp to find.
 Footprint singlePixel() {
     Footprint footprint;
     footprint.weights = {Footprint::kOne};
@@ -31,21 +26,12 @@ Footprint singlePixel() {
 }
 
 Footprint footprintOf(const RenderOptions& options, glm::dvec2 shiftPerSlice) {
-    if (options.mode == Mode::kMip) return singlePixel();
-    return makeFootprint(options.sigma.value_or(defaultSigma(kResolution)), shiftPerSlice,
-                         kResolution, options.footprintWidth);
+    if (options.mode == Mode::kMip || !options.sigma) return singlePixel();
+    return makeFootprint(*options.sigma, shiftPerSlice, kResolution, options.footprintWidth);
 }
 
-Raster rasterOf(const RayPlane& plane, glm::vec2 range) {
-    Raster raster{plane.box.min, plane.box.size(), plane.values.data(), 1};
-    raster.range = range;
-    return raster;
-}
-
-// The values of a plane, and the nothing around it.
-glm::vec2 rangeOf(const RayPlane& plane) {
-    const auto [low, high] = std::minmax_element(plane.values.begin(), plane.values.end());
-    return {std::min(*low, 0.0f), std::max(*high, 0.0f)};
+Raster rasterOf(const RayPlane& plane) {
+    return {plane.box.min, plane.box.size(), plane.values.data(), 1};
 }
 
 // Splits a plane of largest values into whether anything is met (1 or 0), and the value there.
@@ -109,14 +95,14 @@ void renderRays(const Volume& volume, const Factorization& view, const RenderOpt
         const RayPlane met = splitMet(plane);
         stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;
         Image share(result.image.size);
-        warp(rasterOf(met, kAnyValue), map, share);
-        warp(rasterOf(plane, kAnyValue), map, result.image);
+        warp(rasterOf(met), map, WarpFilter::kLinear, share);
+        warp(rasterOf(plane), map, WarpFilter::kLinear, result.image);
         combineMet(share, {rays.lowest, rays.highest}, result.image);
         if (options.mipColors) colorValues(ValueColors(volume, options.optics), result.image);
     } else {
         plane = blurPlane(plane, footprint, float(view.sliceStepWorld));
         stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;
-        warp(rasterOf(plane, rangeOf(plane)), map, result.image);
+        warp(rasterOf(plane), map, WarpFilter::kSmooth, result.image);
     }
     stats.visible = rays.visible;
     stats.resolution = kResolution;

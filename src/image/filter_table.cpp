@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Edwin Catmull and Raphael Rom, "A Class of Local Interpolating Splines", 1974.
+// Based on: Edwin Catmull and Raphael Rom, "A Class of Local Interpolating Splines", 1974; Isaac
+// Schoenberg, "Contributions to the Problem of Approximation of Equidistant Data by Analytic
+// Functions", 1946 (B-splines).
 #include "image/filter_table.h"
 
 #include <algorithm>
@@ -20,15 +22,42 @@ double catmullRom(double x) {
     return 0;
 }
 
+// The box of width 1 convolved with itself five times, as a sum of truncated powers.
+double quinticBSpline(double x) {
+    const auto power = [x = std::abs(x)](double edge) {
+        const double rest = std::max(0.0, edge - x);
+        return rest * rest * rest * rest * rest;
+    };
+    return (power(3) - 6 * power(2) + 15 * power(1)) / 120;
+}
+
+// How far a filter reaches, in lattice points.
+int reachOf(WarpFilter filter) {
+    return filter == WarpFilter::kSmooth ? 3 : 2;
+}
+
+double weightAt(WarpFilter filter, double x) {
+    switch (filter) {
+        case WarpFilter::kSharp:
+            return catmullRom(x);
+        case WarpFilter::kSmooth:
+            return quinticBSpline(x);
+        default:
+            return std::max(0.0, 1 - std::abs(x));
+    }
+}
+
 // A raster that is smaller than a pixel by more than this adds nothing to it that could be seen.
 constexpr double kMaxStretch = 16384;
 
 }  // namespace
 
-FilterTable::FilterTable(double wantedStretch) {
+FilterTable::FilterTable(WarpFilter filter, double wantedStretch) {
     const double stretch = std::min(wantedStretch, kMaxStretch);
-    taps_ = 2 * int(std::ceil(2 * stretch));
+    taps_ = 2 * int(std::ceil(reachOf(filter) * stretch));
     paddedTaps_ = (taps_ + 3) / 4 * 4;
+    innerTaps_ = 2 * int(std::ceil(stretch));
+    overshoots_ = filter == WarpFilter::kSharp;
     const int steps = int(std::bit_floor(unsigned(std::max(4.0, kStepsPerWidth / stretch))));
     shift_ = 32 - std::countr_zero(unsigned(steps));
     ownWeights_.resize(std::size_t(steps + 1) * paddedTaps_);
@@ -39,7 +68,7 @@ FilterTable::FilterTable(double wantedStretch) {
     for (int step = 0; step <= steps; ++step) {
         double sum = 0;
         for (int tap = 0; tap < taps_; ++tap) {
-            exact[tap] = catmullRom((firstTap(0) + tap - double(step) / steps) / stretch);
+            exact[tap] = weightAt(filter, (firstTap(0) + tap - double(step) / steps) / stretch);
             sum += exact[tap];
         }
         double magnitude = 0;

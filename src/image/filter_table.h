@@ -7,13 +7,26 @@
 
 namespace deltasplat {
 
-/// Weights of a Catmull-Rom filter along one axis, for every position between two lattice points in
-/// small steps: what reading them takes.
+/// What is between lattice points. None lets a value leave the range of its neighbours.
+enum class WarpFilter {
+    kSharp,   ///< Catmull-Rom, clamped to the nearest lattice points: for pictures
+    kSmooth,  ///< quintic B-spline: every lattice point keeps its weight, for sums
+    kLinear   ///< linear: for largest values, which stay what they are
+};
+
+/// Weights of a filter along one axis, for every position between two lattice points in small
+/// steps: what reading them takes.
 class FilterView {
   public:
     int taps() const { return taps_; }
     /// Taps rounded up to a multiple of four; the weights of the added ones are zero.
     int paddedTaps() const { return paddedTaps_; }
+    /// Taps in the middle, an even number: beyond them weights are negative if there are such.
+    int innerTaps() const { return innerTaps_; }
+    /// The first of them.
+    int firstInnerTap() const { return (taps_ - innerTaps_) / 2; }
+    /// Whether weights may be negative, so that sums have to be clamped to the inner taps' range.
+    bool overshoots() const { return overshoots_; }
     /// The first lattice point under the filter at a position whose floor is `whole`.
     int firstTap(int whole) const { return whole - (taps_ / 2 - 1); }
     /// Returns paddedTaps() weights for a position that lies `fraction` / 2^32 behind a lattice
@@ -35,6 +48,8 @@ class FilterView {
 
     int taps_ = 0;
     int paddedTaps_ = 0;
+    int innerTaps_ = 0;
+    bool overshoots_ = false;
     double gain_ = 1;
     int shift_ = 0;                   // there are 2^(32 - shift_) steps
     const float* weights_ = nullptr;  // [steps + 1][paddedTaps_]
@@ -46,7 +61,7 @@ class FilterTable : public FilterView {
   public:
     /// @param wantedStretch  lattice points a picture pixel, at least 1: the filter is that much
     /// wider, up to 16384 times
-    explicit FilterTable(double wantedStretch);
+    FilterTable(WarpFilter filter, double wantedStretch);
     FilterTable(const FilterTable&) = delete;
     FilterTable& operator=(const FilterTable&) = delete;
 

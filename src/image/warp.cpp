@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Edwin Catmull and Raphael Rom, "A Class of Local Interpolating Splines", 1974; the
-// filter is applied along the raster's own axes. OpenImageIO's warp gives the same picture about 40
-// times slower (docs/decisions.md).
+// Filters (filter_table.cpp) are applied along the raster's own axes. OpenImageIO's warp gives a
+// like picture about 40 times slower (docs/decisions.md).
 #include "image/warp.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -87,15 +87,16 @@ class RasterTiles {
 
 class Warper {
   public:
-    Warper(const Raster& raster, const glm::dmat3& rasterFromPixel, Image& picture)
+    Warper(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
+           Image& picture)
         : raster_(raster),
           tiles_(raster),
           map_(rasterFromPixel),
           picture_(picture),
-          wideX_(tableFor(stretchOf(map_[0].x, map_[1].x))),
-          wideY_(tableFor(stretchOf(map_[0].y, map_[1].y))),
-          filterX_(wideX_ ? *wideX_ : narrowest()),
-          filterY_(wideY_ ? *wideY_ : narrowest()) {}
+          wideX_(tableFor(filter, stretchOf(map_[0].x, map_[1].x))),
+          wideY_(tableFor(filter, stretchOf(map_[0].y, map_[1].y))),
+          filterX_(wideX_ ? *wideX_ : narrowest(filter)),
+          filterY_(wideY_ ? *wideY_ : narrowest(filter)) {}
 
     double gain() const { return filterX_.gain() * filterY_.gain(); }
     void run() {
@@ -114,13 +115,18 @@ class Warper {
         return portable::hypot(alongX, alongY);
     }
 
-    // The usual filter is made once.
-    static const FilterTable& narrowest() {
-        static const FilterTable table(1);
-        return table;
+    // The usual filters are made once.
+    static const FilterTable& narrowest(WarpFilter filter) {
+        static const FilterTable sharp(WarpFilter::kSharp, 1);
+        static const FilterTable smooth(WarpFilter::kSmooth, 1);
+        static const FilterTable linear(WarpFilter::kLinear, 1);
+        return filter == WarpFilter::kSharp    ? sharp
+               : filter == WarpFilter::kSmooth ? smooth
+                                               : linear;
     }
-    static std::optional<FilterTable> tableFor(double stretch) {
-        return stretch > 1 ? std::optional<FilterTable>(std::in_place, stretch) : std::nullopt;
+    static std::optional<FilterTable> tableFor(WarpFilter filter, double stretch) {
+        if (!(stretch > 1)) return std::nullopt;
+        return std::optional<FilterTable>(std::in_place, filter, stretch);
     }
 
     glm::dvec2 step() const { return map_[0]; }
@@ -213,9 +219,7 @@ class Warper {
         const glm::ivec2 end = glm::min(taps, raster_.size - first);
         float sum[4] = {};
         for (int j = begin.y; j < end.y; ++j) {
-            const float* row =
-                raster_.values +
-                raster_.channels * (std::size_t(first.y + j) * raster_.size.x + first.x);
+            const float* row = tapAt(first + glm::ivec2(0, j));
             for (int i = begin.x; i < end.x; ++i) {
                 const float weight = weightY[j] * weightX[i];
                 for (int c = 0; c < raster_.channels; ++c) {
@@ -223,17 +227,40 @@ class Warper {
                 }
             }
         }
+        if (filterX_.overshoots()) clampToInnerTaps(first, sum);
         write(sum, picture_.pixel(x, y));
     }
 
-    void write(const float* sum, float* out) const {
-        if (raster_.channels == 1) {
-            out[3] = std::clamp(sum[0], raster_.range.x, raster_.range.y);
-            for (int c = 0; c < 3; ++c) out[c] = out[3] * raster_.color[c];
-            return;
+    // Points to a tap, which may lie outside as long as it is not read.
+    const float* tapAt(glm::ivec2 p) const {
+        return raster_.values + raster_.channels * (std::ptrdiff_t{raster_.size.x} * p.y + p.x);
+    }
+
+    void clampToInnerTaps(glm::ivec2 first, float* sum) const {
+        const glm::ivec2 begin =
+            first + glm::ivec2(filterX_.firstInnerTap(), filterY_.firstInnerTap());
+        const glm::ivec2 end = begin + glm::ivec2(filterX_.innerTaps(), filterY_.innerTaps());
+        const glm::ivec2 firstInside = glm::max(begin, glm::ivec2(0));
+        const glm::ivec2 endInside = glm::min(end, raster_.size);
+        const bool allInside = firstInside == begin && endInside == end;
+        for (int c = 0; c < raster_.channels; ++c) {
+            constexpr float kInfinity = std::numeric_limits<float>::infinity();
+            float low = allInside ? kInfinity : 0;
+            float high = allInside ? -kInfinity : 0;
+            for (int y = firstInside.y; y < endInside.y; ++y) {
+                for (int x = firstInside.x; x < endInside.x; ++x) {
+                    low = std::min(low, tapAt({x, y})[c]);
+                    high = std::max(high, tapAt({x, y})[c]);
+                }
+            }
+            sum[c] = std::min(std::max(sum[c], low), high);
         }
-        out[3] = std::clamp(sum[3], 0.0f, 1.0f);
-        for (int c = 0; c < 3; ++c) out[c] = std::max(sum[c], 0.0f);
+    }
+
+    void write(const float* sum, float* out) const {
+        out[3] = sum[raster_.channels - 1];
+        for (int c = 0; c < 3; ++c)
+            out[c] = raster_.channels == 1 ? sum[0] * raster_.color[c] : sum[c];
     }
 
     const Raster& raster_;
@@ -248,14 +275,16 @@ class Warper {
 
 }  // namespace
 
-void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, Image& picture) {
-    if (raster.size.x > 0 && raster.size.y > 0) Warper(raster, rasterFromPixel, picture).run();
+void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
+          Image& picture) {
+    if (raster.size.x > 0 && raster.size.y > 0)
+        Warper(raster, rasterFromPixel, filter, picture).run();
 }
 
 double warpGain(const glm::dmat3& rasterFromPixel) {
     const Raster none;
     Image picture;
-    return Warper(none, rasterFromPixel, picture).gain();
+    return Warper(none, rasterFromPixel, WarpFilter::kSharp, picture).gain();
 }
 
 }  // namespace deltasplat

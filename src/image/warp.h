@@ -6,6 +6,7 @@
 #include <span>
 
 #include "deltasplat/image/image.h"
+#include "image/filter_table.h"
 
 namespace deltasplat {
 
@@ -18,21 +19,19 @@ struct Raster {
     int channels = 4;  ///< 4: premultiplied RGBA; 1: opacity, or another value
     /// The colour that opacity 1 has, if opacity is all there is.
     glm::vec3 color{1.0f};
-    /// What a value that stands alone is clamped to: where it is no opacity, the raster's own range
-    /// and 0.
-    glm::vec2 range{0.0f, 1.0f};
     /// [size.y], or empty: columns [x, y) outside of which a row is zero.
     std::span<const glm::ivec2> spans{};
 };
 
-/// Resamples a raster under an affine map with a Catmull-Rom filter, widened where the picture is
-/// coarser than the raster. Colours are clamped to be not negative, alpha to 0..1 and values that
-/// stand alone to their range: the filter's lobes may leave it. Deterministic; multi-threaded.
+/// Resamples a raster under an affine map with a filter that is widened where the picture is
+/// coarser than the raster. No value leaves the range of those around it, what lies outside of the
+/// raster (0) among them. Deterministic; multi-threaded.
 /// @param rasterFromPixel  continuous picture coordinates (pixel centres at half-integers) to
 /// lattice positions
-void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, Image& picture);
+void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
+          Image& picture);
 
-/// Returns the most that `warp` under the same map can enlarge a difference of rasters.
+/// Returns the most that `warp` with kSharp under the same map can enlarge a difference of rasters.
 double warpGain(const glm::dmat3& rasterFromPixel);
 
 }  // namespace deltasplat

@@ -70,34 +70,60 @@ HWY_INLINE PixelVector sumOpacities(const float* corner, std::size_t pitch, cons
     return hn::Add(pairs, hn::Shuffle2301(pairs));
 }
 
-HWY_INLINE PixelVector clamped(PixelVector sum) {
+// A pixel of RGBA, or a value in all lanes.
+template <int kChannels>
+HWY_INLINE PixelVector loadPixel(const float* pixel) {
     const PixelTag tag;
-    HWY_ALIGN static constexpr float kMost[4] = {3.4e38f, 3.4e38f, 3.4e38f, 1};
-    return hn::Min(hn::Max(sum, hn::Zero(tag)), hn::Load(tag, kMost));
+    if constexpr (kChannels == 4) {
+        return hn::LoadU(tag, pixel);
+    } else {
+        return hn::Set(tag, *pixel);
+    }
+}
+
+// Inner taps, counted from the first of all.
+struct InnerTaps {
+    InnerTaps(const FilterView& filterX, const FilterView& filterY)
+        : firstX(filterX.firstInnerTap()),
+          firstY(filterY.firstInnerTap()),
+          countX(filterX.innerTaps()),
+          countY(filterY.innerTaps()) {}
+    int firstX, firstY, countX, countY;
+};
+
+// Clamps a sum to the range of the inner taps: two by two if kTaps is four.
+template <int kTaps, int kChannels>
+HWY_INLINE PixelVector clampToInner(PixelVector sum, const float* corner, std::size_t pitch,
+                                    const InnerTaps& inner) {
+    const int columns = kTaps == 4 ? 2 : inner.countX;
+    const int rows = kTaps == 4 ? 2 : inner.countY;
+    const float* row = corner + (kTaps == 4 ? 1 : inner.firstY) * pitch +
+                       kChannels * (kTaps == 4 ? 1 : inner.firstX);
+    PixelVector low = loadPixel<kChannels>(row);
+    PixelVector high = low;
+    for (int y = 0; y < rows; ++y, row += pitch) {
+        for (int x = 0; x < columns; ++x) {
+            const PixelVector tap = loadPixel<kChannels>(row + kChannels * x);
+            low = hn::Min(low, tap);
+            high = hn::Max(high, tap);
+        }
+    }
+    return hn::Min(hn::Max(sum, low), high);
 }
 
 // What becomes of a raster's only channel.
-struct SingleChannel {
-    explicit SingleChannel(const Raster& raster)
-        : lowest(hn::Set(PixelTag(), raster.range.x)),
-          highest(hn::Set(PixelTag(), raster.range.y)) {
-        HWY_ALIGN const float rgba[4] = {raster.color.x, raster.color.y, raster.color.z, 1};
-        color = hn::Load(PixelTag(), rgba);
-    }
-    PixelVector lowest;
-    PixelVector highest;
-    PixelVector color;
-};
+HWY_INLINE PixelVector colorOf(const Raster& raster) {
+    HWY_ALIGN const float rgba[4] = {raster.color.x, raster.color.y, raster.color.z, 1};
+    return hn::Load(PixelTag(), rgba);
+}
 
-// Writes one pixel of RGBA, which of a single channel is a color times it. kTaps are those along
-// both axes, or 0 if they are not four.
+// Returns one pixel: RGBA, or the sum of a single channel in all lanes. kTaps are those along both
+// axes, or 0 if they are not four.
 template <int kTaps, int kChannels>
-HWY_INLINE void samplePixel(const SingleChannel& single, const FilterView& filterX, std::uint32_t x,
-                            const float* corner, std::size_t pitch, const float* weightY, int rows,
-                            float* out) {
-    const PixelTag tag;
+HWY_INLINE PixelVector samplePixel(const FilterView& filterX, std::uint32_t x, const float* corner,
+                                   std::size_t pitch, const float* weightY, int rows) {
     const float* weightX = kChannels == 4 ? filterX.wideWeights(x) : filterX.weights(x);
-    auto sum = hn::Zero(tag);
+    auto sum = hn::Zero(PixelTag());
     for (int first = 0; first < (kTaps ? kTaps : filterX.paddedTaps()); first += 4) {
         const float* taps = corner + kChannels * first;
         if constexpr (kChannels == 4) {
@@ -106,28 +132,29 @@ HWY_INLINE void samplePixel(const SingleChannel& single, const FilterView& filte
             sum = hn::Add(sum, sumOpacities<kTaps>(taps, pitch, weightX + first, weightY, rows));
         }
     }
-    if constexpr (kChannels == 1) {
-        const auto value = hn::Min(hn::Max(sum, single.lowest), single.highest);
-        hn::StoreU(hn::Mul(value, single.color), tag, out);
-    } else {
-        hn::StoreU(clamped(sum), tag, out);
-    }
+    return sum;
 }
 
 template <int kTaps, int kChannels>
 void sampleRunOf(const Raster& raster, const FilterTable& wantedX, const FilterTable& wantedY,
                  FixedPosition position, FixedPosition step, int pixels, float* out) {
+    const PixelTag tag;
     const std::size_t pitch = std::size_t(kChannels) * raster.size.x;
     // Copies, so that what is written cannot be thought to change them.
     const FilterView filterX(wantedX);
     const FilterView filterY(wantedY);
-    const SingleChannel single(raster);
+    const InnerTaps inner(filterX, filterY);
+    const bool overshoots = filterX.overshoots();
+    const PixelVector color = colorOf(raster);
     for (int i = 0; i < pixels; ++i, out += 4) {
         const float* corner = raster.values + filterY.firstTap(int(position.y >> 32)) * pitch +
                               kChannels * filterX.firstTap(int(position.x >> 32));
-        samplePixel<kTaps, kChannels>(single, filterX, std::uint32_t(position.x), corner, pitch,
-                                      filterY.weights(std::uint32_t(position.y)), filterY.taps(),
-                                      out);
+        PixelVector sum = samplePixel<kTaps, kChannels>(
+            filterX, std::uint32_t(position.x), corner, pitch,
+            filterY.weights(std::uint32_t(position.y)), filterY.taps());
+        if (overshoots) sum = clampToInner<kTaps, kChannels>(sum, corner, pitch, inner);
+        if constexpr (kChannels == 1) sum = hn::Mul(sum, color);
+        hn::StoreU(sum, tag, out);
         position.x += step.x;
         position.y += step.y;
     }

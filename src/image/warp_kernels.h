@@ -18,7 +18,7 @@ struct FixedPosition {
 /// filter along x included.
 /// @param position  of the first pixel
 /// @param step      from one pixel to the next
-/// @param out       RGBA, clamped as `warp` says
+/// @param out       RGBA
 void sampleRun(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
                FixedPosition position, FixedPosition step, int pixels, float* out);
 
