@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/common.hpp>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -13,11 +15,14 @@
 #include "composite/compositor.h"
 #include "composite/layer_fold.h"
 #include "composite/plane_view.h"
+#include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "image/warp.h"
 #include "memory.h"
+#include "number_text.h"
 #include "optics/hold_rule.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "splat/splatter.h"
 #include "stopwatch.h"
 
@@ -43,7 +48,8 @@ constexpr double kThinSlice = 0.25;
 int sheetResolution(const Factorization& view, const ClassTable& classes,
                     const RenderOptions& options) {
     const bool thin = classes.scale.a * ClassTable::kMax <= kThinSlice;
-    return !options.resolution && view.resolution == 2 && thin ? 1 : view.resolution;
+    const bool few = view.pixelsPerVoxel < 2.5;
+    return !options.resolution && few && thin ? 1 : view.resolution;
 }
 
 // Into how many strips rows of the base plane are cut: enough pieces for every thread to take some,
@@ -281,14 +287,16 @@ void requireSlabMemory(const SplatInput& input, const PlaneView& view, const She
                   bytes);
 }
 
+// @param view  of the volume's own slices
 void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const Factorization& view,
                   const RenderOptions& options, const Listener& listener, RenderResult& result) {
     const Clock::time_point start = Clock::now();
-    const PlaneView planeView(view);
+    const PlaneView planeView(withSlicesPerVoxel(view, result.stats.between + 1));
     const int resolution = sheetResolution(view, classes, options);
+    // The kernel is round in voxels, however many slices there are.
     const Footprint footprint =
-        makeFootprint(options.sigma.value_or(defaultSigma(resolution)), planeView.shiftPerSlice,
-                      resolution, options.footprintWidth);
+        makeFootprint(options.sigma.value_or(defaultSigma(view.pixelsPerVoxel)),
+                      PlaneView(view).shiftPerSlice, resolution, options.footprintWidth);
     const SheetLayout layout = layoutSheet(deltas.box, footprint, classes.oneColor ? 1 : 4);
     std::optional<DigitVoxels> digitVoxels;
     if (!classes.oneDigit()) digitVoxels.emplace(deltas, classes);
@@ -322,19 +330,75 @@ void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const F
     stats.warpSeconds = stats.renderSeconds - mergedSeconds;
 }
 
+// Whether colours only ever change from one value to the next: what labels have.
+bool isCategorical(const TransferFunction& function) {
+    bool steps = false;
+    for (std::size_t i = 1; i < function.colors.size(); ++i) {
+        const auto& [x, rgb] = function.colors[i - 1];
+        const auto& [nextX, nextRgb] = function.colors[i];
+        if (rgb == nextRgb) continue;
+        if (x != nextX) return false;
+        steps = true;
+    }
+    return steps;
+}
+
+int slicesBetween(const Volume& volume, const RenderOptions& options) {
+    const int between = options.between.value_or(defaultBetween(volume, options.optics));
+    if (between < 0 || between > kMostBetween) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--between", std::to_string(between),
+                                "a whole number within 0.." + std::to_string(kMostBetween)));
+    }
+    // Places are counted in 32 bits; a volume that lies so far away can do without.
+    const glm::ivec3 farthest = glm::max(glm::abs(volume.box.min), glm::abs(volume.box.max));
+    constexpr int kFar = std::numeric_limits<int>::max() / 4 / (kMostBetween + 1);
+    return std::max({farthest.x, farthest.y, farthest.z}) > kFar ? 0 : between;
+}
+
+// Optics as the volume has them, for levels to be seen by.
+Optics withRange(const Volume& volume, Optics optics) {
+    if (!optics.range) optics.range = defaultRange(volume);
+    return optics;
+}
+
 }  // namespace
+
+// Decided from the transfer function and the voxel size alone, so that nothing jumps when a
+// sequence's values or the camera change.
+int defaultBetween(const Volume& volume, const Optics& optics) {
+    constexpr double kThinOpacity = 0.25;
+    if (volume.type == "bool" || volume.type == "mask" || isCategorical(optics.transferFunction))
+        return 0;
+    double opacity = 0;
+    for (const auto& point : optics.transferFunction.opacities)
+        opacity = std::max(opacity, point.opacity);
+    const glm::dvec3 size = volume.voxelSize();
+    const double smallest = std::min({size.x, size.y, size.z});
+    const double depth = optics.extinctionScale * smallest / optics.unitDistance.value_or(smallest);
+    const bool thin =
+        opacity < 1 && -portable::log1p(-opacity) * depth <= -portable::log1p(-kThinOpacity);
+    return thin ? 0 : 1;
+}
 
 void renderComposite(const Volume& volume, const Factorization& view, const RenderOptions& options,
                      const Listener& listener, RenderResult& result) {
     const Clock::time_point start = Clock::now();
-    const ClassTable classes = classify(volume, options.optics, view.sliceStepWorld);
+    RenderStats& stats = result.stats;
+    stats.between = slicesBetween(volume, options);
+    stats.slices *= stats.between + 1;
+    stats.voxels *= std::uint64_t(stats.between) + 1;
+    std::optional<SliceMixer> mixer;
+    if (stats.between > 0) mixer.emplace(volume, stats.between + 1);
+    const Volume& seen = mixer ? mixer->levels() : volume;
+    const ClassTable classes = classify(seen, withRange(volume, options.optics),
+                                        view.sliceStepWorld / (stats.between + 1));
     listener.report(0.05);
     const PackedDeltas deltas =
         packDeltas(volume, {view.sliceAxis, encodingOf(options.method), classes.classOfSlot,
-                            holdRule(volume, classes, options.tolerance)});
+                            holdRule(seen, classes, options.tolerance), mixer ? &*mixer : nullptr});
     listener.report(0.2);
 
-    RenderStats& stats = result.stats;
     stats.tolerance = options.tolerance;
     stats.visible = deltas.visible();
     stats.deltas = deltas.deltas();

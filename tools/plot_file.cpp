@@ -30,7 +30,9 @@ void writeDrawing(const std::filesystem::path& file, const Drawing& drawing) {
     if (isSvg(file)) {
         writeFileAtomically(file, svgText(drawing));
     } else {
-        writeImage(file, rasterize(drawing, kPngScale), {});
+        ImageFileOptions flat;
+        flat.dither = false;
+        writeImage(file, rasterize(drawing, kPngScale), flat);
     }
 }
 

@@ -68,8 +68,11 @@ void showErrorBound(const RenderStats& stats) {
 void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
                          ProgressDisplay& display) {
     warnOfUnusedInputOptions(app, {command.input}, display);
-    if (isGiven(app, "--bits") && lowerCase(command.output.extension().string()) != ".png")
+    const bool png = lowerCase(command.output.extension().string()) == ".png";
+    if (isGiven(app, "--bits") && !png)
         display.warn("--bits: has no effect without a .png picture");
+    if (isGiven(app, "--dither") && (!png || command.image.bits == 16))
+        display.warn("--dither: has no effect without a .png of 8 bits");
     warnOfUnusedCameraOptions(app, display);
     warnOfUnusedModeOptions(app, command, display);
 }

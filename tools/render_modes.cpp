@@ -37,8 +37,9 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
                              ProgressDisplay& display) {
     const Mode mode = command.picture.render.mode;
     if (mode == Mode::kComposite) return;
-    std::vector<std::string> unused = {"--method",     "--tolerance",  "--tolerance-value",
-                                       "--resolution", "--extinction", "--unit-distance"};
+    std::vector<std::string> unused = {"--method",       "--tolerance", "--tolerance-value",
+                                       "--resolution",   "--between",   "--extinction",
+                                       "--unit-distance"};
     if (mode == Mode::kMip) unused.push_back("--sigma");
     if (mode == Mode::kXray || isExr(command.output))
         unused.insert(unused.end(), {"--tf", "--range"});

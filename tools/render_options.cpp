@@ -43,6 +43,12 @@ Parser<std::int64_t> bits() {
     };
 }
 
+Parser<bool> zeroOrOne() {
+    return [](const std::string& option, const std::string& text) {
+        return choice({"0", "1"})(option, text) == "1";
+    };
+}
+
 // All of a value could not be held: what is left of it would be nothing.
 Parser<double> relativeTolerance() {
     return [](const std::string& option, const std::string& text) {
@@ -67,6 +73,10 @@ void addOutputOptions(CLI::App& app, RenderCommand& command) {
     group.addFlag("--float", command.image.floatExr, "Store 32-bit floats in an .exr, not halves");
     group.addValue("--bits", "8|16", command.image.bits, bits(),
                    withDefault("Bits per channel of a .png", std::to_string(command.image.bits)));
+    group.addValue("--dither", "0|1", command.image.dither, zeroOrOne(),
+                   withDefault("Round up and down in a fixed pattern in a .png of 8 bits, so that\n"
+                               "slow ramps show no steps",
+                               command.image.dither ? "1" : "0"));
     group.addValue("--stats", "FILE", command.stats, anyText(),
                    "JSON file to write: what was done, how long it took in seconds");
 }
@@ -159,8 +169,15 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
     group.addValue("--sigma", "V", options.sigma, number(kMinSigma, kMaxSigma),
                    "Standard deviation of the footprint in voxels, " + numberText(kMinSigma) +
                        " to " + numberText(kMaxSigma) +
-                       "\n(default: " + numberText(defaultSigma(1)) + ", or " +
-                       numberText(defaultSigma(3)) + " from three sheet pixels per voxel on)");
+                       "\n(default: " + numberText(defaultSigma(1)) +
+                       ", growing where a voxel covers more than\n2 pixels, to " +
+                       numberText(defaultSigma(3)) + " from 3 pixels on)");
+    group.addValue(
+        "--between", "N", options.between, wholeNumber(0, kMostBetween),
+        "Slices put between two neighbouring ones, 0 to " + std::to_string(kMostBetween) +
+            ", values mixed:\nsmoother and nearer to a ray caster, N + 1 times the work\n"
+            "(default: 1, or 0 where opacity over a voxel is at most\n"
+            "0.25, and for labels and masks)");
     group.addValue("--resolution", "R", options.resolution, wholeNumber(1, kMaxResolution),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        " (default: chosen from the screen)");

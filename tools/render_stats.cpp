@@ -59,6 +59,7 @@ std::string statsJson(const RenderResult& result, const Volume& volume, const Re
         {"deltas", stats.deltas},
         {"stamps", stats.stamps},
         {"slices", stats.slices},
+        {"between", stats.between},
         {"slabs", stats.slabs},
         {"slice_axis", axisName(stats.sliceAxis)},
         {"resolution", stats.resolution},

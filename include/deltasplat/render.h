@@ -50,21 +50,32 @@ struct RenderOptions {
     /// Footprint's standard deviation in voxels, kMinSigma..kMaxSigma; empty: defaultSigma.
     std::optional<double> sigma;
     std::optional<int> resolution;  ///< sheet pixels a voxel; empty: chosen from the screen
-    Tolerance tolerance;            ///< how far what is shown of a voxel may be from what is true
+    /// Slices put between two neighbouring ones, 0..kMostBetween; empty: defaultBetween.
+    std::optional<int> between;
+    Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for
 };
+
+inline constexpr int kMostBetween = 7;
+
+/// Returns how many slices are put between two neighbouring ones when nothing is said: none where a
+/// transfer function is thin (opacity of at most 0.25 over the smallest voxel size) or categorical
+/// (a step from value to value), nor where voxels are true or false; otherwise one. Values in
+/// between would mean nothing there, or show nothing new.
+int defaultBetween(const Volume& volume, const Optics& optics);
 
 /// What was done and how long it took. Times are wall-clock seconds.
 struct RenderStats {
     Method method = Method::kAuto;
     Mode mode = Mode::kComposite;
-    std::uint64_t voxels = 0;   ///< of the bounding box
+    std::uint64_t voxels = 0;   ///< of the bounding box and of the slices put between
     std::uint64_t visible = 0;  ///< whose classified colour is not zero; kXray: active ones whose
                                 ///< value is not 0; kMip: active ones
     std::uint64_t deltas =
         0;  ///< whose classified colour differs from the slice before, key slices included
     std::uint64_t stamps = 0;  ///< footprints added
-    int slices = 0;
+    int slices = 0;            ///< those put between others among them
+    int between = 0;           ///< slices put between two neighbouring ones
     int slabs = 0;
     int sliceAxis = 2;
     int resolution = 1;

@@ -87,8 +87,8 @@ void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
     blocks_.reserve(std::size_t(blocks));
     // Shifting keeps the floor of negative positions.
     for (const CodeLeaf& entry : leaves) {
-        blocks_.push_back(
-            {toSliceOrder(entry.leaf->origin() >> 3, sliceAxis_), entry.leaf, kEmptySlot, nullptr});
+        blocks_.push_back({toSliceOrder(entry.leaf->origin() >> 3, sliceAxis_), entry.leaf,
+                           kEmptySlot, nullptr, entry.lowest, entry.highest});
     }
     const auto add = [&](const openvdb::CoordBBox& box, Slot slot) { addTile(box, slot); };
     forVisibleTiles(codes, slotOfCode, add);

@@ -19,6 +19,9 @@ struct CodeBlock {
     Slot tileSlot = kEmptySlot;            ///< of all voxels, if there is no leaf
     /// Leaf of inactive voxels that hold a value of their own; may be null.
     const CodeTree::Leaf* inactive = nullptr;
+    /// Range of the active voxels' codes, where there is a leaf.
+    Code lowest = 0;
+    Code highest = 0;
 };
 
 /// Slots of a block, `[slice][u][v]`.
@@ -35,6 +38,7 @@ class BlockReader {
 
     /// The blocks that may have slots other than empty, ordered by u, then v, then slice.
     const std::vector<CodeBlock>& blocks() const { return blocks_; }
+    std::vector<CodeBlock> takeBlocks() && { return std::move(blocks_); }
     /// Returns the slots of a block.
     void readBlock(const CodeBlock& block, BlockSlots& slots) const;
     /// Returns the slots of a block's last slice, `[u][v]`.

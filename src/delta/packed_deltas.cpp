@@ -13,6 +13,7 @@
 #include "delta/block_kernels.h"
 #include "delta/block_windows.h"
 #include "delta/code_blocks.h"
+#include "delta/mixed_sight.h"
 #include "memory.h"
 #include "parallel.h"
 
@@ -24,13 +25,13 @@ using BlockClasses = std::array<ClassIndex, 512>;
 using SliceClasses = std::array<ClassIndex, 64>;
 
 // Reads a leaf, kStep: how far neighbours along x, y and z lie in `out`.
-template <int kStepX, int kStepY, int kStepZ, typename Out>
-void readLeafInSteps(const CodeTree::Leaf& leaf, const Slot* slotMap, Out* out) {
+template <int kStepX, int kStepY, int kStepZ, typename SlotOf, typename Out>
+void readLeafInSteps(const CodeTree::Leaf& leaf, const SlotOf& slotOf, Out* out) {
     const Code* codes = leaf.buffer().data();
     for (int x = 0; x < 8; ++x) {
         for (int y = 0; y < 8; ++y) {
             for (int z = 0; z < 8; ++z) {
-                out[x * kStepX + y * kStepY + z * kStepZ] = Out(slotMap[*codes++ + 1]);
+                out[x * kStepX + y * kStepY + z * kStepZ] = Out(slotOf(*codes++));
             }
         }
     }
@@ -45,11 +46,16 @@ void readLeafInSteps(const CodeTree::Leaf& leaf, const Slot* slotMap, Out* out) 
 }
 
 // Reads a leaf in (slice, u, v) order.
-template <typename Out>
-void readLeaf(const CodeTree::Leaf& leaf, int sliceAxis, const Slot* slotMap, Out* out) {
-    if (sliceAxis == 0) return readLeafInSteps<64, 8, 1>(leaf, slotMap, out);
-    if (sliceAxis == 1) return readLeafInSteps<1, 64, 8>(leaf, slotMap, out);
-    readLeafInSteps<8, 1, 64>(leaf, slotMap, out);
+template <typename SlotOf, typename Out>
+void readLeaf(const CodeTree::Leaf& leaf, int sliceAxis, const SlotOf& slotOf, Out* out) {
+    if (sliceAxis == 0) return readLeafInSteps<64, 8, 1>(leaf, slotOf, out);
+    if (sliceAxis == 1) return readLeafInSteps<1, 64, 8>(leaf, slotOf, out);
+    readLeafInSteps<8, 1, 64>(leaf, slotOf, out);
+}
+
+// Calls use(slotOf) with what a code's slot is under a map.
+inline auto mapped(std::span<const Slot> slotMap) {
+    return [map = slotMap.data()](Code code) { return map[code + 1]; };
 }
 
 // Holds voxels along the slice axis. Slots that are seen are numbered, 0 for all others; what a
@@ -115,14 +121,20 @@ constexpr std::size_t kMostWords = 9;
 constexpr double kBytesPerBlock =
     kMostWords * (sizeof(DeltaWord) + sizeof(PendingWord) + sizeof(SliceClasses));
 
+// How voxels become classes. Null: as they are.
+struct PackTools {
+    const Holder* holder = nullptr;
+    const SliceMixer* mixer = nullptr;
+    const MixedSight* sight = nullptr;
+};
+
 // Packs columns of blocks (same u and v), slices in increasing order.
 class ColumnPacker {
   public:
-    // holder: null if nothing is held
-    ColumnPacker(const IndexBox& box, const PackOptions& options, const Holder* holder,
+    ColumnPacker(const IndexBox& box, const PackOptions& options, const PackTools& tools,
                  std::span<const Slot> slotMap)
         : options_(options),
-          holder_(holder),
+          tools_(tools),
           slotMap_(slotMap),
           planner_(box),
           layout_(planner_.shortest()) {}
@@ -130,18 +142,25 @@ class ColumnPacker {
     // Packs blocks [begin, end), which are whole columns.
     void run(const CodeBlock* begin, const CodeBlock* end) {
         // What is not used of it takes no memory.
-        words_.reserve(kMostWords * std::size_t(end - begin));
-        storage_.reserve(64 * kMostWords * std::size_t(end - begin));
+        const std::size_t most = kMostWords * std::size_t(perBlock()) * std::size_t(end - begin);
+        words_.reserve(most);
+        storage_.reserve(64 * most);
         for (const CodeBlock* block = begin; block != end; ++block) {
-            if (block == begin || !follows(block)) {
+            const bool isFirst = block == begin || !follows(block);
+            const bool isLast = block + 1 == end || !follows(block + 1);
+            if (isFirst) {
                 before_.fill(kEmptySlot);
                 held_.fill(kEmptySlot);
             }
-            read(*block);
-            add(block->position, layout_.slicesOf(block->position.x));
+            if (tools_.mixer) {
+                addMixed({block - int{!isFirst}, block + 1 + int{!isLast}}, *block);
+            } else {
+                read(*block);
+                add(block->position, layout_.slicesOf(block->position.x));
+            }
             // What a block showed must be taken away behind it.
-            const int next = block->position.x + 1;
-            if (next > layout_.lastBlock || (block + 1 != end && follows(block + 1))) continue;
+            const int next = (block->position.x + 1) * perBlock();
+            if (next > layout_.lastBlock || !isLast) continue;
             classes_.fill(kEmptySlot);
             add({next, block->position.y, block->position.z}, 1);
         }
@@ -156,24 +175,70 @@ class ColumnPacker {
         return block->position == block[-1].position + glm::ivec3(1, 0, 0);
     }
 
+    // Blocks of thin slices that a block becomes.
+    int perBlock() const { return tools_.mixer ? tools_.mixer->perVoxel() : 1; }
+
     void read(const CodeBlock& block) {
-        if (holder_) return readHolding(block);
+        if (tools_.holder) {
+            readSlots(block, mapped(slotMap_), slots_);
+            return hold(slots_);
+        }
         if (!block.leaf) return classes_.fill(ClassIndex(block.tileSlot));
-        readLeaf(*block.leaf, options_.sliceAxis, slotMap_.data(), classes_.data());
+        readLeaf(*block.leaf, options_.sliceAxis, mapped(slotMap_), classes_.data());
     }
 
-    void readHolding(const CodeBlock& block) {
-        BlockSlots slots;
-        if (block.leaf) {
-            readLeaf(*block.leaf, options_.sliceAxis, slotMap_.data(), slots.data());
-        } else {
-            slots.fill(block.tileSlot);
-        }
+    template <typename SlotOf>
+    void readSlots(const CodeBlock& block, const SlotOf& slotOf, BlockSlots& slots) const {
+        if (!block.leaf) return slots.fill(block.tileSlot);
+        readLeaf(*block.leaf, options_.sliceAxis, slotOf, slots.data());
+    }
+
+    void hold(const BlockSlots& slots) {
         for (std::size_t i = 0; i < slots.size(); ++i) {
             Slot& held = held_[i & 63];
-            held = holder_->next(held, slots[i]);
-            classes_[i] = holder_->classOf(held);
+            held = tools_.holder->next(held, slots[i]);
+            classes_[i] = tools_.holder->classOf(held);
         }
+    }
+
+    // Adds what a block becomes between the one before it and the one behind it, of those that
+    // there are in `run`.
+    void addMixed(std::span<const CodeBlock> run, const CodeBlock& block) {
+        const int parts = perBlock();
+        const bool isSeen = tools_.sight->canBeSeen(run);
+        if (isSeen) readWindow(run, block);
+        for (int part = 0; part < parts; ++part) {
+            const glm::ivec3 position(block.position.x * parts + part, block.position.y,
+                                      block.position.z);
+            const int slices = layout_.slicesOf(position.x);
+            if (slices <= 0) return;
+            if (isSeen) {
+                tools_.mixer->mix(window_, part, slotMap_, slots_);
+                showSlots();
+            } else {
+                classes_.fill(kEmptySlot);
+                held_.fill(kEmptySlot);
+            }
+            add(position, slices);
+        }
+    }
+
+    void showSlots() {
+        if (tools_.holder) return hold(slots_);
+        std::copy(slots_.begin(), slots_.end(), classes_.begin());
+    }
+
+    void readWindow(std::span<const CodeBlock> run, const CodeBlock& block) {
+        const auto slotOf = [](Code code) { return Slot(code + 1); };
+        const auto readSlice = [&](const CodeBlock& other, int slice, std::array<Slot, 64>& out) {
+            readSlots(other, slotOf, slots_);
+            std::copy_n(&slots_[64 * std::size_t(slice)], 64, out.begin());
+        };
+        window_.before.fill(kEmptySlot);
+        window_.behind.fill(kEmptySlot);
+        if (&run.front() != &block) readSlice(run.front(), 7, window_.before);
+        if (&run.back() != &block) readSlice(run.back(), 0, window_.behind);
+        readSlots(block, slotOf, window_.slots);
     }
 
     // Adds the words of the first `slices` slices of classes_.
@@ -198,13 +263,15 @@ class ColumnPacker {
     }
 
     const PackOptions& options_;
-    const Holder* holder_;
+    PackTools tools_;
     std::span<const Slot> slotMap_;
     SlabPlanner planner_;
     SlabLayout layout_;       // of the shortest slabs that there may be
     BlockClasses classes_{};  // of the block in hand
     SliceClasses before_{};   // of the slice before it
     std::array<Slot, 64> held_{};
+    BlockSlots slots_{};
+    SliceMixer::Window window_;
     std::vector<PendingWord> words_;
     std::vector<ClassIndex> storage_;
 };
@@ -270,22 +337,36 @@ std::span<const DeltaWord> PackedDeltas::slice(int index) const {
     return std::span(words).subspan(begins[i], begins[i + 1] - begins[i]);
 }
 
+IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, int perVoxel) {
+    IndexBox slices = permutedBox(box, sliceAxis);
+    slices.min.x *= perVoxel;
+    slices.max.x = slices.max.x * perVoxel + perVoxel - 1;
+    return slices;
+}
+
 PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     PackedDeltas packed;
     packed.sliceAxis = options.sliceAxis;
-    packed.box = permutedBox(volume.box, options.sliceAxis);
+    const SliceMixer* mixer = options.mixer;
+    const int perVoxel = mixer ? mixer->perVoxel() : 1;
+    packed.box = boxOfSlices(volume.box, options.sliceAxis, perVoxel);
     if (volume.empty()) return packed;
     std::optional<Holder> holder;
-    if (options.holds) holder.emplace(volume, options);
+    if (options.holds) holder.emplace(mixer ? mixer->levels() : volume, options);
     const std::span<const Slot> slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
-    const BlockReader reader(*volume.codes, nullptr, options.sliceAxis, slotMap);
-    const std::vector<CodeBlock>& blocks = reader.blocks();
+    std::optional<MixedSight> sight;
+    if (mixer) sight.emplace(*mixer, slotMap);
+    const std::vector<CodeBlock> blocks =
+        sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
+              : BlockReader(*volume.codes, nullptr, options.sliceAxis, slotMap).takeBlocks();
     requireMemory("delta grid",
-                  double(blocks.size()) * kBytesPerBlock + 16.0 * packed.box.dims().x);
+                  double(blocks.size()) * perVoxel * kBytesPerBlock + 16.0 * packed.box.dims().x);
 
     const std::vector<std::size_t> cuts = cutAtColumns(blocks);
     std::vector<ColumnPacker> packers(
-        cuts.size() - 1, ColumnPacker(packed.box, options, holder ? &*holder : nullptr, slotMap));
+        cuts.size() - 1,
+        ColumnPacker(packed.box, options,
+                     {holder ? &*holder : nullptr, mixer, sight ? &*sight : nullptr}, slotMap));
     parallelFor(packers.size(), [&](std::size_t i) {
         packers[i].run(blocks.data() + cuts[i], blocks.data() + cuts[i + 1]);
     });

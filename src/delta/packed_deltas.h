@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "delta/slab_plan.h"
+#include "delta/slice_mixer.h"
 
 namespace deltasplat {
 
@@ -34,7 +35,7 @@ struct PackedDeltas {
     PackedDeltas& operator=(PackedDeltas&&) = default;
 
     int sliceAxis = 2;
-    IndexBox box;  ///< the volume's box in (slice, u, v) order
+    IndexBox box;  ///< of all slices, in (slice, u, v) order
     std::vector<PlannedSlab>
         slabs;  ///< in increasing order, covering `box`; none for an empty volume
 
@@ -57,7 +58,13 @@ struct PackOptions {
     /// May a voxel of the second slot go on as one of the first, which the slice before has? Both
     /// can be seen and belong to different classes. Empty: never.
     std::function<bool(Slot held, Slot slot)> holds;
+    /// Puts slices between those of the volume, which then are what slices are. Slots are those of
+    /// its levels. Null: none.
+    const SliceMixer* mixer = nullptr;
 };
+
+/// Returns a volume's box in (slice, u, v) order, with `perVoxel` slices for each voxel.
+IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, int perVoxel);
 
 /// Takes the differences of consecutive slices, in one pass over the leaves that can be seen, and
 /// cuts them into slabs (SlabPlanner). With `holds`, a voxel keeps its class along the slice axis

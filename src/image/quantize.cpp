@@ -17,19 +17,33 @@ double clampUnit(double value) {
     return value > 0 ? std::min(value, 1.0) : 0.0;
 }
 
+// @param threshold  0 < threshold < 1: which fractions are rounded up, the larger ones; 0.5 is
+// nearest
 template <typename Sample>
-Sample quantize(double unit) {
-    return Sample(std::lround(unit * std::numeric_limits<Sample>::max()));
+Sample quantize(double unit, double threshold) {
+    return Sample(std::floor(unit * std::numeric_limits<Sample>::max() + (1 - threshold)));
+}
+
+// Spreads thresholds evenly over any neighbourhood: multiples of two numbers whose fractions come
+// close to each other as late as can be (M. Roberts, "The Unreasonable Effectiveness of
+// Quasirandom Sequences", 2018), here in fractions of 2^32.
+double thresholdAt(std::size_t x, std::size_t y) {
+    constexpr std::uint32_t kAlongX = 3242174889;
+    constexpr std::uint32_t kAlongY = 2447445414;
+    const std::uint32_t place = std::uint32_t(x) * kAlongX + std::uint32_t(y) * kAlongY;
+    // Of 2^16 steps, from the middle of the first on: whole numbers stay what they are.
+    return ((place >> 16) + 0.5) / 65536;
 }
 
 template <typename Sample>
-void straightSrgbPixel(const float* rgba, Sample* result) {
+void straightSrgbPixel(const float* rgba, double threshold, Sample* result) {
     const double alpha = clampUnit(rgba[3]);
     for (int channel = 0; channel < 3; ++channel) {
         const double straight = alpha > 0 ? clampUnit(rgba[channel] / alpha) : 0;
-        result[channel] = quantize<Sample>(srgbFromLinear(straight));
+        result[channel] = quantize<Sample>(srgbFromLinear(straight), threshold);
     }
-    result[3] = quantize<Sample>(alpha);
+    // The other way round: where colour is rounded up, alpha rather is not.
+    result[3] = quantize<Sample>(alpha, 1 - threshold);
 }
 
 }  // namespace
@@ -44,18 +58,20 @@ std::vector<float> finiteValues(const Image& image, bool forFloat) {
 }
 
 template <typename Sample>
-std::vector<Sample> straightSrgb(const Image& image) {
+std::vector<Sample> straightSrgb(const Image& image, bool dither) {
     std::vector<Sample> samples(image.rgba.size());
     parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
-        const std::size_t row = y * std::size_t(image.size.x);
-        for (std::size_t i = row; i < row + std::size_t(image.size.x); ++i) {
-            straightSrgbPixel(&image.rgba[4 * i], &samples[4 * i]);
+        const std::size_t width = std::size_t(image.size.x);
+        for (std::size_t x = 0; x < width; ++x) {
+            const std::size_t i = 4 * (y * width + x);
+            const double threshold = dither ? thresholdAt(x, y) : 0.5;
+            straightSrgbPixel(&image.rgba[i], threshold, &samples[i]);
         }
     });
     return samples;
 }
 
-template std::vector<std::uint8_t> straightSrgb(const Image& image);
-template std::vector<std::uint16_t> straightSrgb(const Image& image);
+template std::vector<std::uint8_t> straightSrgb(const Image& image, bool dither);
+template std::vector<std::uint16_t> straightSrgb(const Image& image, bool dither);
 
 }  // namespace deltasplat

@@ -13,7 +13,10 @@ std::vector<float> finiteValues(const Image& image, bool forFloat);
 
 /// Returns the picture as `[height][width][4]` samples with straight alpha and sRGB colour, rounded
 /// to nearest: 0 is 0 and 1 is the largest number of `Sample` (uint8_t or uint16_t).
+/// @param dither  round up or down instead, by a fixed pattern of places in the picture, so that
+/// the
+///                mean of neighbouring pixels is right; what is a whole number stays so
 template <typename Sample>
-std::vector<Sample> straightSrgb(const Image& image);
+std::vector<Sample> straightSrgb(const Image& image, bool dither = false);
 
 }  // namespace deltasplat

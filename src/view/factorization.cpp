@@ -22,7 +22,8 @@ namespace {
 // Directions this close are the same: rounding in a transform or an angle must neither choose the
 // axis of a diagonal view nor tilt a straight one.
 constexpr double kSnap = 1e-9;
-constexpr int kMaxAutomaticResolution = 4;
+// Beyond, footprints are so wide (defaultSigma) that more sheet pixels would show nothing else.
+constexpr int kMaxAutomaticResolution = 2;
 
 int mostParallelAxis(const glm::dvec3& direction) {
     const glm::dvec3 along = glm::abs(direction);
@@ -51,8 +52,7 @@ double largestSingularValue(const glm::dmat2& m) {
     return std::sqrt(half + portable::hypot(difference, glm::dot(m[0], m[1])));
 }
 
-int screenResolution(const glm::dmat3& baseFromPixel) {
-    const double pixelsPerVoxel = largestSingularValue(glm::inverse(glm::dmat2(baseFromPixel)));
+int screenResolution(double pixelsPerVoxel) {
     // Asked this way round because a frame too narrow for double arithmetic stretches by NaN.
     if (!(pixelsPerVoxel < kMaxAutomaticResolution)) return kMaxAutomaticResolution;
     return int(std::lround(std::max(pixelsPerVoxel, 1.0)));
@@ -101,7 +101,18 @@ Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
     result.baseFromPixel = {glm::dvec3(baseFromWorldVector(pixel * camera.right), 0),
                             glm::dvec3(baseFromWorldVector(-pixel * camera.up), 0),
                             glm::dvec3(baseFromWorldVector(topLeft), 1)};
-    result.resolution = resolution ? *resolution : screenResolution(result.baseFromPixel);
+    result.pixelsPerVoxel = largestSingularValue(glm::inverse(glm::dmat2(result.baseFromPixel)));
+    result.resolution = resolution ? *resolution : screenResolution(result.pixelsPerVoxel);
+    return result;
+}
+
+Factorization withSlicesPerVoxel(const Factorization& view, int perVoxel) {
+    Factorization result = view;
+    result.shiftPerSlice /= perVoxel;
+    result.sliceStepWorld /= perVoxel;
+    // The first thin slice lies in front of the middle of the voxel's slice.
+    const double first = 0.5 / perVoxel - 0.5;
+    result.baseFromPixel[2] -= glm::dvec3(first * view.shiftPerSlice, 0);
     return result;
 }
 

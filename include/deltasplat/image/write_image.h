@@ -17,6 +17,8 @@ namespace deltasplat {
 struct ImageFileOptions {
     bool floatExr = false;  ///< .exr: 32-bit float instead of half; not for .png
     int bits = 8;           ///< .png: 8 or 16 a channel; without effect on .exr
+    /// .png of 8 bits: rounds up and down in a fixed pattern, so that slow ramps show no steps.
+    bool dither = true;
     std::optional<glm::dmat4>
         cameraFromWorld;                     ///< stored as worldToCamera, rounded to float (.exr)
     std::optional<glm::dmat4> ndcFromWorld;  ///< stored as worldToNDC, rounded to float (.exr)
@@ -36,7 +38,7 @@ void checkImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
                     const ImageFileOptions& options);
 
 /// Writes `.exr` (scene-linear, premultiplied, ZIP compression) or `.png` (sRGB, straight alpha,
-/// rounded to nearest; clear where alpha is 0), by extension in any case. The file appears under
+/// rounded to nearest, or dithered; clear where alpha is 0), by extension in any case. The file appears under
 /// its final name only when it is whole. Deterministic, whatever the number of threads.
 ///
 /// NaN is never stored: it becomes 0. In .exr, values beyond the largest finite number of the pixel

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <optional>
@@ -32,11 +33,11 @@ struct Footprint {
 inline constexpr double kMinSigma = 0.2;
 inline constexpr double kMaxSigma = 4.0;
 
-/// Returns the width used when none is asked for: 0.3 voxels, which is sharpest, or 0.4 where a
-/// voxel covers three pixels or more and would begin to show as a square.
-/// @param resolution  r, sheet pixels a voxel
-inline double defaultSigma(int resolution) {
-    return resolution <= 2 ? 0.3 : 0.4;
+/// Returns the width used when none is asked for: 0.3 voxels, which is sharpest, where a voxel
+/// covers at most two pixels of the screen, and more where it would begin to show as a
+/// square, up to 0.6 from three pixels on.
+inline double defaultSigma(double pixelsPerVoxel) {
+    return pixelsPerVoxel < 3 ? std::max(0.3, 0.3 * (pixelsPerVoxel - 1)) : 0.6;
 }
 
 /// Makes the Gaussian footprint with covariance sigma^2 (I + d d^T) in slice units: a round kernel

@@ -20,6 +20,7 @@ struct Factorization {
     double sliceStepWorld =
         1;               ///< world distance between consecutive slices along the line of sight
     int resolution = 1;  ///< r: sheet pixels a voxel, the same along u and v
+    double pixelsPerVoxel = 1;  ///< of the screen, along the base plane's longest stretch
     glm::dmat3 baseFromPixel{
         1.0};  ///< (pixel x, pixel y, 1) -> (u, v, 1) on the base plane, in voxels
 };
@@ -30,11 +31,16 @@ inline constexpr int kMaxResolution = 16;
 /// Ties between axes go to the later one (z before y before x), so that a diagonal view is well
 /// defined; what is within 1e-9 of a tie is one, and shifts within 1e-9 of 0 or 1 are 0 or 1, so
 /// that rounding neither chooses an axis nor tilts a straight view.
-/// @param resolution  1..kMaxResolution, or empty: the screen's pixels a voxel, rounded, between 1
-/// and 4
+/// @param resolution  1..kMaxResolution, or empty: 1 where the screen has fewer than one and a half
+/// pixels a voxel, else 2
 /// @throw Error(kUsage) if the resolution is out of range;
 ///        Error(kInput) if worldFromIndex is not finite or cannot be inverted
 Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
                         std::optional<int> resolution = {});
+
+/// Returns the factorization with `perVoxel` slices for each of the volume's, evenly spaced and as
+/// far from the middle as from the next: slice i of the volume becomes i * perVoxel and those that
+/// follow.
+Factorization withSlicesPerVoxel(const Factorization& view, int perVoxel);
 
 }  // namespace deltasplat
