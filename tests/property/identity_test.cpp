@@ -244,5 +244,17 @@ TEST(Identity, SheetsTooLargeToCountAreRefused) {
     }
 }
 
+TEST(Identity, AlsoWithSlicesBetween) {
+    for (const int between : {0, 2, 3}) {
+        SCOPED_TRACE(between);
+        const Volume volume = test::randomVolume(kBoxes[1], 21, 0.5);
+        RenderOptions options = optionsFor(kDirections[3]);
+        options.between = between;
+        expectSamePixels(volume, options);
+        options.tolerance.relative = 0.1;
+        expectSamePixels(volume, options);
+    }
+}
+
 }  // namespace
 }  // namespace deltasplat

@@ -112,6 +112,7 @@ RenderResult renderTest(const Volume& volume, const TestView& view, double sigma
     options.optics.transferFunction = testTransferFunction(kOpacity);
     options.sigma = sigma;
     options.resolution = resolution;
+    options.between = 0;
     return render(volume, options);
 }
 

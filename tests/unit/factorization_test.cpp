@@ -165,7 +165,7 @@ TEST(Factorization, resolutionFollowsTheScreen) {
     const struct {
         double pixelsPerVoxel;
         int resolution;
-    } cases[] = {{0.01, 1}, {1, 1}, {1.4, 1}, {1.6, 2}, {3.4, 3}, {3.6, 4}, {50, 4}};
+    } cases[] = {{0.01, 1}, {1, 1}, {1.4, 1}, {1.6, 2}, {3.4, 2}, {50, 2}};
     for (const auto& c : cases) {
         CameraOptions options;
         options.sizePixels = {1000, 500};

@@ -202,6 +202,7 @@ template <typename Sample>
 void expectPngExact(int bits, OIIO::TypeDesc type) {
     ImageFileOptions options;
     options.bits = bits;
+    options.dither = false;
     const Image image = randomImage({50, 30});
     const auto stored = writeAndRead<Sample>(image, "out.png", type, options);
     for (std::size_t i = 0; i < stored.size(); ++i) {
@@ -221,6 +222,35 @@ TEST(WriteImage, SixteenBitPngIsRoundedToNearest) {
     expectPngExact<std::uint16_t>(16, OIIO::TypeUInt16);
 }
 
+// A ramp so slow that its steps would be 200 pixels wide comes out right on average everywhere.
+TEST(WriteImage, EightBitsAreDithered) {
+    Image image({800, 48});
+    const auto alphaAt = [](int x) { return (30 + 4.0 * (x + 0.5) / 800) / 255; };
+    for (int y = 0; y < 48; ++y) {
+        for (int x = 0; x < 800; ++x) {
+            float* pixel = image.pixel(x, y);
+            pixel[3] = float(alphaAt(x));
+            pixel[0] = pixel[1] = pixel[2] = pixel[3];
+        }
+    }
+    const auto stored =
+        writeAndRead<std::uint8_t>(image, "out.png", OIIO::TypeUInt8, ImageFileOptions{});
+    for (int left = 0; left < 800; left += 16) {
+        double sum = 0;
+        double expected = 0;
+        for (int y = 0; y < 48; y += 16) {
+            for (int i = 0; i < 256; ++i) {
+                const int x = left + i % 16;
+                sum += stored[4 * std::size_t((y + i / 16) * 800 + x) + 3];
+                expected += 255 * alphaAt(x);
+            }
+        }
+        EXPECT_NEAR(sum / 768, expected / 768, 0.03) << left;
+    }
+    // Whole numbers stay what they are.
+    for (std::size_t i = 0; i < stored.size(); i += 4) ASSERT_EQ(stored[i], 255);
+}
+
 TEST(WriteImage, PngHasTheDepthAskedForAndIsTaggedSrgb) {
     const test::TempFolder folder;
     for (const int bits : {8, 16}) {
@@ -237,7 +267,9 @@ TEST(WriteImage, PngHasTheDepthAskedForAndIsTaggedSrgb) {
 TEST(WriteImage, PngClampsAndIsClearWhereAlphaIsZero) {
     using Samples = std::vector<std::uint8_t>;
     const auto stored = [](const Image& image) {
-        return writeAndRead<std::uint8_t>(image, "out.png", OIIO::TypeUInt8, {});
+        ImageFileOptions options;
+        options.dither = false;
+        return writeAndRead<std::uint8_t>(image, "out.png", OIIO::TypeUInt8, options);
     };
     EXPECT_EQ(stored(onePixel(0.9f, -1, kInfinity, 0.5f)), (Samples{255, 0, 255, 128}));
     EXPECT_EQ(stored(onePixel(1, 1, 1, 0)), (Samples{0, 0, 0, 0}));

@@ -39,7 +39,7 @@ TEST(Warp, PixelCentresOnLatticePointsCopyThem) {
                              [](int x, int y) { return (x * 7 + y * 13) % 11 / 11.0f + 0.01f; });
     Image picture({20, 20});
     // Pixel centre (0.5, 0.5) falls on lattice point (-3, 7).
-    warp(raster.raster(), affine(1, 0, -3.5, 0, 1, 6.5), picture);
+    warp(raster.raster(), affine(1, 0, -3.5, 0, 1, 6.5), WarpFilter::kSharp, picture);
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
         EXPECT_FLOAT_EQ(picture.rgba[i], raster.rgba[i]);
     }
@@ -51,7 +51,7 @@ TEST(Warp, ReproducesLinearRampsUnderAnyAffineMap) {
     for (const auto& map : {affine(0.7, 0.2, -20, -0.3, 0.8, -10), affine(-0.25, 0, 10, 0, -0.4, 5),
                             affine(0, 1.0, -12, -1.0, 0, 12)}) {
         Image picture({30, 30});
-        warp(raster.raster(), map, picture);
+        warp(raster.raster(), map, WarpFilter::kSharp, picture);
         for (int y = 0; y < 30; ++y) {
             for (int x = 0; x < 30; ++x) {
                 const glm::dvec3 p = map * glm::dvec3(x + 0.5, y + 0.5, 1);
@@ -66,27 +66,76 @@ TEST(Warp, ReproducesLinearRampsUnderAnyAffineMap) {
 TEST(Warp, MinificationAveragesFineStripes) {
     const OwnedRaster stripes({0, 0}, {256, 256}, [](int x, int) { return x % 2 ? 1.0f : 0.0f; });
     Image picture({32, 32});
-    warp(stripes.raster(), affine(8, 0, 0, 0, 8, 0), picture);
+    warp(stripes.raster(), affine(8, 0, 0, 0, 8, 0), WarpFilter::kSharp, picture);
     for (int x = 4; x < 28; ++x) EXPECT_NEAR(picture.pixel(x, 16)[1], 0.5, 0.005);
 }
 
-TEST(Warp, ClampsWhatTheFilterOvershoots) {
-    const OwnedRaster edge({0, 0}, {40, 40}, [](int x, int) { return x < 20 ? 0.0f : 1.0f; });
-    Image picture({160, 160});
-    warp(edge.raster(), affine(0.25, 0, 0, 0, 0.25, 0), picture);
-    float largestColor = 0;
-    for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
-        EXPECT_GE(picture.rgba[i], 0.0f);
-        EXPECT_LE(picture.rgba[i + 3], 1.0f);
-        largestColor = std::max(largestColor, picture.rgba[i]);
+// Hard edges and fine stripes, magnified and not: no pixel leaves the range of those around it.
+TEST(Warp, NoFilterOvershoots) {
+    const auto high = [](int x, int y) { return (x / 5 + y / 7) % 2 == 0; };
+    const OwnedRaster edges({0, 0}, {60, 60},
+                            [&](int x, int y) { return high(x, y) ? 3.0f : 0.75f; });
+    for (const WarpFilter filter : {WarpFilter::kSharp, WarpFilter::kSmooth, WarpFilter::kLinear}) {
+        for (const double step : {0.1, 0.41, 0.7, 0.97, 1.3, 2.2}) {
+            Image picture({25, 25});
+            warp(edges.raster(), affine(step, 0.2, 20, -0.15, step, 20), filter, picture);
+            for (const float value : picture.rgba) {
+                EXPECT_GE(value, 0.75f - 1e-6f) << step;
+                EXPECT_LE(value, 3.0f + 1e-6f) << step;
+            }
+        }
     }
-    EXPECT_GT(largestColor, 1.02f);  // colours may exceed 1: emission has no upper bound
+}
+
+// Where the sharp filter is clamped, it is to the four nearest points.
+TEST(Warp, SharpStaysWithinTheNearestPoints) {
+    const auto at = [](int x, int y) { return float((x * 31 + y * 17) % 23) / 22; };
+    const OwnedRaster raster({0, 0}, {40, 40}, at);
+    Image picture({90, 90});
+    const glm::dmat3 map = affine(0.37, 0.03, 3, -0.05, 0.35, 6);
+    warp(raster.raster(), map, WarpFilter::kSharp, picture);
+    int clamped = 0;
+    for (int y = 0; y < 90; ++y) {
+        for (int x = 0; x < 90; ++x) {
+            const glm::dvec3 p = map * glm::dvec3(x + 0.5, y + 0.5, 1);
+            const int i = int(std::floor(p.x));
+            const int j = int(std::floor(p.y));
+            const auto [low, high] =
+                std::minmax({at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)});
+            const float value = picture.pixel(x, y)[3];
+            ASSERT_GE(value, low);
+            ASSERT_LE(value, high);
+            clamped += value == low || value == high;
+        }
+    }
+    EXPECT_GT(clamped, 100);
+}
+
+// X-rays are sums: what a lattice point holds must not depend on where pixels fall.
+TEST(Warp, SmoothKeepsEveryPointsMass) {
+    const OwnedRaster point({0, 0}, {40, 40},
+                            [](int x, int y) { return x == 20 && y == 20 ? 1.0f : 0.0f; });
+    for (const double step : {0.3, 0.5, 0.67, 0.7, 0.83, 0.95, 1.0, 1.25, 1.7}) {
+        for (const double offset : {0.0, 0.31, 0.5}) {
+            for (const double turn : {0.0, 0.2, 0.5}) {
+                Image picture({120, 120});
+                const double c = step * std::cos(turn);
+                const double s = step * std::sin(turn);
+                warp(point.raster(),
+                     affine(c, -s, 20 + offset - 60 * (c - s), s, c, 20 - 60 * (c + s)),
+                     WarpFilter::kSmooth, picture);
+                double sum = 0;
+                for (std::size_t i = 3; i < picture.rgba.size(); i += 4) sum += picture.rgba[i];
+                EXPECT_NEAR(sum * step * step, 1, 0.003) << step << " " << offset << " " << turn;
+            }
+        }
+    }
 }
 
 TEST(Warp, OutsideOfTheRasterIsTransparent) {
     const OwnedRaster raster({0, 0}, {4, 4}, [](int, int) { return 1.0f; });
     Image picture({64, 64});
-    warp(raster.raster(), affine(1, 0, -30, 0, 1, -30), picture);
+    warp(raster.raster(), affine(1, 0, -30, 0, 1, -30), WarpFilter::kSharp, picture);
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {
             const bool far = x < 26 || x > 37 || y < 26 || y > 37;
@@ -105,7 +154,8 @@ TEST(Warp, FilterWiderThanTheRasterReadsNothingOutside) {
         Image picture({16, 16});
         const double c = 0.8 * stretch;
         const double s = 0.6 * stretch;
-        warp(raster.raster(), affine(c, -s, 24 - 8 * (c - s), s, c, 24 - 8 * (c + s)), picture);
+        warp(raster.raster(), affine(c, -s, 24 - 8 * (c - s), s, c, 24 - 8 * (c + s)),
+             WarpFilter::kSharp, picture);
         double sum = 0;
         for (const float value : picture.rgba) {
             EXPECT_TRUE(value >= 0 && value <= 1.2f) << stretch;
@@ -129,8 +179,8 @@ TEST(Warp, OneChannelIsOpacityTimesColour) {
     for (const double scale : {0.6, 2.5}) {
         Image expected({90, 70});
         Image picture({90, 70});
-        warp(all.raster(), affine(scale, 0.1, -2, -0.2, 0.7, 4), expected);
-        warp(one, affine(scale, 0.1, -2, -0.2, 0.7, 4), picture);
+        warp(all.raster(), affine(scale, 0.1, -2, -0.2, 0.7, 4), WarpFilter::kSharp, expected);
+        warp(one, affine(scale, 0.1, -2, -0.2, 0.7, 4), WarpFilter::kSharp, picture);
         for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
             const float a = expected.rgba[i + 3];
             EXPECT_NEAR(picture.rgba[i], 0.5f * a, 1e-6);
@@ -151,7 +201,7 @@ TEST(Warp, FindsASinglePixelWherever) {
         for (const auto& map : {affine(0.5, 0, 0, 0, 0.5, 0), affine(0, 0.4, 3, -0.4, 0, 60),
                                 affine(3, 1, -60, -1, 3, -20)}) {
             Image picture({150, 150});
-            warp(raster.raster(), map, picture);
+            warp(raster.raster(), map, WarpFilter::kSharp, picture);
             double sum = 0;
             bool hit = false;  // a pixel's centre lies close to the raster's
             for (int y = 0; y < 150; ++y) {
@@ -179,7 +229,7 @@ TEST(Warp, FindsASinglePixelWherever) {
 
 TEST(Warp, EmptyRasterLeavesThePictureAlone) {
     Image picture({3, 2});
-    warp({}, glm::dmat3(1), picture);
+    warp({}, glm::dmat3(1), WarpFilter::kSharp, picture);
     for (const float value : picture.rgba) EXPECT_EQ(value, 0.0f);
 }
 
@@ -190,25 +240,24 @@ TEST(Warp, SameBitsOnEveryNumberOfThreads) {
     Image two({90, 70});
     {
         const ThreadLimit limit(1);
-        warp(raster.raster(), affine(0.6, 0.1, -2, -0.2, 0.7, 4), one);
+        warp(raster.raster(), affine(0.6, 0.1, -2, -0.2, 0.7, 4), WarpFilter::kSharp, one);
     }
     {
         const ThreadLimit limit(2);
-        warp(raster.raster(), affine(0.6, 0.1, -2, -0.2, 0.7, 4), two);
+        warp(raster.raster(), affine(0.6, 0.1, -2, -0.2, 0.7, 4), WarpFilter::kSharp, two);
     }
     EXPECT_EQ(one.rgba, two.rgba);
 }
 
-// Values that are no opacity come back as they are, in all four channels, within their own range.
+// Values that are no opacity come back as they are, in all four channels.
 TEST(Warp, ValuesKeepTheirRange) {
     std::vector<float> values(30 * 30);
     for (int i = 0; i < 900; ++i) values[i] = i % 30 < 15 ? -4.0f : 900.0f;
-    Raster raster{{0, 0}, {30, 30}, values.data(), 1};
-    for (const bool clamped : {false, true}) {
-        raster.range = clamped ? glm::vec2(-4, 900) : glm::vec2(-1e9f, 1e9f);
+    const Raster raster{{0, 0}, {30, 30}, values.data(), 1};
+    for (const WarpFilter filter : {WarpFilter::kSharp, WarpFilter::kSmooth, WarpFilter::kLinear}) {
         // The last columns and rows lie at the raster's edge and beyond.
         Image picture({120, 120});
-        warp(raster, affine(0.3, 0, -0.1, 0, 0.3, -0.1), picture);
+        warp(raster, affine(0.3, 0, -0.1, 0, 0.3, -0.1), filter, picture);
         float low = 0;
         float high = 0;
         for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
@@ -216,14 +265,8 @@ TEST(Warp, ValuesKeepTheirRange) {
             low = std::min(low, picture.rgba[i]);
             high = std::max(high, picture.rgba[i]);
         }
-        // The filter's lobes go beyond what there is.
-        if (clamped) {
-            EXPECT_EQ(low, -4);
-            EXPECT_EQ(high, 900);
-        } else {
-            EXPECT_LT(low, -40);
-            EXPECT_GT(high, 930);
-        }
+        EXPECT_NEAR(low, -4, 1e-5);
+        EXPECT_NEAR(high, 900, 1e-3);
     }
 }
 
