@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -103,12 +105,20 @@ const LocatedJson& firstPreset(const std::filesystem::path& file, const LocatedJ
                             "a transfer function, an object with RGBPoints"));
 }
 
-// Gives every interval the colour of its right end, by points that share an x.
+// Where the interval behind `left` begins: so little behind it that what lies at the point itself,
+// give or take the rounding of a normalized range, has the point's own colour.
+double justBehind(double left, double right) {
+    constexpr double kShare = 0x1p-40;
+    return std::max(left + (kShare * right - kShare * left), std::nextafter(left, right));
+}
+
+// Gives every interval the colour of its right end, and every point its own, as VTK does.
 void makeSteps(std::vector<TransferFunction::ColorPoint>& colors) {
     std::vector<TransferFunction::ColorPoint> steps;
     for (std::size_t i = 0; i < colors.size(); ++i) {
         steps.push_back(colors[i]);
-        if (i + 1 < colors.size()) steps.push_back({colors[i].x, colors[i + 1].rgb});
+        if (i + 1 < colors.size() && colors[i].x < colors[i + 1].x)
+            steps.push_back({justBehind(colors[i].x, colors[i + 1].x), colors[i + 1].rgb});
     }
     colors = std::move(steps);
 }

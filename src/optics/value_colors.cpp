@@ -8,8 +8,9 @@
 
 namespace deltasplat {
 
-ValueColors::ValueColors(const Volume& volume, const Optics& optics) {
-    const TransferFunction& function = optics.transferFunction;
+ValueColors::ValueColors(const Volume& volume, const Optics& optics)
+    : bent_(kSteps), function_(optics.transferFunction) {
+    const TransferFunction& function = function_;
     const glm::dvec2 range =
         function.normalized ? optics.range.value_or(defaultRange(volume)) : glm::dvec2(0, 1);
     const double low = function.colors.front().x;
@@ -20,12 +21,22 @@ ValueColors::ValueColors(const Volume& volume, const Optics& optics) {
     stepsPerUnit_ = width > 0 ? kSteps / width : 0;
     for (int i = 0; i <= kSteps; ++i)
         colors_.emplace_back(function.colorAt(low + (high - low) * i / kSteps));
+    low_ = range.x;
+    unit_ = range.y - range.x;
+    if (!(high > low)) return;
+    // A point that lies on the border of two steps bends both.
+    for (const TransferFunction::ColorPoint& point : function.colors) {
+        const double place = (point.x - low) / (high - low) * kSteps;
+        for (const double side : {place - 1e-6, place + 1e-6})
+            bent_[std::size_t(std::clamp(side, 0.0, kSteps - 1.0))] = true;
+    }
 }
 
 glm::vec3 ValueColors::colorOf(float value) const {
     if (value < first_) return below_;
     const double place = std::clamp((double(value) - first_) * stepsPerUnit_, 0.0, double(kSteps));
     const int step = std::min(int(place), kSteps - 1);
+    if (bent_[std::size_t(step)]) return function_.colorAt((double(value) - low_) / unit_);
     return glm::mix(colors_[step], colors_[step + 1], float(place - step));
 }
 

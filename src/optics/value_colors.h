@@ -10,7 +10,7 @@
 namespace deltasplat {
 
 /// A transfer function's colours as a table that is read linearly: thousands of times as fast as
-/// the function; a jump of the function becomes a ramp of 1/4096 of its range.
+/// the function, which itself is asked only near its points.
 class ValueColors {
   public:
     ValueColors(const Volume& volume, const Optics& optics);
@@ -24,6 +24,10 @@ class ValueColors {
     float first_ = 0;                // data value of the first colour, as values are
     double stepsPerUnit_ = 0;        // of data values
     std::vector<glm::vec3> colors_;  // [kSteps + 1], scene-linear
+    std::vector<bool> bent_;         // [kSteps]: where the colour may bend or jump on the way
+    TransferFunction function_;
+    double low_ = 0;   // data value of the function's 0
+    double unit_ = 1;  // and how many its 1 is more
 };
 
 }  // namespace deltasplat

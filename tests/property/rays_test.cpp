@@ -206,6 +206,25 @@ TEST(Rays, ConstantThatIsNoFloatHasItsColour) {
     EXPECT_EQ(color, glm::vec3(0.25f, 0.5f, 1));
 }
 
+// Beside a jump of the function no colour is a mixture.
+TEST(Rays, LargestValuesHaveNoColourBetweenTwoSteps) {
+    const Volume volume =
+        test::makeVolume({{0, 0, 0}, {7, 0, 0}}, [](int x, int, int) { return x; });
+    Optics optics;
+    optics.transferFunction.linearColors = true;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 color(i / 7.0);
+        if (i > 0) optics.transferFunction.colors.push_back({i - 1 + 1e-6, color});
+        optics.transferFunction.colors.push_back({double(i), color});
+    }
+    optics.transferFunction.opacities = {{0, 1, 0.5, 0}};
+    const ValueColors colors(volume, optics);
+    for (float value = 0; value <= 7; value += 0.000999f) {
+        const double level = std::ceil(double(value) - 1e-6) / 7;
+        EXPECT_NEAR(colors.colorOf(value).g, level, 1e-6) << value;
+    }
+}
+
 TEST(Rays, CountsSayWhatWasDone) {
     const Volume volume = makeVolume({{0, 0, 0}, {9, 9, 9}}, [](int x, int y, int) {
         return x == 0 ? kInactive : (y < 5 ? 0 : 9);

@@ -9,6 +9,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/optics/transfer_function.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {
@@ -96,15 +97,40 @@ TEST_F(ReadTransferFunction, warnsOfAnotherColorSpace) {
               (folder_ / "tf.json").string() + ": ColorSpace Lab is interpolated as RGB");
 }
 
+// As vtkColorTransferFunction::GetTable: of the nodes around x, the first that is not below x.
 TEST_F(ReadTransferFunction, stepHoldsTheColorOfTheRightEnd) {
     const TransferFunction function =
         read(R"({"RGBPoints": [0,0.1,0,0, 1,0.2,0,0, 2,0.3,0,0], "Points": [0,0,0.5,0],
                  "ColorSpace": "Step", "ColorSpaceOfPoints": "linear"})");
     EXPECT_EQ(function.colorAt(-1).r, 0.1);
+    EXPECT_EQ(function.colorAt(0).r, 0.1);
+    EXPECT_EQ(function.colorAt(1e-9).r, 0.2);
     EXPECT_EQ(function.colorAt(0.5).r, 0.2);
+    EXPECT_EQ(function.colorAt(1).r, 0.2);
     EXPECT_EQ(function.colorAt(1.5).r, 0.3);
+    EXPECT_EQ(function.colorAt(2).r, 0.3);
     EXPECT_EQ(function.colorAt(9).r, 0.3);
     EXPECT_TRUE(warnings_.empty());
+}
+
+// Labels keep their own colours whatever the range does to their places.
+TEST_F(ReadTransferFunction, stepGivesLabelsOfANormalizedRangeTheirOwnColors) {
+    for (int labels = 2; labels <= 40; ++labels) {
+        std::string points;
+        for (int i = 0; i < labels; ++i) {
+            points += (i > 0 ? ", " : "") + numberText(double(i) / (labels - 1)) + ", " +
+                      numberText(double(i) / labels) + ", 0, 0";
+        }
+        const TransferFunction function =
+            read("{\"RGBPoints\": [" + points + R"(], "Points": [0,0,0.5,0], "Normalized": true,
+                 "ColorSpace": "Step", "ColorSpaceOfPoints": "linear"})");
+        const double low = 1;
+        const double high = labels;
+        for (int i = 0; i < labels; ++i) {
+            const double x = (0.5 * (i + 1) - 0.5 * low) / (0.5 * high - 0.5 * low);
+            EXPECT_EQ(function.colorAt(x).r, double(i) / labels) << i << " of " << labels;
+        }
+    }
 }
 
 TEST_F(ReadTransferFunction, ramps0To1WithoutPoints) {
