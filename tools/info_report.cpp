@@ -49,6 +49,12 @@ Json toJson(const DeltaOrigin& origin) {
             {"max_error", origin.maxError}};
 }
 
+// How many active voxels have the guessed value; of a background nobody counts them.
+Json guessedVoxels(const GridReport& report) {
+    if (report.volume.hasBackground || !report.backgroundGuess) return {};
+    return report.volume.mostFrequent->count;
+}
+
 Json toJson(const GridReport& report, const Json& transferFunction) {
     const Volume& volume = report.volume;
     Json axes;
@@ -69,9 +75,12 @@ Json toJson(const GridReport& report, const Json& transferFunction) {
             {"range", {volume.valueMin, volume.valueMax}},
             {"background", volume.background},
             {"background_guess", report.backgroundGuess ? Json(*report.backgroundGuess) : Json()},
+            {"background_voxels", guessedVoxels(report)},
             {"percentiles", percentilesJson(volume)},
             {"histogram", histogramJson(volume)},
             {"code_book", volume.codeBook.name()},
+            {"code_error",
+             {{"absolute", volume.codeError.absolute}, {"relative", volume.codeError.relative}}},
             {"delta", volume.origin ? toJson(*volume.origin) : Json()},
             {"axes", axes},
             {"transfer_function", transferFunction},

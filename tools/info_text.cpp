@@ -48,9 +48,8 @@ std::string backgroundText(const GridReport& report) {
     const Volume& volume = report.volume;
     if (volume.hasBackground) return numberText(volume.background);
     if (!report.backgroundGuess) return "none that is obvious";
-    const Code code = volume.codeBook.codeOf(*report.backgroundGuess);
     return numberText(*report.backgroundGuess) +
-           ", a guess: " + percent(double(volume.histogram[code]), double(volume.activeCount)) +
+           ", a guess: " + percent(double(volume.mostFrequent->count), double(volume.activeCount)) +
            " of the voxels have it";
 }
 
@@ -63,6 +62,15 @@ std::string deltaText(const DeltaOrigin& origin) {
     if (origin.toleranceValue > 0)
         text += "tolerance value " + numberText(origin.toleranceValue) + ", ";
     return text + "largest error " + numberText(origin.maxError);
+}
+
+std::string codeBookText(const Volume& volume) {
+    const CodeError& error = volume.codeError;
+    if (error.absolute == 0) return volume.codeBook.name();
+    char share[32];
+    std::snprintf(share, sizeof share, "%.3g %%", 100 * error.relative);
+    return volume.codeBook.name() + ", largest error " + numberText(error.absolute) +
+           (error.relative > 0 ? ", " + std::string(share) + " of a value" : "");
 }
 
 std::string valuesText(const Volume& volume) {
@@ -157,7 +165,7 @@ std::string gridText(const GridReport& report) {
     text += line("active", std::to_string(v.activeCount) + " (" +
                                percent(double(v.activeCount), double(v.box.voxels())) + ")");
     text += valuesText(v);
-    text += line("background", backgroundText(report)) + line("code book", v.codeBook.name());
+    text += line("background", backgroundText(report)) + line("code book", codeBookText(v));
     if (v.origin) text += line("delta grid", deltaText(*v.origin));
     for (int axis = 0; axis < 3; ++axis) text += line(alongText(axis), axisText(report, axis));
     return text + stampsText(report) + histogramText(v);

@@ -17,9 +17,11 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
 
 Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
                     RenderOptions& options, const Listener& listener) {
-    Volume volume = readVolume(input, picture.read, listener);
-    if (!picture.transferFunction.empty()) return volume;
     const bool mip = picture.render.mode == Mode::kMip;
+    ReadOptions read = picture.read;
+    read.keepInexact = picture.render.mode != Mode::kComposite;
+    Volume volume = readVolume(input, read, listener);
+    if (!picture.transferFunction.empty()) return volume;
     const std::optional<glm::dvec2>& range = picture.render.optics.range;
     options.optics.transferFunction =
         range ? (mip ? wholeRamp(volume, *range) : defaultRamp(volume, *range))

@@ -104,7 +104,9 @@ struct RenderResult {
 ///
 /// Under kXray R = G = B = A = the line integral of the value in world units, under kMip
 /// R = G = B = the largest value and A = 1 where an active voxel is met, and all 0 elsewhere:
-/// numbers, not light, that may be negative or larger than 1. Inactive voxels count as 0.
+/// numbers, not light, that may be negative or larger than 1. Inactive voxels count as 0. Where the
+/// code book is not exact and Volume::source is filled (ReadOptions::keepInexact), values are the
+/// source's own.
 /// @throw Error(kUsage) for options out of range; Error(kFailed) for a picture that does not fit
 ///        this machine's memory; whatever `listener.progress` throws
 RenderResult render(const Volume& volume, const RenderOptions& options,

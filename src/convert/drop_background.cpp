@@ -96,6 +96,8 @@ openvdb::GridBase::Ptr drop(const Grid& grid, double value) {
 }  // namespace
 
 double mostFrequentValue(const Volume& volume) {
+    const bool known = !volume.hasBackground && volume.mostFrequent;
+    if (known && volume.mostFrequent->count > 0) return volume.mostFrequent->value;
     const auto& counts = volume.histogram;
     const auto code = Code(std::max_element(counts.begin(), counts.end()) - counts.begin());
     double value = volume.empty() ? 0 : volume.codeBook.valueOf(code);

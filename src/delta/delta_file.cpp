@@ -68,7 +68,11 @@ int mostComparableAxis(const Volume& volume, std::span<const Slot> slotMap) {
 void requireRoom(const Tolerance& tolerance, const Volume& volume) {
     const CodeBook& book = volume.codeBook;
     if (book.isExact() || tolerance.isExact()) return;
-    const double codeError = std::max(book.largestErrorOf(0), book.largestErrorOf(kCodeCount - 1));
+    double codeError = 0;
+    for (int code = 0; code < kCodeCount; ++code) {
+        if (volume.histogram[std::size_t(code)] > 0)
+            codeError = std::max(codeError, book.largestErrorOf(Code(code)));
+    }
     const auto refuse = [&](const char* flag, double got, const std::string& expected) {
         throw Error(ErrorCode::kUsage,
                     gotExpected(flag, numberText(got),

@@ -17,13 +17,18 @@ class BookEncoder {
 
   private:
     Code tableCode(double value) const;
+    Code nearestCode(double value) const;
+    void makePlaces();
+    void makeFirsts();
 
     CodeBook book_;
     struct Entry {
         std::uint64_t bits;
         std::int32_t code;  // negative: nothing here
     };
-    std::vector<Entry> places_;  // an open hash table of the book's table
+    std::vector<Entry> places_;  // an open hash table of the book's table, where that is exact
+    /// Where it is not: the first code whose value is in each of many stretches of the floats.
+    std::vector<std::int32_t> firsts_;
 };
 
 }  // namespace deltasplat

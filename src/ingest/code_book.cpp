@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "ingest/code_math.h"
+#include "ingest/value_spacing.h"
 
 namespace deltasplat {
 namespace {
@@ -43,14 +44,6 @@ double roundedUp(double step, int significantBits) {
     return std::ldexp(std::ceil(std::ldexp(mantissa, significantBits)), exponent - significantBits);
 }
 
-// The distance from `large` > 0 to the number of the kind below it.
-double spacingBelow(double large, CodeBook::Values values) {
-    const double doubles = large - std::nextafter(large, 0.0);
-    if (values == CodeBook::Values::kWhole) return std::max(doubles, 1.0);
-    if (values == CodeBook::Values::kDouble) return doubles;
-    return double(float(large)) - double(std::nextafter(float(large), 0.0f));
-}
-
 // The most significant bits of a step, at most 8, with which multiples of it up to `large` are
 // numbers of the kind.
 int significantBitsOf(double step, double large, CodeBook::Values values) {
@@ -69,14 +62,6 @@ double roundedDown(double value, CodeBook::Values kind) {
     return double(rounded) <= value ? double(rounded) : double(std::nextafter(rounded, 0.0f));
 }
 
-double nextAbove(double value, CodeBook::Values kind) {
-    using Values = CodeBook::Values;
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    if (kind == Values::kWhole) return std::max(value + 1, std::nextafter(value, kInfinity));
-    if (kind == Values::kDouble) return std::nextafter(value, kInfinity);
-    return double(std::nextafter(float(value), std::numeric_limits<float>::infinity()));
-}
-
 Code nearestTableCode(const std::vector<double>& table, double value) {
     const auto above = std::lower_bound(table.begin(), table.end(), value);
     if (above == table.begin()) return 0;
@@ -85,22 +70,37 @@ Code nearestTableCode(const std::vector<double>& table, double value) {
     return Code(value - table[index - 1] < *above - value ? index - 1 : index);
 }
 
+// Half of the largest step that a value next to the code can have been on: values between two
+// pieces go to the nearer one.
+double pieceError(const std::vector<CodeBook::Piece>& pieces, Code code) {
+    std::size_t i = 0;
+    int first = 0;
+    while (i + 1 < pieces.size() && first + pieces[i].count <= int(code))
+        first += pieces[i++].count;
+    double step = pieces[i].step;
+    if (int(code) == first && i > 0) step = std::max(step, pieces[i - 1].step);
+    if (int(code) == first + pieces[i].count - 1 && i + 1 < pieces.size())
+        step = std::max(step, pieces[i + 1].step);
+    return step / 2;
+}
+
 }  // namespace
 
 double CodeBook::valueOf(Code code) const {
     if (kind == Kind::kHalf) return halfValue(code);
-    if (kind == Kind::kTable) return (*table)[std::min<std::size_t>(code, table->size() - 1)];
+    if (table) return (*table)[std::min<std::size_t>(code, table->size() - 1)];
     return offset + step * double(code);
 }
 
 Code CodeBook::codeOf(double value) const {
     if (kind == Kind::kHalf) return nearestHalfCode(value);
-    if (kind == Kind::kTable) return nearestTableCode(*table, value);
+    if (table) return nearestTableCode(*table, value);
     return linearCode(value, offset, step);
 }
 
 double CodeBook::largestErrorOf(Code code) const {
     if (kind == Kind::kLinear) return step / 2;
+    if (kind == Kind::kPieces) return pieceError(*pieces, code);
     // An error that is a share of the source's value is a larger share of a smaller one's.
     if (relativeError > 0) return relativeError / (1 - relativeError) * std::fabs(valueOf(code));
     return 0;
@@ -118,6 +118,8 @@ std::string CodeBook::name() const {
             return "half";
         case Kind::kTable:
             return "table";
+        case Kind::kPieces:
+            return "pieces";
         case Kind::kLinear:
             break;
     }
@@ -153,6 +155,18 @@ CodeBook CodeBook::linear(double low, double high, int bits, Values values) {
 
 CodeBook CodeBook::ofTable(std::vector<double> values) {
     return {Kind::kTable, 0, 1, std::make_shared<const std::vector<double>>(std::move(values)), 0};
+}
+
+CodeBook CodeBook::ofPieces(std::vector<Piece> pieces) {
+    std::vector<double> values;
+    for (const Piece& piece : pieces) {
+        for (int rung = 0; rung < piece.count; ++rung)
+            values.push_back(piece.first + piece.step * rung);
+    }
+    CodeBook book = ofTable(std::move(values));
+    book.kind = Kind::kPieces;
+    book.pieces = std::make_shared<const std::vector<Piece>>(std::move(pieces));
+    return book;
 }
 
 std::optional<CodeBook> CodeBook::relative(const Range& range, double error) {

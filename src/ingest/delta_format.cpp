@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "deltasplat/error.h"
 #include "ingest/number_list.h"
@@ -105,8 +106,33 @@ std::vector<double> takeTable(const Entries& entries) {
     return table;
 }
 
+std::vector<CodeBook::Piece> takePieces(const Entries& entries) {
+    const std::string key = "delta_pieces";
+    const auto numbers = entries.list<double>(key, 3 * std::size_t(kCodeCount));
+    const auto refuse = [&](const std::string& got) {
+        entries.fail(key, got, "groups of a first value, a step and a count, in increasing order");
+    };
+    if (numbers.empty() || numbers.size() % 3 != 0)
+        refuse(std::to_string(numbers.size()) + " numbers");
+    std::vector<CodeBook::Piece> pieces;
+    int codes = 0;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < numbers.size(); i += 3) {
+        const double first = numbers[i], step = numbers[i + 1], count = numbers[i + 2];
+        const double last = first + step * (count - 1);
+        const bool whole = count >= 1 && count <= kCodeCount - codes && count == std::floor(count);
+        const bool rises = std::isfinite(step) && step >= 0 && (count == 1 || first + step > first);
+        if (!whole || !rises || !std::isfinite(last) || !(first > highest))
+            refuse(numberText(first) + " " + numberText(step) + " " + numberText(count));
+        pieces.push_back({first, step, int(count)});
+        codes += int(count);
+        highest = last;
+    }
+    return pieces;
+}
+
 void takeBook(const Entries& entries, DeltaHeader& header) {
-    switch (entries.choice("delta_code_book", {"integer", "half", "linear", "table"})) {
+    switch (entries.choice("delta_code_book", {"integer", "half", "linear", "table", "pieces"})) {
         case 0:
             header.book = {CodeBook::Kind::kInteger, entries.finite("delta_offset"), 1, nullptr, 0};
             break;
@@ -117,13 +143,17 @@ void takeBook(const Entries& entries, DeltaHeader& header) {
             header.book = {CodeBook::Kind::kLinear, entries.finite("delta_offset"),
                            entries.notNegative("delta_step"), nullptr, 0};
             break;
-        default:
+        case 3:
             header.book = CodeBook::ofTable(takeTable(entries));
+            break;
+        default:
+            header.book = CodeBook::ofPieces(takePieces(entries));
     }
     header.codeCount = entries.whole("delta_code_count", 1, kCodeCount);
     if (header.book.table && header.codeCount != int(header.book.table->size()))
         entries.fail("delta_code_count", std::to_string(header.codeCount),
-                     std::to_string(header.book.table->size()) + ", the numbers of delta_table");
+                     std::to_string(header.book.table->size()) + ", the numbers of " +
+                         (header.book.pieces ? "delta_pieces" : "delta_table"));
     const double last = header.book.valueOf(Code(header.codeCount - 1));
     if (header.book.kind != CodeBook::Kind::kHalf && !std::isfinite(last))
         entries.fail("delta_step", numberText(header.book.step), "finite values");
@@ -184,7 +214,7 @@ bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata)
 void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
     using namespace openvdb;
     const auto vector = [](const glm::ivec3& v) { return Vec3IMetadata({v.x, v.y, v.z}); };
-    metadata.insertMeta(kVersionKey, Int32Metadata(DeltaHeader::kVersion));
+    metadata.insertMeta(kVersionKey, Int32Metadata(header.book.pieces ? 2 : 1));
     metadata.insertMeta("delta_slice_axis", StringMetadata(kAxisNames[header.sliceAxis]));
     metadata.insertMeta("delta_key_interval", Int32Metadata(header.keyInterval));
     metadata.insertMeta("delta_box_min", vector(header.box.min));
@@ -195,7 +225,12 @@ void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
         metadata.insertMeta("delta_offset", DoubleMetadata(header.book.offset));
     if (header.book.kind == CodeBook::Kind::kLinear)
         metadata.insertMeta("delta_step", DoubleMetadata(header.book.step));
-    if (header.book.table)
+    if (header.book.pieces) {
+        std::vector<double> numbers;
+        for (const CodeBook::Piece& piece : *header.book.pieces)
+            numbers.insert(numbers.end(), {piece.first, piece.step, double(piece.count)});
+        metadata.insertMeta("delta_pieces", StringMetadata(listText(numbers)));
+    } else if (header.book.table)
         metadata.insertMeta("delta_table", StringMetadata(listText(*header.book.table)));
     metadata.insertMeta("delta_source_type", StringMetadata(header.sourceType));
     metadata.insertMeta("delta_source_tree", StringMetadata(header.sourceTree));
@@ -214,7 +249,7 @@ void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
 DeltaHeader takeDeltaHeader(const openvdb::MetaMap& metadata, const std::string& where) {
     const Entries entries(metadata, where);
     DeltaHeader header;
-    entries.whole(kVersionKey, DeltaHeader::kVersion, DeltaHeader::kVersion);
+    entries.whole(kVersionKey, 1, DeltaHeader::kVersion);
     header.sliceAxis = entries.choice("delta_slice_axis", {"x", "y", "z"});
     header.keyInterval = entries.whole("delta_key_interval", 8, 1 << 30);
     if (header.keyInterval % 8 != 0)

@@ -14,7 +14,7 @@ namespace deltasplat {
 
 /// What a delta grid's metadata says; docs/delta-grid.md specifies it.
 struct DeltaHeader {
-    static constexpr int kVersion = 1;
+    static constexpr int kVersion = 2;  ///< the largest; 1 is all but books of pieces
 
     int sliceAxis = 2;
     int keyInterval = 8;

@@ -12,6 +12,7 @@
 #include "ingest/book_encoder.h"
 #include "ingest/code_statistics.h"
 #include "ingest/code_tree.h"
+#include "ingest/error_meter.h"
 #include "ingest/grid_values.h"
 #include "ingest/not_finite.h"
 #include "ingest/readers.h"
@@ -28,7 +29,7 @@ namespace {
 
 template <typename Grid>
 std::uint64_t settleNonFinite(Grid& grid, const GridCodesOptions& options) {
-    const GridScan range = scanTree(grid.tree(), /*distinct=*/false);
+    const GridScan range = scanTree(grid.tree(), {.distinct = false, .survey = false});
     if (range.nonFinite == 0) return 0;
     if (!options.reading.nanValue) {
         const std::string got =
@@ -63,8 +64,9 @@ void makeFog(Grid& grid, const GridCodesOptions& options) {
 }
 
 template <typename Tree>
-std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book) {
+std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book, ErrorMeter& meter) {
     const BookEncoder encode(book);
+    const bool exact = book.isExact();
     using SourceLeaf = typename Tree::LeafNodeType;
     // OpenVDB's trees cannot be assigned, only made in place.
     std::shared_ptr<CodeTree> codes(
@@ -74,15 +76,22 @@ std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book) {
     tree.getNodes(sources);
     codes->tree.getNodes(targets);
     forLeafRuns(sources.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        ErrorMeter::Part part(meter);
         for (std::size_t i = begin; i < end; ++i) {
             Code* out = targets[i]->buffer().data();
             for (auto voxel = sources[i]->cbeginValueOn(); voxel; ++voxel) {
                 out[voxel.pos()] = encode(double(*voxel));
+                if (!exact) part.add(double(*voxel), out[voxel.pos()]);
             }
         }
+        meter.add(part);
     });
     forActiveTiles(codes->tree, [&](const auto& tile) {
-        tile.setValue(encode(double(tree.getValue(tile.getCoord()))));
+        const auto value = double(tree.getValue(tile.getCoord()));
+        tile.setValue(encode(value));
+        ErrorMeter::Part part(meter);
+        if (!exact) part.add(value, *tile);
+        meter.add(part);
     });
     return codes;
 }
@@ -115,17 +124,27 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
         makeFog(grid, options);
     }
     constexpr bool kReal = std::is_floating_point_v<T>;
-    const GridScan scan = scanTree(grid.tree(), !(kReal && options.reading.bits));
+    GridScan scan = scanTree(
+        grid.tree(), {.distinct = !(kReal && options.reading.bits), .survey = sizeof(T) > 1});
+    // Active voxels may be as empty as inactive ones: then they have that very value.
+    if (isFinite(grid.background())) scan.census.frequent = {{double(grid.background()), 0}};
     // Masks have nothing but true, which stays 1.
     volume.codeBook = std::is_same_v<T, bool>
                           ? CodeBook::integer(0)
                           : chooseBook(scan.census, kReal, options.reading, options.where);
     volume.hasBackground = true;
     volume.background = double(grid.background());
-    auto codes = codesOfTree(grid.tree(), volume.codeBook);
+    ErrorMeter meter(volume.codeBook, bulkMagnitude(scan.census));
+    auto codes = codesOfTree(grid.tree(), volume.codeBook, meter);
     volume.box = boxOf(codes->tree, options.where);
     volume.histogram = histogramOf(codes->tree);
     volume.codes = std::move(codes);
+    summarize(volume);
+    if (volume.codeBook.isExact()) return;
+    volume.valueMin = scan.census.min;
+    volume.valueMax = scan.census.max;
+    volume.codeError = meter.error();
+    warnOfCodeError(options.where, volume, options.listener);
 }
 
 }  // namespace
@@ -135,7 +154,6 @@ void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volu
     if (!known) fail(options.where, "type " + options.type, "a scalar grid");
     volume.type = options.type;
     volume.gridClass = openvdb::GridBase::gridClassToString(grid.getGridClass());
-    summarize(volume);
 }
 
 }  // namespace deltasplat

@@ -60,13 +60,17 @@ void forActiveTiles(Tree& tree, const Use& use) {
     for (; tile; ++tile) use(tile);
 }
 
+/// What a scan is to find out besides the census' numbers.
+struct ScanWishes {
+    bool distinct = true;  ///< different values
+    bool survey = true;    ///< where values lie
+};
+
 /// Returns what the active values of `tree` hold; the result does not depend on the thread count.
-/// @param distinct  whether to collect different values
 template <typename Tree>
-GridScan scanTree(Tree& tree, bool distinct) {
+GridScan scanTree(Tree& tree, const ScanWishes& wishes) {
     std::vector<typename Tree::LeafNodeType*> leaves;
     tree.getNodes(leaves);
-    std::vector<GridScan> scans(leaves.size() / kLeafRun + 1);
     const auto add = [](GridScan& scan, const auto& value, std::uint64_t voxels) {
         if (isFinite(*value)) {
             scan.census.add(*value);
@@ -74,14 +78,25 @@ GridScan scanTree(Tree& tree, bool distinct) {
             scan.addNonFinite(value.getCoord(), voxels);
         }
     };
-    forLeafRuns(leaves.size(), [&](std::size_t run, std::size_t begin, std::size_t end) {
-        if (!distinct) scans[run].census.distinct.giveUp();
-        for (std::size_t i = begin; i < end; ++i) {
-            for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel) add(scans[run], voxel, 1);
-        }
-    });
     GridScan whole;
-    for (const GridScan& scan : scans) whole.append(scan);
+    if (!wishes.distinct) whole.census.distinct.giveUp();
+    whole.census.skipSurvey = !wishes.survey;
+    // Runs are put together as they are done: what each of them collects is large.
+    constexpr std::size_t kBatch = 64 * kLeafRun;
+    for (std::size_t start = 0; start < leaves.size(); start += kBatch) {
+        const std::size_t count = std::min(kBatch, leaves.size() - start);
+        std::vector<GridScan> scans((count + kLeafRun - 1) / kLeafRun);
+        forLeafRuns(count, [&](std::size_t run, std::size_t begin, std::size_t end) {
+            ValueCensus& census = scans[run].census;
+            if (whole.census.distinct.tooMany()) census.distinct.giveUp();
+            census.skipSurvey = !wishes.survey;
+            for (std::size_t i = start + begin; i < start + end; ++i) {
+                for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel)
+                    add(scans[run], voxel, 1);
+            }
+        });
+        for (const GridScan& scan : scans) whole.append(scan);
+    }
     forActiveTiles(tree, [&](const auto& tile) { add(whole, tile, tile.getVoxelCount()); });
     return whole;
 }

@@ -26,6 +26,7 @@ RawScan scanRun(const std::byte* bytes, std::size_t count, bool swap, bool disti
             }
         }
         scan.census.add(value);
+        scan.frequent.add(double(value));
     }
     return scan;
 }
@@ -78,6 +79,22 @@ inline void encodeBox(const RawBlock& block, const glm::ivec3& size, const Coder
     }
 }
 
+template <typename T, bool kSwap>
+void measure(const RawBlock& block, const RawCoding& coding, const Code* codes) {
+    ErrorMeter::Part part(*coding.meter);
+    for (int z = 0; z < block.size.z; ++z) {
+        for (int y = 0; y < block.size.y; ++y) {
+            const std::byte* row = block.first + z * block.sliceBytes + y * block.rowBytes;
+            const Code* column = codes + y * 8 + z;
+            for (int x = 0; x < block.size.x; ++x) {
+                const T value = loadValue<T>(row + x * sizeof(T), kSwap);
+                part.add(finiteOr(value, coding.nanValue), column[x * 64]);
+            }
+        }
+    }
+    coding.meter->add(part);
+}
+
 template <typename T, bool kSwap, template <typename> typename Coder>
 void encode(const RawBlock& block, const RawCoding& coding, Code* codes) {
     const Coder<T> coder(coding);
@@ -87,6 +104,7 @@ void encode(const RawBlock& block, const RawCoding& coding, Code* codes) {
     } else {
         encodeBox<T, kSwap>(block, block.size, coder, codes);
     }
+    if (coding.meter) measure<T, kSwap>(block, coding, codes);
 }
 
 template <typename T, template <typename> typename Coder>
@@ -100,6 +118,7 @@ void RawScan::append(const RawScan& next) {
     if (nonFinite == 0) firstNonFinite = census.count + next.firstNonFinite;
     nonFinite += next.nonFinite;
     census.append(next.census);
+    frequent.append(next.frequent);
 }
 
 RawScan scanRawValues(const std::byte* bytes, std::size_t count, RawType type, bool bigEndian,
@@ -135,6 +154,31 @@ EncodeBlock blockEncoder(const RawCoding& coding) {
                 return encoderFor<T, BookCoder>(swap);
         }
     });
+}
+
+std::vector<std::uint64_t> countEqual(const std::byte* bytes, std::size_t count,
+                                      const RawCoding& coding, const std::vector<double>& values) {
+    std::vector<std::uint64_t> counts(values.size());
+    if (values.empty()) return counts;
+    constexpr std::size_t kRun = std::size_t{1} << 18;
+    std::vector<std::vector<std::uint64_t>> runs((count + kRun - 1) / kRun, counts);
+    const bool swap = mustSwap(coding.bigEndian);
+    parallelFor(runs.size(), [&](std::size_t run) {
+        withRawType(coding.type, [&](auto zero) {
+            using T = decltype(zero);
+            const std::size_t end = std::min((run + 1) * kRun, count);
+            for (std::size_t i = run * kRun; i < end; ++i) {
+                const T value = loadValue<T>(bytes + i * sizeof(T), swap);
+                const double number = finiteOr(value, coding.nanValue);
+                for (std::size_t k = 0; k < values.size(); ++k)
+                    runs[run][k] += number == values[k] ? 1 : 0;
+            }
+        });
+    });
+    for (const std::vector<std::uint64_t>& run : runs) {
+        for (std::size_t k = 0; k < counts.size(); ++k) counts[k] += run[k];
+    }
+    return counts;
 }
 
 template <typename Out>

@@ -7,6 +7,8 @@
 
 #include "deltasplat/ingest/code_book.h"
 #include "ingest/book_encoder.h"
+#include "ingest/error_meter.h"
+#include "ingest/frequent_values.h"
 #include "ingest/raw_format.h"
 #include "ingest/value_census.h"
 
@@ -15,6 +17,7 @@ namespace deltasplat {
 /// What a run of raw values holds.
 struct RawScan {
     ValueCensus census;                ///< of the finite values
+    FrequentValues frequent;           ///< of the finite values
     std::uint64_t nonFinite = 0;       ///< NaN and infinities
     std::uint64_t firstNonFinite = 0;  ///< position in the run; meaningless if there is none
 
@@ -32,8 +35,9 @@ struct RawCoding {
     RawType type = RawType::kUint8;
     bool bigEndian = false;
     const CodeBook& book;
-    const BookEncoder& encoder;  ///< of `book`
-    double nanValue = 0;         ///< what NaN and infinities count as
+    const BookEncoder& encoder;   ///< of `book`
+    double nanValue = 0;          ///< what NaN and infinities count as
+    ErrorMeter* meter = nullptr;  ///< null: codes are exact
 };
 
 /// A box of at most 8x8x8 voxels in memory, x contiguous.
@@ -50,6 +54,11 @@ using EncodeBlock = void (*)(const RawBlock& block, const RawCoding& coding, Cod
 
 /// Returns the function for this coding's type, byte order and kind of book.
 EncodeBlock blockEncoder(const RawCoding& coding);
+
+/// Counts on all threads how many of `count` values equal each of `values`; NaN and infinities
+/// count as `nanValue`.
+std::vector<std::uint64_t> countEqual(const std::byte* bytes, std::size_t count,
+                                      const RawCoding& coding, const std::vector<double>& values);
 
 /// Writes a block's values in the order of codes, as `T`; NaN and infinities as `nanValue`.
 /// Instantiated for float, double, std::int32_t and std::int64_t, from any raw type that T holds.

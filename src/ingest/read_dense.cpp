@@ -2,6 +2,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -30,6 +31,7 @@ Listener partOf(const Listener& listener, double begin, double end) {
     part.progress = [&listener, begin, end](double share) {
         listener.report(begin + (end - begin) * share);
     };
+    part.warning = listener.warning;
     return part;
 }
 
@@ -70,6 +72,18 @@ void settleNonFinite(const DenseSource& source, RawScan& scan, std::optional<dou
     } else {
         scan.census.add(*nanValue);
     }
+    FrequentValues replaced;
+    replaced.add(*nanValue, scan.nonFinite);
+    scan.frequent.append(replaced);
+}
+
+// Values that, for all that is known, a twentieth of the voxels have.
+std::vector<FrequentValue> frequentOf(const RawScan& scan) {
+    std::vector<FrequentValue> frequent = scan.frequent.values();
+    const double voxels = double(scan.census.count);
+    std::erase_if(frequent,
+                  [&](const FrequentValue& one) { return double(one.count) < voxels / 20; });
+    return frequent;
 }
 
 // Types that do not fit 16 bits are read twice: first for what their codes have to tell apart.
@@ -83,15 +97,26 @@ CodeBook fixedBook(RawType type) {
     return CodeBook::integer(0);
 }
 
+// What is known of a source's values before they become codes.
+struct Survey {
+    double bulkMagnitude = 0;      // as for ErrorMeter
+    double low = 0, high = 0;      // of the values
+    std::vector<double> frequent;  // which may be the most frequent one
+};
+
 // Reads everything to find out which codes there have to be.
-void chooseBook(const DenseSource& source, const ReadOptions& options, const Listener& listener,
-                Volume& volume) {
+Survey chooseBook(const DenseSource& source, const ReadOptions& options, const Listener& listener,
+                  Volume& volume) {
     RawScan whole = scan(source, options, listener);
     settleNonFinite(source, whole, options.nanValue);
     volume.replaced = whole.nonFinite;
     volume.readError = whole.census.rounding;
     const bool real = source.type == RawType::kFloat32 || source.type == RawType::kFloat64;
+    whole.census.frequent = frequentOf(whole);
     volume.codeBook = chooseBook(whole.census, real, options, source.where);
+    Survey survey{bulkMagnitude(whole.census), whole.census.min, whole.census.max, {}};
+    for (const FrequentValue& one : whole.census.frequent) survey.frequent.push_back(one.value);
+    return survey;
 }
 
 void warnOfChanges(const DenseSource& source, const ReadOptions& options, const Volume& volume,
@@ -172,17 +197,43 @@ class CodeCounter {
     std::vector<std::vector<std::uint64_t>> counts_;
 };
 
-void readCodes(const DenseSource& source, const ReadOptions& options, const Listener& listener,
-               Volume& volume) {
+// Keeps the most frequent of some values.
+void keepMostFrequent(const std::vector<double>& values, const std::vector<std::uint64_t>& counts,
+                      Volume& volume) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const FrequentValue one{values[i], counts[i]};
+        std::optional<FrequentValue>& most = volume.mostFrequent;
+        if (!most || one.count > most->count ||
+            (one.count == most->count && one.value < most->value))
+            most = one;
+    }
+}
+
+// Whether a value is not exact goes with it: then errors are measured, and what is frequent
+// counted.
+void readCodes(const DenseSource& source, const ReadOptions& options, const Survey& survey,
+               const Listener& listener, Volume& volume) {
     auto codes = std::make_shared<CodeTree>();
     LayerAdder<CodeTree::Tree> adder(source, codes->tree);
     const BookEncoder encoder(volume.codeBook);
-    const RawCoding coding{source.type, source.bigEndian, volume.codeBook, encoder,
-                           options.nanValue.value_or(0)};
+    ErrorMeter meter(volume.codeBook, survey.bulkMagnitude);
+    const bool exact = volume.codeBook.isExact();
+    const RawCoding coding{source.type,
+                           source.bigEndian,
+                           volume.codeBook,
+                           encoder,
+                           options.nanValue.value_or(0),
+                           exact ? nullptr : &meter};
     const EncodeBlock encode = blockEncoder(coding);
     CodeCounter counter(adder.strips());
+    const std::vector<double> frequent = exact ? std::vector<double>() : survey.frequent;
+    std::vector<std::uint64_t> counts(frequent.size());
     source.forEachLayer(
-        [&](int first, int, const std::byte* bytes) {
+        [&](int first, int slices, const std::byte* bytes) {
+            const std::size_t values =
+                std::size_t(source.dims.x) * std::size_t(source.dims.y) * std::size_t(slices);
+            const auto more = countEqual(bytes, values, coding, frequent);
+            std::transform(more.begin(), more.end(), counts.begin(), counts.begin(), std::plus());
             adder.add(
                 first, bytes,
                 [&](const RawBlock& block, Code* values) { encode(block, coding, values); },
@@ -191,6 +242,14 @@ void readCodes(const DenseSource& source, const ReadOptions& options, const List
         listener);
     volume.histogram = counter.sum();
     volume.codes = std::move(codes);
+    summarize(volume);
+    if (exact) return;
+    volume.valueMin = survey.low;
+    volume.valueMax = survey.high;
+    volume.mostFrequent = FrequentValue{volume.mostFrequent->value, 0};
+    keepMostFrequent(frequent, counts, volume);
+    volume.codeError = meter.error();
+    warnOfCodeError(source.where, volume, listener);
 }
 
 template <typename Grid>
@@ -253,12 +312,14 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
     const double scanned = needsScan(source.type) ? 0.5 : 0.0;
     Volume volume;
     volume.codeBook = fixedBook(source.type);
-    if (needsScan(source.type)) chooseBook(source, options, partOf(listener, 0, scanned), volume);
+    Survey survey;
+    if (needsScan(source.type))
+        survey = chooseBook(source, options, partOf(listener, 0, scanned), volume);
     warnOfChanges(source, options, volume, listener);
-    const bool keep = options.keepSource && !volume.codeBook.isExact();
+    const bool keep = (options.keepSource || options.keepInexact) && !volume.codeBook.isExact();
     requireLimit(source, options, keep, listener);
     const double coded = keep ? 0.75 : 1;
-    readCodes(source, options, partOf(listener, scanned, coded), volume);
+    readCodes(source, options, survey, partOf(listener, scanned, coded), volume);
     if (keep) {
         auto grid = readSourceGrid(source, options, partOf(listener, coded, 1));
         volume.source = std::make_shared<const SourceGrid>(SourceGrid{std::move(grid)});
@@ -270,7 +331,6 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
     volume.space = source.space;
     volume.box = {glm::ivec3(0), glm::ivec3(source.dims) - 1};
     volume.worldFromIndex = source.worldFromIndex;
-    summarize(volume);
     return volume;
 }
 

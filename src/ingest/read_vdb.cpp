@@ -126,7 +126,7 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
     } else {
         volume.worldFromIndex = matrix;
         fillFromGrid(*loaded, {listener, where, grid.valueType(), options}, volume);
-        if (options.keepSource)
+        if (options.keepSource || (options.keepInexact && !volume.codeBook.isExact()))
             volume.source = std::make_shared<const SourceGrid>(SourceGrid{loaded, file.metadata()});
         volume.space = spaceOf(*loaded);
     }

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/ingest/read_volume.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
+#include "deltasplat/ingest/value_statistics.h"
 #include "ingest/input_kind.h"
 #include "ingest/open_dense.h"
 #include "ingest/readers.h"
@@ -98,6 +101,19 @@ void summarize(Volume& volume) {
         volume.valueMax = value;
         volume.activeCount += volume.histogram[code];
     }
+    volume.mostFrequent.reset();
+    if (volume.activeCount > 0) volume.mostFrequent = mostFrequentCode(volume);
+}
+
+void warnOfCodeError(const std::string& where, const Volume& volume, const Listener& listener) {
+    constexpr double kWorthSaying = 1e-3;
+    if (!(volume.codeError.relative > kWorthSaying)) return;
+    char percent[32];
+    std::snprintf(percent, sizeof percent, "%.3g", 100 * volume.codeError.relative);
+    listener.warn(where + ": values are kept as codes that are off by up to " +
+                  numberText(volume.codeError.absolute) + ", or " +
+                  std::string(percent) + " % of a value (" +
+                  volume.codeBook.name() + " code book)");
 }
 
 }  // namespace deltasplat

@@ -46,7 +46,11 @@ void requireFiniteSpan(const std::string& where, double low, double high);
 /// @throw Error(kUsage) if `nanValue`, which is to replace a value, is no finite float
 void requireFloatNan(double nanValue);
 
-/// Sets activeCount, valueMin and valueMax from the histogram and the code book.
+/// Sets activeCount, valueMin, valueMax and mostFrequent from the histogram and the code book: the
+/// source's own if that is exact.
 void summarize(Volume& volume);
+
+/// Warns if values are kept so badly that a picture may show it.
+void warnOfCodeError(const std::string& where, const Volume& volume, const Listener& listener);
 
 }  // namespace deltasplat

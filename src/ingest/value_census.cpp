@@ -17,6 +17,14 @@ void ValueCensus::append(const ValueCensus& next) {
     floats = floats && next.floats;
     rounding = std::max(rounding, next.rounding);
     distinct.append(next.distinct);
+    survey.append(next.survey);
+}
+
+double bulkMagnitude(const ValueCensus& census) {
+    const std::vector<ValueCell> cells = census.survey.cells();
+    if (cells.empty()) return 0;
+    const glm::dvec2 bulk = bulkOf(cells, census.frequent);
+    return kBulkNeed / kRelativeNeed * (bulk.y - bulk.x);
 }
 
 namespace {
@@ -47,8 +55,9 @@ CodeBook chooseBook(const ValueCensus& census, bool real, const ReadOptions& rea
             if (book) return *book;
         }
     }
-    return CodeBook::linear(census.min, census.max, linear ? *reading.bits : 16,
-                            kindOf(census, real));
+    if (linear)
+        return CodeBook::linear(census.min, census.max, *reading.bits, kindOf(census, real));
+    return fitBook(census.survey.cells(), census.frequent, kindOf(census, real));
 }
 
 }  // namespace deltasplat

@@ -12,6 +12,8 @@
 #include "deltasplat/ingest/code_book.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/distinct_values.h"
+#include "ingest/fitted_book.h"
+#include "ingest/value_survey.h"
 
 namespace deltasplat {
 
@@ -27,6 +29,10 @@ struct ValueCensus {
     bool floats = true;   ///< a float holds every value
     double rounding = 0;  ///< largest difference between an integer and its nearest double
     DistinctValues distinct;
+    ValueSurvey survey;  ///< unless it was skipped
+    bool skipSurvey = false;
+    /// Values that have, or may have, many voxels: a book gives them codes of their own.
+    std::vector<FrequentValue> frequent;
 
     template <typename T>
     void add(T value) {
@@ -47,6 +53,7 @@ struct ValueCensus {
                 rounding = std::max(rounding, off(value));
         }
         distinct.add(number);
+        if (!skipSurvey) survey.add(number);
     }
     void append(const ValueCensus& next);
 
@@ -59,13 +66,17 @@ struct ValueCensus {
     }
 };
 
+/// Returns the magnitude of which kBulkNeed of the bulk's width is the share kRelativeNeed.
+double bulkMagnitude(const ValueCensus& census);
+
 /// Returns the code book for values of this census: exact if there is one. Real values that are
 /// all halves get `half`; whole numbers that span at most 65536 get `integer`; at most 65536
-/// different ones `table`; others `linear`.
+/// different ones `table`; others what fitBook makes of them: `pieces`, or `linear` where one
+/// ladder is as good.
 /// @param real     the source's type is real; whole numbers never get `half`
 /// @param reading  its `bits` asks for `linear` instead of an exact book, for real types; its
-///                 `relativeError` for a `table` of relative errors instead of `linear`, where
-///                 65536 codes are enough for that
+///                 `relativeError` for a `table` of relative errors instead of what would not be
+///                 exact, where 65536 codes are enough for that
 /// @param where    file, for messages
 /// @throw Error(kInput) if the values lie too far apart
 CodeBook chooseBook(const ValueCensus& census, bool real, const ReadOptions& reading,

@@ -10,9 +10,14 @@ namespace deltasplat {
 std::optional<double> guessBackground(const Volume& volume) {
     if (volume.hasBackground) return volume.background;
     if (volume.empty()) return std::nullopt;
+    const FrequentValue most = volume.mostFrequent.value_or(mostFrequentCode(volume));
+    if (double(most.count) < kBackgroundShare * double(volume.activeCount)) return std::nullopt;
+    return most.value;
+}
+
+FrequentValue mostFrequentCode(const Volume& volume) {
     const auto most = std::max_element(volume.histogram.begin(), volume.histogram.end());
-    if (double(*most) < kBackgroundShare * double(volume.activeCount)) return std::nullopt;
-    return volume.codeBook.valueOf(Code(most - volume.histogram.begin()));
+    return {volume.codeBook.valueOf(Code(most - volume.histogram.begin())), *most};
 }
 
 ValueHistogram histogramOfValues(const Volume& volume, int bins) {
@@ -26,7 +31,8 @@ ValueHistogram histogramOfValues(const Volume& volume, int bins) {
     for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
         if (volume.histogram[code] == 0) continue;
         const double value = volume.codeBook.valueOf(Code(code));
-        const double bin = width > 0 ? (value - result.low) / width : 0;
+        // Codes may be a little outside of the values.
+        const double bin = width > 0 ? std::max(0.0, (value - result.low) / width) : 0;
         result.counts[std::min(int(bin), bins - 1)] += volume.histogram[code];
     }
     return result;
@@ -45,7 +51,9 @@ Code percentileCode(std::span<const std::uint64_t> counts, int percent) {
 
 double percentileValue(const Volume& volume, int percent) {
     if (volume.empty()) return volume.background;
-    return volume.codeBook.valueOf(percentileCode(volume.histogram, percent));
+    // A code may be a little beyond all values that it stands for.
+    const double value = volume.codeBook.valueOf(percentileCode(volume.histogram, percent));
+    return std::clamp(value, volume.valueMin, volume.valueMax);
 }
 
 }  // namespace deltasplat

@@ -24,8 +24,9 @@ RayPlane followRays(const RayInput& input, const Listener& listener) {
     const PlaneBox box = reachOf(input.layout, input.shiftPerSlice, volume.min.x, volume.dims().x);
     const int bands = (box.size().y + kBandRows - 1) / kBandRows;
     const int workers = std::min(threadCount(), bands);
-    requireMemory("base plane", 2.0 * sizeof(float) * box.size().x * box.size().y +
-                                    workers * RayBand::bytes(input, kBandRows));
+    const double row = double(sizeof(float)) * box.size().x;
+    requireMemory("base plane", 2 * row * box.size().y +
+                                    workers * (RayBand::bytes(input, kBandRows) + kBandRows * row));
 
     const bool sum = input.rule == RayRule::kSum;
     RayPlane plane(box, sum ? 0 : -std::numeric_limits<float>::infinity());

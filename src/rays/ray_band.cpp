@@ -29,6 +29,9 @@ double RayBand::bytes(const RayInput& input, int rows) {
 
 void RayBand::run(int firstRow, int lastRow, RayPlane& plane) {
     const IndexBox& box = input_.volume.box;
+    firstRow_ = firstRow;
+    if (input_.rule == RayRule::kSum)
+        rest_.assign(std::size_t(lastRow - firstRow) * std::size_t(plane.box.size().x), 0.0f);
     for (int layer = box.min.x >> 3; layer <= box.max.x >> 3; ++layer) {
         findSlices(layer);
         const auto [low, high] = std::minmax(slices_.front().offset.y, slices_.back().offset.y);
@@ -99,13 +102,18 @@ void RayBand::addRow(const Slice& slice, int y, RayPlane& plane) {
     const bool both = (u & 7) == 7 && slice.fraction.y != 0;
     for (const CellRun& run : runsOf(u >> 3, both)) {
         const int v = 8 * run.first;
+        const int x = v - slice.offset.x - plane.box.min.x;
         spans_.push_back({strip_.values(slice.index, u) + v,
                           // Where only one row is read, it stands for both.
                           strip_.values(slice.index, u + (slice.fraction.y != 0)) + v,
-                          plane.row(y) + (v - slice.offset.x - plane.box.min.x),
+                          plane.row(y) + x, rest_.empty() ? nullptr : restRow(y, plane) + x,
                           8 * std::size_t(run.last - run.first),
                           run.fill == RayStrip::kAll ? nullptr : findMet(slice, u, run)});
     }
+}
+
+float* RayBand::restRow(int y, const RayPlane& plane) {
+    return &rest_[std::size_t(y - firstRow_) * std::size_t(plane.box.size().x)];
 }
 
 // Which pixels of a run read an active voxel with a weight that is not 0.

@@ -51,6 +51,7 @@ class RayBand {
     RayStrip::Fill cellFill(int row, int column, bool both) const;
     void addSlice(const Slice& slice, int firstRow, int lastRow, RayPlane& plane);
     void addRow(const Slice& slice, int y, RayPlane& plane);
+    float* restRow(int y, const RayPlane& plane);
     const std::uint8_t* findMet(const Slice& slice, int y, const CellRun& run);
     std::vector<CellRun>& runsOf(int cellRow, bool both) {
         return runs_[2 * std::size_t(cellRow - firstCell_) + both];
@@ -66,6 +67,8 @@ class RayBand {
     std::vector<std::vector<CellRun>> runs_;
     std::vector<RaySpan> spans_;
     std::vector<std::uint8_t> met_;
+    int firstRow_ = 0;
+    std::vector<float> rest_;  // as RaySpan::rest, for the band's rows; only for sums
     std::size_t metBytes_ = 0;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The inner loops of line integrals and maxima, compiled once for each SIMD level.
+// Based on: W. Kahan, "Further remarks on reducing truncation errors", 1965 (sums of many slices).
 #include "rays/ray_kernels.h"
 
 #include "simd_targets.h"
@@ -127,9 +128,17 @@ template <bool kStraight>
 void sumSpansOf(const std::vector<RaySpan>& spans, glm::vec2 fraction) {
     for (const RaySpan& span : spans) {
         float* HWY_RESTRICT plane = span.plane;
+        float* HWY_RESTRICT rest = span.rest;
         forVectors(span.pixels, [&](auto tag, std::size_t i) {
             const auto read = readSlice<kStraight>(tag, span, i, fraction);
-            hn::StoreU(hn::Add(hn::LoadU(tag, plane + i), read), tag, plane + i);
+            const auto had = hn::LoadU(tag, plane + i);
+            const auto more = hn::Sub(read, hn::LoadU(tag, rest + i));
+            const auto sum = hn::Add(had, more);
+            // Zeros add nothing, not even what is left of rounding.
+            const auto none = hn::Eq(read, hn::Zero(tag));
+            hn::StoreU(hn::IfThenElse(none, had, sum), tag, plane + i);
+            const auto left = hn::Sub(hn::Sub(sum, had), more);
+            hn::StoreU(hn::IfThenElse(none, hn::LoadU(tag, rest + i), left), tag, rest + i);
         });
     }
 }

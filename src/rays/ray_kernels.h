@@ -34,13 +34,16 @@ struct RaySpan {
     const float* row;      ///< the slice at the run's first pixel
     const float* nextRow;  ///< the slice one row further
     float* plane;          ///< the base plane at the run's first pixel
+    float* rest;           ///< likewise, how much the plane is too large; only for sums
     std::size_t pixels;
     const std::uint8_t* mask;  ///< bit i: pixel i is met by a voxel; null: all are
 };
 
 /// Reads a slice bilinearly, `fraction` behind its pixels, and adds what it reads to the base
-/// plane. Multiplications and additions are separate and per pixel, so that every SIMD level gives
-/// the same bits. Where neighbours are equal, exactly their value is read. Masks are not looked at.
+/// plane; what rounding adds to that is kept in `rest` and taken off with the next slice, so that
+/// many slices are as exact as one. Multiplications and additions are separate and per pixel, so
+/// that every SIMD level gives the same bits. Where neighbours are equal, exactly their value is
+/// read. Masks are not looked at.
 void sumSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction);
 
 /// The same, but the base plane keeps the larger of what it has and, where pixels are met, what is

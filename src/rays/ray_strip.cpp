@@ -72,15 +72,24 @@ BlockPlace RayStrip::placeOf(int row, int column) {
 
 void RayStrip::readBlock(const CodeBlock& block, int row, int column) {
     empty_[at(row, column)] = false;
-    if (block.leaf) return readLeaf(*block.leaf, row, column);
+    if (block.leaf) return readLeaf(block, row, column);
     fills_[at(row, column)] = kAll;
-    fillBlock(row, column, volume_.valueOf(Code(block.tileSlot - 1)));
+    if (volume_.sourceValues) {
+        volume_.sourceValues(block, placeOf(row, column));
+    } else {
+        fillBlock(row, column, volume_.valueOf(Code(block.tileSlot - 1)));
+    }
     setActive(row, column, allActive());
 }
 
-void RayStrip::readLeaf(const CodeTree::Leaf& leaf, int row, int column) {
+void RayStrip::readLeaf(const CodeBlock& block, int row, int column) {
+    const CodeTree::Leaf& leaf = *block.leaf;
     const BlockPlace place = placeOf(row, column);
-    readBlockValues(leaf.buffer().data(), volume_.sliceAxis, volume_.values, place);
+    if (volume_.sourceValues) {
+        volume_.sourceValues(block, place);
+    } else {
+        readBlockValues(leaf.buffer().data(), volume_.sliceAxis, volume_.values, place);
+    }
     const bool dense = leaf.isDense();
     fills_[at(row, column)] = dense ? kAll : kSome;
     const ActiveWords words = dense ? allActive() : activeWords(leaf, volume_.sliceAxis);

@@ -63,7 +63,7 @@ class RayStrip {
     BlockPlace placeOf(int row, int column);
 
     void readBlock(const CodeBlock& block, int row, int column);
-    void readLeaf(const CodeTree::Leaf& leaf, int row, int column);
+    void readLeaf(const CodeBlock& block, int row, int column);
     void fillBlock(int row, int column, float value);
     void setActive(int row, int column, const ActiveWords& words);
     void emptyAround(int row, int column, int lastRow);

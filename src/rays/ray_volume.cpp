@@ -7,7 +7,8 @@
 #include <numeric>
 
 #include "delta/block_windows.h"
-
+#include "ingest/scalar_grids.h"
+#include "ingest/source_grid.h"
 #include "memory.h"
 
 namespace deltasplat {
@@ -16,8 +17,12 @@ namespace {
 // So large that no volume has it, and so small that differences of two are finite.
 constexpr double kLargestValue = double(std::numeric_limits<float>::max()) / 4;
 
+float floatOf(double value) {
+    return float(std::clamp(value, -kLargestValue, kLargestValue));
+}
+
 float valueOf(const CodeBook& book, int code) {
-    return float(std::clamp(book.valueOf(Code(code)), -kLargestValue, kLargestValue));
+    return floatOf(book.valueOf(Code(code)));
 }
 
 // Code and offset are added as floats: exact as long as their sum is.
@@ -51,6 +56,59 @@ std::vector<Slot> readValues(const Volume& volume, RayRule rule, RayVolume& rays
     return slots;
 }
 
+openvdb::Coord originOf(const CodeBlock& block, int sliceAxis) {
+    const glm::ivec3 origin = fromSliceOrder(block.position * 8, sliceAxis);
+    return {origin.x, origin.y, origin.z};
+}
+
+template <typename Leaf>
+void placeValues(const Leaf& leaf, int sliceAxis, const BlockPlace& place) {
+    for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+        const glm::ivec3 at = toSliceOrder(glm::ivec3(n >> 6, n >> 3 & 7, n & 7), sliceAxis);
+        place.first[std::size_t(at.x) * place.sliceStep + std::size_t(at.y) * place.rowStep +
+                    std::size_t(at.z)] = floatOf(double(leaf.getValue(n)));
+    }
+}
+
+void placeValue(float value, const BlockPlace& place) {
+    for (std::size_t slice = 0; slice < 8; ++slice) {
+        for (std::size_t u = 0; u < 8; ++u)
+            std::fill_n(place.first + slice * place.sliceStep + u * place.rowStep, 8, value);
+    }
+}
+
+// Lets rays read the source's own values.
+void readSource(const Volume& volume, RayRule rule, std::vector<Slot>& slots, RayVolume& rays) {
+    rays.lowest = floatOf(volume.valueMin);
+    rays.highest = floatOf(volume.valueMax);
+    if (rule == RayRule::kMax) rays.empty = std::min(rays.lowest, 0.0f);
+    // A code of value 0 may stand for something else as well.
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code)
+        slots[code + 1] = volume.histogram[code] > 0 ? Slot(code + 1) : kEmptySlot;
+    volume.source->grid->apply<ScalarGrids>([&](const auto& grid) {
+        const auto& tree = grid.constTree();
+        rays.sourceValues = [&tree, axis = rays.sliceAxis](const CodeBlock& block,
+                                                           const BlockPlace& place) {
+            const openvdb::Coord origin = originOf(block, axis);
+            const auto* const leaf = tree.probeConstLeaf(origin);
+            leaf ? placeValues(*leaf, axis, place)
+                 : placeValue(floatOf(double(tree.getValue(origin))), place);
+        };
+    });
+}
+
+// Takes out uniform blocks of nothing: of a sum they are no part.
+void dropZeros(const Volume& volume, int sliceAxis, std::vector<CodeBlock>& blocks) {
+    volume.source->grid->apply<ScalarGrids>([&](const auto& grid) {
+        const auto& tree = grid.constTree();
+        std::erase_if(blocks, [&](const CodeBlock& block) {
+            if (block.leaf) return false;
+            const openvdb::Coord origin = originOf(block, sliceAxis);
+            return !tree.probeConstLeaf(origin) && double(tree.getValue(origin)) == 0;
+        });
+    });
+}
+
 // Puts blocks, which are ordered by u and v, in the order of layers, u and v.
 void sortByLayer(const std::vector<CodeBlock>& blocks, RayVolume& rays) {
     const int first = rays.box.min.x >> 3;
@@ -71,8 +129,12 @@ RayVolume makeRayVolume(const Volume& volume, int sliceAxis, RayRule rule) {
     RayVolume rays;
     rays.box = permutedBox(volume.box, sliceAxis);
     rays.sliceAxis = sliceAxis;
-    const std::vector<Slot> slots = readValues(volume, rule, rays);
-    sortByLayer(BlockReader(*volume.codes, nullptr, sliceAxis, slots).blocks(), rays);
+    std::vector<Slot> slots = readValues(volume, rule, rays);
+    const bool fromSource = volume.source && !volume.codeBook.isExact() && !volume.origin;
+    if (fromSource) readSource(volume, rule, slots, rays);
+    std::vector<CodeBlock> blocks = BlockReader(*volume.codes, nullptr, sliceAxis, slots).blocks();
+    if (fromSource && rule == RayRule::kSum) dropZeros(volume, sliceAxis, blocks);
+    sortByLayer(blocks, rays);
     return rays;
 }
 

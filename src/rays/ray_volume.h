@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -16,11 +17,16 @@ enum class RayRule {
     kMax   ///< the largest value that is met
 };
 
+/// Reads the 512 values of a block in (slice, u, v) order; of places that are not active anything.
+using BlockValues = std::function<void(const CodeBlock& block, const BlockPlace& place)>;
+
 /// A volume as rays see it: float values, in blocks ordered by slice.
 struct RayVolume {
     IndexBox box;  ///< in (slice, u, v) order
     int sliceAxis = 2;
     CodeValues values;
+    /// Where codes are not exact and the source is at hand: reads that. Otherwise empty.
+    BlockValues sourceValues;
     /// What voxels hold that are not active: 0, or under kMax the smallest value where that is
     /// negative, so that nothing never outshines something.
     float empty = 0;

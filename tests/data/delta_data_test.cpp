@@ -72,7 +72,7 @@ void expectRestored(const Volume& source, const DeltaFileEntry& entry, const Vol
     EXPECT_EQ(same.backgroundError, 0);
     EXPECT_EQ(same.maxError, entry.maxError);
     EXPECT_EQ(entry.lossless, source.codeBook.isExact());
-    EXPECT_LE(same.maxError, source.codeBook.isExact() ? 0 : source.codeBook.step / 2);
+    EXPECT_EQ(same.maxError, source.codeError.absolute);
     if (source.hasBackground) expectSameGrid(source, restored);
 }
 

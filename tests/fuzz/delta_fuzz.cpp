@@ -4,12 +4,25 @@
 #include <openvdb/openvdb.h>
 
 #include <cstring>
+#include <sstream>
 
 #include "deltasplat/delta/delta_file.h"
 #include "fuzz/fuzz_target.h"
 
 namespace deltasplat::fuzz {
 namespace {
+
+// Turns the values of a table into ladders of one rung.
+void makePieces(openvdb::Int32Grid& grid) {
+    std::istringstream values(grid.metaValue<std::string>("delta_table"));
+    std::string pieces;
+    for (std::string value; values >> value;)
+        pieces += (pieces.empty() ? "" : " ") + value + " 0.001 1";
+    grid.removeMeta("delta_table");
+    grid.insertMeta("delta_pieces", openvdb::StringMetadata(pieces));
+    grid.insertMeta("delta_code_book", openvdb::StringMetadata("pieces"));
+    grid.insertMeta("delta_version", openvdb::Int32Metadata(2));
+}
 
 // Returns the delta grid of a small volume of each kind of code book.
 openvdb::Int32Grid::Ptr deltaGrid(int kind) {
@@ -18,7 +31,7 @@ openvdb::Int32Grid::Ptr deltaGrid(int kind) {
     source->setName("density");
     for (int i = 0; i < 500; ++i) {
         const openvdb::Coord at(i % 13 - 3, i / 13 % 11, i / 40);
-        const float value = kind == 1 ? float(i % 50) / 3 : float(i % 37) * 0.25f;
+        const float value = kind % 2 == 1 ? float(i % 50) / 3 : float(i % 37) * 0.25f;
         if (i % 9 == 0) {
             source->tree().setValueOff(at, value);
         } else {
@@ -39,6 +52,7 @@ openvdb::Int32Grid::Ptr deltaGrid(int kind) {
     const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid("density"));
     input.close();
     std::remove(path.c_str());
+    if (kind == 3) makePieces(*grid);
     return grid;
 }
 
@@ -108,7 +122,7 @@ void damageVoxels(Input& input, openvdb::Int32Tree& tree) {
 
 std::vector<std::string> seeds() {
     std::vector<std::string> inputs;
-    for (const char kind : {0, 1, 2}) {
+    for (const char kind : {0, 1, 2, 3}) {
         inputs.push_back({kind, 0});
         inputs.push_back({kind, 1, 4, 2, 0, 0, 0, 3, 3, 3, 3, 3, 3});
         inputs.push_back({kind, 0, 1, 2, 3, 0, 7, 4, 4, 4, 1, 0, 0, 0, 1});
@@ -123,8 +137,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace deltasplat;
     if (size < 2 || size > 4096) return 0;
     static const openvdb::Int32Grid::Ptr grids[] = {fuzz::deltaGrid(0), fuzz::deltaGrid(1),
-                                                    fuzz::deltaGrid(2)};
-    const openvdb::Int32Grid::Ptr grid = grids[data[0] % 3]->deepCopy();
+                                                    fuzz::deltaGrid(2), fuzz::deltaGrid(3)};
+    const openvdb::Int32Grid::Ptr grid = grids[data[0] % 4]->deepCopy();
     fuzz::Input input(data + 2, size - 2);
     for (int n = data[1] % 4; n > 0; --n) fuzz::damageMetadata(input, *grid);
     while (!input.empty()) fuzz::damageVoxels(input, grid->tree());

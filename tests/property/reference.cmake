@@ -3,6 +3,7 @@ deltasplat_test(property/reference_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
 deltasplat_test(property/slab_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
 deltasplat_test(property/between_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
 deltasplat_test(property/placement_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
+deltasplat_test(property/float_values_test.cpp)
 deltasplat_test(property/rays_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
 deltasplat_test(property/picture_place_test.cpp)
 deltasplat_test(property/rays_reference_test.cpp

@@ -31,9 +31,14 @@ class Book {
         if (kind_ == "integer" || kind_ == "linear") offset_ = entry<double>(grid, "delta_offset");
         if (kind_ == "linear") step_ = entry<double>(grid, "delta_step");
         if (kind_ == "table") table_ = numbers(entry<std::string>(grid, "delta_table"));
+        if (kind_ != "pieces") return;
+        const std::vector<double> list = numbers(entry<std::string>(grid, "delta_pieces"));
+        for (std::size_t i = 0; i < list.size(); i += 3) {
+            for (int k = 0; k < int(list[i + 2]); ++k) table_.push_back(list[i] + list[i + 1] * k);
+        }
     }
     double value(int code) const {
-        if (kind_ == "table") return table_.at(std::size_t(code));
+        if (!table_.empty()) return table_.at(std::size_t(code));
         if (kind_ != "half") return offset_ + step_ * code;
         const int bits = code >= 0x8000 ? code - 0x8000 : 0xffff - code;
         openvdb::math::half half;
@@ -70,7 +75,8 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
     openvdb::io::File input(file);
     input.open();
     const auto deltas = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid(name));
-    if (entry<std::int32_t>(*deltas, "delta_version") != 1) throw std::runtime_error("version");
+    const int version = entry<std::int32_t>(*deltas, "delta_version");
+    if (version != 1 && version != 2) throw std::runtime_error("version");
 
     // Axis of the source that slices, u and v run along.
     const int axis = entry<std::string>(*deltas, "delta_slice_axis")[0] - 'x';

@@ -78,9 +78,12 @@ TEST(RayKernels, SpansReadBilinearly) {
              {glm::vec2(0), glm::vec2(0.25f, 0.8f), glm::vec2(0, 0.5f)}) {
             atEveryLevel([&] {
                 std::vector<float> sums = before, largest = before, met = before;
-                sumSpans({{row.data(), nextRow.data(), sums.data(), pixels, nullptr}}, fraction);
-                maxSpans({{row.data(), nextRow.data(), largest.data(), pixels, nullptr}}, fraction);
-                maxSpans({{row.data(), nextRow.data(), met.data(), pixels, mask.data()}}, fraction);
+                std::vector<float> rest(pixels, 0.0f);
+                const float* const at = row.data();
+                const float* const below = nextRow.data();
+                sumSpans({{at, below, sums.data(), rest.data(), pixels, nullptr}}, fraction);
+                maxSpans({{at, below, largest.data(), nullptr, pixels, nullptr}}, fraction);
+                maxSpans({{at, below, met.data(), nullptr, pixels, mask.data()}}, fraction);
                 for (std::size_t i = 0; i < pixels; ++i) {
                     const double x = fraction.x, y = fraction.y;
                     const double read = (1 - y) * ((1 - x) * row[i] + x * row[i + 1]) +
@@ -100,8 +103,26 @@ TEST(RayKernels, EqualNeighboursAreReadExactly) {
     const std::vector<float> row(17, 0.1f);
     atEveryLevel([&] {
         std::vector<float> plane(16, -std::numeric_limits<float>::infinity());
-        maxSpans({{row.data(), row.data(), plane.data(), 16, nullptr}}, {0.3f, 0.77f});
+        maxSpans({{row.data(), row.data(), plane.data(), nullptr, 16, nullptr}}, {0.3f, 0.77f});
         for (const float value : plane) ASSERT_EQ(value, 0.1f);
+    });
+}
+
+// Sums of a million slices are off by no more than one rounding, and zeros change no bit.
+TEST(SumSpans, KeepsWhatRoundingTakes) {
+    const std::vector<float> row(17, 0.1f);
+    const std::vector<float> zeros(17, 0.0f);
+    atEveryLevel([&] {
+        std::vector<float> plane(16, 0.0f), rest(16, 0.0f);
+        constexpr int kSlices = 1'000'000;
+        for (int i = 0; i < kSlices; ++i)
+            sumSpans({{row.data(), row.data(), plane.data(), rest.data(), 16, nullptr}}, {0, 0});
+        const double sum = double(0.1f) * kSlices;
+        for (const float value : plane) ASSERT_NEAR(value, sum, 0x1p-23 * sum);
+        const std::vector<float> before = plane, restBefore = rest;
+        sumSpans({{zeros.data(), zeros.data(), plane.data(), rest.data(), 16, nullptr}}, {0, 0});
+        ASSERT_EQ(plane, before);
+        ASSERT_EQ(rest, restBefore);
     });
 }
 

@@ -66,8 +66,8 @@ std::function<void(openvdb::Int32Grid&)> without(const std::string& key) {
 }
 
 TEST(ReadDeltaError, UnknownVersion) {
-    expectRefused(": metadata \"delta_version\": got 2; expected an int32 within 1..1",
-                  with<std::int32_t>("delta_version", 2));
+    expectRefused(": metadata \"delta_version\": got 3; expected an int32 within 1..2",
+                  with<std::int32_t>("delta_version", 3));
 }
 
 TEST(ReadDeltaError, MetadataMissingOrOfAnotherType) {
@@ -90,7 +90,7 @@ TEST(ReadDeltaError, MetadataOutOfRange) {
                   with<std::int32_t>("delta_key_interval", 12));
     expectRefused(
         ": metadata \"delta_code_book\": got \"octal\"; expected one of \"integer\" "
-        "\"half\" \"linear\" \"table\"",
+        "\"half\" \"linear\" \"table\" \"pieces\"",
         with<std::string>("delta_code_book", "octal"));
     expectRefused(": metadata \"delta_offset\": got nan; expected a finite double",
                   with<double>("delta_offset", std::nan("")));
@@ -125,6 +125,32 @@ TEST(ReadDeltaError, TablesThatAreNone) {
         ": metadata \"delta_code_count\": got 250; expected 2, the numbers of "
         "delta_table",
         table("1 2"));
+}
+
+TEST(ReadDeltaError, PiecesThatAreNone) {
+    const auto pieces = [](const std::string& text) {
+        return [=](openvdb::Int32Grid& grid) {
+            with<std::string>("delta_code_book", "pieces")(grid);
+            with<std::string>("delta_pieces", text)(grid);
+        };
+    };
+    const std::string expected =
+        "; expected groups of a first value, a step and a count, in increasing order";
+    const std::string begin = ": metadata \"delta_pieces\": got ";
+    expectRefused(begin + "0 numbers" + expected, pieces(""));
+    expectRefused(begin + "4 numbers" + expected, pieces("1 2 3 4"));
+    expectRefused(begin + "1 0 2" + expected, pieces("1 0 2"));
+    expectRefused(begin + "1 -1 1" + expected, pieces("1 -1 1"));
+    expectRefused(begin + "1 1 0" + expected, pieces("1 1 0"));
+    expectRefused(begin + "1 1 1.5" + expected, pieces("1 1 1.5"));
+    expectRefused(begin + "1 1 65537" + expected, pieces("1 1 65537"));
+    expectRefused(begin + "9 1 2" + expected, pieces("0 1 65535 9 1 2"));
+    expectRefused(begin + "3 1 2" + expected, pieces("1 1 3 3 1 2"));
+    expectRefused(begin + "1 1e+308 9" + expected, pieces("1 1e308 9"));
+    expectRefused(
+        ": metadata \"delta_code_count\": got 250; expected 3, the numbers of "
+        "delta_pieces",
+        pieces("1 1 2 5 0.5 1"));
 }
 
 TEST(ReadDeltaError, MissingKeySlice) {

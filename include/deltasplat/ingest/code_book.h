@@ -20,30 +20,45 @@ struct CodeBook {
         kInteger,  ///< value = offset + code: exact for integers that span at most 65536 values
         kHalf,     ///< order-preserving IEEE binary16 pattern: exact for every finite half float
         kLinear,   ///< value = offset + step * code: error at most step / 2 inside the range
-        kTable     ///< value = table[code]: exact for at most 65536 different values, otherwise
+        kTable,    ///< value = table[code]: exact for at most 65536 different values, otherwise
                    ///< error at most relativeError * |source value|
+        kPieces  ///< ladders, one behind the other, each with a step of its own: error at most half
+                 ///< of it
+    };
+    /// A ladder of a book of pieces: first, first + step, ... Its codes follow those of the one
+    /// before.
+    struct Piece {
+        double first = 0;
+        double step = 0;  ///< values of the source are within half of it of a rung
+        int count = 1;    ///< rungs
     };
     Kind kind = Kind::kInteger;
     double offset = 0;
     double step = 1;
-    /// kTable: [1..65536] increasing finite values, -0 before 0. Codes beyond stand for the last.
+    /// kTable, kPieces: [1..65536] increasing finite values, -0 before 0. Codes beyond stand for
+    /// the last.
     std::shared_ptr<const std::vector<double>> table;
     /// kTable: how far source values may be from the code's, as a share of their magnitude.
     double relativeError = 0;
+    /// kPieces: what the table is made of.
+    std::shared_ptr<const std::vector<Piece>> pieces = nullptr;
 
     /// Returns the data value that `code` stands for (NaN for the half patterns of NaN).
     double valueOf(Code code) const;
     /// Returns the code whose value is nearest to `value`, clamped to the book's range.
     Code codeOf(double value) const;
     /// Returns how far source values that were given the code may be from its value: half a step
-    /// of a linear book, a share of the value of a table with relative errors, otherwise 0.
+    /// of a linear book or a piece, a share of the value of a table with relative errors, otherwise
+    /// 0.
     double largestErrorOf(Code code) const;
     /// Returns whether voxels of this value get the code.
     bool standsFor(Code code, double value) const;
-    /// Returns "integer", "half", "linear" or "table".
+    /// Returns "integer", "half", "linear", "table" or "pieces".
     std::string name() const;
     /// Whether a source that was given this book by a reader comes back from it bit for bit.
-    bool isExact() const { return kind != Kind::kLinear && relativeError == 0; }
+    bool isExact() const {
+        return kind != Kind::kLinear && kind != Kind::kPieces && relativeError == 0;
+    }
 
     static CodeBook integer(std::int64_t offset = 0);
     static CodeBook half();
@@ -58,6 +73,8 @@ struct CodeBook {
     static CodeBook linear(double low, double high, int bits = 16, Values values = Values::kDouble);
     /// @param values  [1..65536] increasing, finite
     static CodeBook ofTable(std::vector<double> values);
+    /// @param pieces  of 1..65536 rungs together, all finite, each above the one before
+    static CodeBook ofPieces(std::vector<Piece> pieces);
 
     /// The values that a book of relative errors has to stand for.
     struct Range {

@@ -37,13 +37,17 @@ struct ReadOptions {
     std::optional<double> nanValue;  ///< replaces NaN and infinities; empty: they are an error
     RawFormat raw;                   ///< .raw: what the bytes are
     /// Real values: a linear code book of 2^bits codes, 8..16. Empty: an exact book if there is
-    /// one (at most 65536 different values), otherwise a linear one of 16 bits.
+    /// one (at most 65536 different values), otherwise one that keeps every value within 2e-4 of
+    /// itself, and of its neighbours' range, as far as 65536 codes allow
+    /// (src/ingest/fitted_book.h).
     std::optional<int> bits;
     /// Values of more than 65536 kinds: each kept within this share (0..1, exclusive) of its
     /// magnitude (a quarter of it, if possible), where 65536 codes are enough for that. Empty, or
-    /// not enough: a linear book.
+    /// not enough: as without it.
     std::optional<double> relativeError;
     bool keepSource = false;  ///< fill Volume::source
+    /// Fill Volume::source where the code book is not exact: what X-rays and largest values read.
+    bool keepInexact = false;
     /// What the caller will take besides for each 8x8x8 block that is not uniform: counts where
     /// setMemoryLimit() is in force, so that too large a volume is refused before it is read.
     double bytesPerBlock = 0;

@@ -10,15 +10,19 @@
 
 namespace deltasplat {
 
-/// The share of the active voxels from which on the most frequent code is taken for the background.
-/// Found on scanned and simulated volumes: backgrounds hold from 22 % on, the most frequent code
-/// of a region without one up to 18 %.
+/// The share of the active voxels from which on the most frequent value is taken for the
+/// background. Found on scanned and simulated volumes: backgrounds hold from 22 % on, the most
+/// frequent code of a region without one up to 18 %.
 inline constexpr double kBackgroundShare = 0.2;
 
 /// Returns the value that stands for "nothing here": the background of a volume that has one;
-/// otherwise the value of the most frequent code (of several the smallest) if at least
+/// otherwise the source's most frequent value (of several the smallest) if at least
 /// `kBackgroundShare` of the active voxels have it; otherwise none.
 std::optional<double> guessBackground(const Volume& volume);
+
+/// Returns the value of the code that most active voxels have, of several the smallest, of a volume
+/// that is not empty.
+FrequentValue mostFrequentCode(const Volume& volume);
 
 /// How many active voxels have values in each of several bins of one width,
 /// (high - low) / counts.size(): a bin holds its lower edge, the last one its upper edge too.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "deltasplat/ingest/code_book.h"
+#include "deltasplat/ingest/source_values.h"
 
 namespace deltasplat {
 
@@ -75,8 +76,13 @@ struct Volume {
     /// Largest difference between a 64-bit integer of the file and what was read, which only
     /// unsigned ones beyond 2^53 have.
     double readError = 0;
-    double valueMin = 0;  ///< smallest active value, as the code book gives it back; 0 if none
-    double valueMax = 0;  ///< largest active value, as the code book gives it back; 0 if none
+    double valueMin = 0;  ///< smallest active value of the source; 0 if none
+    double valueMax = 0;  ///< largest active value of the source; 0 if none
+    /// The value that most active voxels have, of several the smallest. Where the code book is not
+    /// exact that is one of the source's, unless there is a background; a count of 0 says that none
+    /// is that of a fifth of the voxels.
+    std::optional<FrequentValue> mostFrequent;
+    CodeError codeError;  ///< how far codes are from the source's values
 
     bool empty() const { return activeCount == 0; }
     /// World lengths of one index step along i, j and k.

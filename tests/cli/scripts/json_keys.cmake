@@ -53,8 +53,8 @@ run(info slab_12x10x8_uint8.raw --json -q)
 expect_keys("${text}" "" files)
 expect_keys("${text}" "files;0" "file;grids")
 expect_keys("${text}" "files;0;grids;0" "name;type;class;dims;bbox;voxel_size;active;range;\
-background;background_guess;percentiles;histogram;code_book;delta;axes;transfer_function;stamps;\
-world_box;origin;directions;space;target;frame_width")
+background;background_guess;background_voxels;percentiles;histogram;code_book;code_error;delta;axes;\
+transfer_function;stamps;world_box;origin;directions;space;target;frame_width")
 expect_keys("${text}" "files;0;grids;0;axes" "x;y;z")
 expect_keys("${text}" "files;0;grids;0;stamps" "x;y;z")
 foreach(axis x y z)
