@@ -17,6 +17,7 @@
 #include "render_stats.h"
 #include "stopwatch.h"
 #include "subcommands.h"
+#include "value_window.h"
 #include "version.h"
 #include "volume_place.h"
 
@@ -27,8 +28,8 @@ namespace {
 constexpr double kReadShare = 0.3;
 constexpr double kRenderShare = 0.95;
 
-ImageFileOptions imageOptions(const RenderCommand& command, const RenderResult& result,
-                              const Session& session) {
+ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume,
+                              const RenderResult& result, const Session& session) {
     ImageFileOptions options = command.image;
     options.cameraFromWorld = result.camera.cameraFromWorld();
     options.ndcFromWorld = result.camera.ndcFromWorld();
@@ -38,6 +39,8 @@ ImageFileOptions imageOptions(const RenderCommand& command, const RenderResult& 
         {"input", command.input.string()},
         {"mode", modeName(result.stats.mode)},
         {"camera", cameraOptionsText(result.camera)},
+        {"codeBook", volume.codeBook.name()},
+        {"codeError", codeErrorText(volume.codeError)},
     };
     if (result.stats.mode != Mode::kComposite) return options;
     options.metadata.insert(options.metadata.end(),
@@ -78,10 +81,18 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
 }
 
 // Makes the picture what is stored of it, and says in `image` what that took.
-void finishPicture(const RenderCommand& command, RenderResult& result, ImageFileOptions& image) {
+void finishPicture(const RenderCommand& command, const Volume& volume, RenderResult& result,
+                   ImageFileOptions& image) {
     if (storesValues(command)) return;
-    if (command.picture.render.mode == Mode::kXray)
-        image.metadata.emplace_back("xrayScale", numberText(scaleXray(result.image)));
+    if (showsWindow(command)) {
+        const bool xray = command.picture.render.mode == Mode::kXray;
+        const glm::dvec2 window =
+            xray ? greyXray(volume, result.camera, command.window, result.image)
+                 : greyMip(command.window ? command.window : command.picture.render.optics.range,
+                           result.image);
+        image.metadata.emplace_back("window", numberText(window));
+        if (xray) image.metadata.emplace_back("xrayScale", numberText(window.y));
+    }
     if (command.picture.background) compositeOver(result.image, *command.picture.background);
 }
 
@@ -91,6 +102,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
     const PictureOptions& picture = command.picture;
     RenderTimes times;
     RenderResult result;
+    std::string codeBook;  // what there is to say of it
     {
         ProgressDisplay display(session.common);
         warnOfUnusedOptions(app, command, display);
@@ -100,11 +112,13 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         RenderOptions options = readOptics(picture, reading);
         const Volume volume = readToRender(command.input, picture, options, reading);
         times.read = secondsSince(beginRead);
+        codeBook = "code book " + volume.codeBook.name() + ", largest error " +
+                   codeErrorText(volume.codeError) + "\n";
 
         result = render(volume, options, display.stage(kReadShare, kRenderShare));
         boundOver(picture.background, result.stats);
-        ImageFileOptions image = imageOptions(command, result, session);
-        finishPicture(command, result, image);
+        ImageFileOptions image = imageOptions(command, volume, result, session);
+        finishPicture(command, volume, result, image);
 
         const Listener writing = display.stage(kRenderShare, 1);
         writing.report(0);
@@ -116,7 +130,8 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         writing.report(1);
     }
     if (!result.stats.tolerance.isExact() && !session.common.quiet) showErrorBound(result.stats);
-    if (session.common.verbose) std::fputs(statsSummary(result, times).c_str(), stderr);
+    if (session.common.verbose)
+        std::fputs((codeBook + statsSummary(result, times)).c_str(), stderr);
 }
 
 }  // namespace

@@ -21,21 +21,23 @@ bool storesValues(const RenderCommand& command) {
     return command.picture.render.mode != Mode::kComposite && isExr(command.output);
 }
 
-void applyMode(RenderCommand& command) {
-    if (storesValues(command)) command.image.floatExr = true;
-    command.picture.render.mipColors = !isExr(command.output);
+bool showsWindow(const RenderCommand& command) {
+    const Mode mode = command.picture.render.mode;
+    if (mode == Mode::kComposite || isExr(command.output)) return false;
+    return mode == Mode::kXray || command.picture.transferFunction.empty();
 }
 
-double scaleXray(Image& image) {
-    const float largest = *std::max_element(image.rgba.begin(), image.rgba.end());
-    if (!(largest > 0)) return 1;
-    for (float& value : image.rgba) value /= largest;
-    return largest;
+void applyMode(RenderCommand& command) {
+    if (storesValues(command)) command.image.floatExr = true;
+    command.picture.render.mipColors =
+        !isExr(command.output) && !command.picture.transferFunction.empty();
 }
 
 void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
                              ProgressDisplay& display) {
     const Mode mode = command.picture.render.mode;
+    if (isGiven(app, "--window") && !showsWindow(command))
+        display.warn("--window: has no effect without --mode xray or mip, in an .exr or with --tf");
     if (mode == Mode::kComposite) return;
     std::vector<std::string> unused = {"--method",       "--tolerance", "--tolerance-value",
                                        "--resolution",   "--between",   "--extinction",

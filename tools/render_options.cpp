@@ -87,9 +87,17 @@ void addModeOption(CLI::App& app, Mode& chosen) {
                    withDefault("composite (emission and absorption), xray (integral of the value\n"
                                "in world units) or mip (largest value along the line of\n"
                                "sight): the last two store their values as 32-bit floats in\n"
-                               "an .exr. In a .png, xray is scaled so that its largest value\n"
-                               "is 1, and mip shows the transfer function's colours",
+                               "an .exr, and are shown as greys in a .png (mip in the colours\n"
+                               "of --tf, if that is given)",
                                modeName(chosen)));
+}
+
+void addWindowOption(CLI::App& app, std::optional<glm::dvec2>& window) {
+    OptionGroup group(app, "Optics");
+    group.addValue("--window", "LO,HI", window, interval(),
+                   "Values that black and white stand for in a .png of --mode xray\n"
+                   "(data units times world units) or mip (default: the 0.5th and\n"
+                   "the 99.5th percentile of the picture's; for xray at most 0)");
 }
 
 void addMethodOption(CLI::App& app, Method& chosen) {
@@ -192,6 +200,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addOutputOptions(app, command);
     addCameraOptions(app, command.picture);
     addModeOption(app, command.picture.render.mode);
+    addWindowOption(app, command.window);
     addOpticsOptions(app, command.picture);
     addMethodOption(app, command.picture.render.method);
     addSplattingOptions(app, command.picture.render);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
 
@@ -28,6 +29,7 @@ struct RenderCommand {
     std::filesystem::path output;
     std::filesystem::path stats;  ///< empty: none
     PictureOptions picture;
+    std::optional<glm::dvec2> window;  ///< xray, mip: values of black and white; empty: percentiles
     ImageFileOptions image;
 };
 

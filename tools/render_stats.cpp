@@ -91,6 +91,11 @@ std::string toleranceText(const Tolerance& tolerance) {
     return text;
 }
 
+std::string codeErrorText(const CodeError& error) {
+    if (error.absolute == 0) return "0";
+    return numberText(error.absolute) + ", " + numberText(error.relative) + " of a value";
+}
+
 std::string errorBoundText(const RenderStats& stats) {
     if (std::isinf(stats.errorBoundColor)) return "unknown";
     return "color " + numberText(stats.errorBoundColor) + ", alpha " +

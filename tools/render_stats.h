@@ -24,6 +24,9 @@ std::string toleranceText(const Tolerance& tolerance);
 /// "unknown".
 std::string errorBoundText(const RenderStats& stats);
 
+/// Returns how far codes are from values: "0", or "0.01, 0.0002 of a value".
+std::string codeErrorText(const CodeError& error);
+
 /// Returns a few lines for people.
 std::string statsSummary(const RenderResult& result, const RenderTimes& times);
 

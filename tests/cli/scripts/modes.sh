@@ -41,6 +41,34 @@ expect_pixel xray.png 8 8 "1.000000 1.000000 1.000000 1.000000"
 expect_pixel xray.png 0 0 "0.000000 0.000000 0.000000 1.000000"
 expect_metadata xray.png xrayScale 2550
 
+expect_metadata xray.png window 0,2550
+# Greys of a window, opaque where the volume is (voxels whole) and nowhere else.
+render window.png --mode xray --spacing 1,1,2.5 --window=-2550,7650
+expect_pixel window.png 8 8 "0.501961 0.501961 0.501961 1.000000"
+expect_pixel window.png 2 3 "0.250980 0.250980 0.250980 1.000000"
+expect_pixel window.png 0 0 "0.000000 0.000000 0.000000 0.000000"
+expect_metadata window.png window -2550,7650
+expect_metadata window.png xrayScale 7650
+render window.png --mode mip --window 51,255 --bits 16
+expect_pixel window.png 8 8 "1.000000 1.000000 1.000000 1.000000"
+expect_pixel window.png 2 8 "0.000000 0.000000 0.000000 1.000000"
+expect_metadata window.png window 51,255
+
+# Values below 0, as air has: black is the least, and what is beside the volume is clear.
+air='\x18\xfc' tissue='\x64\x00'
+for z in {0..7}; do
+    for y in {0..15}; do
+        for x in {0..15}; do
+            (( x >= 4 && x < 12 && y >= 4 && y < 12 )) && printf "$tissue" || printf "$air"
+        done
+    done
+done >hu_16x16x8_int16.raw
+"$program" render hu_16x16x8_int16.raw -q --view front --frame-width 18 --size 18x18 -o hu.png --mode xray
+expect_pixel hu.png 2 9 "0.000000 0.000000 0.000000 1.000000"
+expect_pixel hu.png 0 9 "0.000000 0.000000 0.000000 0.000000"
+middle=$("$oiiotool" hu.png --cut 1x1+9+9 --printstats | sed -n 's/^ *Stats Max: \([^ ]*\) .*/\1/p')
+[[ $middle > 0.9 ]] || { echo "hu.png: got $middle in the middle; expected nearly white"; exit 1; }
+
 # Largest values: where there are voxels, if of 0, and nothing beside the volume.
 render mip.exr --mode mip
 expect_pixel mip.exr 8 8 "255.000000 255.000000 255.000000 1.000000"
