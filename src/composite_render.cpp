@@ -22,7 +22,6 @@
 #include "number_text.h"
 #include "optics/hold_rule.h"
 #include "parallel.h"
-#include "portable_math.h"
 #include "splat/splatter.h"
 #include "stopwatch.h"
 
@@ -330,30 +329,22 @@ void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const F
     stats.warpSeconds = stats.renderSeconds - mergedSeconds;
 }
 
-// Whether colours only ever change from one value to the next: what labels have.
-bool isCategorical(const TransferFunction& function) {
-    bool steps = false;
-    for (std::size_t i = 1; i < function.colors.size(); ++i) {
-        const auto& [x, rgb] = function.colors[i - 1];
-        const auto& [nextX, nextRgb] = function.colors[i];
-        if (rgb == nextRgb) continue;
-        if (x != nextX) return false;
-        steps = true;
-    }
-    return steps;
-}
-
 int slicesBetween(const Volume& volume, const RenderOptions& options) {
-    const int between = options.between.value_or(defaultBetween(volume, options.optics));
+    const int between = options.between;
     if (between < 0 || between > kMostBetween) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--between", std::to_string(between),
                                 "a whole number within 0.." + std::to_string(kMostBetween)));
     }
-    // Places are counted in 32 bits; a volume that lies so far away can do without.
+    // Places are counted in 32 bits.
     const glm::ivec3 farthest = glm::max(glm::abs(volume.box.min), glm::abs(volume.box.max));
     constexpr int kFar = std::numeric_limits<int>::max() / 4 / (kMostBetween + 1);
-    return std::max({farthest.x, farthest.y, farthest.z}) > kFar ? 0 : between;
+    if (between > 0 && std::max({farthest.x, farthest.y, farthest.z}) > kFar) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--between", "voxels with indices beyond " + std::to_string(kFar),
+                                "0 for such a volume"));
+    }
+    return between;
 }
 
 // Optics as the volume has them, for levels to be seen by.
@@ -363,23 +354,6 @@ Optics withRange(const Volume& volume, Optics optics) {
 }
 
 }  // namespace
-
-// Decided from the transfer function and the voxel size alone, so that nothing jumps when a
-// sequence's values or the camera change.
-int defaultBetween(const Volume& volume, const Optics& optics) {
-    constexpr double kThinOpacity = 0.25;
-    if (volume.type == "bool" || volume.type == "mask" || isCategorical(optics.transferFunction))
-        return 0;
-    double opacity = 0;
-    for (const auto& point : optics.transferFunction.opacities)
-        opacity = std::max(opacity, point.opacity);
-    const glm::dvec3 size = volume.voxelSize();
-    const double smallest = std::min({size.x, size.y, size.z});
-    const double depth = optics.extinctionScale * smallest / optics.unitDistance.value_or(smallest);
-    const bool thin =
-        opacity < 1 && -portable::log1p(-opacity) * depth <= -portable::log1p(-kThinOpacity);
-    return thin ? 0 : 1;
-}
 
 void renderComposite(const Volume& volume, const Factorization& view, const RenderOptions& options,
                      const Listener& listener, RenderResult& result) {

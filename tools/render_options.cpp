@@ -182,10 +182,11 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
                        numberText(defaultSigma(3)) + " from 3 pixels on)");
     group.addValue(
         "--between", "N", options.between, wholeNumber(0, kMostBetween),
-        "Slices put between two neighbouring ones, 0 to " + std::to_string(kMostBetween) +
-            ", values mixed:\nsmoother and nearer to a ray caster, N + 1 times the work\n"
-            "(default: 1, or 0 where opacity over a voxel is at most\n"
-            "0.25, and for labels and masks)");
+        withDefault("Slices put between two neighbouring ones, 0 to " +
+                        std::to_string(kMostBetween) +
+                        ", values mixed:\nnearer to what a ray caster shows, N + 1 times "
+                        "the work",
+                    std::to_string(options.between)));
     group.addValue("--resolution", "R", options.resolution, wholeNumber(1, kMaxResolution),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        " (default: chosen from the screen)");

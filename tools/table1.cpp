@@ -73,7 +73,6 @@ RenderOptions table1Options(const Volume& volume, const TransferFunction& transf
     options.sigma = kTable1Sigma;
     options.footprintWidth = kTable1Footprint;
     options.resolution = 1;
-    options.between = 0;
     return options;
 }
 

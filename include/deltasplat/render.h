@@ -50,19 +50,13 @@ struct RenderOptions {
     /// Footprint's standard deviation in voxels, kMinSigma..kMaxSigma; empty: defaultSigma.
     std::optional<double> sigma;
     std::optional<int> resolution;  ///< sheet pixels a voxel; empty: chosen from the screen
-    /// Slices put between two neighbouring ones, 0..kMostBetween; empty: defaultBetween.
-    std::optional<int> between;
+    /// Slices put between two neighbouring ones, 0..kMostBetween.
+    int between = 0;
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for
 };
 
 inline constexpr int kMostBetween = 7;
-
-/// Returns how many slices are put between two neighbouring ones when nothing is said: none where a
-/// transfer function is thin (opacity of at most 0.25 over the smallest voxel size) or categorical
-/// (a step from value to value), nor where voxels are true or false; otherwise one. Values in
-/// between would mean nothing there, or show nothing new.
-int defaultBetween(const Volume& volume, const Optics& optics);
 
 /// What was done and how long it took. Times are wall-clock seconds.
 struct RenderStats {

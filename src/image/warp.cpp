@@ -218,43 +218,52 @@ class Warper {
         const glm::ivec2 begin = glm::max(glm::ivec2(0), -first);
         const glm::ivec2 end = glm::min(taps, raster_.size - first);
         float sum[4] = {};
-        for (int j = begin.y; j < end.y; ++j) {
-            const float* row = tapAt(first + glm::ivec2(0, j));
-            for (int i = begin.x; i < end.x; ++i) {
-                const float weight = weightY[j] * weightX[i];
-                for (int c = 0; c < raster_.channels; ++c) {
-                    sum[c] += weight * row[raster_.channels * i + c];
-                }
+        const int reached = filterX_.overshoots() ? taps.x : end.x;
+        float low[4], high[4];
+        for (int c = 0; c < raster_.channels; ++c) {
+            low[c] = std::numeric_limits<float>::infinity();
+            high[c] = -low[c];
+        }
+        for (int i = filterX_.overshoots() ? 0 : begin.x; i < reached; ++i) {
+            const bool isInside = i >= begin.x && i < end.x;
+            float column[4] = {};
+            if (isInside) sumColumn(first + glm::ivec2(i, 0), weightY, begin.y, end.y, column);
+            for (int c = 0; c < raster_.channels; ++c) {
+                sum[c] += weightX[i] * column[c];
+                if (!isInner(filterX_, i)) continue;
+                low[c] = std::min(low[c], column[c]);
+                high[c] = std::max(high[c], column[c]);
             }
         }
-        if (filterX_.overshoots()) clampToInnerTaps(first, sum);
+        for (int c = 0; filterX_.overshoots() && c < raster_.channels; ++c)
+            sum[c] = std::min(std::max(sum[c], low[c]), high[c]);
         write(sum, picture_.pixel(x, y));
     }
 
-    // Points to a tap, which may lie outside as long as it is not read.
-    const float* tapAt(glm::ivec2 p) const {
-        return raster_.values + raster_.channels * (std::ptrdiff_t{raster_.size.x} * p.y + p.x);
+    static bool isInner(const FilterTable& filter, int tap) {
+        return tap >= filter.firstInnerTap() && tap < filter.firstInnerTap() + filter.innerTaps();
     }
 
-    void clampToInnerTaps(glm::ivec2 first, float* sum) const {
-        const glm::ivec2 begin =
-            first + glm::ivec2(filterX_.firstInnerTap(), filterY_.firstInnerTap());
-        const glm::ivec2 end = begin + glm::ivec2(filterX_.innerTaps(), filterY_.innerTaps());
-        const glm::ivec2 firstInside = glm::max(begin, glm::ivec2(0));
-        const glm::ivec2 endInside = glm::min(end, raster_.size);
-        const bool allInside = firstInside == begin && endInside == end;
+    // Weighs a column from its first tap on, of which rows [begin, end) lie inside.
+    void sumColumn(glm::ivec2 first, const float* weightY, int begin, int end,
+                   float* column) const {
         for (int c = 0; c < raster_.channels; ++c) {
-            constexpr float kInfinity = std::numeric_limits<float>::infinity();
-            float low = allInside ? kInfinity : 0;
-            float high = allInside ? -kInfinity : 0;
-            for (int y = firstInside.y; y < endInside.y; ++y) {
-                for (int x = firstInside.x; x < endInside.x; ++x) {
-                    low = std::min(low, tapAt({x, y})[c]);
-                    high = std::max(high, tapAt({x, y})[c]);
-                }
+            float low = std::numeric_limits<float>::infinity();
+            float high = -low;
+            for (int j = 0; j < filterY_.taps(); ++j) {
+                const float tap = j >= begin && j < end ? tapAt(first + glm::ivec2(0, j))[c] : 0;
+                column[c] += weightY[j] * tap;
+                if (!isInner(filterY_, j)) continue;
+                low = std::min(low, tap);
+                high = std::max(high, tap);
             }
-            sum[c] = std::min(std::max(sum[c], low), high);
+            if (filterY_.overshoots()) column[c] = std::min(std::max(column[c], low), high);
         }
+    }
+
+    // Points to a tap that lies inside.
+    const float* tapAt(glm::ivec2 p) const {
+        return raster_.values + raster_.channels * (std::ptrdiff_t{raster_.size.x} * p.y + p.x);
     }
 
     void write(const float* sum, float* out) const {

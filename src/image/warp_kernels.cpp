@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The warp's inner loop, compiled once for each SIMD level: four taps of RGBA are 16 floats, one to
-// four vectors. Sums run in one order whatever the width, so that every level gives the same bits.
+// The warp's inner loop, compiled once for each SIMD level. Sums run in one order whatever a
+// vector's width, so that every level gives the same bits.
 #include "image/warp_kernels.h"
+
+#include <limits>
 
 #include "simd_targets.h"
 
@@ -15,100 +17,60 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using RowTag = hn::CappedTag<float, 16>;
 using PixelTag = hn::FixedTag<float, 4>;
 
 using PixelVector = hn::Vec<PixelTag>;
 
-// Weighs four neighbouring lanes' worth of a column by all rows. kTaps is 0 where it is not known.
-template <int kTaps, class Tag>
+// What a sum along one axis is clamped to: the range of its inner taps.
+struct Inner {
+    int first, end;
+};
+
+// Weighs columns by all rows; kTaps is 0 where it is not known. With kClamp, each is clamped to the
+// range of its inner rows.
+template <int kTaps, bool kClamp, class Tag>
 HWY_INLINE auto sumRows(Tag tag, const float* corner, std::size_t pitch, const float* weightY,
-                        int rows) {
+                        int rows, const Inner& inner) {
     auto sum = hn::Mul(hn::LoadU(tag, corner), hn::Set(tag, weightY[0]));
     for (int j = 1; j < (kTaps ? kTaps : rows); ++j) {
         sum = hn::Add(sum, hn::Mul(hn::LoadU(tag, corner + j * pitch), hn::Set(tag, weightY[j])));
     }
+    if constexpr (kClamp) {
+        const int first = kTaps == 4 ? 1 : inner.first;
+        auto low = hn::LoadU(tag, corner + first * pitch);
+        auto high = low;
+        for (int j = first + 1; j < (kTaps == 4 ? 3 : inner.end); ++j) {
+            const auto row = hn::LoadU(tag, corner + j * pitch);
+            low = hn::Min(low, row);
+            high = hn::Max(high, row);
+        }
+        sum = hn::Min(hn::Max(sum, low), high);
+    }
     return sum;
 }
 
-// Adds four taps of RGBA up: (first + third) + (second + fourth), whatever a vector's width.
-template <int kTaps>
-HWY_INLINE PixelVector sumTaps(const float* corner, std::size_t pitch, const float* weightX,
-                               const float* weightY, int rows) {
-    const RowTag tag;
-    const auto part = [&](int tap) {
-        return hn::Mul(sumRows<kTaps>(tag, corner + 4 * tap, pitch, weightY, rows),
-                       hn::LoadU(tag, weightX + 4 * tap));
-    };
-#if HWY_MAX_BYTES >= 64
-    if constexpr (hn::MaxLanes(tag) == 16) {
-        const hn::Half<RowTag> half;
-        const hn::Half<hn::Half<RowTag>> quarter;
-        const auto all = part(0);
-        const auto pairs = hn::Add(hn::LowerHalf(half, all), hn::UpperHalf(half, all));
-        return hn::Add(hn::LowerHalf(quarter, pairs), hn::UpperHalf(quarter, pairs));
-    }
-#elif HWY_MAX_BYTES >= 32
-    if constexpr (hn::MaxLanes(tag) == 8) {
-        const hn::Half<RowTag> half;
-        const auto pairs = hn::Add(part(0), part(2));
-        return hn::Add(hn::LowerHalf(half, pairs), hn::UpperHalf(half, pairs));
-    }
-#else
-    return hn::Add(hn::Add(part(0), part(2)), hn::Add(part(1), part(3)));
-#endif
-}
+// Sums along a row, tap by tap, the range of the inner taps beside it.
+struct ColumnSum {
+    PixelVector even, odd, low, high;
 
-// The same for four taps of opacity; all lanes of the result are the sum.
-template <int kTaps>
-HWY_INLINE PixelVector sumOpacities(const float* corner, std::size_t pitch, const float* weightX,
-                                    const float* weightY, int rows) {
-    const PixelTag tag;
-    const auto taps =
-        hn::Mul(sumRows<kTaps>(tag, corner, pitch, weightY, rows), hn::LoadU(tag, weightX));
-    const auto pairs = hn::Add(taps, hn::Shuffle1032(taps));
-    return hn::Add(pairs, hn::Shuffle2301(pairs));
-}
+    HWY_INLINE void add(PixelVector tap, float weight, bool isOdd, bool isInner) {
+        PixelVector& sum = isOdd ? odd : even;
+        sum = hn::Add(sum, hn::Mul(tap, hn::Set(PixelTag(), weight)));
+        if (!isInner) return;
+        low = hn::Min(low, tap);
+        high = hn::Max(high, tap);
+    }
+};
 
 // A pixel of RGBA, or a value in all lanes.
 template <int kChannels>
 HWY_INLINE PixelVector loadPixel(const float* pixel) {
     const PixelTag tag;
     if constexpr (kChannels == 4) {
-        return hn::LoadU(tag, pixel);
+        return hn::Load(tag, pixel);
     } else {
         return hn::Set(tag, *pixel);
     }
-}
-
-// Inner taps, counted from the first of all.
-struct InnerTaps {
-    InnerTaps(const FilterView& filterX, const FilterView& filterY)
-        : firstX(filterX.firstInnerTap()),
-          firstY(filterY.firstInnerTap()),
-          countX(filterX.innerTaps()),
-          countY(filterY.innerTaps()) {}
-    int firstX, firstY, countX, countY;
-};
-
-// Clamps a sum to the range of the inner taps: two by two if kTaps is four.
-template <int kTaps, int kChannels>
-HWY_INLINE PixelVector clampToInner(PixelVector sum, const float* corner, std::size_t pitch,
-                                    const InnerTaps& inner) {
-    const int columns = kTaps == 4 ? 2 : inner.countX;
-    const int rows = kTaps == 4 ? 2 : inner.countY;
-    const float* row = corner + (kTaps == 4 ? 1 : inner.firstY) * pitch +
-                       kChannels * (kTaps == 4 ? 1 : inner.firstX);
-    PixelVector low = loadPixel<kChannels>(row);
-    PixelVector high = low;
-    for (int y = 0; y < rows; ++y, row += pitch) {
-        for (int x = 0; x < columns; ++x) {
-            const PixelVector tap = loadPixel<kChannels>(row + kChannels * x);
-            low = hn::Min(low, tap);
-            high = hn::Max(high, tap);
-        }
-    }
-    return hn::Min(hn::Max(sum, low), high);
 }
 
 // What becomes of a raster's only channel.
@@ -117,25 +79,45 @@ HWY_INLINE PixelVector colorOf(const Raster& raster) {
     return hn::Load(PixelTag(), rgba);
 }
 
-// Returns one pixel: RGBA, or the sum of a single channel in all lanes. kTaps are those along both
-// axes, or 0 if they are not four.
-template <int kTaps, int kChannels>
-HWY_INLINE PixelVector samplePixel(const FilterView& filterX, std::uint32_t x, const float* corner,
-                                   std::size_t pitch, const float* weightY, int rows) {
-    const float* weightX = kChannels == 4 ? filterX.wideWeights(x) : filterX.weights(x);
-    auto sum = hn::Zero(PixelTag());
-    for (int first = 0; first < (kTaps ? kTaps : filterX.paddedTaps()); first += 4) {
-        const float* taps = corner + kChannels * first;
-        if constexpr (kChannels == 4) {
-            sum = hn::Add(sum, sumTaps<kTaps>(taps, pitch, weightX + 4 * first, weightY, rows));
-        } else {
-            sum = hn::Add(sum, sumOpacities<kTaps>(taps, pitch, weightX + first, weightY, rows));
-        }
-    }
-    return sum;
+// Weighs `kColumns` taps' columns and puts them in a buffer, whatever a vector's width.
+template <int kTaps, int kChannels, bool kClamp>
+HWY_INLINE void sumColumns(const float* corner, std::size_t pitch, const float* weightY, int rows,
+                           const Inner& innerY, float* HWY_RESTRICT columns) {
+    using Tag = hn::CappedTag<float, 4 * kChannels>;
+    const Tag tag;
+    for (int i = 0; i < 4 * kChannels; i += int(hn::Lanes(tag)))
+        hn::Store(sumRows<kTaps, kClamp>(tag, corner + i, pitch, weightY, rows, innerY), tag,
+                  columns + i);
 }
 
-template <int kTaps, int kChannels>
+// Returns one pixel: RGBA, or the sum of a single channel in all lanes. kTaps are those along both
+// axes, or 0 if they are not four. With kClamp, sums are clamped to their inner taps' range, along
+// one axis after the other: so the picture has no jump where inner taps change.
+template <int kTaps, int kChannels, bool kClamp>
+HWY_INLINE PixelVector samplePixel(const FilterView& filterX, std::uint32_t x, const float* corner,
+                                   std::size_t pitch, const float* weightY, int rows,
+                                   const Inner& innerX, const Inner& innerY) {
+    HWY_ALIGN float columns[4 * kChannels];
+    const float* weightX = filterX.weights(x);
+    const PixelTag tag;
+    const float infinity = std::numeric_limits<float>::infinity();
+    ColumnSum sum{hn::Zero(tag), hn::Zero(tag), hn::Set(tag, infinity), hn::Set(tag, -infinity)};
+    for (int first = 0; first < (kTaps ? kTaps : filterX.paddedTaps()); first += 4) {
+        sumColumns<kTaps, kChannels, kClamp>(corner + kChannels * first, pitch, weightY, rows,
+                                             innerY, columns);
+        for (int tap = 0; tap < 4; ++tap) {
+            const int at = first + tap;
+            const bool isInner =
+                kClamp && (kTaps == 4 ? at == 1 || at == 2 : at >= innerX.first && at < innerX.end);
+            sum.add(loadPixel<kChannels>(columns + kChannels * tap), weightX[at], tap % 2 != 0,
+                    isInner);
+        }
+    }
+    const PixelVector all = hn::Add(sum.even, sum.odd);
+    return kClamp ? hn::Min(hn::Max(all, sum.low), sum.high) : all;
+}
+
+template <int kTaps, int kChannels, bool kClamp>
 void sampleRunOf(const Raster& raster, const FilterTable& wantedX, const FilterTable& wantedY,
                  FixedPosition position, FixedPosition step, int pixels, float* out) {
     const PixelTag tag;
@@ -143,16 +125,18 @@ void sampleRunOf(const Raster& raster, const FilterTable& wantedX, const FilterT
     // Copies, so that what is written cannot be thought to change them.
     const FilterView filterX(wantedX);
     const FilterView filterY(wantedY);
-    const InnerTaps inner(filterX, filterY);
-    const bool overshoots = filterX.overshoots();
+    const auto innerOf = [](const FilterView& filter) {
+        return Inner{filter.firstInnerTap(), filter.firstInnerTap() + filter.innerTaps()};
+    };
+    const Inner innerX = innerOf(filterX);
+    const Inner innerY = innerOf(filterY);
     const PixelVector color = colorOf(raster);
     for (int i = 0; i < pixels; ++i, out += 4) {
         const float* corner = raster.values + filterY.firstTap(int(position.y >> 32)) * pitch +
                               kChannels * filterX.firstTap(int(position.x >> 32));
-        PixelVector sum = samplePixel<kTaps, kChannels>(
+        PixelVector sum = samplePixel<kTaps, kChannels, kClamp>(
             filterX, std::uint32_t(position.x), corner, pitch,
-            filterY.weights(std::uint32_t(position.y)), filterY.taps());
-        if (overshoots) sum = clampToInner<kTaps, kChannels>(sum, corner, pitch, inner);
+            filterY.weights(std::uint32_t(position.y)), filterY.taps(), innerX, innerY);
         if constexpr (kChannels == 1) sum = hn::Mul(sum, color);
         hn::StoreU(sum, tag, out);
         position.x += step.x;
@@ -160,12 +144,20 @@ void sampleRunOf(const Raster& raster, const FilterTable& wantedX, const FilterT
     }
 }
 
-template <int kChannels>
+template <int kChannels, bool kClamp>
 void sampleRunOf(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
                  FixedPosition position, FixedPosition step, int pixels, float* out) {
     const bool four = filterX.taps() == 4 && filterY.taps() == 4;
-    return four ? sampleRunOf<4, kChannels>(raster, filterX, filterY, position, step, pixels, out)
-                : sampleRunOf<0, kChannels>(raster, filterX, filterY, position, step, pixels, out);
+    const auto run = four ? sampleRunOf<4, kChannels, kClamp> : sampleRunOf<0, kChannels, kClamp>;
+    run(raster, filterX, filterY, position, step, pixels, out);
+}
+
+template <int kChannels>
+void sampleRunOf(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
+                 FixedPosition position, FixedPosition step, int pixels, float* out) {
+    const auto run =
+        filterX.overshoots() ? sampleRunOf<kChannels, true> : sampleRunOf<kChannels, false>;
+    run(raster, filterX, filterY, position, step, pixels, out);
 }
 
 void sampleRunKernel(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,

@@ -110,7 +110,8 @@ std::string encodePng(const std::filesystem::path& file, const Image& image, OII
     spec.attribute("oiio:ColorSpace", "sRGB");
     // The samples are final: OpenImageIO must not divide them by alpha once more.
     spec.attribute("oiio:UnassociatedAlpha", 1);
-    return encode(file, "png", spec, type, straightSrgb<Sample>(image, options.dither && sizeof(Sample) == 1).data());
+    return encode(file, "png", spec, type,
+                  straightSrgb<Sample>(image, options.dither && sizeof(Sample) == 1).data());
 }
 
 }  // namespace

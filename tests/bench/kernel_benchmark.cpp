@@ -131,7 +131,7 @@ void warpPicture(benchmark::State& state) {
     Image picture({512, 512});
     const ThreadLimit limit(1);
     for (auto _ : state) {
-        warp(raster, map, picture);
+        warp(raster, map, WarpFilter::kSharp, picture);
         benchmark::ClobberMemory();
     }
     countItems(state, 512 * 512);

@@ -54,7 +54,7 @@ TEST(Between, isTheVolumeWithSlicesMixedByHand) {
             // Straight along z, so that footprints are the same.
             options.camera.direction = glm::dvec3(0, 0, -1);
             options.camera.up = glm::dvec3(0.3, up, 0);
-            options.camera.target = glm::dvec3(9, 6.5, 10);
+            options.camera.targetWorld = glm::dvec3(9, 6.5, 10);
             options.camera.frameWidthWorld = 24;
             options.camera.sizePixels = {60, 60};
             options.optics.transferFunction = testTransferFunction(0.7);
@@ -199,10 +199,11 @@ TEST(Between, cylindersRippleNoMoreThanARayMarch) {
         RenderOptions options;
         options.camera.direction = cylinder.direction;
         options.camera.up = cylinder.across();
-        options.camera.target = cylinder.middle();
+        options.camera.targetWorld = cylinder.middle();
         options.camera.frameWidthWorld = 64;
         options.camera.sizePixels = {128, 128};
         options.optics.transferFunction = function;
+        options.between = 1;
         const Image image = render(throughRaw(plain, glm::dvec3(1)), options).image;
         const double splatted = rippleOf(cylinder, [&](double t, double side) {
             // Up is across, and right is direction x up: along the image or against it.
@@ -243,7 +244,7 @@ TEST(Between, aMagnifiedGaussianIsSmooth) {
             RenderOptions options;
             options.camera.direction = direction;
             options.camera.up = glm::dvec3(0, 1, 0.1);
-            options.camera.target = middle;
+            options.camera.targetWorld = middle;
             options.camera.sizePixels = {120, 120};
             options.camera.frameWidthWorld = 120 / pixelsPerVoxel;
             options.optics.transferFunction = function;
@@ -273,23 +274,10 @@ TEST(Between, aMagnifiedGaussianIsSmooth) {
     }
 }
 
-TEST(Between, isNoneWhereNothingIsToBeGained) {
+TEST(Between, aNumberOutOfRangeIsRefused) {
     const Volume volume = throughRaw(noise({8, 8, 8}), glm::dvec3(1));
-    Optics optics;
-    optics.transferFunction = testTransferFunction(0.2);
-    EXPECT_EQ(defaultBetween(volume, optics), 0);
-    optics.transferFunction = testTransferFunction(0.3);
-    EXPECT_EQ(defaultBetween(volume, optics), 1);
-    optics.unitDistance = 2;
-    EXPECT_EQ(defaultBetween(volume, optics), 0);
-    optics.extinctionScale = 4;
-    EXPECT_EQ(defaultBetween(volume, optics), 1);
-    // Labels: colours that only step.
-    optics.transferFunction.colors = {
-        {1, {1, 0, 0}}, {1.5, {1, 0, 0}}, {1.5, {0, 1, 0}}, {2, {0, 1, 0}}};
-    EXPECT_EQ(defaultBetween(volume, optics), 0);
     RenderOptions options;
-    options.optics = optics;
+    options.optics.transferFunction = testTransferFunction(0.2);
     for (const int between : {-1, kMostBetween + 1}) {
         options.between = between;
         EXPECT_THROW(render(volume, options), Error);

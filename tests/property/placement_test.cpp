@@ -202,7 +202,6 @@ TEST(Placement, oneVoxelKeepsAllItsLight) {
         options.optics.unitDistance = 1.25;
         options.sigma = 0.8;
         options.resolution = 8;
-        options.between = 0;
         const RenderResult result = render(read, options);
         ASSERT_EQ(result.stats.sliceAxis, c.sliceAxis);
 

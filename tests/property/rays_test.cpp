@@ -79,8 +79,9 @@ TEST(Rays, BallIsAsDeepAsItsChords) {
                 ++pixels;
             }
         }
-        // On average a lattice is neither deeper nor flatter than the ball.
-        EXPECT_NEAR(error / pixels, 0, 0.15 * 3);
+        // On average a lattice is neither deeper nor flatter than the ball, but for the spline's
+        // width (a variance of half a voxel squared), which flattens what is convex.
+        EXPECT_NEAR(error / pixels, -0.15 * 3, 0.13 * 3);
     }
 }
 

@@ -112,7 +112,6 @@ RenderResult renderTest(const Volume& volume, const TestView& view, double sigma
     options.optics.transferFunction = testTransferFunction(kOpacity);
     options.sigma = sigma;
     options.resolution = resolution;
-    options.between = 0;
     return render(volume, options);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -46,6 +47,20 @@ inline double catmullRom(double x) {
     if (t < 1) return (3 * t * t * t - 5 * t * t + 2) / 2;
     if (t < 2) return (-t * t * t + 5 * t * t - 8 * t + 4) / 2;
     return 0;
+}
+
+// The quintic B-spline, piece by piece (I. Schoenberg 1946).
+inline double quinticSpline(double x) {
+    const double t = std::abs(x);
+    const double t2 = t * t, t3 = t2 * t, t4 = t3 * t, t5 = t4 * t;
+    if (t < 1) return 11 / 20.0 - t2 / 2 + t4 / 4 - t5 / 12;
+    if (t < 2) return 17 / 40.0 + 5 * t / 8 - 7 * t2 / 4 + 5 * t3 / 4 - 3 * t4 / 8 + t5 / 24;
+    if (t < 3) return 81 / 40.0 - 27 * t / 8 + 9 * t2 / 4 - 3 * t3 / 4 + t4 / 8 - t5 / 120;
+    return 0;
+}
+
+inline double linear(double x) {
+    return std::max(0.0, 1 - std::abs(x));
 }
 
 }  // namespace reference

@@ -98,15 +98,17 @@ class Rays {
         return lattice;
     }
 
-    // What a pixel shows of a lattice on the first slice.
-    double seen(const Lattice& lattice, int x, int y) const {
+    // What a pixel shows of a lattice on the first slice, through a filter that reaches three
+    // points.
+    template <typename Filter>
+    double seen(const Lattice& lattice, int x, int y, const Filter& filter) const {
         const Vector index = indexOfPixel(view_, volume_.axes, volume_.origin, x, y);
         const double u = index[u_] + (volume_.first[s_] - index[s_]) * du_;
         const double v = index[v_] + (volume_.first[s_] - index[s_]) * dv_;
         double sum = 0;
-        for (int j = int(std::floor(v)) - 1; j <= int(std::floor(v)) + 2; ++j) {
-            for (int i = int(std::floor(u)) - 1; i <= int(std::floor(u)) + 2; ++i)
-                sum += catmullRom(u - i) * catmullRom(v - j) * lattice.at(i, j);
+        for (int j = int(std::floor(v)) - 2; j <= int(std::floor(v)) + 3; ++j) {
+            for (int i = int(std::floor(u)) - 2; i <= int(std::floor(u)) + 3; ++i)
+                sum += filter(u - i) * filter(v - j) * lattice.at(i, j);
         }
         return sum;
     }
@@ -151,12 +153,10 @@ std::vector<Seen> lineIntegrals(const ValueVolume& volume, const View& view, dou
     });
     const Lattice smooth = rays.lattice(
         [&](int a, int b) { return blurred(sums, a, b, rays.du(), rays.dv(), sigma); });
-    const double low = *std::min_element(smooth.values.begin(), smooth.values.end());
-    const double high = *std::max_element(smooth.values.begin(), smooth.values.end());
     std::vector<Seen> picture;
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x)
-            picture.push_back({std::clamp(rays.seen(smooth, x, y), low, high), 0});
+            picture.push_back({rays.seen(smooth, x, y, quinticSpline), 0});
     }
     return picture;
 }
@@ -185,8 +185,8 @@ std::vector<Seen> largestValues(const ValueVolume& volume, const View& view) {
     std::vector<Seen> picture;
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x) {
-            const double share = rays.seen(met, x, y);
-            picture.push_back({share >= 0.5 ? rays.seen(values, x, y) / share : 0, share});
+            const double share = rays.seen(met, x, y, linear);
+            picture.push_back({share >= 0.5 ? rays.seen(values, x, y, linear) / share : 0, share});
         }
     }
     return picture;

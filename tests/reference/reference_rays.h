@@ -27,8 +27,8 @@ struct Seen {
 
 /// Adds up all slices at the voxel positions of the first one, each read bilinearly where the line
 /// of sight goes through it, times the world distance between slices; then weighs neighbours with a
-/// Gaussian of covariance sigma^2 (I + d d^T). Seen with a Catmull-Rom filter, within the range of
-/// what it sees; the picture must be at least as fine as the voxels. The share is 0.
+/// Gaussian of covariance sigma^2 (I + d d^T). Seen through a quintic B-spline;
+/// the picture must be at least as fine as the voxels. The share is 0.
 std::vector<Seen> lineIntegrals(const ValueVolume& volume, const View& view, double sigma);
 
 /// Takes the largest instead. What is not active counts as the smallest value there is, if that is

@@ -21,8 +21,8 @@ class SliceView {
         for (int axis = 1; axis < 3; ++axis) {
             if (std::abs(ray[axis]) >= std::abs(ray[s_]) * (1 - 1e-9)) s_ = axis;
         }
-        u_ = s_ == 0 ? 1 : 0;
-        v_ = s_ == 2 ? 1 : 2;
+        u_ = (s_ + 1) % 3;
+        v_ = (s_ + 2) % 3;
         forward_ = ray[s_] > 0;
         du_ = ray[u_] / ray[s_];
         dv_ = ray[v_] / ray[s_];
@@ -186,6 +186,30 @@ Samples compositedPlane(const SliceView& slices, int resolution) {
     return plane;
 }
 
+// Four values through a Catmull-Rom filter, no farther than the middle two.
+double between(const std::array<double, 4>& values, double share) {
+    double sum = 0;
+    for (int i = 0; i < 4; ++i) sum += catmullRom(share - (i - 1)) * values[std::size_t(i)];
+    return std::clamp(sum, std::min(values[1], values[2]), std::max(values[1], values[2]));
+}
+
+// Reads samples along their first axis, then along their second.
+Rgba sharplySeen(const Samples& plane, double a, double b) {
+    const int i = int(std::floor(a));
+    const int j = int(std::floor(b));
+    Rgba seen{};
+    for (std::size_t c = 0; c < 4; ++c) {
+        std::array<double, 4> across{};
+        for (int l = 0; l < 4; ++l) {
+            std::array<double, 4> along{};
+            for (int k = 0; k < 4; ++k) along[std::size_t(k)] = plane.at(i - 1 + k, j - 1 + l)[c];
+            across[std::size_t(l)] = between(along, a - i);
+        }
+        seen[c] = between(across, b - j);
+    }
+    return seen;
+}
+
 }  // namespace
 
 Picture renderContinuous(const Volume& volume, const View& view, double sigma) {
@@ -211,10 +235,8 @@ Picture renderSampled(const Volume& volume, const View& view, double sigma, int 
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x) {
             const std::array<double, 2> p = slices.crossing(x, y, slices.firstSlice());
-            Rgba rgba = filtered(plane, p[0] * resolution, p[1] * resolution, 2, catmullRom);
-            for (double& value : rgba) value = std::max(value, 0.0);
-            rgba[3] = std::min(rgba[3], 1.0);
-            picture[std::size_t(y) * view.width + x] = rgba;
+            picture[std::size_t(y) * view.width + x] =
+                sharplySeen(plane, p[0] * resolution, p[1] * resolution);
         }
     }
     return picture;

@@ -45,8 +45,8 @@ Picture renderContinuous(const Volume& volume, const View& view, double sigma);
 
 /// The same, but slices are seen through rasters of `resolution` samples a voxel, read bilinearly,
 /// and composited at the samples of a raster on the plane of the first slice, through which the
-/// picture is seen with a Catmull-Rom filter, never below 0 nor beyond alpha 1. The picture must be
-/// at least as fine as the raster.
+/// picture is seen with a Catmull-Rom filter, along each axis clamped to the nearest two. The
+/// picture must be at least as fine as the raster.
 Picture renderSampled(const Volume& volume, const View& view, double sigma, int resolution);
 
 }  // namespace reference

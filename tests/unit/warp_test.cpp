@@ -73,12 +73,13 @@ TEST(Warp, MinificationAveragesFineStripes) {
 // Hard edges and fine stripes, magnified and not: no pixel leaves the range of those around it.
 TEST(Warp, NoFilterOvershoots) {
     const auto high = [](int x, int y) { return (x / 5 + y / 7) % 2 == 0; };
-    const OwnedRaster edges({0, 0}, {60, 60},
+    const OwnedRaster edges({0, 0}, {120, 120},
                             [&](int x, int y) { return high(x, y) ? 3.0f : 0.75f; });
     for (const WarpFilter filter : {WarpFilter::kSharp, WarpFilter::kSmooth, WarpFilter::kLinear}) {
         for (const double step : {0.1, 0.41, 0.7, 0.97, 1.3, 2.2}) {
             Image picture({25, 25});
-            warp(edges.raster(), affine(step, 0.2, 20, -0.15, step, 20), filter, picture);
+            const double first = 60 - 12.5 * step;
+            warp(edges.raster(), affine(step, 0.2, first, -0.15, step, first), filter, picture);
             for (const float value : picture.rgba) {
                 EXPECT_GE(value, 0.75f - 1e-6f) << step;
                 EXPECT_LE(value, 3.0f + 1e-6f) << step;
@@ -98,6 +99,9 @@ TEST(Warp, SharpStaysWithinTheNearestPoints) {
     for (int y = 0; y < 90; ++y) {
         for (int x = 0; x < 90; ++x) {
             const glm::dvec3 p = map * glm::dvec3(x + 0.5, y + 0.5, 1);
+            // On a line between cells either is right.
+            if (std::abs(p.x - std::round(p.x)) < 1e-6 || std::abs(p.y - std::round(p.y)) < 1e-6)
+                continue;
             const int i = int(std::floor(p.x));
             const int j = int(std::floor(p.y));
             const auto [low, high] =
