@@ -32,7 +32,7 @@ deltasplat_cli_test(output.fine.stats CREATES out.exr stats.json
     ARGS render ball.vdb -o out.exr --float --stats stats.json --background 0.1,0.2,0.3,0.5)
 deltasplat_cli_test(output.fine.fsync ARGS render ball.vdb -o out.exr --fsync CREATES out.exr)
 deltasplat_cli_test(output.fine.verbose CREATES out.exr ARGS render ball.vdb -o out.exr -v
-    STDERR_MATCHES "method auto: .* stamps.*slices along z.*seconds: read .*")
+    STDERR_MATCHES "code book .*method auto: .* stamps.*slices along z.*seconds: read .*")
 # A tolerance says what it may do to the picture.
 deltasplat_cli_test(output.tolerance CREATES out.exr ARGS render ${cube} -o out.exr --tolerance 0.02
     STDERR_MATCHES "tolerance 0.02 of the colour: largest error of a pixel, scene-linear and premultiplied: color 0.0[0-9]*, alpha 0.031[0-9]*")

@@ -14,7 +14,7 @@ run(synth slab slab_12x10x8_uint8.raw --dims 12x10x8 -q)
 run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --method delta --threads 1 -q)
 file(READ ${SCRATCH}/stats.json stats)
 expect_keys("${stats}" "" "method;mode;voxels;visible;deltas;stamps;slices;slabs;slice_axis;\
-resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
+between;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
 world_box;origin;directions;space;target;frame_width;camera")
 expect_keys("${stats}" seconds "read;prepare;splat;composite;warp;write;render;total")
 expect_keys("${stats}" error_bound "color;alpha")
@@ -37,7 +37,7 @@ foreach(mode xray mip)
     run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --mode ${mode} -q)
     file(READ ${SCRATCH}/stats.json stats)
     expect_keys("${stats}" "" "method;mode;voxels;visible;deltas;stamps;slices;slabs;slice_axis;\
-resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
+between;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
 world_box;origin;directions;space;target;frame_width;camera")
     expect_keys("${stats}" seconds "read;prepare;splat;composite;warp;write;render;total")
     expect_keys("${stats}" error_bound "color;alpha")
