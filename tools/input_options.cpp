@@ -4,6 +4,7 @@
 #include <set>
 
 #include "deltasplat/error.h"
+#include "ingest/input_files.h"
 #include "ingest/input_kind.h"
 
 namespace deltasplat {
@@ -57,7 +58,7 @@ void addInputOptions(CLI::App& app, ReadOptions& options) {
     group.addValue("--skip-bytes", "N", raw.skipBytes, wholeNumber(),
                    withDefault("Header bytes to pass over", std::to_string(raw.skipBytes)));
 
-    OptionGroup place(app, "Input, .raw, .raw.gz and images");
+    OptionGroup place(app, "Input, .raw, .raw.gz, .npy and images");
     place.addValue("--spacing", "X,Y,Z", raw.spacing, voxelSpacing(),
                    withDefault("World units per voxel", vectorText(raw.spacing)));
     place.addValue(
@@ -67,6 +68,14 @@ void addInputOptions(CLI::App& app, ReadOptions& options) {
     OptionGroup any(app, "Input");
     any.addValue("--nan", "VALUE", options.nanValue, number(),
                  "Replaces NaN and infinities (default: they are an error)");
+    addConfineOption(app);
+}
+
+void addConfineOption(CLI::App& app) {
+    app.add_flag_callback("--confine", confineInputs,
+                          "Read no file outside of the input's folder, as headers and\n"
+                          "links may name them (default: as they say)")
+        ->group("Input");
 }
 
 void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesystem::path>& inputs,
@@ -81,6 +90,7 @@ void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesy
         }
     }
     const bool anyRaw = formats.contains(InputKind::Format::kRaw);
+    const bool anyNpy = formats.contains(InputKind::Format::kNpy);
     const bool anyImages = formats.contains(InputKind::Format::kImages);
     const auto warnOf = [&](const std::vector<std::string>& options, const std::string& input) {
         const std::string remark = ": has no effect without " + input;
@@ -94,7 +104,7 @@ void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesy
     if (!anyRaw) {
         warnOf({"--dims", "--type", "--endian", "--skip-bytes"}, "a .raw or .raw.gz input");
     }
-    if (!anyRaw && !anyImages) {
+    if (!anyRaw && !anyNpy && !anyImages) {
         warnOf({"--spacing", "--origin"}, "an input of raw values or images");
     }
 }

@@ -11,6 +11,7 @@
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/file_name.h"
+#include "input_options.h"
 #include "listener.h"
 #include "lower_case.h"
 #include "output_files.h"
@@ -42,6 +43,7 @@ void declareOptions(CLI::App& app, RestoreCommand& command) {
                   "or .raw.gz; a .vdb gets all delta grids, others the first")
         .required();
     OptionGroup options(app, "Restoring");
+    addConfineOption(app);
     options.addValue("--grid", "NAME", command.read.gridName, anyText(),
                      "Grid to restore (default: all that the output can hold)");
     options.addValue("--stats", "FILE", command.stats, anyText(),

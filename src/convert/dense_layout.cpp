@@ -12,9 +12,10 @@ std::string noHeader(const DenseLayout&, const std::string&) {
     return {};
 }
 
-constexpr std::array<DenseFormat, 8> kFormats{{
+constexpr std::array<DenseFormat, 9> kFormats{{
     {".raw", "", false, false, false, settleRaw, noHeader},
     {".raw.gz", "", false, true, false, settleRaw, noHeader},
+    {".npy", "", false, false, true, settleNpy, npyHeader},
     {".nrrd", "", false, true, true, settleNrrd, nrrdHeader},
     {".nhdr", ".raw.gz", false, true, true, settleNrrd, nrrdHeader},
     {".mhd", ".raw", false, false, true, settleMetaImage, metaImageHeader},

@@ -15,7 +15,7 @@ namespace deltasplat {
 struct DenseLayout {
     glm::ivec3 dims{1};  ///< voxels along x, y, z
     RawType type = RawType::kUint8;
-    bool bigEndian = false;  ///< of values of several bytes
+    bool bigEndian = false;          ///< of values of several bytes
     glm::dmat4 worldFromIndex{1.0};  ///< maps the first voxel, (0, 0, 0), to its place
     std::string space;               ///< as Volume::space
 
@@ -51,6 +51,8 @@ struct DenseFormat {
 const DenseFormat* findDenseFormat(const std::string& extension);
 
 void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes);
+void settleNpy(DenseLayout& layout, const std::string& file, Notes& notes);
+std::string npyHeader(const DenseLayout& layout, const std::string& dataFile);
 void settleNrrd(DenseLayout& layout, const std::string& file, Notes& notes);
 std::string nrrdHeader(const DenseLayout& layout, const std::string& dataFile);
 void settleMetaImage(DenseLayout& layout, const std::string& file, Notes& notes);

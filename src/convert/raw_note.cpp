@@ -20,18 +20,10 @@ bool namesBigEndian(const std::string& file, const DenseLayout& layout) {
     }
 }
 
-}  // namespace
-
-// A file without a header: what its name does not say, the options have to when it is read.
-void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
+// What the file itself does not say and options can, and what nothing brings back.
+void notePlace(const DenseLayout& layout, const std::string& lack, std::string options,
+               Notes& notes) {
     const glm::dvec3 spacing = layout.spacing(), origin = layout.origin();
-    std::string options;
-    const bool ordered = rawTypeBytes(layout.type) > 1;
-    layout.bigEndian = ordered && namesBigEndian(file, layout);
-    if (!saysLayout(file, {layout.dims, layout.type, layout.bigEndian, 0})) {
-        options += " --dims " + layout.dimsText() + " --type " + rawTypeName(layout.type);
-        if (ordered) options += layout.bigEndian ? " --endian big" : " --endian little";
-    }
     if (spacing != glm::dvec3(1)) options += " --spacing " + numberText(spacing);
     if (origin != glm::dvec3(0)) options += " --origin " + numberText(origin);
 
@@ -40,8 +32,26 @@ void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
     if (readBack != layout.worldFromIndex) dropped += " axis directions";
     if (!layout.space.empty())
         dropped += (dropped.empty() ? " " : " and ") + layout.space + " space";
-    if (!options.empty()) notes.remark("no header; read it with" + options);
-    if (!dropped.empty()) notes.loss("no header, which drops" + dropped);
+    if (!options.empty()) notes.remark(lack + "; read it with" + options);
+    if (!dropped.empty()) notes.loss(lack + ", which drops" + dropped);
+}
+
+}  // namespace
+
+// A file without a header: what its name does not say, the options have to when it is read.
+void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
+    std::string options;
+    const bool ordered = rawTypeBytes(layout.type) > 1;
+    layout.bigEndian = ordered && namesBigEndian(file, layout);
+    if (!saysLayout(file, {layout.dims, layout.type, layout.bigEndian, 0})) {
+        options += " --dims " + layout.dimsText() + " --type " + rawTypeName(layout.type);
+        if (ordered) options += layout.bigEndian ? " --endian big" : " --endian little";
+    }
+    notePlace(layout, "no header", options, notes);
+}
+
+void settleNpy(DenseLayout& layout, const std::string&, Notes& notes) {
+    notePlace(layout, "no place in its header", "", notes);
 }
 
 }  // namespace deltasplat

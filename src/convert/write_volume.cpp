@@ -22,9 +22,10 @@ bool isVdb(const std::filesystem::path& file) {
 const DenseFormat& formatOf(const std::filesystem::path& file) {
     const std::string extension = lowerExtension(file);
     if (const DenseFormat* format = findDenseFormat(extension)) return *format;
-    throw Error(ErrorCode::kUsage,
-                gotExpected(file.string(), "extension \"" + extension + "\"",
-                            ".vdb, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .raw or .raw.gz"));
+    throw Error(
+        ErrorCode::kUsage,
+        gotExpected(file.string(), "extension \"" + extension + "\"",
+                    ".vdb, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .raw or .raw.gz"));
 }
 
 // Headers are lines of text, and MetaImage takes "%" for the place of a slice's number.

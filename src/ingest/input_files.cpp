@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/input_files.h"
 
+#include <algorithm>
+#include <system_error>
+
 #include "deltasplat/error.h"
 #include "ingest/file_name.h"
 #include "ingest/input_kind.h"
 #include "ingest/text_header.h"
 #include "lower_case.h"
+#include "printable.h"
 
 namespace deltasplat {
 namespace {
@@ -34,6 +38,40 @@ std::vector<std::filesystem::path> filesOf(const std::filesystem::path& input) {
         return kind.files;
     } catch (const Error&) {
         return {input};
+    }
+}
+
+namespace {
+
+bool& confined() {
+    static bool confined = false;
+    return confined;
+}
+
+}  // namespace
+
+void confineInputs() {
+    confined() = true;
+}
+
+bool inputsAreConfined() {
+    return confined();
+}
+
+void requireConfined(const std::filesystem::path& input) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path near = fs::is_directory(input, error) ? input : input.parent_path();
+    const fs::path folder = fs::canonical(near.empty() ? "." : near, error);
+    for (const fs::path& file : filesOf(input)) {
+        // What is not there at all is for its reader to say.
+        const fs::path real = fs::weakly_canonical(file, error);
+        const auto parted = std::mismatch(folder.begin(), folder.end(), real.begin(), real.end());
+        if (!error && !folder.empty() && parted.first == folder.end()) continue;
+        throw Error(ErrorCode::kInput,
+                    gotExpected(input.string(),
+                                "the file " + printable(file.string()) + " outside of its folder",
+                                "files inside of it (--confine)"));
     }
 }
 

@@ -13,4 +13,14 @@ namespace deltasplat {
 /// reader to say.
 std::vector<std::filesystem::path> filesOf(const std::filesystem::path& input);
 
+/// From now on readers refuse inputs that are not confined as requireConfined says. For a whole
+/// program, as memory limits are; not thread-safe.
+void confineInputs();
+bool inputsAreConfined();
+
+/// Checks that all files of an input, links followed, lie in its folder, or in the folder that it
+/// is, or below.
+/// @throw Error(kInput) "<input>: got <file>, which is outside of <folder>; expected ..."
+void requireConfined(const std::filesystem::path& input);
+
 }  // namespace deltasplat

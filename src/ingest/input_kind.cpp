@@ -22,17 +22,19 @@ using Files = std::vector<std::filesystem::path>;
 
 const std::map<std::string, Format>& formats() {
     static const std::map<std::string, Format> kFormats{
-        {".vdb", Format::kVdb},     {".raw", Format::kRaw},      {".raw.gz", Format::kRaw},
-        {".nii", Format::kNifti},   {".nii.gz", Format::kNifti}, {".nrrd", Format::kItk},
-        {".nhdr", Format::kItk},    {".mhd", Format::kItk},      {".mha", Format::kItk},
-        {".dcm", Format::kDicom},   {".bmp", Format::kImages},   {".exr", Format::kImages},
-        {".jpeg", Format::kImages}, {".jpg", Format::kImages},   {".pgm", Format::kImages},
-        {".png", Format::kImages},  {".tif", Format::kImages},   {".tiff", Format::kImages}};
+        {".vdb", Format::kVdb},    {".raw", Format::kRaw},     {".raw.gz", Format::kRaw},
+        {".npy", Format::kNpy},    {".nii", Format::kNifti},   {".nii.gz", Format::kNifti},
+        {".nrrd", Format::kItk},   {".nhdr", Format::kItk},    {".mhd", Format::kItk},
+        {".mha", Format::kItk},    {".dcm", Format::kDicom},   {".bmp", Format::kImages},
+        {".exr", Format::kImages}, {".jpeg", Format::kImages}, {".jpg", Format::kImages},
+        {".pgm", Format::kImages}, {".png", Format::kImages},  {".tif", Format::kImages},
+        {".tiff", Format::kImages}};
     return kFormats;
 }
 
 constexpr const char* kReadable =
-    ".vdb, .raw, .raw.gz, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .dcm, .tif, .png, .jpg, .bmp, "
+    ".vdb, .raw, .raw.gz, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .dcm, .tif, .png, .jpg, "
+    ".bmp, "
     ".pgm or .exr";
 
 [[noreturn]] void refuse(const std::filesystem::path& input, const std::string& got,

@@ -10,8 +10,10 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/value_statistics.h"
+#include "ingest/input_files.h"
 #include "ingest/input_kind.h"
 #include "ingest/open_dense.h"
+#include "ingest/read_npy.h"
 #include "ingest/readers.h"
 #include "number_text.h"
 
@@ -22,6 +24,8 @@ DenseSource openDense(const std::filesystem::path& input, const InputKind& kind,
     switch (kind.format) {
         case InputKind::Format::kNifti:
             return openNifti(input, listener);
+        case InputKind::Format::kNpy:
+            return openNpy(input, options.raw);
         case InputKind::Format::kItk:
             return openItk(input);
         case InputKind::Format::kDicom:
@@ -43,6 +47,7 @@ void read(const std::filesystem::path& file, const ReadOptions& options, bool al
                     gotExpected("--nan", numberText(*options.nanValue), "a finite number"));
     }
     const InputKind kind = findInput(file, listener);
+    if (inputsAreConfined()) requireConfined(file);
     if (kind.format == InputKind::Format::kVdb) {
         readVdb(file, options, all, visitor, listener);
     } else {
@@ -111,9 +116,8 @@ void warnOfCodeError(const std::string& where, const Volume& volume, const Liste
     char percent[32];
     std::snprintf(percent, sizeof percent, "%.3g", 100 * volume.codeError.relative);
     listener.warn(where + ": values are kept as codes that are off by up to " +
-                  numberText(volume.codeError.absolute) + ", or " +
-                  std::string(percent) + " % of a value (" +
-                  volume.codeBook.name() + " code book)");
+                  numberText(volume.codeError.absolute) + ", or " + std::string(percent) +
+                  " % of a value (" + volume.codeBook.name() + " code book)");
 }
 
 }  // namespace deltasplat

@@ -16,6 +16,21 @@ deltasplat_cli_test(formats.unused_dims ARGS info stack.1.pgm --dims 3x2x1
     STDERR "deltasplat: warning: --dims: has no effect without a .raw or .raw.gz input"
     STDOUT_MATCHES "dims +3 x 2 x 1")
 
+# --confine, for every command that reads a volume.
+set(outside "outside.mhd: got the file /dev/null outside of its folder; expected files inside of it (--confine)")
+foreach(command "info outside.mhd" "render outside.mhd -o out.exr" "convert outside.mhd out.vdb"
+        "delta outside.mhd out.vdb" "restore outside.mhd out.vdb" "bench outside.mhd")
+    separate_arguments(words UNIX_COMMAND "${command}")
+    list(GET words 0 word)
+    deltasplat_cli_test(formats.confine.${word} EXIT 3 ARGS ${words} --confine
+        STDERR "deltasplat: ${outside}")
+endforeach()
+deltasplat_cli_test(formats.confine.diff EXIT 4 ARGS diff stack.1.pgm outside.mhd --confine
+    STDERR "deltasplat: ${outside}")
+deltasplat_cli_test(formats.confine.inside ARGS info stack.\#.pgm --confine
+    STDOUT_MATCHES "dims +3 x 2 x 2")
+deltasplat_cli_test(formats.to_npy ARGS convert stack.\#.pgm out.npy CREATES out.npy)
+
 if(DELTASPLAT_ITK)
     deltasplat_cli_test(formats.nrrd ARGS info text.nrrd
         STDOUT_MATCHES "grid +text.*type +int16.*dims +2 x 3 x 4.*voxel size +1 x 2 x 3")

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "deltasplat/ingest/read_volume.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {
@@ -44,6 +45,64 @@ TEST(InputFiles, OfWhatCannotBeRead) {
     for (const char* const name : {"a.nhdr", "nowhere.vdb", "nowhere.#.png"}) {
         EXPECT_EQ(filesOf(name), Files{name});
     }
+}
+
+void expectConfined(const std::string& input, bool inside) {
+    if (inside) {
+        EXPECT_NO_THROW(requireConfined(input)) << input;
+    } else {
+        EXPECT_THROW(requireConfined(input), Error) << input;
+    }
+}
+
+TEST(InputFiles, ConfinedToTheirFolder) {
+    const TempFolder folder;
+    std::filesystem::create_directories("up/in/sub");
+    for (const char* const name : {"up/x.raw", "up/in/x.raw", "up/in/sub/x.raw", "up/inner.raw"}) {
+        writeBytes(name, "1234");
+    }
+    const std::string absolute = std::filesystem::absolute("up/in/x.raw").string();
+    std::filesystem::create_symlink("../x.raw", "up/in/out_link.raw");
+    std::filesystem::create_symlink("sub/x.raw", "up/in/in_link.raw");
+    std::filesystem::create_directory_symlink("..", "up/in/up_link");
+    const std::vector<std::pair<std::string, bool>> cases{
+        {"x.raw", true},           {"sub/x.raw", true},        {"sub/../x.raw", true},
+        {absolute, true},          {"in_link.raw", true},      {"../x.raw", false},
+        {"../inner.raw", false},   {"/etc/passwd", false},     {"out_link.raw", false},
+        {"up_link/x.raw", false},  {"sub/../../x.raw", false}, {"../in/x.raw", true},
+        {"../nowhere.raw", false}, {"nowhere.raw", true}};
+    for (const auto& [name, inside] : cases) {
+        writeBytes("up/in/a.nhdr", "NRRD0004\nsizes: 2 2 1\ndata file: " + name + "\n");
+        writeBytes("up/in/a.mhd", "DimSize = 2 2 1\nElementDataFile = " + name + "\n");
+        expectConfined("up/in/a.nhdr", inside);
+        expectConfined("up/in/a.mhd", inside);
+    }
+    // Inputs of one file or several that are links themselves.
+    expectConfined("up/in/x.raw", true);
+    expectConfined("up/in/in_link.raw", true);
+    expectConfined("up/in/out_link.raw", false);
+    std::filesystem::create_directory("up/stack");
+    writeBytes("up/stack/s1.pgm", "P5");
+    expectConfined("up/stack", true);
+    std::filesystem::create_symlink("../x.raw", "up/stack/s2.pgm");
+    expectConfined("up/stack", false);
+    expectConfined("up/stack/s#.pgm", false);
+}
+
+TEST(InputFiles, ReadersConfineWhenAsked) {
+    const TempFolder folder;
+    std::filesystem::create_directory("in");
+    writeBytes("x.raw", "1234");
+    std::filesystem::create_symlink("../x.raw", "in/a.raw");
+    ReadOptions options;
+    options.raw.dims = {2, 2, 1};
+    options.raw.type = "uint8";
+    EXPECT_EQ(readVolume("in/a.raw", options).activeCount, 4u);
+    confineInputs();
+    expectError(ErrorCode::kInput,
+                "in/a.raw: got the file in/a.raw outside of its folder; expected files inside of "
+                "it (--confine)",
+                [&] { readVolume("in/a.raw", options); });
 }
 
 }  // namespace

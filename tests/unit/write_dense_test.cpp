@@ -311,10 +311,11 @@ TEST(WriteDense, WhatCannotBeWritten) {
                 "out.nii: got 40000x1x1 voxels; expected at most 32767 along each axis in NIfTI "
                 "(.nrrd has no such limit)",
                 [&] { write("out.nii", lengthy); });
-    expectError(ErrorCode::kUsage,
-                "out.txt: got extension \".txt\"; expected .vdb, .nrrd, .nhdr, .mhd, .mha, .nii, "
-                ".nii.gz, .raw or .raw.gz",
-                [&] { write("out.txt", lengthy); });
+    expectError(
+        ErrorCode::kUsage,
+        "out.txt: got extension \".txt\"; expected .vdb, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, "
+        ".nii.gz, .raw or .raw.gz",
+        [&] { write("out.txt", lengthy); });
     expectError(ErrorCode::kUsage, "out.nrrd: got 2 volumes; expected one, except in a .vdb", [&] {
         writeVolumes("out.nrrd", {lengthy, lengthy});
     });

@@ -64,8 +64,9 @@ void checkVolumeFile(const std::filesystem::path& file);
 /// volumes' own, and for .vdb that of the grids. Deterministic, whatever the number of threads.
 /// @param volumes  taken to be able to free codes once they are not needed
 /// @throw Error(kUsage) as checkVolumeFile, for more than one volume in a dense format;
-///        Error(kFailed) for more than memory holds; Error(kInput) if a dense format is asked for a volume without active
-///        voxels; Error(kOutput) if a file cannot be written; whatever `listener.progress` throws
+///        Error(kFailed) for more than memory holds; Error(kInput) if a dense format is asked for a
+///        volume without active voxels; Error(kOutput) if a file cannot be written; whatever
+///        `listener.progress` throws
 WriteReport writeVolumes(const std::filesystem::path& file, std::vector<Volume> volumes,
                          const WriteOptions& options = {}, const Listener& listener = {});
 

@@ -38,8 +38,9 @@ void checkImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
                     const ImageFileOptions& options);
 
 /// Writes `.exr` (scene-linear, premultiplied, ZIP compression) or `.png` (sRGB, straight alpha,
-/// rounded to nearest, or dithered; clear where alpha is 0), by extension in any case. The file appears under
-/// its final name only when it is whole. Deterministic, whatever the number of threads.
+/// rounded to nearest, or dithered; clear where alpha is 0), by extension in any case. The file
+/// appears under its final name only when it is whole. Deterministic, whatever the number of
+/// threads.
 ///
 /// NaN is never stored: it becomes 0. In .exr, values beyond the largest finite number of the pixel
 /// type (65504 for half) become that number; in .png, alpha and colour are clamped to 0..1 after

@@ -63,7 +63,8 @@ struct ReadOptions {
 /// with a warning. Deterministic; not affected by the number of threads.
 /// @throw Error(kInput) if the file is missing, truncated, of the wrong size or not what it claims;
 ///        Error(kUsage) if the options cannot be meant (zero dims, an overflow, an unknown type);
-///        Error(kFailed) if the volume does not fit into memory; whatever `listener.progress` throws
+///        Error(kFailed) if the volume does not fit into memory; whatever `listener.progress`
+///        throws
 Volume readVolume(const std::filesystem::path& file, const ReadOptions& options = {},
                   const Listener& listener = {});
 

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "ingest/dense_source.h"
+
+namespace deltasplat {
+
+/// Opens a .npy file.
+/// @param format  spacing and origin are taken from it
+/// @throw as readVolume
+DenseSource openNpy(const std::filesystem::path& file, const RawFormat& format);
+
+}  // namespace deltasplat
