@@ -62,10 +62,10 @@ void requireConfined(const std::filesystem::path& input) {
     namespace fs = std::filesystem;
     std::error_code error;
     const fs::path near = fs::is_directory(input, error) ? input : input.parent_path();
-    const fs::path folder = fs::canonical(near.empty() ? "." : near, error);
+    const fs::path folder = fs::canonical(fs::absolute(near.empty() ? "." : near), error);
     for (const fs::path& file : filesOf(input)) {
         // What is not there at all is for its reader to say.
-        const fs::path real = fs::weakly_canonical(file, error);
+        const fs::path real = fs::weakly_canonical(fs::absolute(file), error);
         const auto parted = std::mismatch(folder.begin(), folder.end(), real.begin(), real.end());
         if (!error && !folder.empty() && parted.first == folder.end()) continue;
         throw Error(ErrorCode::kInput,
