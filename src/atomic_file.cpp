@@ -10,8 +10,10 @@
 #include <string>
 #include <utility>
 
+#include "aside_header.h"
 #include "cannot_write.h"
 #include "deltasplat/error.h"
+#include "name_lock.h"
 #include "output_target.h"
 #include "temporary_file.h"
 
@@ -35,12 +37,12 @@ struct AtomicFile::Impl {
 
     void openDevice() {
         do {
-            device = Descriptor(::open(finalPath.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
+            device = openDirectly(target);
         } while (!device && errno == EINTR);
         struct stat status {};
         if (!device || ::fstat(device.get(), &status) != 0) throwCannotWrite(finalPath, errno);
         // Nothing that it was exchanged for is overwritten.
-        if (S_ISREG(status.st_mode)) throwCannotWrite(finalPath, EEXIST);
+        if (S_ISREG(status.st_mode) && !target.isOpenFile) throwCannotWrite(finalPath, EEXIST);
     }
 
     // Makes the new file as accessible as the old one was, and no more.
@@ -63,6 +65,13 @@ struct AtomicFile::Impl {
         (void)!::fchmod(file, mode);
     }
 
+    // All that can take long or fail before names change.
+    void prepare() {
+        if (std::exchange(prepared, true) || target.isDevice) return;
+        takePermissions();
+        syncFile();
+    }
+
     void syncFile() const {
         if (syncFiles && ::fsync(temporary->descriptor()) != 0) throwCannotWrite(finalPath, errno);
     }
@@ -83,26 +92,20 @@ struct AtomicFile::Impl {
         }
     }
 
-    void dropAside() {
-        if (!aside) return;
-        ::unlinkat(target.folder.get(), aside->name().c_str(), 0);
-        aside.reset();
-    }
+    NameInFolder place() const { return {target.folder.get(), target.name}; }
 
     fs::path finalPath;
     OutputTarget target;
     std::optional<TemporaryFile> temporary;
-    std::optional<TemporaryFile> aside;  // lends its name to the old file
     Descriptor device;
     bool closed = false;
+    bool prepared = false;
     bool committed = false;
 };
 
 AtomicFile::AtomicFile(fs::path finalPath) : impl_(std::make_unique<Impl>(std::move(finalPath))) {}
 
-AtomicFile::~AtomicFile() {
-    impl_->dropAside();
-}
+AtomicFile::~AtomicFile() = default;
 
 int AtomicFile::descriptor() {
     if (!impl_->target.isDevice) return impl_->temporary->descriptor();
@@ -141,35 +144,11 @@ void AtomicFile::close() {
     if (!copy || copy.reset() != 0) throwCannotWrite(finalPath(), errno);
 }
 
-void AtomicFile::setAside() {
-    Impl& file = *impl_;
-    if (file.target.isDevice || !file.target.existing) return;
-    if (commitGate) commitGate();
-    file.aside.emplace(file.target.folder.get(), file.target.name, 0600, file.finalPath);
-    const int folder = file.target.folder.get();
-    if (::renameat(folder, file.target.name.c_str(), folder, file.aside->name().c_str()) != 0) {
-        const int problem = errno;
-        file.aside.reset();
-        if (problem != ENOENT) throwCannotWrite(file.finalPath, problem);
-    }
-    file.syncFolder();
-}
-
-void AtomicFile::putBack() noexcept {
-    Impl& file = *impl_;
-    if (!file.aside) return;
-    const int folder = file.target.folder.get();
-    const char* const name = file.target.name.c_str();
-    if (::renameat(folder, file.aside->name().c_str(), folder, name) == 0) file.aside->release();
-    file.aside.reset();
-}
-
 void AtomicFile::commit() {
     Impl& file = *impl_;
     close();
     if (file.target.isDevice || file.committed) return;
-    file.takePermissions();
-    file.syncFile();
+    file.prepare();
     if (commitGate) commitGate();
     file.requireAt(file.temporary->name());
     const int folder = file.target.folder.get();
@@ -179,8 +158,28 @@ void AtomicFile::commit() {
     file.committed = true;
     // In a folder that others may write, somebody may have been quicker.
     file.requireAt(file.target.name);
+    // The next one who replaces it locks it while it is set aside.
+    file.temporary->unlock();
     file.syncFolder();
-    file.dropAside();
+}
+
+void AtomicFile::commitWithData(AtomicFile& data) {
+    Impl &head = *impl_, &described = *data.impl_;
+    close();
+    data.close();
+    head.prepare();
+    described.prepare();
+    if (head.target.isDevice || described.target.isDevice) {
+        data.commit();
+        return commit();
+    }
+    const NameLock lock(described.place(), data.finalPath());
+    if (commitGate) commitGate();
+    AsideHeader aside(head.place(), *head.temporary, described.place(), *described.temporary,
+                      finalPath());
+    head.syncFolder();
+    data.commit();
+    commit();
 }
 
 bool AtomicFile::isCommitted() const {

@@ -3,11 +3,17 @@
 
 #include <fcntl.h>
 #include <limits.h>
+#include <linux/magic.h>
+#include <sys/vfs.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
+#include <utility>
 
 #include "cannot_write.h"
+#include "temporary_list.h"
 
 namespace deltasplat {
 namespace {
@@ -15,22 +21,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFolder = O_PATH | O_DIRECTORY | O_CLOEXEC;
+constexpr int kDirectly = O_WRONLY | O_NOCTTY | O_CLOEXEC;
 
-// What the system says of the file that a name leads to, links followed; empty if there is none.
-std::optional<struct stat> statusOf(const fs::path& file) {
-    struct stat status {};
-    if (::stat(file.c_str(), &status) == 0) return status;
-    // A folder that one may not look into, or links in a circle, are no new file.
-    if (errno != ENOENT) throwCannotWrite(file, errno);
-    return {};
-}
-
-// In a folder such as /tmp anybody may have left a link where an output is expected.
+// Where others can put links, only those of this user, of the superuser and of the folder's owner
+// say where an output is to go: what else is there anybody may have left.
 bool isTrusted(const struct stat& link, int folder) {
     struct stat around {};
     if (::fstat(folder, &around) != 0) return false;
-    const bool shared = (around.st_mode & S_ISVTX) != 0 && (around.st_mode & S_IWOTH) != 0;
-    return !shared || link.st_uid == ::geteuid() || link.st_uid == around.st_uid;
+    const bool shared = (around.st_mode & (S_IWGRP | S_IWOTH)) != 0;
+    return !shared || link.st_uid == ::geteuid() || link.st_uid == 0 ||
+           link.st_uid == around.st_uid;
 }
 
 fs::path contentOf(const Descriptor& link, const fs::path& file) {
@@ -40,58 +40,73 @@ fs::path contentOf(const Descriptor& link, const fs::path& file) {
     return std::string(text.data(), std::size_t(length));
 }
 
-bool isSame(const std::optional<struct stat>& a, const std::optional<struct stat>& b) {
-    if (!a || !b) return !a && !b;
-    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+// Links there (/dev/stdout leads to one) are of open files, and their content is no more than what
+// those were called when they were opened.
+bool isOfProcesses(int folder) {
+    struct statfs system {};
+    return ::fstatfs(folder, &system) == 0 && system.f_type == PROC_SUPER_MAGIC;
 }
 
-// Finds the entry of a folder that a name which is no device leads to.
-OutputTarget followLinks(const fs::path& file) {
-    constexpr int kMostLinks = 40;  // as many as Linux follows
-    OutputTarget target;
-    fs::path path = file;
-    for (int links = 0; links <= kMostLinks; ++links) {
-        const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
-        const int base = target.folder ? target.folder.get() : AT_FDCWD;
-        Descriptor folder(::openat(base, parent.c_str(), kFolder));
-        if (!folder) throwCannotWrite(file, errno);
-        target.folder = std::move(folder);
-        target.name = path.filename().string();
-        if (target.name.empty()) throwCannotWrite(file, ENOENT);
-
-        const int flags = O_PATH | O_NOFOLLOW | O_CLOEXEC;
-        const Descriptor entry(::openat(target.folder.get(), target.name.c_str(), flags));
-        if (!entry && errno == ENOENT) return target;
-        struct stat status {};
-        if (!entry || ::fstat(entry.get(), &status) != 0) throwCannotWrite(file, errno);
-        if (!S_ISLNK(status.st_mode)) {
-            target.existing = status;
-            return target;
-        }
-        if (!isTrusted(status, target.folder.get())) throwCannotWrite(file, EACCES);
-        path = contentOf(entry, file);
-    }
-    throwCannotWrite(file, ELOOP);
+// What is in a folder under the target's name, if something is: the target, or a link.
+Descriptor enterFolder(const fs::path& path, const fs::path& file, OutputTarget& target) {
+    const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
+    const int base = target.folder ? target.folder.get() : AT_FDCWD;
+    Descriptor folder(::openat(base, parent.c_str(), kFolder));
+    if (!folder) throwCannotWrite(file, errno);
+    target.folder = std::move(folder);
+    target.name = path.filename().string();
+    // A path that ends with "/".
+    if (target.name.empty()) throwCannotWrite(file, path.empty() ? ENOENT : EISDIR);
+    Descriptor entry(
+        ::openat(target.folder.get(), target.name.c_str(), O_PATH | O_NOFOLLOW | O_CLOEXEC));
+    if (!entry && errno != ENOENT) throwCannotWrite(file, errno);
+    return entry;
 }
 
 }  // namespace
 
 OutputTarget findTarget(const fs::path& file) {
-    const std::optional<struct stat> status = statusOf(file);
-    if (status && S_ISDIR(status->st_mode)) throwCannotWrite(file, EISDIR);
-    // Renaming would replace a file that its owner made read-only.
-    if (status && ::access(file.c_str(), W_OK) != 0) throwCannotWrite(file, errno);
-
+    constexpr int kMostLinks = 40;  // as many as Linux follows
     OutputTarget target;
-    if (status && !S_ISREG(status->st_mode)) {
+    fs::path path = file;
+    for (int links = 0; links <= kMostLinks; ++links) {
+        const Descriptor entry = enterFolder(path, file, target);
+        if (!entry) return target;
+        struct stat status {};
+        if (::fstat(entry.get(), &status) != 0) throwCannotWrite(file, errno);
+        const bool isLink = S_ISLNK(status.st_mode);
+        if (isLink && !isOfProcesses(target.folder.get())) {
+            if (!isTrusted(status, target.folder.get())) throwCannotWrite(file, EACCES);
+            path = contentOf(entry, file);
+            continue;
+        }
+        const int folder = target.folder.get();
+        const char* const name = target.name.c_str();
+        if (isLink && ::fstatat(folder, name, &status, 0) != 0) throwCannotWrite(file, errno);
+        if (S_ISDIR(status.st_mode)) throwCannotWrite(file, EISDIR);
+        // Renaming would replace a file that its owner made read-only. If it is gone, it is new.
+        if (::faccessat(folder, name, W_OK, 0) != 0 && errno != ENOENT)
+            throwCannotWrite(file, errno);
         target.existing = status;
-        target.isDevice = true;
+        target.isOpenFile = isLink;
+        target.isDevice = isLink || !S_ISREG(status.st_mode);
         return target;
     }
-    target = followLinks(file);
-    // The system may follow links that are no paths (/dev/stdout of a file that is gone).
-    if (!isSame(status, target.existing)) throwCannotWrite(file, ELOOP);
-    return target;
+    throwCannotWrite(file, ELOOP);
+}
+
+Descriptor openDirectly(const OutputTarget& target) {
+    const int folder = target.folder.get();
+    if (!target.isOpenFile)
+        return Descriptor(::openat(folder, target.name.c_str(), kDirectly | O_NOFOLLOW));
+    // The process's own descriptor, whose place in the file is that of all who share it.
+    struct stat there {
+    }, own{};
+    const int number = std::atoi(target.name.c_str());
+    const bool isOwn = ::fstatat(folder, target.name.c_str(), &there, 0) == 0 &&
+                       ::fstat(number, &own) == 0 && identityOf(there) == identityOf(own);
+    if (isOwn) return Descriptor(::fcntl(number, F_DUPFD_CLOEXEC, 0));
+    return Descriptor(::openat(folder, target.name.c_str(), kDirectly | O_APPEND));
 }
 
 }  // namespace deltasplat

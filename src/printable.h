@@ -5,12 +5,8 @@
 
 namespace deltasplat {
 
-/// Returns foreign text fit for a message, which is one line: what controls a terminal is "?".
-inline std::string printable(std::string text) {
-    for (char& c : text) {
-        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
-    }
-    return text;
-}
+/// Returns foreign text fit for a message, which is one line of UTF-8: what controls a terminal,
+/// and each byte that is none of a UTF-8 character, is "?".
+std::string printable(const std::string& text);
 
 }  // namespace deltasplat

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "descriptor.h"
+#include "temporary_list.h"
 
 namespace deltasplat {
 
@@ -30,10 +31,14 @@ class TemporaryFile {
 
     const std::string& name() const { return name_; }
     int descriptor() const { return file_.get(); }
+    FileIdentity identity() const { return identityOf(file_.get()); }
     /// Returns whether a name in the folder is of this very file.
     bool isAt(const std::string& name) const;
-    /// Says that the file now has another name, or none: there is nothing to remove.
+    /// Says that the file now has another name, or none: there is nothing to remove. It stays
+    /// locked.
     void release();
+    /// Lets others lock the file in their turn, after release().
+    void unlock() const;
 
   private:
     bool create(const std::string& name, mode_t mode);
@@ -41,7 +46,7 @@ class TemporaryFile {
     int folder_;
     std::string name_;
     Descriptor file_;
-    int entry_ = -1;  // in the list of all temporary files
+    int place_ = -1;  // in the list of all temporary files
 };
 
 }  // namespace deltasplat

@@ -3,6 +3,7 @@
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -200,6 +201,11 @@ void writeVdb(const std::filesystem::path& file, const openvdb::GridCPtrVec& gri
               const openvdb::MetaMap& fileMetadata, const Listener& listener) {
     openvdb::initialize();
     AtomicFile output(file);
+    // Its grids' places are counted from the beginning, where others may have written.
+    struct stat status {};
+    const bool isOpenFile =
+        output.isDevice() && ::fstat(output.descriptor(), &status) == 0 && S_ISREG(status.st_mode);
+    if (isOpenFile) throwCannotWrite(file, ESPIPE);
     try {
         errno = 0;
         writeStream(output, grids, fileMetadata, listener);

@@ -21,6 +21,10 @@ std::vector<std::filesystem::path> checkConversionFiles(const std::filesystem::p
                                                         const std::filesystem::path& stats) {
     const Files sources = filesRead({input}, {});
     const std::filesystem::path dataFile = dataFileOf(output);
+    // By links: "o.raw" may lead to "o.mhd".
+    if (!dataFile.empty() && sameFile(output, dataFile)) {
+        refuse(output, "the file of its own data, " + dataFile.string() + ",");
+    }
     for (const std::filesystem::path& source : sources) {
         if (sameFile(output, source) && !sameFile(output, input)) {
             refuse(output, "a file of the input " + input.string());

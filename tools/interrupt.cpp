@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "interrupt.h"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -27,11 +28,16 @@ static_assert(std::atomic<int>::is_always_lock_free, "signal handlers cannot wai
 extern "C" {
 
 // Ends the program, whatever it is in the middle of. Only what handlers may do.
-static void endAtOnce(int /*signal*/) {
+static void endAtOnce(int signal) {
+    // An alarm that nobody here has set.
+    int before = 0;
+    firstSignal.compare_exchange_strong(before, signal);
     if (state == kWritten) ::_exit(0);
     removeTemporaryFiles();
     constexpr std::string_view kLine = "deltasplat: interrupted\n";
-    (void)!::write(STDERR_FILENO, kLine.data(), kLine.size());
+    // Where nobody reads, there is nobody to wait for.
+    pollfd reader{STDERR_FILENO, POLLOUT, 0};
+    if (::poll(&reader, 1, 0) == 1) (void)!::write(STDERR_FILENO, kLine.data(), kLine.size());
     ::_exit(interruptExitCode());
 }
 
@@ -73,6 +79,8 @@ void passCommitGate() {
 }  // namespace
 
 void handleSignals() {
+    // One that was set before the program was started is not for it.
+    ::alarm(0);
     handleUnlessIgnored(SIGINT);
     handleUnlessIgnored(SIGTERM);
     handleUnlessIgnored(SIGHUP);

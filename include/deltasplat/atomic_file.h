@@ -12,7 +12,8 @@ namespace deltasplat {
 /// of its own (`.deltasplat.<name>.<number>.tmp`), then renamed. Destroyed without commit(), it
 /// leaves nothing; what a process that was killed leaves, the next one removes that writes the same
 /// file. A final name that is a symbolic link stays one, and what it leads to is replaced. A final
-/// name that exists and is no regular file (a device, a pipe) is written to directly.
+/// name that exists and is no regular file (a device, a pipe) is written to directly, and so is one
+/// of a file that is open (/dev/stdout, /proc/self/fd/3), whatever it is, behind what is in it.
 ///
 /// The file is written, checked and given its permissions through one descriptor, and its folder is
 /// kept open too: whoever else may write in that folder cannot have anything written elsewhere. A
@@ -33,7 +34,7 @@ class AtomicFile {
     /// stays this object's.
     /// @throw Error(kOutput) if a device cannot be opened
     int descriptor();
-    /// Whether the final name is of a device or a pipe.
+    /// Whether the final name is of a device, a pipe or an open file.
     bool isDevice() const;
     /// The name given to the constructor, for messages.
     const std::filesystem::path& finalPath() const;
@@ -44,15 +45,17 @@ class AtomicFile {
     /// Makes sure that all was written, so that what is left to do in commit() is the renaming.
     /// @throw Error(kOutput) if not all bytes could be written
     void close();
-    /// Takes the file that has the final name out of the way, if there is one; for a header, while
-    /// another file that it describes is replaced. putBack() undoes it.
-    /// @throw Error(kOutput) if that fails; whatever the commit gate throws
-    void setAside();
-    void putBack() noexcept;
     /// Gives the whole file its final name, after close().
     /// @throw Error(kOutput) if that fails, or if somebody else put another file in its place;
     /// whatever the commit gate throws
     void commit();
+    /// Gives first a data file and then this one, its header, their final names, after close() of
+    /// both. No header describes another data file's content at any time: the old header is taken
+    /// away before, and put back if the data file cannot be replaced, and others who write the same
+    /// data file this way wait. However the process ends, short of being killed, the old two are
+    /// there or the new two.
+    /// @throw Error(kOutput), whatever the commit gate throws: as commit()
+    void commitWithData(AtomicFile& data);
     /// Whether the file has got its final name.
     bool isCommitted() const;
 
@@ -73,8 +76,8 @@ void setCommitGate(void (*gate)());
 /// outlive a power failure. For the whole process, not thread-safe. Off by default.
 void setSyncFiles(bool sync);
 
-/// Removes the temporary files of all AtomicFiles: for who ends the process without destroying
-/// them. May be called by a signal handler.
+/// Removes the temporary files of all AtomicFiles, and brings what commitWithData() has begun to
+/// its end: for who ends the process without destroying them. May be called by a signal handler.
 void removeTemporaryFiles() noexcept;
 
 }  // namespace deltasplat

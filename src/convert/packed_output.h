@@ -30,10 +30,8 @@ class PackedOutput {
     void close();
     /// Gives the file its final name. close() comes first.
     void commit() { file_.commit(); }
-    /// As AtomicFile has them.
-    void setAside() { file_.setAside(); }
-    void putBack() noexcept { file_.putBack(); }
-    bool isCommitted() const { return file_.isCommitted(); }
+    /// Gives a data file and this one, its header, their final names, as AtomicFile does.
+    void commitWithData(PackedOutput& data) { file_.commitWithData(data.file_); }
 
   private:
     void deflateInput(int flush);

@@ -167,17 +167,6 @@ double writeValues(const Volume& volume, const IndexBox& box, const DenseLayout&
     return error;
 }
 
-// The header comes last: who finds it finds the values. An old header must not describe new ones.
-void commitData(PackedOutput& data, PackedOutput& head) {
-    head.setAside();
-    try {
-        data.commit();
-    } catch (...) {
-        if (!data.isCommitted()) head.putBack();
-        throw;
-    }
-}
-
 }  // namespace
 
 WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& format,
@@ -208,8 +197,11 @@ WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& for
 
     head.close();
     data.close();
-    if (separate) commitData(*separate, head);
-    head.commit();
+    if (separate) {
+        head.commitWithData(*separate);
+    } else {
+        head.commit();
+    }
     report.files = {file};
     if (separate) report.files.push_back(dataFile);
     if (report.maxError != 0) report.lossless = false;

@@ -20,9 +20,12 @@ foreach(signal INT TERM HUP)
     deltasplat_script_test(interrupt.${signal} interrupt.sh
         ARGS ${tool} ${scratch}/interrupt_${signal} ${signal})
 endforeach()
+deltasplat_script_test(interrupt.full_pipe interrupt_full_pipe.sh
+    ARGS ${tool} ${scratch}/interrupt_full_pipe)
 deltasplat_script_test(interrupt.write interrupt_write.sh ARGS ${tool} ${scratch}/interrupt_write)
+deltasplat_script_test(shared_output shared_output.sh ARGS ${tool} ${scratch}/shared_output)
 deltasplat_script_test(killed killed.sh ARGS ${tool} ${scratch}/killed)
-deltasplat_script_test(few_threads few_threads.sh ARGS ${tool} ${scratch}/few_threads)
+deltasplat_script_test(few_threads few_threads.sh ARGS ${tool})
 set_tests_properties(cli.few_threads PROPERTIES SKIP_RETURN_CODE 77)
 deltasplat_script_test(inputs_kept inputs_kept.sh
     ARGS ${tool} ${scratch}/inputs_kept $<BOOL:${DELTASPLAT_ITK}>)

@@ -194,31 +194,6 @@ TEST(AtomicFile, HoldsBackWhatTheGateHoldsBack) {
     EXPECT_EQ(folder.count(), 1);
 }
 
-TEST(AtomicFile, TakesAnOldFileAwayAndPutsItBack) {
-    const test::TempFolder folder;
-    writeFileAtomically(folder / "head", "old");
-    {
-        AtomicFile head(folder / "head");
-        head.setAside();
-        EXPECT_FALSE(fs::exists(folder / "head"));
-        head.putBack();
-        EXPECT_EQ(readBytes(folder / "head"), "old");
-    }
-    EXPECT_EQ(folder.count(), 1);
-    {
-        AtomicFile head(folder / "head");
-        head.setAside();
-        head.write("new", 3);
-        head.commit();
-    }
-    EXPECT_EQ(readBytes(folder / "head"), "new");
-    EXPECT_EQ(folder.count(), 1);
-    AtomicFile none(folder / "none");
-    none.setAside();
-    none.putBack();
-    EXPECT_EQ(folder.count(), 2);
-}
-
 TEST(AtomicFile, RemovesWhatIsLeftWhenTheProcessHasToEnd) {
     const test::TempFolder folder;
     const AtomicFile first(folder / "a.raw");

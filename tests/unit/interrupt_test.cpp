@@ -111,6 +111,20 @@ TEST(Interrupt, AfterTheFirstFileWhatHangsIsEnded) {
     EXPECT_EQ(end(true), 0);
 }
 
+// Who started the program may have set one, for itself.
+TEST(Interrupt, AnAlarmSetBeforeIsNotHeard) {
+    const int code = inProcess([] {
+        ::alarm(1000);
+        handleSignals();
+        ::_exit(int(::alarm(0)) == 0 ? 0 : 1);
+    });
+    EXPECT_EQ(code, 0);
+}
+
+TEST(Interrupt, AnAlarmOfAStrangerEndsTheProcessWithItsNumber) {
+    EXPECT_EQ(inProcess([] { ::raise(SIGALRM); }), 128 + SIGALRM);
+}
+
 TEST(Interrupt, IgnoredSignalsStayIgnored) {
     const auto before = ::signal(SIGINT, SIG_IGN);
     const int code = inProcess([] {

@@ -1,6 +1,7 @@
 deltasplat_test(unit/cgroup_test.cpp)
 deltasplat_test(unit/shared_folder_test.cpp)
 deltasplat_test(unit/paired_files_test.cpp)
+deltasplat_test(unit/commit_pair_test.cpp)
 set(tools ${PROJECT_SOURCE_DIR}/tools)
 deltasplat_test(unit/interrupt_test.cpp SOURCES ${tools}/interrupt.cpp)
 target_include_directories(interrupt_test PRIVATE ${tools})

@@ -12,6 +12,7 @@
 #include <functional>
 
 #include "deltasplat/atomic_file.h"
+#include "output_target.h"
 #include "unit/file_limits.h"
 #include "unit/temp_folder.h"
 
@@ -116,17 +117,37 @@ TEST(SharedFolder, LinksThatLeadNowhereAreErrors) {
     EXPECT_EQ(folder.count(), 4);
 }
 
-// The link of the process's own open file, which has lost its name.
-TEST(SharedFolder, LinksToFilesThatAreGoneAreErrors) {
+// What a shell has opened for several is not replaced: all write behind each other.
+TEST(SharedFolder, OpenFilesAreWrittenToThroughTheirDescriptors) {
     const test::TempFolder folder;
-    const int gone = ::open((folder / "gone").c_str(), O_RDWR | O_CREAT, 0600);
-    ASSERT_GE(gone, 0);
-    fs::remove(folder / "gone");
-    const fs::path link = "/proc/self/fd/" + std::to_string(gone);
-    EXPECT_EQ(errorOf([&] { writeFileAtomically(link, "x"); }),
-              "4: " + link.string() + ": cannot be written: Too many levels of symbolic links");
-    EXPECT_EQ(folder.count(), 0);
-    ::close(gone);
+    const fs::path log = folder / "log";
+    const int file = ::open(log.c_str(), O_RDWR | O_CREAT, 0600);
+    ASSERT_GE(file, 0);
+    struct stat before {
+    }, after{};
+    ::fstat(file, &before);
+    ASSERT_EQ(::write(file, "one ", 4), 4);
+    const std::string number = std::to_string(file);
+    fs::create_symlink("/dev/fd/" + number, folder / "link");
+    writeFileAtomically("/proc/self/fd/" + number, "two ");
+    writeFileAtomically("/dev/fd/" + number, "three ");
+    writeFileAtomically(folder / "link", "four ");
+    ASSERT_EQ(::write(file, "five ", 5), 5);
+    // That of another process, which has its own place in the file.
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::close(file);
+        writeFileAtomically("/proc/" + std::to_string(::getppid()) + "/fd/" + number, "six");
+        ::_exit(0);
+    }
+    ::waitpid(child, nullptr, 0);
+    EXPECT_EQ(readBytes(log), "one two three four five six");
+    ASSERT_EQ(::stat(log.c_str(), &after), 0);
+    EXPECT_EQ(after.st_ino, before.st_ino);
+    fs::remove(log);
+    writeFileAtomically("/proc/self/fd/" + number, "seven");
+    EXPECT_EQ(folder.count(), 1) << "a file that is gone gets no new name";
+    ::close(file);
 }
 
 TEST(SharedFolder, LinksOfStrangersAreNotFollowed) {
@@ -134,10 +155,22 @@ TEST(SharedFolder, LinksOfStrangersAreNotFollowed) {
     const test::TempFolder folder, other;
     fs::create_symlink(other / "victim", folder / "out.png");
     ASSERT_EQ(::lchown((folder / "out.png").c_str(), 12345, 12345), 0);
-    fs::permissions(folder.path(), fs::perms(01777));
-    EXPECT_EQ(errorOf([&] { writeFileAtomically(folder / "out.png", "x"); }),
-              "4: " + (folder / "out.png").string() + ": cannot be written: Permission denied");
-    EXPECT_EQ(other.count(), 0);
+    for (const int mode : {01777, 0777, 01775, 0775, 0770, 0702}) {
+        fs::permissions(folder.path(), fs::perms(mode));
+        EXPECT_EQ(errorOf([&] { writeFileAtomically(folder / "out.png", "x"); }),
+                  "4: " + (folder / "out.png").string() + ": cannot be written: Permission denied")
+            << std::oct << mode;
+        EXPECT_EQ(other.count(), 0);
+    }
+    // A device is no exception.
+    fs::create_symlink("/dev/null", folder / "null.png");
+    ASSERT_EQ(::lchown((folder / "null.png").c_str(), 12345, 12345), 0);
+    EXPECT_NE(errorOf([&] { writeFileAtomically(folder / "null.png", "x"); }), "no error");
+    // The folder's owner may say where outputs in it go.
+    ASSERT_EQ(::chown(folder.path().c_str(), 12345, 12345), 0);
+    writeFileAtomically(folder / "out.png", "owner's");
+    EXPECT_EQ(readBytes(other / "victim"), "owner's");
+    ASSERT_EQ(::chown(folder.path().c_str(), 0, 0), 0);
     // In a folder of this user alone it is this user's doing.
     fs::permissions(folder.path(), fs::perms(0700));
     writeFileAtomically(folder / "out.png", "x");
@@ -188,6 +221,27 @@ TEST(SharedFolder, LivingProcessesKeepTheirs) {
     EXPECT_EQ(folder.count(), 1);
     ::close(go[0]);
     ::close(go[1]);
+}
+
+// A file that is replaced while it is looked at is no link.
+TEST(SharedFolder, OthersWhoWriteTheSameDoNotDisturb) {
+    const test::TempFolder folder;
+    std::ofstream(folder / "out.png") << "x";
+    const pid_t child = ::fork();
+    if (child == 0) {
+        for (;;) {
+            std::ofstream(folder / "new") << "y";
+            ::rename((folder / "new").c_str(), (folder / "out.png").c_str());
+        }
+    }
+    std::string errors;
+    for (int i = 0; i < 20000 && errors.empty(); ++i) {
+        const std::string error = errorOf([&] { findTarget(folder / "out.png"); });
+        if (error != "no error") errors = error;
+    }
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    EXPECT_EQ(errors, "");
 }
 
 TEST(SharedFolder, LongNamesFit) {

@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs the program where a user may have few threads (ulimit -u): whatever happens is an exit code
 # of its own and one line, and with a few threads more it works.
-# Usage: few_threads.sh PROGRAM SCRATCH
+# Usage: few_threads.sh PROGRAM
 set -uo pipefail
-program=$1 scratch=$2
-rm -rf "$scratch"
-mkdir -p "$scratch"
+program=$1
+# Where another user gets to as well: a build folder may lie in a home that is closed to others.
+scratch=$(mktemp -d) || exit 1
+trap 'rm -rf "$scratch"' EXIT
+chmod 755 "$scratch"
 cd "$scratch" || exit 1
 "$program" synth slab slab_8x8x8_uint8.raw --dims 8x8x8 -q || exit 1
 "$program" render slab_8x8x8_uint8.raw -o expected.exr -q || exit 1
@@ -19,7 +21,7 @@ if [[ $(id -u) != 0 ]] || ! "${as_user[@]}" true 2>/dev/null; then
     exit 77
 fi
 cp "$program" program
-if ! "${as_user[@]}" ./program --version >/dev/null; then
+if ! "${as_user[@]}" bash -c 'exec ./program --version' >/dev/null; then
     echo "skipped: another user cannot reach $scratch"
     exit 77
 fi

@@ -35,6 +35,13 @@ if [[ $itk == 1 ]]; then
     refused info x.nhdr --plot x.nhdr/../x.svg --plot slices/../s.png --tf s.png
     refused delta x.nhdr d.vdb --stats x.raw.gz
 fi
+# An output and its own data file.
+mkdir own
+ln -s o.mhd own/o.raw
+ln -s p.raw.gz own/p.nhdr
+refused convert v_8x9x10_uint8.raw own/o.mhd
+refused convert v_8x9x10_uint8.raw own/p.nhdr
+[[ ! -e own/o.mhd && ! -e own/p.raw.gz ]] || { echo "an output that is its own data file"; exit 1; }
 refused info s.png --plot s.png
 refused info s.png --plot other_name.png
 refused info v_8x9x10_uint8.raw slices --plot slices/s.0002.png
