@@ -115,10 +115,10 @@ void runBench(const CLI::App& app, const BenchCommand& command, const Session& s
         printOut(command.json ? jsonText(found.report) : plainText(found.report));
         if (!command.report.empty())
             writePage(command.report, pageText(found.report, command.picture.background));
-        allIsWritten();
     }
     for (const BenchEntry& entry : found.report.entries) addDifference(entry, found.failures);
     throwFailures(found.failures);
+    allIsWritten();
 }
 
 }  // namespace

@@ -61,9 +61,9 @@ void declareOptions(CLI::App& app, ConvertCommand& command) {
         .required();
     arguments
         .addValue("OUTPUT", "FILE", command.output, anyText(),
-                  "File to write: .vdb .nrrd .nhdr .mhd .mha .nii .nii.gz .raw\n"
-                  "or .raw.gz; of the input's grids a .vdb gets all scalar ones,\n"
-                  "the others the first")
+                  "File to write: .vdb .npy .nrrd .nhdr .mhd .mha .nii .nii.gz\n"
+                  ".raw or .raw.gz; of the input's grids a .vdb gets all scalar\n"
+                  "ones, the others the first")
         .required();
 
     OptionGroup output(app, "Output");

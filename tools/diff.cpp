@@ -12,6 +12,7 @@
 #include "input_options.h"
 #include "listener.h"
 #include "subcommands.h"
+#include "volume_choices.h"
 
 namespace deltasplat {
 namespace {
@@ -90,6 +91,17 @@ std::vector<GridPair> pairGrids(const DiffOptions& options, FileDiff& diff) {
     return pairs;
 }
 
+// --volume and --series choose among several. What has only one may be what another program, or
+// `convert`, made of the one chosen.
+ReadOptions optionsFor(const std::filesystem::path& file, const std::filesystem::path& other,
+                       ReadOptions options) {
+    if (!options.volume && !options.series) return options;
+    if (hasSeveral(file, options) || !hasSeveral(other, options)) return options;
+    options.volume.reset();
+    options.series.reset();
+    return options;
+}
+
 Volume readOne(const std::filesystem::path& file, const std::string& grid, ReadOptions options,
                const Listener& listener) {
     options.gridName = isVdb(file) ? grid : "";
@@ -103,8 +115,10 @@ Volume readOne(const std::filesystem::path& file, const std::string& grid, ReadO
 GridDiff compareGrids(const DiffOptions& options, const GridPair& pair,
                       const std::function<Listener(double begin, double end)>& stage) {
     GridDiff diff;
-    diff.a = readOne(options.a, pair.a, options.read, stage(0, kReadA));
-    diff.b = readOne(options.b, pair.b, options.read, stage(kReadA, kReadB));
+    diff.a = readOne(options.a, pair.a, optionsFor(options.a, options.b, options.read),
+                     stage(0, kReadA));
+    diff.b = readOne(options.b, pair.b, optionsFor(options.b, options.a, options.read),
+                     stage(kReadA, kReadB));
     diff.comparison = compareVolumes(diff.a, diff.b, options.compare, stage(kReadB, 1));
     diff.verdict = judge(diff.comparison, options.compare, options.limits);
     for (Volume* volume : {&diff.a, &diff.b}) {

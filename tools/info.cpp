@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
@@ -14,6 +15,7 @@
 #include "plot_file.h"
 #include "slice_plot.h"
 #include "subcommands.h"
+#include "volume_choices.h"
 
 namespace deltasplat {
 namespace {
@@ -37,10 +39,14 @@ void throwFailures(const std::vector<Error>& failures) {
     throw failures.back();
 }
 
-void listInputs(const InfoOptions& options, const Session& session) {
+void listInputs(const CLI::App& app, const InfoOptions& options, const Session& session) {
     std::vector<FileListing> files;
     std::vector<Error> failures;
     ProgressDisplay display(session.common);
+    warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()}, display);
+    for (const char* const option : {"--plot", "--tf"}) {
+        if (isGiven(app, option)) display.warn(std::string(option) + ": has no effect with --list");
+    }
     for (const std::string& file : options.inputs) {
         try {
             files.push_back({file, listVolumes(file, options.read, display.stage(0, 0))});
@@ -60,26 +66,56 @@ struct Findings {
     std::size_t grids = 0;  // in all reports, the unfinished one included
 };
 
-void addFile(const std::string& file, const InfoOptions& options, const DescribeOptions& describe,
-             const Listener& listener, Findings& found) {
-    FileReport report;
-    report.file = file;
+void describeChoice(const std::string& file, const VolumeChoice& choice, const InfoOptions& options,
+                    const DescribeOptions& describe, const Listener& listener, FileReport& report,
+                    Findings& found) {
     VolumeVisitor visitor;
     visitor.volume = [&](Volume volume) {
         const bool plot = !options.plot.empty() && found.grids < kMaxPlots;
         if (++found.grids == kMaxPlots + 1 && !options.plot.empty())
             listener.warn("--plot: shows the first " + std::to_string(kMaxPlots) + " grids only");
         report.grids.push_back(describeVolume(std::move(volume), describe, plot));
+        report.grids.back().entry = choice.entry;
+        report.grids.back().volumeIndex = choice.read.volume.value_or(0);
     };
     visitor.invalid = [&](const Error& error) { found.failures.push_back(error); };
     visitor.other = [&](const std::string& name, const std::string& type) {
         report.others.push_back(name + " (" + type + ")");
     };
     try {
-        forEachVolume(file, options.read, visitor, listener);
+        forEachVolume(file, choice.read, visitor, listener);
     } catch (const Error& error) {
         if (error.code() == ErrorCode::kInterrupted) throw;
         found.failures.push_back(error);
+    }
+}
+
+void addFile(const std::string& file, const InfoOptions& options, const DescribeOptions& describe,
+             const Listener& listener, Findings& found) {
+    FileReport report;
+    report.file = file;
+    std::vector<VolumeChoice> choices;
+    try {
+        choices = choicesIn(file, options.read);
+    } catch (const Error& error) {
+        found.failures.push_back(error);
+    }
+    double done = 0;
+    std::set<std::string> warned;  // what is said of a folder is said with each series
+    for (const VolumeChoice& choice : choices) {
+        Listener part;
+        part.progress = [&](double share) {
+            listener.report((done + share) / double(choices.size()));
+        };
+        part.warning = [&](const std::string& text) {
+            if (warned.insert(text).second) listener.warn(text);
+        };
+        if (choices.size() > 1 && choice.entry.type == kNoImages) {
+            report.others.push_back(seriesText(choice.entry) + " (" + kNoImages + ")");
+        } else {
+            describeChoice(file, choice, options, describe, part, report, found);
+        }
+        ++done;
     }
     if (!report.grids.empty() || !report.others.empty()) found.reports.push_back(std::move(report));
 }
@@ -99,6 +135,8 @@ SlicePlot plotOf(const std::string& file, const GridReport& report) {
     plot.title = std::filesystem::path(file).filename().string();
     // A raw volume has no name but its file's.
     if (volume.hasBackground) plot.title += ", " + volume.name;
+    if (!report.entry.description.empty()) plot.title += ", " + report.entry.description;
+    if (report.entry.volumes > 1) plot.title += ", volume " + std::to_string(report.volumeIndex);
     plot.title += ", " + joinNumbers({double(dims.x), double(dims.y), double(dims.z)}, " x ");
     plot.visible = "visible: " + report.visible;
     plot.box = volume.box;
@@ -117,7 +155,7 @@ void writePlot(const std::filesystem::path& file, const Findings& found) {
 }
 
 void runInfo(const CLI::App& app, const InfoOptions& options, const Session& session) {
-    if (options.list) return listInputs(options, session);
+    if (options.list) return listInputs(app, options, session);
     if (!options.plot.empty()) {
         checkDrawingFile(options.plot);
         const Files inputs(options.inputs.begin(), options.inputs.end());
@@ -142,8 +180,8 @@ void runInfo(const CLI::App& app, const InfoOptions& options, const Session& ses
                               : plainText(found.reports));
     }
     if (!options.plot.empty()) writePlot(options.plot, found);
-    allIsWritten();
     throwFailures(found.failures);
+    allIsWritten();
 }
 
 }  // namespace
@@ -163,8 +201,9 @@ Subcommand addInfo(CLI::App& program) {
     OptionGroup output(app, "Output");
     output.addFlag("--json", options->json, "Print one JSON object");
     output.addFlag("--list", options->list,
-                   "Only list what the headers tell: a line for each grid with its\n"
-                   "name, type, class and box, and which one is read by default");
+                   "Only list what the headers tell: a line for each grid or DICOM\n"
+                   "series with its name, type, class and box, which one is read by\n"
+                   "default, and how many volumes there are");
     output.addValue("--plot", "FILE", options->plot, anyText(),
                     "Picture to write, .png or .svg: which share of every slice's\n"
                     "voxels is visible and which changes, along x, y and z; a row\n"

@@ -7,6 +7,7 @@
 
 #include "json_text.h"
 #include "parse.h"
+#include "volume_choices.h"
 
 namespace deltasplat {
 namespace {
@@ -25,8 +26,11 @@ std::string boxText(const VolumeEntry& volume) {
 }
 
 std::string remarks(const VolumeEntry& volume) {
-    if (!volume.scalar) return "  not read";
-    return std::string(volume.delta ? "  delta grid" : "") + (volume.preferred ? "  default" : "");
+    std::string text = volume.series ? "  series " + seriesText(volume) : "";
+    if (!volume.scalar) return text + "  not read";
+    if (volume.delta) text += "  delta grid";
+    if (volume.volumes > 1) text += "  " + std::to_string(volume.volumes) + " volumes";
+    return text + (volume.preferred ? "  default" : "");
 }
 
 Row rowOf(const VolumeEntry& volume) {
@@ -75,6 +79,9 @@ std::string jsonText(const std::vector<FileListing>& files) {
                              {"type", volume.type},
                              {"class", volume.gridClass.empty() ? Json() : Json(volume.gridClass)},
                              {"bbox", boxJson(volume)},
+                             {"series", volume.series ? Json(*volume.series) : Json()},
+                             {"description", volume.description},
+                             {"volumes", volume.volumes},
                              {"scalar", volume.scalar},
                              {"delta", volume.delta},
                              {"default", volume.preferred}});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "deltasplat/delta/stamp_counts.h"
+#include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/volume.h"
 
 namespace deltasplat {
@@ -14,6 +15,8 @@ namespace deltasplat {
 /// What `info` says about one grid.
 struct GridReport {
     Volume volume;                      ///< without its codes
+    VolumeEntry entry;                  ///< which series it is, of how many volumes
+    std::int64_t volumeIndex = 0;       ///< which of these volumes
     std::array<SliceCounts, 3> counts;  ///< along x, y and z, every active voxel visible
     std::optional<double> backgroundGuess;
     /// Which voxels the stamps below take for visible: "not clear under ct", ...

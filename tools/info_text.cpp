@@ -7,6 +7,7 @@
 #include "info_report.h"
 #include "number_text.h"
 #include "parse.h"
+#include "volume_choices.h"
 #include "volume_place.h"
 
 namespace deltasplat {
@@ -154,9 +155,23 @@ std::string placeText(const Volume& volume) {
                                          "), frame width " + numberText(camera.frameWidthWorld));
 }
 
+// Which one of several it is.
+std::string choiceText(const GridReport& report) {
+    const VolumeEntry& entry = report.entry;
+    std::string text;
+    if (entry.series) text += line("series", seriesText(entry));
+    if (entry.volumes > 1) {
+        text += line("volume", std::to_string(report.volumeIndex) + " of " +
+                                   std::to_string(entry.volumes) + ", --volume 0 to " +
+                                   std::to_string(entry.volumes - 1));
+    }
+    return text;
+}
+
 std::string gridText(const GridReport& report) {
     const Volume& v = report.volume;
     std::string text = line("grid", v.name) + line("type", v.type) + line("class", v.gridClass);
+    text += choiceText(report);
     text += line("dims", toText(v.box.dims(), " x "));
     text += line("box", v.empty() ? "empty"
                                   : "(" + toText(v.box.min, ", ") + ") to (" +

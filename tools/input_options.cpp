@@ -58,6 +58,14 @@ void addInputOptions(CLI::App& app, ReadOptions& options) {
     group.addValue("--skip-bytes", "N", raw.skipBytes, wholeNumber(),
                    withDefault("Header bytes to pass over", std::to_string(raw.skipBytes)));
 
+    OptionGroup several(app, "Input, several volumes");
+    several.addValue("--volume", "N", options.volume, wholeNumber(),
+                     "NIfTI and .npy of more than three axes: which volume, from 0 on\n"
+                     "(without it they are an error; info tells how many there are)");
+    several.addValue("--series", "UID", options.series, anyText(),
+                     "DICOM folder of several series: which one (without it they are\n"
+                     "an error; info lists them)");
+
     OptionGroup place(app, "Input, .raw, .raw.gz, .npy and images");
     place.addValue("--spacing", "X,Y,Z", raw.spacing, voxelSpacing(),
                    withDefault("World units per voxel", vectorText(raw.spacing)));
@@ -78,6 +86,18 @@ void addConfineOption(CLI::App& app) {
         ->group("Input");
 }
 
+namespace {
+
+// What chooses among volumes is no remark to pass over: something else would be read.
+void requireChoice(const CLI::App& app, const std::string& option, bool meant,
+                   const std::string& inputs) {
+    if (meant || !isGiven(app, option)) return;
+    throw Error(ErrorCode::kUsage, gotExpected(option, app.get_option(option)->as<std::string>(),
+                                               "it with " + inputs + " input"));
+}
+
+}  // namespace
+
 void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesystem::path>& inputs,
                               ProgressDisplay& display) {
     std::set<InputKind::Format> formats;
@@ -92,6 +112,9 @@ void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesy
     const bool anyRaw = formats.contains(InputKind::Format::kRaw);
     const bool anyNpy = formats.contains(InputKind::Format::kNpy);
     const bool anyImages = formats.contains(InputKind::Format::kImages);
+    requireChoice(app, "--volume", anyNpy || formats.contains(InputKind::Format::kNifti),
+                  "a .nii, .nii.gz or .npy");
+    requireChoice(app, "--series", formats.contains(InputKind::Format::kDicom), "a DICOM");
     const auto warnOf = [&](const std::vector<std::string>& options, const std::string& input) {
         const std::string remark = ": has no effect without " + input;
         for (const std::string& option : options) {

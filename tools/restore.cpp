@@ -10,7 +10,8 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/file_name.h"
+#include "ingest/input_files.h"
+#include "ingest/input_kind.h"
 #include "input_options.h"
 #include "listener.h"
 #include "lower_case.h"
@@ -39,8 +40,8 @@ void declareOptions(CLI::App& app, RestoreCommand& command) {
         .required();
     arguments
         .addValue("OUTPUT", "FILE", command.output, anyText(),
-                  "File to write: .vdb .nrrd .nhdr .mhd .mha .nii .nii.gz .raw\n"
-                  "or .raw.gz; a .vdb gets all delta grids, others the first")
+                  "File to write: .vdb .npy .nrrd .nhdr .mhd .mha .nii .nii.gz\n"
+                  ".raw or .raw.gz; a .vdb gets all delta grids, others the first")
         .required();
     OptionGroup options(app, "Restoring");
     addConfineOption(app);
@@ -48,6 +49,15 @@ void declareOptions(CLI::App& app, RestoreCommand& command) {
                      "Grid to restore (default: all that the output can hold)");
     options.addValue("--stats", "FILE", command.stats, anyText(),
                      "JSON file to write: sizes, deltas, largest error, seconds");
+}
+
+void requireVdb(const RestoreCommand& command) {
+    const InputKind kind = findInput(command.input, {});
+    if (kind.format == InputKind::Format::kVdb) return;
+    if (inputsAreConfined()) requireConfined(command.input);
+    throw Error(ErrorCode::kInput,
+                gotExpected(command.input.string(), "another format",
+                            "a .vdb of delta grids (convert takes other formats)"));
 }
 
 void requireDeltas(const RestoreCommand& command, const Volume& volume) {
@@ -67,8 +77,8 @@ std::string joined(const std::vector<std::string>& names) {
 // The delta grids that the output can hold, by name. Without any, reading says what is wrong.
 std::vector<std::string> chooseGrids(const RestoreCommand& command, const Listener& listener,
                                      ConversionStats& stats) {
-    const bool isVdb = lowerExtension(command.input) == ".vdb";
-    if (!isVdb || !command.read.gridName.empty()) return {command.read.gridName};
+    requireVdb(command);
+    if (!command.read.gridName.empty()) return {command.read.gridName};
     GridList grids = listGrids(command.input);
     if (grids.deltas.empty()) return {grids.scalar.empty() ? "" : grids.scalar.front()};
     const std::string where = command.input.string() + ": ";

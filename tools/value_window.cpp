@@ -65,11 +65,12 @@ glm::dvec2 middleOf(std::vector<float> values) {
     return {at(rank), at(values.size() - 1 - rank)};
 }
 
-// One value only is white, if it is above 0: black is nothing.
+// One value only is white if it is above 0, for black is nothing; otherwise it is black, and
+// nothing is white.
 glm::dvec2 widened(glm::dvec2 window) {
     if (window.x < window.y) return window;
     if (window.y > 0) return {0, window.y};
-    return {window.y - 1, window.y};
+    return {window.y, window.y < 0 ? 0 : 1};
 }
 
 void showWindow(glm::dvec2 window, Image& image) {

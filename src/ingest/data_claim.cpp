@@ -25,9 +25,11 @@ bool isOrientation(const std::string& text) {
     throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
 }
 
-// Data in a list or a numbered series of files, or on standard input, is not read.
+// Data in a list or a numbered series of files, or on standard input, is not read. Names that begin
+// with "c:", and for MetaIO "~", are not looked up beside the header.
 void setDetached(const std::filesystem::path& file, const std::string& name, DataClaim& claim) {
-    if (name.empty() || name == "-" || lowerCase(name).rfind("list", 0) == 0 ||
+    const bool elsewhere = name.starts_with('~') || (name.size() > 1 && name[1] == ':');
+    if (name.empty() || name == "-" || lowerCase(name).rfind("list", 0) == 0 || elsewhere ||
         name.find('%') != std::string::npos) {
         refuse(file, "data in \"" + printable(name) + "\"", "the name of one data file");
     }
@@ -149,6 +151,20 @@ void checkMetaData(const std::filesystem::path& file, const TextHeader& header, 
     claim.dataBytes -= std::uint64_t(skipped);
 }
 
+// MetaIO takes three spellings for data in the same file; it takes a backslash in the header's name
+// for a slash, and drops what is not ASCII at the end of a data file's.
+bool isLocal(const std::filesystem::path& file, const std::string& name) {
+    if (name == "LOCAL" || name == "Local" || name == "local") return true;
+    const bool cut = !name.empty() && static_cast<signed char>(name.back()) < 0;
+    if (lowerCase(name) == "local" || cut) {
+        refuse(file, "data in \"" + printable(name) + "\"", "LOCAL or the name of one data file");
+    }
+    if (file.filename().string().find('\\') != std::string::npos) {
+        refuse(file, "a backslash in the header's name", "a name without");
+    }
+    return false;
+}
+
 }  // namespace
 
 DataClaim claimOfMeta(const std::filesystem::path& file) {
@@ -156,7 +172,7 @@ DataClaim claimOfMeta(const std::filesystem::path& file) {
     DataClaim claim;
     claim.sizes = parseSizes(file.string(), require(file, header, "dimsize"));
     const std::string name = header.fields.back().value;
-    if (lowerCase(name) == "local") {
+    if (isLocal(file, name)) {
         setAttached(file, header, claim);
     } else {
         setDetached(file, name, claim);
@@ -172,6 +188,11 @@ DataClaim claimOfMeta(const std::filesystem::path& file) {
     if (axes != std::int64_t(claim.sizes.size())) {
         refuse(file, "NDims = " + std::to_string(axes),
                std::to_string(claim.sizes.size()) + ", as many as there are sizes");
+    }
+    // It has room for so many.
+    constexpr std::int64_t kMostAxes = 10;
+    if (axes > kMostAxes) {
+        refuse(file, "NDims = " + std::to_string(axes), "at most " + std::to_string(kMostAxes));
     }
     checkMetaData(file, header, claim);
     const std::string* binary = header.find("binarydata");

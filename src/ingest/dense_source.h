@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <glm/mat4x4.hpp>
 #include <string>
@@ -20,7 +21,8 @@ struct DenseSource {
     RawType type = RawType::kUint8;
     bool bigEndian = false;  ///< of the bytes that forEachLayer gives
     glm::dmat4 worldFromIndex{1.0};
-    std::string space;  ///< as Volume::space
+    std::string space;         ///< as Volume::space
+    std::int64_t volumes = 1;  ///< how many volumes its file has, one of which it is
 
     /// Receives `slices` slices from number `first` on, x fastest, without gaps.
     using LayerUse = std::function<void(int first, int slices, const std::byte* bytes)>;

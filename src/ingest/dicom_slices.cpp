@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "deltasplat/error.h"
 #include "number_text.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {
@@ -15,23 +13,6 @@ namespace {
 [[noreturn]] void refuse(const std::string& where, const std::string& got,
                          const std::string& expected) {
     throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
-}
-
-void requireOneSeries(const std::string& folder, const std::vector<DicomSlice>& slices) {
-    std::map<std::string, int> series;
-    for (const DicomSlice& slice : slices) ++series[slice.series];
-    if (series.size() == 1) return;
-    std::string list;
-    for (const auto& [name, count] : series) {
-        if (list.size() > 300) {
-            list += ", ...";
-            break;
-        }
-        list +=
-            (list.empty() ? "" : ", ") + printable(name) + ": " + std::to_string(count) + " slices";
-    }
-    refuse(folder, std::to_string(series.size()) + " DICOM series (" + list + ")",
-           "a folder with the slices of one");
 }
 
 std::string sizeText(const DicomSlice& slice) {
@@ -97,7 +78,6 @@ glm::dvec3 DicomSlice::normal() const {
 }
 
 DicomVolume arrangeSlices(const std::string& folder, std::vector<DicomSlice> slices) {
-    requireOneSeries(folder, slices);
     const glm::dvec3 normal = slices.front().normal();
     // Files of equal place and so equal key are refused below; names make the order certain.
     std::sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {

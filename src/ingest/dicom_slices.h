@@ -29,7 +29,6 @@ struct DicomPixels {
 /// What the header of one DICOM slice says, checked.
 struct DicomSlice {
     std::filesystem::path file;
-    std::string series;
     int columns = 0;
     int rows = 0;
     DicomPixels pixels;
@@ -43,19 +42,15 @@ struct DicomSlice {
     std::string name() const { return file.filename().string(); }
 };
 
-/// Reads the header of a slice, not its pixels.
-/// @throw Error(kInput) if it is no single grey image with a place in space
-DicomSlice readDicomSlice(const std::filesystem::path& file);
-
 /// The slices of one volume, in order, and where they lie.
 struct DicomVolume {
     std::vector<DicomSlice> slices;  ///< along the normal
     glm::dmat4 worldFromIndex{1.0};
 };
 
-/// Sorts slices by their places.
+/// Sorts the slices of one series by their places.
 /// @param folder  for messages
-/// @throw Error(kInput) if they are of several series, sizes or directions, or unevenly spaced
+/// @throw Error(kInput) if they are of several sizes or directions, or unevenly spaced
 DicomVolume arrangeSlices(const std::string& folder, std::vector<DicomSlice> slices);
 
 }  // namespace deltasplat

@@ -101,6 +101,29 @@ std::optional<StackPattern> stackPattern(const std::filesystem::path& input) {
     return percentPattern(input.parent_path(), name);
 }
 
+namespace {
+
+// The numbers of a stack have the same distance each.
+void requireEvenNumbers(const std::filesystem::path& input, const StackPattern& pattern,
+                        const std::map<std::uint64_t, std::filesystem::path>& files) {
+    if (files.size() < 2) return;
+    std::uint64_t step = UINT64_MAX;
+    for (auto file = files.begin(); std::next(file) != files.end(); ++file) {
+        step = std::min(step, std::next(file)->first - file->first);
+    }
+    std::uint64_t wanted = files.begin()->first;
+    for (const auto& [number, file] : files) {
+        if (number != wanted) {
+            throw Error(ErrorCode::kInput,
+                        gotExpected(input.string(), "no file " + printable(pattern.nameOf(wanted)),
+                                    std::to_string(files.size()) + " or more numbers in a row"));
+        }
+        wanted += step;
+    }
+}
+
+}  // namespace
+
 std::vector<std::filesystem::path> stackFiles(const std::filesystem::path& input,
                                               const StackPattern& pattern) {
     std::map<std::uint64_t, std::filesystem::path> found;
@@ -114,19 +137,82 @@ std::vector<std::filesystem::path> stackFiles(const std::filesystem::path& input
         throw Error(ErrorCode::kInput, gotExpected(input.string(), "no file of that name",
                                                    "files such as " + pattern.nameOf(1)));
     }
+    requireEvenNumbers(input, pattern, found);
     std::vector<std::filesystem::path> files;
-    const std::uint64_t first = found.begin()->first;
-    const std::uint64_t step = found.size() < 2 ? 1 : std::next(found.begin())->first - first;
-    for (const auto& [number, file] : found) {
-        const std::uint64_t wanted = first + files.size() * step;
-        if (number != wanted) {
-            throw Error(ErrorCode::kInput,
-                        gotExpected(input.string(), "no file " + printable(pattern.nameOf(wanted)),
-                                    std::to_string(found.size()) + " or more numbers in a row"));
-        }
-        files.push_back(file);
-    }
+    for (const auto& [number, file] : found) files.push_back(file);
     return files;
+}
+
+namespace {
+
+// Where the runs of digits in a name begin and end.
+std::vector<std::pair<std::size_t, std::size_t>> numbersIn(const std::string& name) {
+    std::vector<std::pair<std::size_t, std::size_t>> runs;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        if (!isDigit(name[i])) continue;
+        const std::size_t end = endOfDigits(name, i);
+        runs.emplace_back(i, end);
+        i = end;
+    }
+    return runs;
+}
+
+std::string runOf(const std::string& name, std::size_t run) {
+    const auto [begin, end] = numbersIn(name)[run];
+    return name.substr(begin, end - begin);
+}
+
+// Names that differ in nothing but numbers: those of a stack if it is one number that differs.
+void requireEvenNames(const std::filesystem::path& folder, const std::vector<std::string>& names) {
+    std::vector<std::size_t> counters;
+    const auto runs = numbersIn(names.front());
+    for (std::size_t run = 0; run < runs.size(); ++run) {
+        const std::string first = runOf(names.front(), run);
+        const bool same = std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+            return runOf(name, run) == first;
+        });
+        if (!same) counters.push_back(run);
+    }
+    if (counters.size() != 1) return;
+    const auto [begin, end] = runs[counters[0]];
+    StackPattern pattern{folder, names.front().substr(0, begin), names.front().substr(end),
+                         end - begin};
+    std::map<std::uint64_t, std::filesystem::path> found;
+    for (const std::string& name : names) {
+        const std::string digits = runOf(name, counters[0]);
+        std::uint64_t number = 0;
+        const char* const last = digits.data() + digits.size();
+        if (std::from_chars(digits.data(), last, number).ec != std::errc{}) return;
+        pattern.digits = std::min(pattern.digits, digits.size());
+        if (found.emplace(number, name).second) continue;
+        throw Error(ErrorCode::kInput, gotExpected(folder.string(),
+                                                   printable(found[number].string()) + " and " +
+                                                       printable(name) + ", the same number twice",
+                                                   "each number once"));
+    }
+    requireEvenNumbers(folder, pattern, found);
+}
+
+}  // namespace
+
+std::string withoutNumbers(const std::string& name) {
+    std::string text;
+    std::size_t copied = 0;
+    for (const auto& [begin, end] : numbersIn(name)) {
+        text += name.substr(copied, begin - copied) + '#';
+        copied = end;
+    }
+    return text + name.substr(copied);
+}
+
+void requireNoHole(const std::filesystem::path& folder,
+                   const std::vector<std::filesystem::path>& files) {
+    std::map<std::string, std::vector<std::string>> alike;
+    for (const std::filesystem::path& file : files) {
+        const std::string name = file.filename().string();
+        alike[withoutNumbers(file.stem().string())].push_back(name);
+    }
+    for (const auto& [text, names] : alike) requireEvenNames(folder, names);
 }
 
 bool namedBefore(const std::filesystem::path& a, const std::filesystem::path& b) {

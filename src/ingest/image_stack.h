@@ -29,6 +29,14 @@ std::optional<StackPattern> stackPattern(const std::filesystem::path& input);
 std::vector<std::filesystem::path> stackFiles(const std::filesystem::path& input,
                                               const StackPattern& pattern);
 
+/// Returns a name with each number in it as one "#".
+std::string withoutNumbers(const std::string& name);
+
+/// Of names that differ in one number only, the numbers have to be evenly spaced.
+/// @throw Error(kInput) if one is missing, or twice there
+void requireNoHole(const std::filesystem::path& folder,
+                   const std::vector<std::filesystem::path>& files);
+
 /// The order of sortByNumbers.
 bool namedBefore(const std::filesystem::path& a, const std::filesystem::path& b);
 

@@ -51,17 +51,21 @@ bool isImage(const std::filesystem::path& file) {
 bool isDicom(const std::filesystem::path& file) {
     std::array<char, 132> bytes{};
     std::ifstream in(file, std::ios::binary);
+    if (!in) refuse(file, "a file that cannot be opened", "a readable file");
     return in.read(bytes.data(), bytes.size()) && std::memcmp(&bytes[128], "DICM", 4) == 0;
 }
 
-// Regular files that are not hidden, in the order of their names.
+// Regular files that are not hidden, in the order of their names. What is neither that nor a folder
+// may be a slice that is not there: nobody knows.
 Files filesIn(const std::filesystem::path& folder) {
     Files files;
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
         std::error_code ignored;
         const std::string name = entry.path().filename().string();
-        if (name[0] != '.' && entry.is_regular_file(ignored)) files.push_back(entry.path());
+        if (name[0] == '.' || entry.is_directory(ignored)) continue;
+        requireRegularFile(entry.path());
+        files.push_back(entry.path());
     }
     if (error) refuse(folder, "a folder that cannot be read", "a readable folder");
     sortByNumbers(files);
@@ -85,16 +89,6 @@ Files filesThat(const Files& files, const Test& test) {
     return taken;
 }
 
-// A file's name with each number in it as one "#".
-std::string withoutNumbers(const std::filesystem::path& file) {
-    std::string text;
-    for (const char c : file.filename().string()) {
-        const bool digit = c >= '0' && c <= '9';
-        if (!digit || !text.ends_with('#')) text += digit ? '#' : c;
-    }
-    return text;
-}
-
 // An extension that says what a file is, and does not count it.
 std::string kindExtension(const std::filesystem::path& file) {
     const std::string extension = lowerExtension(file);
@@ -109,7 +103,7 @@ void requireNoCutSlice(const std::filesystem::path& folder, const Files& all, co
     std::set<std::string> names;
     std::set<std::string> extensions{".dcm"};
     for (const std::filesystem::path& file : dicom) {
-        names.insert(withoutNumbers(file));
+        names.insert(withoutNumbers(file.filename().string()));
         extensions.insert(kindExtension(file));
     }
     extensions.erase("");
@@ -117,8 +111,8 @@ void requireNoCutSlice(const std::filesystem::path& folder, const Files& all, co
     std::set_difference(all.begin(), all.end(), dicom.begin(), dicom.end(),
                         std::back_inserter(others), namedBefore);
     for (const std::filesystem::path& file : others) {
-        const bool alike =
-            names.contains(withoutNumbers(file)) || extensions.contains(kindExtension(file));
+        const bool alike = names.contains(withoutNumbers(file.filename().string())) ||
+                           extensions.contains(kindExtension(file));
         if (!alike || file.filename() == "DICOMDIR") continue;
         refuse(folder,
                printable(file.filename().string()) +
@@ -148,6 +142,7 @@ InputKind findInFolder(const std::filesystem::path& folder, const Listener& list
         refuse(folder, "images of several kinds (" + extension + ", " + lowerExtension(image) + ")",
                "a folder with the images of one stack");
     }
+    requireNoHole(folder, images);
     warnOfOthers(folder, all, images, "images", listener);
     return {Format::kImages, folderName(folder), images};
 }

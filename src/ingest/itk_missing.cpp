@@ -2,6 +2,7 @@
 // Stands in for what reads through ITK, where the library is built without it.
 #include "deltasplat/error.h"
 #include "ingest/dense_source.h"
+#include "ingest/dicom_series.h"
 #include "ingest/file_name.h"
 #include "ingest/readers.h"
 
@@ -20,8 +21,14 @@ DenseSource openItk(const std::filesystem::path& file) {
     refuse(file, "extension \"" + lowerExtension(file) + "\"");
 }
 
-DenseSource openDicom(const std::filesystem::path& input, const std::string&,
-                      const std::vector<std::filesystem::path>&) {
+std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
+                                    const std::vector<std::filesystem::path>&) {
+    refuse(input, "DICOM");
+}
+
+// As it is declared for those who read: they keep the series.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
+DenseSource openDicom(const std::filesystem::path& input, const std::string&, DicomSeries) {
     refuse(input, "DICOM");
 }
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <openvdb/Grid.h>
 
+#include <utility>
+
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "ingest/default_grid.h"
 #include "ingest/delta_format.h"
+#include "ingest/dicom_series.h"
 #include "ingest/grid_metadata.h"
+#include "ingest/input_files.h"
 #include "ingest/input_kind.h"
 #include "ingest/open_dense.h"
 #include "ingest/vdb_file.h"
@@ -57,18 +61,54 @@ std::vector<VolumeEntry> listVdb(const std::filesystem::path& path) {
     return entries;
 }
 
+void describe(const DenseSource& source, VolumeEntry& entry) {
+    entry.name = source.name;
+    entry.type = rawTypeName(source.type);
+    entry.box = IndexBox{glm::ivec3(0), glm::ivec3(source.dims) - 1};
+    entry.volumes = source.volumes;
+}
+
+// What is wrong with one series of several is said when it is read.
+void describe(const std::filesystem::path& input, const std::string& name, DicomSeries series,
+              bool alone, VolumeEntry& entry) {
+    entry.name = name;
+    entry.type = series.images ? "unknown" : kNoImages;
+    entry.series = series.uid;
+    entry.description = series.description;
+    try {
+        describe(openDicom(input, name, std::move(series)), entry);
+    } catch (const Error& error) {
+        if (alone || error.code() != ErrorCode::kInput) throw;
+        entry.scalar = false;
+    }
+}
+
+std::vector<VolumeEntry> listDicom(const std::filesystem::path& input, const InputKind& kind,
+                                   const ReadOptions& options) {
+    std::vector<DicomSeries> all = findSeries(input, kind.files);
+    const bool alone = all.size() == 1;
+    if (options.series) all = {chooseSeries(input, std::move(all), options.series)};
+    std::vector<VolumeEntry> entries(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        describe(input, kind.name, std::move(all[i]), all.size() == 1, entries[i]);
+        entries[i].preferred = alone;
+    }
+    return entries;
+}
+
 }  // namespace
 
 std::vector<VolumeEntry> listVolumes(const std::filesystem::path& file, const ReadOptions& options,
                                      const Listener& listener) {
     const InputKind kind = findInput(file, listener);
+    if (inputsAreConfined()) requireConfined(file);
     if (kind.format == InputKind::Format::kVdb) return listVdb(file);
-    const DenseSource source = openDense(file, kind, options, listener);
+    if (kind.format == InputKind::Format::kDicom) return listDicom(file, kind, options);
+    ReadOptions any = options;
+    if (!any.volume) any.volume = 0;
     VolumeEntry entry;
-    entry.name = source.name;
-    entry.type = rawTypeName(source.type);
-    entry.box = IndexBox{glm::ivec3(0), glm::ivec3(source.dims) - 1};
-    entry.preferred = true;
+    describe(openDense(file, kind, any, listener), entry);
+    entry.preferred = entry.volumes == 1;
     return {entry};
 }
 

@@ -132,12 +132,16 @@ glm::i64vec3 readDims(const Fields& fields) {
         if (size < 1 || size > kMost) {
             fields.refuse("dims " + dimsText(fields, count), "each 1.." + std::to_string(kMost));
         }
-        if (i > 3 && size != 1) {
-            fields.refuse("dims " + dimsText(fields, count), "one volume of single values");
-        }
         if (i <= 3) dims[int(i - 1)] = size;
     }
     return dims;
+}
+
+// The axes beyond the third, time and the parts of vectors, count volumes.
+double countVolumes(const Fields& fields) {
+    double volumes = 1;
+    for (std::int64_t i = 4; i <= fields.dim(0); ++i) volumes *= double(fields.dim(std::size_t(i)));
+    return volumes;
 }
 
 RawType readType(const Fields& fields) {
@@ -170,7 +174,7 @@ RawLayout readLayout(const Fields& fields) {
     layout.bigEndian = fields.bigEndian;
     layout.skipBytes = readDataStart(fields);
     const double bytes = double(layout.dims.x) * double(layout.dims.y) * double(layout.dims.z) *
-                         rawTypeBytes(layout.type);
+                         rawTypeBytes(layout.type) * countVolumes(fields);
     if (bytes > 0x1p62) {
         fields.refuse("dims " + dimsText(fields, fields.dim(0)),
                       "at most 4611686018427387904 bytes");
@@ -285,6 +289,8 @@ NiftiHeader readNiftiHeader(const std::filesystem::path& file, const Listener& l
     const Fields fields = readFields(file);
     NiftiHeader header;
     header.layout = readLayout(fields);
+    header.volumes = std::int64_t(countVolumes(fields));
+    header.dims = dimsText(fields, fields.dim(0));
     place(fields, listener, header);
     warnOfUnits(fields, listener);
     readRescale(fields, header);

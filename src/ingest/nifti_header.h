@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <glm/mat4x4.hpp>
 #include <string>
@@ -13,7 +14,9 @@ namespace deltasplat {
 
 /// What the header of a NIfTI-1 or NIfTI-2 file says, checked.
 struct NiftiHeader {
-    RawLayout layout;  ///< of the values as stored, behind skipBytes
+    RawLayout layout;          ///< of the values of one volume as stored, behind skipBytes
+    std::int64_t volumes = 1;  ///< one behind the other; all of their bytes fit into 62 bits
+    std::string dims;          ///< of all axes, for messages: "64x64x36x120"
     Rescale rescale;
     glm::dmat4 worldFromIndex{1.0};
     std::string space;  ///< "RAS", or empty if the header places the voxels nowhere

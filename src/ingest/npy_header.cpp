@@ -47,7 +47,9 @@ class Parser {
             if (!take(",") && !ahead("}")) return {};
         }
         const bool whole = fields.type && fields.fortranOrder && fields.shape;
-        return whole && at_ <= text_.size() ? std::optional(fields) : std::nullopt;
+        // Blanks fill up the place that is left.
+        const bool ended = text_.find_first_not_of(" \t\r\n", at_) == std::string::npos;
+        return whole && ended ? std::optional(fields) : std::nullopt;
     }
 
   private:
@@ -149,8 +151,9 @@ void setShape(const std::filesystem::path& file, const Fields& fields, NpyHeader
     header.shape += header.shape.empty() ? "()" : ")";
     const bool sound = std::all_of(axes.begin(), axes.end(),
                                    [](std::int64_t size) { return size >= 1 && size <= kMost; });
-    if (!sound || bytes > 0x1p62) {
-        refuse(file, "shape " + header.shape, "each 1.." + std::to_string(kMost));
+    if (!sound) refuse(file, "shape " + header.shape, "each 1.." + std::to_string(kMost));
+    if (bytes > 0x1p62) {
+        refuse(file, "shape " + header.shape, "at most 4611686018427387904 bytes");
     }
     // From the axis that counts fastest, x, on.
     if (!*fields.fortranOrder) std::reverse(axes.begin(), axes.end());

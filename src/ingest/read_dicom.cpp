@@ -3,24 +3,29 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "deltasplat/error.h"
 #include "ingest/dense_source.h"
 #include "ingest/dicom_pixels.h"
+#include "ingest/dicom_series.h"
 #include "ingest/dicom_slices.h"
 #include "ingest/dicom_walk.h"
 #include "ingest/file_name.h"
 #include "ingest/placement.h"
-#include "ingest/readers.h"
 #include "memory.h"
 #include "printable.h"
 
 namespace deltasplat {
 namespace {
 
+constexpr std::uint32_t kStoredClass = 0x00020002;
+constexpr std::uint32_t kModality = 0x00080060;
+constexpr std::uint32_t kSeriesDescription = 0x0008103e;
 constexpr std::uint32_t kSliceThickness = 0x00180050;
 constexpr std::uint32_t kSpacingBetweenSlices = 0x00180088;
 constexpr std::uint32_t kSeries = 0x0020000e;
@@ -192,14 +197,10 @@ RawType commonType(const std::vector<DicomSlice>& slices) {
     return same ? slices.front().type : RawType::kFloat64;
 }
 
-}  // namespace
-
-DicomSlice readDicomSlice(const std::filesystem::path& path) {
-    requireRegularFile(path);
-    const DicomElements elements = walkDicom(path);
+// Checks what the header of a slice says. Its pixels are not read.
+DicomSlice sliceOf(const std::filesystem::path& path, const DicomElements& elements) {
     DicomSlice slice;
     slice.file = path;
-    slice.series = elements.text(kSeries);
     setSize(elements, slice);
     setPixels(elements, slice);
     requirePixels(elements, slice);
@@ -208,10 +209,57 @@ DicomSlice readDicomSlice(const std::filesystem::path& path) {
     return slice;
 }
 
+// What people go by, where UIDs are only numbers: "CT, Thorax 1.5 mm".
+std::string descriptionOf(const DicomElements& elements) {
+    std::string text = printable(elements.text(kModality));
+    const std::string words = printable(elements.text(kSeriesDescription));
+    if (!words.empty()) text += (text.empty() ? "" : ", ") + words;
+    return text;
+}
+
+void addFile(const std::filesystem::path& path, std::map<std::string, DicomSeries>& all) {
+    requireRegularFile(path);
+    const DicomElements elements = walkDicom(path);
+    // A table of contents, as DICOMDIR is under that name.
+    if (elements.text(kStoredClass) == "1.2.840.10008.1.3.10") return;
+    const std::string uid = elements.text(kSeries);
+    DicomSeries& series = all[uid];
+    if (series.files++ == 0) {
+        series.firstFile = path;
+        series.uid = uid;
+        series.description = descriptionOf(elements);
+    }
+    series.images = series.images || elements.number(kRows, 0) > 0;
+    if (series.error) return;
+    try {
+        series.slices.push_back(sliceOf(path, elements));
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::kInput) throw;
+        series.error = error;
+    }
+}
+
+}  // namespace
+
+std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
+                                    const std::vector<std::filesystem::path>& files) {
+    std::map<std::string, DicomSeries> byUid;
+    for (const std::filesystem::path& file : files) addFile(file, byUid);
+    if (byUid.empty()) refuse(input, "no image", "DICOM slices");
+    // It may be a slice of any of them that has been cut.
+    if (byUid.size() > 1 && byUid.begin()->first.empty()) {
+        refuse(byUid.begin()->second.firstFile, "a file that does not say its series",
+               "a SeriesInstanceUID, as others in the folder have it (the file may be cut)");
+    }
+    std::vector<DicomSeries> all;
+    for (auto& [uid, series] : byUid) all.push_back(std::move(series));
+    return all;
+}
+
 DenseSource openDicom(const std::filesystem::path& input, const std::string& name,
-                      const std::vector<std::filesystem::path>& paths) {
-    std::vector<DicomSlice> slices;
-    for (const std::filesystem::path& path : paths) slices.push_back(readDicomSlice(path));
+                      DicomSeries series) {
+    if (series.error) throw Error(*series.error);
+    std::vector<DicomSlice> slices = std::move(series.slices);
     auto files = std::make_shared<DicomFiles>();
     files->type = commonType(slices);
     for (DicomSlice& slice : slices) slice.type = files->type;

@@ -21,7 +21,9 @@
 #include "ingest/itk_types.h"
 #include "ingest/placement.h"
 #include "ingest/readers.h"
+#include "lower_case.h"
 #include "memory.h"
+#include "printable.h"
 
 namespace deltasplat {
 namespace {
@@ -90,6 +92,18 @@ void requireSameSizes(const ItkFile& file) {
     std::erase(got, 1);
     if (got == claimed) return;
     refuse(file.path, "sizes " + sizesText(file.claim.sizes), "sizes that ITK reads alike");
+}
+
+// So has the file that MetaIO is going to open.
+void requireSameDataFile(const ItkFile& file) {
+    auto* const io = dynamic_cast<itk::MetaImageIO*>(file.io.GetPointer());
+    if (io == nullptr) return;
+    const std::string name = io->GetMetaImagePointer()->ElementDataFileName();
+    const bool local = file.claim.dataFile == file.path;
+    if (local ? lowerCase(name) == "local" : file.path.parent_path() / name == file.claim.dataFile)
+        return;
+    refuse(file.path, "data in \"" + printable(name) + "\" as ITK reads it",
+           "data in \"" + printable(file.claim.dataFile.string()) + "\"");
 }
 
 void requireData(const ItkFile& file) {
@@ -193,6 +207,7 @@ void openFile(ItkFile& file) {
         file.io->SetFileName(file.path.string());
         file.io->ReadImageInformation();
     });
+    requireSameDataFile(file);
     requireOneScalar(file);
     requireSameSizes(file);
     chooseAxes(file);

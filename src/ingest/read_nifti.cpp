@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ingest/choose_volume.h"
 #include "ingest/dense_source.h"
 #include "ingest/file_name.h"
 #include "ingest/nifti_header.h"
@@ -7,10 +8,13 @@
 
 namespace deltasplat {
 
-DenseSource openNifti(const std::filesystem::path& path, const Listener& listener) {
+DenseSource openNifti(const std::filesystem::path& path, const ReadOptions& options,
+                      const Listener& listener) {
     const NiftiHeader header = readNiftiHeader(path, listener);
-    const RawFile file{path, header.layout, lowerExtension(path) == ".nii.gz", true};
+    RawFile file{path, header.layout, lowerExtension(path) == ".nii.gz", true, header.volumes};
     requireRawSize(file);
+    file.volume =
+        chooseVolume(path.string(), "dims " + header.dims, header.volumes, options.volume);
     DenseSource source;
     source.where = path.string();
     source.name = nameWithoutExtensions(path);
@@ -19,9 +23,8 @@ DenseSource openNifti(const std::filesystem::path& path, const Listener& listene
     source.bigEndian = header.layout.bigEndian;
     source.worldFromIndex = header.worldFromIndex;
     source.space = header.space;
-    source.forEachLayer = [file](const DenseSource::LayerUse& use, const Listener& layers) {
-        readRawLayers(file, use, layers);
-    };
+    source.volumes = header.volumes;
+    source.forEachLayer = rawLayersOf(file);
     return rescaled(std::move(source), header.rescale);
 }
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <memory>
 
-#include "deltasplat/error.h"
+#include "ingest/choose_volume.h"
 #include "ingest/file_name.h"
 #include "ingest/npy_header.h"
 #include "ingest/raw_file.h"
@@ -58,15 +58,14 @@ DenseSource fromHalves(DenseSource source) {
 
 }  // namespace
 
-DenseSource openNpy(const std::filesystem::path& path, const RawFormat& format) {
+DenseSource openNpy(const std::filesystem::path& path, const ReadOptions& options) {
+    const RawFormat& format = options.raw;
     const NpyHeader header = readNpyHeader(path);
     requireGeometry(format);
-    if (header.volumes != 1) {
-        throw Error(ErrorCode::kInput, gotExpected(path.string(), "shape " + header.shape,
-                                                   "an array of at most three axes"));
-    }
-    const RawFile file{path, header.layout};
+    RawFile file{path, header.layout, false, false, header.volumes};
     requireRawSize(file);
+    file.volume =
+        chooseVolume(path.string(), "shape " + header.shape, header.volumes, options.volume);
     DenseSource source;
     source.where = path.string();
     source.name = nameWithoutExtensions(path);
@@ -75,9 +74,8 @@ DenseSource openNpy(const std::filesystem::path& path, const RawFormat& format) 
     source.bigEndian = header.layout.bigEndian;
     source.worldFromIndex =
         glm::scale(glm::translate(glm::dmat4(1), format.origin), format.spacing);
-    source.forEachLayer = [file](const DenseSource::LayerUse& use, const Listener& listener) {
-        readRawLayers(file, use, listener);
-    };
+    source.volumes = header.volumes;
+    source.forEachLayer = rawLayersOf(file);
     return header.half ? fromHalves(std::move(source)) : source;
 }
 

@@ -8,8 +8,8 @@
 namespace deltasplat {
 
 /// Opens a .npy file.
-/// @param format  spacing and origin are taken from it
+/// @param options  spacing, origin and which volume are taken from it
 /// @throw as readVolume
-DenseSource openNpy(const std::filesystem::path& file, const RawFormat& format);
+DenseSource openNpy(const std::filesystem::path& file, const ReadOptions& options);
 
 }  // namespace deltasplat

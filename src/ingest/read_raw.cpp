@@ -20,9 +20,7 @@ DenseSource openRaw(const std::filesystem::path& path, const RawFormat& format) 
     source.bigEndian = file.layout.bigEndian;
     source.worldFromIndex =
         glm::scale(glm::translate(glm::dmat4(1), format.origin), format.spacing);
-    source.forEachLayer = [file](const DenseSource::LayerUse& use, const Listener& listener) {
-        readRawLayers(file, use, listener);
-    };
+    source.forEachLayer = rawLayersOf(file);
     return source;
 }
 

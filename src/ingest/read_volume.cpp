@@ -10,6 +10,7 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/value_statistics.h"
+#include "ingest/dicom_series.h"
 #include "ingest/input_files.h"
 #include "ingest/input_kind.h"
 #include "ingest/open_dense.h"
@@ -23,13 +24,14 @@ DenseSource openDense(const std::filesystem::path& input, const InputKind& kind,
                       const ReadOptions& options, const Listener& listener) {
     switch (kind.format) {
         case InputKind::Format::kNifti:
-            return openNifti(input, listener);
+            return openNifti(input, options, listener);
         case InputKind::Format::kNpy:
-            return openNpy(input, options.raw);
+            return openNpy(input, options);
         case InputKind::Format::kItk:
             return openItk(input);
         case InputKind::Format::kDicom:
-            return openDicom(input, kind.name, kind.files);
+            return openDicom(input, kind.name,
+                             chooseSeries(input, findSeries(input, kind.files), options.series));
         case InputKind::Format::kImages:
             return openImages(input, kind.name, kind.files, options.raw, listener);
         default:

@@ -16,16 +16,11 @@ namespace deltasplat {
 DenseSource openRaw(const std::filesystem::path& file, const RawFormat& format);
 
 /// Opens a .nii or .nii.gz file.
-DenseSource openNifti(const std::filesystem::path& file, const Listener& listener);
+DenseSource openNifti(const std::filesystem::path& file, const ReadOptions& options,
+                      const Listener& listener);
 
 /// Opens a .nrrd, .nhdr, .mhd or .mha file.
 DenseSource openItk(const std::filesystem::path& file);
-
-/// Opens the slices of a DICOM folder, or one of them.
-/// @param input  for messages
-/// @param files  in any order
-DenseSource openDicom(const std::filesystem::path& input, const std::string& name,
-                      const std::vector<std::filesystem::path>& files);
 
 /// Opens a stack of images, or the pages of one.
 /// @param input   for messages

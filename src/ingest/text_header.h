@@ -9,7 +9,9 @@
 namespace deltasplat {
 
 /// The lines of a header that is text, as NRRD and MetaImage have it. ITK reads these headers; this
-/// is to know, before ITK sees them, where the data lies and how large it is said to be.
+/// is to know, before ITK sees them, where the data lies and how large it is said to be. So what
+/// ITK could read otherwise is refused: control characters (CR but in CRLF), fields that are not
+/// spelled as their format spells them, and fields given twice.
 struct TextHeader {
     struct Field {
         std::string name;   ///< lower case, without blanks: "datafile", "dimsize"
@@ -23,9 +25,9 @@ struct TextHeader {
 };
 
 /// Reads lines `name: value` up to an empty line or the file's end; lines with ":=" and comments
-/// are passed over.
-/// @throw Error(kInput) if the file cannot be read, does not begin with "NRRD", or has a line or a
-///        header too long to be meant, or a field twice
+/// are passed over. Blanks behind a value belong to it.
+/// @throw Error(kInput) if the file cannot be read, does not begin with "NRRD000" and 1 to 5, has a
+///        line or a header too long to be meant, or anything that two readers take differently
 TextHeader readNrrdHeader(const std::filesystem::path& file);
 
 /// Reads lines `name = value` up to the one named ElementDataFile.

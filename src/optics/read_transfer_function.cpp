@@ -37,9 +37,10 @@ class PresetReader {
 
     bool has(const char* name) const { return preset_.find(name) != nullptr; }
 
-    // Calls add(x, three shares) for each of the points, groups of four numbers.
+    // Calls add(x, three numbers) for each of the points, groups of four numbers.
+    // @param most  of the three: 1, or infinity
     template <typename Add>
-    void points(const char* name, const char* meaning, const Add& add) const {
+    void points(const char* name, const char* meaning, double most, const Add& add) const {
         const LocatedJson& list = array(name, meaning);
         double last = -std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < list.members.size(); i += 4) {
@@ -49,8 +50,8 @@ class PresetReader {
                      "x not below the " + numberText(last) + " before it in " + name);
             }
             last = x;
-            add(x, glm::dvec3(shareIn(list, i + 1, name), shareIn(list, i + 2, name),
-                              shareIn(list, i + 3, name)));
+            const auto at = [&](std::size_t n) { return numberUpTo(most, list, i + n, name); };
+            add(x, glm::dvec3(at(1), at(2), at(3)));
         }
     }
 
@@ -82,12 +83,11 @@ class PresetReader {
         return element.number;
     }
 
-    double shareIn(const LocatedJson& list, std::size_t i, const char* name) const {
-        const double share = numberIn(list, i, name);
-        if (share < 0 || share > 1) {
-            fail(list.members[i].value, std::string("a number within 0..1 in ") + name);
-        }
-        return share;
+    double numberUpTo(double most, const LocatedJson& list, std::size_t i, const char* name) const {
+        const double number = numberIn(list, i, name);
+        if (number >= 0 && number <= most) return number;
+        const std::string range = most == 1 ? "a number within 0..1" : "a number >= 0";
+        fail(list.members[i].value, range + " in " + name);
     }
 
     const std::filesystem::path& file_;
@@ -125,10 +125,12 @@ void makeSteps(std::vector<TransferFunction::ColorPoint>& colors) {
 
 void readColors(const std::filesystem::path& file, const PresetReader& preset,
                 const Listener& listener, TransferFunction& function) {
-    preset.points("RGBPoints", "x, red, green, blue", [&](double x, const glm::dvec3& rgb) {
+    function.linearColors = preset.text("ColorSpaceOfPoints", "sRGB") == "linear";
+    // Light knows no largest value, a share of what a screen shows does.
+    const double most = function.linearColors ? std::numeric_limits<double>::infinity() : 1;
+    preset.points("RGBPoints", "x, red, green, blue", most, [&](double x, const glm::dvec3& rgb) {
         function.colors.push_back({x, rgb});
     });
-    function.linearColors = preset.text("ColorSpaceOfPoints", "sRGB") == "linear";
     const std::string space = preset.text("ColorSpace", "RGB");
     if (space == "Step") {
         makeSteps(function.colors);
@@ -142,7 +144,7 @@ void readColors(const std::filesystem::path& file, const PresetReader& preset,
 void readOpacities(const std::filesystem::path& file, const PresetReader& preset,
                    const Listener& listener, TransferFunction& function) {
     if (preset.has("Points")) {
-        preset.points("Points", "x, opacity, midpoint, sharpness",
+        preset.points("Points", "x, opacity, midpoint, sharpness", 1,
                       [&](double x, const glm::dvec3& p) {
                           function.opacities.push_back({x, p.x, p.y, p.z});
                       });

@@ -1,5 +1,6 @@
 # The odd files that the command-line tests are given.
-add_executable(make_fixtures ${CMAKE_CURRENT_LIST_DIR}/make_fixtures.cpp)
+add_executable(make_fixtures ${CMAKE_CURRENT_LIST_DIR}/make_fixtures.cpp
+               ${CMAKE_CURRENT_LIST_DIR}/make_several.cpp)
 target_link_libraries(make_fixtures PRIVATE OpenVDB::openvdb TBB::tbb ZLIB::ZLIB)
 deltasplat_compile_options(make_fixtures)
 file(MAKE_DIRECTORY ${DELTASPLAT_FIXTURES})

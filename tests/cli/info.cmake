@@ -109,3 +109,9 @@ add_test(NAME cli.info.predicted_stamps
                  -DEXAMPLES=${PROJECT_SOURCE_DIR}/examples -DSCRATCH=${scratch}/predicted_stamps
                  -P ${scripts}/predicted_stamps.cmake)
 set_tests_properties(cli.info.predicted_stamps PROPERTIES LABELS cli TIMEOUT 600)
+
+# What a listing has no use for.
+deltasplat_cli_test(info.list_without_plot ARGS info --list ball.vdb --plot plot.svg --tf tf_good.json
+    STDERR "deltasplat: warning: --plot: has no effect with --list
+deltasplat: warning: --tf: has no effect with --list"
+    STDOUT_MATCHES "^ball.vdb")

@@ -27,6 +27,8 @@ foreach(command "info outside.mhd" "render outside.mhd -o out.exr" "convert outs
 endforeach()
 deltasplat_cli_test(formats.confine.diff EXIT 4 ARGS diff stack.1.pgm outside.mhd --confine
     STDERR "deltasplat: ${outside}")
+deltasplat_cli_test(formats.confine.list EXIT 3 ARGS info --list outside.mhd --confine
+    STDERR "deltasplat: ${outside}")
 deltasplat_cli_test(formats.confine.inside ARGS info stack.\#.pgm --confine
     STDOUT_MATCHES "dims +3 x 2 x 2")
 deltasplat_cli_test(formats.to_npy ARGS convert stack.\#.pgm out.npy CREATES out.npy)

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "make_several.h"
+
 namespace {
 
 void writeVdb(const std::string& file, const openvdb::GridPtrVec& grids) {
@@ -268,4 +270,5 @@ int main(int count, char** words) {
     writeVdbFiles();
     writeRawFiles();
     writeTable1Files();
+    writeSeveral();
 }

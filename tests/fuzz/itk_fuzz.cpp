@@ -29,6 +29,9 @@ void addNrrd(std::vector<std::string>& inputs) {
     add(sizes + space + "encoding: gzip\n", gzipped(values()));
     add(sizes + "spacings: 1 2 3\naxis mins: 1 2 3\ncenters: cell cell node\nencoding: raw\n",
         values());
+    // What NrrdIO would read otherwise than we do.
+    add(sizes + "encoding: raw\n# x\rdata file: -\r\nkey:=x\rlabels: \"a\"\nData  File: x\n",
+        values());
     add(sizes + "encoding: ascii\n", numbers());
     add(sizes + "encoding: hex\n", std::string(9 * 5 * 11 * 4, 'a'));
     add("dimension: 4\nsizes: 1 9 5 11\nkinds: scalar space space space\nendian: big\n"
@@ -56,6 +59,10 @@ void addMeta(std::vector<std::string>& inputs) {
         "Modality = MET_MOD_CT\nElementMin = 0\nElementMax = 5\nElementNumberOfChannels = 1\n"
         "Comment = c\nName = n\nID = 1\nParentID = 1\nColor = 1 0 0 1\nSequenceID = 1 2 3\n"
         "AcquisitionDate = 2000\nDistanceUnits = mm\nOrigin = 1 2 3\n" +
+            sizes,
+        values());
+    // What MetaIO would read otherwise than we do.
+    add("elementdatafile = LOCAL\nndims = -1\nElement Data File: x\nComment = x\rNDims = 9\n" +
             sizes,
         values());
     add("BinaryData = False\n" + sizes, numbers());

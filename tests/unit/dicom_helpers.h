@@ -17,6 +17,7 @@ struct DicomFile {
     std::string orientation = "1\\0\\0\\0\\1\\0";
     std::string pixelSpacing = "0.5\\0.25";  // from row to row, from column to column
     std::string series = "1.2.3";
+    std::string description;
     std::string slope = "1";
     std::string intercept = "0";
     std::string frames;
@@ -37,15 +38,15 @@ struct DicomFile {
         return std::string(128, '\0') + "DICM" + meta +
                element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2") +
                element(8, 0x18, "UI", "1.2.3.4") + element(8, 0x60, "CS", "CT") +
-               element(0x18, 0x50, "DS", thickness) + element(0x20, 0x0e, "UI", series) +
-               element(0x20, 0x32, "DS", position) + element(0x20, 0x37, "DS", orientation) +
-               number(0x28, 0x02, samples) + element(0x28, 0x04, "CS", photometric) +
-               element(0x28, 0x08, "IS", frames) + number(0x28, 0x10, rows) +
-               number(0x28, 0x11, columns) + element(0x28, 0x30, "DS", pixelSpacing) +
-               number(0x28, 0x100, bits) + number(0x28, 0x101, bits) +
-               number(0x28, 0x102, bits - 1) + number(0x28, 0x103, isSigned ? 1 : 0) +
-               element(0x28, 0x1052, "DS", intercept) + element(0x28, 0x1053, "DS", slope) +
-               pixelData();
+               element(8, 0x103e, "LO", description) + element(0x18, 0x50, "DS", thickness) +
+               element(0x20, 0x0e, "UI", series) + element(0x20, 0x32, "DS", position) +
+               element(0x20, 0x37, "DS", orientation) + number(0x28, 0x02, samples) +
+               element(0x28, 0x04, "CS", photometric) + element(0x28, 0x08, "IS", frames) +
+               number(0x28, 0x10, rows) + number(0x28, 0x11, columns) +
+               element(0x28, 0x30, "DS", pixelSpacing) + number(0x28, 0x100, bits) +
+               number(0x28, 0x101, bits) + number(0x28, 0x102, bits - 1) +
+               number(0x28, 0x103, isSigned ? 1 : 0) + element(0x28, 0x1052, "DS", intercept) +
+               element(0x28, 0x1053, "DS", slope) + pixelData();
     }
 
   private:

@@ -140,9 +140,9 @@ inline void expectRefused(const std::string& message, const std::string& file,
 }
 
 /// Expects `file` to be refused with exit code 3 and one line.
-inline void expectInputError(const std::string& file) {
+inline void expectInputError(const std::string& file, const ReadOptions& options = {}) {
     try {
-        readVolume(file);
+        readVolume(file, options);
         ADD_FAILURE() << file << " was read";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::kInput) << error.what();

@@ -1,5 +1,6 @@
 deltasplat_test(unit/code_book_test.cpp)
 deltasplat_test(unit/input_files_test.cpp)
+deltasplat_test(unit/printable_test.cpp)
 deltasplat_test(unit/raw_format_test.cpp)
 deltasplat_test(unit/read_raw_test.cpp)
 deltasplat_test(unit/read_raw_error_test.cpp)

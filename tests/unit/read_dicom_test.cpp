@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "deltasplat/ingest/list_grids.h"
 #include "unit/dicom_helpers.h"
 #include "unit/format_helpers.h"
 #include "unit/lossless_jpeg.h"
@@ -207,8 +208,8 @@ TEST(ReadDicomError, SlicesThatDiffer) {
         "a.dcm",
         [](auto& files) { files[3].orientation = "0\\1\\0\\1\\0\\0"; });
     expectRefusedWith(
-        "scan: got 2 DICOM series (1.2.3: 3 slices, 1.2.4: 2 slices); expected a folder with the "
-        "slices of one",
+        "scan: got 2 DICOM series (1.2.3: 3 files, 1.2.4: 2 files); expected one, chosen by "
+        "--series UID",
         [](auto& files) { files[3].series = files[1].series = "1.2.4"; });
 }
 
@@ -269,6 +270,172 @@ std::vector<std::uint16_t> roughPixels(int count) {
     std::vector<std::uint16_t> pixels;
     for (int i = 0; i < count; ++i) pixels.push_back(std::uint16_t(i * 37 % 5000 + i * i % 777));
     return pixels;
+}
+
+// Two series in one folder, of which the second has slices of another shape, and a report.
+void writeSeveral() {
+    write(slices(5));
+    std::vector<DicomFile> others = slices(3);
+    for (std::size_t i = 0; i < others.size(); ++i) {
+        others[i].series = "1.2.99";
+        others[i].description = "Scout";
+        others[i].columns = 6;
+        others[i].rows = 1;
+        writeBytes("scan/other" + std::to_string(i) + ".dcm", others[i].bytes());
+    }
+    DicomFile report;
+    report.series = "1.2.100";
+    report.description = "Dose report";
+    report.rows = report.columns = 0;
+    writeBytes("scan/report.dcm", report.bytes());
+}
+
+TEST(ReadDicom, SeriesAreChosen) {
+    const TempFolder folder;
+    writeSeveral();
+    ReadOptions options;
+    options.series = "1.2.3";
+    EXPECT_EQ(valuesOf(readVolume("scan", options)), expected(5));
+    options.series = "1.2.99";
+    const Volume second = readVolume("scan", options);
+    EXPECT_EQ(second.box.dims(), glm::ivec3(6, 1, 3));
+    EXPECT_EQ(valuesOf(second), expected(3));
+    const std::string all = "1.2.100: 1 file, 1.2.3: 5 files, 1.2.99: 3 files";
+    options.series = "1.2.9";
+    expectRefused("scan: got no DICOM series 1.2.9; expected --series of " + all, "scan", options);
+    options.series = "";
+    expectRefused("scan: got no DICOM series \"\"; expected --series of " + all, "scan", options);
+    options.series = "1.2.100";
+    expectRefused("scan/report.dcm: got no image; expected a DICOM slice with rows and columns",
+                  "scan", options);
+    expectRefused("scan: got 3 DICOM series (" + all + "); expected one, chosen by --series UID",
+                  "scan");
+}
+
+TEST(ReadDicomError, EverySeriesIsNamed) {
+    const TempFolder folder;
+    std::vector<DicomFile> files = slices(24);
+    std::string all;
+    for (int i = 0; i < 24; ++i) {
+        files[std::size_t(i)].series =
+            "1.2.840.113704.1.111.5104.1396.20261121100000." + std::to_string(1000 + i);
+        all += (i == 0 ? "" : ", ") + files[std::size_t(i)].series + ": 1 file";
+    }
+    write(files);
+    expectRefused("scan: got 24 DICOM series (" + all + "); expected one, chosen by --series UID",
+                  "scan");
+}
+
+// One series is read without being named, or by its name, be that none.
+TEST(ReadDicom, TheOnlySeries) {
+    const TempFolder folder;
+    for (const std::string uid : {"1.2.3", ""}) {
+        std::vector<DicomFile> files = slices(3);
+        for (DicomFile& file : files) file.series = uid;
+        write(files);
+        EXPECT_EQ(valuesOf(readVolume("scan")), expected(3));
+        ReadOptions options;
+        options.series = uid;
+        EXPECT_EQ(valuesOf(readVolume("scan", options)), expected(3));
+        EXPECT_EQ(readVolume(nameOf(0), options).box.dims(), glm::ivec3(3, 2, 1));
+        options.series = "1.2";
+        expectInputError("scan", options);
+        expectInputError(nameOf(0), options);
+    }
+}
+
+// The slice may be of the series that is asked for. Only the elements before the UID are left of
+// it.
+TEST(ReadDicomError, ASliceCutBeforeItsSeries) {
+    const TempFolder folder;
+    write(slices(5));
+    const std::string bytes = slices(6)[5].bytes();
+    const std::size_t uid = bytes.find("1.2.3", bytes.find("CT")) - 8;
+    for (const std::string series : {"1.2.3", "", "1.2.9"}) {
+        ReadOptions options;
+        if (!series.empty()) options.series = series;
+        writeBytes("scan/cut", bytes.substr(0, uid));
+        const std::string message =
+            "scan/cut: got a file that does not say its series; expected a SeriesInstanceUID, as "
+            "others in the folder have it (the file may be cut)";
+        expectRefused(message, "scan", options);
+        expectError(ErrorCode::kInput, message, [&] { listVolumes("scan", options); });
+    }
+    for (std::size_t end = 132; end < bytes.size(); ++end) {
+        ReadOptions options;
+        options.series = "1.2.3";
+        writeBytes("scan/cut", bytes.substr(0, end));
+        EXPECT_THROW(readVolume("scan", options), Error) << end;
+    }
+}
+
+TEST(ReadDicomError, ASliceThatIsALinkToNothing) {
+    const TempFolder folder;
+    write(slices(5));
+    std::filesystem::create_symlink("nowhere", "scan/another");
+    expectRefused("scan/another: got no such file; expected a readable file", "scan");
+}
+
+// A terminal gets UTF-8, whatever alphabet the file is in.
+TEST(ReadDicom, DescriptionsAreUtf8) {
+    const TempFolder folder;
+    std::vector<DicomFile> files = slices(2);
+    for (DicomFile& file : files)
+        file.description =
+            "Sch\xe4"
+            "del \xc3\xa4";
+    write(files);
+    EXPECT_EQ(listVolumes("scan")[0].description, "CT, Sch?del \xc3\xa4");
+}
+
+TEST(ReadDicom, ATableOfContents) {
+    const TempFolder folder;
+    write(slices(5));
+    std::string bytes = slices(1)[0].bytes();
+    const std::string kind = "1.2.840.10008.5.1.4.1.1.2";
+    std::string table = "1.2.840.10008.1.3.10";
+    table.resize(kind.size() + 1);
+    bytes.replace(bytes.find(kind), table.size(), table);
+    const std::size_t uid = bytes.find("1.2.3", bytes.find("CT")) - 8;
+    writeBytes("scan/contents.dcm", bytes.substr(0, uid));
+    EXPECT_EQ(valuesOf(readVolume("scan")), expected(5));
+    expectRefused("scan/contents.dcm: got no image; expected DICOM slices", "scan/contents.dcm");
+}
+
+// What is wrong with one series does not keep the others from being listed and read.
+TEST(ReadDicom, SeriesAreListed) {
+    const TempFolder folder;
+    writeSeveral();
+    std::filesystem::remove("scan/other1.dcm");
+    DicomFile gap = slices(6)[5];
+    gap.series = "1.2.99";
+    gap.columns = 6;
+    gap.rows = 1;
+    writeBytes("scan/other1.dcm", gap.bytes());
+    const std::vector<VolumeEntry> entries = listVolumes("scan");
+    ASSERT_EQ(entries.size(), 3u);
+    EXPECT_EQ(entries[0].series, "1.2.100");
+    EXPECT_EQ(entries[0].description, "CT, Dose report");
+    EXPECT_EQ(entries[0].type, kNoImages);
+    EXPECT_FALSE(entries[0].scalar);
+    EXPECT_EQ(entries[1].series, "1.2.3");
+    EXPECT_EQ(entries[1].description, "CT");
+    EXPECT_EQ(entries[1].type, "uint16");
+    EXPECT_EQ(entries[1].box->dims(), glm::ivec3(3, 2, 5));
+    EXPECT_TRUE(entries[1].scalar);
+    EXPECT_FALSE(entries[1].preferred);
+    EXPECT_EQ(entries[2].series, "1.2.99");
+    EXPECT_FALSE(entries[2].scalar);
+    EXPECT_FALSE(entries[2].box);
+    ReadOptions options;
+    options.series = "1.2.3";
+    EXPECT_EQ(listVolumes("scan", options).size(), 1u);
+    EXPECT_EQ(valuesOf(readVolume("scan", options)), expected(5));
+    options.series = "1.2.99";
+    expectRefused(
+        "scan: got other2.dcm and other1.dcm 6 mm apart; expected 4 mm as between the others (a "
+        "slice may be missing)",
+        "scan", options);
 }
 
 TEST(ReadDicom, LosslessJpeg) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 
@@ -115,7 +116,7 @@ TEST(ReadImages, OneFileIsOnePicture) {
 TEST(ReadImages, Folder) {
     const TempFolder folder;
     std::filesystem::create_directory("stack");
-    writeStack({"stack/z9.png", "stack/z10.png", "stack/z100.png"});
+    writeStack({"stack/z9.png", "stack/z10.png", "stack/z11.png"});
     writeBytes("stack/notes.txt", "text");
     Warnings warnings;
     const Volume volume = readVolume("stack", {}, warnings.listener());
@@ -215,6 +216,8 @@ TEST(ReadImagesError, Stacks) {
     writeStack({"a.01.png", "a.02.png", "a.04.png"});
     expectRefused("a.##.png: got no file a.03.png; expected 3 or more numbers in a row",
                   "a.##.png");
+    writeStack({"h.1.png", "h.3.png", "h.4.png"});
+    expectRefused("h.#.png: got no file h.2.png; expected 3 or more numbers in a row", "h.#.png");
     writeImage("a.03.png", ImageSpec(3, 4, 1, TypeDesc::UINT8), ramp<std::uint8_t>(12));
     expectRefused(
         "a.03.png: got 3x4 uint8, channels: 1; expected 4x3 uint8, channels: 1, as in the first "
@@ -243,6 +246,69 @@ TEST(ReadImagesError, Folders) {
         "mixed: got images of several kinds (.png, .tif); expected a folder with the images of one "
         "stack",
         "mixed");
+}
+
+void writeFolder(const std::vector<std::string>& names) {
+    std::filesystem::remove_all("in");
+    std::filesystem::create_directory("in");
+    std::vector<std::string> files;
+    for (const std::string& name : names) files.push_back("in/" + name + ".png");
+    writeStack(files);
+}
+
+TEST(ReadImagesError, HolesInFolders) {
+    const TempFolder folder;
+    const auto refused = [](const std::string& message, const std::vector<std::string>& names) {
+        writeFolder(names);
+        expectRefused("in: got " + message, "in");
+    };
+    refused("no file s.0003.png; expected 4 or more numbers in a row",
+            {"s.0001", "s.0002", "s.0004", "s.0005"});
+    refused("no file s2.png; expected 3 or more numbers in a row", {"s1", "s3", "s4"});
+    refused("no file 11.png; expected 3 or more numbers in a row", {"9", "10", "12"});
+    refused("no file scan2_t70_s3.png; expected 3 or more numbers in a row",
+            {"scan2_t70_s2", "scan2_t70_s1", "scan2_t70_s4"});
+    refused("s01.png and s1.png, the same number twice; expected each number once",
+            {"s01", "s1", "s02", "s03"});
+    refused("no file b3.png; expected 3 or more numbers in a row", {"a1", "a2", "b1", "b2", "b4"});
+}
+
+// Numbers may begin and step as they like, and what is no counter is none.
+TEST(ReadImages, FoldersOfOtherNames) {
+    const TempFolder folder;
+    for (const std::vector<std::string>& names : std::vector<std::vector<std::string>>{
+             {"s008", "s010", "s012"},
+             {"s98", "s99", "s100"},
+             {"front", "middle", "rear"},
+             {"s1_z0.5", "s2_z1.75", "s3_z9"},
+             {"v2_1", "v2_2", "v2_3"},
+             {"s10000000000000000000000001", "s10000000000000000000000002",
+              "s10000000000000000000000004"}}) {
+        writeFolder(names);
+        EXPECT_EQ(valuesOf(readVolume("in")), ramp<double>(36)) << names[0];
+    }
+}
+
+// A slice that cannot be read is none that may be left out.
+TEST(ReadImagesError, EntriesThatAreNoFiles) {
+    const TempFolder folder;
+    const auto refused = [](const std::string& name) {
+        EXPECT_THROW(readVolume("in"), Error) << name;
+        std::filesystem::remove("in/" + name);
+        EXPECT_EQ(valuesOf(readVolume("in")), ramp<double>(36)) << name;
+    };
+    writeFolder({"s1", "s2", "s3"});
+    std::filesystem::create_directory("in/more");
+    std::filesystem::create_directory_symlink("more", "in/link");
+    std::filesystem::create_symlink("nowhere", "in/.hidden");
+    for (const char* const name : {"s4.png", "notes"}) {
+        std::filesystem::create_symlink("nowhere.png", "in/" + std::string(name));
+        refused(name);
+        std::filesystem::create_symlink(name, "in/" + std::string(name));
+        refused(name);
+        ASSERT_EQ(mkfifo(("in/" + std::string(name)).c_str(), 0600), 0);
+        refused(name);
+    }
 }
 
 TEST(ReadImagesError, DamagedFiles) {

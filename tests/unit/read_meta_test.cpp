@@ -217,6 +217,87 @@ TEST(ReadMetaError, Headers) {
                   "d.mha");
 }
 
+// MetaIO knows fields by their exact names, ends a name at a colon too, and does not stop at what
+// is spelled otherwise: each of these would have it read "b.raw" or write beyond its buffers.
+TEST(ReadMetaError, WhatMetaIoReadsOtherwise) {
+    const TempFolder folder;
+    writeBytes("a.raw", data());
+    writeBytes("b.raw", data(true));
+    const auto refused = [](const std::string& got, const std::string& expected,
+                            const std::string& lines) {
+        Meta meta;
+        meta.more = lines;
+        meta.dataFile = "b.raw";
+        expectRefusedMeta("got " + got + "; expected " + expected, meta, "");
+    };
+    const auto misspelled = [&](const std::string& line, const std::string& name) {
+        refused("the header line \"" + line + "\"", "\"" + name + " = value\"", line + "\n");
+    };
+    misspelled("elementdatafile = a.raw", "ElementDataFile");
+    misspelled("Element Data File = a.raw", "ElementDataFile");
+    misspelled("ELEMENTDATAFILE = LOCAL", "ElementDataFile");
+    misspelled("ndims = 3", "NDims");
+    misspelled("Dim Size = 4 3 2", "DimSize");
+    misspelled("Comment = = a", "Comment");
+    misspelled("ElementDataFile: a.raw", "Name");
+    misspelled("Element:DataFile = a.raw", "Name");
+    misspelled(" = a.raw", "Name");
+    for (const std::string& line :
+         {std::string("Comment = x\rElementDataFile = a.raw"), std::string("Comment = x\r\r"),
+          std::string("Comment = x\0y", 13), std::string("\vNDims = 3")}) {
+        std::string shown = line.back() == '\r' ? line.substr(0, line.size() - 1) : line;
+        for (char& c : shown) {
+            if (static_cast<unsigned char>(c) < ' ') c = '?';
+        }
+        if (line.back() == '\r') shown = "Comment = x?";
+        refused("control characters in the header line \"" + shown.substr(0, 40) + "\"",
+                "lines of text", line + "\n");
+    }
+}
+
+TEST(ReadMetaError, DataWhereMetaIoWouldLookElsewhere) {
+    const TempFolder folder;
+    Meta meta;
+    for (const char* const name : {"lOcal", "a.raw\xc3\xa9"}) {
+        writeBytes(name, data());
+        meta.dataFile = name;
+        expectRefusedMeta(
+            "got data in \"" + meta.dataFile + "\"; expected LOCAL or the name of one data file",
+            meta, data());
+    }
+    std::filesystem::create_directory("in");
+    for (const char* const name : {"~a.raw", "c:a.raw", ":a.raw"}) {
+        writeBytes(name, data());
+        writeBytes("in/" + std::string(name), data());
+        meta.dataFile = name;
+        writeBytes("in/a.mhd", meta.text());
+        EXPECT_THROW(readVolume("in/a.mhd"), Error) << name;
+    }
+    meta.dataFile = "a.raw";
+    writeBytes("a.raw", data());
+    writeBytes("a\\b.mhd", meta.text());
+    expectRefused("a\\b.mhd: got a backslash in the header's name; expected a name without",
+                  "a\\b.mhd");
+    for (const char* const name : {"Local", "local"}) {
+        meta.dataFile = name;
+        writeBytes("a.mha", meta.text() + data());
+        expectSample(readVolume("a.mha"));
+    }
+}
+
+// As editors on Windows leave it, with what other programs add.
+TEST(ReadMeta, LinesEndWithCrLf) {
+    const TempFolder folder;
+    Meta meta;
+    meta.more = "Comment =\nName = a b: c\n0008|0060 = MR\nNRRD_measurement frame = (1,0,0)\n";
+    meta.dataFile = "a.raw";
+    std::string text;
+    for (const char c : meta.text()) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    writeBytes("a.raw", data());
+    writeBytes("a.mhd", text);
+    expectSample(readVolume("a.mhd"));
+}
+
 TEST(ReadMetaError, Data) {
     const TempFolder folder;
     Meta meta;

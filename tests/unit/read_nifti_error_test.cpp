@@ -62,10 +62,16 @@ TEST(ReadNiftiError, Dims) {
     expectRefusedWith("got dims 4x3x0; expected each 1..1073741824", [](NiftiFile& file) {
         file.dims = {4, 3, 0};
     });
-    expectRefusedWith("got dims 2x3x2x2; expected one volume of single values",
+    expectRefusedWith("got 2 volumes (dims 2x3x2x2); expected one, chosen by --volume 0 to 1",
                       [](NiftiFile& file) {
                           file.dims = {2, 3, 2, 2};
                       });
+    expectRefusedWith("got dims 4x3x2x-5; expected each 1..1073741824", [](NiftiFile& file) {
+        file.dims = {4, 3, 2, -5};
+    });
+    expectRefusedWith("got dims 4x3x2x0; expected each 1..1073741824", [](NiftiFile& file) {
+        file.dims = {4, 3, 2, 0};
+    });
     expectRefusedWith("got 0 dimensions; expected 1 to 7 of them",
                       [](NiftiFile& file) { file.dims = {}; });
 }
@@ -100,6 +106,65 @@ TEST(ReadNiftiError, DimsBeyondTheData) {
         "c.nii: got dims 1073741824x1073741824x1073741824; expected at most 4611686018427387904 "
         "bytes",
         "c.nii");
+}
+
+// Whichever volume is asked for, all have to be there: sizes are checked before anything is taken.
+TEST(ReadNiftiError, VolumesBeyondTheData) {
+    const TempFolder folder;
+    NiftiFile file = sample();
+    file.dims = {4, 3, 2, 2};
+    ReadOptions first;
+    first.volume = 0;
+    for (const ReadOptions& options : {ReadOptions(), first}) {
+        writeBytes("a.nii", file.bytes());
+        expectRefused(
+            "a.nii: got 400 bytes; expected at least 448 (352 skipped + 2 volumes of 4x3x2 int16)",
+            "a.nii", options);
+    }
+    writeGzip("b.nii.gz", file.bytes());
+    expectRefused(
+        "b.nii.gz: got 400 bytes unpacked; expected at least 448 (352 skipped + 2 volumes of 4x3x2 "
+        "int16)",
+        "b.nii.gz", first);
+    file.dims = {4, 3, 2, 32767, 32767};
+    writeBytes("a.nii", file.bytes());
+    expectRefused(
+        "a.nii: got 400 bytes; expected at least 51536462224 (352 skipped + 1073676289 volumes of "
+        "4x3x2 int16)",
+        "a.nii", first);
+    writeGzip("b.nii.gz", file.bytes());
+    expectRefused("b.nii.gz: got " + std::to_string(std::filesystem::file_size("b.nii.gz")) +
+                      " bytes of gzip; expected at least 51536462224 (352 skipped + 1073676289 "
+                      "volumes of 4x3x2 int16)",
+                  "b.nii.gz", first);
+    file.dims = {32767, 32767, 32767, 32767, 32767, 32767, 32767};
+    writeBytes("a.nii", file.bytes());
+    expectRefused(
+        "a.nii: got dims 32767x32767x32767x32767x32767x32767x32767; expected at most "
+        "4611686018427387904 bytes",
+        "a.nii", first);
+}
+
+// The checksum stands behind the last volume.
+TEST(ReadNiftiError, DamagedGzipBehindTheVolume) {
+    const TempFolder folder;
+    NiftiFile file = sample();
+    file.dims = {4, 3, 2, 500};
+    file.dataType = 16;  // read twice
+    file.data = bytesOf(ramp<float>(24 * 500));
+    writeGzip("a.nii.gz", file.bytes());
+    std::string bytes = readBytes("a.nii.gz");
+    ReadOptions first;
+    first.volume = 0;
+    EXPECT_EQ(valuesOf(readVolume("a.nii.gz", first)), ramp<double>(24));
+    writeBytes("b.nii.gz", bytes.substr(0, bytes.size() - 4));
+    expectRefused("b.nii.gz: got a gzip stream that is cut short; expected a whole one", "b.nii.gz",
+                  first);
+    bytes[bytes.size() - 6] = char(bytes[bytes.size() - 6] ^ 1);
+    writeBytes("c.nii.gz", bytes);
+    expectRefused(
+        "c.nii.gz: got a corrupt gzip stream (incorrect data check); expected a sound one",
+        "c.nii.gz", first);
 }
 
 TEST(ReadNiftiError, Types) {

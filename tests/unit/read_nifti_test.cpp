@@ -2,7 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <fstream>
 
+#include "deltasplat/ingest/list_grids.h"
+#include "deltasplat/memory_limit.h"
 #include "unit/format_helpers.h"
 
 namespace deltasplat {
@@ -209,6 +213,95 @@ TEST(ReadNifti, OneTwoAndFourDimensions) {
     EXPECT_EQ(read(file).box.dims(), glm::ivec3(4, 6, 1));
     file.dims = {4, 3, 2, 1, 1};
     EXPECT_EQ(valuesOf(read(file)), kRamp);
+}
+
+// Time is the fourth axis, the parts of vectors are the fifth.
+TEST(ReadNifti, VolumesAreChosen) {
+    const TempFolder folder;
+    for (const auto& dims : {std::vector{4, 3, 2, 6}, {4, 3, 2, 1, 6}, {4, 3, 2, 2, 3}}) {
+        for (const bool bigEndian : {false, true}) {
+            NiftiFile file = sample(dims.size() == 5 ? 2 : 1, bigEndian);
+            file.dims = dims;
+            file.slope = 0.5;
+            file.intercept = 1;
+            file.dataStart = 600;
+            const int header = file.version == 1 ? 352 : 544;
+            file.data = std::string(std::size_t(600 - header), 'x') +
+                        bytesOf(ramp<std::int16_t>(144), bigEndian) + "bytes behind";
+            writeBytes("a.nii", file.bytes());
+            writeGzip("b.nii.gz", file.bytes());
+            for (const std::string name : {"a.nii", "b.nii.gz"}) {
+                ReadOptions options;
+                for (int volume = 0; volume < 6; ++volume) {
+                    options.volume = volume;
+                    const Volume got = readVolume(name, options);
+                    EXPECT_EQ(got.box.dims(), glm::ivec3(4, 3, 2));
+                    EXPECT_EQ(valuesOf(got), ramp<double>(24, 1 + 12 * volume, 0.5));
+                }
+            }
+        }
+    }
+}
+
+TEST(ReadNifti, AVolumeThatIsNotThere) {
+    const TempFolder folder;
+    NiftiFile file = sample();
+    file.dims = {4, 3, 2, 5};
+    file.data = bytesOf(ramp<std::int16_t>(120));
+    writeBytes("a.nii", file.bytes());
+    ReadOptions options;
+    for (const std::int64_t volume : {std::int64_t{5}, std::int64_t{-1}, INT64_MAX}) {
+        options.volume = volume;
+        expectRefused("a.nii: got no volume " + std::to_string(volume) +
+                          " among 5 volumes (dims 4x3x2x5); expected --volume 0 to 4",
+                      "a.nii", options);
+    }
+    writeBytes("b.nii", sample().bytes());
+    options.volume = 1;
+    expectRefused("b.nii: got no volume 1 among 1 volume (dims 4x3x2); expected --volume 0",
+                  "b.nii", options);
+    options.volume = 0;
+    EXPECT_EQ(valuesOf(readVolume("b.nii", options)), kRamp);
+}
+
+// The last of a million volumes, of which all but that are holes: neither memory nor time goes to
+// those before it.
+TEST(ReadNifti, OtherVolumesAreNotTouched) {
+    const TempFolder folder;
+    NiftiFile file = sample(2);
+    file.dims = {64, 64, 32, 1 << 20};
+    file.data.clear();
+    const std::string header = file.bytes();
+    writeBytes("a.nii", header);
+    const std::uint64_t volumeBytes = 64 * 64 * 32 * 2;
+    std::error_code error;
+    std::filesystem::resize_file("a.nii", header.size() + (volumeBytes << 20), error);
+    if (error) GTEST_SKIP() << "no file of 256 GiB with holes here: " << error.message();
+    std::fstream out("a.nii", std::ios::binary | std::ios::in | std::ios::out);
+    out.seekp(-std::streamoff(volumeBytes), std::ios::end);
+    out << bytesOf(ramp<std::int16_t>(64 * 64 * 32, 0, 0.01));
+    out.close();
+    ReadOptions options;
+    options.volume = (1 << 20) - 1;
+    setMemoryLimit(std::uint64_t{2} << 30);
+    EXPECT_EQ(readVolume("a.nii", options).valueMax, 1310);
+    setMemoryLimit(0);
+}
+
+TEST(ReadNifti, VolumesAreListed) {
+    const TempFolder folder;
+    NiftiFile file = sample();
+    file.dims = {4, 3, 2, 5};
+    file.data = bytesOf(ramp<std::int16_t>(120));
+    writeBytes("a.nii", file.bytes());
+    const std::vector<VolumeEntry> entries = listVolumes("a.nii");
+    ASSERT_EQ(entries.size(), 1u);
+    EXPECT_EQ(entries[0].volumes, 5);
+    EXPECT_EQ(entries[0].box->dims(), glm::ivec3(4, 3, 2));
+    EXPECT_FALSE(entries[0].preferred);
+    writeBytes("a.nii", sample().bytes());
+    EXPECT_EQ(listVolumes("a.nii")[0].volumes, 1);
+    EXPECT_TRUE(listVolumes("a.nii")[0].preferred);
 }
 
 TEST(ReadNifti, DataBehindExtensions) {

@@ -99,8 +99,54 @@ TEST(ReadNpy, AxesOfOne) {
     writeBytes("a.npy", npy(dictionary("<u2", "(1, 2, 3, 4)"), bytesOf(ramp<std::uint16_t>(24))));
     EXPECT_EQ(valuesOf(readVolume("a.npy")), ramp<double>(24));
     writeBytes("a.npy", npy(dictionary("<u2", "(4, 1, 3, 2)"), bytesOf(ramp<std::uint16_t>(24))));
-    expectRefused("a.npy: got shape (4, 1, 3, 2); expected an array of at most three axes",
-                  "a.npy");
+    expectRefused(
+        "a.npy: got 4 volumes (shape (4, 1, 3, 2)); expected one, chosen by --volume 0 to 3",
+        "a.npy");
+}
+
+// The index that counts fastest is the last one, in Fortran order the first; volumes are the other
+// end.
+TEST(ReadNpy, VolumesAreChosen) {
+    const TempFolder folder;
+    const std::string data = bytesOf(ramp<std::uint16_t>(144));
+    writeBytes("a.npy", npy(dictionary("<u2", "(6, 2, 3, 4)"), data));
+    writeBytes("b.npy", npy(dictionary("<u2", "(2, 3, 2, 3, 4)"), data));
+    writeBytes("c.npy", npy(dictionary("<u2", "(4, 3, 2, 6)", true), data));
+    for (const std::string name : {"a.npy", "b.npy", "c.npy"}) {
+        ReadOptions options;
+        for (int volume = 0; volume < 6; ++volume) {
+            options.volume = volume;
+            const Volume got = readVolume(name, options);
+            EXPECT_EQ(got.box.dims(), glm::ivec3(4, 3, 2));
+            EXPECT_EQ(valuesOf(got), ramp<double>(24, 24 * volume));
+        }
+    }
+    ReadOptions beyond;
+    beyond.volume = 6;
+    expectRefused(
+        "b.npy: got no volume 6 among 6 volumes (shape (2, 3, 2, 3, 4)); expected --volume 0 to 5",
+        "b.npy", beyond);
+    writeBytes("b.npy", npy(dictionary("<f2", "(2, 3)"), data.substr(0, 12)));
+    beyond.volume = 0;
+    EXPECT_EQ(readVolume("b.npy", beyond).type, "float32");
+}
+
+TEST(ReadNpyError, VolumesBeyondTheData) {
+    const TempFolder folder;
+    const std::string data = bytesOf(ramp<std::uint16_t>(144));
+    ReadOptions first;
+    first.volume = 0;
+    writeBytes("a.npy", npy(dictionary("<u2", "(7, 2, 3, 4)"), data));
+    expectRefused("a.npy: got 416 bytes; expected 464 (128 skipped + 7 volumes of 4x3x2 uint16)",
+                  "a.npy", first);
+    writeBytes("a.npy", npy(dictionary("<u2", "(5, 2, 3, 4)"), data));
+    expectRefused("a.npy: got 416 bytes; expected 368 (128 skipped + 5 volumes of 4x3x2 uint16)",
+                  "a.npy", first);
+    writeBytes("a.npy", npy(dictionary("<u2", "(1073741824, 1073741824, 2, 3, 4)"), data));
+    expectRefused(
+        "a.npy: got shape (1073741824, 1073741824, 2, 3, 4); expected at most 4611686018427387904 "
+        "bytes",
+        "a.npy", first);
 }
 
 TEST(ReadNpyError, EveryCutAndMore) {
@@ -123,13 +169,18 @@ TEST(ReadNpyError, Headers) {
     };
     expectHeader("values of type <c8; expected whole or real numbers", dictionary("<c8", "(2, 3)"));
     expectHeader("values of type |O; expected whole or real numbers", dictionary("|O", "(24,)"));
+    expectHeader("values of type <\xc3\xa4?; expected whole or real numbers",
+                 dictionary("<\xc3\xa4\xe4", "(24,)"));
     expectHeader("shape (0, 3, 4); expected each 1..1073741824", dictionary("<u2", "(0, 3, 4)"));
     expectHeader("shape (-1, 3, 4); expected each 1..1073741824", dictionary("<u2", "(-1, 3, 4)"));
     for (const std::string text :
          {"{}", "", "{'descr': '<u2'}", "{'descr': [('a', '<u2')], 'shape': (24,)}",
           "{'descr': '<u2', 'fortran_order': Maybe, 'shape': (24,), }",
           "{'descr': '<u2', 'fortran_order': False, 'shape': (2 3), }",
-          "{'descr': '<u2', 'fortran_order': False, 'shape': (99999999999999999999,), }"}) {
+          "{'descr': '<u2', 'fortran_order': False, 'shape': (99999999999999999999,), }",
+          "{'descr': '<u2', 'fortran_order': False, 'shape': (2, 3, 4), }; import os",
+          "{'descr': '<u2', 'fortran_order': False, 'shape': (2, 3, 4), } }",
+          "{'descr': '<u2', 'fortran_order': False, 'shape': (2, 3, 4), }\n{}"}) {
         writeBytes("a.npy", npy(text, data));
         expectInputError("a.npy");
     }

@@ -210,6 +210,60 @@ TEST(ReadNrrdError, Headers) {
         nrrd() + "content: " + std::string(5000, 'x') + "\n\n" + data());
 }
 
+// NrrdIO ends a line at a lone CR too, knows fields in few spellings, and passes over a last line
+// without an end: each of these would have it read another file than was checked, or standard
+// input.
+TEST(ReadNrrdError, WhatNrrdIoReadsOtherwise) {
+    const TempFolder folder;
+    writeBytes("b.raw", data());
+    const auto refused = [](const std::string& got, const std::string& expected,
+                            const std::string& lines) {
+        writeBytes("a.nrrd", nrrd() + lines + "\n" + data());
+        expectRefused("a.nrrd: got " + got + "; expected " + expected, "a.nrrd");
+    };
+    for (const std::string before : {"# x", "key:=x", "content: x"}) {
+        for (const std::string field : {"data file: b.raw", "data file: -", "labels: x"}) {
+            refused("control characters in the header line \"" + before + "?" + field + "\"",
+                    "lines of text", before + "\r" + field + "\n");
+        }
+    }
+    refused("control characters in the header line \"# a?\"", "lines of text",
+            std::string("# a\0\n", 5));
+    for (const std::string line : {"data  file: b.raw", " data file: b.raw", "data\tfile: b.raw",
+                                   "Data File:b.raw", "data file:=b.raw", "DATA FILE : b.raw"}) {
+        const std::string shown = line[4] == '\t' ? "data?file: b.raw" : line;
+        refused("the header line \"" + shown + "\"", "\"data file: value\"", line + "\n");
+    }
+    refused("the header line \" \"", "\"field: value\"", " \n");
+    refused("data in \"c:b.raw\"", "the name of one data file", "data file: c:b.raw\n");
+    refused("no data file \"b.raw \"", "a readable file", "data file: b.raw \n");
+    for (const std::string magic : {"NRRD0004 ", "NRRD0006", "NRRDabcd"}) {
+        writeBytes("a.nrrd", magic + nrrd().substr(8) + "\n" + data());
+        expectRefused(
+            "a.nrrd: got no NRRD header; expected a file that begins with NRRD0001 to NRRD0005",
+            "a.nrrd");
+    }
+    writeBytes("a.nhdr", nrrd() + "data file: b.raw\nspace units: \"a\" \"b\" \"c\"");
+    expectRefused(
+        "a.nhdr: got the header line \"space units: \"a\" \"b\" \"c\"\"; expected an end of line "
+        "behind it",
+        "a.nhdr");
+}
+
+TEST(ReadNrrd, LinesEndWithCrLf) {
+    const TempFolder folder;
+    std::string text;
+    const std::string long_value =
+        "# " + std::string(5000, 'c') + "\nlong:=" + std::string(5000, 'v');
+    for (const char c : nrrd() + long_value + "\nData File: b.raw\nSpaceUnits: \"a\" \"b\" \"c\"\n")
+        text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    writeBytes("a.nhdr", text);
+    writeBytes("b.raw", data());
+    expectSample(readVolume("a.nhdr"));
+    writeBytes("c.nrrd", text.substr(0, text.find("Data File")) + "\r\n" + data());
+    expectSample(readVolume("c.nrrd"));
+}
+
 TEST(ReadNrrdError, SeveralValuesOrVolumes) {
     const TempFolder folder;
     const std::vector<std::pair<std::string, std::string>> four{

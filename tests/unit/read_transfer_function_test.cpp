@@ -167,6 +167,16 @@ TEST_F(ReadTransferFunction, refusesWhatIsOutOfRange) {
               "tf.json:2: got 4; expected x not below the 5 before it in Points");
 }
 
+TEST_F(ReadTransferFunction, linearColorsMayBeBrighterThanOne) {
+    const std::string bright = "\"RGBPoints\": [0, 1000, 0.001, 0], \"Points\": [0, 1, 0.5, 0]}";
+    const TransferFunction function = read("{\"ColorSpaceOfPoints\": \"linear\", " + bright);
+    EXPECT_EQ(function.colorAt(0), glm::dvec3(1000, 0.001, 0));
+    EXPECT_EQ(errorOf("{" + bright),
+              "tf.json:1: got 1000; expected a number within 0..1 in RGBPoints");
+    EXPECT_EQ(errorOf("{\"ColorSpaceOfPoints\": \"linear\", \"RGBPoints\": [0, -1, 0, 0]}"),
+              "tf.json:1: got -1; expected a number >= 0 in RGBPoints");
+}
+
 TEST_F(ReadTransferFunction, refusesAWrongNumberOfNumbers) {
     const std::string expected =
         "; expected RGBPoints with groups of four numbers (x, red, green, blue)";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -24,18 +25,29 @@ struct GridList {
 /// @throw Error(kInput) if the file is missing or no whole .vdb file
 GridList listGrids(const std::filesystem::path& file);
 
+/// The type of a DICOM series without images, as reports have it.
+inline constexpr const char* kNoImages = "no images";
+
 /// What the headers of a file say about one volume in it.
 struct VolumeEntry {
     std::string name;             ///< as ReadOptions::gridName takes it, where there are grids
-    std::string type;             ///< as Volume::type; of a delta grid, that of its source
+    std::string type;             ///< as Volume::type; of a delta grid, that of its source; of a
+                                  ///< DICOM series that cannot be read "unknown" or kNoImages
     std::string gridClass;        ///< as Volume::gridClass; "" where none is said
     std::optional<IndexBox> box;  ///< of its active voxels; empty optional where it is not said
     bool scalar = true;           ///< whether it can be read
     bool delta = false;           ///< whether it is a delta grid
     bool preferred = false;       ///< whether it is the one read by default
+    std::optional<std::string> series;  ///< DICOM: as ReadOptions::series takes it
+    std::string description;            ///< DICOM: what the series is said to be; or empty
+    /// NIfTI and .npy: this volume stands for so many, which differ in their values alone; as
+    /// ReadOptions::volume counts them.
+    std::int64_t volumes = 1;
 };
 
-/// Lists what is in a file that readVolume reads, voxels unread.
+/// Lists what is in a file that readVolume reads, voxels unread: every grid of a .vdb, every series
+/// of DICOM (unless options.series is one), of other formats one volume. A series of several that
+/// cannot be read has no box and is not scalar: what is wrong is said when it is read.
 /// @throw as readVolume, as far as headers go
 std::vector<VolumeEntry> listVolumes(const std::filesystem::path& file,
                                      const ReadOptions& options = {},

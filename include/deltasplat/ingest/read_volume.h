@@ -36,6 +36,13 @@ struct ReadOptions {
                                      ///< background is not above 0 is kept, with a warning
     std::optional<double> nanValue;  ///< replaces NaN and infinities; empty: they are an error
     RawFormat raw;                   ///< .raw: what the bytes are
+    /// NIfTI and .npy of more than three axes: which of their volumes, from 0 on; the fourth axis
+    /// counts fastest (of a C-ordered .npy the one before the last three). Empty: there has to be
+    /// one. Other formats pay no heed to it.
+    std::optional<std::int64_t> volume;
+    /// DICOM: the UID of the series to read. Empty: there has to be one. Other formats pay no heed
+    /// to it.
+    std::optional<std::string> series;
     /// Real values: a linear code book of 2^bits codes, 8..16. Empty: an exact book if there is
     /// one (at most 65536 different values), otherwise one that keeps every value within 2e-4 of
     /// itself, and of its neighbours' range, as far as 65536 codes allow
@@ -54,10 +61,10 @@ struct ReadOptions {
     double bytesPerInexactBlock = 0;  ///< likewise, in addition, where the code book is not exact
 };
 
-/// Reads one scalar volume: `.vdb .raw .raw.gz .nii .nii.gz .nrrd .nhdr .mhd .mha .dcm` and images
-/// (`.tif .png .jpg .bmp .pgm .exr`, of which pages are slices) by extension, in any case; a folder
-/// of DICOM slices or of images; a stack `slice.####.png` or `slice.%04d.png`. NRRD, MetaImage and
-/// DICOM need a build with ITK. What is passed over is said in a warning.
+/// Reads one scalar volume: `.vdb .raw .raw.gz .npy .nii .nii.gz .nrrd .nhdr .mhd .mha .dcm` and
+/// images (`.tif .png .jpg .bmp .pgm .exr`, of which pages are slices) by extension, in any case; a
+/// folder of DICOM slices or of images; a stack `slice.####.png` or `slice.%04d.png`. NRRD,
+/// MetaImage and DICOM need a build with ITK. What is passed over is said in a warning.
 /// Level sets and NaN are treated as `options` says; only active values of a .vdb count, a NaN
 /// background is taken as `nanValue` or 0, with a warning. An empty grid is a valid, empty volume,
 /// with a warning. Deterministic; not affected by the number of threads.
@@ -79,7 +86,7 @@ struct VolumeVisitor {
 };
 
 /// Reads the scalar grids of a file one after the other, so that only one is in memory: one volume
-/// for raw; a .vdb's grids in file order, or only `options.gridName` if that is not empty.
+/// for all but .vdb; a .vdb's grids in file order, or only `options.gridName` if that is not empty.
 /// @throw as readVolume, for what concerns the whole file
 void forEachVolume(const std::filesystem::path& file, const ReadOptions& options,
                    const VolumeVisitor& visitor, const Listener& listener = {});

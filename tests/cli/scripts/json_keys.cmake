@@ -52,9 +52,9 @@ expect_value("${stats}" 960 visible)
 run(info slab_12x10x8_uint8.raw --json -q)
 expect_keys("${text}" "" files)
 expect_keys("${text}" "files;0" "file;grids")
-expect_keys("${text}" "files;0;grids;0" "name;type;class;dims;bbox;voxel_size;active;range;\
-background;background_guess;background_voxels;percentiles;histogram;code_book;code_error;delta;axes;\
-transfer_function;stamps;world_box;origin;directions;space;target;frame_width")
+expect_keys("${text}" "files;0;grids;0" "name;type;class;series;description;volume;volumes;dims;\
+bbox;voxel_size;active;range;background;background_guess;background_voxels;percentiles;histogram;\
+code_book;code_error;delta;axes;transfer_function;stamps;world_box;origin;directions;space;target;frame_width")
 expect_keys("${text}" "files;0;grids;0;axes" "x;y;z")
 expect_keys("${text}" "files;0;grids;0;stamps" "x;y;z")
 foreach(axis x y z)
@@ -97,7 +97,7 @@ expect_value("${text}" 320 files 0 grids 0 histogram counts 63)
 
 run(info slab_12x10x8_uint8.raw --list --json -q)
 expect_keys("${text}" "files;0" "file;grids")
-expect_keys("${text}" "files;0;grids;0" "name;type;class;bbox;scalar;delta;default")
+expect_keys("${text}" "files;0;grids;0" "name;type;class;bbox;series;description;volumes;scalar;delta;default")
 expect_value("${text}" uint8 files 0 grids 0 type)
 expect_value("${text}" 7 files 0 grids 0 bbox 1 2)
 
