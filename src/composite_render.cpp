@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <glm/common.hpp>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,6 +13,7 @@
 #include "composite/compositor.h"
 #include "composite/layer_fold.h"
 #include "composite/plane_view.h"
+#include "delta/code_blocks.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "image/warp.h"
@@ -286,16 +285,24 @@ void requireSlabMemory(const SplatInput& input, const PlaneView& view, const She
                   bytes);
 }
 
-// @param view  of the volume's own slices
+// What voxels become, and sheet pixels for each of them then.
+struct SheetPlan {
+    Subdivision parts;
+    int resolution;
+};
+
+// @param view  of the volume's own voxels
 void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const Factorization& view,
-                  const RenderOptions& options, const Listener& listener, RenderResult& result) {
+                  const SheetPlan& plan, const RenderOptions& options, const Listener& listener,
+                  RenderResult& result) {
     const Clock::time_point start = Clock::now();
-    const PlaneView planeView(withSlicesPerVoxel(view, result.stats.between + 1));
-    const int resolution = sheetResolution(view, classes, options);
+    const Factorization thinView = subdivided(view, plan.parts);
+    const PlaneView planeView(thinView);
+    const int within = plan.parts.within;
+    const double sigma = options.sigma.value_or(defaultSigma(thinView.pixelsPerVoxel) / within);
     // The kernel is round in voxels, however many slices there are.
-    const Footprint footprint =
-        makeFootprint(options.sigma.value_or(defaultSigma(view.pixelsPerVoxel)),
-                      PlaneView(view).shiftPerSlice, resolution, options.footprintWidth);
+    const Footprint footprint = makeFootprint(sigma, PlaneView(view).shiftPerSlice, plan.resolution,
+                                              options.footprintWidth, within);
     const SheetLayout layout = layoutSheet(deltas.box, footprint, classes.oneColor ? 1 : 4);
     std::optional<DigitVoxels> digitVoxels;
     if (!classes.oneDigit()) digitVoxels.emplace(deltas, classes);
@@ -321,7 +328,7 @@ void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const F
         stats.errorBoundColor = bound.color * gain;
         stats.errorBoundAlpha = bound.alpha * gain;
     }
-    stats.resolution = resolution;
+    stats.resolution = plan.resolution * within;
     stats.footprint = footprint.width;
     stats.renderSeconds = secondsSince(start);
     stats.splatSeconds = slabSeconds * (1 - slabs.compositeShare());
@@ -329,22 +336,43 @@ void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const F
     stats.warpSeconds = stats.renderSeconds - mergedSeconds;
 }
 
-int slicesBetween(const Volume& volume, const RenderOptions& options) {
-    const int between = options.between;
-    if (between < 0 || between > kMostBetween) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--between", std::to_string(between),
-                                "a whole number within 0.." + std::to_string(kMostBetween)));
+void checkBetween(int between) {
+    if (between >= 0 && between <= kMostBetween) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("--between", std::to_string(between),
+                            "a whole number within 0.." + std::to_string(kMostBetween)));
+}
+
+// Whether voxels are divided where the screen asks for it and nobody says otherwise.
+bool dividesUnasked(const Volume& volume, const Factorization& view, const ClassTable& classes,
+                    const RenderOptions& options, const Listener& listener) {
+    if (view.resolution < 2 || options.resolution || options.footprintWidth) return false;
+    if (options.optics.transferFunction.colorsJump()) return false;
+    if (volume.empty()) return false;
+    const BlockReader seen(*volume.codes, nullptr, view.sliceAxis, classes.classOfSlot);
+    if (seen.blocks().size() <= kMostDivided) return true;
+    listener.warn("voxels are too many to be divided (" + std::to_string(seen.blocks().size()) +
+                  " blocks of 8x8x8 can be seen, at most " + std::to_string(kMostDivided) +
+                  " are): drawn as they are; --between 1 divides them");
+    return false;
+}
+
+// @param classes  of the volume's own voxels
+SheetPlan planSheet(const Volume& volume, const Factorization& view, const ClassTable& classes,
+                    const RenderOptions& options, const Listener& listener) {
+    int between = 0;
+    if (options.between) {
+        between = *options.between;
+        checkBetween(between);
+    } else if (dividesUnasked(volume, view, classes, options, listener)) {
+        between = 1;
     }
-    // Places are counted in 32 bits.
-    const glm::ivec3 farthest = glm::max(glm::abs(volume.box.min), glm::abs(volume.box.max));
-    constexpr int kFar = std::numeric_limits<int>::max() / 4 / (kMostBetween + 1);
-    if (between > 0 && std::max({farthest.x, farthest.y, farthest.z}) > kFar) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--between", "voxels with indices beyond " + std::to_string(kFar),
-                                "0 for such a volume"));
-    }
-    return between;
+    int resolution = sheetResolution(view, classes, options);
+    if (between > 0 && !options.resolution) resolution = 2;
+    Subdivision parts{between + 1, between > 0 && resolution % 2 == 0 ? 2 : 1, {}};
+    // Whole blocks are divided.
+    if (parts.divides()) parts.origin = toSliceOrder(volume.box.min, view.sliceAxis) & ~7;
+    return {parts, resolution / parts.within};
 }
 
 // Optics as the volume has them, for levels to be seen by.
@@ -359,14 +387,20 @@ void renderComposite(const Volume& volume, const Factorization& view, const Rend
                      const Listener& listener, RenderResult& result) {
     const Clock::time_point start = Clock::now();
     RenderStats& stats = result.stats;
-    stats.between = slicesBetween(volume, options);
-    stats.slices *= stats.between + 1;
-    stats.voxels *= std::uint64_t(stats.between) + 1;
-    std::optional<SliceMixer> mixer;
-    if (stats.between > 0) mixer.emplace(volume, stats.between + 1);
+    const Optics optics = withRange(volume, options.optics);
+    ClassTable classes = classify(volume, optics, view.sliceStepWorld);
+    const SheetPlan plan = planSheet(volume, view, classes, options, listener);
+    const Subdivision& parts = plan.parts;
+    stats.between = parts.slices - 1;
+    stats.parts = parts.voxels();
+    stats.slices *= parts.slices;
+    stats.voxels *= std::uint64_t(stats.parts);
+    std::optional<ValueMixer> mixer;
+    if (parts.divides()) {
+        mixer.emplace(volume, parts);
+        classes = classify(mixer->levels(), optics, view.sliceStepWorld / parts.slices);
+    }
     const Volume& seen = mixer ? mixer->levels() : volume;
-    const ClassTable classes = classify(seen, withRange(volume, options.optics),
-                                        view.sliceStepWorld / (stats.between + 1));
     listener.report(0.05);
     const PackedDeltas deltas =
         packDeltas(volume, {view.sliceAxis, encodingOf(options.method), classes.classOfSlot,
@@ -378,7 +412,7 @@ void renderComposite(const Volume& volume, const Factorization& view, const Rend
     stats.deltas = deltas.deltas();
     stats.slabs = int(deltas.slabs.size());
     stats.prepareSeconds = secondsSince(start);
-    if (!volume.empty()) renderDeltas(deltas, classes, view, options, listener, result);
+    if (!volume.empty()) renderDeltas(deltas, classes, view, plan, options, listener, result);
 }
 
 }  // namespace deltasplat

@@ -76,6 +76,8 @@ Json runJson(const BenchEntry& entry) {
                  {"deltas", stats.deltas},
                  {"comparability", run.comparability()},
                  {"slices", stats.slices},
+                 {"between", stats.between},
+                 {"parts", stats.parts},
                  {"slabs", stats.slabs},
                  {"slice_axis", axisName(stats.sliceAxis)},
                  {"resolution", stats.resolution},

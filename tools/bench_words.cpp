@@ -72,8 +72,10 @@ std::string softwareText(const Machine& machine) {
 
 std::string volumeText(const BenchRun& run) {
     const RenderStats& stats = run.stats;
-    return by(run.dims.x, run.dims.y) + " x " + std::to_string(run.dims.z) + " voxels, " +
-           percent(stats.visible, stats.voxels) + " visible, " +
+    const std::string divided =
+        stats.parts > 1 ? " divided into " + std::to_string(stats.parts) : "";
+    return by(run.dims.x, run.dims.y) + " x " + std::to_string(run.dims.z) + " voxels" + divided +
+           ", " + percent(stats.visible, stats.voxels) + " visible, " +
            percent(stats.deltas, stats.voxels) + " deltas (comparability " +
            fixedText(run.comparability(), 4) + ")";
 }

@@ -178,15 +178,17 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
                    "Standard deviation of the footprint in voxels, " + numberText(kMinSigma) +
                        " to " + numberText(kMaxSigma) +
                        "\n(default: " + numberText(defaultSigma(1)) +
-                       ", growing where a voxel covers more than\n2 pixels, to " +
-                       numberText(defaultSigma(3)) + " from 3 pixels on)");
-    group.addValue(
-        "--between", "N", options.between, wholeNumber(0, kMostBetween),
-        withDefault("Slices put between two neighbouring ones, 0 to " +
-                        std::to_string(kMostBetween) +
-                        ", values mixed:\nnearer to what a ray caster shows, N + 1 times "
-                        "the work",
-                    std::to_string(options.between)));
+                       " of a voxel, or of what it is divided into,\ngrowing where that covers "
+                       "more than 2 pixels, to " +
+                       numberText(defaultSigma(3)) + "\nfrom 3 pixels on)");
+    group.addValue("--between", "N", options.between, wholeNumber(0, kMostBetween),
+                   "Slices put between two neighbouring ones, 0 to " +
+                       std::to_string(kMostBetween) +
+                       ", values mixed;\nif any, each voxel is also divided into 2x2 within its "
+                       "slice\n(default: 1 where a voxel covers 1.5 pixels or more and no\n"
+                       "--resolution is given, but not for colours that jump, as of\nlabels, "
+                       "nor for more than " +
+                       std::to_string(kMostDivided) + " blocks of voxels; else 0)");
     group.addValue("--resolution", "R", options.resolution, wholeNumber(1, kMaxResolution),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        " (default: chosen from the screen)");

@@ -21,15 +21,19 @@ nlohmann::ordered_json boundJson(double bound) {
     return std::isinf(bound) ? nlohmann::ordered_json() : nlohmann::ordered_json(bound);
 }
 
+std::string partsText(int parts) {
+    return parts > 1 ? "; of voxels divided into " + std::to_string(parts) : "";
+}
+
 std::string workSummary(const RenderStats& stats) {
     char text[256];
     const auto visible = (unsigned long long)stats.visible;
     const auto voxels = (unsigned long long)stats.voxels;
     if (stats.mode == Mode::kComposite) {
         std::snprintf(text, sizeof text,
-                      "method %s: %llu stamps (%llu of %llu voxels visible, %llu deltas)\n",
+                      "method %s: %llu stamps (%llu of %llu voxels visible, %llu deltas%s)\n",
                       methodName(stats.method).c_str(), (unsigned long long)stats.stamps, visible,
-                      voxels, (unsigned long long)stats.deltas);
+                      voxels, (unsigned long long)stats.deltas, partsText(stats.parts).c_str());
     } else {
         std::snprintf(text, sizeof text, "mode %s: %llu of %llu voxels\n",
                       modeName(stats.mode).c_str(), visible, voxels);
@@ -60,6 +64,7 @@ std::string statsJson(const RenderResult& result, const Volume& volume, const Re
         {"stamps", stats.stamps},
         {"slices", stats.slices},
         {"between", stats.between},
+        {"parts", stats.parts},
         {"slabs", stats.slabs},
         {"slice_axis", axisName(stats.sliceAxis)},
         {"resolution", stats.resolution},

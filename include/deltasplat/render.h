@@ -50,19 +50,25 @@ struct RenderOptions {
     /// Footprint's standard deviation in voxels, kMinSigma..kMaxSigma; empty: defaultSigma.
     std::optional<double> sigma;
     std::optional<int> resolution;  ///< sheet pixels a voxel; empty: chosen from the screen
-    /// Slices put between two neighbouring ones, 0..kMostBetween.
-    int between = 0;
+    /// Slices put between two neighbouring ones, 0..kMostBetween, with values mixed. If any, then
+    /// voxels have two sheet pixels if nothing else is asked for; and if their number is even, two
+    /// values along u and v as well. Empty: 1 where the screen asks for two sheet pixels a voxel
+    /// (and neither resolution nor footprintWidth says another thing), but 0 where colours jump
+    /// (TransferFunction::colorsJump), as of labels, or, with a warning, where more than
+    /// kMostDivided blocks of 8x8x8 voxels can be seen.
+    std::optional<int> between;
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for
 };
 
 inline constexpr int kMostBetween = 7;
+inline constexpr std::size_t kMostDivided = std::size_t{1} << 16;
 
 /// What was done and how long it took. Times are wall-clock seconds.
 struct RenderStats {
     Method method = Method::kAuto;
     Mode mode = Mode::kComposite;
-    std::uint64_t voxels = 0;   ///< of the bounding box and of the slices put between
+    std::uint64_t voxels = 0;   ///< of the bounding box, those that they are divided into
     std::uint64_t visible = 0;  ///< whose classified colour is not zero; kXray: active ones whose
                                 ///< value is not 0; kMip: active ones
     std::uint64_t deltas =
@@ -70,6 +76,7 @@ struct RenderStats {
     std::uint64_t stamps = 0;  ///< footprints added
     int slices = 0;            ///< those put between others among them
     int between = 0;           ///< slices put between two neighbouring ones
+    int parts = 1;             ///< voxels that each was divided into: those are what is counted
     int slabs = 0;
     int sliceAxis = 2;
     int resolution = 1;

@@ -10,9 +10,6 @@
 namespace deltasplat {
 namespace {
 
-// How far apart neighbours along x, y and z lie in a leaf's buffer.
-constexpr glm::ivec3 kLeafStride{64, 8, 1};
-
 // What the stage keeps for each block: itself, its place and its changes.
 constexpr double kBytesPerBlock = sizeof(CodeBlock) + 16 + 128;
 

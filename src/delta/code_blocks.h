@@ -11,6 +11,9 @@
 
 namespace deltasplat {
 
+/// How far apart neighbours along x, y and z lie in a leaf's buffer.
+inline constexpr glm::ivec3 kLeafStride{64, 8, 1};
+
 /// An 8x8x8 block of active voxels, in (slice, u, v) order: a leaf of the code tree, or a piece of
 /// a tile.
 struct CodeBlock {

@@ -2,57 +2,82 @@
 #include "delta/mixed_sight.h"
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 #include <optional>
+#include <tuple>
+
+#include "delta/block_finder.h"
+#include "memory.h"
 
 namespace deltasplat {
 namespace {
 
-// Finds the active blocks beside others.
-class Neighbours {
-  public:
-    Neighbours(const CodeTree& codes, int sliceAxis)
-        : accessor_(codes.tree), order_(sliceOrder(sliceAxis)) {}
+// By u, then v, then slice.
+bool liesBefore(const glm::ivec3& a, const glm::ivec3& b) {
+    return std::tie(a.y, a.z, a.x) < std::tie(b.y, b.z, b.x);
+}
 
-    // Returns the block `step` blocks farther along the slice axis, if any of it is active.
-    std::optional<CodeBlock> find(const CodeBlock& block, int step) const {
-        CodeBlock found = block;
-        found.position.x += step;
-        openvdb::Coord origin;
-        for (int i = 0; i < 3; ++i) origin[order_[i]] = 8 * found.position[i];
-        found.leaf = accessor_.probeConstLeaf(origin);
-        found.tileSlot = kEmptySlot;
-        if (found.leaf) return found.leaf->isEmpty() ? std::nullopt : std::optional(found);
-        Code code;
-        if (!accessor_.probeValue(origin, code)) return std::nullopt;
-        found.tileSlot = Slot(code + 1);
-        return found;
+// Adds the neighbours on both sides along an axis to places in order.
+std::vector<glm::ivec3> widened(const std::vector<glm::ivec3>& places, const glm::ivec3& step) {
+    const auto united = [](const auto& a, const auto& b) {
+        std::vector<glm::ivec3> both;
+        both.reserve(a.size() + b.size());
+        std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both),
+                       liesBefore);
+        return both;
+    };
+    std::vector<glm::ivec3> before = places;
+    for (glm::ivec3& place : before) place -= step;
+    std::vector<glm::ivec3> behind = places;
+    for (glm::ivec3& place : behind) place += step;
+    return united(united(before, places), behind);
+}
+
+struct CodeRange {
+    Code lowest;
+    Code highest;
+
+    void add(const CodeRange& other) {
+        lowest = std::min(lowest, other.lowest);
+        highest = std::max(highest, other.highest);
     }
-
-  private:
-    openvdb::tree::ValueAccessor<const CodeTree::Tree> accessor_;
-    glm::ivec3 order_;
 };
 
-bool isRightBehind(const CodeBlock& block, const CodeBlock& before) {
-    return block.position == before.position + glm::ivec3(1, 0, 0);
+// Adds to the range of each block, in order, those of its neighbours on both sides along an axis.
+void addNeighbours(const std::vector<CodeBlock>& blocks, const glm::ivec3& step,
+                   std::vector<CodeRange>& ranges) {
+    const std::vector<CodeRange> own = ranges;
+    std::size_t next = 0;  // the first block that does not lie before the place looked for
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const glm::ivec3 place = blocks[i].position + step;
+        while (next < blocks.size() && liesBefore(blocks[next].position, place)) ++next;
+        if (next == blocks.size()) return;
+        if (blocks[next].position != place) continue;
+        ranges[i].add(own[next]);
+        ranges[next].add(own[i]);
+    }
 }
 
 }  // namespace
 
-MixedSight::MixedSight(const SliceMixer& mixer, std::span<const Slot> slotMap)
+MixedSight::MixedSight(const ValueMixer& mixer, std::span<const Slot> slotMap)
     : mixer_(mixer), before_(kSlotCount, 0) {
     for (std::size_t level = 0; level < kCodeCount; ++level)
         before_[level + 1] = before_[level] + (slotMap[level + 1] != kEmptySlot);
 }
 
-bool MixedSight::canBeSeen(std::span<const CodeBlock> blocks) const {
-    Code lowest = kCodeCount - 1;
-    Code highest = 0;
-    for (const CodeBlock& block : blocks) {
-        lowest = std::min(lowest, block.leaf ? block.lowest : Code(block.tileSlot - 1));
-        highest = std::max(highest, block.leaf ? block.highest : Code(block.tileSlot - 1));
+bool MixedSight::canBeSeen(const MixWindow& window) const {
+    // Of empty slots, less one and without its sign, the lowest is nothing.
+    constexpr int kMost = std::numeric_limits<int>::max();
+    int lowest = kMost;
+    int highest = kEmptySlot;
+    for (const Slot slot : window.slots) {
+        const int code = (slot - 1) & kMost;
+        lowest = code < lowest ? code : lowest;
+        highest = slot > highest ? slot : highest;
     }
-    return isSeenBetween(lowest, highest);
+    return highest != kEmptySlot && isSeenBetween(Code(lowest), Code(highest - 1));
 }
 
 // Returns a map [kSlotCount] that leaves the slots of codes which may be seen mixed with the next
@@ -80,23 +105,55 @@ std::vector<Slot> MixedSight::seenCodes(std::span<const std::uint64_t> histogram
     return map;
 }
 
+// What may be seen, or stays clear but lies beside it, and of that what is near enough.
 std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAxis,
                                               std::span<const std::uint64_t> histogram) const {
     const std::vector<Slot> map = seenCodes(histogram);
-    const BlockReader reader(codes, nullptr, sliceAxis, map);
-    const std::vector<CodeBlock>& seen = reader.blocks();
-    const Neighbours neighbours(codes, sliceAxis);
+    const std::vector<CodeBlock> seen = BlockReader(codes, nullptr, sliceAxis, map).takeBlocks();
+    constexpr double kMostNeighbours = 3;
+    constexpr double kBytesPerBlock =
+        sizeof(CodeBlock) + 4 * sizeof(glm::ivec3) + 2 * sizeof(CodeRange);
+    requireMemory("list of voxel blocks", kMostNeighbours * kBytesPerBlock * double(seen.size()));
+    std::vector<glm::ivec3> places;
+    places.reserve(seen.size());
+    for (const CodeBlock& block : seen) places.push_back(block.position);
+    places = widened(places, {1, 0, 0});
+    if (mixer_.parts().within > 1) places = widened(widened(places, {0, 0, 1}), {0, 1, 0});
+
+    const BlockFinder finder(codes, sliceAxis);
     std::vector<CodeBlock> blocks;
-    blocks.reserve(seen.size() + seen.size() / 2);
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-        const auto add = [&](int step) {
-            if (const auto found = neighbours.find(seen[i], step)) blocks.push_back(*found);
-        };
-        const bool follows = !blocks.empty() && isRightBehind(seen[i], blocks.back());
-        if (!follows) add(-1);
-        blocks.push_back(seen[i]);
-        if (i + 1 == seen.size() || !isRightBehind(seen[i + 1], seen[i])) add(1);
+    std::vector<CodeRange> ranges;
+    blocks.reserve(places.size());
+    ranges.reserve(places.size());
+    auto next = seen.begin();
+    for (const glm::ivec3& place : places) {
+        if (next != seen.end() && next->position == place) {
+            blocks.push_back(*next++);
+        } else if (std::optional<CodeBlock> found = finder.find(place)) {
+            if (found->leaf) {
+                const CodeLeaf leaf = describeLeaf(*found->leaf);
+                found->lowest = leaf.lowest;
+                found->highest = leaf.highest;
+            }
+            blocks.push_back(*found);
+        } else {
+            continue;
+        }
+        const CodeBlock& block = blocks.back();
+        const auto tile = Code(block.tileSlot - 1);
+        ranges.push_back(block.leaf ? CodeRange{block.lowest, block.highest}
+                                    : CodeRange{tile, tile});
     }
+    addNeighbours(blocks, {1, 0, 0}, ranges);
+    if (mixer_.parts().within > 1) {
+        addNeighbours(blocks, {0, 0, 1}, ranges);
+        addNeighbours(blocks, {0, 1, 0}, ranges);
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        if (isSeenBetween(ranges[i].lowest, ranges[i].highest)) blocks[kept++] = blocks[i];
+    }
+    blocks.resize(kept);
     return blocks;
 }
 

@@ -124,11 +124,23 @@ constexpr double kBytesPerBlock =
 // How voxels become classes. Null: as they are.
 struct PackTools {
     const Holder* holder = nullptr;
-    const SliceMixer* mixer = nullptr;
+    const ValueMixer* mixer = nullptr;
     const MixedSight* sight = nullptr;
+    const CodeTree* codes = nullptr;  // that values are mixed from
 };
 
-// Packs columns of blocks (same u and v), slices in increasing order.
+// What a packer packs: columns of blocks (same u and v), slices in increasing order.
+struct Columns {
+    const CodeBlock* begin;
+    const CodeBlock* end;
+};
+
+// Words of columns, and the classes that they point to.
+struct PackedColumns {
+    std::vector<PendingWord> words;
+    std::vector<ClassIndex> storage;
+};
+
 class ColumnPacker {
   public:
     ColumnPacker(const IndexBox& box, const PackOptions& options, const PackTools& tools,
@@ -137,37 +149,46 @@ class ColumnPacker {
           tools_(tools),
           slotMap_(slotMap),
           planner_(box),
-          layout_(planner_.shortest()) {}
+          layout_(planner_.shortest()) {
+        if (!tools.mixer) return;
+        parts_ = tools.mixer->parts();
+        window_.emplace(*tools.codes, options.sliceAxis, parts_.within == 1);
+        const int blocks = parts_.voxels();
+        mixed_.resize(std::size_t(blocks));
+    }
 
-    // Packs blocks [begin, end), which are whole columns.
-    void run(const CodeBlock* begin, const CodeBlock* end) {
+    void run(const Columns& columns) {
         // What is not used of it takes no memory.
-        const std::size_t most = kMostWords * std::size_t(perBlock()) * std::size_t(end - begin);
-        words_.reserve(most);
-        storage_.reserve(64 * most);
-        for (const CodeBlock* block = begin; block != end; ++block) {
-            const bool isFirst = block == begin || !follows(block);
-            const bool isLast = block + 1 == end || !follows(block + 1);
+        const std::size_t most = kMostWords * std::size_t(parts_.slices) *
+                                 std::size_t(parts_.within) *
+                                 std::size_t(columns.end - columns.begin);
+        for (int half = 0; half < parts_.within; ++half) {
+            halves_[std::size_t(half)].words.reserve(most);
+            halves_[std::size_t(half)].storage.reserve(64 * most);
+        }
+        for (const CodeBlock* block = columns.begin; block != columns.end; ++block) {
+            const bool isFirst = block == columns.begin || !follows(block);
+            const bool isLast = block + 1 == columns.end || !follows(block + 1);
             if (isFirst) {
-                before_.fill(kEmptySlot);
-                held_.fill(kEmptySlot);
+                before_ = {};
+                held_ = {};
             }
             if (tools_.mixer) {
-                addMixed({block - int{!isFirst}, block + 1 + int{!isLast}}, *block);
+                addMixed(*block);
             } else {
                 read(*block);
-                add(block->position, layout_.slicesOf(block->position.x));
+                add(block->position, {0, 0}, layout_.slicesOf(block->position.x));
             }
             // What a block showed must be taken away behind it.
-            const int next = (block->position.x + 1) * perBlock();
+            const int next = firstPart(*block).x + parts_.slices;
             if (next > layout_.lastBlock || !isLast) continue;
             classes_.fill(kEmptySlot);
-            add({next, block->position.y, block->position.z}, 1);
+            forParts([&](const glm::ivec2& part) { add(partOf(*block, next, part), part, 1); });
         }
     }
 
-    const std::vector<PendingWord>& words() const { return words_; }
-    std::vector<ClassIndex>& storage() { return storage_; }
+    /// Of the parts of columns along u, one.
+    PackedColumns& half(int i) { return halves_[std::size_t(i)]; }
     const SlabPlanner& planner() const { return planner_; }
 
   private:
@@ -175,76 +196,81 @@ class ColumnPacker {
         return block->position == block[-1].position + glm::ivec3(1, 0, 0);
     }
 
-    // Blocks of thin slices that a block becomes.
-    int perBlock() const { return tools_.mixer ? tools_.mixer->perVoxel() : 1; }
+    // Calls use(part) for the parts of a column along u and v.
+    template <typename Use>
+    void forParts(const Use& use) const {
+        for (int u = 0; u < parts_.within; ++u)
+            for (int v = 0; v < parts_.within; ++v) use(glm::ivec2(u, v));
+    }
+    static std::size_t numberOf(const glm::ivec2& part) {
+        const int number = 2 * part.x + part.y;
+        return std::size_t(number);
+    }
+
+    // The positions of a block's first part, and of another.
+    glm::ivec3 firstPart(const CodeBlock& block) const {
+        return (block.position - parts_.origin / 8) *
+               glm::ivec3(parts_.slices, parts_.within, parts_.within);
+    }
+    glm::ivec3 partOf(const CodeBlock& block, int slices, const glm::ivec2& part) const {
+        const glm::ivec3 first = firstPart(block);
+        return {slices, first.y + part.x, first.z + part.y};
+    }
 
     void read(const CodeBlock& block) {
-        if (tools_.holder) {
-            readSlots(block, mapped(slotMap_), slots_);
-            return hold(slots_);
+        if (!tools_.holder) {
+            if (!block.leaf) return classes_.fill(ClassIndex(block.tileSlot));
+            return readLeaf(*block.leaf, options_.sliceAxis, mapped(slotMap_), classes_.data());
         }
-        if (!block.leaf) return classes_.fill(ClassIndex(block.tileSlot));
-        readLeaf(*block.leaf, options_.sliceAxis, mapped(slotMap_), classes_.data());
+        if (block.leaf) {
+            readLeaf(*block.leaf, options_.sliceAxis, mapped(slotMap_), slots_.data());
+        } else {
+            slots_.fill(block.tileSlot);
+        }
+        hold(slots_, held_[0]);
     }
 
-    template <typename SlotOf>
-    void readSlots(const CodeBlock& block, const SlotOf& slotOf, BlockSlots& slots) const {
-        if (!block.leaf) return slots.fill(block.tileSlot);
-        readLeaf(*block.leaf, options_.sliceAxis, slotOf, slots.data());
-    }
-
-    void hold(const BlockSlots& slots) {
+    void hold(const BlockSlots& slots, std::array<Slot, 64>& before) {
         for (std::size_t i = 0; i < slots.size(); ++i) {
-            Slot& held = held_[i & 63];
+            Slot& held = before[i & 63];
             held = tools_.holder->next(held, slots[i]);
             classes_[i] = tools_.holder->classOf(held);
         }
     }
 
-    // Adds what a block becomes between the one before it and the one behind it, of those that
-    // there are in `run`.
-    void addMixed(std::span<const CodeBlock> run, const CodeBlock& block) {
-        const int parts = perBlock();
-        const bool isSeen = tools_.sight->canBeSeen(run);
-        if (isSeen) readWindow(run, block);
-        for (int part = 0; part < parts; ++part) {
-            const glm::ivec3 position(block.position.x * parts + part, block.position.y,
-                                      block.position.z);
-            const int slices = layout_.slicesOf(position.x);
-            if (slices <= 0) return;
-            if (isSeen) {
-                tools_.mixer->mix(window_, part, slotMap_, slots_);
-                showSlots();
-            } else {
-                classes_.fill(kEmptySlot);
-                held_.fill(kEmptySlot);
-            }
-            add(position, slices);
+    void addMixed(const CodeBlock& block) {
+        window_->reader.read(block, window_->window);
+        const bool isSeen = tools_.sight->canBeSeen(window_->window);
+        if (isSeen) tools_.mixer->mix(window_->window, slotMap_, mixed_);
+        for (int s = 0; s < parts_.slices; ++s) {
+            forParts([&](const glm::ivec2& part) {
+                const glm::ivec3 position = partOf(block, firstPart(block).x + s, part);
+                const int slices = layout_.slicesOf(position.x);
+                // The box may begin and end within a block: some of what it becomes lies outside.
+                if (position.x < layout_.firstBlock || slices <= 0) return;
+                std::array<Slot, 64>& held = held_[numberOf(part)];
+                const int number = (part.x * parts_.slices + s) * parts_.within + part.y;
+                const BlockSlots& slots = mixed_[std::size_t(number)];
+                if (!isSeen) {
+                    classes_.fill(kEmptySlot);
+                    held.fill(kEmptySlot);
+                } else if (tools_.holder) {
+                    hold(slots, held);
+                } else {
+                    std::copy(slots.begin(), slots.end(), classes_.begin());
+                }
+                add(position, part, slices);
+            });
         }
     }
 
-    void showSlots() {
-        if (tools_.holder) return hold(slots_);
-        std::copy(slots_.begin(), slots_.end(), classes_.begin());
-    }
-
-    void readWindow(std::span<const CodeBlock> run, const CodeBlock& block) {
-        const auto slotOf = [](Code code) { return Slot(code + 1); };
-        const auto readSlice = [&](const CodeBlock& other, int slice, std::array<Slot, 64>& out) {
-            readSlots(other, slotOf, slots_);
-            std::copy_n(&slots_[64 * std::size_t(slice)], 64, out.begin());
-        };
-        window_.before.fill(kEmptySlot);
-        window_.behind.fill(kEmptySlot);
-        if (&run.front() != &block) readSlice(run.front(), 7, window_.before);
-        if (&run.back() != &block) readSlice(run.back(), 0, window_.behind);
-        readSlots(block, slotOf, window_.slots);
-    }
-
     // Adds the words of the first `slices` slices of classes_.
-    void add(const glm::ivec3& position, int slices) {
+    // @param part  of the column: what was before is kept for each
+    void add(const glm::ivec3& position, const glm::ivec2& part, int slices) {
+        SliceClasses& before = before_[numberOf(part)];
+        PackedColumns& packed = halves_[std::size_t(part.x)];
         BlockChanges changes;
-        compareClasses(before_.data(), classes_.data(), changes.visible.data(),
+        compareClasses(before.data(), classes_.data(), changes.visible.data(),
                        changes.changed.data());
         for (int s = 0; s < slices; ++s) {
             const std::uint64_t visible = changes.visible[s];
@@ -256,42 +282,79 @@ class ColumnPacker {
                 (options_.encoding != Encoding::kWhole && changed != 0) ||
                 ((options_.encoding != Encoding::kChanges || isKey) && visible != 0);
             if (!needed) continue;
-            words_.push_back({visible, changed, storage_.size(), slice, {position.y, position.z}});
-            storage_.insert(storage_.end(), &classes_[64 * s], &classes_[64 * s] + 64);
+            packed.words.push_back(
+                {visible, changed, packed.storage.size(), slice, {position.y, position.z}});
+            packed.storage.insert(packed.storage.end(), &classes_[64 * s], &classes_[64 * s] + 64);
         }
-        std::copy_n(&classes_[7 * 64], 64, before_.begin());
+        std::copy_n(&classes_[7 * 64], 64, before.begin());
     }
+
+    struct Window {
+        Window(const CodeTree& codes, int sliceAxis, bool alongSlicesOnly)
+            : reader(codes, sliceAxis, alongSlicesOnly) {}
+        MixWindowReader reader;
+        MixWindow window;
+    };
 
     const PackOptions& options_;
     PackTools tools_;
     std::span<const Slot> slotMap_;
     SlabPlanner planner_;
-    SlabLayout layout_;       // of the shortest slabs that there may be
-    BlockClasses classes_{};  // of the block in hand
-    SliceClasses before_{};   // of the slice before it
-    std::array<Slot, 64> held_{};
+    SlabLayout layout_;  // of the shortest slabs that there may be
+    Subdivision parts_;
+    BlockClasses classes_{};                      // of the block in hand
+    std::array<SliceClasses, 4> before_{};        // [part]: of the slice before it
+    std::array<std::array<Slot, 64>, 4> held_{};  // [part]
     BlockSlots slots_{};
-    SliceMixer::Window window_;
-    std::vector<PendingWord> words_;
-    std::vector<ClassIndex> storage_;
+    std::optional<Window> window_;
+    std::vector<BlockSlots> mixed_;  // [part along u][along slices][along v]
+    std::array<PackedColumns, 2> halves_;
 };
 
 // Cuts the blocks into runs of whole columns, for each of which there is one packer. The cuts
 // depend on the volume alone.
-std::vector<std::size_t> cutAtColumns(const std::vector<CodeBlock>& blocks) {
-    const std::size_t least = std::max<std::size_t>(128, blocks.size() / 256);
-    std::vector<std::size_t> cuts{0};
-    for (std::size_t i = 1; i < blocks.size(); ++i) {
-        const bool newColumn = blocks[i].position.y != blocks[i - 1].position.y ||
-                               blocks[i].position.z != blocks[i - 1].position.z;
-        if (newColumn && i - cuts.back() >= least) cuts.push_back(i);
+// @param atRows  cut behind each row of columns as well
+std::vector<Columns> cutAtColumns(const std::vector<CodeBlock>& blocks, bool atRows) {
+    const std::ptrdiff_t least = std::max<std::ptrdiff_t>(128, std::ptrdiff_t(blocks.size()) / 256);
+    std::vector<Columns> runs;
+    const CodeBlock* const end = blocks.data() + blocks.size();
+    const CodeBlock* begin = blocks.data();
+    for (const CodeBlock* block = begin; block != end;) {
+        const bool isLast = ++block == end;
+        const bool newRow = isLast || block->position.y != block[-1].position.y;
+        const bool newColumn = newRow || block->position.z != block[-1].position.z;
+        if (!newColumn || (block - begin < least && !isLast && !(newRow && atRows))) continue;
+        runs.push_back({begin, block});
+        begin = block;
     }
-    if (!blocks.empty()) cuts.push_back(blocks.size());
-    return cuts;
+    return runs;
+}
+
+// Returns the packed columns ordered by u, then v: of a row of blocks that is halved along u, first
+// all that lies before the middle.
+std::vector<PackedColumns*> inOrder(const std::vector<Columns>& runs,
+                                    std::vector<ColumnPacker>& packers, int halves) {
+    std::vector<PackedColumns*> columns;
+    for (std::size_t first = 0; first < runs.size();) {
+        std::size_t last = first + 1;
+        const auto row = [&](std::size_t i) { return runs[i].begin->position.y; };
+        while (last < runs.size() && halves > 1 && row(last) == row(first)) ++last;
+        for (int half = 0; half < halves; ++half)
+            for (std::size_t i = first; i < last; ++i) columns.push_back(&packers[i].half(half));
+        first = last;
+    }
+    return columns;
+}
+
+// Returns a volume's box in (slice, u, v) order, of the voxels that its own are divided into.
+IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& parts) {
+    const IndexBox own = permutedBox(box, sliceAxis);
+    const glm::ivec3 per(parts.slices, parts.within, parts.within);
+    return {(own.min - parts.origin) * per, (own.max - parts.origin) * per + per - 1};
 }
 
 // Puts the packers' words in the order of slices.
-void collectWords(std::vector<ColumnPacker>& packers, const SlabLayout& layout,
+void collectWords(const std::vector<PackedColumns*>& columns, const SlabLayout& layout,
                   PackedDeltas& packed) {
     const auto sliceOf = [&](const PendingWord& word) {
         return std::size_t(word.slice - packed.box.min.x);
@@ -304,17 +367,17 @@ void collectWords(std::vector<ColumnPacker>& packers, const SlabLayout& layout,
         return (whole ? word.visible : changed(word)) != 0;
     };
     packed.begins.resize(std::size_t(packed.box.dims().x) + 1);
-    for (const ColumnPacker& packer : packers) {
-        for (const PendingWord& word : packer.words())
+    for (const PackedColumns* column : columns) {
+        for (const PendingWord& word : column->words)
             if (needed(word)) ++packed.begins[sliceOf(word) + 1];
     }
     std::partial_sum(packed.begins.begin(), packed.begins.end(), packed.begins.begin());
     packed.words.resize(packed.begins.back());
     std::vector<std::size_t> next(packed.begins.begin(), packed.begins.end() - 1);
-    for (ColumnPacker& packer : packers) {
-        packed.storage.push_back(std::move(packer.storage()));
+    for (PackedColumns* column : columns) {
+        packed.storage.push_back(std::move(column->storage));
         const ClassIndex* classes = packed.storage.back().data();
-        for (const PendingWord& word : packer.words()) {
+        for (const PendingWord& word : column->words) {
             if (!needed(word)) continue;
             packed.words[next[sliceOf(word)]++] = {word.visible, changed(word),
                                                    classes + word.classes, word.block};
@@ -337,19 +400,12 @@ std::span<const DeltaWord> PackedDeltas::slice(int index) const {
     return std::span(words).subspan(begins[i], begins[i + 1] - begins[i]);
 }
 
-IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, int perVoxel) {
-    IndexBox slices = permutedBox(box, sliceAxis);
-    slices.min.x *= perVoxel;
-    slices.max.x = slices.max.x * perVoxel + perVoxel - 1;
-    return slices;
-}
-
 PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     PackedDeltas packed;
     packed.sliceAxis = options.sliceAxis;
-    const SliceMixer* mixer = options.mixer;
-    const int perVoxel = mixer ? mixer->perVoxel() : 1;
-    packed.box = boxOfSlices(volume.box, options.sliceAxis, perVoxel);
+    const ValueMixer* mixer = options.mixer;
+    const Subdivision parts = mixer ? mixer->parts() : Subdivision{};
+    packed.box = boxOfSlices(volume.box, options.sliceAxis, parts);
     if (volume.empty()) return packed;
     std::optional<Holder> holder;
     if (options.holds) holder.emplace(mixer ? mixer->levels() : volume, options);
@@ -359,22 +415,23 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     const std::vector<CodeBlock> blocks =
         sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
               : BlockReader(*volume.codes, nullptr, options.sliceAxis, slotMap).takeBlocks();
-    requireMemory("delta grid",
-                  double(blocks.size()) * perVoxel * kBytesPerBlock + 16.0 * packed.box.dims().x);
+    requireMemory(
+        parts.divides() ? "delta grid of divided voxels (--between 0: undivided)" : "delta grid",
+        double(blocks.size()) * parts.voxels() * kBytesPerBlock + 16.0 * packed.box.dims().x);
 
-    const std::vector<std::size_t> cuts = cutAtColumns(blocks);
-    std::vector<ColumnPacker> packers(
-        cuts.size() - 1,
-        ColumnPacker(packed.box, options,
-                     {holder ? &*holder : nullptr, mixer, sight ? &*sight : nullptr}, slotMap));
-    parallelFor(packers.size(), [&](std::size_t i) {
-        packers[i].run(blocks.data() + cuts[i], blocks.data() + cuts[i + 1]);
-    });
+    const std::vector<Columns> runs = cutAtColumns(blocks, parts.within > 1);
+    std::vector<ColumnPacker> packers;
+    packers.reserve(runs.size());
+    const PackTools tools{holder ? &*holder : nullptr, mixer, sight ? &*sight : nullptr,
+                          volume.codes.get()};
+    for (std::size_t i = 0; i < runs.size(); ++i)
+        packers.emplace_back(packed.box, options, tools, slotMap);
+    parallelFor(packers.size(), [&](std::size_t i) { packers[i].run(runs[i]); });
     SlabPlanner planner(packed.box);
     for (const ColumnPacker& packer : packers) planner.add(packer.planner());
     SlabPlan plan = planner.plan(options.encoding);
     packed.slabs = std::move(plan.slabs);
-    collectWords(packers, plan.layout, packed);
+    collectWords(inOrder(runs, packers, parts.within), plan.layout, packed);
     return packed;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "delta/slab_plan.h"
-#include "delta/slice_mixer.h"
+#include "delta/value_mixer.h"
 
 namespace deltasplat {
 
@@ -58,13 +58,10 @@ struct PackOptions {
     /// May a voxel of the second slot go on as one of the first, which the slice before has? Both
     /// can be seen and belong to different classes. Empty: never.
     std::function<bool(Slot held, Slot slot)> holds;
-    /// Puts slices between those of the volume, which then are what slices are. Slots are those of
-    /// its levels. Null: none.
-    const SliceMixer* mixer = nullptr;
+    /// Divides voxels into thin ones, which then are what voxels are. Slots are those of its
+    /// levels. Null: none.
+    const ValueMixer* mixer = nullptr;
 };
-
-/// Returns a volume's box in (slice, u, v) order, with `perVoxel` slices for each voxel.
-IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, int perVoxel);
 
 /// Takes the differences of consecutive slices, in one pass over the leaves that can be seen, and
 /// cuts them into slabs (SlabPlanner). With `holds`, a voxel keeps its class along the slice axis

@@ -6,9 +6,8 @@
 #include "parallel.h"
 
 namespace deltasplat {
-namespace {
 
-CodeLeaf describe(const CodeTree::Leaf& leaf) {
+CodeLeaf describeLeaf(const CodeTree::Leaf& leaf) {
     const Code* codes = leaf.buffer().data();
     CodeLeaf described{&leaf, codes[leaf.valueMask().findFirstOn()], 0};
     const auto add = [&](Code code) {
@@ -23,6 +22,8 @@ CodeLeaf describe(const CodeTree::Leaf& leaf) {
     return described;
 }
 
+namespace {
+
 std::vector<CodeLeaf> listLeaves(const CodeTree::Tree& tree) {
     std::vector<const CodeTree::Leaf*> leaves;
     tree.getNodes(leaves);
@@ -30,7 +31,7 @@ std::vector<CodeLeaf> listLeaves(const CodeTree::Tree& tree) {
     std::erase_if(leaves, [](const CodeTree::Leaf* leaf) { return leaf->isEmpty(); });
     std::vector<CodeLeaf> described(leaves.size());
     parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) described[i] = describe(*leaves[i]);
+        for (std::size_t i = begin; i < end; ++i) described[i] = describeLeaf(*leaves[i]);
     });
     return described;
 }

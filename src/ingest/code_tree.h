@@ -45,4 +45,7 @@ struct CodeLeaf {
     Code highest;
 };
 
+/// @param leaf  one that has active voxels
+CodeLeaf describeLeaf(const CodeTree::Leaf& leaf);
+
 }  // namespace deltasplat

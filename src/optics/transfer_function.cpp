@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "default_floats.h"
 #include "deltasplat/ingest/value_statistics.h"
@@ -90,6 +91,22 @@ glm::dvec3 TransferFunction::colorAt(double x) const {
     }
     if (linearColors) return rgb;
     return {linearFromSrgb(rgb.r), linearFromSrgb(rgb.g), linearFromSrgb(rgb.b)};
+}
+
+bool TransferFunction::colorsJump() const {
+    // As close as "Step" puts the points of a jump, and closer than anybody else would.
+    constexpr double kShare = 0x1p-30;
+    for (std::size_t i = 1; i < colors.size(); ++i) {
+        const double apart = colors[i].x - colors[i - 1].x;
+        const double range = colors.back().x - colors.front().x;
+        if (apart > kShare * range || colors[i].rgb == colors[i - 1].rgb) continue;
+        // What is clear has no colour.
+        constexpr double kFar = std::numeric_limits<double>::max();
+        if (opacityAt(std::nextafter(colors[i - 1].x, -kFar)) > 0 &&
+            opacityAt(std::nextafter(colors[i].x, kFar)) > 0)
+            return true;
+    }
+    return false;
 }
 
 double TransferFunction::opacityAt(double x) const {

@@ -75,9 +75,9 @@ void normalizePhase(const std::vector<double>& real, const std::vector<int>& pla
 }  // namespace
 
 Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolution,
-                        std::optional<int> width) {
+                        std::optional<int> width, int perVoxel) {
     const DefaultFloats floats;
-    if (!(sigmaVoxels >= kMinSigma && sigmaVoxels <= kMaxSigma)) {
+    if (!(sigmaVoxels * perVoxel >= kMinSigma && sigmaVoxels <= kMaxSigma)) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--sigma", numberText(sigmaVoxels),
                                 "a number of voxels from " + numberText(kMinSigma) + " to " +
@@ -90,7 +90,7 @@ Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolu
                                 "pixels from " + std::to_string(resolution) + " to " +
                                     std::to_string(kMaxFootprintWidth)));
     }
-    const SlicePlaneGaussian gaussian{sigmaVoxels, shiftPerSlice};
+    const SlicePlaneGaussian gaussian{sigmaVoxels * perVoxel, shiftPerSlice};
     Footprint footprint;
     footprint.resolution = resolution;
     footprint.width = width.value_or(2 * radiusFor(gaussian, resolution) + 1);

@@ -106,13 +106,23 @@ Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
     return result;
 }
 
-Factorization withSlicesPerVoxel(const Factorization& view, int perVoxel) {
+Factorization subdivided(const Factorization& view, const Subdivision& parts) {
     Factorization result = view;
-    result.shiftPerSlice /= perVoxel;
-    result.sliceStepWorld /= perVoxel;
-    // The first thin slice lies in front of the middle of the voxel's slice.
-    const double first = 0.5 / perVoxel - 0.5;
-    result.baseFromPixel[2] -= glm::dvec3(first * view.shiftPerSlice, 0);
+    const double within = parts.within;
+    result.shiftPerSlice *= within / parts.slices;
+    result.sliceStepWorld /= parts.slices;
+    result.pixelsPerVoxel /= within;
+    // The first thin voxel lies before the middle of the one that it is a part of, on each axis.
+    const glm::dvec2 first =
+        0.5 * (within - 1) + within * (0.5 - 0.5 / parts.slices) * view.shiftPerSlice;
+    const glm::dvec2 origin =
+        glm::dvec2(parts.origin.y, parts.origin.z) + double(parts.origin.x) * view.shiftPerSlice;
+    result.baseFromPixel[2] -= glm::dvec3(origin, 0);
+    for (int column = 0; column < 3; ++column) {
+        glm::dvec3& base = result.baseFromPixel[column];
+        base = glm::dvec3(within * glm::dvec2(base), base.z);
+    }
+    result.baseFromPixel[2] += glm::dvec3(first, 0);
     return result;
 }
 

@@ -12,8 +12,8 @@ deltasplat_cli_test(bench.table ARGS bench ${cube} ${quick}
     STDOUT_MATCHES "logical core.*
 deltasplat ${PROJECT_VERSION}, OpenVDB .*
 ${cube}
-  8 x 8 x 8 voxels, .* visible, .* deltas [(]comparability .*
-  16 x 16 pixels, composite, .*8 slices along z in .*
+  8 x 8 x 8 voxels divided into 8, .* visible, .* deltas [(]comparability .*
+  16 x 16 pixels, composite, .*16 slices along z in .*
   method .*
   traditional +${row}
   sparse +${row}

@@ -22,60 +22,103 @@ TestVolume noise(const glm::ivec3& dims) {
     return volume;
 }
 
-// The same with `perVoxel` slices for each along z, values mixed by hand; the ends keep theirs.
-TestVolume withThinSlices(const TestVolume& volume, int perVoxel) {
-    TestVolume thin({0, 0, 0}, {volume.dims.x, volume.dims.y, volume.dims.z * perVoxel});
-    thin.worldFromIndex = spaced({1, 1, 1.0 / perVoxel}, {0, 0, 0.5 / perVoxel - 0.5});
+// The same with voxels divided along x, y and z, values mixed by hand; the ends keep theirs.
+TestVolume withThinVoxels(const TestVolume& volume, const glm::ivec3& parts) {
+    TestVolume thin({0, 0, 0}, volume.dims * parts);
+    const glm::dvec3 spacing = 1.0 / glm::dvec3(parts);
+    thin.worldFromIndex = spaced(spacing, 0.5 * spacing - 0.5);
     TestVolume source = volume;
-    const auto at = [&](int x, int y, int z) {
-        return source.at({x, y, std::clamp(z, 0, volume.dims.z - 1)});
-    };
     for (int z = 0; z < thin.dims.z; ++z) {
-        const double place = (z + 0.5) / perVoxel - 0.5;
-        const int below = int(std::floor(place));
-        const double share = place - below;
         for (int y = 0; y < thin.dims.y; ++y) {
             for (int x = 0; x < thin.dims.x; ++x) {
-                thin.at({x, y, z}) =
-                    float((1 - share) * at(x, y, below) + share * at(x, y, below + 1));
+                const glm::dvec3 place = (glm::dvec3(x, y, z) + 0.5) * spacing - 0.5;
+                const glm::dvec3 low = glm::floor(place);
+                double sum = 0;
+                for (int corner = 0; corner < 8; ++corner) {
+                    const glm::ivec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+                    const glm::dvec3 share = 1.0 - glm::abs(place - low - glm::dvec3(side));
+                    sum += share.x * share.y * share.z *
+                           source.at(
+                               glm::clamp(glm::ivec3(low) + side, glm::ivec3(0), volume.dims - 1));
+                }
+                thin.at({x, y, z}) = float(sum);
             }
         }
     }
     return thin;
 }
 
-TEST(Between, isTheVolumeWithSlicesMixedByHand) {
+TEST(Between, isTheVolumeWithValuesMixedByHand) {
     const TestVolume plain = noise({19, 14, 21});
     const Volume volume = throughRaw(plain, glm::dvec3(1));
     for (const int between : {1, 2, 3}) {
-        const Volume thin = throughVdb(withThinSlices(plain, between + 1));
-        for (const double up : {1, -1}) {
-            RenderOptions options;
-            // Straight along z, so that footprints are the same.
-            options.camera.direction = glm::dvec3(0, 0, -1);
-            options.camera.up = glm::dvec3(0.3, up, 0);
-            options.camera.targetWorld = glm::dvec3(9, 6.5, 10);
-            options.camera.frameWidthWorld = 24;
-            options.camera.sizePixels = {60, 60};
-            options.optics.transferFunction = testTransferFunction(0.7);
-            options.optics.unitDistance = 1;
-            options.between = between;
-            const RenderResult mixed = render(volume, options);
-            options.between = 0;
-            const RenderResult expected = render(thin, options);
-            EXPECT_EQ(mixed.stats.slices, 21 * (between + 1));
-            double largest = 0;
-            double sum = 0;
-            for (std::size_t i = 0; i < expected.image.rgba.size(); ++i) {
-                largest = std::max<double>(largest,
-                                           std::abs(mixed.image.rgba[i] - expected.image.rgba[i]));
-                sum += expected.image.rgba[i];
+        for (const int within : {1, 2}) {
+            const Volume thin = throughVdb(withThinVoxels(plain, {within, within, between + 1}));
+            for (const double up : {1, -1}) {
+                RenderOptions options;
+                // Straight along z, so that footprints are the same.
+                options.camera.direction = glm::dvec3(0, 0, -1);
+                options.camera.up = glm::dvec3(0.3, up, 0);
+                options.camera.targetWorld = glm::dvec3(9, 6.5, 10);
+                options.camera.frameWidthWorld = 24;
+                options.camera.sizePixels = {60, 60};
+                options.optics.transferFunction = testTransferFunction(0.7);
+                options.optics.unitDistance = 1;
+                options.between = between;
+                options.resolution = within;
+                const RenderResult mixed = render(volume, options);
+                options.between = 0;
+                options.resolution = 1;
+                const RenderResult expected = render(thin, options);
+                EXPECT_EQ(mixed.stats.slices, 21 * (between + 1));
+                EXPECT_EQ(mixed.stats.resolution, within);
+                EXPECT_EQ(mixed.stats.visible, expected.stats.visible);
+                double largest = 0;
+                double sum = 0;
+                for (std::size_t i = 0; i < expected.image.rgba.size(); ++i) {
+                    largest = std::max<double>(
+                        largest, std::abs(mixed.image.rgba[i] - expected.image.rgba[i]));
+                    sum += expected.image.rgba[i];
+                }
+                EXPECT_GT(sum, 1000);
+                // Mixed by thirds, values fall on the nearest of the levels there are.
+                EXPECT_LT(largest, between == 2 ? 4e-3 : 1e-3) << between;
             }
-            EXPECT_GT(sum, 1000);
-            // Mixed by thirds, values fall on the nearest of the levels there are.
-            EXPECT_LT(largest, between == 2 ? 4e-3 : 1e-3) << between;
         }
     }
+}
+
+// One sheet pixel a voxel leaves no room for values within slices, two do; what the screen asks for
+// is chosen where nothing is said.
+TEST(Between, isOneWhereTheScreenAsksForTwoPixelsAVoxel) {
+    const Volume volume = throughRaw(noise({24, 24, 24}), glm::dvec3(1));
+    RenderOptions options;
+    options.optics.transferFunction = testTransferFunction(0.7);
+    options.camera.frameWidthWorld = 40;
+    const auto statsAt = [&](double pixelsPerVoxel) {
+        options.camera.sizePixels = glm::ivec2(int(40 * pixelsPerVoxel));
+        return render(volume, options).stats;
+    };
+    EXPECT_EQ(statsAt(1.4).between, 0);
+    EXPECT_EQ(statsAt(1.4).resolution, 1);
+    EXPECT_EQ(statsAt(1.6).between, 1);
+    EXPECT_EQ(statsAt(1.6).resolution, 2);
+    EXPECT_EQ(statsAt(1.6).voxels, 8u * 24 * 24 * 24);
+    options.resolution = 2;
+    EXPECT_EQ(statsAt(1.6).between, 0);
+    options.resolution = {};
+    options.between = 1;
+    EXPECT_EQ(statsAt(1).resolution, 2);
+    options.between = 0;
+    EXPECT_EQ(statsAt(1.6).voxels, 24u * 24 * 24);
+    // What a volume shows makes no difference, so that no voxel changes how others are drawn,
+    options.between = {};
+    options.optics.transferFunction = testTransferFunction(0.1);
+    EXPECT_EQ(statsAt(1.6).between, 1);
+    // but labels have no values between them.
+    options.optics.transferFunction.colors = {
+        {0, {1, 0, 0}}, {100, {1, 0, 0}}, {100, {0, 1, 0}}, {255, {0, 1, 0}}};
+    EXPECT_EQ(statsAt(1.6).between, 0);
 }
 
 // Whatever is put between its slices, a homogeneous slab stays what it is, active or dense.
@@ -203,7 +246,6 @@ TEST(Between, cylindersRippleNoMoreThanARayMarch) {
         options.camera.frameWidthWorld = 64;
         options.camera.sizePixels = {128, 128};
         options.optics.transferFunction = function;
-        options.between = 1;
         const Image image = render(throughRaw(plain, glm::dvec3(1)), options).image;
         const double splatted = rippleOf(cylinder, [&](double t, double side) {
             // Up is across, and right is direction x up: along the image or against it.

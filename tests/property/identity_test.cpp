@@ -158,6 +158,7 @@ TEST(Identity, AlsoWhereLittleChanges) {
     for (const glm::dvec3& direction : kDirections) {
         RenderOptions options = optionsFor(direction);
         options.method = Method::kDelta;
+        options.between = 0;
         const RenderStats stats = render(volume, options).stats;
         EXPECT_LE(stats.slabs, 3);
         EXPECT_LT(6 * stats.deltas, stats.visible);
@@ -252,6 +253,20 @@ TEST(Identity, AlsoWithSlicesBetween) {
         options.between = between;
         expectSamePixels(volume, options);
         options.tolerance.relative = 0.1;
+        expectSamePixels(volume, options);
+    }
+}
+
+TEST(Identity, AlsoWithVoxelsDivided) {
+    const Volume volume = test::randomVolume(kBoxes[0], 22, 0.5);
+    for (const glm::dvec3& direction : kDirections) {
+        RenderOptions options = optionsFor(direction);
+        for (const int resolution : {2, 4}) {
+            options.between = 1;
+            options.resolution = resolution;
+            expectSamePixels(volume, options);
+        }
+        makeWide(options.optics.transferFunction, false);
         expectSamePixels(volume, options);
     }
 }

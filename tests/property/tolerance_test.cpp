@@ -86,6 +86,7 @@ TEST(ToleranceBound, IsReachedByOneSlice) {
     RenderOptions options = optionsOf({0, 0, -1}, true, 1);
     options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {200, 0.2, 0.5, 0}};
     options.camera.sizePixels = {32, 32};
+    options.between = 0;
     const RenderResult exact = render(volume, options);
     options.tolerance.relative = 0.11;
     const RenderResult held = render(volume, options);

@@ -39,13 +39,15 @@ struct TransferFunction {
     /// Returns the opacity 0..1 over one unit distance at x, with midpoint and sharpness as VTK
     /// understands them. Constant beyond the first and the last point.
     double opacityAt(double x) const;
+    /// Whether a colour that is seen changes at once to another, as between labels.
+    bool colorsJump() const;
 };
 
 /// Reads the first transfer function of a ParaView JSON file (an array of presets, or one object):
 /// `Name`, `RGBPoints`, `Points`, `Normalized`, `ColorSpaceOfPoints`, `ColorSpace`; other members
 /// are passed over. Colours are interpolated as RGB, or held for each interval where `ColorSpace`
 /// is "Step" (the colour of its right end, which belongs to it; its left end has its own colour);
-/// another colour space brings a warning. A file without
+/// another colour space brings a warning. Linear colours may be brighter than 1. A file without
 /// `Points` gets opacities from 0 at the first colour's x to 1 at the last one's, with a warning.
 /// @throw Error(kInput) naming file, line and what was expected, if it is missing or malformed
 TransferFunction readTransferFunction(const std::filesystem::path& file,

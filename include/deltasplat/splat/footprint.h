@@ -42,14 +42,16 @@ inline double defaultSigma(double pixelsPerVoxel) {
 
 /// Makes the Gaussian footprint with covariance sigma^2 (I + d d^T) in slice units: a round kernel
 /// seen along the line of sight.
-/// @param sigmaVoxels    kMinSigma..kMaxSigma
+/// @param sigmaVoxels    kMinSigma / perVoxel..kMaxSigma
 /// @param shiftPerSlice  d, |d| <= 1 in each component, in the table's (x, y)
 /// @param resolution     r, at least 1
 /// @param width          pixels, r..kMaxFootprintWidth; empty: the smallest odd number that leaves
 /// out less than kFootprintTail of the weight
+/// @param perVoxel       how many footprints a voxel has along each axis, each with r pixels of its
+/// own
 /// @throw Error(kUsage) if sigma or width is out of range
 Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolution,
-                        std::optional<int> width = {});
+                        std::optional<int> width = {}, int perVoxel = 1);
 inline constexpr double kFootprintTail = 0.002;
 inline constexpr int kMaxFootprintWidth = 1024;
 

@@ -3,6 +3,7 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 
 #include "deltasplat/view/camera.h"
@@ -38,9 +39,25 @@ inline constexpr int kMaxResolution = 16;
 Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
                         std::optional<int> resolution = {});
 
-/// Returns the factorization with `perVoxel` slices for each of the volume's, evenly spaced and as
-/// far from the middle as from the next: slice i of the volume becomes i * perVoxel and those that
-/// follow.
-Factorization withSlicesPerVoxel(const Factorization& view, int perVoxel);
+/// Into how many thin voxels a voxel is divided, evenly spaced and as far from its faces as from
+/// each other by half.
+struct Subdivision {
+    int slices = 1;  ///< along the slice axis
+    int within = 1;  ///< along u and along v: 1 or 2
+    /// (slice, u, v) of the voxel that thin voxels are counted from: numbers stay small wherever in
+    /// index space a volume lies.
+    glm::ivec3 origin{0};
+
+    /// Whether there is more than one.
+    bool divides() const { return slices > 1 || within > 1; }
+    /// What a voxel becomes.
+    int voxels() const { return slices * within * within; }
+    /// The smallest share of a voxel in a value mixed from several, as 1 / n.
+    int smallestShare() const { return 2 * slices * (within == 2 ? 16 : 1); }
+};
+
+/// Returns the factorization for thin voxels, which are what is counted then: voxel i becomes
+/// (i - origin) * n and those that follow, along each axis. The resolution stays what it is.
+Factorization subdivided(const Factorization& view, const Subdivision& parts);
 
 }  // namespace deltasplat

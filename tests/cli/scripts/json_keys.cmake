@@ -13,8 +13,17 @@ endfunction()
 run(synth slab slab_12x10x8_uint8.raw --dims 12x10x8 -q)
 run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --method delta --threads 1 -q)
 file(READ ${SCRATCH}/stats.json stats)
+# Magnified, voxels are divided, and counted so.
+expect_value("${stats}" 1 between)
+expect_value("${stats}" 8 parts)
+expect_value("${stats}" 7680 voxels)
+expect_value("${stats}" 16 slices)
+run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --method delta --threads 1 -q
+    --between 0)
+file(READ ${SCRATCH}/stats.json stats)
+expect_value("${stats}" 1 parts)
 expect_keys("${stats}" "" "method;mode;voxels;visible;deltas;stamps;slices;slabs;slice_axis;\
-between;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
+between;parts;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
 world_box;origin;directions;space;target;frame_width;camera")
 expect_keys("${stats}" seconds "read;prepare;splat;composite;warp;write;render;total")
 expect_keys("${stats}" error_bound "color;alpha")
@@ -37,7 +46,7 @@ foreach(mode xray mip)
     run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --mode ${mode} -q)
     file(READ ${SCRATCH}/stats.json stats)
     expect_keys("${stats}" "" "method;mode;voxels;visible;deltas;stamps;slices;slabs;slice_axis;\
-between;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
+between;parts;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
 world_box;origin;directions;space;target;frame_width;camera")
     expect_keys("${stats}" seconds "read;prepare;splat;composite;warp;write;render;total")
     expect_keys("${stats}" error_bound "color;alpha")
@@ -143,7 +152,7 @@ if(NOT runs EQUAL 1)
     message(FATAL_ERROR "bench: got ${runs} runs; expected 1")
 endif()
 expect_keys("${bench}" "runs;0" "input;dims;mode;size;threads;repeats;voxels;visible;deltas;\
-comparability;slices;slabs;slice_axis;resolution;footprint;methods;prepare;speedup;identical;\
+comparability;slices;between;parts;slabs;slice_axis;resolution;footprint;methods;prepare;speedup;identical;\
 max_difference;tolerance")
 expect_keys("${bench}" "runs;0;methods" "traditional;sparse;delta;auto")
 expect_keys("${bench}" "runs;0;prepare" "min;median")

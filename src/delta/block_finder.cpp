@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/block_finder.h"
+
+namespace deltasplat {
+
+BlockFinder::BlockFinder(const CodeTree& codes, int sliceAxis)
+    : accessor_(codes.tree), order_(sliceOrder(sliceAxis)) {}
+
+std::optional<CodeBlock> BlockFinder::find(const glm::ivec3& position) const {
+    openvdb::Coord origin;
+    for (int i = 0; i < 3; ++i) origin[order_[i]] = 8 * position[i];
+    CodeBlock found;
+    found.position = position;
+    found.leaf = accessor_.probeConstLeaf(origin);
+    if (found.leaf) return found.leaf->isEmpty() ? std::nullopt : std::optional(found);
+    Code code;
+    if (!accessor_.probeValue(origin, code)) return std::nullopt;
+    found.tileSlot = Slot(code + 1);
+    return found;
+}
+
+}  // namespace deltasplat

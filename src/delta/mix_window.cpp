@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/mix_window.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace deltasplat {
+
+bool MixWindow::isUniform() const {
+    return std::all_of(slots.begin(), slots.end(), [&](Slot slot) { return slot == slots[0]; });
+}
+
+MixWindowReader::MixWindowReader(const CodeTree& codes, int sliceAxis, bool alongSlicesOnly)
+    : finder_(codes, sliceAxis),
+      stride_(toSliceOrder(kLeafStride, sliceAxis)),
+      reach_(alongSlicesOnly ? 0 : 1) {}
+
+void MixWindowReader::read(const CodeBlock& block, MixWindow& window) const {
+    for (int s = -1; s <= 1; ++s) {
+        for (int u = -reach_; u <= reach_; ++u) {
+            for (int v = -reach_; v <= reach_; ++v) {
+                const glm::ivec3 side(s, u, v);
+                if (side == glm::ivec3(0)) {
+                    readPart(&block, side, window);
+                } else {
+                    const std::optional<CodeBlock> found = finder_.find(block.position + side);
+                    readPart(found ? &*found : nullptr, side, window);
+                }
+            }
+        }
+    }
+}
+
+// Reads what the window has of a block on one side of its own (each component -1, 0 or 1).
+void MixWindowReader::readPart(const CodeBlock* block, const glm::ivec3& side,
+                               MixWindow& window) const {
+    glm::ivec3 first, last;
+    for (int i = 0; i < 3; ++i) {
+        first[i] = side[i] < 0 ? 7 : 0;
+        last[i] = side[i] > 0 ? 0 : 7;
+    }
+    const auto forAll = [&](const auto& slotOf) {
+        for (int s = first.x; s <= last.x; ++s) {
+            for (int u = first.y; u <= last.y; ++u) {
+                for (int v = first.z; v <= last.z; ++v) {
+                    const int n = s * stride_.x + u * stride_.y + v * stride_.z;
+                    window.at(8 * side + glm::ivec3(s, u, v)) = slotOf(n);
+                }
+            }
+        }
+    };
+    const CodeTree::Leaf* leaf = block ? block->leaf : nullptr;
+    if (!leaf) {
+        const Slot slot = block ? block->tileSlot : kEmptySlot;
+        return forAll([&](int) { return slot; });
+    }
+    const Code* codes = leaf->buffer().data();
+    if (leaf->isDense()) return forAll([&](int n) { return codes[n] + 1; });
+    forAll([&](int n) { return leaf->isValueOn(openvdb::Index(n)) ? codes[n] + 1 : kEmptySlot; });
+}
+
+}  // namespace deltasplat

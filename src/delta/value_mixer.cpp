@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/value_mixer.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <utility>
+
+namespace deltasplat {
+namespace {
+
+bool isEven(const CodeBook& book) {
+    return book.kind == CodeBook::Kind::kInteger || book.kind == CodeBook::Kind::kLinear;
+}
+
+// Buckets on either side of the one that 0 lies in.
+constexpr std::uint64_t kBuckets = 1 << 15;
+
+}  // namespace
+
+ValueMixer::ValueMixer(const Volume& volume, const Subdivision& parts)
+    : parts_(parts), levels_(volume), ownLevel_(kCodeCount) {
+    levels_.codes = nullptr;
+    levels_.source = nullptr;
+    levels_.histogram.assign(kCodeCount, 0);
+    const auto occurs = [](std::uint64_t count) { return count != 0; };
+    const auto& histogram = volume.histogram;
+    const auto lowest = std::find_if(histogram.begin(), histogram.end(), occurs);
+    if (lowest == histogram.end()) return;
+    const auto highest = std::find_if(histogram.rbegin(), histogram.rend(), occurs).base() - 1;
+    if (isEven(volume.codeBook)) {
+        makeEvenLevels(volume, int(lowest - histogram.begin()), int(highest - histogram.begin()));
+    } else {
+        makeTableLevels(volume);
+    }
+    for (int code = 0; code < kCodeCount; ++code) {
+        if (histogram[code] == 0) continue;
+        const int steps = (code - even_.lowest) * even_.perCode;
+        ownLevel_[code] = Code(even_.perCode != 0 ? steps : levelOfValue(table_.ofCode[code]));
+    }
+}
+
+void ValueMixer::makeEvenLevels(const Volume& volume, int lowest, int highest) {
+    const int span = highest - lowest;
+    // Values mixed by halves and quarters fall on levels, if there are enough of them.
+    const int wanted = parts_.smallestShare();
+    // A power of two, so that a code's own value comes out exactly.
+    const int room = span == 0 ? 1 : (kCodeCount - 1) / span;
+    even_ = {Code(lowest), int(std::bit_floor(unsigned(std::min(wanted, room))))};
+    const auto last = std::ptrdiff_t{span} * even_.perCode;
+    std::fill_n(levels_.histogram.begin(), last + 1, 1);
+    CodeBook& book = levels_.codeBook;
+    const double step = book.kind == CodeBook::Kind::kLinear ? book.step : 1;
+    book.kind = CodeBook::Kind::kLinear;
+    book.offset = volume.codeBook.valueOf(Code(lowest));
+    book.step = step / even_.perCode;
+}
+
+void ValueMixer::makeTableLevels(const Volume& volume) {
+    table_.ofCode.resize(kCodeCount);
+    std::vector<double> values;
+    for (int code = 0; code < kCodeCount; ++code) {
+        if (volume.histogram[code] == 0) continue;
+        table_.ofCode[code] = volume.codeBook.valueOf(Code(code));
+        values.push_back(table_.ofCode[code]);
+    }
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+
+    const std::vector<int> between = levelsBetween(values);
+    std::vector<double> all;
+    for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+        const double half = values[i + 1] / 2 - values[i] / 2;
+        table_.rungs.push_back({values[i], half, int(all.size()), between[i]});
+        all.push_back(values[i]);
+        for (int n = 1; n < between[i]; ++n) {
+            const double share = double(n) / between[i];
+            all.push_back((1 - share) * values[i] + share * values[i + 1]);
+        }
+    }
+    table_.rungs.push_back({values.back(), 0, int(all.size()), 0});
+    all.push_back(values.back());
+    makeBuckets();
+    std::fill_n(levels_.histogram.begin(), all.size(), 1);
+    levels_.codeBook = CodeBook::ofTable(std::move(all));
+}
+
+// Returns how many steps there are from each value to the next: those that mixing by quarters needs
+// or, where values lie far apart, 2^-14 of the larger one each; fewer if there is no room.
+std::vector<int> ValueMixer::levelsBetween(const std::vector<double>& values) const {
+    constexpr double kStepsPerValue = 16384;
+    std::vector<int> steps;
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+        const double apart = (values[i + 1] / 2 - values[i] / 2) /
+                             (std::max(std::abs(values[i]), std::abs(values[i + 1])) / 2);
+        const double wanted = std::ceil(std::min(apart, 1.0) * kStepsPerValue);
+        steps.push_back(std::max(int(wanted), parts_.smallestShare()));
+        sum += steps.back();
+    }
+    // One each is there in any case.
+    const double room = double(kCodeCount) - 1 - double(steps.size());
+    if (sum <= room) return steps;
+    for (int& count : steps) count = 1 + int(count * (room / sum));
+    return steps;
+}
+
+// As fine as the range of magnitudes allows.
+void ValueMixer::makeBuckets() {
+    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t most = 0;
+    for (const TableLevels::Rung& rung : table_.rungs) {
+        if (rung.value == 0) continue;
+        const auto bits = std::bit_cast<std::uint64_t>(std::abs(rung.value));
+        least = std::min(least, bits);
+        most = std::max(most, bits);
+    }
+    table_.least = std::min(least, most);
+    while ((most - table_.least) >> table_.dropped >= kBuckets) ++table_.dropped;
+    std::size_t next = 0;
+    for (std::size_t bucket = 0; bucket <= 2 * kBuckets + 1; ++bucket) {
+        while (next < table_.rungs.size() && table_.bucketOf(table_.rungs[next].value) < bucket)
+            ++next;
+        table_.starts.push_back(int(next));
+    }
+}
+
+// In the order of values: negative ones come before 0 and what is nearer to it than any other.
+std::size_t ValueMixer::TableLevels::bucketOf(double value) const {
+    const auto bits = std::bit_cast<std::uint64_t>(std::abs(value));
+    const std::uint64_t place = bits < least ? 0 : 1 + ((bits - least) >> dropped);
+    return value < 0 ? kBuckets - place : kBuckets + place;
+}
+
+int ValueMixer::levelOfValue(double value) const {
+    const std::vector<TableLevels::Rung>& rungs = table_.rungs;
+    if (!(value > rungs.front().value)) return rungs.front().level;
+    if (!(value < rungs.back().value)) return rungs.back().level;
+    const std::size_t bucket = table_.bucketOf(value);
+    const auto behind = std::upper_bound(
+        rungs.begin() + table_.starts[bucket], rungs.begin() + table_.starts[bucket + 1], value,
+        [](double number, const TableLevels::Rung& rung) { return number < rung.value; });
+    const TableLevels::Rung& rung = behind[-1];
+    // Half a number may be none where numbers are smallest.
+    const double share = rung.half > 0 ? (value / 2 - rung.value / 2) / rung.half : 0;
+    return rung.level + int(share * rung.steps + 0.5);
+}
+
+namespace {
+
+// Between two values, or the first where there is no other; NaN where there is none. Without a
+// branch, so that several are mixed at once.
+template <typename T>
+inline T mixed(T here, T other, T share) {
+    const T difference = other - here;
+    const T step = difference * share;
+    return here + (difference == difference ? step : T(0));
+}
+
+// A row of thin voxels from one of voxels and what lies before and behind it.
+template <typename T>
+inline void mixHalves(const T* row, T* thin) {
+    for (int v = 0; v < 8; ++v) {
+        thin[2 * v] = mixed(row[v + 1], row[v], T(0.25));
+        thin[2 * v + 1] = mixed(row[v + 1], row[v + 2], T(0.25));
+    }
+}
+
+// Calls use(part, place, values of the thin voxels along v) for rows of thin voxels.
+// @param values  as MixWindow::slots, NaN where there are none
+template <typename T, typename Use>
+void mixRows(const std::array<T, MixWindow::kSide * MixWindow::kPlane>& values,
+             const Subdivision& parts, const Use& use) {
+    constexpr int kSide = MixWindow::kSide;
+    constexpr int kPlane = MixWindow::kPlane;
+    std::array<T, kPlane> plane;
+    std::array<T, kSide> row;
+    std::array<T, 16> thin;
+    for (int s = 0; s < 8 * parts.slices; ++s) {
+        // How far from the voxels' middle, in halves of a thin slice.
+        const int offset = 2 * (s % parts.slices) + 1 - parts.slices;
+        const T* here = values.data() + (1 + s / parts.slices) * kPlane;
+        const T* other = offset < 0 ? here - kPlane : here + kPlane;
+        const T share = T(std::abs(offset)) / T(2 * parts.slices);
+        for (int n = 0; n < kPlane; ++n) plane[n] = mixed(here[n], other[n], share);
+        for (int u = 0; u < 8 * parts.within; ++u) {
+            const int part = (u / 8 * parts.slices + s / 8) * parts.within;
+            const int place = 64 * (s % 8) + 8 * (u % 8);
+            const T* own = plane.data() + (1 + u / parts.within) * kSide;
+            if (parts.within == 1) {
+                use(part, place, own + 1);
+                continue;
+            }
+            const T* beside = u % 2 == 0 ? own - kSide : own + kSide;
+            for (int v = 0; v < kSide; ++v) row[v] = mixed(own[v], beside[v], T(0.25));
+            mixHalves(row.data(), thin.data());
+            use(part, place, thin.data());
+            use(part + 1, place, thin.data() + 8);
+        }
+    }
+}
+
+// Values of a window's slots, NaN where there are none.
+template <typename T, typename ValueOf>
+auto valuesOf(const MixWindow& window, const ValueOf& valueOf) {
+    std::array<T, MixWindow::kSide * MixWindow::kPlane> values;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+        const Slot slot = window.slots[n];
+        values[n] =
+            slot == kEmptySlot ? std::numeric_limits<T>::quiet_NaN() : valueOf(Code(slot - 1));
+    }
+    return values;
+}
+
+}  // namespace
+
+void ValueMixer::mix(const MixWindow& window, std::span<const Slot> slotMap,
+                     std::span<BlockSlots> mixed) const {
+    if (window.slots[0] != kEmptySlot && window.isUniform()) {
+        const Slot slot = slotMap[std::size_t(levelOf(Code(window.slots[0] - 1))) + 1];
+        for (BlockSlots& block : mixed) block.fill(slot);
+        return;
+    }
+    const auto mixThem = [&](const auto& values, const auto& levelOf) {
+        mixRows(values, parts_, [&](int part, int place, const auto* row) {
+            Slot* out = &mixed[std::size_t(part)][std::size_t(place)];
+            std::array<int, 8> levels;
+            for (int v = 0; v < 8; ++v) {
+                const bool isThere = row[v] == row[v];
+                const int level = levelOf(isThere ? row[v] : 0) + 1;
+                levels[std::size_t(v)] = isThere ? level : int(kEmptySlot);
+            }
+            for (int v = 0; v < 8; ++v) out[v] = slotMap[std::size_t(levels[std::size_t(v)])];
+        });
+    };
+    if (even_.perCode != 0) {
+        // Steps above the lowest code: floats hold the quarters of quarters of 16 bits exactly.
+        const auto stepsOf = [&](Code code) { return float(code - even_.lowest); };
+        const auto perCode = float(even_.perCode);
+        mixThem(valuesOf<float>(window, stepsOf),
+                [&](float steps) { return int(steps * perCode + 0.5f); });
+    } else {
+        mixThem(valuesOf<double>(window, [&](Code code) { return table_.ofCode[code]; }),
+                [&](double value) { return levelOfValue(value); });
+    }
+    keepSeen(window, slotMap, mixed);
+}
+
+// Lets voxels that can be seen, but nothing that they become, be what they are.
+void ValueMixer::keepSeen(const MixWindow& window, std::span<const Slot> slotMap,
+                          std::span<BlockSlots> mixed) const {
+    const auto forParts = [&](const glm::ivec3& place, const auto& use) {
+        const glm::ivec3 per(parts_.slices, parts_.within, parts_.within);
+        const glm::ivec3 first = place * per;
+        for (int s = first.x; s < first.x + per.x; ++s) {
+            for (int u = first.y; u < first.y + per.y; ++u) {
+                for (int v = first.z; v < first.z + per.z; ++v) {
+                    const int part = (u / 8 * per.x + s / 8) * per.z + v / 8;
+                    const int slot = 64 * (s % 8) + 8 * (u % 8) + v % 8;
+                    use(mixed[std::size_t(part)][std::size_t(slot)]);
+                }
+            }
+        }
+    };
+    for (int n = 0; n < 512; ++n) {
+        const glm::ivec3 place(n / 64, n / 8 % 8, n % 8);
+        const Slot own = window.at(place);
+        if (own == kEmptySlot) continue;
+        const Slot seen = slotMap[std::size_t(levelOf(Code(own - 1))) + 1];
+        if (seen == kEmptySlot) continue;
+        Slot any = kEmptySlot;
+        forParts(place, [&](Slot slot) { any |= slot; });
+        if (any == kEmptySlot) forParts(place, [&](Slot& slot) { slot = seen; });
+    }
+}
+
+}  // namespace deltasplat

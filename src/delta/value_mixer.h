@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "delta/code_blocks.h"
+#include "delta/mix_window.h"
+#include "deltasplat/ingest/volume.h"
+#include "deltasplat/view/factorization.h"
+
+namespace deltasplat {
+
+/// Divides voxels into thin ones. Their values are mixed from the voxels they lie between,
+/// linearly along each axis. What is not active has no value: a voxel beside it keeps its own, and
+/// so does one at the volume's end, so that a homogeneous slab stays what it is. Nor does a voxel
+/// that can be seen vanish: if all that it becomes is clear, it stays as it is.
+///
+/// Mixed values are rounded to *levels*, at most as many as there are codes, and stand in for them.
+/// Every value that the volume has is a level, and there are evenly spaced ones between each and
+/// the next: as many as there is room for, most where values lie far apart for their size.
+class ValueMixer {
+  public:
+    ValueMixer(const Volume& volume, const Subdivision& parts);
+
+    const Subdivision& parts() const { return parts_; }
+    /// The volume as classification sees it: its code book and histogram are those of levels, of
+    /// which each that can come about counts once. It has no codes.
+    const Volume& levels() const { return levels_; }
+    /// Returns the level that a code becomes where it is mixed with itself.
+    Code levelOf(Code code) const { return ownLevel_[code]; }
+
+    /// Mixes the blocks that a block becomes.
+    /// @param slotMap  [kSlotCount]: what becomes of the slots of levels
+    /// @param mixed    [parts.within along u][parts.slices][parts.within along v]
+    void mix(const MixWindow& window, std::span<const Slot> slotMap,
+             std::span<BlockSlots> mixed) const;
+
+  private:
+    // Levels of evenly spaced codes are evenly spaced themselves.
+    struct EvenLevels {
+        Code lowest = 0;
+        int perCode = 0;  // a power of two; 0 if codes are not even
+    };
+    // Others lie between values that the volume has.
+    struct TableLevels {
+        struct Rung {
+            double value;
+            double half;  // of the way to the next rung
+            int level;
+            int steps;  // levels up to the next rung
+        };
+        std::vector<Rung> rungs;     // values that the volume has, in increasing order
+        std::vector<double> ofCode;  // [kCodeCount]
+        // Where rungs of a bucket begin: of numbers with the same leading bits.
+        std::vector<int> starts;
+        std::uint64_t least = 0;  // magnitude that is not 0, its bits
+        int dropped = 0;          // low bits
+        std::size_t bucketOf(double value) const;
+    };
+
+    void makeEvenLevels(const Volume& volume, int lowest, int highest);
+    void makeTableLevels(const Volume& volume);
+    std::vector<int> levelsBetween(const std::vector<double>& values) const;
+    void makeBuckets();
+    int levelOfValue(double value) const;
+    void keepSeen(const MixWindow& window, std::span<const Slot> slotMap,
+                  std::span<BlockSlots> mixed) const;
+
+    Subdivision parts_;
+    Volume levels_;
+    EvenLevels even_;
+    TableLevels table_;
+    std::vector<Code> ownLevel_;  // [kCodeCount]
+};
+
+}  // namespace deltasplat

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/value_mixer.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <numeric>
+#include <random>
+
+namespace deltasplat {
+namespace {
+
+Volume volumeOf(const CodeBook& book, const std::vector<Code>& codes) {
+    Volume volume;
+    volume.codeBook = book;
+    volume.histogram.assign(kCodeCount, 0);
+    for (const Code code : codes) ++volume.histogram[code];
+    return volume;
+}
+
+std::vector<Slot> sameSlots() {
+    std::vector<Slot> same(kSlotCount);
+    std::iota(same.begin(), same.end(), 0);
+    return same;
+}
+
+double valueOf(const ValueMixer& mixer, Slot slot) {
+    if (slot == kEmptySlot) return NAN;
+    EXPECT_NE(mixer.levels().histogram[slot - 1], 0u);
+    return mixer.levels().codeBook.valueOf(Code(slot - 1));
+}
+
+// What a mix of two slices of one value each comes out as: the values of its thin slices.
+std::vector<double> mixed(const Volume& volume, int perVoxel, Slot here, Slot before, Slot behind) {
+    const ValueMixer mixer(volume, {perVoxel, 1});
+    MixWindow window;
+    for (int s = -1; s <= 8; ++s) {
+        for (int n = 0; n < 64; ++n)
+            window.at({s, n / 8, n % 8}) = s < 0 ? before : s > 7 ? behind : here;
+    }
+    std::vector<BlockSlots> parts(static_cast<std::size_t>(perVoxel));
+    mixer.mix(window, sameSlots(), parts);
+    std::vector<double> values;
+    for (const BlockSlots& slots : parts) {
+        for (std::size_t t = 0; t < 8; ++t) {
+            const Slot slot = slots[64 * t + 17];
+            EXPECT_EQ(slot, slots[64 * t]);
+            values.push_back(valueOf(mixer, slot));
+        }
+    }
+    return values;
+}
+
+TEST(ValueMixer, ThinSlicesLieEvenlyBetweenThoseOfTheVolume) {
+    const Volume volume = volumeOf(CodeBook::integer(-100), {0, 40, 200});
+    const std::vector<double> two = mixed(volume, 2, 41, 1, 201);
+    ASSERT_EQ(two.size(), 16u);
+    EXPECT_EQ(two[0], -60 - 40 / 4.0);
+    EXPECT_EQ(two[1], -60);
+    EXPECT_EQ(two[14], -60);
+    EXPECT_EQ(two[15], -60 + 160 / 4.0);
+    const std::vector<double> three = mixed(volume, 3, 41, 1, 201);
+    ASSERT_EQ(three.size(), 24u);
+    EXPECT_NEAR(three[0], -60 - 40 / 3.0, 0.1);
+    EXPECT_EQ(three[1], -60);
+    EXPECT_NEAR(three[23], -60 + 160 / 3.0, 0.1);
+}
+
+TEST(ValueMixer, WhatIsNotActiveHasNoValue) {
+    const Volume volume = volumeOf(CodeBook::integer(), {7, 9});
+    for (const double value : mixed(volume, 4, 10, kEmptySlot, kEmptySlot)) EXPECT_EQ(value, 9);
+    for (const double value : mixed(volume, 2, kEmptySlot, 8, 10)) EXPECT_TRUE(std::isnan(value));
+}
+
+// Codes that are not evenly spaced: mixed values must be those of values, not of codes.
+TEST(ValueMixer, MixesValuesOfAnyBook) {
+    std::mt19937 random(11);
+    std::vector<double> table{-3e5, -2, -1e-4, 0, 1e-6, 0.3, 1, 1000, 4e7};
+    const std::vector<Code> codes{0, 1, 2, 3, 4, 5, 6, 7, 8};
+    for (const Volume& volume :
+         {volumeOf(CodeBook::ofTable(table), codes),
+          volumeOf(CodeBook::half(), {0x3C00, 0x8000, 0x9234, 0xBC00, 0xC123, 0xFBFF})}) {
+        std::vector<Code> present;
+        for (int code = 0; code < kCodeCount; ++code)
+            if (volume.histogram[code] != 0) present.push_back(Code(code));
+        for (int i = 0; i < 40; ++i) {
+            const auto pick = [&] { return present[random() % present.size()]; };
+            const Code here = pick(), before = pick(), behind = pick();
+            const double v = volume.codeBook.valueOf(here);
+            const auto near = [&](double got, double a, double b, double share) {
+                const double expected = a + (b - a) * share;
+                const double smallest = 1e-6 / 4;
+                EXPECT_NEAR(got, expected, 1e-3 * std::abs(expected) + smallest)
+                    << a << " and " << b;
+            };
+            const std::vector<double> values = mixed(volume, 2, here + 1, before + 1, behind + 1);
+            near(values.front(), v, volume.codeBook.valueOf(before), 0.25);
+            near(values[5], v, v, 0);
+            near(values.back(), v, volume.codeBook.valueOf(behind), 0.25);
+        }
+    }
+}
+
+// All eight corners of each place, by a plain formula: voxels that are not active have the value of
+// the one that a thin voxel belongs to.
+TEST(ValueMixer, WithinSlicesValuesAreTrilinear) {
+    std::mt19937 random(5);
+    for (const bool full : {true, false}) {
+        const Volume volume = volumeOf(CodeBook::integer(), {0, 100, 255});
+        const ValueMixer mixer(volume, {2, 2});
+        MixWindow window;
+        for (Slot& slot : window.slots) slot = Slot(random() % 256 + 1);
+        // Of two neighbours one is active, so that no order of the axes matters.
+        for (int i = 0; !full && i < 1000; i += 2)
+            window.slots[std::size_t(i)] = (i / 100 + i / 10) % 4 == 0 ? kEmptySlot : Slot(7);
+        std::vector<BlockSlots> blocks(8);
+        mixer.mix(window, sameSlots(), blocks);
+        const auto place = [](int thin) { return 0.5 * thin - 0.25; };
+        for (int s = 0; s < 16; ++s) {
+            for (int u = 0; u < 16; ++u) {
+                for (int v = 0; v < 16; ++v) {
+                    const BlockSlots& block =
+                        blocks[std::size_t(4 * (u / 8) + 2 * (s / 8) + v / 8)];
+                    const Slot got = block[std::size_t(64 * (s % 8) + 8 * (u % 8) + v % 8)];
+                    const Slot own = window.at({s / 2, u / 2, v / 2});
+                    if (own == kEmptySlot) {
+                        EXPECT_EQ(got, kEmptySlot);
+                        continue;
+                    }
+                    ASSERT_NE(got, kEmptySlot);
+                    if (!full) continue;
+                    double expected = 0;
+                    for (int corner = 0; corner < 8; ++corner) {
+                        const glm::dvec3 at(place(s), place(u), place(v));
+                        const glm::ivec3 low(glm::floor(at));
+                        const glm::ivec3 near =
+                            low + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+                        const glm::dvec3 share = 1.0 - glm::abs(at - glm::dvec3(near));
+                        expected += share.x * share.y * share.z * (window.at(near) - 1);
+                    }
+                    EXPECT_EQ(valueOf(mixer, got), expected);
+                }
+            }
+        }
+    }
+}
+
+// A voxel between others that are not active keeps its value in all its parts.
+TEST(ValueMixer, WithinSlicesAloneIsUnmixed) {
+    const Volume volume = volumeOf(CodeBook::integer(), {0, 77});
+    const ValueMixer mixer(volume, {3, 2});
+    MixWindow window;
+    window.at({4, 3, 7}) = 78;
+    std::vector<BlockSlots> parts(12);
+    mixer.mix(window, sameSlots(), parts);
+    int found = 0;
+    for (const BlockSlots& block : parts) {
+        for (const Slot slot : block) {
+            if (slot == kEmptySlot) continue;
+            ++found;
+            EXPECT_EQ(valueOf(mixer, slot), 77);
+        }
+    }
+    EXPECT_EQ(found, 12);
+}
+
+// What is too thin for any of its parts to reach what can be seen is drawn as it is.
+TEST(ValueMixer, NothingThatCanBeSeenVanishes) {
+    const Volume volume = volumeOf(CodeBook::integer(), {0, 100});
+    const ValueMixer mixer(volume, {2, 2});
+    for (const double threshold : {30.0, 50.0, 60.0, 99.0}) {
+        std::vector<Slot> map(kSlotCount, kEmptySlot);
+        for (int level = 0; level < kCodeCount; ++level) {
+            if (mixer.levels().codeBook.valueOf(Code(level)) >= threshold)
+                map[std::size_t(level) + 1] = level + 1;
+        }
+        MixWindow window;
+        window.slots.fill(1);
+        window.at({3, 4, 5}) = 101;                                                  // a voxel,
+        for (int v = -1; v <= 8; ++v) window.at({0, 0, v}) = 101;                    // a line,
+        for (int n = 0; n < 100; ++n) window.at({6, n / 10 - 1, n % 10 - 1}) = 101;  // a plate
+        std::vector<BlockSlots> blocks(8);
+        mixer.mix(window, map, blocks);
+        const auto seenOf = [&](const glm::ivec3& place) {
+            int seen = 0;
+            for (int part = 0; part < 8; ++part) {
+                const glm::ivec3 thin = 2 * place + glm::ivec3(part / 4, part / 2 % 2, part % 2);
+                const int block = 4 * (thin.y / 8) + 2 * (thin.x / 8) + thin.z / 8;
+                const int slot = 64 * (thin.x % 8) + 8 * (thin.y % 8) + thin.z % 8;
+                seen += blocks[std::size_t(block)][std::size_t(slot)] != kEmptySlot;
+            }
+            return seen;
+        };
+        EXPECT_EQ(seenOf({3, 4, 5}), 8) << threshold;
+        EXPECT_EQ(seenOf({0, 0, 4}), 8) << threshold;
+        EXPECT_EQ(seenOf({6, 2, 2}), 8) << threshold;
+        EXPECT_EQ(seenOf({3, 6, 2}), 0) << threshold;
+    }
+}
+
+// However values lie, none that the volume has is rounded, and those between are near.
+TEST(ValueMixer, OwnValuesAreKeptExactly) {
+    const auto check = [](const std::vector<double>& values, double precision) {
+        std::vector<Code> codes(values.size());
+        std::iota(codes.begin(), codes.end(), Code{0});
+        const Volume volume = volumeOf(CodeBook::ofTable(values), codes);
+        const ValueMixer mixer(volume, {2, 2});
+        const CodeBook& levels = mixer.levels().codeBook;
+        for (const Code code : codes) EXPECT_EQ(levels.valueOf(mixer.levelOf(code)), values[code]);
+        MixWindow window;
+        std::mt19937 random(3);
+        for (Slot& slot : window.slots) slot = Slot(random() % values.size() + 1);
+        std::vector<BlockSlots> blocks(8);
+        mixer.mix(window, sameSlots(), blocks);
+        const auto at = [&](int s, int u, int v) {
+            return values[std::size_t(window.at({s, u, v})) - 1];
+        };
+        const auto lerp = [](double a, double b) { return 0.75 * a + 0.25 * b; };
+        const auto row = [&](int s, int u) { return lerp(at(s, u, 3), at(s, u, 2)); };
+        const double expected = lerp(lerp(row(3, 3), row(2, 3)), lerp(row(3, 2), row(2, 2)));
+        const double got = valueOf(mixer, blocks[0][64 * 6 + 8 * 6 + 6]);
+        EXPECT_NEAR(got, expected, precision);
+    };
+    check({0, 1000001, 1000002, 1000003}, 200);
+    check({1e-37, 292.5, 292.75, 293, 293.25, 293.5}, 0.05);
+    check({-1e300, -1e-300, 0, 1e-310, 3e-310, 7e307}, 1e297);
+    std::vector<double> many;
+    for (int i = 0; i < 65536; ++i) many.push_back(101320 + i / 6553.6);
+    check(many, 1e-4);
+    many[0] = 1e-37;
+    check(many, 1e-1);
+    // As a rounded share of a code's spacing is no power of two, a value next to a corner of a
+    // transfer function must not fall short of it.
+    std::vector<Code> codes(1338);
+    std::iota(codes.begin(), codes.end(), Code{0});
+    const Volume integers = volumeOf(CodeBook::integer(), codes);
+    const ValueMixer mixer(integers, {2, 2});
+    for (const Code code : codes)
+        EXPECT_EQ(mixer.levels().codeBook.valueOf(mixer.levelOf(code)), code);
+}
+
+TEST(ValueMixer, LevelsAreAsManyAsThereIsRoomFor) {
+    std::vector<Code> all(kCodeCount);
+    std::iota(all.begin(), all.end(), Code{0});
+    const Volume volume = volumeOf(CodeBook::linear(0, 1), all);
+    const ValueMixer mixer(volume, {2, 1});
+    for (const int code : {0, 1, 30000, 65535}) {
+        EXPECT_EQ(mixer.levels().codeBook.valueOf(mixer.levelOf(Code(code))),
+                  volume.codeBook.valueOf(Code(code)));
+    }
+}
+
+}  // namespace
+}  // namespace deltasplat
