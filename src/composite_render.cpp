@@ -21,6 +21,7 @@
 #include "number_text.h"
 #include "optics/hold_rule.h"
 #include "parallel.h"
+#include "shared_progress.h"
 #include "splat/splatter.h"
 #include "stopwatch.h"
 
@@ -84,7 +85,7 @@ class SlabRenderer {
         : input_(input),
           view_(view),
           layout_(layout),
-          listener_(listener),
+          progress_(listener),
           merged_({}, layout_.channels) {
         for (int plane = 0; plane < int(input.classes.planes.size()); ++plane)
             scales_.emplace_back(input.classes.scaleOf(plane) / double(Footprint::kOne));
@@ -219,17 +220,21 @@ class SlabRenderer {
     }
 
     void count(const Slab& slab, double compositeSeconds, double pieceSeconds) {
-        const std::lock_guard lock(mutex_);
-        compositeSeconds_ += compositeSeconds;
-        pieceSeconds_ += pieceSeconds;
-        slicesDone_ += double(slab.sliceCount) / double(strips_.size());
-        listener_.report(0.2 + 0.7 * slicesDone_ / input_.deltas.box.dims().x);
+        double slicesDone = 0;
+        {
+            const std::lock_guard lock(mutex_);
+            compositeSeconds_ += compositeSeconds;
+            pieceSeconds_ += pieceSeconds;
+            slicesDone_ += double(slab.sliceCount) / double(strips_.size());
+            slicesDone = slicesDone_;
+        }
+        progress_.report(0.2 + 0.7 * slicesDone / input_.deltas.box.dims().x);
     }
 
     const SplatInput& input_;
     const PlaneView& view_;
     const SheetLayout& layout_;
-    const Listener& listener_;
+    SharedProgress progress_;
     std::vector<glm::vec4> scales_;  // of the planes of colours
     Layer merged_;
     std::once_flag mergedOnce_;

@@ -9,7 +9,11 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
@@ -19,41 +23,94 @@ namespace deltasplat {
 
 namespace {
 
-// The arena of the innermost ThreadLimit: TBB's own one never has more threads than the machine has
-// cores.
-std::atomic<tbb::task_arena*> currentArena{nullptr};
+// TBB has as many threads for a process as the machine has cores, or as a control says; of several
+// controls the least counts. So there is one, with the most that any limit asks for.
+class ProcessThreads {
+  public:
+    void add(int threads) {
+        const std::lock_guard lock(mutex_);
+        limits_.insert(threads);
+        update();
+    }
+    void remove(int threads) {
+        const std::lock_guard lock(mutex_);
+        limits_.erase(limits_.find(threads));
+        update();
+    }
+
+  private:
+    void update() {
+        const int most = limits_.empty() ? 0 : *limits_.rbegin();
+        if (most == most_) return;
+        most_ = most;
+        control_.reset();
+        if (most == 0) return;
+        control_.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(most));
+    }
+
+    std::mutex mutex_;
+    std::multiset<int> limits_;
+    int most_ = 0;
+    std::optional<tbb::global_control> control_;
+};
+
+ProcessThreads& processThreads() {
+    static ProcessThreads threads;
+    return threads;
+}
 
 }  // namespace
 
 struct ThreadLimit::Impl {
-    explicit Impl(int threads)
-        : control(tbb::global_control::max_allowed_parallelism, std::size_t(threads)),
-          arena(threads),
-          outer(currentArena.exchange(&arena)) {}
-    ~Impl() { currentArena = outer; }
+    explicit Impl(int threads) : threads(threads), arena(threads) {}
 
-    tbb::global_control control;
+    int threads;
+    // TBB's own one never has more threads than the machine has cores.
     tbb::task_arena arena;
-    tbb::task_arena* outer;
+    std::atomic<bool> ended = false;
 };
+
+namespace {
+
+// Of this thread, the innermost last.
+using Limits = std::vector<std::shared_ptr<ThreadLimit::Impl>>;
+
+Limits& limitsOfThread() {
+    thread_local Limits limits;
+    // Limits may end in any order, and on other threads.
+    std::erase_if(limits, [](const auto& limit) { return limit->ended.load(); });
+    return limits;
+}
+
+std::shared_ptr<ThreadLimit::Impl> currentLimit() {
+    const Limits& limits = limitsOfThread();
+    return limits.empty() ? nullptr : limits.back();
+}
+
+}  // namespace
 
 ThreadLimit::ThreadLimit(int threads) {
     if (threads < 0) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("threads", std::to_string(threads), "at least 0 (0 = all)"));
     }
-    impl_ = std::make_unique<Impl>(threads == 0 ? hardwareThreads() : threads);
+    impl_ = std::make_shared<Impl>(threads == 0 ? hardwareThreads() : threads);
+    limitsOfThread().push_back(impl_);
+    processThreads().add(impl_->threads);
 }
 
 int ThreadLimit::hardwareThreads() {
     return tbb::info::default_concurrency();
 }
 
-ThreadLimit::~ThreadLimit() = default;
+ThreadLimit::~ThreadLimit() {
+    impl_->ended = true;
+    processThreads().remove(impl_->threads);
+}
 
 int threadCount() {
-    tbb::task_arena* arena = currentArena;
-    return arena ? arena->max_concurrency() : tbb::this_task_arena::max_concurrency();
+    const auto limit = currentLimit();
+    return limit ? limit->arena.max_concurrency() : tbb::this_task_arena::max_concurrency();
 }
 
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
@@ -65,9 +122,9 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
                               for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
                           });
     };
-    tbb::task_arena* arena = currentArena;
-    if (arena) {
-        arena->execute(run);
+    const auto limit = currentLimit();
+    if (limit) {
+        limit->arena.execute(run);
     } else {
         run();
     }

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "composite/plane_view.h"
 #include "image/warp.h"
+#include "number_text.h"
 #include "optics/value_colors.h"
 #include "parallel.h"
 #include "rays/blur_plane.h"
@@ -72,6 +75,26 @@ void colorValues(const ValueColors& colors, Image& image) {
     });
 }
 
+// Rays reckon in 32-bit floats: says where these are not enough.
+void warnOfFloats(const Volume& volume, const Factorization& view, RayRule rule,
+                  const Listener& listener) {
+    const double largest = std::max(std::abs(volume.valueMin), std::abs(volume.valueMax));
+    // Below, numbers lose digits: 1e5 times that is what 1e-5 of the largest value needs.
+    constexpr double kSmallest = 1e5 * double(std::numeric_limits<float>::min());
+    const std::string values = "values of up to " + numberText(largest);
+    const double sum = largest * volume.box.dims()[view.sliceAxis] * view.sliceStepWorld;
+    if (largest > kLargestRayValue) {
+        listener.warn(values +
+                      ": those beyond +-8.5e+37 are taken for that, as x-rays and largest "
+                      "values are 32-bit floats");
+    } else if (largest > 0 && largest < kSmallest) {
+        listener.warn(values + " lose digits, or become 0, as 32-bit floats");
+    }
+    if (rule == RayRule::kSum && sum > double(std::numeric_limits<float>::max())) {
+        listener.warn(values + " may add up to more than a 32-bit float holds, to infinity");
+    }
+}
+
 }  // namespace
 
 void renderRays(const Volume& volume, const Factorization& view, const RenderOptions& options,
@@ -79,6 +102,7 @@ void renderRays(const Volume& volume, const Factorization& view, const RenderOpt
     const Clock::time_point start = Clock::now();
     const bool mip = options.mode == Mode::kMip;
     const RayRule rule = mip ? RayRule::kMax : RayRule::kSum;
+    warnOfFloats(volume, view, rule, listener);
     const RayVolume rays = makeRayVolume(volume, view.sliceAxis, rule);
     RenderStats& stats = result.stats;
     stats.prepareSeconds = secondsSince(start);

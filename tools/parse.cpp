@@ -103,14 +103,6 @@ Parser<double> number(double min, double max) {
     };
 }
 
-Parser<double> positiveNumber() {
-    return [](const std::string& option, const std::string& text) {
-        const std::optional<double> value = toNumber<double>(text);
-        if (!value || !(*value > 0)) refuse(option, text, "a finite number greater than 0");
-        return *value;
-    };
-}
-
 Parser<std::int64_t> wholeNumber(std::int64_t min, std::int64_t max) {
     return [=](const std::string& option, const std::string& text) {
         const std::optional<std::int64_t> value = toNumber<std::int64_t>(text);

@@ -22,7 +22,6 @@ Parser<std::string> anyText();
 Parser<std::string> choice(std::vector<std::string> words);
 Parser<double> number(double min = -std::numeric_limits<double>::infinity(),
                       double max = std::numeric_limits<double>::infinity());
-Parser<double> positiveNumber();
 Parser<std::int64_t> wholeNumber(std::int64_t min = 0,
                                  std::int64_t max = std::numeric_limits<std::int64_t>::max());
 /// Bytes, with K, M, G or T for powers of 1024: "400M", "1.5G".

@@ -5,8 +5,9 @@
 
 namespace deltasplat {
 
-/// Limits the number of threads that the library uses while this object lives. Results never depend
-/// on it.
+/// Limits the number of threads that the library uses for what the calling thread asks of it, while
+/// this object lives. Of several the last made counts; they may end in any order. Other threads have
+/// limits of their own, or none. Results never depend on it.
 class ThreadLimit {
   public:
     /// @param threads  at least 1, or 0 for all hardware threads
@@ -18,12 +19,13 @@ class ThreadLimit {
     /// Returns how many threads 0 stands for.
     static int hardwareThreads();
 
-  private:
     struct Impl;
-    std::unique_ptr<Impl> impl_;
+
+  private:
+    std::shared_ptr<Impl> impl_;
 };
 
-/// Returns how many threads the library would use now.
+/// Returns how many threads the library would use now for what the calling thread asks of it.
 int threadCount();
 
 }  // namespace deltasplat

@@ -16,32 +16,13 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "number_text.h"
+#include "optics/check_optics.h"
 #include "optics/color_digits.h"
 #include "parallel.h"
 #include "portable_math.h"
 
 namespace deltasplat {
 namespace {
-
-void requireThat(bool holds, const char* flag, const std::string& got, const char* expected) {
-    if (!holds) throw Error(ErrorCode::kUsage, gotExpected(flag, got, expected));
-}
-
-void checkOptics(const Optics& optics) {
-    if (optics.unitDistance) {
-        const double unit = *optics.unitDistance;
-        requireThat(std::isfinite(unit) && unit > 0, "--unit-distance", numberText(unit),
-                    "a number > 0");
-    }
-    const double extinction = optics.extinctionScale;
-    requireThat(std::isfinite(extinction) && extinction >= 0, "--extinction",
-                numberText(extinction), "a number >= 0");
-    if (optics.range) {
-        const glm::dvec2 range = *optics.range;
-        requireThat(std::isfinite(range.x) && std::isfinite(range.y) && range.x < range.y,
-                    "--range", numberText(range), "LO,HI with LO < HI");
-    }
-}
 
 double smallest(const glm::dvec3& v) {
     return std::min({v.x, v.y, v.z});

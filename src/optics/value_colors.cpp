@@ -6,10 +6,13 @@
 #include <glm/common.hpp>
 #include <limits>
 
+#include "optics/check_optics.h"
+
 namespace deltasplat {
 
 ValueColors::ValueColors(const Volume& volume, const Optics& optics)
     : bent_(kSteps), function_(optics.transferFunction) {
+    checkOptics(optics);
     const TransferFunction& function = function_;
     const glm::dvec2 range =
         function.normalized ? optics.range.value_or(defaultRange(volume)) : glm::dvec2(0, 1);

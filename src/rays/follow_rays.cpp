@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
-#include <mutex>
 
 #include "deltasplat/threads.h"
 #include "memory.h"
 #include "parallel.h"
+#include "shared_progress.h"
 
 namespace deltasplat {
 namespace {
@@ -31,15 +31,14 @@ RayPlane followRays(const RayInput& input, const Listener& listener) {
     const bool sum = input.rule == RayRule::kSum;
     RayPlane plane(box, sum ? 0 : -std::numeric_limits<float>::infinity());
     std::atomic<int> next = 0;
-    std::mutex mutex;  // guards `done`
-    int done = 0;
+    std::atomic<int> done = 0;
+    SharedProgress progress(listener);
     parallelFor(std::size_t(workers), [&](std::size_t) {
         RayBand band(input, kBandRows);
         for (int i = next++; i < bands; i = next++) {
             const int first = box.min.y + i * kBandRows;
             band.run(first, std::min(first + kBandRows, box.max.y), plane);
-            const std::lock_guard lock(mutex);
-            listener.report(0.1 + 0.8 * ++done / bands);
+            progress.report(0.1 + 0.8 * ++done / bands);
         }
     });
     return plane;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "delta/block_windows.h"
@@ -14,11 +13,8 @@
 namespace deltasplat {
 namespace {
 
-// So large that no volume has it, and so small that differences of two are finite.
-constexpr double kLargestValue = double(std::numeric_limits<float>::max()) / 4;
-
 float floatOf(double value) {
-    return float(std::clamp(value, -kLargestValue, kLargestValue));
+    return float(std::clamp(value, -kLargestRayValue, kLargestRayValue));
 }
 
 float valueOf(const CodeBook& book, int code) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,10 @@ enum class RayRule {
     kSum,  ///< sums of values; where there is no active voxel there is 0
     kMax   ///< the largest value that is met
 };
+
+/// So large that hardly a volume has it, and so small that differences of two are finite floats:
+/// what is beyond is taken for it.
+inline constexpr double kLargestRayValue = double(std::numeric_limits<float>::max()) / 4;
 
 /// Reads the 512 values of a block in (slice, u, v) order; of places that are not active anything.
 using BlockValues = std::function<void(const CodeBlock& block, const BlockPlace& place)>;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
@@ -26,6 +27,32 @@ TEST(Rays, HalfFloatsAreValues) {
     EXPECT_FLOAT_EQ(xray.pixel(35, 30)[0], float(16 * value));
     const Image mip = render(volume, optionsOf(Mode::kMip, view)).image;
     EXPECT_FLOAT_EQ(mip.pixel(35, 30)[0], float(value));
+}
+
+// What 32-bit floats do not hold is said.
+TEST(Rays, ValuesBeyondFloatsAreWarnedOf) {
+    const auto warningsOf = [](Mode mode, double value) {
+        Volume volume = makeVolume({{0, 0, 0}, {15, 15, 15}}, [](int, int, int) { return 0; });
+        volume.codeBook = CodeBook::ofTable({value});
+        volume.valueMin = volume.valueMax = value;
+        std::string lines;
+        Listener listener;
+        listener.warning = [&](const std::string& line) { lines += line + "\n"; };
+        render(volume, optionsOf(mode, viewOf(volume, {0, 0, -1})), listener);
+        return lines;
+    };
+    EXPECT_EQ(warningsOf(Mode::kMip, 1e37), "");
+    EXPECT_EQ(warningsOf(Mode::kXray, 1e36), "");
+    EXPECT_EQ(warningsOf(Mode::kXray, 1e-30), "");
+    const std::string taken =
+        "values of up to 1e+300: those beyond +-8.5e+37 are taken for that, as x-rays and "
+        "largest values are 32-bit floats\n";
+    const std::string sums = " may add up to more than a 32-bit float holds, to infinity\n";
+    EXPECT_EQ(warningsOf(Mode::kMip, -1e300), taken);
+    EXPECT_EQ(warningsOf(Mode::kXray, -1e300), taken + "values of up to 1e+300" + sums);
+    EXPECT_EQ(warningsOf(Mode::kXray, 3e37), "values of up to 3e+37" + sums);
+    EXPECT_EQ(warningsOf(Mode::kMip, 1e-36),
+              "values of up to 1e-36 lose digits, or become 0, as 32-bit floats\n");
 }
 
 // A slab perpendicular to z is as long as the line of sight is in it.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <string>
 
 #include "deltasplat/error.h"
 
@@ -283,6 +284,51 @@ TEST(Classify, letsGoOfWhatIsNextToNothing) {
         classifyLooks({{1, {1, 1, 1}}, {1e-11, {1, 1, 1}}, {1e-17, {1, 1, 1}}});
     EXPECT_NEAR(table.lightOfCode(2).a, 1e-11, 1e-14);
     EXPECT_EQ(table.classOfSlot[4], kEmptySlot);
+}
+
+TEST(Classify, refusesWhatIsNoTransferFunction) {
+    const Volume volume = volumeWithCodes({0, 50, 100});
+    const auto errorOf = [&](const Optics& optics) -> std::string {
+        try {
+            classify(volume, optics, 1);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::kUsage);
+            return error.what();
+        }
+        return "";
+    };
+    using Function = TransferFunction;
+    const auto errorWith = [&](std::vector<Function::ColorPoint> colors,
+                               std::vector<Function::OpacityPoint> opacities) {
+        Optics optics = ramp();
+        optics.transferFunction.colors = std::move(colors);
+        optics.transferFunction.opacities = std::move(opacities);
+        return errorOf(optics);
+    };
+    const std::vector<Function::ColorPoint> white = {{0, {1, 1, 1}}};
+    const std::vector<Function::OpacityPoint> thin = {{0, 0.1, 0.5, 0}};
+    const double nan = std::nan("");
+    EXPECT_EQ(errorWith(white, thin), "");
+    EXPECT_EQ(errorWith({{1, {1, 1, 1}}, {1, {1, 0, 1}}}, thin), "");
+    EXPECT_EQ(errorOf(Optics{}), "transfer function's colours: got none; expected at least one");
+    EXPECT_EQ(errorWith(white, {}),
+              "transfer function's opacities: got none; expected at least one");
+    EXPECT_EQ(errorWith({{1, {1, 1, 1}}, {0, {1, 1, 1}}}, thin),
+              "transfer function's colours: got x = 0 behind 1; expected x not decreasing");
+    EXPECT_EQ(errorWith({{nan, {1, 1, 1}}}, thin),
+              "transfer function's colours: got x = nan; expected a finite number");
+    EXPECT_EQ(errorWith({{0, {1, nan, 1}}}, thin),
+              "transfer function's colours: got nan; expected a finite number >= 0");
+    EXPECT_EQ(errorWith({{0, {1, -1, 1}}}, thin),
+              "transfer function's colours: got -1; expected a finite number >= 0");
+    EXPECT_EQ(errorWith(white, {{INFINITY, 0.1, 0.5, 0}}),
+              "transfer function's opacities: got x = inf; expected a finite number");
+    EXPECT_EQ(errorWith(white, {{0, 1.5, 0.5, 0}}),
+              "transfer function's opacities: got 1.5; expected a number within 0..1");
+    EXPECT_EQ(errorWith(white, {{0, nan, 0.5, 0}}),
+              "transfer function's opacities: got nan; expected a number within 0..1");
+    EXPECT_EQ(errorWith(white, {{0, 0.1, -1, 0}}),
+              "transfer function's opacities: got -1; expected a number within 0..1");
 }
 
 }  // namespace

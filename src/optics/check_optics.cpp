@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optics/check_optics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "deltasplat/error.h"
+#include "number_text.h"
+
+namespace deltasplat {
+namespace {
+
+void requireThat(bool holds, const char* option, const std::string& got, const char* expected) {
+    if (!holds) throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
+}
+
+template <typename Point>
+void checkPlaces(const char* points, const std::vector<Point>& all) {
+    requireThat(!all.empty(), points, "none", "at least one");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const double x = all[i].x;
+        requireThat(std::isfinite(x), points, "x = " + numberText(x), "a finite number");
+        requireThat(i == 0 || all[i - 1].x <= x, points,
+                    "x = " + numberText(x) + " behind " + numberText(i == 0 ? x : all[i - 1].x),
+                    "x not decreasing");
+    }
+}
+
+bool isShare(double number) {
+    return number >= 0 && number <= 1;
+}
+
+void checkTransferFunction(const TransferFunction& function) {
+    constexpr const char* kColors = "transfer function's colours";
+    checkPlaces(kColors, function.colors);
+    for (const TransferFunction::ColorPoint& point : function.colors) {
+        for (int i = 0; i < 3; ++i) {
+            const double part = point.rgb[i];
+            requireThat(std::isfinite(part) && part >= 0, kColors, numberText(part),
+                        "a finite number >= 0");
+        }
+    }
+    constexpr const char* kOpacities = "transfer function's opacities";
+    checkPlaces(kOpacities, function.opacities);
+    for (const TransferFunction::OpacityPoint& point : function.opacities) {
+        for (const double number : {point.opacity, point.midpoint, point.sharpness})
+            requireThat(isShare(number), kOpacities, numberText(number), "a number within 0..1");
+    }
+}
+
+}  // namespace
+
+void checkOptics(const Optics& optics) {
+    checkTransferFunction(optics.transferFunction);
+    if (optics.unitDistance) {
+        const double unit = *optics.unitDistance;
+        requireThat(std::isfinite(unit) && unit > 0, "--unit-distance", numberText(unit),
+                    "a number > 0");
+    }
+    const double extinction = optics.extinctionScale;
+    requireThat(std::isfinite(extinction) && extinction >= 0, "--extinction",
+                numberText(extinction), "a number >= 0");
+    if (optics.range) {
+        const glm::dvec2 range = *optics.range;
+        requireThat(std::isfinite(range.x) && std::isfinite(range.y) && range.x < range.y,
+                    "--range", numberText(range), "LO,HI with LO < HI");
+    }
+}
+
+}  // namespace deltasplat
