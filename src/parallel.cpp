@@ -7,12 +7,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <atomic>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "default_floats.h"
@@ -21,26 +21,51 @@
 
 namespace deltasplat {
 
+struct ThreadLimit::Impl {
+    explicit Impl(int threads) : arena(threads) {}
+
+    int threads() const { return arena.max_concurrency(); }
+
+    // TBB's own one never has more threads than the machine has cores.
+    tbb::task_arena arena;
+    std::thread::id maker = std::this_thread::get_id();
+};
+
 namespace {
 
-// TBB has as many threads for a process as the machine has cores, or as a control says; of several
-// controls the least counts. So there is one, with the most that any limit asks for.
-class ProcessThreads {
+// All limits there are.
+class ThreadLimits {
   public:
-    void add(int threads) {
+    using Limit = std::shared_ptr<ThreadLimit::Impl>;
+
+    void add(const Limit& limit) {
         const std::lock_guard lock(mutex_);
-        limits_.insert(threads);
-        update();
+        limits_[limit->maker].push_back(limit);
+        limitProcess();
     }
-    void remove(int threads) {
+
+    void remove(const Limit& limit) {
         const std::lock_guard lock(mutex_);
-        limits_.erase(limits_.find(threads));
-        update();
+        const auto maker = limits_.find(limit->maker);
+        std::erase(maker->second, limit);
+        if (maker->second.empty()) limits_.erase(maker);
+        limitProcess();
+    }
+
+    // The one that counts for the calling thread, or null.
+    Limit current() {
+        const std::lock_guard lock(mutex_);
+        const auto maker = limits_.find(std::this_thread::get_id());
+        return maker == limits_.end() ? nullptr : maker->second.back();
     }
 
   private:
-    void update() {
-        const int most = limits_.empty() ? 0 : *limits_.rbegin();
+    // TBB has as many threads for a process as the machine has cores, or as a control says; of
+    // several controls the least counts. So there is one, with what the threads that have limits
+    // may use at most.
+    void limitProcess() {
+        int most = 0;
+        for (const auto& [maker, limits] : limits_) most = std::max(most, limits.back()->threads());
         if (most == most_) return;
         most_ = most;
         control_.reset();
@@ -49,42 +74,14 @@ class ProcessThreads {
     }
 
     std::mutex mutex_;
-    std::multiset<int> limits_;
+    std::map<std::thread::id, std::vector<Limit>> limits_;  // by maker, the last made last
     int most_ = 0;
     std::optional<tbb::global_control> control_;
 };
 
-ProcessThreads& processThreads() {
-    static ProcessThreads threads;
-    return threads;
-}
-
-}  // namespace
-
-struct ThreadLimit::Impl {
-    explicit Impl(int threads) : threads(threads), arena(threads) {}
-
-    int threads;
-    // TBB's own one never has more threads than the machine has cores.
-    tbb::task_arena arena;
-    std::atomic<bool> ended = false;
-};
-
-namespace {
-
-// Of this thread, the innermost last.
-using Limits = std::vector<std::shared_ptr<ThreadLimit::Impl>>;
-
-Limits& limitsOfThread() {
-    thread_local Limits limits;
-    // Limits may end in any order, and on other threads.
-    std::erase_if(limits, [](const auto& limit) { return limit->ended.load(); });
+ThreadLimits& threadLimits() {
+    static ThreadLimits limits;
     return limits;
-}
-
-std::shared_ptr<ThreadLimit::Impl> currentLimit() {
-    const Limits& limits = limitsOfThread();
-    return limits.empty() ? nullptr : limits.back();
 }
 
 }  // namespace
@@ -95,8 +92,7 @@ ThreadLimit::ThreadLimit(int threads) {
                     gotExpected("threads", std::to_string(threads), "at least 0 (0 = all)"));
     }
     impl_ = std::make_shared<Impl>(threads == 0 ? hardwareThreads() : threads);
-    limitsOfThread().push_back(impl_);
-    processThreads().add(impl_->threads);
+    threadLimits().add(impl_);
 }
 
 int ThreadLimit::hardwareThreads() {
@@ -104,13 +100,12 @@ int ThreadLimit::hardwareThreads() {
 }
 
 ThreadLimit::~ThreadLimit() {
-    impl_->ended = true;
-    processThreads().remove(impl_->threads);
+    threadLimits().remove(impl_);
 }
 
 int threadCount() {
-    const auto limit = currentLimit();
-    return limit ? limit->arena.max_concurrency() : tbb::this_task_arena::max_concurrency();
+    const auto limit = threadLimits().current();
+    return limit ? limit->threads() : tbb::this_task_arena::max_concurrency();
 }
 
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
@@ -122,7 +117,7 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
                               for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
                           });
     };
-    const auto limit = currentLimit();
+    const auto limit = threadLimits().current();
     if (limit) {
         limit->arena.execute(run);
     } else {

@@ -6,8 +6,8 @@
 namespace deltasplat {
 
 /// Limits the number of threads that the library uses for what the calling thread asks of it, while
-/// this object lives. Of several the last made counts; they may end in any order. Other threads have
-/// limits of their own, or none. Results never depend on it.
+/// this object lives. Of several the last made counts; they may end in any order. Other threads
+/// have limits of their own, or none. Results never depend on it.
 class ThreadLimit {
   public:
     /// @param threads  at least 1, or 0 for all hardware threads
