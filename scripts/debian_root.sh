@@ -78,9 +78,10 @@ make_base() {
         fail "debootstrap made no $suite system from $(mirror); its last lines are above"
     }
     mkdir -p "$cache"
-    rm -f "$cache"/debian-12-minbase-*
-    tar -C "$folder/base" --numeric-owner -cf "$tarball.new" .
-    mv "$tarball.new" "$tarball"
+    # Another run may be making one as well.
+    tar -C "$folder/base" --numeric-owner -cf "$tarball.$$" .
+    rm -f "$cache"/debian-12-minbase-*.tar
+    mv "$tarball.$$" "$tarball"
     rm -rf "$folder/base"
 }
 
