@@ -20,6 +20,7 @@
 #include "memory.h"
 #include "number_text.h"
 #include "optics/hold_rule.h"
+#include "optics/largest_alpha.h"
 #include "parallel.h"
 #include "shared_progress.h"
 #include "splat/splatter.h"
@@ -39,16 +40,25 @@ Encoding encodingOf(Method method) {
     }
 }
 
-// Below this opacity a slice, two sheet pixels a voxel show nothing that one does not: measured on
-// smoke, the pictures agree to 56 dB or better (docs/decisions.md).
-constexpr double kThinSlice = 0.25;
+// Whether what is shown is thin. Of thin voxels, two sheet pixels show little that one does not,
+// and values mixed little more (docs/decisions.md). Not what is seen decides, lest a voxel or an
+// angle change the picture of all others.
+bool isThin(const Volume& volume, const Optics& optics) {
+    constexpr double kMost = 0.25;
+    return largestAlpha(volume, optics) <= kMost;
+}
 
-// Where the screen asks for two sheet pixels a voxel, what is thin gets one.
-int sheetResolution(const Factorization& view, const ClassTable& classes,
-                    const RenderOptions& options) {
-    const bool thin = classes.scale.a * ClassTable::kMax <= kThinSlice;
+// Where the screen asks for two sheet pixels a voxel, but not for more, what is thin gets one.
+int sheetResolution(const Volume& volume, const Factorization& view, const RenderOptions& options) {
     const bool few = view.pixelsPerVoxel < 2.5;
-    return !options.resolution && few && thin ? 1 : view.resolution;
+    return !options.resolution && few && isThin(volume, options.optics) ? 1 : view.resolution;
+}
+
+// What whole blocks are divided into is counted with 32 bits, and some more voxels around it.
+bool canBeDivided(const IndexBox& box, int between) {
+    constexpr std::int64_t kMost = std::int64_t{1} << 30;
+    const glm::i64vec3 wide = glm::i64vec3(box.max) - glm::i64vec3(box.min) + std::int64_t{16};
+    return std::max({wide.x, wide.y, wide.z}) * (between + 1) <= kMost;
 }
 
 // Into how many strips rows of the base plane are cut: enough pieces for every thread to take some,
@@ -348,12 +358,25 @@ void checkBetween(int between) {
                             "a whole number within 0.." + std::to_string(kMostBetween)));
 }
 
+[[noreturn]] void throwTooWide(const IndexBox& box, int between) {
+    const glm::ivec3 dims = box.dims();
+    throw Error(ErrorCode::kFailed,
+                gotExpected("--between " + std::to_string(between),
+                            std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
+                                std::to_string(dims.z) + " voxels",
+                            "at most 2^30 parts of them along each axis (--between 0: undivided)"));
+}
+
 // Whether voxels are divided where the screen asks for it and nobody says otherwise.
 bool dividesUnasked(const Volume& volume, const Factorization& view, const ClassTable& classes,
                     const RenderOptions& options, const Listener& listener) {
     if (view.resolution < 2 || options.resolution || options.footprintWidth) return false;
     if (options.optics.transferFunction.colorsJump()) return false;
-    if (volume.empty()) return false;
+    if (volume.empty() || isThin(volume, options.optics)) return false;
+    if (!canBeDivided(volume.box, 1)) {
+        listener.warn("the volume is too wide for voxels to be divided: drawn as they are");
+        return false;
+    }
     const BlockReader seen(*volume.codes, nullptr, view.sliceAxis, classes.classOfSlot);
     if (seen.blocks().size() <= kMostDivided) return true;
     listener.warn("voxels are too many to be divided (" + std::to_string(seen.blocks().size()) +
@@ -366,13 +389,14 @@ bool dividesUnasked(const Volume& volume, const Factorization& view, const Class
 SheetPlan planSheet(const Volume& volume, const Factorization& view, const ClassTable& classes,
                     const RenderOptions& options, const Listener& listener) {
     int between = 0;
+    int resolution = sheetResolution(volume, view, options);
     if (options.between) {
         between = *options.between;
         checkBetween(between);
+        if (between > 0 && !canBeDivided(volume.box, between)) throwTooWide(volume.box, between);
     } else if (dividesUnasked(volume, view, classes, options, listener)) {
         between = 1;
     }
-    int resolution = sheetResolution(view, classes, options);
     if (between > 0 && !options.resolution) resolution = 2;
     Subdivision parts{between + 1, between > 0 && resolution % 2 == 0 ? 2 : 1, {}};
     // Whole blocks are divided.

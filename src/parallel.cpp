@@ -12,7 +12,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "default_floats.h"
@@ -21,6 +20,18 @@
 
 namespace deltasplat {
 
+namespace {
+
+// Stands for a thread, also when it has ended: the system gives its number to another then.
+using ThreadToken = std::shared_ptr<const char>;
+
+const ThreadToken& thisThread() {
+    thread_local const ThreadToken token = std::make_shared<const char>();
+    return token;
+}
+
+}  // namespace
+
 struct ThreadLimit::Impl {
     explicit Impl(int threads) : arena(threads) {}
 
@@ -28,7 +39,7 @@ struct ThreadLimit::Impl {
 
     // TBB's own one never has more threads than the machine has cores.
     tbb::task_arena arena;
-    std::thread::id maker = std::this_thread::get_id();
+    ThreadToken maker = thisThread();
 };
 
 namespace {
@@ -55,7 +66,7 @@ class ThreadLimits {
     // The one that counts for the calling thread, or null.
     Limit current() {
         const std::lock_guard lock(mutex_);
-        const auto maker = limits_.find(std::this_thread::get_id());
+        const auto maker = limits_.find(thisThread());
         return maker == limits_.end() ? nullptr : maker->second.back();
     }
 
@@ -74,7 +85,7 @@ class ThreadLimits {
     }
 
     std::mutex mutex_;
-    std::map<std::thread::id, std::vector<Limit>> limits_;  // by maker, the last made last
+    std::map<ThreadToken, std::vector<Limit>> limits_;  // by maker, the last made last
     int most_ = 0;
     std::optional<tbb::global_control> control_;
 };

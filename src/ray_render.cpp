@@ -82,16 +82,20 @@ void warnOfFloats(const Volume& volume, const Factorization& view, RayRule rule,
     // Below, numbers lose digits: 1e5 times that is what 1e-5 of the largest value needs.
     constexpr double kSmallest = 1e5 * double(std::numeric_limits<float>::min());
     const std::string values = "values of up to " + numberText(largest);
-    const double sum = largest * volume.box.dims()[view.sliceAxis] * view.sliceStepWorld;
+    // Values are added up before they are multiplied by the length of a step.
+    const double step = rule == RayRule::kSum ? view.sliceStepWorld : 1;
+    const double sum = largest * volume.box.dims()[view.sliceAxis] * std::max(step, 1.0);
     if (largest > kLargestRayValue) {
         listener.warn(values +
                       ": those beyond +-8.5e+37 are taken for that, as x-rays and largest "
                       "values are 32-bit floats");
-    } else if (largest > 0 && largest < kSmallest) {
+    } else if (largest > 0 && largest * std::min(step, 1.0) < kSmallest) {
         listener.warn(values + " lose digits, or become 0, as 32-bit floats");
     }
     if (rule == RayRule::kSum && sum > double(std::numeric_limits<float>::max())) {
-        listener.warn(values + " may add up to more than a 32-bit float holds, to infinity");
+        listener.warn(values +
+                      " may add up to more than a 32-bit float holds: pixels are wrong where they "
+                      "do");
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <mutex>
+#include <atomic>
 
 #include "deltasplat/progress.h"
 
@@ -15,15 +15,22 @@ class SharedProgress {
 
     /// @throw what the listener throws
     void report(double share) {
-        const std::unique_lock lock(telling_, std::try_to_lock);
-        if (!lock.owns_lock() || share < told_) return;
+        if (telling_.test_and_set(std::memory_order_acquire)) return;
+        const Release release{telling_};
+        if (share < told_) return;
         told_ = share;
         listener_.report(share);
     }
 
   private:
+    struct Release {
+        std::atomic_flag& flag;
+        ~Release() { flag.clear(std::memory_order_release); }
+    };
+
     const Listener& listener_;
-    std::mutex telling_;
+    // No mutex: a listener may ask the library for more, and this thread may then be told here.
+    std::atomic_flag telling_ = ATOMIC_FLAG_INIT;
     double told_ = 0;
 };
 

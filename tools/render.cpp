@@ -63,7 +63,7 @@ void boundOver(const std::optional<glm::vec4>& background, RenderStats& stats) {
 void showErrorBound(const RenderStats& stats) {
     const std::string line =
         "tolerance " + toleranceText(stats.tolerance) +
-        ": largest error of a pixel, scene-linear and premultiplied: " + errorBoundText(stats) +
+        ": error of a pixel at most, scene-linear and premultiplied: " + errorBoundText(stats) +
         "\n";
     std::fputs(line.c_str(), stderr);
 }

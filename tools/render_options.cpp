@@ -181,14 +181,14 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
                        " of a voxel, or of what it is divided into,\ngrowing where that covers "
                        "more than 2 pixels, to " +
                        numberText(defaultSigma(3)) + "\nfrom 3 pixels on)");
-    group.addValue("--between", "N", options.between, wholeNumber(0, kMostBetween),
-                   "Slices put between two neighbouring ones, 0 to " +
-                       std::to_string(kMostBetween) +
-                       ", values mixed;\nif any, each voxel is also divided into 2x2 within its "
-                       "slice\n(default: 1 where a voxel covers 1.5 pixels or more and no\n"
-                       "--resolution is given, but not for colours that jump, as of\nlabels, "
-                       "nor for more than " +
-                       std::to_string(kMostDivided) + " blocks of voxels; else 0)");
+    group.addValue(
+        "--between", "N", options.between, wholeNumber(0, kMostBetween),
+        "Slices put between two neighbouring ones, 0 to " + std::to_string(kMostBetween) +
+            ", values mixed;\nif any, each voxel is also divided into 2x2 within its "
+            "slice\n(default: 1 where a voxel covers 1.5 pixels or more and no\n"
+            "--resolution is given, but not for thin fog (opacities up to\n0.25 a voxel), "
+            "colours that jump, as of labels, nor more\nthan " +
+            std::to_string(kMostDivided) + " blocks of voxels; else 0)");
     group.addValue("--resolution", "R", options.resolution, wholeNumber(1, kMaxResolution),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        " (default: chosen from the screen)");

@@ -53,9 +53,10 @@ struct RenderOptions {
     /// Slices put between two neighbouring ones, 0..kMostBetween, with values mixed. If any, then
     /// voxels have two sheet pixels if nothing else is asked for; and if their number is even, two
     /// values along u and v as well. Empty: 1 where the screen asks for two sheet pixels a voxel
-    /// (and neither resolution nor footprintWidth says another thing), but 0 where colours jump
-    /// (TransferFunction::colorsJump), as of labels, or, with a warning, where more than
-    /// kMostDivided blocks of 8x8x8 voxels can be seen.
+    /// (and neither resolution nor footprintWidth says another thing), but 0 where what is shown is
+    /// thin (no opacity of the transfer function above 0.25 a voxel, extinction scale included),
+    /// where colours jump (TransferFunction::colorsJump), as of labels, or, with a warning, where
+    /// more than kMostDivided blocks of 8x8x8 voxels can be seen.
     std::optional<int> between;
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for

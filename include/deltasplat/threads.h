@@ -7,7 +7,8 @@ namespace deltasplat {
 
 /// Limits the number of threads that the library uses for what the calling thread asks of it, while
 /// this object lives. Of several the last made counts; they may end in any order. Other threads
-/// have limits of their own, or none. Results never depend on it.
+/// have limits of their own, or none; while there are any, the process has no more threads for all
+/// of this than the largest. Results never depend on it.
 class ThreadLimit {
   public:
     /// @param threads  at least 1, or 0 for all hardware threads

@@ -80,9 +80,9 @@ bool MixedSight::canBeSeen(const MixWindow& window) const {
     return highest != kEmptySlot && isSeenBetween(Code(lowest), Code(highest - 1));
 }
 
-// Returns a map [kSlotCount] that leaves the slots of codes which may be seen mixed with the next
-// larger or smaller one, and those of all codes if clear ones lie on both sides of what is seen:
-// then clear blocks may be seen where they meet.
+// Returns a map [kSlotCount] that leaves the slots of codes which are seen, those of two clear ones
+// that may be seen mixed with each other, and those of all codes if clear ones lie on both sides of
+// what is seen: then clear blocks may be seen where they meet.
 std::vector<Slot> MixedSight::seenCodes(std::span<const std::uint64_t> histogram) const {
     std::vector<Code> codes;
     for (std::size_t code = 0; code < histogram.size(); ++code)
@@ -90,7 +90,12 @@ std::vector<Slot> MixedSight::seenCodes(std::span<const std::uint64_t> histogram
     std::vector<bool> isSeen(codes.size());
     for (std::size_t i = 0; i < codes.size(); ++i) {
         const std::size_t next = std::min(i + 1, codes.size() - 1);
-        if (isSeenBetween(codes[i], codes[next])) isSeen[i] = isSeen[next] = true;
+        if (!isSeenBetween(codes[i], codes[next])) continue;
+        // Clear ones beside those that are seen are found from these.
+        const bool first = isSeenBetween(codes[i], codes[i]);
+        const bool second = isSeenBetween(codes[next], codes[next]);
+        if (first || !second) isSeen[i] = true;
+        if (second || !first) isSeen[next] = true;
     }
     std::optional<int> side;
     bool bothSides = false;
@@ -146,8 +151,9 @@ std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAx
     }
     addNeighbours(blocks, {1, 0, 0}, ranges);
     if (mixer_.parts().within > 1) {
-        addNeighbours(blocks, {0, 0, 1}, ranges);
+        // In the order in which values are mixed: what lies across a corner comes by the same way.
         addNeighbours(blocks, {0, 1, 0}, ranges);
+        addNeighbours(blocks, {0, 0, 1}, ranges);
     }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < blocks.size(); ++i) {

@@ -95,8 +95,8 @@ std::vector<int> ValueMixer::levelsBetween(const std::vector<double>& values) co
     std::vector<int> steps;
     double sum = 0;
     for (std::size_t i = 0; i + 1 < values.size(); ++i) {
-        const double apart = (values[i + 1] / 2 - values[i] / 2) /
-                             (std::max(std::abs(values[i]), std::abs(values[i + 1])) / 2);
+        const double size = std::max(std::abs(values[i]), std::abs(values[i + 1])) / 2;
+        const double apart = size > 0 ? (values[i + 1] / 2 - values[i] / 2) / size : 1;
         const double wanted = std::ceil(std::min(apart, 1.0) * kStepsPerValue);
         steps.push_back(std::max(int(wanted), parts_.smallestShare()));
         sum += steps.back();
@@ -155,8 +155,9 @@ namespace {
 // branch, so that several are mixed at once.
 template <typename T>
 inline T mixed(T here, T other, T share) {
-    const T difference = other - here;
-    const T step = difference * share;
+    // Halves, so that no difference overflows.
+    const T difference = T(0.5) * other - T(0.5) * here;
+    const T step = difference * (T(2) * share);
     return here + (difference == difference ? step : T(0));
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/value_census.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "ingest/readers.h"
 
 namespace deltasplat {
@@ -41,7 +44,9 @@ CodeBook chooseBook(const ValueCensus& census, bool real, const ReadOptions& rea
     const bool linear = real && reading.bits;
     if (!linear) {
         if (real && census.half) return CodeBook::half();
-        const bool near = census.exact && census.max - census.min < kCodeCount;
+        constexpr double kMostInteger = 0x1p62;  // more than that, no offset holds
+        const bool near = census.exact && census.max - census.min < kCodeCount &&
+                          std::max(std::abs(census.min), std::abs(census.max)) <= kMostInteger;
         if (census.whole && near) return CodeBook::integer(std::int64_t(census.min));
         if (census.exact && !census.distinct.tooMany())
             return CodeBook::ofTable(census.distinct.sorted());

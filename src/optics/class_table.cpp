@@ -18,6 +18,7 @@
 #include "number_text.h"
 #include "optics/check_optics.h"
 #include "optics/color_digits.h"
+#include "optics/largest_alpha.h"
 #include "parallel.h"
 #include "portable_math.h"
 
@@ -34,6 +35,11 @@ double alphaOf(double opacity, double unitDistancesPerSlice) {
     if (opacity <= 0 || unitDistancesPerSlice <= 0) return 0;
     if (opacity >= 1) return 1;
     return -portable::expm1(portable::log1p(-opacity) * unitDistancesPerSlice);
+}
+
+double unitDistancesIn(double stepWorld, const Volume& volume, const Optics& optics) {
+    const double unitDistance = optics.unitDistance.value_or(smallest(volume.voxelSize()));
+    return optics.extinctionScale * (stepWorld / unitDistance);
 }
 
 // A code's light for one slice, before it is rounded; that of codes that cannot be seen is 0.
@@ -282,9 +288,8 @@ glm::dvec4 ClassTable::lightOfCode(Code code) const {
 ClassTable classify(const Volume& volume, const Optics& optics, double sliceStepWorld) {
     const DefaultFloats floats;
     checkOptics(optics);
-    const double unitDistance = optics.unitDistance.value_or(smallest(volume.voxelSize()));
     const std::vector<CodeLight> visible =
-        classifyExactly(volume, optics, optics.extinctionScale * (sliceStepWorld / unitDistance));
+        classifyExactly(volume, optics, unitDistancesIn(sliceStepWorld, volume, optics));
     const ColorRounder rounded(visible);
     const std::vector<ColorDigits> digits = roundColors(visible, rounded);
     ClassTable table;
@@ -299,6 +304,15 @@ ClassTable classify(const Volume& volume, const Optics& optics, double sliceStep
         numberByColor(visible, digits, table);
     }
     return table;
+}
+
+double largestAlpha(const Volume& volume, const Optics& optics) {
+    const DefaultFloats floats;
+    checkOptics(optics);
+    double opacity = 0;
+    for (const TransferFunction::OpacityPoint& point : optics.transferFunction.opacities)
+        opacity = std::max(opacity, point.opacity);
+    return alphaOf(opacity, unitDistancesIn(smallest(volume.voxelSize()), volume, optics));
 }
 
 }  // namespace deltasplat

@@ -8,7 +8,7 @@ deltasplat_cli_test(help_bench ARGS bench --help
 
 set(number "[0-9]+([.][0-9]+)? +")
 set(row "${number}${number}${number}${number}${number}${number}${number}${number}[0-9.]+ +[0-9.]+")
-deltasplat_cli_test(bench.table ARGS bench ${cube} ${quick}
+deltasplat_cli_test(bench.table ARGS bench ${cube} ${quick} --extinction 10
     STDOUT_MATCHES "logical core.*
 deltasplat ${PROJECT_VERSION}, OpenVDB .*
 ${cube}

@@ -35,14 +35,14 @@ deltasplat_cli_test(output.fine.verbose CREATES out.exr ARGS render ball.vdb -o 
     STDERR_MATCHES "code book .*method auto: .* stamps.*slices along z.*seconds: read .*")
 # A tolerance says what it may do to the picture.
 deltasplat_cli_test(output.tolerance CREATES out.exr ARGS render ${cube} -o out.exr --tolerance 0.02
-    STDERR_MATCHES "tolerance 0.02 of the colour: largest error of a pixel, scene-linear and premultiplied: color 0.0[0-9]*, alpha 0.031[0-9]*")
+    STDERR_MATCHES "tolerance 0.02 of the colour: error of a pixel at most, scene-linear and premultiplied: color 0.0[0-9]*, alpha 0.031[0-9]*")
 # What is wrong of alpha is wrong of the background behind it.
 deltasplat_cli_test(output.tolerance_background CREATES out.exr
     ARGS render ${cube} -o out.exr --tolerance 0.02 --background 8,0,0,0.5
     STDERR_MATCHES "tolerance .*premultiplied: color 0.1[0-9]*, alpha 0.0156[0-9]*")
 deltasplat_cli_test(output.tolerance_value CREATES out.exr
     ARGS render ${cube} -o out.exr --tolerance-value 2
-    STDERR "tolerance 2 data units: largest error of a pixel, scene-linear and premultiplied: unknown")
+    STDERR "tolerance 2 data units: error of a pixel at most, scene-linear and premultiplied: unknown")
 deltasplat_cli_test(output.tolerance_quiet CREATES out.exr
     ARGS render ${cube} -o out.exr --tolerance 0.02 -q)
 deltasplat_cli_test(output.fine.synth ARGS synth slab out.vdb CREATES out.vdb)

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <random>
 
 #include "deltasplat/error.h"
@@ -111,14 +113,71 @@ TEST(Between, isOneWhereTheScreenAsksForTwoPixelsAVoxel) {
     EXPECT_EQ(statsAt(1).resolution, 2);
     options.between = 0;
     EXPECT_EQ(statsAt(1.6).voxels, 24u * 24 * 24);
-    // What a volume shows makes no difference, so that no voxel changes how others are drawn,
+    // What is thin stays as it is,
     options.between = {};
-    options.optics.transferFunction = testTransferFunction(0.1);
+    options.optics.transferFunction = testTransferFunction(0.2);
+    EXPECT_EQ(statsAt(1.6).between, 0);
+    EXPECT_EQ(statsAt(1.6).resolution, 1);
+    EXPECT_EQ(statsAt(5).between, 0);
+    EXPECT_EQ(statsAt(5).resolution, 2);
+    options.optics.extinctionScale = 1.4;
     EXPECT_EQ(statsAt(1.6).between, 1);
-    // but labels have no values between them.
+    // and labels, which have no values between them.
     options.optics.transferFunction.colors = {
         {0, {1, 0, 0}}, {100, {1, 0, 0}}, {100, {0, 1, 0}}, {255, {0, 1, 0}}};
     EXPECT_EQ(statsAt(1.6).between, 0);
+}
+
+// No voxel changes how others are drawn: only the transfer function tells what is thin.
+TEST(Between, doesNotDependOnWhatIsSeen) {
+    TestVolume faint({0, 0, 0}, {16, 16, 16});
+    std::fill(faint.values.begin(), faint.values.end(), 2.0f);
+    RenderOptions options;
+    options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, 1, 0.5, 0}};
+    options.optics.transferFunction.colors = {{0, {1, 1, 1}}};
+    options.camera.sizePixels = {64, 64};
+    EXPECT_EQ(render(throughRaw(faint, glm::dvec3(1)), options).stats.between, 1);
+    faint.values.front() = 255;
+    EXPECT_EQ(render(throughRaw(faint, glm::dvec3(1)), options).stats.between, 1);
+}
+
+// What blocks of 8 voxels begin where makes no difference: values that lie across a corner count.
+TEST(Between, findsWhatIsSeenAcrossCorners) {
+    RenderOptions options;
+    options.between = 1;
+    options.camera.direction = {0, 0, -1};
+    options.camera.frameWidthWorld = 8;
+    options.camera.sizePixels = {32, 32};
+    options.optics.transferFunction.colors = {{0, {1, 1, 1}}};
+    // Clear on both sides of a band.
+    options.optics.transferFunction.opacities = {
+        {2.9, 0, 0.5, 0}, {3, 1, 0.5, 0}, {8, 1, 0.5, 0}, {8.1, 0, 0.5, 0}};
+    std::optional<std::uint64_t> visible;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::ivec3 at(corner & 1 ? 7 : 3, corner & 2 ? 7 : 3, corner & 4 ? 7 : 3);
+        TestVolume volume(at, {2, 2, 1});
+        volume.at(at) = 1;
+        volume.at(at + glm::ivec3(0, 1, 0)) = 2;
+        volume.at(at + glm::ivec3(1, 1, 0)) = 33;
+        options.camera.targetWorld = glm::dvec3(at);
+        const std::uint64_t found = render(throughVdb(volume), options).stats.visible;
+        EXPECT_GT(found, 0u);
+        EXPECT_EQ(visible.value_or(found), found) << corner;
+        visible = found;
+    }
+}
+
+TEST(Between, RefusesWhatIsTooWide) {
+    Volume volume = throughRaw(noise({8, 8, 8}), glm::dvec3(1));
+    volume.box.max.x = volume.box.min.x + (1 << 29);
+    RenderOptions options;
+    options.optics.transferFunction = testTransferFunction(0.7);
+    options.camera.sizePixels = {16, 16};
+    options.camera.frameWidthWorld = 8;
+    for (const int between : {1, 7}) {
+        options.between = between;
+        EXPECT_THROW(render(volume, options), Error) << between;
+    }
 }
 
 // Whatever is put between its slices, a homogeneous slab stays what it is, active or dense.

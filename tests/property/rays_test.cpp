@@ -47,7 +47,8 @@ TEST(Rays, ValuesBeyondFloatsAreWarnedOf) {
     const std::string taken =
         "values of up to 1e+300: those beyond +-8.5e+37 are taken for that, as x-rays and "
         "largest values are 32-bit floats\n";
-    const std::string sums = " may add up to more than a 32-bit float holds, to infinity\n";
+    const std::string sums =
+        " may add up to more than a 32-bit float holds: pixels are wrong where they do\n";
     EXPECT_EQ(warningsOf(Mode::kMip, -1e300), taken);
     EXPECT_EQ(warningsOf(Mode::kXray, -1e300), taken + "values of up to 1e+300" + sums);
     EXPECT_EQ(warningsOf(Mode::kXray, 3e37), "values of up to 3e+37" + sums);

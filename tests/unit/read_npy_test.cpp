@@ -84,6 +84,16 @@ TEST(ReadNpy, Types) {
     EXPECT_EQ(valuesOf(readVolume("a.npy")), (std::vector<double>{1, 0, 1}));
 }
 
+// Whole numbers, near each other, that no 64-bit integer holds.
+TEST(ReadNpy, ConstantsBeyondIntegers) {
+    const TempFolder folder;
+    for (const double constant : {9.2e18, 9.3e18, -1e20, 1e300}) {
+        writeBytes("a.npy", npy(dictionary("<f8", "(1, 1, 2)"),
+                                bytesOf(std::vector<double>{constant, constant})));
+        EXPECT_EQ(valuesOf(readVolume("a.npy")), std::vector<double>(2, constant));
+    }
+}
+
 TEST(ReadNpy, SpacingAndOrigin) {
     const TempFolder folder;
     writeBytes("a.npy", sample());

@@ -11,15 +11,15 @@ function(run)
 endfunction()
 
 run(synth slab slab_12x10x8_uint8.raw --dims 12x10x8 -q)
-run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --method delta --threads 1 -q)
+run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --method delta --threads 1 -q
+    --extinction 10)
 file(READ ${SCRATCH}/stats.json stats)
-# Magnified, voxels are divided, and counted so.
+# Magnified, voxels of what is dense are divided, and counted so.
 expect_value("${stats}" 1 between)
 expect_value("${stats}" 8 parts)
 expect_value("${stats}" 7680 voxels)
 expect_value("${stats}" 16 slices)
-run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --method delta --threads 1 -q
-    --between 0)
+run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --method delta --threads 1 -q)
 file(READ ${SCRATCH}/stats.json stats)
 expect_value("${stats}" 1 parts)
 expect_keys("${stats}" "" "method;mode;voxels;visible;deltas;stamps;slices;slabs;slice_axis;\
