@@ -2,28 +2,18 @@
 #include "composite_render.h"
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <string>
 #include <utility>
+#include <vector>
 
-#include "composite/compositor.h"
-#include "composite/layer_fold.h"
-#include "composite/plane_view.h"
-#include "delta/code_blocks.h"
-#include "deltasplat/error.h"
-#include "deltasplat/threads.h"
+#include "composite/scaled_kernels.h"
+#include "composite/slab_renderer.h"
 #include "image/warp.h"
-#include "memory.h"
-#include "number_text.h"
+#include "image/warp_region.h"
 #include "optics/hold_rule.h"
-#include "optics/largest_alpha.h"
 #include "parallel.h"
-#include "shared_progress.h"
-#include "splat/splatter.h"
+#include "sheet_plan.h"
 #include "stopwatch.h"
 
 namespace deltasplat {
@@ -40,221 +30,22 @@ Encoding encodingOf(Method method) {
     }
 }
 
-// Whether what is shown is thin. Of thin voxels, two sheet pixels show little that one does not,
-// and values mixed little more (docs/decisions.md). Not what is seen decides, lest a voxel or an
-// angle change the picture of all others.
-bool isThin(const Volume& volume, const Optics& optics) {
-    constexpr double kMost = 0.25;
-    return largestAlpha(volume, optics) <= kMost;
+// Optics as the volume has them, for levels to be seen by.
+Optics withRange(const Volume& volume, Optics optics) {
+    if (!optics.range) optics.range = defaultRange(volume);
+    return optics;
 }
 
-// Where the screen asks for two sheet pixels a voxel, but not for more, what is thin gets one.
-int sheetResolution(const Volume& volume, const Factorization& view, const RenderOptions& options) {
-    const bool few = view.pixelsPerVoxel < 2.5;
-    return !options.resolution && few && isThin(volume, options.optics) ? 1 : view.resolution;
-}
+// Of the picture's pixels that a line of the base plane has at most, seen from an eye: about what
+// parallel projection has on average.
+constexpr double kPixelsOfScreen = 0.7;
 
-// What whole blocks are divided into is counted with 32 bits, and some more voxels around it.
-bool canBeDivided(const IndexBox& box, int between) {
-    constexpr std::int64_t kMost = std::int64_t{1} << 30;
-    const glm::i64vec3 wide = glm::i64vec3(box.max) - glm::i64vec3(box.min) + std::int64_t{16};
-    return std::max({wide.x, wide.y, wide.z}) * (between + 1) <= kMost;
-}
-
-// Into how many strips rows of the base plane are cut: enough pieces for every thread to take some,
-// and enough for a strip's part of sheet and layer to stay in a second-level cache; but not so many
-// that strips get much smaller than the rows at their edges, which belong to two. If all of sheet
-// and layer hardly overflow that cache, such rows cost more than they help.
-int stripCount(const SheetLayout& layout, int rows, std::size_t slabs) {
-    constexpr std::size_t kPiecesPerThread = 4;
-    constexpr int kLeastRows = 48;
-    constexpr double kStripBytes = 1.5e6;
-    constexpr double kMostWholeBytes = 6e6;
-    const auto threads = std::size_t(threadCount());
-    const std::size_t forThreads =
-        threads == 1 ? 1 : (kPiecesPerThread * threads + slabs / 2) / slabs;
-    const double bytes = 2.0 * sizeof(float) * layout.channels * layout.sizePixels.x * rows;
-    const double forCache = bytes > kMostWholeBytes ? bytes / kStripBytes : 1;
-    const double wanted = std::min(std::max(double(forThreads), forCache), 1024.0);
-    return std::clamp(int(std::lround(wanted)), 1, std::max(1, rows / kLeastRows));
-}
-
-// Rows of the base plane that are worked on by themselves.
-struct Strip {
-    int first;
-    int last;
-    std::unique_ptr<LayerFold> layers;
-};
-
-// What the slabs share, and where their results go. Work is cut into pieces of a slab and a strip
-// of base plane rows; how many strips there are changes nothing but who does what.
-class SlabRenderer {
-  public:
-    SlabRenderer(const SplatInput& input, const SheetLayout& layout, const PlaneView& view,
-                 const Listener& listener)
-        : input_(input),
-          view_(view),
-          layout_(layout),
-          progress_(listener),
-          merged_({}, layout_.channels) {
-        for (int plane = 0; plane < int(input.classes.planes.size()); ++plane)
-            scales_.emplace_back(input.classes.scaleOf(plane) / double(Footprint::kOne));
-        cutIntoStrips();
-        largest_ = largestLayout();
-    }
-
-    // Renders all slabs, from the front on.
-    void run() {
-        const std::size_t pieces = strips_.size() * slabs().size();
-        const auto workers = std::min<std::size_t>(std::size_t(threadCount()), pieces);
-        parallelFor(workers, [&](std::size_t) {
-            // Whoever comes too late needs none.
-            std::optional<Splatter> splatter;
-            for (std::size_t i = next_++; i < pieces; i = next_++) {
-                if (!splatter) splatter.emplace(input_, largest_);
-                renderPiece(i, *splatter);
-            }
-        });
-    }
-
-    // Returns what the slabs look like together.
-    Layer merge() {
-        parallelForChunks(std::size_t(merged_.box.size().y),
-                          [&](std::size_t begin, std::size_t end) {
-                              for (std::size_t row = begin; row < end; ++row) {
-                                  const int y = merged_.box.min.y + int(row);
-                                  for (Strip& strip : strips_) {
-                                      if (y >= strip.first && y < strip.last)
-                                          strip.layers->finishRow(y);
-                                  }
-                              }
-                          });
-        return std::move(merged_);
-    }
-
-    // The share of the pieces' time that went into compositing, 0..1.
-    double compositeShare() const {
-        return pieceSeconds_ > 0 ? compositeSeconds_ / pieceSeconds_ : 0;
-    }
-
-  private:
-    const std::vector<PlannedSlab>& slabs() const { return input_.deltas.slabs; }
-
-    PlaneBox reachOfAll() const {
-        const IndexBox& box = input_.deltas.box;
-        return reachOf(layout_, view_.shiftPerSlice, box.min.x, box.dims().x);
-    }
-
-    void cutIntoStrips() {
-        const PlaneBox box = reachOfAll();
-        const int rows = box.size().y;
-        const int count = stripCount(layout_, rows, slabs().size());
-        for (int i = 0; i < count; ++i) {
-            const auto edge = [&](int n) {
-                return box.min.y + int(std::int64_t{rows} * n / count);
-            };
-            strips_.push_back(
-                {edge(i), edge(i + 1), std::make_unique<LayerFold>(slabs().size() - 1, merged_)});
-        }
-    }
-
-    // The part of the sheet that a slab needs for a strip.
-    SheetLayout layoutOf(const Strip& strip, const Slab& slab) const {
-        if (strips_.size() == 1) return layout_;
-        const int lastSlice = slab.firstSlice + slab.sliceCount - 1;
-        const int a = shiftOf(layout_, view_.shiftPerSlice, slab.firstSlice).offset.y;
-        const int b = shiftOf(layout_, view_.shiftPerSlice, lastSlice).offset.y;
-        // Reading takes in the row behind the last as well.
-        return layoutRows(layout_, strip.first + std::min(a, b), strip.last + std::max(a, b) + 1);
-    }
-
-    SheetLayout largestLayout() const {
-        SheetLayout largest = layoutRows(layout_, 0, 0);
-        for (const Strip& strip : strips_) {
-            for (const Slab& slab : slabs()) {
-                const SheetLayout layout = layoutOf(strip, slab);
-                if (layout.sizePixels.y > largest.sizePixels.y) largest = layout;
-            }
-        }
-        return largest;
-    }
-
-    // The front slab goes straight into the merged layer, the others into layers of their own.
-    void renderPiece(std::size_t piece, Splatter& splatter) {
-        const Clock::time_point start = Clock::now();
-        const std::size_t number = piece / strips_.size();
-        const PlannedSlab& slab = slabs()[view_.frontToBack ? number : slabs().size() - 1 - number];
-        const Strip& strip = strips_[piece % strips_.size()];
-        PlaneBox box = reachOf(layout_, view_.shiftPerSlice, slab.firstSlice, slab.sliceCount);
-        box.min.y = std::clamp(strip.first, box.min.y, box.max.y);
-        box.max.y = std::clamp(strip.last, box.min.y, box.max.y);
-        double compositeSeconds = 0;
-        const auto timed = [&](const auto& use) {
-            const Clock::time_point before = Clock::now();
-            use();
-            compositeSeconds += secondsSince(before);
-        };
-        if (number == 0) {
-            // Not made before there are threads, so that others may begin meanwhile.
-            timed([&] { std::call_once(mergedOnce_, [&] { merged_.reset(reachOfAll()); }); });
-            compositeSeconds += renderSlab(slab, strip, box, splatter, merged_);
-            timed([&] { strip.layers->addFront(); });
-        } else {
-            Layer layer = strip.layers->take(box);
-            compositeSeconds += renderSlab(slab, strip, box, splatter, layer);
-            timed([&] { strip.layers->add(number - 1, std::move(layer)); });
-        }
-        count(slab, compositeSeconds, secondsSince(start));
-    }
-
-    // Returns the seconds that compositing took.
-    double renderSlab(const PlannedSlab& slab, const Strip& strip, const PlaneBox& box,
-                      Splatter& splatter, Layer& layer) {
-        double compositeSeconds = 0;
-        const SheetLayout layout = layoutOf(strip, slab);
-        if (box.empty() || layout.blocks.y == 0) return compositeSeconds;
-        Compositor compositor(scales_, view_.frontToBack);
-        splatter.begin(slab, layout);
-        for (int i = 0; i < slab.sliceCount; ++i) {
-            const int slice = slab.firstSlice + i;
-            const SheetShift shift = shiftOf(layout, view_.shiftPerSlice, slice);
-            // Reading takes in the row behind the last as well.
-            const Compositor::Sheets sheets =
-                splatter.splat(slice, box.min.y + shift.offset.y, box.max.y + shift.offset.y + 1);
-            const Clock::time_point before = Clock::now();
-            compositor.composite(sheets, shift, box.min.y, box.max.y, layer);
-            compositeSeconds += secondsSince(before);
-        }
-        splatter.end();
-        return compositeSeconds;
-    }
-
-    void count(const Slab& slab, double compositeSeconds, double pieceSeconds) {
-        double slicesDone = 0;
-        {
-            const std::lock_guard lock(mutex_);
-            compositeSeconds_ += compositeSeconds;
-            pieceSeconds_ += pieceSeconds;
-            slicesDone_ += double(slab.sliceCount) / double(strips_.size());
-            slicesDone = slicesDone_;
-        }
-        progress_.report(0.2 + 0.7 * slicesDone / input_.deltas.box.dims().x);
-    }
-
-    const SplatInput& input_;
-    const PlaneView& view_;
-    const SheetLayout& layout_;
-    SharedProgress progress_;
-    std::vector<glm::vec4> scales_;  // of the planes of colours
-    Layer merged_;
-    std::once_flag mergedOnce_;
-    std::vector<Strip> strips_;
-    SheetLayout largest_;
-    std::atomic<std::size_t> next_ = 0;
-    std::mutex mutex_;  // guards all below
-    double compositeSeconds_ = 0;
-    double pieceSeconds_ = 0;
-    double slicesDone_ = 0;
+// A volume as slices along one axis: what is rendered, whatever the camera.
+struct PreparedSlices {
+    Subdivision parts;
+    ClassTable classes;
+    PackedDeltas deltas;
+    std::optional<DigitVoxels> digitVoxels;
 };
 
 // Footprints that a method adds.
@@ -273,175 +64,216 @@ Raster rasterOf(const Layer& layer, const ClassTable& classes) {
     return raster;
 }
 
-// What all slabs together take: splatters for each thread, layers, and the merged one.
-void requireSlabMemory(const SplatInput& input, const PlaneView& view, const SheetLayout& layout) {
-    const PackedDeltas& deltas = input.deltas;
-    const IndexBox& box = deltas.box;
-    const int rows = reachOf(layout, view.shiftPerSlice, box.min.x, box.dims().x).size().y;
-    const int strips = stripCount(layout, rows, deltas.slabs.size());
-    int longest = 0;
-    for (const Slab& slab : deltas.slabs) longest = std::max(longest, slab.sliceCount);
-    // A strip's rows, those that its slabs are shifted by, and whole blocks and margins around.
-    const double partRows = double(rows) / strips + 1.0 * (longest + 16) * layout.resolution +
-                            2.0 * layout.marginPixels;
-    const double share = std::min(1.0, partRows / layout.sizePixels.y);
-    double bytes = share * Splatter::bytes(input, layout) *
-                   std::min<double>(threadCount(), double(strips) * double(deltas.slabs.size()));
-    const auto layerBytes = [&](int firstSlice, int sliceCount) {
-        const glm::dvec2 size = reachOf(layout, view.shiftPerSlice, firstSlice, sliceCount).size();
-        return sizeof(float) * layout.channels * size.x * size.y;
-    };
-    for (const Slab& slab : deltas.slabs) bytes += layerBytes(slab.firstSlice, slab.sliceCount);
-    // The front slab's is the merged one.
-    const Slab& front = view.frontToBack ? deltas.slabs.front() : deltas.slabs.back();
-    bytes -= layerBytes(front.firstSlice, front.sliceCount);
-    bytes += layerBytes(deltas.box.min.x, deltas.box.dims().x);
-    requireMemory("sheets and layers at " + std::to_string(layout.resolution) + " pixels a voxel",
-                  bytes);
+void boundError(const ClassTable& classes, const Tolerance& tolerance, Steps steps, double gain,
+                RenderStats& stats) {
+    if (tolerance.isExact()) return;
+    const ErrorBound bound = errorBound(classes, tolerance, steps);
+    stats.errorBoundColor = std::max(stats.errorBoundColor, bound.color * gain);
+    stats.errorBoundAlpha = std::max(stats.errorBoundAlpha, bound.alpha * gain);
 }
 
-// What voxels become, and sheet pixels for each of them then.
-struct SheetPlan {
-    Subdivision parts;
-    int resolution;
+Listener partOf(const Listener& listener, double from, double to) {
+    return {[&listener, from, to](double share) { listener.report(from + (to - from) * share); },
+            listener.warning};
+}
+
+// Renders one picture, or the regions of one.
+class CompositeRender {
+  public:
+    CompositeRender(const Volume& volume, const RenderOptions& options, RenderResult& result)
+        : volume_(volume),
+          options_(options),
+          optics_(withRange(volume, options.optics)),
+          result_(result) {}
+
+    // @param view  of the volume's own voxels
+    void run(const Factorization& view, const Listener& listener) {
+        const Clock::time_point start = Clock::now();
+        const PreparedSlices slices = prepare(view, listener);
+        result_.stats.prepareSeconds = secondsSince(start);
+        listener.report(0.2);
+        if (volume_.empty()) return;
+        const Clock::time_point renderStart = Clock::now();
+        const Footprint footprint = footprintOf(slices, view);
+        const SheetLayout layout = layoutOf(slices, footprint);
+        const BasePlane plane(subdivided(view, slices.parts), layout.firstSlice, layout.firstVoxel,
+                              layout.resolution, layout.offsetPixels);
+        const Layer merged = renderSlabs(slices, footprint, layout, plane, listener);
+        listener.report(0.95);
+        const Clock::time_point warpStart = Clock::now();
+        const glm::dmat3& map = plane.pixelFromPicture();
+        warp(rasterOf(merged, slices.classes), map, WarpFilter::kSharp, result_.image);
+        result_.stats.warpSeconds = secondsSince(warpStart);
+        boundError(slices.classes, options_.tolerance, Steps::kAsClassified, warpGain(map),
+                   result_.stats);
+        result_.stats.renderSeconds = secondsSince(renderStart);
+    }
+
+    // @param regions  of the volume's own voxels
+    void run(const std::vector<Factorization>& regions, const Listener& listener) {
+        for (std::size_t i = 0; i < regions.size(); ++i) {
+            const auto share = [&](double part) { return (double(i) + part) / regions.size(); };
+            runRegion(regions[i], partOf(listener, share(0), share(1)));
+        }
+    }
+
+  private:
+    PreparedSlices prepare(const Factorization& view, const Listener& listener) {
+        RenderStats& stats = result_.stats;
+        PreparedSlices slices{{}, classify(volume_, optics_, view.sliceStepWorld), {}, {}};
+        if (!plan_) plan_.emplace(volume_, view, slices.classes, options_, listener);
+        slices.parts = plan_->partsAlong(view.sliceAxis);
+        std::optional<ValueMixer> mixer;
+        if (slices.parts.divides()) {
+            mixer.emplace(volume_, slices.parts);
+            slices.classes =
+                classify(mixer->levels(), optics_, view.sliceStepWorld / slices.parts.slices);
+        }
+        const Volume& seen = mixer ? mixer->levels() : volume_;
+        listener.report(0.05);
+        slices.deltas = packDeltas(
+            volume_,
+            {view.sliceAxis, encodingOf(options_.method), slices.classes.classOfSlot,
+             holdRule(seen, slices.classes, options_.tolerance), mixer ? &*mixer : nullptr});
+        if (!slices.classes.oneDigit()) slices.digitVoxels.emplace(slices.deltas, slices.classes);
+
+        stats.between = slices.parts.slices - 1;
+        stats.parts = slices.parts.voxels();
+        stats.slices = volume_.box.dims()[view.sliceAxis] * slices.parts.slices;
+        stats.voxels = std::uint64_t(volume_.box.voxels()) * std::uint64_t(stats.parts);
+        stats.tolerance = options_.tolerance;
+        stats.visible = slices.deltas.visible();
+        stats.deltas = slices.deltas.deltas();
+        stats.slabs = int(slices.deltas.slabs.size());
+        stats.stamps += stampsOf(slices.deltas, stats);
+        return slices;
+    }
+
+    Footprint footprintOf(const PreparedSlices& slices, const Factorization& view) {
+        const int within = slices.parts.within;
+        const double pixels = view.pixelsPerVoxel / within;
+        const double sigma = options_.sigma.value_or(defaultSigma(pixels) / within);
+        // The kernel is round in voxels, however many slices there are; seen along the middle line
+        // of sight.
+        const glm::dvec2 shift =
+            view.eye ? 0.5 * (view.slopeMin + view.slopeMax) : view.shiftPerSlice;
+        const Footprint footprint = makeFootprint(sigma, {shift.y, shift.x}, plan_->resolution(),
+                                                  options_.footprintWidth, within);
+        result_.stats.resolution = footprint.resolution * within;
+        result_.stats.footprint = std::max(result_.stats.footprint, footprint.width);
+        return footprint;
+    }
+
+    static SheetLayout layoutOf(const PreparedSlices& slices, const Footprint& footprint) {
+        return layoutSheet(slices.deltas.box, footprint, slices.classes.oneColor ? 1 : 4);
+    }
+
+    Layer renderSlabs(const PreparedSlices& slices, const Footprint& footprint,
+                      const SheetLayout& layout, const BasePlane& plane, const Listener& listener) {
+        const SlabInput input{slices.deltas,
+                              slices.classes,
+                              slices.digitVoxels ? &*slices.digitVoxels : nullptr,
+                              options_.method == Method::kTraditional,
+                              footprint,
+                              layout,
+                              plane};
+        const Listener slabsListener = partOf(listener, 0.2, 0.9);
+        const Clock::time_point start = Clock::now();
+        SlabRenderer slabs(input, slabsListener);
+        slabs.run();
+        const double slabSeconds = secondsSince(start);
+        Layer merged = slabs.merge();
+        const double splatSeconds = slabSeconds * (1 - slabs.compositeShare());
+        result_.stats.splatSeconds += splatSeconds;
+        result_.stats.compositeSeconds += secondsSince(start) - splatSeconds;
+        return merged;
+    }
+
+    void runRegion(const Factorization& view, const Listener& listener) {
+        const Clock::time_point start = Clock::now();
+        const PreparedSlices slices = prepare(view, listener);
+        result_.stats.prepareSeconds += secondsSince(start);
+        listener.report(0.2);
+        if (volume_.empty()) return;
+        const Clock::time_point renderStart = Clock::now();
+        renderRegion(slices, view, listener);
+        result_.stats.renderSeconds += secondsSince(renderStart);
+    }
+
+    void renderRegion(const PreparedSlices& slices, const Factorization& view,
+                      const Listener& listener) {
+        const Factorization thinView = subdivided(view, slices.parts);
+        const IndexBox& box = slices.deltas.box;
+        const Footprint footprint = footprintOf(slices, view);
+        const SheetLayout layout = layoutOf(slices, footprint);
+        const double density = densityOf(slices, thinView, layout.resolution);
+        const BasePlane plane(thinView, result_.camera, layout.firstSlice, layout.firstVoxel,
+                              1 / density);
+        Layer merged = renderSlabs(slices, footprint, layout, plane, listener);
+        if (merged.channels == 1) lengthenSteps(plane, merged);
+        listener.report(0.95);
+        const Clock::time_point warpStart = Clock::now();
+        const double gain = warpRegion(rasterOf(merged, slices.classes), result_.camera, view,
+                                       thinView, plane, result_.image);
+        result_.stats.warpSeconds += secondsSince(warpStart);
+        const bool cut = plane.cutsAny({box.min.x, box.max.x});
+        boundError(slices.classes, options_.tolerance, cut ? Steps::kOneShorter : Steps::kLonger,
+                   gain, result_.stats);
+    }
+
+    // Base plane pixels that a slope of 1 takes: as many as the farthest slice has sheet pixels,
+    // which is the most that there is to show, but no more than the picture needs.
+    static double densityOf(const PreparedSlices& slices, const Factorization& view,
+                            int resolution) {
+        const IndexBox& box = slices.deltas.box;
+        const double farthest =
+            view.frontToBack ? box.max.x - view.eye->x : view.eye->x - box.min.x;
+        return std::min(resolution * std::max(farthest, 1.0),
+                        kPixelsOfScreen * view.pixelsPerSlope);
+    }
+
+    // Opacities are those of ways straight through the slices: makes them those of the lines of
+    // sight.
+    static void lengthenSteps(const BasePlane& plane, Layer& layer) {
+        parallelForChunks(std::size_t(layer.box.size().y), [&](std::size_t begin, std::size_t end) {
+            std::vector<float> steps;
+            for (std::size_t row = begin; row < end; ++row) {
+                const glm::ivec2 span = layer.spans[row];
+                if (span.x >= span.y) continue;
+                const glm::ivec2 first = layer.box.min + glm::ivec2(span.x, int(row));
+                steps.clear();
+                for (int x = span.x; x < span.y; ++x)
+                    steps.push_back(float(plane.stepsAt({layer.box.min.x + x, first.y})));
+                const std::size_t count = steps.size();
+                steps.resize(count + StepLengths::kSpare);
+                repeatOpacity(layer.pixel(first), steps.data(), count);
+            }
+        });
+    }
+
+    const Volume& volume_;
+    const RenderOptions& options_;
+    Optics optics_;
+    RenderResult& result_;
+    std::optional<SheetPlan> plan_;
 };
-
-// @param view  of the volume's own voxels
-void renderDeltas(const PackedDeltas& deltas, const ClassTable& classes, const Factorization& view,
-                  const SheetPlan& plan, const RenderOptions& options, const Listener& listener,
-                  RenderResult& result) {
-    const Clock::time_point start = Clock::now();
-    const Factorization thinView = subdivided(view, plan.parts);
-    const PlaneView planeView(thinView);
-    const int within = plan.parts.within;
-    const double sigma = options.sigma.value_or(defaultSigma(thinView.pixelsPerVoxel) / within);
-    // The kernel is round in voxels, however many slices there are.
-    const Footprint footprint = makeFootprint(sigma, PlaneView(view).shiftPerSlice, plan.resolution,
-                                              options.footprintWidth, within);
-    const SheetLayout layout = layoutSheet(deltas.box, footprint, classes.oneColor ? 1 : 4);
-    std::optional<DigitVoxels> digitVoxels;
-    if (!classes.oneDigit()) digitVoxels.emplace(deltas, classes);
-    const SplatInput input{deltas, classes, footprint, options.method == Method::kTraditional,
-                           digitVoxels ? &*digitVoxels : nullptr};
-    requireSlabMemory(input, planeView, layout);
-    SlabRenderer slabs(input, layout, planeView, listener);
-    slabs.run();
-    const double slabSeconds = secondsSince(start);
-
-    const Layer merged = slabs.merge();
-    const double mergedSeconds = secondsSince(start);
-    listener.report(0.95);
-
-    const glm::dmat3 map = planeFromPixel(planeView, layout);
-    warp(rasterOf(merged, classes), map, WarpFilter::kSharp, result.image);
-
-    RenderStats& stats = result.stats;
-    stats.stamps = stampsOf(deltas, stats);
-    if (!options.tolerance.isExact()) {
-        const ErrorBound bound = errorBound(classes, options.tolerance);
-        const double gain = warpGain(map);
-        stats.errorBoundColor = bound.color * gain;
-        stats.errorBoundAlpha = bound.alpha * gain;
-    }
-    stats.resolution = plan.resolution * within;
-    stats.footprint = footprint.width;
-    stats.renderSeconds = secondsSince(start);
-    stats.splatSeconds = slabSeconds * (1 - slabs.compositeShare());
-    stats.compositeSeconds = mergedSeconds - stats.splatSeconds;
-    stats.warpSeconds = stats.renderSeconds - mergedSeconds;
-}
-
-void checkBetween(int between) {
-    if (between >= 0 && between <= kMostBetween) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("--between", std::to_string(between),
-                            "a whole number within 0.." + std::to_string(kMostBetween)));
-}
-
-[[noreturn]] void throwTooWide(const IndexBox& box, int between) {
-    const glm::ivec3 dims = box.dims();
-    throw Error(ErrorCode::kFailed,
-                gotExpected("--between " + std::to_string(between),
-                            std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
-                                std::to_string(dims.z) + " voxels",
-                            "at most 2^30 parts of them along each axis (--between 0: undivided)"));
-}
-
-// Whether voxels are divided where the screen asks for it and nobody says otherwise.
-bool dividesUnasked(const Volume& volume, const Factorization& view, const ClassTable& classes,
-                    const RenderOptions& options, const Listener& listener) {
-    if (view.resolution < 2 || options.resolution || options.footprintWidth) return false;
-    if (options.optics.transferFunction.colorsJump()) return false;
-    if (volume.empty() || isThin(volume, options.optics)) return false;
-    if (!canBeDivided(volume.box, 1)) {
-        listener.warn("the volume is too wide for voxels to be divided: drawn as they are");
-        return false;
-    }
-    const BlockReader seen(*volume.codes, nullptr, view.sliceAxis, classes.classOfSlot);
-    if (seen.blocks().size() <= kMostDivided) return true;
-    listener.warn("voxels are too many to be divided (" + std::to_string(seen.blocks().size()) +
-                  " blocks of 8x8x8 can be seen, at most " + std::to_string(kMostDivided) +
-                  " are): drawn as they are; --between 1 divides them");
-    return false;
-}
-
-// @param classes  of the volume's own voxels
-SheetPlan planSheet(const Volume& volume, const Factorization& view, const ClassTable& classes,
-                    const RenderOptions& options, const Listener& listener) {
-    int between = 0;
-    int resolution = sheetResolution(volume, view, options);
-    if (options.between) {
-        between = *options.between;
-        checkBetween(between);
-        if (between > 0 && !canBeDivided(volume.box, between)) throwTooWide(volume.box, between);
-    } else if (dividesUnasked(volume, view, classes, options, listener)) {
-        between = 1;
-    }
-    if (between > 0 && !options.resolution) resolution = 2;
-    Subdivision parts{between + 1, between > 0 && resolution % 2 == 0 ? 2 : 1, {}};
-    // Whole blocks are divided.
-    if (parts.divides()) parts.origin = toSliceOrder(volume.box.min, view.sliceAxis) & ~7;
-    return {parts, resolution / parts.within};
-}
-
-// Optics as the volume has them, for levels to be seen by.
-Optics withRange(const Volume& volume, Optics optics) {
-    if (!optics.range) optics.range = defaultRange(volume);
-    return optics;
-}
 
 }  // namespace
 
-void renderComposite(const Volume& volume, const Factorization& view, const RenderOptions& options,
-                     const Listener& listener, RenderResult& result) {
-    const Clock::time_point start = Clock::now();
-    RenderStats& stats = result.stats;
-    const Optics optics = withRange(volume, options.optics);
-    ClassTable classes = classify(volume, optics, view.sliceStepWorld);
-    const SheetPlan plan = planSheet(volume, view, classes, options, listener);
-    const Subdivision& parts = plan.parts;
-    stats.between = parts.slices - 1;
-    stats.parts = parts.voxels();
-    stats.slices *= parts.slices;
-    stats.voxels *= std::uint64_t(stats.parts);
-    std::optional<ValueMixer> mixer;
-    if (parts.divides()) {
-        mixer.emplace(volume, parts);
-        classes = classify(mixer->levels(), optics, view.sliceStepWorld / parts.slices);
+void renderComposite(const Volume& volume, const RenderOptions& options, const Listener& listener,
+                     RenderResult& result) {
+    CompositeRender render(volume, options, result);
+    const Camera& camera = result.camera;
+    if (camera.projection == Projection::kOrtho) {
+        const Factorization view = factorize(camera, volume.worldFromIndex, options.resolution);
+        result.stats.sliceAxis = view.sliceAxis;
+        render.run(view, listener);
+        return;
     }
-    const Volume& seen = mixer ? mixer->levels() : volume;
-    listener.report(0.05);
-    const PackedDeltas deltas =
-        packDeltas(volume, {view.sliceAxis, encodingOf(options.method), classes.classOfSlot,
-                            holdRule(seen, classes, options.tolerance), mixer ? &*mixer : nullptr});
-    listener.report(0.2);
-
-    stats.tolerance = options.tolerance;
-    stats.visible = deltas.visible();
-    stats.deltas = deltas.deltas();
-    stats.slabs = int(deltas.slabs.size());
-    stats.prepareSeconds = secondsSince(start);
-    if (!volume.empty()) renderDeltas(deltas, classes, view, plan, options, listener, result);
+    const std::vector<Factorization> regions =
+        factorizeRegions(camera, volume.box, volume.worldFromIndex, options.resolution);
+    result.stats.sliceAxis = regions.front().sliceAxis;
+    render.run(regions, listener);
 }
 
 }  // namespace deltasplat

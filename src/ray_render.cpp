@@ -6,7 +6,6 @@
 #include <limits>
 #include <string>
 
-#include "composite/plane_view.h"
 #include "image/warp.h"
 #include "number_text.h"
 #include "optics/value_colors.h"
@@ -112,13 +111,14 @@ void renderRays(const Volume& volume, const Factorization& view, const RenderOpt
     stats.prepareSeconds = secondsSince(start);
 
     const Clock::time_point renderStart = Clock::now();
-    const PlaneView planeView(view);
-    const Footprint footprint = footprintOf(options, planeView.shiftPerSlice);
+    const Footprint footprint = footprintOf(options, {view.shiftPerSlice.y, view.shiftPerSlice.x});
     const SheetLayout layout = layoutSheet(rays.box, footprint, 1);
-    RayPlane plane = followRays({rays, rule, layout, planeView.shiftPerSlice}, listener);
+    const BasePlane basePlane(view, layout.firstSlice, layout.firstVoxel, layout.resolution,
+                              layout.offsetPixels);
+    RayPlane plane = followRays({rays, rule, layout, basePlane}, listener);
     stats.splatSeconds = secondsSince(renderStart);
 
-    const glm::dmat3 map = planeFromPixel(planeView, layout);
+    const glm::dmat3& map = basePlane.pixelFromPicture();
     if (mip) {
         const RayPlane met = splitMet(plane);
         stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;

@@ -5,6 +5,7 @@
 
 #include "composite_render.h"
 #include "default_floats.h"
+#include "deltasplat/error.h"
 #include "memory.h"
 #include "ray_render.h"
 
@@ -53,18 +54,23 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
     result.camera = makeCamera(options.camera, volume.box, volume.worldFromIndex, volume.space);
     requireImageMemory(result.camera.sizePixels);
     result.image = Image(result.camera.sizePixels);
-    const Factorization view = factorize(result.camera, volume.worldFromIndex, options.resolution);
-
     RenderStats& stats = result.stats;
     stats.voxels = std::uint64_t(volume.box.voxels());
-    stats.sliceAxis = view.sliceAxis;
-    stats.slices = volume.box.dims()[view.sliceAxis];
     stats.mode = options.mode;
     stats.method = options.method;
     if (options.mode == Mode::kComposite) {
-        renderComposite(volume, view, options, listener, result);
-    } else if (!volume.empty()) {
-        renderRays(volume, view, options, listener, result);
+        renderComposite(volume, options, listener, result);
+    } else {
+        if (options.camera.projection != Projection::kOrtho) {
+            throw Error(ErrorCode::kUsage,
+                        gotExpected("--projection", projectionName(options.camera.projection),
+                                    "ortho for --mode " + modeName(options.mode)));
+        }
+        const Factorization view =
+            factorize(result.camera, volume.worldFromIndex, options.resolution);
+        stats.sliceAxis = view.sliceAxis;
+        stats.slices = volume.box.dims()[view.sliceAxis];
+        if (!volume.empty()) renderRays(volume, view, options, listener, result);
     }
     listener.report(1);
     return result;

@@ -106,8 +106,9 @@ void checkReport(const BenchCommand& command) {
                 "the inputs and the transfer function");
 }
 
-void runBench(const CLI::App& app, const BenchCommand& command, const Session& session) {
+void runBench(const CLI::App& app, BenchCommand command, const Session& session) {
     requireArgument(!command.inputs.empty(), "INPUT", "FILE (see 'deltasplat bench --help')");
+    applyProjection(app, command.picture.render.camera);
     checkCamera(command.picture.render.camera);
     if (!command.report.empty()) checkReport(command);
     Findings found = measureAll(app, command, session);

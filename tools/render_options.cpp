@@ -37,6 +37,11 @@ Parser<Mode> mode() {
     return named<Mode>({Mode::kComposite, Mode::kXray, Mode::kMip}, modeName);
 }
 
+Parser<Projection> projection() {
+    return named<Projection>({Projection::kOrtho, Projection::kPerspective, Projection::kLatlong},
+                             projectionName);
+}
+
 Parser<std::int64_t> bits() {
     return [](const std::string& option, const std::string& text) {
         return choice({"8", "16"})(option, text) == "8" ? 8 : 16;
@@ -113,8 +118,10 @@ void addMethodOption(CLI::App& app, Method& chosen) {
 void addCameraOptions(CLI::App& app, PictureOptions& options) {
     CameraOptions& camera = options.render.camera;
     OptionGroup group(app, "Camera");
-    group.addValue("--projection", "ortho", options.projection, choice({"ortho"}),
-                   withDefault("Parallel lines of sight", options.projection));
+    group.addValue("--projection", "NAME", camera.projection, projection(),
+                   withDefault("ortho (parallel lines of sight), perspective (from an eye) or\n"
+                               "latlong (from an eye to all sides, twice as wide as high)",
+                               projectionName(camera.projection)));
     group.addValue("--view", "NAME", camera.view, anyText(),
                    withDefault("Where the camera is, y up: front (+z) back (-z) right (+x)\n"
                                "left (-x) top (+y) bottom (-y) or iso (+x +y +z). Where the file\n"
@@ -141,8 +148,29 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
                    "middle of the volume)");
     group.addValue("--frame-width", "W", camera.frameWidthWorld, positiveLength(),
                    "Width of the picture in world units (default: the volume fits)");
-    group.addValue("--size", "WxH", camera.sizePixels, pixelSize(),
-                   withDefault("Width and height in pixels", sizeText(camera.sizePixels)));
+    group.addValue("--fov", "DEG", camera.fovDegrees, number(0, 180),
+                   "perspective: vertical angle of view, less than 180 (default: " +
+                       numberText(kDefaultFov) + ")");
+    group.addValue("--focal", "MM", camera.focalMm, positiveLength(),
+                   "perspective: focal length, instead of --fov (default with\n"
+                   "--aperture: " +
+                       numberText(kDefaultFocalMm) + ")");
+    group.addValue("--aperture", "MM", camera.apertureMm, positiveLength(),
+                   "perspective: width of the film back (default with --focal: " +
+                       numberText(kDefaultApertureMm) + ")");
+    group.addValue("--eye", "X,Y,Z", camera.eyeWorld, vector3(),
+                   "perspective, latlong: world position of the eye, which looks at\n"
+                   "the target, or in --direction (default: --distance from the\n"
+                   "target; latlong: the target)");
+    group.addValue("--distance", "D", camera.distanceWorld, positiveLength(),
+                   "perspective: from the eye to the target, in world units\n"
+                   "(default: the volume fits)");
+    group.addValue("--near", "D", camera.nearWorld, number(0),
+                   withDefault("perspective, latlong: what is nearer to the eye is not seen",
+                               numberText(camera.nearWorld)));
+    group.addValue(
+        "--size", "WxH", camera.sizePixels, pixelSize(),
+        withDefault("Width and height in pixels; latlong 1024x512", sizeText(camera.sizePixels)));
 }
 
 void addOpticsOptions(CLI::App& app, PictureOptions& options) {
@@ -208,6 +236,11 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addMethodOption(app, command.picture.render.method);
     addSplattingOptions(app, command.picture.render);
     addInputOptions(app, command.picture.read);
+}
+
+void applyProjection(const CLI::App& app, CameraOptions& camera) {
+    if (camera.projection == Projection::kLatlong && !isGiven(app, "--size"))
+        camera.sizePixels = {1024, 512};
 }
 
 void checkCamera(const CameraOptions& camera) {

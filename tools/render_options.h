@@ -18,7 +18,6 @@ namespace deltasplat {
 struct PictureOptions {
     std::filesystem::path transferFunction;  ///< empty: a ramp
     std::optional<glm::vec4> background;
-    std::string projection = "ortho";
     ReadOptions read;
     RenderOptions render;
 };
@@ -40,6 +39,9 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options);
 
 /// Declares all options of `deltasplat render`.
 void addRenderOptions(CLI::App& app, RenderCommand& command);
+
+/// Gives a panorama the size that it has if none is asked for.
+void applyProjection(const CLI::App& app, CameraOptions& camera);
 
 /// Checks the camera before there is a volume to look at.
 /// @throw Error(kUsage) naming the option

@@ -102,21 +102,36 @@ Json placeJson(const Volume& volume) {
 
 std::string cameraOptionsText(const Camera& camera) {
     const glm::ivec2 size = camera.sizePixels;
-    return "--projection ortho" + vectorOption("direction", camera.direction) +
-           vectorOption("up", camera.up) + vectorOption("target", camera.targetWorld) +
-           " --frame-width " + numberText(camera.frameWidthWorld) + " --size " +
-           joinNumbers({double(size.x), double(size.y)}, "x");
+    std::string text = "--projection " + projectionName(camera.projection);
+    if (camera.projection == Projection::kOrtho) {
+        text += vectorOption("direction", camera.direction) + vectorOption("up", camera.up) +
+                vectorOption("target", camera.targetWorld) + " --frame-width " +
+                numberText(camera.frameWidthWorld);
+    } else {
+        text += vectorOption("eye", camera.eyeWorld()) +
+                vectorOption("direction", camera.direction) + vectorOption("up", camera.up);
+        if (camera.projection == Projection::kPerspective)
+            text += " --fov " + numberText(camera.fovDegrees());
+        if (camera.nearWorld > 0) text += " --near " + numberText(camera.nearWorld);
+    }
+    return text + " --size " + joinNumbers({double(size.x), double(size.y)}, "x");
 }
 
 Json cameraJson(const Camera& camera) {
-    return {{"projection", "ortho"},
-            {"direction", vectorJson(camera.direction)},
-            {"right", vectorJson(camera.right)},
-            {"up", vectorJson(camera.up)},
-            {"target", vectorJson(camera.targetWorld)},
-            {"frame_width", camera.frameWidthWorld},
-            {"size", {camera.sizePixels.x, camera.sizePixels.y}},
-            {"options", cameraOptionsText(camera)}};
+    Json json = {{"projection", projectionName(camera.projection)}};
+    if (camera.projection != Projection::kOrtho) {
+        json["eye"] = vectorJson(camera.eyeWorld());
+        json["near"] = camera.nearWorld;
+    }
+    if (camera.projection == Projection::kPerspective) json["fov"] = camera.fovDegrees();
+    json.update({{"direction", vectorJson(camera.direction)},
+                 {"right", vectorJson(camera.right)},
+                 {"up", vectorJson(camera.up)},
+                 {"target", vectorJson(camera.targetWorld)},
+                 {"frame_width", camera.frameWidthWorld},
+                 {"size", {camera.sizePixels.x, camera.sizePixels.y}},
+                 {"options", cameraOptionsText(camera)}});
+    return json;
 }
 
 }  // namespace deltasplat

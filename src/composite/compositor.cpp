@@ -6,41 +6,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <optional>
 #include <span>
 
-#include "bit_matrix.h"
+#include "composite/full_rows.h"
 
 namespace deltasplat {
-namespace {
 
-// Calls emit(first, last) for every run of set bits [first, last) in a row of words.
-template <typename Emit>
-void forEachRun(std::span<const std::uint64_t> words, const Emit& emit) {
-    int open = -1;  // where a run began that reaches up to the word in hand
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        const int base = int(64 * i);
-        std::uint64_t word = words[i];
-        int bit = 0;
-        while (bit < 64) {
-            const std::uint64_t rest = (open < 0 ? word : ~word) >> bit;
-            if (rest == 0) break;
-            bit += std::countr_zero(rest);
-            if (open < 0) {
-                open = base + bit;
-            } else {
-                emit(open, base + bit);
-                open = -1;
-            }
-        }
-    }
-    if (open >= 0) emit(open, int(64 * words.size()));
-}
-
-}  // namespace
-
-void Compositor::composite(Sheets sheets, const SheetShift& shift, int firstRow, int lastRow,
+void Compositor::composite(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
                            Layer& layer) {
     const OverWeights weights(glm::vec2(shift.fraction), scales_, layer.channels, frontToBack_);
     findSpans(sheets, shift, firstRow, lastRow, weights.straight, layer);
@@ -50,10 +23,10 @@ void Compositor::composite(Sheets sheets, const SheetShift& shift, int firstRow,
 }
 
 // Finds the runs of pixels that the sheets reach.
-void Compositor::findSpans(Sheets sheets, const SheetShift& shift, int firstRow, int lastRow,
+void Compositor::findSpans(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
                            bool straight, Layer& layer) {
     const Sheet& sheet = *sheets.front();
-    words_ = (sheet.fullRows(0).size() + 63) / 64;
+    words_ = wordsOfRow(sheet);
     rows_.resize(sheets.size());
     for (Rows& rows : rows_) rows.assign((kTilePixels + 1) * words_, 0);
     either_.resize(sheets.size() + 1);
@@ -66,8 +39,11 @@ void Compositor::findSpans(Sheets sheets, const SheetShift& shift, int firstRow,
     unsigned rows = 0;
     for (int tileRow = begin / kTilePixels; kTilePixels * tileRow <= end; ++tileRow) {
         rows >>= kTilePixels;
-        for (std::size_t p = 0; p < sheets.size(); ++p)
-            rows |= findRows(*sheets[p], tileRow, rows_[p]) << 1;
+        for (std::size_t p = 0; p < sheets.size(); ++p) {
+            const std::span ofTiles = std::span(rows_[p]).subspan(words_);
+            std::fill(ofTiles.begin(), ofTiles.end(), 0);
+            rows |= findFullRows(*sheets[p], tileRow, words_, ofTiles) << 1;
+        }
         const int first = kTilePixels * tileRow - 1;
         for (unsigned rest = (straight ? rows : rows | rows >> 1) & 0xFF; rest != 0;
              rest &= rest - 1) {
@@ -80,29 +56,9 @@ void Compositor::findSpans(Sheets sheets, const SheetShift& shift, int firstRow,
     }
 }
 
-// Turns bytes of eight rows into words of 64 tiles. Returns which rows have any.
-unsigned Compositor::findRows(const Sheet& sheet, int tileRow, Rows& rows) const {
-    const std::span<const std::uint8_t> tiles = sheet.fullRows(tileRow);
-    std::fill(rows.begin() + std::ptrdiff_t(words_), rows.end(), 0);
-    std::uint64_t any = 0;
-    for (std::size_t i = 0; i < tiles.size(); i += 8) {
-        std::uint64_t bytes;
-        std::memcpy(&bytes, &tiles[i], sizeof bytes);
-        if (bytes == 0) continue;
-        any |= bytes;
-        bytes = transposedBits(bytes);
-        for (std::size_t y = 0; y < kTilePixels; ++y) {
-            rows[(y + 1) * words_ + i / 64] |= (bytes >> (8 * y) & 0xFF) << (i % 64);
-        }
-    }
-    any |= any >> 32;
-    any |= any >> 16;
-    return unsigned(any | any >> 8) & 0xFF;
-}
-
 // Adds what row y of the sheets reaches: `row` of rows_ says where they are full, the next one
 // where the row behind it is. Read straight, it reaches no more than itself.
-void Compositor::addSpans(const Sheet& sheet, const SheetShift& shift, int y, std::size_t row,
+void Compositor::addSpans(const Sheet& sheet, const SheetReading& shift, int y, std::size_t row,
                           bool straight, Layer& layer) {
     for (std::size_t p = 0; p < rows_.size(); ++p) {
         const std::uint64_t* here = &rows_[p][row * words_];

@@ -10,7 +10,7 @@
 
 #include "composite/layer.h"
 #include "composite/over_kernels.h"
-#include "splat/sheet.h"
+#include "splat/sheet_reading.h"
 
 namespace deltasplat {
 
@@ -29,16 +29,16 @@ class Compositor {
     /// behind what the layer holds (front to back) or in front of it. Only what the sheets' full
     /// rows reach is touched; of that, rows [firstRow, lastRow) of the base plane, which the layer
     /// has.
-    void composite(Sheets sheets, const SheetShift& shift, int firstRow, int lastRow, Layer& layer);
+    void composite(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
+                   Layer& layer);
 
   private:
     // Rows of tiles as bits, 64 tiles a word.
     using Rows = std::vector<std::uint64_t>;
 
-    void findSpans(Sheets sheets, const SheetShift& shift, int firstRow, int lastRow, bool straight,
-                   Layer& layer);
-    unsigned findRows(const Sheet& sheet, int tileRow, Rows& rows) const;
-    void addSpans(const Sheet& sheet, const SheetShift& shift, int y, std::size_t row,
+    void findSpans(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
+                   bool straight, Layer& layer);
+    void addSpans(const Sheet& sheet, const SheetReading& shift, int y, std::size_t row,
                   bool straight, Layer& layer);
     void addRun(int firstTile, int lastTile, bool straight, OverSpan span, int channels);
     std::uint32_t planesAt(int tile) const;

@@ -2,24 +2,8 @@
 #include "composite/layer.h"
 
 #include <algorithm>
-#include <cmath>
-#include <glm/common.hpp>
 
 namespace deltasplat {
-SheetShift shiftOf(const SheetLayout& layout, glm::dvec2 shiftPerSlice, int slice) {
-    const double slices = double(slice) - double(layout.firstSlice);
-    const glm::dvec2 sheetOrigin =
-        shiftPerSlice * slices * double(layout.resolution) - double(layout.marginPixels);
-    const glm::dvec2 whole = glm::floor(-sheetOrigin);
-    return {glm::ivec2(whole) - glm::ivec2(0, layout.originRow), -sheetOrigin - whole};
-}
-
-PlaneBox reachOf(const SheetLayout& layout, glm::dvec2 shiftPerSlice, int firstSlice,
-                 int sliceCount) {
-    const glm::ivec2 first = -shiftOf(layout, shiftPerSlice, firstSlice).offset;
-    const glm::ivec2 last = -shiftOf(layout, shiftPerSlice, firstSlice + sliceCount - 1).offset;
-    return {glm::min(first, last), glm::max(first, last) + layout.sizePixels};
-}
 
 void Layer::reset(const PlaneBox& planeBox) {
     for (std::size_t row = 0; row < spans.size(); ++row) {

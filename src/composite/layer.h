@@ -8,19 +8,9 @@
 #include <vector>
 
 #include "composite/over_kernels.h"
-#include "splat/sheet.h"
+#include "view/base_plane.h"
 
 namespace deltasplat {
-
-/// Pixels [min, max) of the base plane. Pixel (0, 0) lies at the sheet layout's first voxel on its
-/// first slice, so that numbers stay small however far from the index origin a volume is.
-struct PlaneBox {
-    glm::ivec2 min{0};
-    glm::ivec2 max{0};
-
-    glm::ivec2 size() const { return max - min; }
-    bool empty() const { return max.x <= min.x || max.y <= min.y; }
-};
 
 /// The composited light of one slab on the base plane: float `[row][width][channels]`, rows along
 /// u as those of sheets; premultiplied RGBA, or opacity alone where all that is seen has one
@@ -55,21 +45,6 @@ struct Layer {
   private:
     static constexpr glm::ivec2 kNothing{std::numeric_limits<int>::max(), 0};
 };
-
-/// Where one slice's sheet lies on the base plane: base pixel b reads the sheet at b + offset +
-/// fraction.
-struct SheetShift {
-    glm::ivec2 offset{0};
-    glm::dvec2 fraction{0.0};  ///< 0 <= fraction < 1
-};
-
-/// Returns where slice `slice` lies: shifted by shiftPerSlice voxels (v, u) for each slice since
-/// the layout's first.
-SheetShift shiftOf(const SheetLayout& layout, glm::dvec2 shiftPerSlice, int slice);
-
-/// Returns the base plane pixels that any of `sliceCount` slices from `firstSlice` on can reach.
-PlaneBox reachOf(const SheetLayout& layout, glm::dvec2 shiftPerSlice, int firstSlice,
-                 int sliceCount);
 
 /// Puts row `y` of a layer, if it has it, behind another layer that covers it.
 void mergeRowBehind(Layer& front, const Layer& layer, int y);

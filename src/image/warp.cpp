@@ -4,13 +4,12 @@
 #include "image/warp.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
-#include <limits>
 #include <optional>
 #include <vector>
 
+#include "image/raster_reader.h"
 #include "image/warp_kernels.h"
 #include "parallel.h"
 #include "portable_math.h"
@@ -36,55 +35,6 @@ Columns clipColumns(const Columns& columns, double a, double b, double low, doub
     return {int(std::max<double>(first, columns.first)), int(std::min<double>(last, columns.last))};
 }
 
-// Knows which squares of a raster hold anything but zeros.
-class RasterTiles {
-  public:
-    static constexpr int kTile = 8;
-
-    explicit RasterTiles(const Raster& raster)
-        : tiles_((raster.size + kTile - 1) / kTile),
-          words_((tiles_.x + 63) / 64),
-          full_(std::size_t(words_) * tiles_.y) {
-        parallelFor(std::size_t(tiles_.y), [&](std::size_t row) { findRow(raster, int(row)); });
-    }
-
-    // Whether any pixel of [first, last], both inclusive, may not be zero.
-    bool anyIn(glm::ivec2 first, glm::ivec2 last) const {
-        first = glm::max(first / kTile, glm::ivec2(0));
-        last = glm::min(last / kTile, tiles_ - 1);
-        for (int row = first.y; row <= last.y; ++row) {
-            for (int column = first.x; column <= last.x; ++column) {
-                if (full_[std::size_t(words_) * row + column / 64] >> (column % 64) & 1)
-                    return true;
-            }
-        }
-        return false;
-    }
-
-  private:
-    void findRow(const Raster& raster, int row) {
-        const int lastY = std::min((row + 1) * kTile, raster.size.y);
-        for (int y = row * kTile; y < lastY; ++y) {
-            const glm::ivec2 span =
-                raster.spans.empty() ? glm::ivec2(0, raster.size.x) : raster.spans[std::size_t(y)];
-            if (span.x >= span.y) continue;
-            const float* pixels = raster.values + std::size_t(raster.channels) * raster.size.x * y;
-            for (int column = span.x / kTile; column <= (span.y - 1) / kTile; ++column) {
-                const int first = raster.channels * column * kTile;
-                const int last = raster.channels * std::min((column + 1) * kTile, raster.size.x);
-                std::uint32_t bits = 0;  // of all values: faster than comparing each
-                for (int i = first; i < last; ++i) bits |= std::bit_cast<std::uint32_t>(pixels[i]);
-                full_[std::size_t(words_) * row + column / 64] |= std::uint64_t{bits != 0}
-                                                                  << (column % 64);
-            }
-        }
-    }
-
-    glm::ivec2 tiles_;
-    int words_;
-    std::vector<std::uint64_t> full_;  // [tile row][words_]
-};
-
 class Warper {
   public:
     Warper(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
@@ -95,8 +45,9 @@ class Warper {
           picture_(picture),
           wideX_(tableFor(filter, stretchOf(map_[0].x, map_[1].x))),
           wideY_(tableFor(filter, stretchOf(map_[0].y, map_[1].y))),
-          filterX_(wideX_ ? *wideX_ : narrowest(filter)),
-          filterY_(wideY_ ? *wideY_ : narrowest(filter)) {}
+          filterX_(wideX_ ? *wideX_ : narrowestFilter(filter)),
+          filterY_(wideY_ ? *wideY_ : narrowestFilter(filter)),
+          sampler_(raster, filterX_, filterY_) {}
 
     double gain() const { return filterX_.gain() * filterY_.gain(); }
     void run() {
@@ -115,15 +66,6 @@ class Warper {
         return portable::hypot(alongX, alongY);
     }
 
-    // The usual filters are made once.
-    static const FilterTable& narrowest(WarpFilter filter) {
-        static const FilterTable sharp(WarpFilter::kSharp, 1);
-        static const FilterTable smooth(WarpFilter::kSmooth, 1);
-        static const FilterTable linear(WarpFilter::kLinear, 1);
-        return filter == WarpFilter::kSharp    ? sharp
-               : filter == WarpFilter::kSmooth ? smooth
-                                               : linear;
-    }
     static std::optional<FilterTable> tableFor(WarpFilter filter, double stretch) {
         if (!(stretch > 1)) return std::nullopt;
         return std::optional<FilterTable>(std::in_place, filter, stretch);
@@ -189,87 +131,19 @@ class Warper {
         const glm::dvec2 padded(filterX_.paddedTaps() - filterX_.taps(), 0);
         Columns inner = columnsWithin(y, reached, reach - 0.999, last - reach - padded - 0.001);
         if (inner.first >= inner.last) inner = {reached.last, reached.last};
-        for (int x = reached.first; x < inner.first; ++x) sample(x, y);
+        for (int x = reached.first; x < inner.first; ++x)
+            sampler_.sample(fixedPosition(positionOf(x, y)), picture_.pixel(x, y));
         sampleColumns(y, inner.first, inner.last);
-        for (int x = inner.last; x < reached.last; ++x) sample(x, y);
+        for (int x = inner.last; x < reached.last; ++x)
+            sampler_.sample(fixedPosition(positionOf(x, y)), picture_.pixel(x, y));
     }
 
     void sampleColumns(int y, int first, int last) {
         if (first >= last) return;
         // A single pixel takes no step, which may be too long to be written as a fixed number.
         const glm::dvec2 along = last - first > 1 ? step() : glm::dvec2(0);
-        sampleRun(raster_, filterX_, filterY_, fixed(positionOf(first, y)), fixed(along),
-                  last - first, picture_.pixel(first, y));
-    }
-
-    static FixedPosition fixed(glm::dvec2 position) {
-        const double unit = std::ldexp(1.0, 32);
-        return {std::llround(position.x * unit), std::llround(position.y * unit)};
-    }
-
-    // Near the raster's edge: what lies outside counts as transparent.
-    void sample(int x, int y) const {
-        const FixedPosition position = fixed(positionOf(x, y));
-        const glm::ivec2 first(filterX_.firstTap(int(position.x >> 32)),
-                               filterY_.firstTap(int(position.y >> 32)));
-        const float* weightX = filterX_.weights(std::uint32_t(position.x));
-        const float* weightY = filterY_.weights(std::uint32_t(position.y));
-        const glm::ivec2 taps{filterX_.taps(), filterY_.taps()};
-        const glm::ivec2 begin = glm::max(glm::ivec2(0), -first);
-        const glm::ivec2 end = glm::min(taps, raster_.size - first);
-        float sum[4] = {};
-        const int reached = filterX_.overshoots() ? taps.x : end.x;
-        float low[4], high[4];
-        for (int c = 0; c < raster_.channels; ++c) {
-            low[c] = std::numeric_limits<float>::infinity();
-            high[c] = -low[c];
-        }
-        for (int i = filterX_.overshoots() ? 0 : begin.x; i < reached; ++i) {
-            const bool isInside = i >= begin.x && i < end.x;
-            float column[4] = {};
-            if (isInside) sumColumn(first + glm::ivec2(i, 0), weightY, begin.y, end.y, column);
-            for (int c = 0; c < raster_.channels; ++c) {
-                sum[c] += weightX[i] * column[c];
-                if (!isInner(filterX_, i)) continue;
-                low[c] = std::min(low[c], column[c]);
-                high[c] = std::max(high[c], column[c]);
-            }
-        }
-        for (int c = 0; filterX_.overshoots() && c < raster_.channels; ++c)
-            sum[c] = std::min(std::max(sum[c], low[c]), high[c]);
-        write(sum, picture_.pixel(x, y));
-    }
-
-    static bool isInner(const FilterTable& filter, int tap) {
-        return tap >= filter.firstInnerTap() && tap < filter.firstInnerTap() + filter.innerTaps();
-    }
-
-    // Weighs a column from its first tap on, of which rows [begin, end) lie inside.
-    void sumColumn(glm::ivec2 first, const float* weightY, int begin, int end,
-                   float* column) const {
-        for (int c = 0; c < raster_.channels; ++c) {
-            float low = std::numeric_limits<float>::infinity();
-            float high = -low;
-            for (int j = 0; j < filterY_.taps(); ++j) {
-                const float tap = j >= begin && j < end ? tapAt(first + glm::ivec2(0, j))[c] : 0;
-                column[c] += weightY[j] * tap;
-                if (!isInner(filterY_, j)) continue;
-                low = std::min(low, tap);
-                high = std::max(high, tap);
-            }
-            if (filterY_.overshoots()) column[c] = std::min(std::max(column[c], low), high);
-        }
-    }
-
-    // Points to a tap that lies inside.
-    const float* tapAt(glm::ivec2 p) const {
-        return raster_.values + raster_.channels * (std::ptrdiff_t{raster_.size.x} * p.y + p.x);
-    }
-
-    void write(const float* sum, float* out) const {
-        out[3] = sum[raster_.channels - 1];
-        for (int c = 0; c < 3; ++c)
-            out[c] = raster_.channels == 1 ? sum[0] * raster_.color[c] : sum[c];
+        sampleRun(raster_, filterX_, filterY_, fixedPosition(positionOf(first, y)),
+                  fixedPosition(along), last - first, picture_.pixel(first, y));
     }
 
     const Raster& raster_;
@@ -280,6 +154,7 @@ class Warper {
     std::optional<FilterTable> wideY_;
     const FilterTable& filterX_;
     const FilterTable& filterY_;
+    EdgeSampler sampler_;
 };
 
 }  // namespace

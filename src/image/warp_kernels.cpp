@@ -117,21 +117,49 @@ HWY_INLINE PixelVector samplePixel(const FilterView& filterX, std::uint32_t x, c
     return kClamp ? hn::Min(hn::Max(all, sum.low), sum.high) : all;
 }
 
-template <int kTaps, int kChannels, bool kClamp>
-void sampleRunOf(const Raster& raster, const FilterTable& wantedX, const FilterTable& wantedY,
-                 FixedPosition position, FixedPosition step, int pixels, float* out) {
+// Positions of a run of pixels: evenly spaced ones, and any.
+struct EvenPositions {
+    FixedPosition position, step;
+
+    FixedPosition next() {
+        const FixedPosition here = position;
+        position.x += step.x;
+        position.y += step.y;
+        return here;
+    }
+};
+struct AnyPositions {
+    const FixedPosition* position;
+
+    FixedPosition next() { return *position++; }
+};
+
+// What is sampled.
+struct Sampling {
+    const Raster& raster;
+    const FilterTable& filterX;
+    const FilterTable& filterY;
+    int pixels;
+    float* out;
+};
+
+template <int kTaps, int kChannels, bool kClamp, class Positions>
+void sampleOf(const Sampling& what, Positions positions) {
     const PixelTag tag;
+    const Raster& raster = what.raster;
     const std::size_t pitch = std::size_t(kChannels) * raster.size.x;
     // Copies, so that what is written cannot be thought to change them.
-    const FilterView filterX(wantedX);
-    const FilterView filterY(wantedY);
+    const FilterView filterX(what.filterX);
+    const FilterView filterY(what.filterY);
     const auto innerOf = [](const FilterView& filter) {
         return Inner{filter.firstInnerTap(), filter.firstInnerTap() + filter.innerTaps()};
     };
     const Inner innerX = innerOf(filterX);
     const Inner innerY = innerOf(filterY);
     const PixelVector color = colorOf(raster);
-    for (int i = 0; i < pixels; ++i, out += 4) {
+    float* out = what.out;
+    for (int i = 0; i < what.pixels; ++i, out += 4) {
+        const FixedPosition position = positions.next();
         const float* corner = raster.values + filterY.firstTap(int(position.y >> 32)) * pitch +
                               kChannels * filterX.firstTap(int(position.x >> 32));
         PixelVector sum = samplePixel<kTaps, kChannels, kClamp>(
@@ -139,32 +167,35 @@ void sampleRunOf(const Raster& raster, const FilterTable& wantedX, const FilterT
             filterY.weights(std::uint32_t(position.y)), filterY.taps(), innerX, innerY);
         if constexpr (kChannels == 1) sum = hn::Mul(sum, color);
         hn::StoreU(sum, tag, out);
-        position.x += step.x;
-        position.y += step.y;
     }
 }
 
-template <int kChannels, bool kClamp>
-void sampleRunOf(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
-                 FixedPosition position, FixedPosition step, int pixels, float* out) {
-    const bool four = filterX.taps() == 4 && filterY.taps() == 4;
-    const auto run = four ? sampleRunOf<4, kChannels, kClamp> : sampleRunOf<0, kChannels, kClamp>;
-    run(raster, filterX, filterY, position, step, pixels, out);
+template <int kChannels, bool kClamp, class Positions>
+void sampleOf(const Sampling& what, Positions positions) {
+    const bool four = what.filterX.taps() == 4 && what.filterY.taps() == 4;
+    return four ? sampleOf<4, kChannels, kClamp>(what, positions)
+                : sampleOf<0, kChannels, kClamp>(what, positions);
 }
 
-template <int kChannels>
-void sampleRunOf(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
-                 FixedPosition position, FixedPosition step, int pixels, float* out) {
-    const auto run =
-        filterX.overshoots() ? sampleRunOf<kChannels, true> : sampleRunOf<kChannels, false>;
-    run(raster, filterX, filterY, position, step, pixels, out);
+template <int kChannels, class Positions>
+void sampleOf(const Sampling& what, Positions positions) {
+    return what.filterX.overshoots() ? sampleOf<kChannels, true>(what, positions)
+                                     : sampleOf<kChannels, false>(what, positions);
+}
+
+template <class Positions>
+void sampleOf(const Sampling& what, Positions positions) {
+    return what.raster.channels == 4 ? sampleOf<4>(what, positions) : sampleOf<1>(what, positions);
 }
 
 void sampleRunKernel(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
                      FixedPosition position, FixedPosition step, int pixels, float* out) {
-    return raster.channels == 4
-               ? sampleRunOf<4>(raster, filterX, filterY, position, step, pixels, out)
-               : sampleRunOf<1>(raster, filterX, filterY, position, step, pixels, out);
+    sampleOf({raster, filterX, filterY, pixels, out}, EvenPositions{position, step});
+}
+
+void sampleAtKernel(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
+                    const FixedPosition* positions, int pixels, float* out) {
+    sampleOf({raster, filterX, filterY, pixels, out}, AnyPositions{positions});
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -174,11 +205,17 @@ HWY_AFTER_NAMESPACE();
 namespace deltasplat {
 
 HWY_EXPORT(sampleRunKernel);
+HWY_EXPORT(sampleAtKernel);
 
 void sampleRun(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
                FixedPosition position, FixedPosition step, int pixels, float* out) {
     HWY_DYNAMIC_DISPATCH(sampleRunKernel)
     (raster, filterX, filterY, position, step, pixels, out);
+}
+
+void sampleAt(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
+              const FixedPosition* positions, int pixels, float* out) {
+    HWY_DYNAMIC_DISPATCH(sampleAtKernel)(raster, filterX, filterY, positions, pixels, out);
 }
 
 }  // namespace deltasplat

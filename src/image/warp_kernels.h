@@ -22,4 +22,9 @@ struct FixedPosition {
 void sampleRun(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
                FixedPosition position, FixedPosition step, int pixels, float* out);
 
+/// Samples picture pixels at any positions, as sampleRun does.
+/// @param positions  [pixels]
+void sampleAt(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,
+              const FixedPosition* positions, int pixels, float* out);
+
 }  // namespace deltasplat

@@ -8,6 +8,7 @@
 
 #include "deltasplat/error.h"
 #include "number_text.h"
+#include "portable_math.h"
 
 namespace deltasplat {
 namespace {
@@ -39,6 +40,16 @@ std::vector<double> valuesOfSlots(const Volume& volume) {
     return values;
 }
 
+// How far 1 - (1 - a)^w may be off, for any w of 0..1, if opacity a is off by t a: the steepest
+// slope times that. At a = 1 it has none.
+double shorterStep(double mostOpaque, double t) {
+    const double clear = 1 - (1 + t) * mostOpaque;
+    if (!(clear > 0)) return std::numeric_limits<double>::infinity();
+    // Of w clear^(w - 1), the largest.
+    const double w = std::min(1.0, -1 / portable::log(clear));
+    return t * mostOpaque * w * portable::pow(clear, w - 1);
+}
+
 }  // namespace
 
 std::function<bool(Slot, Slot)> holdRule(const Volume& volume, const ClassTable& classes,
@@ -56,22 +67,26 @@ std::function<bool(Slot, Slot)> holdRule(const Volume& volume, const ClassTable&
     };
 }
 
-ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance) {
+ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance, Steps steps) {
     if (tolerance.isExact()) return {};
-    if (tolerance.relative == 0) {
-        const double unknown = std::numeric_limits<double>::infinity();
-        return {unknown, unknown};
-    }
+    const double unknown = std::numeric_limits<double>::infinity();
+    if (tolerance.relative == 0) return {unknown, unknown};
     double brightest = 0;
+    double mostOpaque = 0;
     for (std::size_t i = 0; i < classes.size(); ++i) {
         const glm::dvec4 color = classes.unitsOf(Slot(i));
+        mostOpaque = std::max(mostOpaque, color.a * classes.scale.a);
         for (int c = 0; color.a != 0 && c < 3; ++c) {
             const double light = color[c] * classes.scale[c] / (color.a * classes.scale.a);
             brightest = std::max(brightest, light);
         }
     }
     const double t = tolerance.relative;
-    return {(classes.oneColor ? 1 : 2) * t * brightest, t};
+    const double colors = classes.oneColor                ? 0
+                          : steps == Steps::kAsClassified ? t
+                                                          : 2 * t / (1 - t);
+    const double shorter = steps == Steps::kOneShorter ? shorterStep(mostOpaque, t) : 0;
+    return {(t + colors + shorter * (classes.oneColor ? 1 : 2 + colors)) * brightest, t + shorter};
 }
 
 }  // namespace deltasplat

@@ -24,8 +24,17 @@ struct ErrorBound {
     double alpha = 0;
 };
 
-/// Returns the bound that docs/method.md proves for a layer on the base plane: alpha t, colour 2 t
-/// times the brightest colour (t times it where all is of one colour).
-ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance);
+/// Which ways through a slice colours stand for.
+enum class Steps {
+    kAsClassified,  ///< those that they are classified for
+    kLonger,        ///< these or longer ones, each pixel its own
+    kOneShorter     ///< the same, but for one slice in front, of which any share may be seen
+};
+
+/// Returns the bound that docs/method.md proves for a layer on the base plane: alpha t, colour t
+/// times the brightest colour if all is of one colour, otherwise 2 t times it, or (t + 2 t / (1 -
+/// t)) times it where steps are longer. One that is shorter adds to it; what is opaque has no bound
+/// then.
+ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance, Steps steps);
 
 }  // namespace deltasplat

@@ -21,7 +21,7 @@ constexpr int kBandRows = 64;
 
 RayPlane followRays(const RayInput& input, const Listener& listener) {
     const IndexBox& volume = input.volume.box;
-    const PlaneBox box = reachOf(input.layout, input.shiftPerSlice, volume.min.x, volume.dims().x);
+    const PlaneBox box = reachOf(input.plane, input.layout, volume.min.x, volume.dims().x);
     const int bands = (box.size().y + kBandRows - 1) / kBandRows;
     const int workers = std::min(threadCount(), bands);
     const double row = double(sizeof(float)) * box.size().x;

@@ -47,7 +47,7 @@ void RayBand::findSlices(int layer) {
     const IndexBox& box = input_.volume.box;
     slices_.clear();
     for (int s = std::max(8 * layer, box.min.x); s <= std::min(8 * layer + 7, box.max.x); ++s) {
-        const SheetShift shift = shiftOf(input_.layout, input_.shiftPerSlice, s);
+        const SheetReading shift = readingOf(input_.plane, input_.layout, s);
         slices_.push_back(
             {s & 7, shift.offset - input_.layout.marginPixels, glm::vec2(shift.fraction)});
     }

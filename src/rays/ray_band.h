@@ -6,6 +6,7 @@
 
 #include "rays/ray_plane.h"
 #include "rays/ray_strip.h"
+#include "splat/sheet_reading.h"
 
 namespace deltasplat {
 
@@ -14,7 +15,7 @@ struct RayInput {
     const RayVolume& volume;
     RayRule rule;
     const SheetLayout& layout;  ///< of one pixel a voxel
-    glm::dvec2 shiftPerSlice;   ///< of slices on the base plane, (v, u)
+    const BasePlane& plane;     ///< with pixels as far apart as voxels
 };
 
 /// Follows the lines of sight of a few rows of the base plane, slice by slice. What a pixel gets

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "composite/layer.h"
+#include "view/base_plane.h"
 
 namespace deltasplat {
 

@@ -25,7 +25,7 @@ class DigitSplatter {
     DigitSplatter& operator=(const DigitSplatter&) = delete;
 
     /// Begins with a slab.
-    /// @param layout  of the whole sheet, or of a part of it (layoutRows)
+    /// @param layout  of the whole sheet, or of a part of it (layoutPart)
     void begin(const PlannedSlab& slab, const SheetLayout& layout);
     /// Makes the sheet of the slab's next slice, and returns it. Deltas are added to what the slice
     /// before left; of a whole slab, each slice starts anew.

@@ -71,23 +71,35 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int cha
     return layout;
 }
 
-glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last) {
+namespace {
+
+// Of one axis, which has so many blocks.
+glm::ivec2 reachingOf(const SheetLayout& layout, int blocks, int first, int last) {
     const int blockPixels = 8 * layout.resolution;
     // Of block b: [begin + b * blockPixels, end + b * blockPixels).
     const int begin = layout.marginPixels - layout.reachPixels;
     const int end = begin + blockPixels - layout.resolution + layout.footprintPixels;
     return {std::max(floorDiv(first - end, blockPixels) + 1, 0),
-            std::min(floorDiv(last - 1 - begin, blockPixels) + 1, layout.blocks.y)};
+            std::min(floorDiv(last - 1 - begin, blockPixels) + 1, blocks)};
 }
 
-SheetLayout layoutRows(const SheetLayout& whole, int first, int last) {
+}  // namespace
+
+glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last) {
+    return reachingOf(layout, layout.blocks.y, first, last);
+}
+
+SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box) {
     const int blockPixels = 8 * whole.resolution;
-    const glm::ivec2 blocks = blocksReaching(whole, first, last);
     SheetLayout part = whole;
-    part.blocks.y = std::max(blocks.y - blocks.x, 0);
-    part.firstVoxel.y += 8 * blocks.x;
-    part.originRow = blockPixels * blocks.x;
-    part.sizePixels.y += blockPixels * (part.blocks.y - whole.blocks.y);
+    for (int axis = 0; axis < 2; ++axis) {
+        const glm::ivec2 blocks =
+            reachingOf(whole, whole.blocks[axis], box.min[axis], box.max[axis]);
+        part.blocks[axis] = std::max(blocks.y - blocks.x, 0);
+        part.firstVoxel[axis] += 8 * blocks.x;
+        part.origin[axis] = blockPixels * blocks.x;
+        part.sizePixels[axis] += blockPixels * (part.blocks[axis] - whole.blocks[axis]);
+    }
     return part;
 }
 

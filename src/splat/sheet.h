@@ -25,7 +25,7 @@ struct SheetLayout {
     /// A multiple of kTilePixels, at least one more than the footprint reaches.
     int marginPixels = 0;
     glm::ivec2 sizePixels{0};  ///< multiples of kTilePixels
-    int originRow = 0;         ///< rows of the whole sheet before the first of this part of it
+    glm::ivec2 origin{0};      ///< of the whole sheet: the first pixel of this part of it
     int reachPixels = 0;       ///< as Footprint::reach
     int footprintPixels = 1;   ///< as Footprint::width
     double offsetPixels = 0;   ///< as Footprint::offsetPixels
@@ -44,13 +44,19 @@ struct SheetLayout {
     }
 };
 
+/// Pixels [min, max) of a sheet.
+struct SheetBox {
+    glm::ivec2 min{0};
+    glm::ivec2 max{0};
+};
+
 /// Returns the rows of blocks [x, y) whose footprints reach sheet rows [first, last); none if y <=
 /// x.
 glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last);
 
-/// Lays out the part of a sheet in which rows [first, last) of the whole are complete: the blocks
-/// whose footprints reach them. Without blocks if there are none.
-SheetLayout layoutRows(const SheetLayout& whole, int first, int last);
+/// Lays out the part of a sheet in which the pixels of a box are complete: the blocks whose
+/// footprints reach them. Without blocks if there are none.
+SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box);
 
 /// Lays out a sheet for the voxels of a (slice, u, v) box.
 /// @throw Error(kUsage) if it would have more pixels than can be counted in 32 bits;

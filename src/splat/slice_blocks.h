@@ -62,6 +62,8 @@ class SliceBlocks {
   private:
     std::span<const DeltaWord> wordsOf(int slice, glm::ivec2 rows) const;
     glm::ivec2 blockOf(const DeltaWord& word) const;
+    // Rows are found by wordsOf().
+    bool hasColumn(glm::ivec2 block) const { return block.x >= 0 && block.x < layout_.blocks.x; }
     DeltaWord ofDigit(const DeltaWord& word, bool whole);
     std::uint64_t voxelsInBox(glm::ivec2 block) const;
     static void prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words);
@@ -80,13 +82,15 @@ void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use
     if (!stampEmptyVoxels_) {
         for (const DeltaWord& word : words) {
             prefetchClasses(&word, words);
+            const glm::ivec2 block = blockOf(word);
+            if (!hasColumn(block)) continue;
             if (!voxels_) {
-                use(blockOf(word), whole ? word.visible : word.changed, word);
+                use(block, whole ? word.visible : word.changed, word);
                 continue;
             }
             const DeltaWord here = ofDigit(word, whole);
             const std::uint64_t voxels = whole ? here.visible : here.changed;
-            if (voxels != 0) use(blockOf(word), voxels, here);
+            if (voxels != 0) use(block, voxels, here);
         }
         return;
     }
@@ -94,6 +98,7 @@ void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use
     auto word = words.begin();
     for (int u = rows.x; u < rows.y; ++u) {
         for (int v = 0; v < layout_.blocks.x; ++v) {
+            while (word != words.end() && !hasColumn(blockOf(*word))) ++word;
             const bool has = word != words.end() && blockOf(*word) == glm::ivec2(v, u);
             use(glm::ivec2(v, u), voxelsInBox({v, u}), has ? *word : nothing);
             if (has) ++word;

@@ -15,9 +15,14 @@ StampSplatter::StampSplatter(const SplatInput& input, const SheetLayout& largest
       sheet_(sheet),
       weights_(input.footprint, largest.channels),
       mostBlocks_(blocks_.count()) {
+    setLayout(largest);
+}
+
+void StampSplatter::setLayout(const SheetLayout& layout) {
+    blocks_.setLayout(layout);
     for (int n = 0; n < 64; ++n) {
-        const std::size_t pixels = std::size_t(n >> 3) * largest.pitchPixels() + (n & 7);
-        placeInBlock_[n] = std::uint32_t(pixels * largest.resolution);
+        const std::size_t pixels = std::size_t(n >> 3) * layout.pitchPixels() + (n & 7);
+        placeInBlock_[n] = std::uint32_t(pixels * layout.resolution);
     }
 }
 

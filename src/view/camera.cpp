@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <utility>
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
@@ -82,7 +84,72 @@ void checkNumber(const char* flag, double number) {
     if (!std::isfinite(number)) refuse(flag, numberText(number), "a finite number");
 }
 
+void checkPositive(const char* flag, const std::optional<double>& number) {
+    if (number && !(std::isfinite(*number) && *number > 0))
+        refuse(flag, numberText(*number), "a finite number > 0");
+}
+
+void checkSize(const CameraOptions& options) {
+    const glm::ivec2 size = options.sizePixels;
+    const std::string text = std::to_string(size.x) + "x" + std::to_string(size.y);
+    if (size.x < 1 || size.y < 1) refuse("--size", text, "WxH, each at least 1");
+    if (options.projection == Projection::kLatlong && size.x != 2 * std::int64_t{size.y})
+        refuse("--size", text, "twice as wide as high for --projection latlong");
+}
+
+// What one projection has and another has not must not be asked for.
+void checkProjection(const CameraOptions& options) {
+    const auto requireFor = [&](bool given, bool allowed, const char* flag, const char* expected) {
+        if (given && !allowed)
+            refuse(flag, "--projection " + projectionName(options.projection), expected);
+    };
+    const bool parallel = options.projection == Projection::kOrtho;
+    const bool flat = options.projection == Projection::kPerspective;
+    requireFor(options.frameWidthWorld.has_value(), parallel, "--frame-width",
+               "--projection ortho, of which it is an option");
+    requireFor(options.eyeWorld.has_value(), !parallel, "--eye",
+               "--projection perspective or latlong");
+    requireFor(options.nearWorld != 0, !parallel, "--near", "--projection perspective or latlong");
+    for (const auto& [flag, given] : {std::pair("--fov", options.fovDegrees.has_value()),
+                                      std::pair("--focal", options.focalMm.has_value()),
+                                      std::pair("--aperture", options.apertureMm.has_value()),
+                                      std::pair("--distance", options.distanceWorld.has_value())})
+        requireFor(given, flat, flag, "--projection perspective");
+}
+
+void checkLens(const CameraOptions& options) {
+    if (options.fovDegrees && !(*options.fovDegrees > 0 && *options.fovDegrees < 180)) {
+        refuse("--fov", numberText(*options.fovDegrees),
+               "a number of degrees greater than 0 and less than 180");
+    }
+    checkPositive("--focal", options.focalMm);
+    checkPositive("--aperture", options.apertureMm);
+    if (options.fovDegrees && (options.focalMm || options.apertureMm)) {
+        refuse("--fov", std::string("it and ") + (options.focalMm ? "--focal" : "--aperture"),
+               "the angle of view one way or the other");
+    }
+}
+
+void checkEye(const CameraOptions& options) {
+    checkPositive("--distance", options.distanceWorld);
+    const double nearest = options.nearWorld;
+    if (!(std::isfinite(nearest) && nearest >= 0))
+        refuse("--near", numberText(nearest), "a finite number of at least 0");
+    if (!options.eyeWorld) return;
+    const glm::dvec3 eye = *options.eyeWorld;
+    if (!isFinite(eye)) refuse("--eye", numberText(eye), "three finite numbers");
+    if (options.distanceWorld)
+        refuse("--distance", "it and --eye", "the eye's place one way or the other");
+    if (options.direction && options.targetWorld) {
+        refuse("--direction", "it, --eye and --target",
+               "a line of sight one way or the other: without one of them");
+    }
+}
+
 void checkOptions(const CameraOptions& options) {
+    checkProjection(options);
+    checkLens(options);
+    checkEye(options);
     checkNumber("--azimuth", options.azimuthDegrees);
     checkNumber("--elevation", options.elevationDegrees);
     checkNumber("--roll", options.rollDegrees);
@@ -93,11 +160,7 @@ void checkOptions(const CameraOptions& options) {
     if (!std::isfinite(width) || width <= 0) {
         refuse("--frame-width", numberText(width), "a number > 0");
     }
-    const glm::ivec2 size = options.sizePixels;
-    if (size.x < 1 || size.y < 1) {
-        refuse("--size", std::to_string(size.x) + "x" + std::to_string(size.y),
-               "WxH, each at least 1");
-    }
+    checkSize(options);
 }
 
 // Turns v about a unit axis by the right-hand rule (O. Rodrigues, 1840). Quarter turns are exact,
@@ -113,15 +176,26 @@ glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double degrees) {
     return v * cosine + glm::cross(axis, v) * sine + axis * (glm::dot(axis, v) * (1 - cosine));
 }
 
-// Sets the three axes as a person turns a camera that looks along `direction`, head towards `up`.
-void orient(Camera& camera, const CameraOptions& options, const Viewer& viewer) {
-    const NamedView& view = namedView(options.direction ? "front" : viewFrom(viewer, options.view));
+// The line of sight that somebody names or points at: of an eye, the way to what it looks at.
+std::optional<glm::dvec3> givenDirection(const CameraOptions& options, const glm::dvec3& target) {
+    if (options.direction || !options.eyeWorld) return options.direction;
+    const glm::dvec3 direction = target - *options.eyeWorld;
+    if (isFinite(direction) && direction != glm::dvec3(0)) return direction;
+    refuse("--eye", numberText(*options.eyeWorld),
+           "another place than the target " + numberText(target) + ", or a --direction to look in");
+}
+
+// Sets the three axes as a person turns a camera that looks along `pointed`, or else as the view
+// says, head towards `up`.
+void orient(Camera& camera, const CameraOptions& options, const Viewer& viewer,
+            const std::optional<glm::dvec3>& pointed) {
+    const NamedView& view = namedView(pointed ? "front" : viewFrom(viewer, options.view));
     const glm::dvec3 givenUp = options.up.value_or(viewer.toWorld(view.up));
-    const glm::dvec3 givenDirection = options.direction.value_or(viewer.toWorld(view.direction));
+    const glm::dvec3 givenDirection = pointed.value_or(viewer.toWorld(view.direction));
     const glm::dvec3 up = unitVector("--up", givenUp);
     glm::dvec3 direction = unitVector("--direction", givenDirection);
     if (glm::length(glm::cross(direction, up)) < 1e-9) {
-        refuse(options.direction ? "--direction" : "--up",
+        refuse(options.direction || !pointed ? (pointed ? "--direction" : "--up") : "--eye",
                numberText(givenDirection) + " as direction, parallel to up " + numberText(givenUp),
                "directions that differ (another --view, --direction or --up)");
     }
@@ -171,15 +245,136 @@ double clearDistance(const Camera& camera, const IndexBox& box, const glm::dmat4
     return distance;
 }
 
+// Returns the angle of a vector to the x axis, towards y: Newton's method from within 0.004 of it.
+double angleOf(double x, double y) {
+    const double length = portable::hypot(x, y);
+    if (!(length > 0)) return 0;
+    const double a = std::abs(x);
+    const double b = std::abs(y);
+    const double share = std::min(a, b) / std::max(a, b);
+    double angle = share * (std::numbers::pi / 4 + 0.273 * (1 - share));
+    if (b > a) angle = std::numbers::pi / 2 - angle;
+    if (x < 0) angle = std::numbers::pi - angle;
+    if (y < 0) angle = -angle;
+    for (int i = 0; i < 3; ++i)
+        angle += (y * portable::cos(angle) - x * portable::sin(angle)) / length;
+    return angle;
+}
+
+// Half the width of the picture at distance 1.
+double tangentOf(const CameraOptions& options) {
+    constexpr double kRadians = std::numbers::pi / 180;
+    if (options.focalMm || options.apertureMm) {
+        return 0.5 * options.apertureMm.value_or(kDefaultApertureMm) /
+               options.focalMm.value_or(kDefaultFocalMm);
+    }
+    const double half = 0.5 * kRadians * options.fovDegrees.value_or(kDefaultFov);
+    const double tangent = portable::sin(half) / portable::cos(half);
+    return tangent * options.sizePixels.x / options.sizePixels.y;
+}
+
+// The nearest that the eye may come to the target for the whole box to be in the picture; a point,
+// or a line seen end-on, is framed as one voxel.
+double fittingDistance(const Camera& camera, double tangent, const IndexBox& box,
+                       const glm::dmat4& worldFromIndex) {
+    const double aspect = double(camera.sizePixels.x) / camera.sizePixels.y;
+    double distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 index(corner & 1 ? box.max.x : box.min.x,
+                               corner & 2 ? box.max.y : box.min.y,
+                               corner & 4 ? box.max.z : box.min.z);
+        const glm::dvec3 offset = transformed(worldFromIndex, index) - camera.targetWorld;
+        const double across = std::max(std::abs(glm::dot(offset, camera.right)),
+                                       std::abs(glm::dot(offset, camera.up)) * aspect);
+        distance = std::max(distance, across / tangent - glm::dot(offset, camera.direction));
+    }
+    const glm::dmat3 linear(worldFromIndex);
+    const double voxel =
+        std::min({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
+    return std::max(distance, 0.5 * voxel / tangent);
+}
+
+// Places what looks from an eye: target, distance and frame.
+void placeEye(Camera& camera, const CameraOptions& options, const glm::dvec3& target,
+              const IndexBox& box, const glm::dmat4& worldFromIndex) {
+    const bool panorama = options.projection == Projection::kLatlong;
+    const double tangent = panorama ? std::numbers::pi : tangentOf(options);
+    double distance = 0;
+    if (options.eyeWorld && options.direction) {
+        // What it looks at is as far away as the middle of the volume, but not behind.
+        distance = std::max(glm::dot(target - *options.eyeWorld, camera.direction),
+                            glm::length(glm::dvec3(worldFromIndex[0])));
+        camera.targetWorld = *options.eyeWorld + distance * camera.direction;
+    } else if (options.eyeWorld) {
+        // Turned about the eye, the line of sight leads elsewhere.
+        distance = glm::distance(target, *options.eyeWorld);
+        camera.targetWorld = *options.eyeWorld + distance * camera.direction;
+    } else if (panorama) {
+        // From the target itself, at which it cannot look.
+        distance = glm::length(glm::dvec3(worldFromIndex[0]));
+        camera.targetWorld = target + distance * camera.direction;
+    } else {
+        distance = options.distanceWorld ? *options.distanceWorld
+                                         : fittingDistance(camera, tangent, box, worldFromIndex);
+    }
+    camera.targetDistanceWorld = distance;
+    camera.frameWidthWorld = 2 * distance * tangent;
+    if (!std::isfinite(camera.frameWidthWorld) || camera.frameWidthWorld <= 0 ||
+        !isFinite(camera.targetWorld)) {
+        refuse(options.eyeWorld ? "--eye" : "--distance", numberText(distance) + " to the target",
+               "a distance that numbers can hold");
+    }
+}
+
 }  // namespace
 
+std::string projectionName(Projection projection) {
+    switch (projection) {
+        case Projection::kOrtho:
+            return "ortho";
+        case Projection::kPerspective:
+            return "perspective";
+        case Projection::kLatlong:
+            return "latlong";
+    }
+    return "ortho";
+}
+
+double Camera::fovDegrees() const {
+    const double height = frameWidthWorld * sizePixels.y / sizePixels.x;
+    return 360 / std::numbers::pi * angleOf(targetDistanceWorld, 0.5 * height);
+}
+
+glm::dvec3 Camera::rayThrough(glm::dvec2 pixel) const {
+    if (projection == Projection::kOrtho) return direction;
+    if (projection == Projection::kPerspective) return worldFromPixel(pixel) - eyeWorld();
+    const double longitude = 2 * std::numbers::pi * (pixel.x / sizePixels.x - 0.5);
+    const double latitude = std::numbers::pi * (0.5 - pixel.y / sizePixels.y);
+    return portable::cos(latitude) *
+               (portable::sin(longitude) * right + portable::cos(longitude) * direction) +
+           portable::sin(latitude) * up;
+}
+
 glm::dvec3 Camera::worldFromPixel(glm::dvec2 pixel) const {
+    if (projection == Projection::kLatlong)
+        return eyeWorld() + targetDistanceWorld * rayThrough(pixel);
     const glm::dvec2 offset = (pixel - 0.5 * glm::dvec2(sizePixels)) * pixelWorld();
     return targetWorld + offset.x * right - offset.y * up;
 }
 
 glm::dvec2 Camera::pixelFromWorld(const glm::dvec3& world) const {
-    const glm::dvec3 offset = world - targetWorld;
+    glm::dvec3 offset = world - targetWorld;
+    if (projection == Projection::kPerspective) {
+        offset = world - eyeWorld();
+        offset *= targetDistanceWorld / glm::dot(offset, direction);
+    } else if (projection == Projection::kLatlong) {
+        const glm::dvec3 ray = world - eyeWorld();
+        const glm::dvec2 level(glm::dot(ray, direction), glm::dot(ray, right));
+        const double longitude = angleOf(level.x, level.y);
+        const double latitude = angleOf(portable::hypot(level.x, level.y), glm::dot(ray, up));
+        return {sizePixels.x * (0.5 + longitude / (2 * std::numbers::pi)),
+                sizePixels.y * (0.5 - latitude / std::numbers::pi)};
+    }
     return 0.5 * glm::dvec2(sizePixels) +
            glm::dvec2(glm::dot(offset, right), -glm::dot(offset, up)) / pixelWorld();
 }
@@ -195,6 +390,14 @@ glm::dmat4 Camera::cameraFromWorld() const {
 glm::dmat4 Camera::ndcFromWorld() const {
     const double frameHeightWorld = frameWidthWorld * sizePixels.y / sizePixels.x;
     glm::dmat4 ndcFromCamera(1);
+    if (projection == Projection::kPerspective) {
+        // Homogeneous: the fourth number is z, by which the others are divided.
+        ndcFromCamera[0][0] = targetDistanceWorld / frameWidthWorld;
+        ndcFromCamera[1][1] = -targetDistanceWorld / frameHeightWorld;
+        ndcFromCamera[2] = glm::dvec4(0.5, 0.5, 1, 1);
+        ndcFromCamera[3] = glm::dvec4(0);
+        return ndcFromCamera * cameraFromWorld();
+    }
     ndcFromCamera[0][0] = 1 / frameWidthWorld;
     ndcFromCamera[1][1] = -1 / frameHeightWorld;
     ndcFromCamera[3] = glm::dvec4(0.5, 0.5, 0, 1);
@@ -210,9 +413,15 @@ Camera makeCamera(const CameraOptions& options, const IndexBox& box,
     const glm::dvec3 middle = 0.5 * (glm::dvec3(framed.min) + glm::dvec3(framed.max));
 
     Camera camera;
+    camera.projection = options.projection;
     camera.sizePixels = options.sizePixels;
-    orient(camera, options, viewerOf(space));
+    camera.nearWorld = options.nearWorld;
     camera.targetWorld = options.targetWorld.value_or(transformed(worldFromIndex, middle));
+    orient(camera, options, viewerOf(space), givenDirection(options, camera.targetWorld));
+    if (options.projection != Projection::kOrtho) {
+        placeEye(camera, options, camera.targetWorld, framed, worldFromIndex);
+        return camera;
+    }
     camera.frameWidthWorld =
         options.frameWidthWorld.value_or(fittingFrame(camera, framed, worldFromIndex));
     camera.targetDistanceWorld = clearDistance(camera, framed, worldFromIndex);

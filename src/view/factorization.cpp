@@ -6,13 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <numbers>
 #include <string>
 
 #include "default_floats.h"
 #include "deltasplat/delta/delta_grid.h"
 #include "deltasplat/error.h"
+#include "number_text.h"
 #include "portable_math.h"
 #include "view/affine.h"
 
@@ -32,6 +35,11 @@ int mostParallelAxis(const glm::dvec3& direction) {
         if (along[axis] >= largest * (1 - kSnap)) return axis;
     }
     return 0;
+}
+
+// Columns of a matrix in the order of slices, the first away from the camera.
+glm::dmat3 stepsOf(const glm::dmat3& linear, const glm::ivec3& order, bool frontToBack) {
+    return {frontToBack ? linear[order[0]] : -linear[order[0]], linear[order[1]], linear[order[2]]};
 }
 
 // One component of the shift, -1..1.
@@ -58,11 +66,118 @@ int screenResolution(double pixelsPerVoxel) {
     return int(std::lround(std::max(pixelsPerVoxel, 1.0)));
 }
 
+void requireFinite(const glm::dvec3& eye) {
+    if (std::isfinite(eye.x) && std::isfinite(eye.y) && std::isfinite(eye.z)) return;
+    throw Error(ErrorCode::kUsage, gotExpected("--eye", "voxel index " + numberText(eye),
+                                               "a place that numbers can hold"));
+}
+
 void checkResolution(int resolution) {
     if (resolution >= 1 && resolution <= kMaxResolution) return;
     throw Error(ErrorCode::kUsage,
                 gotExpected("--resolution", std::to_string(resolution),
                             "a whole number within 1.." + std::to_string(kMaxResolution)));
+}
+
+// Lines of sight of one axis, in steps (away, u, v), of which one shows a corner of the picture's
+// part that belongs to the axis.
+using Cone = std::vector<glm::dvec3>;
+
+// Cuts off what lies beyond a plane through the eye (I. Sutherland and G. Hodgman, 1974).
+Cone clipped(const Cone& cone, const glm::dvec3& inward) {
+    Cone inside;
+    for (std::size_t i = 0; i < cone.size(); ++i) {
+        const glm::dvec3& here = cone[i];
+        const glm::dvec3& next = cone[(i + 1) % cone.size()];
+        const double a = glm::dot(here, inward);
+        const double b = glm::dot(next, inward);
+        if (a >= 0) inside.push_back(here);
+        if ((a < 0) != (b < 0)) inside.push_back(here + (a / (a - b)) * (next - here));
+    }
+    return inside;
+}
+
+// What a picture shows of the lines of sight that belong to an axis.
+Cone coneOf(const Camera& camera, const glm::dmat3& stepFromWorld) {
+    const Cone whole = {{1, -1, -1}, {1, 1, -1}, {1, 1, 1}, {1, -1, 1}};
+    if (camera.projection == Projection::kLatlong) return whole;
+    Cone cone;
+    const glm::dvec2 size(camera.sizePixels);
+    for (const glm::dvec2& corner :
+         {glm::dvec2(0), glm::dvec2(size.x, 0), size, glm::dvec2(0, size.y)})
+        cone.push_back(stepFromWorld * camera.rayThrough(corner));
+    for (const glm::dvec3& inward :
+         {glm::dvec3(1, 1, 0), glm::dvec3(1, -1, 0), glm::dvec3(1, 0, 1), glm::dvec3(1, 0, -1)})
+        cone = clipped(cone, inward);
+    // Along one axis only points away count, and what touches a border shows nothing.
+    std::erase_if(cone, [](const glm::dvec3& ray) { return !(ray.x > 0); });
+    return cone;
+}
+
+// Picture pixels that a slope of 1 covers around a slope, in the direction in which these are most.
+double densityAt(const Camera& camera, const glm::dmat3& worldFromStep, glm::dvec2 slope) {
+    const glm::dvec3 ray = worldFromStep * glm::dvec3(1, slope);
+    glm::dvec3 across[2];
+    double pixels;
+    if (camera.projection == Projection::kLatlong) {
+        // On a sphere around the eye.
+        pixels = camera.sizePixels.x / (2 * std::numbers::pi * glm::length(ray));
+        const glm::dvec3 unit = glm::normalize(ray);
+        for (int i = 0; i < 2; ++i)
+            across[i] = worldFromStep[i + 1] - unit * glm::dot(unit, worldFromStep[i + 1]);
+    } else {
+        // On the picture's plane.
+        const double depth = glm::dot(ray, camera.direction);
+        pixels = camera.targetDistanceWorld / camera.pixelWorld() / depth;
+        for (int i = 0; i < 2; ++i) {
+            const glm::dvec3& step = worldFromStep[i + 1];
+            const glm::dvec3 moved = step - ray * (glm::dot(step, camera.direction) / depth);
+            across[i] = {glm::dot(moved, camera.right), glm::dot(moved, camera.up), 0};
+        }
+    }
+    const double a = glm::dot(across[0], across[0]);
+    const double b = glm::dot(across[1], across[1]);
+    const double mixed = glm::dot(across[0], across[1]);
+    return pixels * std::sqrt(0.5 * (a + b) + portable::hypot(0.5 * (a - b), mixed));
+}
+
+// Slopes that a picture shows, and how fine it shows them.
+void measureCone(const Camera& camera, const Cone& cone, Factorization& region) {
+    region.slopeMin = glm::dvec2(cone.front().y, cone.front().z) / cone.front().x;
+    region.slopeMax = region.slopeMin;
+    glm::dvec2 sum(0);
+    double logarithms = 0;
+    const auto measure = [&](glm::dvec2 slope) {
+        logarithms += portable::log(densityAt(camera, region.worldFromStep, slope));
+    };
+    for (const glm::dvec3& ray : cone) {
+        const glm::dvec2 slope = glm::clamp(glm::dvec2(ray.y, ray.z) / ray.x, -1.0, 1.0);
+        region.slopeMin = glm::min(region.slopeMin, slope);
+        region.slopeMax = glm::max(region.slopeMax, slope);
+        sum += slope;
+        measure(slope);
+    }
+    measure(sum / double(cone.size()));
+    region.pixelsPerSlope = portable::exp(logarithms / double(cone.size() + 1));
+}
+
+// Picture pixels that a voxel covers where the middle of the volume is seen, or would be; from
+// inside of it, where the nearest of its faces is.
+double pixelsAtMiddle(const Camera& camera, const IndexBox& box, const glm::dmat3& linear,
+                      const glm::dvec3& eye) {
+    const glm::dvec3 away = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max)) - eye;
+    const int axis = mostParallelAxis(away);
+    const glm::ivec3 order = sliceOrder(axis);
+    const double least = 0.5 * std::max(box.dims()[axis], 1);
+    const double slices = std::max(std::abs(away[axis]), least);
+    const glm::dmat3 steps = stepsOf(linear, order, away[axis] > 0);
+    const glm::dvec2 slope = glm::dvec2(away[order[1]], away[order[2]]) / slices;
+    // Along the picture's own middle line of sight where the volume lies behind it.
+    const bool isAhead = camera.projection == Projection::kLatlong ||
+                         glm::dot(steps * glm::dvec3(1, slope), camera.direction) > 0;
+    return (isAhead ? densityAt(camera, steps, slope)
+                    : camera.targetDistanceWorld / camera.pixelWorld()) /
+           slices;
 }
 
 }  // namespace
@@ -91,6 +206,7 @@ Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
     step[order[1]] = -result.shiftPerSlice.x;
     step[order[2]] = -result.shiftPerSlice.y;
     result.sliceStepWorld = glm::length(worldFromIndexLinear * step);
+    result.worldFromStep = stepsOf(worldFromIndexLinear, order, result.frontToBack);
 
     // Pixels go to the plane through the target, then along the line of sight to the base plane.
     const auto baseFromWorldVector = [&](const glm::dvec3& world) {
@@ -106,12 +222,69 @@ Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
     return result;
 }
 
+std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox& box,
+                                            const glm::dmat4& worldFromIndex,
+                                            std::optional<int> resolution) {
+    const DefaultFloats floats;
+    if (resolution) checkResolution(*resolution);
+    requireInvertible(worldFromIndex);
+    const glm::dmat3 linear(worldFromIndex);
+    const glm::dmat3 inverse = glm::inverse(linear);
+    const glm::dvec3 eye = inverse * (camera.eyeWorld() - glm::dvec3(worldFromIndex[3]));
+    requireFinite(eye);
+    const double pixels = pixelsAtMiddle(camera, box, linear, eye);
+    std::vector<Factorization> regions;
+    for (int axis = 2; axis >= 0; --axis) {
+        const glm::ivec3 order = sliceOrder(axis);
+        for (const bool frontToBack : {true, false}) {
+            Factorization region;
+            region.sliceAxis = axis;
+            region.frontToBack = frontToBack;
+            region.worldFromStep = stepsOf(linear, order, frontToBack);
+            const glm::dmat3 stepFromWorld = glm::inverse(region.worldFromStep);
+            const Cone cone = coneOf(camera, stepFromWorld);
+            if (cone.size() < 3) continue;
+            // A row of the inverse is the normal of the slices, one over their distance long.
+            region.sliceStepWorld = 1 / glm::length(glm::dvec3(glm::transpose(inverse)[axis]));
+            region.eye = glm::dvec3(eye[order[0]], eye[order[1]], eye[order[2]]);
+            measureCone(camera, cone, region);
+            region.pixelsPerVoxel = pixels;
+            region.resolution = resolution ? *resolution : screenResolution(pixels);
+            regions.push_back(region);
+        }
+    }
+    return regions;
+}
+
+namespace {
+
+// The same from an eye: slopes have other units where slices and voxels are not divided alike.
+Factorization subdividedFromEye(const Factorization& view, const Subdivision& parts) {
+    Factorization result = view;
+    const glm::dvec3 per(parts.slices, parts.within, parts.within);
+    result.eye = (*view.eye - glm::dvec3(parts.origin)) * per + 0.5 * (per - 1.0);
+    for (int axis = 0; axis < 3; ++axis) result.worldFromStep[axis] /= per[axis];
+    const double slopes = per.y / per.x;
+    result.slopeLimit *= slopes;
+    result.slopeMin *= slopes;
+    result.slopeMax *= slopes;
+    result.pixelsPerSlope /= slopes;
+    result.sliceStepWorld /= per.x;
+    result.pixelsPerVoxel /= per.y;
+    return result;
+}
+
+}  // namespace
+
 Factorization subdivided(const Factorization& view, const Subdivision& parts) {
+    if (view.eye) return subdividedFromEye(view, parts);
     Factorization result = view;
     const double within = parts.within;
     result.shiftPerSlice *= within / parts.slices;
     result.sliceStepWorld /= parts.slices;
     result.pixelsPerVoxel /= within;
+    for (int axis = 0; axis < 3; ++axis)
+        result.worldFromStep[axis] /= axis == 0 ? double(parts.slices) : within;
     // The first thin voxel lies before the middle of the one that it is a part of, on each axis.
     const glm::dvec2 first =
         0.5 * (within - 1) + within * (0.5 - 0.5 / parts.slices) * view.shiftPerSlice;

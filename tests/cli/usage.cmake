@@ -122,8 +122,8 @@ deltasplat_cli_test(usage.dashes_for_outputs EXIT 2 ARGS convert -- ${cube} --fl
 deltasplat_refusal(method "--method: got fast; expected auto, delta, sparse or traditional"
     --method fast)
 deltasplat_refusal(mode "--mode: got average; expected composite, xray or mip" --mode average)
-deltasplat_refusal(projection "--projection: got perspective; expected ortho"
-    --projection perspective)
+deltasplat_refusal(projection "--projection: got fisheye; expected ortho, perspective or latlong"
+    --projection fisheye)
 deltasplat_refusal(level_set "--level-set: got maybe; expected fog or keep" --level-set maybe)
 deltasplat_refusal(endian "--endian: got middle; expected little or big" --endian middle)
 deltasplat_refusal(bits "--bits: got 12; expected 8 or 16" --bits 12)
@@ -161,6 +161,44 @@ foreach(width 1e-30 1e30)
 endforeach()
 deltasplat_cli_test(last_value_wins CREATES out.exr
     ARGS render ${cube} -o out.exr --size 0x0x0 --size 8x8)
+
+# Eyes that cannot be.
+deltasplat_refusal(fov_zero "--fov: got 0; expected a number of degrees greater than 0 and less than 180"
+    --projection perspective --fov 0)
+deltasplat_refusal(fov_half_turn
+    "--fov: got 180; expected a number of degrees greater than 0 and less than 180"
+    --projection perspective --fov 180)
+deltasplat_refusal(fov_nan "--fov: got nan; expected a finite number from 0 to 180"
+    --projection perspective --fov nan)
+deltasplat_refusal(fov_twice "--fov: got it and --focal; expected the angle of view one way or the other"
+    --projection perspective --fov 40 --focal 35)
+deltasplat_refusal(eye_of_parallel
+    "--eye: got --projection ortho; expected --projection perspective or latlong" --eye 1,2,3)
+deltasplat_refusal(eye_is_target
+    "--eye: got 1,2,3; expected another place than the target 1,2,3, or a --direction to look in"
+    --projection perspective --eye 1,2,3 --target 1,2,3)
+deltasplat_refusal(eye_far_and_distance
+    "--distance: got it and --eye; expected the eye's place one way or the other"
+    --projection perspective --eye 1,2,3 --distance 5)
+deltasplat_refusal(two_directions
+    "--direction: got it, --eye and --target; expected a line of sight one way or the other: without one of them"
+    --projection perspective --eye 1,2,3 --target 1,2,9 --direction 1,0,0)
+deltasplat_refusal(near_negative "--near: got -1; expected a finite number of at least 0"
+    --projection perspective --near -1)
+deltasplat_refusal(frame_of_perspective
+    "--frame-width: got --projection perspective; expected --projection ortho, of which it is an option"
+    --projection perspective --frame-width 5)
+deltasplat_refusal(panorama_size
+    "--size: got 512x512; expected twice as wide as high for --projection latlong"
+    --projection latlong --size 512x512)
+deltasplat_refusal(xray_perspective
+    "--projection: got perspective; expected ortho for --mode xray" --projection perspective --mode xray)
+deltasplat_cli_test(perspective CREATES out.exr
+    ARGS render ${cube} -o out.exr --projection perspective --focal 35 --aperture 24 --distance 40)
+deltasplat_cli_test(perspective_eye CREATES out.exr
+    ARGS render ${cube} -o out.exr --projection perspective --eye 3,4,30 --target 4,4,4 --near 1)
+deltasplat_cli_test(latlong CREATES out.exr
+    ARGS render ${cube} -o out.exr --projection latlong --eye 4.2,3.9,4)
 
 # Raw volumes that cannot be meant.
 set(raw info plain.raw --type uint8)

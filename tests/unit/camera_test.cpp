@@ -364,6 +364,154 @@ std::string messageOf(const std::function<void(CameraOptions&)>& set,
     return "no error";
 }
 
+TEST(Camera, anEyeLooksAtTheTarget) {
+    const Camera camera = cameraOf([](CameraOptions& o) {
+        o.projection = Projection::kPerspective;
+        o.eyeWorld = glm::dvec3(3, 4, 20);
+        o.targetWorld = glm::dvec3(3, 4, 8);
+        o.fovDegrees = 90;
+        o.sizePixels = {200, 100};
+    });
+    expectNear(camera.direction, {0, 0, -1});
+    expectNear(camera.eyeWorld(), {3, 4, 20});
+    EXPECT_NEAR(camera.targetDistanceWorld, 12, 1e-12);
+    EXPECT_NEAR(camera.fovDegrees(), 90, 1e-9);
+    // The picture is as high as the eye is away, twice.
+    EXPECT_NEAR(camera.frameWidthWorld, 48, 1e-12);
+    expectNear(camera.worldFromPixel({0, 0}), {-21, 16, 8});
+    expectNear(camera.rayThrough({200, 100}) / 12.0, {2, -1, -1});
+    const glm::dvec2 pixel = camera.pixelFromWorld({3, 10, 14});
+    EXPECT_NEAR(pixel.x, 100, 1e-9);
+    EXPECT_NEAR(pixel.y, 0, 1e-9);
+}
+
+TEST(Camera, turningAnEyeTurnsItsLineOfSight) {
+    const Camera camera = cameraOf([](CameraOptions& o) {
+        o.projection = Projection::kPerspective;
+        o.eyeWorld = glm::dvec3(3, 4, 20);
+        o.targetWorld = glm::dvec3(3, 4, 8);
+        o.azimuthDegrees = 90;
+    });
+    expectNear(camera.direction, {-1, 0, 0});
+    expectNear(camera.eyeWorld(), {3, 4, 20}, 1e-9);
+    // Without an eye the camera goes round the target.
+    const Camera around = cameraOf([](CameraOptions& o) {
+        o.projection = Projection::kPerspective;
+        o.distanceWorld = 12;
+        o.targetWorld = glm::dvec3(3, 4, 8);
+        o.azimuthDegrees = 90;
+    });
+    expectNear(around.eyeWorld(), {15, 4, 8}, 1e-9);
+}
+
+TEST(Camera, focalLengthAndApertureAreAnAngle) {
+    const Camera camera = cameraOf([](CameraOptions& o) {
+        o.projection = Projection::kPerspective;
+        o.focalMm = 35;
+        o.apertureMm = 24;
+        o.sizePixels = {300, 100};
+    });
+    EXPECT_NEAR(camera.frameWidthWorld / camera.targetDistanceWorld, 24.0 / 35, 1e-12);
+    EXPECT_NEAR(std::tan(camera.fovDegrees() * std::acos(-1.0) / 360), 4.0 / 35, 1e-12);
+}
+
+TEST(Camera, perspectiveFitsTheBox) {
+    for (const char* view : {"front", "left", "iso"}) {
+        const Camera camera = cameraOf([&](CameraOptions& o) {
+            o.projection = Projection::kPerspective;
+            o.view = view;
+            o.fovDegrees = 50;
+            o.sizePixels = {300, 200};
+        });
+        double nearest = 1e9;
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 world(corner & 1 ? kBox.max.x : kBox.min.x,
+                                   corner & 2 ? kBox.max.y : kBox.min.y,
+                                   corner & 4 ? kBox.max.z : kBox.min.z);
+            EXPECT_GT(glm::dot(world - camera.eyeWorld(), camera.direction), 0);
+            const glm::dvec2 pixel = camera.pixelFromWorld(world);
+            nearest = std::min({nearest, pixel.x, pixel.y, 300 - pixel.x, 200 - pixel.y});
+        }
+        EXPECT_NEAR(nearest, 0, 1e-9) << view;
+    }
+}
+
+TEST(Camera, panoramasShowAllSides) {
+    const Camera camera = cameraOf([](CameraOptions& o) {
+        o.projection = Projection::kLatlong;
+        o.eyeWorld = glm::dvec3(1, 2, 3);
+        o.direction = glm::dvec3(0, 0, -1);
+        o.sizePixels = {400, 200};
+    });
+    expectNear(camera.eyeWorld(), {1, 2, 3}, 1e-12);
+    expectNear(camera.rayThrough({200, 100}), {0, 0, -1});
+    expectNear(camera.rayThrough({300, 100}), {1, 0, 0});
+    expectNear(camera.rayThrough({0, 100}), {0, 0, 1});
+    expectNear(camera.rayThrough({200, 0}), {0, 1, 0});
+    for (const glm::dvec2 pixel :
+         {glm::dvec2(20, 30), glm::dvec2(250.5, 170), glm::dvec2(390, 5)}) {
+        const glm::dvec3 world = camera.eyeWorld() + 7.0 * camera.rayThrough(pixel);
+        EXPECT_LE(glm::distance(camera.pixelFromWorld(world), pixel), 1e-9);
+        expectNear(camera.worldFromPixel(pixel),
+                   camera.eyeWorld() + camera.targetDistanceWorld * camera.rayThrough(pixel));
+    }
+}
+
+TEST(Camera, perspectiveMatricesAgreeWithPixels) {
+    const Camera camera = cameraOf([](CameraOptions& o) {
+        o.projection = Projection::kPerspective;
+        o.view = "iso";
+        o.fovDegrees = 65;
+        o.sizePixels = {300, 200};
+    });
+    const glm::dvec3 world(3, -4, 5);
+    const glm::dvec4 inCamera = camera.cameraFromWorld() * glm::dvec4(world, 1);
+    EXPECT_NEAR(inCamera.z, glm::dot(world - camera.eyeWorld(), camera.direction), 1e-11);
+    const glm::dvec4 inNdc = camera.ndcFromWorld() * glm::dvec4(world, 1);
+    const glm::dvec2 pixel = camera.pixelFromWorld(world);
+    EXPECT_NEAR(inNdc.x / inNdc.w, pixel.x / 300, 1e-12);
+    EXPECT_NEAR(inNdc.y / inNdc.w, pixel.y / 200, 1e-12);
+}
+
+TEST(Camera, refusesEyesThatCannotBe) {
+    const auto perspective = [](const std::function<void(CameraOptions&)>& set) {
+        return messageOf([&](CameraOptions& o) {
+            o.projection = Projection::kPerspective;
+            set(o);
+        });
+    };
+    for (const double fov : {0.0, -10.0, 180.0, 200.0, double(NAN)}) {
+        EXPECT_EQ(perspective([&](CameraOptions& o) { o.fovDegrees = fov; }).substr(0, 10),
+                  "--fov: got")
+            << fov;
+    }
+    EXPECT_EQ(
+        perspective([](CameraOptions& o) { o.eyeWorld = o.targetWorld = glm::dvec3(1, 2, 3); }),
+        "--eye: got 1,2,3; expected another place than the target 1,2,3, or a --direction to "
+        "look in");
+    EXPECT_EQ(perspective([](CameraOptions& o) { o.eyeWorld = glm::dvec3(0, INFINITY, 0); }),
+              "--eye: got 0,inf,0; expected three finite numbers");
+    EXPECT_EQ(perspective([](CameraOptions& o) { o.nearWorld = -1; }),
+              "--near: got -1; expected a finite number of at least 0");
+    EXPECT_EQ(perspective([](CameraOptions& o) { o.distanceWorld = 0; }),
+              "--distance: got 0; expected a finite number > 0");
+    EXPECT_EQ(perspective([](CameraOptions& o) { o.focalMm = NAN; }),
+              "--focal: got nan; expected a finite number > 0");
+    EXPECT_EQ(
+        perspective([](CameraOptions& o) { o.frameWidthWorld = 5; }),
+        "--frame-width: got --projection perspective; expected --projection ortho, of which it "
+        "is an option");
+    EXPECT_EQ(perspective([](CameraOptions& o) {
+                  o.eyeWorld = glm::dvec3(0, 9, 0);
+                  o.targetWorld = glm::dvec3(0, 1, 0);
+              }).substr(0, 10),
+              "--eye: got");
+    EXPECT_EQ(messageOf([](CameraOptions& o) { o.eyeWorld = glm::dvec3(1); }),
+              "--eye: got --projection ortho; expected --projection perspective or latlong");
+    EXPECT_EQ(messageOf([](CameraOptions& o) { o.projection = Projection::kLatlong; }),
+              "--size: got 512x512; expected twice as wide as high for --projection latlong");
+}
+
 TEST(Camera, refusesWhatCannotBeMeant) {
     EXPECT_EQ(messageOf([](CameraOptions& o) { o.view = "frnt"; }),
               "--view: got frnt; expected one of front, back, left, right, top, bottom, iso");

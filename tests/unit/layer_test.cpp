@@ -43,6 +43,14 @@ Sheet randomSheet(std::uint32_t seed, int channels = 4) {
     return sheet;
 }
 
+// The base plane of slices that are shifted so much along (v, u).
+BasePlane planeOf(const SheetLayout& layout, glm::dvec2 d) {
+    Factorization view;
+    view.shiftPerSlice = {d.y, d.x};
+    return BasePlane(view, layout.firstSlice, layout.firstVoxel, layout.resolution,
+                     layout.offsetPixels);
+}
+
 double sheetAt(const Sheet& sheet, int x, int y, int c) {
     const glm::ivec2 size = sheet.layout().sizePixels;
     if (x < 0 || y < 0 || x >= size.x || y >= size.y) return 0;
@@ -64,13 +72,14 @@ double bilinearAt(const Sheet& sheet, glm::dvec2 d, int slice, glm::ivec2 b, int
 
 Layer compositeSlices(glm::dvec2 d, bool frontToBack, int channels, int first = 0, int count = 4,
                       float scale = kScale) {
-    Layer layer(reachOf(randomSheet(0).layout(), d, 0, 6), channels);
+    Layer layer(reachOf(planeOf(randomSheet(0).layout(), d), randomSheet(0).layout(), 0, 6),
+                channels);
     Compositor compositor({glm::vec4(scale)}, frontToBack);
     for (int slice = first; slice < first + count; ++slice) {
         const Sheet sheet = randomSheet(std::uint32_t(slice), channels);
         const Sheet* const sheets[] = {&sheet};
-        compositor.composite(sheets, shiftOf(sheet.layout(), d, slice), layer.box.min.y,
-                             layer.box.max.y, layer);
+        compositor.composite(sheets, readingOf(planeOf(sheet.layout(), d), sheet.layout(), slice),
+                             layer.box.min.y, layer.box.max.y, layer);
     }
     return layer;
 }
@@ -110,14 +119,15 @@ TEST_P(LayerOfChannels, CompositesBilinearReadingsInOrder) {
 
 // Two planes, the second of which is worth less and covers other tiles.
 Layer compositePlanes(glm::dvec2 d, bool frontToBack, int channels) {
-    Layer layer(reachOf(randomSheet(0).layout(), d, 0, 6), channels);
+    Layer layer(reachOf(planeOf(randomSheet(0).layout(), d), randomSheet(0).layout(), 0, 6),
+                channels);
     Compositor compositor({glm::vec4(kScale), glm::vec4(kScale / 64)}, frontToBack);
     for (int slice = 0; slice < 3; ++slice) {
         const Sheet first = randomSheet(std::uint32_t(slice), channels);
         const Sheet second = randomSheet(std::uint32_t(slice + 50), channels);
         const Sheet* const sheets[] = {&first, &second};
-        compositor.composite(sheets, shiftOf(first.layout(), d, slice), layer.box.min.y,
-                             layer.box.max.y, layer);
+        compositor.composite(sheets, readingOf(planeOf(first.layout(), d), first.layout(), slice),
+                             layer.box.min.y, layer.box.max.y, layer);
     }
     return layer;
 }
@@ -163,7 +173,8 @@ TEST_P(LayerOfChannels, CompositesSumsOfPlanes) {
 TEST_P(LayerOfChannels, PlanesOfZerosChangeNothing) {
     const int channels = GetParam();
     for (const glm::dvec2 d : kShifts) {
-        Layer layer(reachOf(randomSheet(0).layout(), d, 0, 6), channels);
+        Layer layer(reachOf(planeOf(randomSheet(0).layout(), d), randomSheet(0).layout(), 0, 6),
+                    channels);
         Compositor compositor({glm::vec4(kScale), glm::vec4(kScale)}, true);
         for (int slice = 0; slice < 4; ++slice) {
             const Sheet sheet = randomSheet(std::uint32_t(slice), channels);
@@ -172,8 +183,9 @@ TEST_P(LayerOfChannels, PlanesOfZerosChangeNothing) {
                 zeros.show({x, slice % 3}, ~std::uint64_t{0}, 0);
             const Sheet* const sheets[] = {slice == 2 ? &zeros : &sheet,
                                            slice == 2 ? &sheet : &zeros};
-            compositor.composite(sheets, shiftOf(sheet.layout(), d, slice), layer.box.min.y,
-                                 layer.box.max.y, layer);
+            compositor.composite(sheets,
+                                 readingOf(planeOf(sheet.layout(), d), sheet.layout(), slice),
+                                 layer.box.min.y, layer.box.max.y, layer);
         }
         EXPECT_EQ(layer.values, compositeSlices(d, true, channels).values);
     }

@@ -364,17 +364,18 @@ TEST(SheetLayout, PartsHaveTheBlocksThatReachTheirRows) {
             };
             for (int first = 0; first < whole.sizePixels.y; first += 5) {
                 for (int last = first + 1; last <= whole.sizePixels.y; last += 7) {
-                    const SheetLayout part = layoutRows(whole, first, last);
+                    const SheetLayout part =
+                        layoutPart(whole, {{0, first}, {whole.sizePixels.x, last}});
                     const int firstBlock = (part.firstVoxel.y - whole.firstVoxel.y) / 8;
                     for (int block = 0; block < whole.blocks.y; ++block) {
                         const bool has = block >= firstBlock && block < firstBlock + part.blocks.y;
                         EXPECT_EQ(has, reaches(block, first, last)) << block;
                     }
-                    EXPECT_EQ(part.originRow, 8 * r * firstBlock);
+                    EXPECT_EQ(part.origin, glm::ivec2(0, 8 * r * firstBlock));
                     EXPECT_EQ(part.sizePixels.y, 8 * r * part.blocks.y + 2 * whole.marginPixels);
                     // A voxel's stamp lies where it lies in the whole.
                     const glm::ivec2 voxel = part.firstVoxel;
-                    EXPECT_EQ(part.stampPlace(voxel) + part.originRow * whole.pitchPixels(),
+                    EXPECT_EQ(part.stampPlace(voxel) + part.origin.y * whole.pitchPixels(),
                               whole.stampPlace(voxel));
                 }
             }

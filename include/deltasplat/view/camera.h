@@ -11,9 +11,20 @@
 
 namespace deltasplat {
 
+/// How lines of sight run.
+enum class Projection {
+    kOrtho,        ///< parallel to each other
+    kPerspective,  ///< from an eye through a flat picture
+    kLatlong       ///< from an eye to all sides: columns are longitudes, rows latitudes
+};
+
+/// Returns "ortho", "perspective" or "latlong".
+std::string projectionName(Projection projection);
+
 /// What a person says about the camera. World space is right-handed with y up. Angles turn the way
 /// VTK's camera turns; quarter turns are exact.
 struct CameraOptions {
+    Projection projection = Projection::kOrtho;
     /// front (looks along -z), back (+z), left (from -x along +x), right (-x), top (down -y, up is
     /// -z), bottom (up +y, up is +z) or iso (along (-1,-1,-1)). In a patient's space up is the
     /// head's direction, front looks at the face, left and right at the patient's left and right,
@@ -32,36 +43,69 @@ struct CameraOptions {
     std::optional<glm::dvec3> up;
     std::optional<glm::dvec3>
         targetWorld;  ///< falls on the middle of the picture; default: middle of the box
-    std::optional<double> frameWidthWorld;  ///< world width of the picture; default: the box of
-                                            ///< voxel centres just fits both ways
+    /// kOrtho: world width of the picture; default: the box of voxel centres just fits both ways.
+    std::optional<double> frameWidthWorld;
+    /// Where lines of sight begin, unless they are parallel. It then looks at the target, if
+    /// neither `direction` nor `view` is meant (see `looksAtTarget`); angles turn the line of sight
+    /// about the eye. Default: `distanceWorld` before the target; kLatlong: the target.
+    std::optional<glm::dvec3> eyeWorld;
+    /// kPerspective: full vertical angle of view, more than 0 and less than 180 degrees; default:
+    /// by `focalMm` and `apertureMm` if one is given, else kDefaultFov.
+    std::optional<double> fovDegrees;
+    std::optional<double> focalMm;     ///< default: kDefaultFocalMm
+    std::optional<double> apertureMm;  ///< width of the film back; default: kDefaultApertureMm
+    /// kPerspective without an eye: from the eye to the target, > 0; default: the box of voxel
+    /// centres just fits.
+    std::optional<double> distanceWorld;
+    /// What is nearer than this is not seen: along the middle line of sight, or, kLatlong, along
+    /// each; >= 0.
+    double nearWorld = 0;
     glm::ivec2 sizePixels{512, 512};
 };
 
-/// An orthographic camera. `right`, `up` and `-direction` are a right-handed orthonormal basis.
+inline constexpr double kDefaultFov = 30;
+inline constexpr double kDefaultFocalMm = 50;
+inline constexpr double kDefaultApertureMm = 36;
+
+/// A camera. `right`, `up` and `-direction` are a right-handed orthonormal basis.
 /// Pixel (0,0) is top left, pixel centres are at half-integers, `targetWorld` falls on (width/2,
 /// height/2).
 struct Camera {
+    Projection projection = Projection::kOrtho;
     glm::dvec3 direction{0, 0, -1};
     glm::dvec3 right{1, 0, 0};
     glm::dvec3 up{0, 1, 0};
     glm::dvec3 targetWorld{0.0};
+    /// Width of what the picture shows of the plane through the target; of kLatlong, 2 pi times
+    /// the target's distance: the picture's width on a cylinder around the eye.
     double frameWidthWorld = 1;
-    /// From the plane of the camera to that of the target: all of the volume lies beyond the
-    /// former. It moves no pixel.
+    /// From the camera to the plane through the target. kOrtho: all of the volume lies beyond the
+    /// camera; it moves no pixel.
     double targetDistanceWorld = 0;
+    double nearWorld = 0;  ///< as CameraOptions::nearWorld
     glm::ivec2 sizePixels{512, 512};
+
+    /// Where lines of sight begin (kOrtho: the middle one).
+    glm::dvec3 eyeWorld() const { return targetWorld - targetDistanceWorld * direction; }
+    /// kPerspective: full vertical angle of view.
+    double fovDegrees() const;
+    /// Direction, not of length 1, in which continuous pixel coordinates are seen from the eye.
+    glm::dvec3 rayThrough(glm::dvec2 pixel) const;
 
     /// World units a pixel, the same both ways.
     double pixelWorld() const { return frameWidthWorld / sizePixels.x; }
-    /// World position, on the plane through the target, of continuous pixel coordinates.
+    /// World position, on the plane through the target (kLatlong: as far away as the target), of
+    /// continuous pixel coordinates.
     glm::dvec3 worldFromPixel(glm::dvec2 pixel) const;
-    /// Continuous pixel coordinates of a world position.
+    /// Continuous pixel coordinates of a world position; infinite for what lies level with the eye
+    /// of a perspective camera, and mirrored for what lies behind it.
     glm::dvec2 pixelFromWorld(const glm::dvec3& world) const;
     /// OpenEXR's worldToCamera: left-handed, x right, y up, z along the line of sight, in world
     /// units; the target lies at (0, 0, targetDistanceWorld).
     glm::dmat4 cameraFromWorld() const;
     /// OpenEXR's worldToNDC: (0, 0) is the upper left corner of the picture, (1, 1) the lower right
-    /// one; z, which has no meaning there, is that of cameraFromWorld.
+    /// one; z, which has no meaning there, is that of cameraFromWorld. kLatlong, which no matrix
+    /// describes, has that of an upright picture as wide as high around the target.
     glm::dmat4 ndcFromWorld() const;
 };
 
@@ -69,8 +113,10 @@ struct Camera {
 /// end-on) is framed as one voxel of the smallest size.
 /// @param space  as Volume::space: "RAS", "LPS", or anything else for no patient
 /// @throw Error(kUsage) naming the option if the view's name is unknown, a number is not finite,
-///        the direction is zero or parallel to up, or the frame width or the size is not positive;
-///        Error(kInput) if worldFromIndex is not finite or cannot be inverted
+///        the direction is zero or parallel to up, the eye is the target that it looks at, the
+///        frame width, the distance, the angle of view or the size is out of range, or a panorama
+///        is not twice as wide as high; Error(kInput) if worldFromIndex is not finite or cannot be
+///        inverted
 Camera makeCamera(const CameraOptions& options, const IndexBox& box,
                   const glm::dmat4& worldFromIndex, const std::string& space = "");
 

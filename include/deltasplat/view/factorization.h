@@ -5,25 +5,42 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <vector>
 
 #include "deltasplat/view/camera.h"
 
 namespace deltasplat {
 
-/// A parallel projection split into a shift for each slice and one affine warp (Lacroute and Levoy
-/// 1994). (slice, u, v) are the volume's axes in `sliceOrder(sliceAxis)`; base plane positions are
-/// (u, v) voxel indices on slice 0.
+/// A projection split into a place for each slice and one warp (Lacroute and Levoy 1994).
+/// (slice, u, v) are the volume's axes in `sliceOrder(sliceAxis)`. What a line of sight meets of
+/// any slice has one place on the *base plane*:
+/// - parallel: (u, v) where it crosses slice 0, in voxels;
+/// - from an eye: its slope, the voxels along u and v that it goes for each slice.
 struct Factorization {
-    int sliceAxis = 2;        ///< the volume axis most parallel to the line of sight
+    int sliceAxis = 2;        ///< the volume axis most parallel to the lines of sight
     bool frontToBack = true;  ///< increasing slice index goes away from the camera
-    glm::dvec2 shiftPerSlice{
-        0.0};  ///< d: voxel (s, u, v) falls on base plane (u, v) + s * d; |d| <= 1 each
-    double sliceStepWorld =
-        1;               ///< world distance between consecutive slices along the line of sight
-    int resolution = 1;  ///< r: sheet pixels a voxel, the same along u and v
-    double pixelsPerVoxel = 1;  ///< of the screen, along the base plane's longest stretch
-    glm::dmat3 baseFromPixel{
-        1.0};  ///< (pixel x, pixel y, 1) -> (u, v, 1) on the base plane, in voxels
+    /// World vectors of one step away from the camera along the slice axis, and along u and v.
+    glm::dmat3 worldFromStep{1.0};
+    /// World distance that colours are classified for: parallel, between consecutive slices along
+    /// the line of sight; from an eye, between their planes, the least that any line of sight has.
+    double sliceStepWorld = 1;
+    int resolution = 1;         ///< r: sheet pixels a voxel, the same along u and v
+    double pixelsPerVoxel = 1;  ///< of the screen, along the base plane's longest stretch; from an
+                                ///< eye, of a voxel in the middle of the volume
+
+    /// Parallel: d: voxel (s, u, v) falls on base plane (u, v) + s * d; |d| <= 1 each.
+    glm::dvec2 shiftPerSlice{0.0};
+    /// Parallel: (pixel x, pixel y, 1) -> (u, v, 1) on the base plane, in voxels.
+    glm::dmat3 baseFromPixel{1.0};
+
+    /// Index position (slice, u, v) that lines of sight begin at; empty: parallel.
+    std::optional<glm::dvec3> eye;
+    /// Slopes that belong to this slice axis, along u and v, and of these the box that the picture
+    /// shows.
+    double slopeLimit = 1;
+    glm::dvec2 slopeMin{0.0};
+    glm::dvec2 slopeMax{0.0};
+    double pixelsPerSlope = 1;  ///< of the screen, on average over this box
 };
 
 inline constexpr int kMaxResolution = 16;
@@ -32,12 +49,31 @@ inline constexpr int kMaxResolution = 16;
 /// Ties between axes go to the later one (z before y before x), so that a diagonal view is well
 /// defined; what is within 1e-9 of a tie is one, and shifts within 1e-9 of 0 or 1 are 0 or 1, so
 /// that rounding neither chooses an axis nor tilts a straight view.
+/// @param camera      a parallel one
 /// @param resolution  1..kMaxResolution, or empty: 1 where the screen has fewer than one and a half
 /// pixels a voxel, else 2
 /// @throw Error(kUsage) if the resolution is out of range;
 ///        Error(kInput) if worldFromIndex is not finite or cannot be inverted
 Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
                         std::optional<int> resolution = {});
+
+/// Factors the projection of a camera that looks from an eye: for each of the up to six ways along
+/// an axis that lines of sight may be most parallel to, in index space, if the picture shows such
+/// lines.
+/// @param box  of the volume: what is to be seen
+/// @throw as `factorize`
+std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox& box,
+                                            const glm::dmat4& worldFromIndex,
+                                            std::optional<int> resolution = {});
+
+/// Whether lines of sight of this direction, in steps along `order` (sliceOrder) of a slice axis,
+/// belong to it: none is longer, and none of a later axis as long.
+inline bool belongs(const glm::dvec3& steps, const glm::ivec3& order) {
+    const double u = steps.y < 0 ? -steps.y : steps.y;
+    const double v = steps.z < 0 ? -steps.z : steps.z;
+    return (order[1] > order[0] ? steps.x > u : steps.x >= u) &&
+           (order[2] > order[0] ? steps.x > v : steps.x >= v);
+}
 
 /// Into how many thin voxels a voxel is divided, evenly spaced and as far from its faces as from
 /// each other by half.

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: Thomas Porter and Tom Duff, "Compositing Digital Images", 1984, the operator over;
+// Philippe Lacroute and Marc Levoy, "Fast Volume Rendering Using a Shear-Warp Factorization of the
+// Viewing Transformation", 1994, perspective by slices that are scaled.
+#include "composite/perspective_compositor.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "composite/full_rows.h"
+
+namespace deltasplat {
+
+void PerspectiveCompositor::composite(Sheets sheets, int slice, const SheetReading& reading,
+                                      const PlaneBox& box, Layer& layer) {
+    box_ = seenBox(sheets, reading, box);
+    if (box_.empty()) return;
+    const SheetLayout& layout = sheets.front()->layout();
+    const glm::dvec2 start = glm::dvec2(reading.offset) + reading.fraction;
+    const glm::ivec2 size = box_.size();
+    columns_.set(start.x, reading.scale, box_.min.x, size.x, layout.sizePixels.x);
+    rows_.set(start.y, reading.scale, box_.min.y, size.y, layout.sizePixels.y);
+    slice_ = {{},
+              sheets.front()->pitch(),
+              scales_,
+              rows_.taps,
+              columns_.taps,
+              layer.channels,
+              plane_.frontToBack()};
+    for (std::size_t p = 0; p < sheets.size(); ++p) slice_.sheets[p] = sheets[p]->row(0);
+    for (int y = box_.min.y; y < box_.max.y; ++y) addRow(sheets, slice, reading, y, layer);
+    flush();
+}
+
+// Of a box, the pixels that read rows and columns of tiles which may be other than zero.
+PlaneBox PerspectiveCompositor::seenBox(Sheets sheets, const SheetReading& reading,
+                                        const PlaneBox& box) {
+    if (box.empty()) return {};
+    const SheetBox read = readBox(reading, box, sheets.front()->layout());
+    if (read.min.y >= read.max.y) return {};
+    findFull(sheets, read.min.y, read.max.y);
+    std::uint64_t any = 0;
+    int firstTile = 0, lastTile = 0;
+    for (std::size_t i = 0; i < words_; ++i) {
+        const std::uint64_t word = seen_[i];
+        if (word == 0) continue;
+        if (any == 0) firstTile = int(64 * i) + std::countr_zero(word);
+        lastTile = int(64 * i) + int(std::bit_width(word));
+        any |= word;
+    }
+    if (any == 0) return {};
+    const SheetBox full{{kTilePixels * firstTile, firstFull_}, {kTilePixels * lastTile, lastFull_}};
+    const double reach = readingReach(reading);
+    PlaneBox seen = box;
+    for (int axis = 0; axis < 2; ++axis) {
+        const double start = reading.offset[axis] + reading.fraction[axis];
+        const double first = std::floor((full.min[axis] - reach - start) / reading.scale);
+        const double last = std::ceil((full.max[axis] - 1 + reach - start) / reading.scale) + 1;
+        seen.min[axis] = int(std::clamp(first, double(box.min[axis]), double(box.max[axis])));
+        seen.max[axis] = int(std::clamp(last, double(box.min[axis]), double(box.max[axis])));
+    }
+    return seen;
+}
+
+// Looks at all rows of tiles in which any of the sheet rows [firstRow, lastRow) lies.
+void PerspectiveCompositor::findFull(Sheets sheets, int firstRow, int lastRow) {
+    words_ = wordsOfRow(*sheets.front());
+    firstTileRow_ = firstRow / kTilePixels;
+    const int lastTileRow = (lastRow - 1) / kTilePixels;
+    const std::size_t perRow = kTilePixels * words_;
+    full_.assign(perRow * std::size_t(lastTileRow - firstTileRow_ + 1), 0);
+    firstFull_ = lastFull_ = 0;
+    for (int row = firstTileRow_; row <= lastTileRow; ++row) {
+        const std::span rows =
+            std::span(full_).subspan(perRow * std::size_t(row - firstTileRow_), perRow);
+        unsigned any = 0;
+        for (const Sheet* sheet : sheets) any |= findFullRows(*sheet, row, words_, rows);
+        if (any == 0) continue;
+        if (lastFull_ == 0) firstFull_ = kTilePixels * row + std::countr_zero(any);
+        lastFull_ = kTilePixels * row + int(std::bit_width(any));
+    }
+    // All rows together.
+    seen_.assign(words_, 0);
+    for (std::size_t i = 0; i < full_.size(); ++i) seen_[i % words_] |= full_[i];
+}
+
+void PerspectiveCompositor::addRow(Sheets sheets, int slice, const SheetReading& reading, int y,
+                                   Layer& layer) {
+    const int firstRow = rows_.first[std::size_t(y - box_.min.y)];
+    std::fill(seen_.begin(), seen_.end(), 0);
+    std::uint64_t any = 0;
+    const int rowsKnown = int(full_.size() / words_) + kTilePixels * firstTileRow_;
+    for (int row = std::max(firstRow, kTilePixels * firstTileRow_);
+         row < std::min(firstRow + rows_.taps, rowsKnown); ++row) {
+        const std::size_t place = words_ * std::size_t(row - kTilePixels * firstTileRow_);
+        for (std::size_t i = 0; i < words_; ++i) any |= seen_[i] |= full_[place + i];
+    }
+    if (any == 0) return;
+    const double start = reading.offset.x + reading.fraction.x;
+    const double reach = readingReach(reading);
+    const auto bounded = [&](double x) {
+        return int(std::clamp(x, double(box_.min.x), double(box_.max.x)));
+    };
+    int first = box_.min.x;
+    int last = box_.min.x;
+    forEachRun(seen_, [&](int firstTile, int lastTile) {
+        const double begin = kTilePixels * firstTile - reach - start;
+        const double end = kTilePixels * lastTile - 1 + reach - start;
+        const int from = bounded(std::floor(begin / reading.scale));
+        const int to = bounded(std::ceil(end / reading.scale) + 1);
+        if (to <= from) return;
+        if (from > last) {
+            addRun(sheets, slice, {first, y}, last, layer);
+            first = from;
+        }
+        last = std::max(last, to);
+    });
+    addRun(sheets, slice, {first, y}, last, layer);
+}
+
+// Takes on pixels [first.x, last) of a row.
+void PerspectiveCompositor::addRun(Sheets sheets, int slice, glm::ivec2 first, int last,
+                                   Layer& layer) {
+    if (first.x >= last) return;
+    layer.extend(first.y, first.x, last);
+    const auto row = std::size_t(first.y - box_.min.y);
+    const std::size_t firstOfRow = sheets.front()->pitch() * std::size_t(rows_.first[row]);
+    for (int x = first.x; x < last;) {
+        const auto column = std::size_t(x - box_.min.x);
+        ScaledRun run{firstOfRow + std::size_t(layer.channels * columns_.first[column]),
+                      rows_.of(row),
+                      &columns_.first[column],
+                      columns_.of(column),
+                      std::min(last - x, kMostScaled),
+                      nullptr,
+                      layer.pixel({x, first.y})};
+        while (run.columns(columns_.taps) > kMostScaledColumns) run.pixels /= 2;
+        run.steps = stepsOf(slice, {x, first.y}, run.pixels);
+        if (pixels_ + run.pixels > kMostScaled) flush();
+        runs_.push_back(run);
+        pixels_ += run.pixels;
+        x += run.pixels;
+        // The next one's shares take their place.
+        if (plane_.isCut(slice)) flush();
+    }
+}
+
+void PerspectiveCompositor::flush() {
+    if (!runs_.empty()) overScaled(slice_, runs_);
+    runs_.clear();
+    pixels_ = 0;
+}
+
+// Returns for how many steps each pixel's opacity counts; null: for one.
+const float* PerspectiveCompositor::stepsOf(int slice, glm::ivec2 first, int pixels) {
+    const float* steps = steps_ ? steps_->at(first) : nullptr;
+    if (!plane_.isCut(slice)) return steps;
+    shares_.resize(std::size_t(pixels + StepLengths::kSpare));
+    for (int i = 0; i < pixels; ++i) {
+        const auto share = float(plane_.shareOf(slice, first + glm::ivec2(i, 0)));
+        shares_[std::size_t(i)] = steps ? share * steps[i] : share;
+    }
+    return shares_.data();
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec4.hpp>
+#include <span>
+#include <vector>
+
+#include "deltasplat/optics/class_table.h"
+
+namespace deltasplat {
+
+/// What base plane pixels take from sheet pixels along one axis, where these lie at another
+/// distance from each other: tents of weights that add up to 1.
+class ScaledTaps {
+  public:
+    int taps = 2;                     ///< that every pixel has
+    std::vector<std::int32_t> first;  ///< [pixels]: the first sheet pixel of each
+    std::vector<float> weights;       ///< [pixels][taps]
+
+    /// Base pixel `firstPixel + i` lies at sheet pixel start + scale * (firstPixel + i), of `size`.
+    void set(double start, double scale, int firstPixel, int pixels, int size);
+    const float* of(std::size_t pixel) const { return &weights[pixel * std::size_t(taps)]; }
+
+  private:
+    void setBetween(double start, double scale, int firstPixel, int size);
+};
+
+/// What the runs of a slice have in common.
+struct ScaledSlice {
+    /// Sheets, one for each plane of colours, at their first pixel.
+    std::array<const std::int32_t*, ClassTable::kMaxPlanes> sheets;
+    std::size_t pitch;                  ///< integers from one sheet row to the next
+    std::span<const glm::vec4> scales;  ///< sheet units to RGBA, of each plane; of one channel only
+                                        ///< the last is used
+    int rowTaps;                        ///< sheet rows that a pixel reads
+    int columnTaps;                     ///< and columns
+    int channels;                       ///< of sheets and layer: 4 (RGBA) or 1 (opacity)
+    bool frontToBack;
+};
+
+/// A run of base plane pixels along one row.
+struct ScaledRun {
+    std::size_t place;           ///< of the first sheet pixel that is read, in integers
+    const float* rowWeights;     ///< [rowTaps]
+    const std::int32_t* first;   ///< [pixels]: the first sheet column of each
+    const float* columnWeights;  ///< [pixels][columnTaps]
+    int pixels;                  ///< at most kMostScaled; columns at most kMostScaledColumns
+    /// For how many steps through the slice each pixel's opacity counts. Of one channel null: one.
+    const float* steps;
+    float* layer;  ///< the layer at the run's first pixel
+
+    int columns(int columnTaps) const { return first[pixels - 1] - first[0] + columnTaps; }
+};
+
+/// Most pixels of runs that are done together, and most sheet columns of one, for what lies between
+/// to stay in the first-level cache.
+inline constexpr int kMostScaled = 256;
+inline constexpr int kMostScaledColumns = 512;
+
+/// Reads the sum of the sheets through the runs' weights and composites it with the layer. Each
+/// pixel's light and opacity are those of so many steps: opacity a becomes 1 - (1 - a)^steps, and
+/// colours grow with it. Multiplications and additions are separate and in a fixed order, so that
+/// every SIMD level gives the same bits.
+/// @param runs  of kMostScaled pixels together at most: many short ones together take less time
+void overScaled(const ScaledSlice& slice, std::span<const ScaledRun> runs);
+
+/// Opacities become those of so many steps, `steps[i]` each, of which a vector is read over the end
+/// (StepLengths::kSpare).
+void repeatOpacity(float* opacities, const float* steps, std::size_t count);
+
+}  // namespace deltasplat

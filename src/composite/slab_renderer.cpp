@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "composite/slab_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "composite/compositor.h"
+#include "composite/perspective_compositor.h"
+#include "deltasplat/threads.h"
+#include "memory.h"
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+double layerBytes(const PlaneBox& box, int channels) {
+    const glm::dvec2 size = box.size();
+    return sizeof(float) * channels * size.x * size.y;
+}
+
+}  // namespace
+
+SlabRenderer::SlabRenderer(const SlabInput& input, const Listener& listener)
+    : input_(input),
+      progress_(listener),
+      channels_(input.layout.channels),
+      splat_{input.deltas, input.classes, input.footprint, input.stampEmptyVoxels,
+             input.digitVoxels},
+      merged_({}, channels_) {
+    for (int plane = 0; plane < int(input.classes.planes.size()); ++plane)
+        scales_.emplace_back(input.classes.scaleOf(plane) / double(Footprint::kOne));
+    findSeen();
+    if (seen_.empty() || reach_.empty()) return;
+    cutIntoStrips();
+    findLargest();
+    requireSlabMemory();
+    if (!input.plane.isParallel() && channels_ == 4) steps_ = StepLengths(input.plane, reach_);
+}
+
+void SlabRenderer::findSeen() {
+    for (const PlannedSlab& slab : input_.deltas.slabs) {
+        glm::ivec2 slices(slab.firstSlice, slab.firstSlice + slab.sliceCount - 1);
+        if (!input_.plane.isParallel()) slices = input_.plane.seen(slices);
+        if (slices.y < slices.x) continue;
+        const SeenSlab seen{&slab, slices.x, slices.y};
+        const PlaneBox reach = reachOfSlab(seen);
+        const bool isFirst = seen_.empty();
+        reach_.min = isFirst ? reach.min : glm::min(reach_.min, reach.min);
+        reach_.max = isFirst ? reach.max : glm::max(reach_.max, reach.max);
+        seen_.push_back(seen);
+    }
+    if (!input_.plane.frontToBack()) std::reverse(seen_.begin(), seen_.end());
+}
+
+PlaneBox SlabRenderer::reachOfSlab(const SeenSlab& seen) const {
+    return reachOf(input_.plane, input_.layout, seen.firstSlice,
+                   seen.lastSlice - seen.firstSlice + 1);
+}
+
+void SlabRenderer::run() {
+    const std::size_t pieces = strips_.size() * seen_.size();
+    const auto workers = std::min<std::size_t>(std::size_t(threadCount()), pieces);
+    parallelFor(workers, [&](std::size_t) {
+        // Whoever comes too late needs none.
+        std::optional<Splatter> splatter;
+        for (std::size_t i = next_++; i < pieces; i = next_++) {
+            if (!splatter) splatter.emplace(splat_, largest_);
+            renderPiece(i, *splatter);
+        }
+    });
+}
+
+Layer SlabRenderer::merge() {
+    parallelForChunks(std::size_t(merged_.box.size().y), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row) {
+            const int y = merged_.box.min.y + int(row);
+            for (Strip& strip : strips_) {
+                if (y >= strip.first && y < strip.last) strip.layers->finishRow(y);
+            }
+        }
+    });
+    return std::move(merged_);
+}
+
+// Into how many strips rows of the base plane are cut: enough pieces for every thread to take some,
+// and enough for a strip's part of sheet and layer to stay in a second-level cache; but not so many
+// that strips get much smaller than the rows at their edges, which belong to two. If all of sheet
+// and layer hardly overflow that cache, such rows cost more than they help.
+int SlabRenderer::stripCount() const {
+    constexpr std::size_t kPiecesPerThread = 4;
+    constexpr int kLeastRows = 48;
+    constexpr double kStripBytes = 1.5e6;
+    constexpr double kMostWholeBytes = 6e6;
+    const auto threads = std::size_t(threadCount());
+    const std::size_t slabs = seen_.size();
+    const std::size_t forThreads =
+        threads == 1 ? 1 : (kPiecesPerThread * threads + slabs / 2) / slabs;
+    const int rows = reach_.size().y;
+    const double bytes = 2.0 * sizeof(float) * channels_ * input_.layout.sizePixels.x * rows;
+    const double forCache = bytes > kMostWholeBytes ? bytes / kStripBytes : 1;
+    const double wanted = std::min(std::max(double(forThreads), forCache), 1024.0);
+    return std::clamp(int(std::lround(wanted)), 1, std::max(1, rows / kLeastRows));
+}
+
+void SlabRenderer::cutIntoStrips() {
+    const int rows = reach_.size().y;
+    const int count = stripCount();
+    for (int i = 0; i < count; ++i) {
+        const auto edge = [&](int n) { return reach_.min.y + int(std::int64_t{rows} * n / count); };
+        strips_.push_back(
+            {edge(i), edge(i + 1), std::make_unique<LayerFold>(seen_.size() - 1, merged_)});
+    }
+}
+
+// The base plane's part that a slab reaches in a strip.
+PlaneBox SlabRenderer::boxOf(const Strip& strip, const SeenSlab& seen) const {
+    PlaneBox box = reachOfSlab(seen);
+    box.min.y = std::clamp(strip.first, box.min.y, box.max.y);
+    box.max.y = std::clamp(strip.last, box.min.y, box.max.y);
+    return box;
+}
+
+// The part of the sheet that a slab needs for a strip.
+SheetLayout SlabRenderer::layoutOf(const Strip& strip, const SeenSlab& seen) const {
+    const SheetLayout& whole = input_.layout;
+    if (input_.plane.isParallel()) {
+        if (strips_.size() == 1) return whole;
+        SheetBox rows{{0, whole.sizePixels.y}, {whole.sizePixels.x, 0}};
+        for (const int slice : {seen.firstSlice, seen.lastSlice}) {
+            const int offset = readingOf(input_.plane, whole, slice).offset.y;
+            rows.min.y = std::min(rows.min.y, strip.first + offset);
+            // Reading takes in the row behind the last as well.
+            rows.max.y = std::max(rows.max.y, strip.last + offset + 1);
+        }
+        return layoutPart(whole, rows);
+    }
+    const PlaneBox box = boxOf(strip, seen);
+    SheetBox part{whole.sizePixels, {0, 0}};
+    for (const int slice : {seen.firstSlice, seen.lastSlice}) {
+        const SheetBox read = readBox(readingOf(input_.plane, whole, slice), box, whole);
+        part.min = glm::min(part.min, read.min);
+        part.max = glm::max(part.max, read.max);
+    }
+    return layoutPart(whole, part);
+}
+
+// The smallest that holds all parts.
+void SlabRenderer::findLargest() {
+    largest_ = layoutPart(input_.layout, {});
+    for (const Strip& strip : strips_) {
+        for (const SeenSlab& seen : seen_) {
+            const SheetLayout layout = layoutOf(strip, seen);
+            largest_.blocks = glm::max(largest_.blocks, layout.blocks);
+            largest_.sizePixels = glm::max(largest_.sizePixels, layout.sizePixels);
+        }
+    }
+}
+
+// What all slabs together take: splatters for each thread, layers, and the merged one.
+void SlabRenderer::requireSlabMemory() const {
+    const double pieces = double(strips_.size()) * double(seen_.size());
+    double bytes = Splatter::bytes(splat_, largest_) * std::min<double>(threadCount(), pieces);
+    // The front slab's is the merged one.
+    for (std::size_t i = 1; i < seen_.size(); ++i)
+        bytes += layerBytes(reachOfSlab(seen_[i]), channels_);
+    bytes += layerBytes(reach_, channels_);
+    if (!input_.plane.isParallel()) bytes += layerBytes(reach_, 1);
+    requireMemory("sheets and layers at " + std::to_string(largest_.resolution) + " pixels a voxel",
+                  bytes);
+}
+
+// The front slab goes straight into the merged layer, the others into layers of their own.
+void SlabRenderer::renderPiece(std::size_t piece, Splatter& splatter) {
+    const Clock::time_point start = Clock::now();
+    const std::size_t number = piece / strips_.size();
+    const SeenSlab& seen = seen_[number];
+    const Strip& strip = strips_[piece % strips_.size()];
+    const PlaneBox box = boxOf(strip, seen);
+    double compositeSeconds = 0;
+    const auto timed = [&](const auto& use) {
+        const Clock::time_point before = Clock::now();
+        use();
+        compositeSeconds += secondsSince(before);
+    };
+    if (number == 0) {
+        // Not made before there are threads, so that others may begin meanwhile.
+        timed([&] { std::call_once(mergedOnce_, [&] { merged_.reset(reach_); }); });
+        compositeSeconds += renderSlab(seen, strip, box, splatter, merged_);
+        timed([&] { strip.layers->addFront(); });
+    } else {
+        Layer layer = strip.layers->take(box);
+        compositeSeconds += renderSlab(seen, strip, box, splatter, layer);
+        timed([&] { strip.layers->add(number - 1, std::move(layer)); });
+    }
+    count(seen, compositeSeconds, secondsSince(start));
+}
+
+// Returns the seconds that compositing took.
+double SlabRenderer::renderSlab(const SeenSlab& seen, const Strip& strip, const PlaneBox& box,
+                                Splatter& splatter, Layer& layer) {
+    const SheetLayout layout = layoutOf(strip, seen);
+    if (box.empty() || layout.blocks.x == 0 || layout.blocks.y == 0) return 0;
+    if (input_.plane.isParallel()) {
+        Compositor compositor(scales_, input_.plane.frontToBack());
+        return walkSlices(seen, layout, box, splatter,
+                          [&](const auto& sheets, int, const SheetReading& reading) {
+                              compositor.composite(sheets, reading, box.min.y, box.max.y, layer);
+                          });
+    }
+    PerspectiveCompositor compositor(input_.plane, scales_,
+                                     steps_.values.empty() ? nullptr : &steps_);
+    return walkSlices(seen, layout, box, splatter,
+                      [&](const auto& sheets, int slice, const SheetReading& reading) {
+                          compositor.composite(sheets, slice, reading, box, layer);
+                      });
+}
+
+// Calls composite(sheets, slice, reading) for all slices that are seen.
+template <typename Composite>
+double SlabRenderer::walkSlices(const SeenSlab& seen, const SheetLayout& layout,
+                                const PlaneBox& box, Splatter& splatter,
+                                const Composite& composite) {
+    double compositeSeconds = 0;
+    splatter.begin(*seen.slab, layout);
+    for (int slice = seen.slab->firstSlice; slice <= seen.lastSlice; ++slice) {
+        if (slice < seen.firstSlice) {
+            // What changes before the first that is seen is needed; nothing of it is read.
+            if (!seen.slab->whole) splatter.splat(slice, 0, 0);
+            continue;
+        }
+        const SheetReading reading = readingOf(input_.plane, layout, slice);
+        const SheetBox read = readBox(reading, box, layout);
+        const auto sheets = splatter.splat(slice, read.min.y, read.max.y);
+        const Clock::time_point before = Clock::now();
+        composite(sheets, slice, reading);
+        compositeSeconds += secondsSince(before);
+    }
+    splatter.end();
+    return compositeSeconds;
+}
+
+void SlabRenderer::count(const SeenSlab& seen, double compositeSeconds, double pieceSeconds) {
+    double slicesDone = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        compositeSeconds_ += compositeSeconds;
+        pieceSeconds_ += pieceSeconds;
+        slicesDone_ += double(seen.slab->sliceCount) / double(strips_.size());
+        slicesDone = slicesDone_;
+    }
+    progress_.report(slicesDone / input_.deltas.box.dims().x);
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "composite/layer_fold.h"
+#include "shared_progress.h"
+#include "splat/splatter.h"
+#include "stopwatch.h"
+#include "view/base_plane.h"
+
+namespace deltasplat {
+
+/// What slabs are rendered from, and how they are seen.
+struct SlabInput {
+    const PackedDeltas& deltas;
+    const ClassTable& classes;
+    const DigitVoxels* digitVoxels;  ///< null where there is one digit
+    bool stampEmptyVoxels;           ///< as SplatInput
+    const Footprint& footprint;
+    const SheetLayout& layout;  ///< of whole sheets
+    const BasePlane& plane;
+};
+
+/// Renders slabs into layers, and puts these together. Work is cut into pieces of a slab and a
+/// *strip*, some rows of the base plane that are worked on by themselves; how many strips there are
+/// changes nothing but who does what.
+class SlabRenderer {
+  public:
+    /// @throw Error(kFailed) if sheets and layers do not fit into memory
+    SlabRenderer(const SlabInput& input, const Listener& listener);
+
+    /// Renders all slabs of which something is seen, from the front on.
+    void run();
+    /// Returns what the slabs look like together.
+    Layer merge();
+    /// The share of the pieces' time that went into compositing, 0..1.
+    double compositeShare() const {
+        return pieceSeconds_ > 0 ? compositeSeconds_ / pieceSeconds_ : 0;
+    }
+
+  private:
+    struct Strip {
+        int first;
+        int last;
+        std::unique_ptr<LayerFold> layers;
+    };
+    // A slab of which some slices are seen: those of [firstSlice, lastSlice].
+    struct SeenSlab {
+        const PlannedSlab* slab;
+        int firstSlice;
+        int lastSlice;
+    };
+    void findSeen();
+    PlaneBox reachOfSlab(const SeenSlab& seen) const;
+    void cutIntoStrips();
+    int stripCount() const;
+    SheetLayout layoutOf(const Strip& strip, const SeenSlab& seen) const;
+    PlaneBox boxOf(const Strip& strip, const SeenSlab& seen) const;
+    void findLargest();
+    void requireSlabMemory() const;
+    void renderPiece(std::size_t piece, Splatter& splatter);
+    double renderSlab(const SeenSlab& seen, const Strip& strip, const PlaneBox& box,
+                      Splatter& splatter, Layer& layer);
+    template <typename Composite>
+    double walkSlices(const SeenSlab& seen, const SheetLayout& layout, const PlaneBox& box,
+                      Splatter& splatter, const Composite& composite);
+    void count(const SeenSlab& seen, double compositeSeconds, double pieceSeconds);
+
+    const SlabInput& input_;
+    SharedProgress progress_;
+    std::vector<glm::vec4> scales_;  // of the planes of colours
+    int channels_;
+    SplatInput splat_;
+    std::vector<SeenSlab> seen_;  // from the front on
+    PlaneBox reach_;              // of all of them
+    StepLengths steps_;           // from an eye, of colours
+    std::vector<Strip> strips_;
+    SheetLayout largest_;  // holds the part of any piece
+    Layer merged_;
+    std::once_flag mergedOnce_;
+    std::atomic<std::size_t> next_ = 0;
+    std::mutex mutex_;  // guards all below
+    double compositeSeconds_ = 0;
+    double pieceSeconds_ = 0;
+    double slicesDone_ = 0;
+};
+
+}  // namespace deltasplat

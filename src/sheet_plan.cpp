@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sheet_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "delta/code_blocks.h"
+#include "deltasplat/error.h"
+#include "optics/largest_alpha.h"
+
+namespace deltasplat {
+namespace {
+
+// Whether what is shown is thin. Of thin voxels, two sheet pixels show little that one does not,
+// and values mixed little more (docs/decisions.md). Not what is seen decides, lest a voxel or an
+// angle change the picture of all others.
+bool isThin(const Volume& volume, const Optics& optics) {
+    constexpr double kMost = 0.25;
+    return largestAlpha(volume, optics) <= kMost;
+}
+
+// What whole blocks are divided into is counted with 32 bits, and some more voxels around it.
+bool canBeDivided(const IndexBox& box, int between) {
+    constexpr std::int64_t kMost = std::int64_t{1} << 30;
+    const glm::i64vec3 wide = glm::i64vec3(box.max) - glm::i64vec3(box.min) + std::int64_t{16};
+    return std::max({wide.x, wide.y, wide.z}) * (between + 1) <= kMost;
+}
+
+void checkBetween(int between) {
+    if (between >= 0 && between <= kMostBetween) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("--between", std::to_string(between),
+                            "a whole number within 0.." + std::to_string(kMostBetween)));
+}
+
+[[noreturn]] void throwTooWide(const IndexBox& box, int between) {
+    const glm::ivec3 dims = box.dims();
+    throw Error(ErrorCode::kFailed,
+                gotExpected("--between " + std::to_string(between),
+                            std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
+                                std::to_string(dims.z) + " voxels",
+                            "at most 2^30 parts of them along each axis (--between 0: undivided)"));
+}
+
+// Whether voxels are divided where the screen asks for it and nobody says otherwise.
+bool dividesUnasked(const Volume& volume, const Factorization& view, const ClassTable& classes,
+                    const RenderOptions& options, bool thin, const Listener& listener) {
+    if (view.resolution < 2 || options.resolution || options.footprintWidth) return false;
+    if (options.optics.transferFunction.colorsJump()) return false;
+    if (volume.empty() || thin) return false;
+    if (!canBeDivided(volume.box, 1)) {
+        listener.warn("the volume is too wide for voxels to be divided: drawn as they are");
+        return false;
+    }
+    const BlockReader seen(*volume.codes, nullptr, view.sliceAxis, classes.classOfSlot);
+    if (seen.blocks().size() <= kMostDivided) return true;
+    listener.warn("voxels are too many to be divided (" + std::to_string(seen.blocks().size()) +
+                  " blocks of 8x8x8 can be seen, at most " + std::to_string(kMostDivided) +
+                  " are): drawn as they are; --between 1 divides them");
+    return false;
+}
+
+}  // namespace
+
+SheetPlan::SheetPlan(const Volume& volume, const Factorization& view, const ClassTable& classes,
+                     const RenderOptions& options, const Listener& listener)
+    : firstVoxel_(volume.box.min), resolution_(view.resolution) {
+    const bool thin = isThin(volume, options.optics);
+    // Where the screen asks for two sheet pixels a voxel, but not for more, what is thin gets one.
+    const bool few = view.pixelsPerVoxel < 2.5;
+    if (!options.resolution && few && thin) resolution_ = 1;
+    int between = 0;
+    if (options.between) {
+        between = *options.between;
+        checkBetween(between);
+        if (between > 0 && !canBeDivided(volume.box, between)) throwTooWide(volume.box, between);
+    } else if (dividesUnasked(volume, view, classes, options, thin, listener)) {
+        between = 1;
+    }
+    if (between > 0 && !options.resolution) resolution_ = 2;
+    parts_ = {between + 1, between > 0 && resolution_ % 2 == 0 ? 2 : 1, {}};
+}
+
+Subdivision SheetPlan::partsAlong(int sliceAxis) const {
+    Subdivision parts = parts_;
+    // Whole blocks are divided.
+    if (parts.divides()) parts.origin = toSliceOrder(firstVoxel_, sliceAxis) & ~7;
+    return parts;
+}
+
+}  // namespace deltasplat

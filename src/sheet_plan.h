@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "deltasplat/render.h"
+
+namespace deltasplat {
+
+/// How finely voxels are drawn: what they are divided into, and how many sheet pixels they have.
+class SheetPlan {
+  public:
+    /// @param view     of the volume's own voxels
+    /// @param classes  of the volume's own voxels
+    /// @throw Error for a division that is asked for and cannot be made
+    SheetPlan(const Volume& volume, const Factorization& view, const ClassTable& classes,
+              const RenderOptions& options, const Listener& listener);
+
+    /// The same along another slice axis.
+    Subdivision partsAlong(int sliceAxis) const;
+    /// Sheet pixels of what voxels are divided into.
+    int resolution() const { return resolution_ / parts_.within; }
+
+  private:
+    Subdivision parts_;
+    glm::ivec3 firstVoxel_;
+    int resolution_;  // of undivided voxels
+};
+
+}  // namespace deltasplat

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include "splat/sheet.h"
+#include "view/base_plane.h"
+
+namespace deltasplat {
+
+/// Where the base plane reads one slice's sheet: base pixel b at scale * b + offset + fraction.
+struct SheetReading {
+    glm::ivec2 offset{0};
+    glm::dvec2 fraction{0.0};  ///< 0 <= fraction < 1
+    double scale = 1;          ///< exactly 1 in parallel projection
+};
+
+SheetReading readingOf(const BasePlane& plane, const SheetLayout& layout, int slice);
+
+/// Returns the base plane pixels that any of `sliceCount` slices from `firstSlice` on can reach, as
+/// far as the plane goes.
+PlaneBox reachOf(const BasePlane& plane, const SheetLayout& layout, int firstSlice, int sliceCount);
+
+/// Returns the sheet pixels, of those that there are, that the pixels of a box read.
+SheetBox readBox(const SheetReading& reading, const PlaneBox& box, const SheetLayout& layout);
+
+/// How far a reading reaches to both sides of a position, in sheet pixels: to the neighbours, or,
+/// where base pixels lie farther apart, to the next of those.
+inline double readingReach(const SheetReading& reading) {
+    return reading.scale > 1 ? reading.scale : 1;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: Philippe Lacroute and Marc Levoy, "Fast Volume Rendering Using a Shear-Warp
+// Factorization of the Viewing Transformation", 1994, of which perspective is the case of slices
+// that are scaled as well as shifted. Deviates in that the base plane is one of slopes, so that a
+// slice's scale is its distance from the eye.
+#include "view/base_plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+// Sheets run along v.
+glm::dvec2 swapped(glm::dvec2 v) {
+    return {v.y, v.x};
+}
+
+// Pixels around what the picture shows, for the warp's filters to read.
+constexpr int kBorder = 8;
+
+}  // namespace
+
+BasePlane::BasePlane(const Factorization& view, int firstSlice, glm::ivec2 firstVoxel,
+                     int resolution, double offsetPixels)
+    : frontToBack_(view.frontToBack),
+      firstSlice_(firstSlice),
+      spacing_(1.0 / resolution),
+      origin_(offsetPixels / resolution),
+      shiftPerSlice_(swapped(view.shiftPerSlice)) {
+    const glm::dvec2 first = glm::dvec2(firstVoxel) + double(firstSlice) * shiftPerSlice_;
+    glm::dmat3 relative = glm::dmat3(0, 1, 0, 1, 0, 0, 0, 0, 1) * view.baseFromPixel;
+    relative[2] -= glm::dvec3(first, 0);
+    const double r = resolution;
+    pixelFromPicture_ = glm::dmat3(r, 0, 0, 0, r, 0, -offsetPixels, -offsetPixels, 1) * relative;
+}
+
+BasePlane::BasePlane(const Factorization& view, const Camera& camera, int firstSlice,
+                     glm::ivec2 firstVoxel, double spacing)
+    : frontToBack_(view.frontToBack),
+      firstSlice_(firstSlice),
+      spacing_(spacing),
+      origin_(swapped(view.slopeMin) - kBorder * spacing),
+      eye_(glm::dvec3(view.eye->x - firstSlice, view.eye->z - firstVoxel.x,
+                      view.eye->y - firstVoxel.y)),
+      worldFromStep_(view.worldFromStep[0], view.worldFromStep[2], view.worldFromStep[1]),
+      stepWorld_(view.sliceStepWorld),
+      nearWorld_(camera.nearWorld) {
+    const glm::dvec2 wide = (view.slopeMax - view.slopeMin) / spacing;
+    // Whoever needs memory for it finds out that there are too many.
+    constexpr double kMost = 1 << 30;
+    limits_.max = glm::ivec2(glm::min(glm::ceil(swapped(wide)), kMost)) + 2 * kBorder + 1;
+    if (camera.projection == Projection::kPerspective) depthAlong_ = camera.direction;
+    // Depth grows evenly with slopes, and lengths are largest and smallest at ends.
+    nearest_ = {std::numeric_limits<double>::infinity(), 0};
+    for (int corner = 0; corner < 4; ++corner) {
+        const double nearest = nearestOf({corner & 1 ? view.slopeMax.y : view.slopeMin.y,
+                                          corner & 2 ? view.slopeMax.x : view.slopeMin.x});
+        nearest_ = {std::min(nearest_.x, nearest), std::max(nearest_.y, nearest)};
+    }
+    // Along each line of sight, that straight ahead is the longest way in slices.
+    if (!depthAlong_) nearest_.y = nearWorld_ / stepWorld_;
+}
+
+SlicePlace BasePlane::placeOf(int slice) const {
+    const double slices = double(slice) - double(firstSlice_);
+    if (!eye_) return {1, -(shiftPerSlice_ * slices)};
+    // Of what the eye cuts, the middle of what is left stands for it.
+    const double from = std::max(distanceOf(slice) - 0.5, nearest_.x);
+    const double distance = 0.5 * (from + distanceOf(slice) + 0.5);
+    return {distance, {eye_->y, eye_->z}};
+}
+
+double BasePlane::distanceOf(int slice) const {
+    const double away = double(slice) - double(firstSlice_) - eye_->x;
+    return frontToBack_ ? away : -away;
+}
+
+glm::ivec2 BasePlane::seen(glm::ivec2 slices) const {
+    // Of slices that end half a slice behind their middle, those that end beyond what is nearest.
+    const double least = nearest_.x - 0.5;
+    if (!(least < std::numeric_limits<double>::infinity())) return {slices.x, slices.x - 1};
+    if (frontToBack_) {
+        const double first = std::floor(firstSlice_ + eye_->x + least) + 1;
+        if (first > slices.x) slices.x = int(std::min(first, double(slices.y) + 1));
+    } else {
+        const double last = std::ceil(firstSlice_ + eye_->x - least) - 1;
+        if (last < slices.y) slices.y = int(std::max(last, double(slices.x) - 1));
+    }
+    return slices;
+}
+
+bool BasePlane::isCut(int slice) const {
+    return distanceOf(slice) - 0.5 < nearest_.y;
+}
+
+bool BasePlane::cutsAny(glm::ivec2 slices) const {
+    slices = seen(slices);
+    return slices.x <= slices.y && isCut(frontToBack_ ? slices.x : slices.y);
+}
+
+double BasePlane::nearestOf(glm::dvec2 slope) const {
+    if (nearWorld_ == 0) return 0;
+    const glm::dvec3 ray = rayOf(slope);
+    const double depth = depthAlong_ ? glm::dot(ray, *depthAlong_) : glm::length(ray);
+    return depth > 0 ? nearWorld_ / depth : std::numeric_limits<double>::infinity();
+}
+
+double BasePlane::shareOf(int slice, glm::ivec2 pixel) const {
+    const double end = distanceOf(slice) + 0.5;
+    return std::clamp(end - nearestOf(positionOf(pixel)), 0.0, 1.0);
+}
+
+double BasePlane::stepsAt(glm::ivec2 pixel) const {
+    return glm::length(rayOf(positionOf(pixel))) / stepWorld_;
+}
+
+StepLengths::StepLengths(const BasePlane& plane, const PlaneBox& planeBox)
+    : box(planeBox), values(std::size_t(box.size().x) * std::size_t(box.size().y) + kSpare) {
+    parallelForChunks(std::size_t(box.size().y), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row) {
+            float* steps = &values[row * std::size_t(box.size().x)];
+            for (int x = box.min.x; x < box.max.x; ++x)
+                *steps++ = float(plane.stepsAt({x, box.min.y + int(row)}));
+        }
+    });
+}
+
+}  // namespace deltasplat
