@@ -222,14 +222,23 @@ class CompositeRender {
     }
 
     // Base plane pixels that a slope of 1 takes: as many as the farthest slice has sheet pixels,
-    // which is the most that there is to show, but no more than the picture needs.
+    // which is the most that there is to show, or fewer: as many as the picture needs, but at least
+    // as many as there are voxels in the slice in the middle. What is averaged before it is
+    // composited is not what is seen of it.
     static double densityOf(const PreparedSlices& slices, const Factorization& view,
                             int resolution) {
         const IndexBox& box = slices.deltas.box;
         const double farthest =
             view.frontToBack ? box.max.x - view.eye->x : view.eye->x - box.min.x;
-        return std::min(resolution * std::max(farthest, 1.0),
-                        kPixelsOfScreen * view.pixelsPerSlope);
+        const double nearest =
+            std::max(0.0, view.frontToBack ? box.min.x - view.eye->x : view.eye->x - box.max.x);
+        const double middle = 0.5 * (nearest + farthest);
+        const double needed =
+            std::max(kPixelsOfScreen * view.pixelsPerSlope, middle / slices.parts.within);
+        const double most = resolution * std::max(farthest, 1.0);
+        // Reading sheets that are not averaged takes so much less time.
+        constexpr double kWorthMore = 1.3;
+        return most < kWorthMore * needed ? most : needed;
     }
 
     // Opacities are those of ways straight through the slices: makes them those of the lines of

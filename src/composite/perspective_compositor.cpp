@@ -11,6 +11,12 @@
 #include "composite/full_rows.h"
 
 namespace deltasplat {
+namespace {
+
+// Pixels between two runs that are not worth an end and a beginning.
+constexpr int kShortGap = 12;
+
+}  // namespace
 
 void PerspectiveCompositor::composite(Sheets sheets, int slice, const SheetReading& reading,
                                       const PlaneBox& box, Layer& layer) {
@@ -29,7 +35,8 @@ void PerspectiveCompositor::composite(Sheets sheets, int slice, const SheetReadi
               layer.channels,
               plane_.frontToBack()};
     for (std::size_t p = 0; p < sheets.size(); ++p) slice_.sheets[p] = sheets[p]->row(0);
-    for (int y = box_.min.y; y < box_.max.y; ++y) addRow(sheets, slice, reading, y, layer);
+    findTiles(reading, layout.tiles().x);
+    for (int y = box_.min.y; y < box_.max.y; ++y) addRow(sheets, slice, y, layer);
     flush();
 }
 
@@ -85,8 +92,7 @@ void PerspectiveCompositor::findFull(Sheets sheets, int firstRow, int lastRow) {
     for (std::size_t i = 0; i < full_.size(); ++i) seen_[i % words_] |= full_[i];
 }
 
-void PerspectiveCompositor::addRow(Sheets sheets, int slice, const SheetReading& reading, int y,
-                                   Layer& layer) {
+void PerspectiveCompositor::addRow(Sheets sheets, int slice, int y, Layer& layer) {
     const int firstRow = rows_.first[std::size_t(y - box_.min.y)];
     std::fill(seen_.begin(), seen_.end(), 0);
     std::uint64_t any = 0;
@@ -97,26 +103,36 @@ void PerspectiveCompositor::addRow(Sheets sheets, int slice, const SheetReading&
         for (std::size_t i = 0; i < words_; ++i) any |= seen_[i] |= full_[place + i];
     }
     if (any == 0) return;
-    const double start = reading.offset.x + reading.fraction.x;
-    const double reach = readingReach(reading);
-    const auto bounded = [&](double x) {
-        return int(std::clamp(x, double(box_.min.x), double(box_.max.x)));
-    };
     int first = box_.min.x;
     int last = box_.min.x;
     forEachRun(seen_, [&](int firstTile, int lastTile) {
-        const double begin = kTilePixels * firstTile - reach - start;
-        const double end = kTilePixels * lastTile - 1 + reach - start;
-        const int from = bounded(std::floor(begin / reading.scale));
-        const int to = bounded(std::ceil(end / reading.scale) + 1);
+        const int from = tiles_[std::size_t(firstTile)].x;
+        const int to = tiles_[std::size_t(lastTile - 1)].y;
         if (to <= from) return;
-        if (from > last) {
+        // What is nearly together is done together.
+        if (from > last + kShortGap) {
             addRun(sheets, slice, {first, y}, last, layer);
             first = from;
         }
         last = std::max(last, to);
     });
     addRun(sheets, slice, {first, y}, last, layer);
+}
+
+// Finds the columns of the box that read each tile.
+void PerspectiveCompositor::findTiles(const SheetReading& reading, int tiles) {
+    const double start = reading.offset.x + reading.fraction.x;
+    const double reach = readingReach(reading);
+    tiles_.resize(std::size_t(tiles));
+    for (int tile = 0; tile < tiles; ++tile) {
+        const double begin = kTilePixels * tile - reach - start;
+        const double end = kTilePixels * (tile + 1) - 1 + reach - start;
+        const auto bounded = [&](double x) {
+            return int(std::clamp(x, double(box_.min.x), double(box_.max.x)));
+        };
+        tiles_[std::size_t(tile)] = {bounded(std::floor(begin / reading.scale)),
+                                     bounded(std::ceil(end / reading.scale) + 1)};
+    }
 }
 
 // Takes on pixels [first.x, last) of a row.
@@ -132,14 +148,13 @@ void PerspectiveCompositor::addRun(Sheets sheets, int slice, glm::ivec2 first, i
                       rows_.of(row),
                       &columns_.first[column],
                       columns_.of(column),
+                      columns_.pairs.empty() ? nullptr : &columns_.pairs[column],
                       std::min(last - x, kMostScaled),
                       nullptr,
                       layer.pixel({x, first.y})};
         while (run.columns(columns_.taps) > kMostScaledColumns) run.pixels /= 2;
         run.steps = stepsOf(slice, {x, first.y}, run.pixels);
-        if (pixels_ + run.pixels > kMostScaled) flush();
         runs_.push_back(run);
-        pixels_ += run.pixels;
         x += run.pixels;
         // The next one's shares take their place.
         if (plane_.isCut(slice)) flush();
@@ -149,7 +164,6 @@ void PerspectiveCompositor::addRun(Sheets sheets, int slice, glm::ivec2 first, i
 void PerspectiveCompositor::flush() {
     if (!runs_.empty()) overScaled(slice_, runs_);
     runs_.clear();
-    pixels_ = 0;
 }
 
 // Returns for how many steps each pixel's opacity counts; null: for one.

@@ -35,7 +35,8 @@ class PerspectiveCompositor {
   private:
     void findFull(Sheets sheets, int firstRow, int lastRow);
     PlaneBox seenBox(Sheets sheets, const SheetReading& reading, const PlaneBox& box);
-    void addRow(Sheets sheets, int slice, const SheetReading& reading, int y, Layer& layer);
+    void findTiles(const SheetReading& reading, int tiles);
+    void addRow(Sheets sheets, int slice, int y, Layer& layer);
     void addRun(Sheets sheets, int slice, glm::ivec2 first, int last, Layer& layer);
     void flush();
     const float* stepsOf(int slice, glm::ivec2 first, int pixels);
@@ -46,6 +47,7 @@ class PerspectiveCompositor {
     PlaneBox box_;                     // of the slice in hand
     ScaledTaps columns_;               // of the box
     ScaledTaps rows_;                  // likewise
+    std::vector<glm::ivec2> tiles_;    // [tiles]: columns [x, y) of the box that read each
     std::size_t words_ = 0;            // of 64 tiles, a row
     int firstTileRow_ = 0;             // that full_ begins with
     int firstFull_ = 0;                // of the sheet rows that may be other than zero
@@ -54,7 +56,6 @@ class PerspectiveCompositor {
     std::vector<std::uint64_t> seen_;  // [words_]: of the rows that a base plane row reads
     ScaledSlice slice_{};
     std::vector<ScaledRun> runs_;  // that wait to be composited
-    int pixels_ = 0;               // of them
     std::vector<float> shares_;    // steps of a run through a slice that is cut
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "simd_targets.h"
 
@@ -32,7 +33,7 @@ HWY_INLINE Vector mulAdd(Vector a, Vector b, Vector c) {
     return hn::Add(hn::Mul(a, b), c);
 }
 
-// Returns log(1 - a) for 0 <= a <= 1; -88 for what is 1.
+// Returns the logarithm of 1 - a to base 2, for 0 <= a <= 1; -127 for what is 1.
 HWY_INLINE Vector logOfClear(Vector a) {
     const FullTag tag;
     const hn::RebindToSigned<FullTag> whole;
@@ -42,31 +43,35 @@ HWY_INLINE Vector logOfClear(Vector a) {
     const auto exponent = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(whole, 0x3F3504F3)));
     const auto mantissa = hn::BitCast(tag, hn::Sub(bits, hn::ShiftLeft<23>(exponent)));
     // Of what is hardly opaque 1 - a has lost digits.
-    const auto isPlain = hn::Eq(exponent, hn::Zero(whole));
-    const auto beyond =
-        hn::IfThenElse(hn::RebindMask(tag, isPlain), hn::Neg(a), hn::Sub(mantissa, constant(1)));
+    const auto isPlain = hn::RebindMask(tag, hn::Eq(exponent, hn::Zero(whole)));
+    const auto beyond = hn::IfThenElse(isPlain, hn::Neg(a), hn::Sub(mantissa, constant(1)));
     const auto s = hn::Div(beyond, hn::Add(constant(2), beyond));
     const auto z = hn::Mul(s, s);
-    auto sum = mulAdd(z, constant(2.0 / 7), constant(2.0 / 5));
-    sum = mulAdd(z, sum, constant(2.0 / 3));
-    sum = mulAdd(z, sum, constant(2));
-    return mulAdd(hn::ConvertTo(tag, exponent), constant(0.69314718055994531), hn::Mul(s, sum));
+    // 2 / ln 2 (s + s^3 / 3 + s^5 / 5 + s^7 / 7), in pairs: what waits for nothing takes no time.
+    const auto low = mulAdd(z, constant(0.961796694), constant(2.88539008));
+    const auto high = mulAdd(z, constant(0.412198583), constant(0.577078016));
+    const auto sum = mulAdd(hn::Mul(z, z), high, low);
+    return mulAdd(sum, s, hn::ConvertTo(tag, exponent));
 }
 
-// Returns 1 - exp(x) for x <= 0.
+// Returns 1 - 2^x for x <= 0.
 HWY_INLINE Vector opacityOfLog(Vector x) {
     const FullTag tag;
     const hn::RebindToSigned<FullTag> whole;
-    x = hn::Max(x, constant(-87));
-    const auto power = hn::NearestInt(hn::Mul(x, constant(1.4426950408889634)));
-    const auto rest = hn::Sub(x, hn::Mul(hn::ConvertTo(tag, power), constant(0.69314718055994531)));
-    auto sum = mulAdd(rest, constant(1.0 / 720), constant(1.0 / 120));
-    sum = mulAdd(rest, sum, constant(1.0 / 24));
-    sum = mulAdd(rest, sum, constant(1.0 / 6));
-    sum = mulAdd(rest, sum, constant(0.5));
-    sum = mulAdd(rest, sum, constant(1));
-    sum = hn::Mul(rest, sum);
-    const auto scale = hn::BitCast(tag, hn::ShiftLeft<23>(hn::Add(power, hn::Set(whole, 127))));
+    x = hn::Max(x, constant(-126));
+    // Added, it leaves no digits behind the point: the whole number is in the lowest bits.
+    const auto rounder = constant(12582912);
+    const auto shifted = hn::Add(x, rounder);
+    const auto rest = hn::Sub(x, hn::Sub(shifted, rounder));
+    const auto scale = hn::BitCast(
+        tag, hn::Add(hn::ShiftLeft<23>(hn::BitCast(whole, shifted)), hn::Set(whole, 0x3F800000)));
+    // 2^rest - 1, of |rest| <= 1/2: its series, likewise
+    const auto square = hn::Mul(rest, rest);
+    const auto low = mulAdd(rest, constant(0.240226507), constant(0.693147181));
+    const auto middle = mulAdd(rest, constant(9.61812911e-3), constant(5.55041087e-2));
+    const auto high = mulAdd(rest, constant(1.54035304e-4), constant(1.33335581e-3));
+    const auto sum =
+        hn::Mul(rest, mulAdd(hn::Mul(square, square), high, mulAdd(square, middle, low)));
     // -(scale * sum + (scale - 1))
     return hn::Sub(hn::Sub(constant(1), scale), hn::Mul(scale, sum));
 }
@@ -93,10 +98,11 @@ HWY_INLINE void sumRows(const ScaledSlice& slice, const ScaledRun& run, float* c
     const hn::CappedTag<float, kChannels == 4 ? 16 : 8> tag;
     const hn::RebindToSigned<decltype(tag)> whole;
     const std::size_t count = std::size_t(kChannels * run.columns(slice.columnTaps));
-    const auto firstWeight = hn::Set(tag, run.rowWeights[0]);
-    const auto secondWeight = hn::Set(tag, run.rowWeights[kRows == 2 ? 1 : 0]);
     for (std::size_t p = 0; p < slice.scales.size(); ++p) {
         const auto scale = loadScale<kChannels>(tag, slice.scales[p]);
+        const auto weight = [&](int n) { return hn::Mul(scale, hn::Set(tag, run.rowWeights[n])); };
+        const auto firstWeight = weight(0);
+        const auto secondWeight = weight(kRows == 2 ? 1 : 0);
         const std::int32_t* sheet = slice.sheets[p] + run.place;
         for (std::size_t i = 0; i < count; i += hn::Lanes(tag)) {
             const auto row = [&](int n) {
@@ -108,20 +114,68 @@ HWY_INLINE void sumRows(const ScaledSlice& slice, const ScaledRun& run, float* c
                 sum = hn::Add(sum, hn::Mul(row(1), secondWeight));
             } else {
                 for (int n = 1; n < slice.rowTaps; ++n)
-                    sum = hn::Add(sum, hn::Mul(row(n), hn::Set(tag, run.rowWeights[n])));
+                    sum = hn::Add(sum, hn::Mul(row(n), weight(n)));
             }
-            sum = hn::Mul(sum, scale);
             if (p > 0) sum = hn::Add(hn::LoadU(tag, columns + i), sum);
             hn::StoreU(sum, tag, columns + i);
         }
     }
 }
 
-// Weighs the columns of every pixel; kTaps is 0 where it is not known.
-template <int kChannels, int kTaps>
-HWY_INLINE void sumColumns(const ScaledRun& run, int wantedTaps, const float* columns,
-                           float* colors) {
-    const int taps = kTaps ? kTaps : wantedTaps;
+// Which lanes hold what pixels and channels have, in a vector of kChannels a pixel.
+template <int kChannels>
+struct PixelLanes {
+    static constexpr std::size_t kMost = hn::MaxLanes(FullTag());
+    HWY_ALIGN std::int32_t pixel[kMost];
+    HWY_ALIGN std::int32_t channel[kMost];
+
+    PixelLanes() {
+        for (std::size_t i = 0; i < hn::Lanes(FullTag()); ++i) {
+            pixel[i] = std::int32_t(i) / kChannels;
+            channel[i] = std::int32_t(i) % kChannels;
+        }
+    }
+};
+
+// Weighs two neighbouring columns for every pixel. As columns lie no closer than pixels do, those
+// of a vector of pixels lie within a vector.
+template <int kChannels>
+HWY_INLINE void sumColumnPairs(const ScaledRun& run, const float* columns, float* colors) {
+    const FullTag tag;
+    const hn::RebindToSigned<FullTag> whole;
+    const PixelLanes<kChannels> lanes;
+    const auto pixelOf = hn::SetTableIndices(tag, lanes.pixel);
+    const auto wholePixelOf = hn::SetTableIndices(whole, lanes.pixel);
+    const auto channel = hn::Load(whole, lanes.channel);
+    const std::size_t perVector = hn::Lanes(tag) / kChannels;
+    const auto ofPixels = [&](auto values) {
+        if constexpr (kChannels == 1) {
+            return values;
+        } else if constexpr (std::is_same_v<decltype(values), Vector>) {
+            return hn::TableLookupLanes(values, pixelOf);
+        } else {
+            return hn::TableLookupLanes(values, wholePixelOf);
+        }
+    };
+    for (std::size_t x = 0; x < std::size_t(run.pixels); x += perVector) {
+        const std::int32_t first = run.first[x];
+        const float* column = columns + kChannels * (first - run.first[0]);
+        const auto away = hn::Sub(hn::LoadU(whole, run.first + x), hn::Set(whole, first));
+        auto lane = ofPixels(away);
+        if constexpr (kChannels == 4) lane = hn::Add(hn::ShiftLeft<2>(lane), channel);
+        const auto from = hn::IndicesFromVec(tag, lane);
+        const auto weight = ofPixels(hn::LoadU(tag, run.pairWeights + x));
+        const auto here = hn::TableLookupLanes(hn::LoadU(tag, column), from);
+        const auto next = hn::TableLookupLanes(hn::LoadU(tag, column + kChannels), from);
+        const auto rest = hn::Sub(constant(1), weight);
+        hn::StoreU(hn::Add(hn::Mul(here, weight), hn::Mul(next, rest)), tag,
+                   colors + kChannels * x);
+    }
+}
+
+// Weighs the columns of every pixel.
+template <int kChannels>
+HWY_INLINE void sumColumns(const ScaledRun& run, int taps, const float* columns, float* colors) {
     const std::int32_t* first = run.first;
     const float* weights = run.columnWeights;
     for (int x = 0; x < run.pixels; ++x, weights += taps) {
@@ -149,10 +203,11 @@ HWY_INLINE void findGrowth(const float* colors, const float* steps, std::size_t 
         Vector r, g, b, opacity;
         hn::LoadInterleaved4(tag, colors + 4 * i, r, g, b, opacity);
         const auto times = hn::LoadU(tag, steps + i);
-        const auto longer = opacityOfSteps(opacity, times);
         // What is next to clear grows with its steps.
         const auto isClear = hn::Lt(opacity, constant(1e-30));
-        hn::StoreU(hn::IfThenElse(isClear, times, hn::Div(longer, opacity)), tag, growth + i);
+        const auto whole = hn::Div(constant(1), opacity);
+        const auto longer = opacityOfSteps(opacity, times);
+        hn::StoreU(hn::IfThenElse(isClear, times, hn::Mul(longer, whole)), tag, growth + i);
     }
 }
 
@@ -195,11 +250,7 @@ HWY_INLINE void overOpacities(const float* opacities, const float* steps, std::s
     HWY_ALIGN float rest[hn::MaxLanes(FullTag())] = {};
     for (std::size_t i = 0; i < pixels; i += hn::Lanes(tag)) {
         auto color = hn::LoadU(tag, opacities + i);
-        if (steps) {
-            HWY_ALIGN float times[hn::MaxLanes(FullTag())] = {};
-            std::copy_n(steps + i, std::min(hn::Lanes(tag), pixels - i), times);
-            color = opacityOfSteps(color, hn::Load(tag, times));
-        }
+        if (steps) color = opacityOfSteps(color, hn::LoadU(tag, steps + i));
         const std::size_t count = std::min(hn::Lanes(tag), pixels - i);
         const bool isWhole = count == hn::Lanes(tag);
         if (!isWhole) std::copy_n(layer + i, count, rest);
@@ -214,59 +265,42 @@ HWY_INLINE void overOpacities(const float* opacities, const float* steps, std::s
 
 template <int kChannels>
 HWY_INLINE void readRun(const ScaledSlice& slice, const ScaledRun& run, float* colors) {
-    HWY_ALIGN float columns[kChannels * kMostScaledColumns + kSpare];
+    HWY_ALIGN float columns[kChannels * kMostScaledColumns + 2 * kSpare];
     if (slice.rowTaps == 2) {
         sumRows<kChannels, 2>(slice, run, columns);
     } else {
         sumRows<kChannels, 0>(slice, run, columns);
     }
-    if (slice.columnTaps == 2) {
-        sumColumns<kChannels, 2>(run, 2, columns, colors);
-    } else {
-        sumColumns<kChannels, 0>(run, slice.columnTaps, columns, colors);
-    }
+    if (run.pairWeights) return sumColumnPairs<kChannels>(run, columns, colors);
+    sumColumns<kChannels>(run, slice.columnTaps, columns, colors);
 }
 
-// Growth takes many steps one after the other, which vectors of all runs share.
 template <bool kFrontToBack>
-void overScaledColors(const ScaledSlice& slice, std::span<const ScaledRun> runs) {
+void overScaledColors(const ScaledSlice& slice, const ScaledRun& run) {
     HWY_ALIGN float colors[4 * (kMostScaled + kSpare)];
-    HWY_ALIGN float steps[kMostScaled + kSpare];
     HWY_ALIGN float growth[kMostScaled + kSpare];
-    std::size_t pixels = 0;
-    for (const ScaledRun& run : runs) {
-        readRun<4>(slice, run, colors + 4 * pixels);
-        std::copy_n(run.steps, run.pixels, steps + pixels);
-        pixels += std::size_t(run.pixels);
-    }
+    const auto pixels = std::size_t(run.pixels);
+    readRun<4>(slice, run, colors);
     // Vectors reach over the last pixel.
     std::fill_n(colors + 4 * pixels, 4 * kSpare, 0.0f);
-    std::fill_n(steps + pixels, kSpare, 0.0f);
-    findGrowth(colors, steps, pixels, growth);
-    pixels = 0;
-    for (const ScaledRun& run : runs) {
-        overGrown<kFrontToBack>(colors + 4 * pixels, growth + pixels, std::size_t(run.pixels),
-                                run.layer);
-        pixels += std::size_t(run.pixels);
-    }
+    findGrowth(colors, run.steps, pixels, growth);
+    overGrown<kFrontToBack>(colors, growth, pixels, run.layer);
 }
 
 template <bool kFrontToBack>
-void overScaledOpacities(const ScaledSlice& slice, std::span<const ScaledRun> runs) {
+void overScaledOpacities(const ScaledSlice& slice, const ScaledRun& run) {
     HWY_ALIGN float opacities[kMostScaled + kSpare];
-    for (const ScaledRun& run : runs) {
-        readRun<1>(slice, run, opacities);
-        std::fill_n(opacities + run.pixels, kSpare, 0.0f);
-        overOpacities<kFrontToBack>(opacities, run.steps, std::size_t(run.pixels), run.layer);
-    }
+    readRun<1>(slice, run, opacities);
+    std::fill_n(opacities + run.pixels, kSpare, 0.0f);
+    overOpacities<kFrontToBack>(opacities, run.steps, std::size_t(run.pixels), run.layer);
 }
 
 void overScaledKernel(const ScaledSlice& slice, std::span<const ScaledRun> runs) {
-    if (slice.channels == 4)
-        return slice.frontToBack ? overScaledColors<true>(slice, runs)
-                                 : overScaledColors<false>(slice, runs);
-    return slice.frontToBack ? overScaledOpacities<true>(slice, runs)
-                             : overScaledOpacities<false>(slice, runs);
+    const auto over = slice.channels == 4
+                          ? slice.frontToBack ? overScaledColors<true> : overScaledColors<false>
+                      : slice.frontToBack ? overScaledOpacities<true>
+                                          : overScaledOpacities<false>;
+    for (const ScaledRun& run : runs) over(slice, run);
 }
 
 void repeatOpacityKernel(float* opacities, const float* steps, std::size_t count) {
@@ -292,11 +326,11 @@ HWY_EXPORT(repeatOpacityKernel);
 
 void ScaledTaps::set(double start, double scale, int firstPixel, int pixels, int size) {
     const double reach = std::max(scale, 1.0);
-    taps = scale > 1 ? int(std::ceil(2 * reach)) : 2;
-    taps = std::min(taps, std::max(size, 1));
+    taps = scale > 1 ? std::min(int(std::ceil(2 * reach)), size) : 2;
     first.resize(std::size_t(pixels));
     weights.resize(std::size_t(pixels) * std::size_t(taps));
     if (scale <= 1) return setBetween(start, scale, firstPixel, size);
+    pairs.clear();
     for (int i = 0; i < pixels; ++i) {
         const double place = start + scale * (firstPixel + i);
         // The first sheet pixel that a tent around the place does not leave out.
@@ -316,16 +350,21 @@ void ScaledTaps::set(double start, double scale, int firstPixel, int pixels, int
 
 // Of two neighbours.
 void ScaledTaps::setBetween(double start, double scale, int firstPixel, int size) {
-    const double most = std::max(size - 2, 0);
+    const double most = size - 2;
+    pairs.resize(first.size());
     for (std::size_t i = 0; i < first.size(); ++i) {
         const double place = start + scale * (firstPixel + int(i));
         const double begin = std::min(std::max(std::floor(place), 0.0), most);
         const double behind = place - begin;
         first[i] = int(begin);
-        weights[std::size_t(taps) * i] = float(std::max(1 - std::abs(behind), 0.0));
-        if (taps > 1)
-            weights[std::size_t(taps) * i + 1] = float(std::max(1 - std::abs(1 - behind), 0.0));
+        // Beyond the sheet's edge, where it is zero, it does not matter what is read.
+        pairs[i] = float(std::clamp(1 - behind, 0.0, 1.0));
+        weights[2 * i] = pairs[i];
+        weights[2 * i + 1] = 1 - pairs[i];
     }
+    const std::size_t pixels = first.size();
+    first.resize(pixels + kSpare, first.back());
+    pairs.resize(pixels + kSpare, 1);
 }
 
 void overScaled(const ScaledSlice& slice, std::span<const ScaledRun> runs) {

@@ -16,11 +16,17 @@ namespace deltasplat {
 /// distance from each other: tents of weights that add up to 1.
 class ScaledTaps {
   public:
-    int taps = 2;                     ///< that every pixel has
-    std::vector<std::int32_t> first;  ///< [pixels]: the first sheet pixel of each
-    std::vector<float> weights;       ///< [pixels][taps]
+    int taps = 2;  ///< that every pixel has
+    /// [pixels]: the first sheet pixel of each; of pairs there are kSpare more, for vectors.
+    std::vector<std::int32_t> first;
+    std::vector<float> weights;  ///< [pixels][taps]
+    /// [pixels + kSpare]: of two taps of pixels that lie no farther apart than those of the sheet,
+    /// the first weight; else empty.
+    std::vector<float> pairs;
+    static constexpr std::size_t kSpare = 16;
 
-    /// Base pixel `firstPixel + i` lies at sheet pixel start + scale * (firstPixel + i), of `size`.
+    /// Base pixel `firstPixel + i` lies at sheet pixel start + scale * (firstPixel + i), of `size`,
+    /// at least 2.
     void set(double start, double scale, int firstPixel, int pixels, int size);
     const float* of(std::size_t pixel) const { return &weights[pixel * std::size_t(taps)]; }
 
@@ -47,16 +53,18 @@ struct ScaledRun {
     const float* rowWeights;     ///< [rowTaps]
     const std::int32_t* first;   ///< [pixels]: the first sheet column of each
     const float* columnWeights;  ///< [pixels][columnTaps]
+    const float* pairWeights;    ///< as ScaledTaps::pairs, or null
     int pixels;                  ///< at most kMostScaled; columns at most kMostScaledColumns
-    /// For how many steps through the slice each pixel's opacity counts. Of one channel null: one.
+    /// For how many steps through the slice each pixel's opacity counts: `[pixels]`, and what a
+    /// vector reads over the end (StepLengths::kSpare). Of one channel null: one.
     const float* steps;
     float* layer;  ///< the layer at the run's first pixel
 
     int columns(int columnTaps) const { return first[pixels - 1] - first[0] + columnTaps; }
 };
 
-/// Most pixels of runs that are done together, and most sheet columns of one, for what lies between
-/// to stay in the first-level cache.
+/// Most pixels of a run, and most sheet columns, for what lies between to stay in the first-level
+/// cache.
 inline constexpr int kMostScaled = 256;
 inline constexpr int kMostScaledColumns = 512;
 
@@ -64,7 +72,6 @@ inline constexpr int kMostScaledColumns = 512;
 /// pixel's light and opacity are those of so many steps: opacity a becomes 1 - (1 - a)^steps, and
 /// colours grow with it. Multiplications and additions are separate and in a fixed order, so that
 /// every SIMD level gives the same bits.
-/// @param runs  of kMostScaled pixels together at most: many short ones together take less time
 void overScaled(const ScaledSlice& slice, std::span<const ScaledRun> runs);
 
 /// Opacities become those of so many steps, `steps[i]` each, of which a vector is read over the end

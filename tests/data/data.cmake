@@ -1,5 +1,6 @@
 # These need the data sets beside the repository, and say so where they are not there.
 deltasplat_test(data/axis_change_test.cpp)
+deltasplat_test(data/perspective_data_test.cpp)
 deltasplat_test(data/tolerance_data_test.cpp)
 deltasplat_test(data/convert_data_test.cpp)
 deltasplat_test(data/delta_data_test.cpp)

@@ -506,5 +506,45 @@ TEST(Perspective, whatCannotBeSeenIsAnEmptyPicture) {
     EXPECT_TRUE(isEmpty(volume));
 }
 
+// A floor of checkered voxels from five pixels a voxel to a fifth of one, against the mean of
+// sixteen pixels for each.
+TEST(Perspective, farSlicesDoNotAlias) {
+    TestVolume floor({0, 0, 0}, {300, 4, 800});
+    for (int z = 0; z < floor.dims.z; ++z) {
+        for (int y = 0; y < floor.dims.y; ++y) {
+            for (int x = 0; x < floor.dims.x; ++x)
+                floor.at({x, y, z}) = (x + z) % 2 == 0 ? 255.0f : 60.0f;
+        }
+    }
+    const Volume volume = throughRaw(floor, glm::dvec3(1));
+    RenderOptions options = optionsOf(0.9, Projection::kPerspective, {160, 120});
+    options.camera.fovDegrees = 40;
+    options.camera.eyeWorld = glm::dvec3(150, 25, -30);
+    options.camera.targetWorld = glm::dvec3(150, 0, 50);
+    // Both pictures of the same sheets.
+    options.between = 0;
+    for (const int resolution : {1, 2}) {
+        options.resolution = resolution;
+        options.camera.sizePixels = {160, 120};
+        const Image once = render(volume, options).image;
+        options.camera.sizePixels = {640, 480};
+        const Image often = render(volume, options).image;
+        double squares = 0;
+        for (int y = 0; y < 120; ++y) {
+            for (int x = 0; x < 160; ++x) {
+                for (int c = 0; c < 4; ++c) {
+                    double sum = 0;
+                    for (int i = 0; i < 16; ++i)
+                        sum += often.pixel(4 * x + i % 4, 4 * y + i / 4)[c];
+                    squares += std::pow(once.pixel(x, y)[c] - sum / 16, 2);
+                }
+            }
+        }
+        const double db = -10 * std::log10(squares / (4 * 160 * 120));
+        RecordProperty("floor", std::to_string(db));
+        EXPECT_GE(db, 38) << resolution;
+    }
+}
+
 }  // namespace
 }  // namespace deltasplat::test
