@@ -136,6 +136,10 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
     }
 }
 
+void isolated(const std::function<void()>& body) {
+    tbb::this_task_arena::isolate(body);
+}
+
 void parallelForChunks(std::size_t count,
                        const std::function<void(std::size_t, std::size_t)>& body) {
     constexpr std::size_t kChunk = 64;

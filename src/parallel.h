@@ -16,4 +16,8 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
 void parallelForChunks(std::size_t count,
                        const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+/// Calls body; while this thread waits for others in it, it takes on no work from elsewhere. For
+/// what holds a lock.
+void isolated(const std::function<void()>& body);
+
 }  // namespace deltasplat

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/render.h"
 
+#include <memory>
 #include <string>
 
-#include "composite_render.h"
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "memory.h"
+#include "prepared_axis.h"
 #include "ray_render.h"
 
 namespace deltasplat {
@@ -59,7 +60,10 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
     stats.mode = options.mode;
     stats.method = options.method;
     if (options.mode == Mode::kComposite) {
-        renderComposite(volume, options, listener, result);
+        // The volume outlives the scene.
+        const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
+        const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
+        stats = renderComposite(scene, result.camera, result.image, listener);
     } else {
         if (options.camera.projection != Projection::kOrtho) {
             throw Error(ErrorCode::kUsage,

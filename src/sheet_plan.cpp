@@ -5,20 +5,10 @@
 #include <cmath>
 #include <string>
 
-#include "delta/code_blocks.h"
 #include "deltasplat/error.h"
-#include "optics/largest_alpha.h"
 
 namespace deltasplat {
 namespace {
-
-// Whether what is shown is thin. Of thin voxels, two sheet pixels show little that one does not,
-// and values mixed little more (docs/decisions.md). Not what is seen decides, lest a voxel or an
-// angle change the picture of all others.
-bool isThin(const Volume& volume, const Optics& optics) {
-    constexpr double kMost = 0.25;
-    return largestAlpha(volume, optics) <= kMost;
-}
 
 // What whole blocks are divided into is counted with 32 bits, and some more voxels around it.
 bool canBeDivided(const IndexBox& box, int between) {
@@ -44,18 +34,20 @@ void checkBetween(int between) {
 }
 
 // Whether voxels are divided where the screen asks for it and nobody says otherwise.
-bool dividesUnasked(const Volume& volume, const Factorization& view, const ClassTable& classes,
-                    const RenderOptions& options, bool thin, const Listener& listener) {
+bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
+                    const Listener& listener) {
+    const Volume& volume = *scene.scene.volume;
+    const SplatOptions& options = scene.options;
     if (view.resolution < 2 || options.resolution || options.footprintWidth) return false;
-    if (options.optics.transferFunction.colorsJump()) return false;
-    if (volume.empty() || thin) return false;
+    if (scene.optics.transferFunction.colorsJump()) return false;
+    if (volume.empty() || scene.isThin) return false;
     if (!canBeDivided(volume.box, 1)) {
         listener.warn("the volume is too wide for voxels to be divided: drawn as they are");
         return false;
     }
-    const BlockReader seen(*volume.codes, nullptr, view.sliceAxis, classes.classOfSlot);
-    if (seen.blocks().size() <= kMostDivided) return true;
-    listener.warn("voxels are too many to be divided (" + std::to_string(seen.blocks().size()) +
+    const std::size_t blocks = scene.blocksSeen(view.sliceAxis);
+    if (blocks <= kMostDivided) return true;
+    listener.warn("voxels are too many to be divided (" + std::to_string(blocks) +
                   " blocks of 8x8x8 can be seen, at most " + std::to_string(kMostDivided) +
                   " are): drawn as they are; --between 1 divides them");
     return false;
@@ -63,19 +55,20 @@ bool dividesUnasked(const Volume& volume, const Factorization& view, const Class
 
 }  // namespace
 
-SheetPlan::SheetPlan(const Volume& volume, const Factorization& view, const ClassTable& classes,
-                     const RenderOptions& options, const Listener& listener)
-    : firstVoxel_(volume.box.min), resolution_(view.resolution) {
-    const bool thin = isThin(volume, options.optics);
+SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view,
+                     const Listener& listener)
+    : firstVoxel_(scene.scene.volume->box.min), resolution_(view.resolution) {
+    const IndexBox& box = scene.scene.volume->box;
+    const SplatOptions& options = scene.options;
     // Where the screen asks for two sheet pixels a voxel, but not for more, what is thin gets one.
     const bool few = view.pixelsPerVoxel < 2.5;
-    if (!options.resolution && few && thin) resolution_ = 1;
+    if (!options.resolution && few && scene.isThin) resolution_ = 1;
     int between = 0;
     if (options.between) {
         between = *options.between;
         checkBetween(between);
-        if (between > 0 && !canBeDivided(volume.box, between)) throwTooWide(volume.box, between);
-    } else if (dividesUnasked(volume, view, classes, options, thin, listener)) {
+        if (between > 0 && !canBeDivided(box, between)) throwTooWide(box, between);
+    } else if (dividesUnasked(scene, view, listener)) {
         between = 1;
     }
     if (between > 0 && !options.resolution) resolution_ = 2;

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-
-#include "deltasplat/render.h"
+#include "prepared_axis.h"
 
 namespace deltasplat {
 
 /// How finely voxels are drawn: what they are divided into, and how many sheet pixels they have.
 class SheetPlan {
   public:
-    /// @param view     of the volume's own voxels
-    /// @param classes  of the volume's own voxels
+    /// @param view  of the volume's own voxels
     /// @throw Error for a division that is asked for and cannot be made
-    SheetPlan(const Volume& volume, const Factorization& view, const ClassTable& classes,
-              const RenderOptions& options, const Listener& listener);
+    SheetPlan(const PreparedScene::Impl& scene, const Factorization& view,
+              const Listener& listener);
 
     /// The same along another slice axis.
     Subdivision partsAlong(int sliceAxis) const;

@@ -74,8 +74,4 @@ inline constexpr int kMostScaledColumns = 512;
 /// every SIMD level gives the same bits.
 void overScaled(const ScaledSlice& slice, std::span<const ScaledRun> runs);
 
-/// Opacities become those of so many steps, `steps[i]` each, of which a vector is read over the end
-/// (StepLengths::kSpare).
-void repeatOpacity(float* opacities, const float* steps, std::size_t count);
-
 }  // namespace deltasplat

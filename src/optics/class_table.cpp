@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -29,34 +30,36 @@ double smallest(const glm::dvec3& v) {
     return std::min({v.x, v.y, v.z});
 }
 
-// The share of light taken away on the way from one slice to the next. Written without the
-// extinction itself, so that opacity 1 (infinite extinction) and thin fog are both exact.
-double alphaOf(double opacity, double unitDistancesPerSlice) {
-    if (opacity <= 0 || unitDistancesPerSlice <= 0) return 0;
-    if (opacity >= 1) return 1;
-    return -portable::expm1(portable::log1p(-opacity) * unitDistancesPerSlice);
+double extinctionOf(double opacity) {
+    if (opacity <= 0) return 0;
+    if (opacity >= 1) return std::numeric_limits<double>::infinity();
+    return -portable::log1p(-opacity);
 }
 
-double unitDistancesIn(double stepWorld, const Volume& volume, const Optics& optics) {
-    const double unitDistance = optics.unitDistance.value_or(smallest(volume.voxelSize()));
-    return optics.extinctionScale * (stepWorld / unitDistance);
+// The share of light taken away on the way from one slice to the next.
+double alphaOf(double extinction, double unitDistancesPerSlice) {
+    if (extinction <= 0 || unitDistancesPerSlice <= 0) return 0;
+    if (std::isinf(extinction)) return 1;
+    return -portable::expm1(-extinction * unitDistancesPerSlice);
 }
 
-// A code's light for one slice, before it is rounded; that of codes that cannot be seen is 0.
-struct CodeLight {
+double unitDistanceOf(const Volume& volume, const Optics& optics) {
+    return optics.unitDistance.value_or(smallest(volume.voxelSize()));
+}
+
+// What a code looks like; those of codes that cannot be seen are left out.
+struct CodeLook {
     Code code;
-    double alpha;
-    glm::dvec3 color;  // not multiplied by alpha
+    Look look;
 };
 
-std::vector<CodeLight> classifyExactly(const Volume& volume, const Optics& optics,
-                                       double unitDistancesPerSlice) {
+std::vector<CodeLook> lookUp(const Volume& volume, const Optics& optics) {
     const TransferFunction& function = optics.transferFunction;
     const glm::dvec2 range =
         function.normalized ? optics.range.value_or(defaultRange(volume)) : glm::dvec2(0, 1);
-    std::vector<CodeLight> codes;
+    std::vector<CodeLook> codes;
     for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] != 0) codes.push_back({Code(code), 0, {}});
+        if (volume.histogram[code] != 0) codes.push_back({Code(code), {}});
     }
     // A volume of floats may have tens of thousands.
     constexpr std::size_t kRun = 4096;
@@ -67,30 +70,50 @@ std::vector<CodeLight> classifyExactly(const Volume& volume, const Optics& optic
             const double x = function.normalized
                                  ? (0.5 * value - 0.5 * range.x) / (0.5 * range.y - 0.5 * range.x)
                                  : value;
-            codes[i].alpha = alphaOf(function.opacityAt(x), unitDistancesPerSlice);
-            codes[i].color = function.colorAt(x);
+            codes[i].look = {extinctionOf(function.opacityAt(x)), function.colorAt(x)};
         }
     });
-    std::erase_if(codes, [](const CodeLight& one) { return !(one.alpha > 0); });
+    std::erase_if(codes, [](const CodeLook& one) { return !(one.look.extinction > 0); });
     return codes;
+}
+
+// A look's light for one step, before it is rounded.
+struct Light {
+    double alpha = 0;
+    glm::dvec3 color{0.0};  // not multiplied by alpha
+};
+
+// Of an index, what it stands for looks like.
+template <typename LookOf>
+std::vector<Light> lightOf(std::size_t count, const LookOf& lookOf, double unitDistances) {
+    std::vector<Light> lights(count);
+    parallelForChunks(count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            lights[i] = {alphaOf(lookOf(i).extinction, unitDistances), lookOf(i).color};
+    });
+    return lights;
 }
 
 // Rounds the colours of all visible codes with one scale a channel.
 class ColorRounder {
   public:
-    explicit ColorRounder(const std::vector<CodeLight>& visible) {
-        oneColor_ = !visible.empty();
-        for (const CodeLight& one : visible) {
+    explicit ColorRounder(const std::vector<Light>& lights) {
+        const Light* first = nullptr;
+        oneColor_ = true;
+        for (const Light& one : lights) {
+            if (!(one.alpha > 0)) continue;
+            if (!first) first = &one;
             largest_ = glm::max(largest_, premultiplied(one));
-            oneColor_ = oneColor_ && one.color == visible.front().color;
+            oneColor_ = oneColor_ && one.color == first->color;
         }
+        oneColor_ = oneColor_ && first;
     }
 
     bool oneColor() const { return oneColor_; }
     // What is too small for a scale is nothing.
     glm::dvec4 scale() const { return largest_ / double(ClassTable::kMax); }
 
-    ColorDigits operator()(const CodeLight& one) const {
+    ColorDigits operator()(const Light& one) const {
         glm::dvec4 exact = premultiplied(one);
         for (int c = 0; c < 4; ++c)
             exact[c] = scale()[c] == 0 ? 0 : exact[c] / largest_[c] * ClassTable::kMax;
@@ -103,89 +126,62 @@ class ColorRounder {
     }
 
   private:
-    static glm::dvec4 premultiplied(const CodeLight& one) {
-        return {one.alpha * one.color, one.alpha};
-    }
+    static glm::dvec4 premultiplied(const Light& one) { return {one.alpha * one.color, one.alpha}; }
 
     glm::dvec4 largest_{0.0};
     bool oneColor_;
 };
 
-// Returns what visible codes look like, in their order. A volume of floats may have tens of
-// thousands.
-std::vector<ColorDigits> roundColors(const std::vector<CodeLight>& visible,
+// Returns lights in digits, in their order. A volume of floats may have tens of thousands.
+std::vector<ColorDigits> roundColors(const std::vector<Light>& lights,
                                      const ColorRounder& rounded) {
-    std::vector<ColorDigits> digits(visible.size());
-    parallelForChunks(visible.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) digits[i] = rounded(visible[i]);
+    std::vector<ColorDigits> digits(lights.size());
+    parallelForChunks(lights.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) digits[i] = rounded(lights[i]);
     });
     return digits;
 }
 
-// Gives equal colours equal numbers, in the order in which they come. An open hash table at most
-// half full: several times as fast as sorting.
-class ColorNumbers {
+// Gives equal looks equal numbers, in the order in which they come, beginning with 1. An open hash
+// table at most half full: several times as fast as sorting.
+class LookNumbers {
   public:
-    explicit ColorNumbers(std::size_t colors)
-        : placeBits_(std::bit_width(2 * colors)), classAt_(std::size_t{1} << placeBits_) {}
+    explicit LookNumbers(std::size_t looks)
+        : placeBits_(std::bit_width(2 * looks)), numberAt_(std::size_t{1} << placeBits_) {}
 
-    Slot numberOf(const ColorDigits& color) {
-        if (isSame(color, {})) return kEmptySlot;
-        std::size_t place = hashOf(color) >> (64 - placeBits_);
-        while (classAt_[place] != 0 && !isSame(colors_[classAt_[place]], color)) {
-            place = (place + 1) % classAt_.size();
+    Slot numberOf(const Look& look) {
+        std::size_t place = hashOf(look) >> (64 - placeBits_);
+        while (numberAt_[place] != 0 && !(looks_[std::size_t(numberAt_[place])] == look))
+            place = (place + 1) % numberAt_.size();
+        if (numberAt_[place] == 0) {
+            if (looks_.size() == ClassTable::kMaxClasses) return ClassTable::kMaxClasses - 1;
+            numberAt_[place] = Slot(looks_.size());
+            looks_.push_back(look);
         }
-        if (classAt_[place] == 0) {
-            if (colors_.size() == ClassTable::kMaxClasses) return ClassTable::kMaxClasses - 1;
-            classAt_[place] = Slot(colors_.size());
-            colors_.push_back(color);
-        }
-        return classAt_[place];
+        return numberAt_[place];
     }
 
-    // [classes]: by number.
-    std::vector<ColorDigits> take() { return std::move(colors_); }
+    // [numbers]: the first is that of nothing.
+    std::vector<Look> take() { return std::move(looks_); }
 
   private:
-    // As a call of the C library, comparing would take as long as all else.
-    static bool isSame(const ColorDigits& a, const ColorDigits& b) {
-        std::uint64_t differing = 0;
-        for (std::size_t i = 0; i < a.size(); ++i)
-            differing |= std::bit_cast<std::uint64_t>(a[i]) ^ std::bit_cast<std::uint64_t>(b[i]);
-        return differing == 0;
-    }
-    static std::uint64_t hashOf(const ColorDigits& color) {
+    static std::uint64_t hashOf(const Look& look) {
         constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 / golden ratio (D. Knuth)
         std::uint64_t hash = 0;
-        for (const ClassTable::Color& digit : color) {
-            const auto bits = std::bit_cast<std::uint64_t>(digit);
-            if (bits != 0) hash = (hash ^ hash >> 32 ^ bits) * kSpread;
-        }
+        // Adding 0 makes -0 the same as 0.
+        for (const double part : {look.extinction, look.color.x, look.color.y, look.color.z})
+            hash = (hash ^ hash >> 32 ^ std::bit_cast<std::uint64_t>(part + 0.0)) * kSpread;
         return hash;
     }
 
     int placeBits_;
-    std::vector<Slot> classAt_;  // 0 where nothing is
-    std::vector<ColorDigits> colors_{ColorDigits{}};
+    std::vector<Slot> numberAt_;  // 0 where nothing is
+    std::vector<Look> looks_{Look{}};
 };
 
-// Of one colour, the opacity says all.
-void numberByOpacity(const std::vector<CodeLight>& visible, const std::vector<ColorDigits>& digits,
-                     ClassTable& table) {
-    std::vector<ClassTable::Color>& colors = table.planes.front().high.colors;
-    colors.resize(ClassTable::kMax + 1);
-    for (int opacity = 0; opacity <= ClassTable::kMax; ++opacity) {
-        for (int c = 0; c < 4; ++c) {
-            colors[opacity][c] = std::int16_t(table.scale[c] == 0 ? 0 : opacity);
-        }
-    }
-    for (std::size_t i = 0; i < visible.size(); ++i)
-        table.classOfSlot[visible[i].code + 1] = digits[i][0][3];
-}
-
 // Orders classes so that those with the same digits lie together: by the first that is not zero,
-// then by the last. Returns the new number of each.
-std::vector<Slot> orderByDigits(std::vector<ColorDigits>& colors) {
+// then by the last; what has none comes first. Returns the new number of each.
+std::vector<Slot> orderByDigits(std::vector<ColorDigits>& colors, std::vector<Look>& looks) {
     constexpr std::size_t kUses = 1 << std::tuple_size_v<ColorDigits>;
     std::array<unsigned, kUses> uses;
     std::iota(uses.begin(), uses.end(), 0u);
@@ -204,15 +200,19 @@ std::vector<Slot> orderByDigits(std::vector<ColorDigits>& colors) {
     }
     std::vector<Slot> numbers(colors.size());
     std::vector<ColorDigits> ordered;
+    std::vector<Look> orderedLooks;
     ordered.reserve(colors.size());
+    orderedLooks.reserve(colors.size());
     for (const unsigned use : uses) {
         for (std::size_t i = 0; occurs[use] && i < colors.size(); ++i) {
             if (useOf[i] != use) continue;
             numbers[i] = Slot(ordered.size());
             ordered.push_back(colors[i]);
+            orderedLooks.push_back(looks[i]);
         }
     }
     colors = std::move(ordered);
+    looks = std::move(orderedLooks);
     return numbers;
 }
 
@@ -232,21 +232,32 @@ void takeDigit(const std::vector<ColorDigits>& colors, std::size_t i, bool alway
     digit.last = int(std::find_if(all.rbegin(), all.rend(), isUsed).base() - all.begin());
 }
 
-void numberByColor(const std::vector<CodeLight>& visible, const std::vector<ColorDigits>& digits,
-                   ClassTable& table) {
-    ColorNumbers numbers(visible.size());
-    for (std::size_t i = 0; i < visible.size(); ++i)
-        table.classOfSlot[visible[i].code + 1] = numbers.numberOf(digits[i]);
-    std::vector<ColorDigits> colors = numbers.take();
-    const std::vector<Slot> numberOf = orderByDigits(colors);
-    for (const CodeLight& one : visible) {
-        Slot& number = table.classOfSlot[one.code + 1];
-        number = numberOf[std::size_t(number)];
-    }
+void takeDigits(const std::vector<ColorDigits>& colors, ClassTable& table) {
     for (std::size_t p = 0; p < table.planes.size(); ++p) {
         takeDigit(colors, 2 * p, true, table.planes[p].high);
         takeDigit(colors, 2 * p + 1, false, table.planes[p].low);
     }
+}
+
+// @param digits  of the visible codes
+void numberByLook(const std::vector<CodeLook>& visible, const std::vector<ColorDigits>& digits,
+                  ClassTable& table) {
+    LookNumbers numbers(visible.size());
+    std::vector<ColorDigits> colors{ColorDigits{}};
+    for (std::size_t i = 0; i < visible.size(); ++i) {
+        // What lets all light through shows nothing.
+        if (usedDigits(digits[i]) == 0) continue;
+        const Slot number = numbers.numberOf(visible[i].look);
+        table.classOfSlot[visible[i].code + 1] = number;
+        if (std::size_t(number) == colors.size()) colors.push_back(digits[i]);
+    }
+    table.looks = numbers.take();
+    const std::vector<Slot> numberOf = orderByDigits(colors, table.looks);
+    for (const CodeLook& one : visible) {
+        Slot& number = table.classOfSlot[one.code + 1];
+        number = numberOf[std::size_t(number)];
+    }
+    takeDigits(colors, table);
 }
 
 // Returns which digits any code has.
@@ -285,24 +296,45 @@ glm::dvec4 ClassTable::lightOfCode(Code code) const {
     return unitsOf(classOfSlot[code + 1]) * scale;
 }
 
+ClassTable ClassTable::atSteps(double steps) const {
+    const DefaultFloats floats;
+    ClassTable table;
+    table.classOfSlot = classOfSlot;
+    table.looks = looks;
+    table.unitDistanceWorld = unitDistanceWorld;
+    table.extinctionScale = extinctionScale;
+    table.stepWorld = stepWorld * steps;
+    table.oneColor = oneColor;
+    const std::vector<Light> lights = lightOf(
+        looks.size(), [&](std::size_t i) { return looks[i]; },
+        extinctionScale * (table.stepWorld / unitDistanceWorld));
+    const ColorRounder rounded(lights);
+    const std::vector<ColorDigits> digits = roundColors(lights, rounded);
+    table.scale = rounded.scale();
+    table.planes.resize(digitsInUse(digits) < 4 ? 1 : 2);
+    takeDigits(digits, table);
+    return table;
+}
+
 ClassTable classify(const Volume& volume, const Optics& optics, double sliceStepWorld) {
     const DefaultFloats floats;
     checkOptics(optics);
-    const std::vector<CodeLight> visible =
-        classifyExactly(volume, optics, unitDistancesIn(sliceStepWorld, volume, optics));
-    const ColorRounder rounded(visible);
-    const std::vector<ColorDigits> digits = roundColors(visible, rounded);
+    const std::vector<CodeLook> visible = lookUp(volume, optics);
     ClassTable table;
+    table.unitDistanceWorld = unitDistanceOf(volume, optics);
+    table.extinctionScale = optics.extinctionScale;
+    table.stepWorld = sliceStepWorld;
+    const std::vector<Light> lights = lightOf(
+        visible.size(), [&](std::size_t i) { return visible[i].look; },
+        table.extinctionScale * (sliceStepWorld / table.unitDistanceWorld));
+    const ColorRounder rounded(lights);
+    const std::vector<ColorDigits> digits = roundColors(lights, rounded);
     table.scale = rounded.scale();
     table.oneColor = rounded.oneColor();
     table.classOfSlot.assign(kSlotCount, kEmptySlot);
     const unsigned used = digitsInUse(digits);
     table.planes.resize(used < 4 ? 1 : 2);
-    if (table.oneColor && used < 2) {
-        numberByOpacity(visible, digits, table);
-    } else {
-        numberByColor(visible, digits, table);
-    }
+    numberByLook(visible, digits, table);
     return table;
 }
 
@@ -312,7 +344,9 @@ double largestAlpha(const Volume& volume, const Optics& optics) {
     double opacity = 0;
     for (const TransferFunction::OpacityPoint& point : optics.transferFunction.opacities)
         opacity = std::max(opacity, point.opacity);
-    return alphaOf(opacity, unitDistancesIn(smallest(volume.voxelSize()), volume, optics));
+    return alphaOf(
+        extinctionOf(opacity),
+        optics.extinctionScale * (smallest(volume.voxelSize()) / unitDistanceOf(volume, optics)));
 }
 
 }  // namespace deltasplat

@@ -41,7 +41,7 @@ TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, 
       pitch_(std::size_t(largest.channels) * (8 * largest.blocks.x + 2 * marginVoxels_ + 8)),
       plane_(pitch_ * (8 * largest.blocks.y + 2 * marginVoxels_)),
       shown_(blocks_.count()) {
-    if (largest.channels == 4 || input.classes.numberedByOpacity()) return;
+    if (largest.channels == 4) return;
     for (const ClassTable::Color& color : colors_) opacities_.push_back(color[3]);
 }
 
@@ -159,13 +159,8 @@ void TileSplatter::paintColors(std::int16_t* plane, std::uint64_t voxels,
 }
 
 void TileSplatter::paintOpacities(std::int16_t* plane, const ClassIndex* classes) const {
-    static_assert(sizeof *plane == sizeof *classes);
     for (int u = 0; u < 8; ++u, plane += pitch_, classes += 8) {
-        if (opacities_.empty()) {
-            std::memcpy(plane, classes, 8 * sizeof *classes);
-        } else {
-            for (int v = 0; v < 8; ++v) plane[v] = opacities_[classes[v]];
-        }
+        for (int v = 0; v < 8; ++v) plane[v] = opacities_[classes[v]];
     }
 }
 

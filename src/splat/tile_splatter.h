@@ -70,7 +70,7 @@ class TileSplatter {
     std::vector<Shown> shown_;             // [block]
     std::vector<glm::ivec2> shownBlocks_;  // those with voxels
     std::vector<glm::ivec2> before_;       // likewise, in the slice before
-    std::vector<std::int16_t> opacities_;  // of one colour: [classes], if not their numbers
+    std::vector<std::int16_t> opacities_;  // of one colour: [classes]
     std::vector<std::uint8_t> lowRows_;    // [tile]: of the row of tiles in hand
 };
 

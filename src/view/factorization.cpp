@@ -222,6 +222,13 @@ Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
     return result;
 }
 
+double planeDistance(const glm::dmat4& worldFromIndex, int sliceAxis) {
+    const glm::dmat3 linear(worldFromIndex);
+    const glm::ivec3 order = sliceOrder(sliceAxis);
+    const glm::dvec3 normal = glm::normalize(glm::cross(linear[order[1]], linear[order[2]]));
+    return std::abs(glm::dot(linear[sliceAxis], normal));
+}
+
 std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox& box,
                                             const glm::dmat4& worldFromIndex,
                                             std::optional<int> resolution) {
@@ -244,8 +251,7 @@ std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox
             const glm::dmat3 stepFromWorld = glm::inverse(region.worldFromStep);
             const Cone cone = coneOf(camera, stepFromWorld);
             if (cone.size() < 3) continue;
-            // A row of the inverse is the normal of the slices, one over their distance long.
-            region.sliceStepWorld = 1 / glm::length(glm::dvec3(glm::transpose(inverse)[axis]));
+            region.sliceStepWorld = planeDistance(worldFromIndex, axis);
             region.eye = glm::dvec3(eye[order[0]], eye[order[1]], eye[order[2]]);
             measureCone(camera, cone, region);
             region.pixelsPerVoxel = pixels;

@@ -3,10 +3,12 @@
 #include <deltasplat/image/write_image.h>
 #include <deltasplat/ingest/read_volume.h>
 #include <deltasplat/optics/transfer_function.h>
+#include <deltasplat/prepared_scene.h>
 #include <deltasplat/render.h>
 #include <deltasplat/synth/write_analytic.h>
 
 #include <cstdio>
+#include <memory>
 
 int main() {
     using namespace deltasplat;
@@ -19,6 +21,13 @@ int main() {
     options.optics.transferFunction.opacities = {{0, 0.5}};
     const RenderResult result = render(volume, options);
     writeImage("slab.exr", result.image, {});
+
+    // The same, prepared for many cameras.
+    const auto shared = std::make_shared<const Volume>(volume);
+    const PreparedScene scene({shared, options.optics}, options);
+    Image image(result.camera.sizePixels);
+    renderComposite(scene, result.camera, image);
+    if (image.rgba != result.image.rgba) return 1;
 
     const float alpha = result.image.pixel(16, 16)[3];
     std::printf("alpha in the middle: %g\n", alpha);

@@ -148,6 +148,24 @@ void addRays(Scenes& scenes) {
     scenes.add("mip-colors", "hydrogen", turned(80, 10), Mode::kMip).mipColors = true;
 }
 
+void addEyes(Scenes& scenes) {
+    CameraOptions camera = turned(33, 21);
+    camera.projection = Projection::kPerspective;
+    camera.fovDegrees = 40;
+    scenes.add("perspective", "engine", camera, colored());
+    scenes.add("perspective-one-color", "cloud", camera, oneColor(0.3));
+    camera.fovDegrees = 110;
+    camera.distanceWorld = 6;
+    scenes.add("perspective-inside", "shepp-logan", camera, colored());
+    camera.nearWorld = 3.3;
+    scenes.add("perspective-near", "fog", camera, oneColor(1));
+    CameraOptions panorama = turned(33, 21);
+    panorama.projection = Projection::kLatlong;
+    panorama.sizePixels = {120, 60};
+    scenes.add("panorama", "engine", panorama, colored());
+    scenes.add("panorama-decades", "decades", panorama, colored());
+}
+
 }  // namespace
 
 std::vector<GoldenScene> goldenScenes() {
@@ -156,6 +174,7 @@ std::vector<GoldenScene> goldenScenes() {
     addFunctions(scenes);
     addOptions(scenes);
     addRays(scenes);
+    addEyes(scenes);
     return scenes.take();
 }
 

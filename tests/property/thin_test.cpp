@@ -16,13 +16,13 @@ namespace {
 constexpr double kShare = 0.005;
 
 // What a code of a volume looks like; those of codes between do not occur.
-struct Look {
+struct TestLook {
     double opacity;  // over a voxel
     glm::dvec3 color;
 };
 
 // Code i + 1 looks like looks[i].
-RenderOptions optionsOf(const std::vector<Look>& looks, glm::ivec2 size) {
+RenderOptions optionsOf(const std::vector<TestLook>& looks, glm::ivec2 size) {
     RenderOptions options;
     options.camera.direction = glm::dvec3(0, 0, -1);
     options.camera.up = glm::dvec3(0, 1, 0);
@@ -54,7 +54,8 @@ Volume fog(bool withVoxel) {
 }
 
 // Looks at the middle of the fog, a pixel a voxel.
-RenderOptions fogOptions(const Look& fogLook, const Look& voxel, const glm::dvec3& direction) {
+RenderOptions fogOptions(const TestLook& fogLook, const TestLook& voxel,
+                         const glm::dvec3& direction) {
     RenderOptions options = optionsOf({fogLook, voxel}, glm::ivec2(kFogSize));
     options.camera.direction = direction;
     return options;
@@ -62,14 +63,14 @@ RenderOptions fogOptions(const Look& fogLook, const Look& voxel, const glm::dvec
 
 const glm::dvec3 kDirections[] = {{0, 0, -1}, {0.3, -0.2, -1}};
 
-const Look kFogs[] = {{2e-5, {1, 1, 1}}, {1e-6, {0.9, 0.5, 0.2}}, {3e-3, {0.001, 0.02, 0.3}}};
-const Look kVoxels[] = {{1, {1, 1, 1}}, {1, {1000, 1, 0.001}}, {0.3, {0.9, 0.5, 0.2}}};
+const TestLook kFogs[] = {{2e-5, {1, 1, 1}}, {1e-6, {0.9, 0.5, 0.2}}, {3e-3, {0.001, 0.02, 0.3}}};
+const TestLook kVoxels[] = {{1, {1, 1, 1}}, {1, {1000, 1, 0.001}}, {0.3, {0.9, 0.5, 0.2}}};
 
 TEST(Thin, FogBesideAnOpaqueVoxelIsAsIfItWereAlone) {
     const Volume volume = fog(true);
-    for (const Look& look : kFogs) {
+    for (const TestLook& look : kFogs) {
         const double alpha = opacityOf(look.opacity, kFogSize.z);
-        for (const Look& voxel : kVoxels) {
+        for (const TestLook& voxel : kVoxels) {
             const Image image = render(volume, fogOptions(look, voxel, kDirections[0])).image;
             // Away from the border and from the voxel.
             for (int y = 2; y < 62; ++y) {
@@ -90,7 +91,7 @@ TEST(Thin, FogDoesNotChangeWhereABrightVoxelIsNot) {
     const Volume alone = fog(false);
     const Volume both = fog(true);
     for (const glm::dvec3& direction : kDirections) {
-        for (const Look& look : kFogs) {
+        for (const TestLook& look : kFogs) {
             const RenderOptions options = fogOptions(look, kVoxels[1], direction);
             const RenderResult expected = render(alone, options);
             const Image image = render(both, options).image;
@@ -121,7 +122,7 @@ Volume blocks(int count) {
 }
 
 // Compares the middles of all blocks.
-void expectBlocks(const std::vector<Look>& looks) {
+void expectBlocks(const std::vector<TestLook>& looks) {
     const Volume volume = blocks(int(looks.size()));
     RenderOptions options = optionsOf(looks, {16 * int(looks.size()) - 4, 12});
     for (const int resolution : {1, 2, 3}) {
@@ -141,8 +142,8 @@ void expectBlocks(const std::vector<Look>& looks) {
 }
 
 TEST(Thin, OpacitiesFromAMillionthToOneAreRightSideBySide) {
-    std::vector<Look> white;
-    std::vector<Look> colored;
+    std::vector<TestLook> white;
+    std::vector<TestLook> colored;
     for (double opacity = 1e-6; opacity < 0.7; opacity *= 1.93) {
         white.push_back({opacity, {1, 1, 1}});
         colored.push_back({opacity, {0.9, 0.5, 0.2 + opacity}});
@@ -155,7 +156,7 @@ TEST(Thin, OpacitiesFromAMillionthToOneAreRightSideBySide) {
 
 TEST(Thin, BrightAndDarkColorsAreRightSideBySide) {
     for (const double opacity : {1.0, 1e-3, 1e-6}) {
-        std::vector<Look> looks;
+        std::vector<TestLook> looks;
         for (const double light : {1e-3, 0.04, 1.0, 31.0, 1e3}) {
             looks.push_back({opacity, {light, 1, 1 / light}});
             looks.push_back({1, {1, 1 / light, light}});

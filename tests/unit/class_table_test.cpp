@@ -168,22 +168,34 @@ TEST(Classify, codesThatLookAlikeShareAClass) {
     }
 }
 
-TEST(Classify, numbersClassesOfOneColorByTheirOpacity) {
+TEST(Classify, oneColorHasEqualChannels) {
     Optics optics = ramp();
     optics.transferFunction.colors = {{0, {0.7, 0, 0.3}}};
     const ClassTable table = classify(volumeWithCodes({0, 10, 30, 60}), optics, 1);
     EXPECT_TRUE(table.oneColor);
-    EXPECT_TRUE(table.numberedByOpacity());
     for (const int code : {0, 10, 30, 60}) {
         const ClassTable::Color color = colorOf(table, code);
-        EXPECT_EQ(table.classOfSlot[code + 1], color[3]);
         EXPECT_EQ(color[0], color[3]);
         EXPECT_EQ(color[1], 0);
         EXPECT_NEAR(channel(table, code, 0), 0.7 * code / 100, table.scale.r * 0.501);
     }
     EXPECT_EQ(table.scale.g, 0);
-    for (int opacity = 0; opacity <= ClassTable::kMax; ++opacity) {
-        ASSERT_EQ(table.planes.front().high.colors[opacity][3], opacity);
+}
+
+// The same classes, whatever steps they are classified for; colours are those of the steps.
+TEST(Classify, classesCanBeColoredForOtherSteps) {
+    for (const bool several : {false, true}) {
+        Optics optics = ramp();
+        if (!several) optics.transferFunction.colors = {{0, {0.7, 0, 0.3}}};
+        const Volume volume = volumeWithCodes({0, 1, 10, 30, 60, 61, 62, 99});
+        const ClassTable one = classify(volume, optics, 1);
+        const ClassTable longer = one.atSteps(1.5);
+        const ClassTable expected = classify(volume, optics, 1.5);
+        EXPECT_EQ(longer.oneColor, !several);
+        for (int code = 0; code < 100; ++code) {
+            if (volume.histogram[std::size_t(code)] == 0) continue;
+            EXPECT_EQ(longer.lightOfCode(Code(code)), expected.lightOfCode(Code(code))) << code;
+        }
     }
 }
 
@@ -204,16 +216,16 @@ TEST(Classify, lastTwoOfAllCodesShareAClass) {
 }
 
 // Codes 1, 2, ... of these opacities and scene-linear colours.
-struct Look {
+struct TestLook {
     double opacity;
     glm::dvec3 color;
 };
 
-ClassTable classifyLooks(const std::vector<Look>& looks) {
+ClassTable classifyLooks(const std::vector<TestLook>& looks) {
     std::vector<int> codes;
     Optics optics;
     optics.transferFunction.linearColors = true;
-    for (const Look& look : looks) {
+    for (const TestLook& look : looks) {
         const int code = int(codes.size()) + 1;
         codes.push_back(code);
         optics.transferFunction.colors.push_back({double(code), look.color});
@@ -224,7 +236,7 @@ ClassTable classifyLooks(const std::vector<Look>& looks) {
 
 // Alpha, colours and their quotients are right to 2^-8; numbers of classes are those of their
 // digits.
-void expectLooks(const std::vector<Look>& looks, const ClassTable& table) {
+void expectLooks(const std::vector<TestLook>& looks, const ClassTable& table) {
     for (std::size_t i = 0; i < looks.size(); ++i) {
         const glm::dvec4 light = table.lightOfCode(Code(i + 1));
         const double alpha = looks[i].opacity;
@@ -257,16 +269,15 @@ TEST(Classify, takesOneDigitWhereThatSaysEnough) {
 }
 
 TEST(Classify, keepsWhatIsThinOrDarkBesideWhatIsOpaqueAndBright) {
-    std::vector<Look> looks;
+    std::vector<TestLook> looks;
     for (int k = 0; k <= 60; ++k) looks.push_back({std::pow(10, -k / 10.0), {1, 1, 1}});
     const ClassTable white = classifyLooks(looks);
     EXPECT_TRUE(white.oneColor);
-    EXPECT_FALSE(white.numberedByOpacity());
     EXPECT_EQ(white.planes.size(), 1u);
     expectLooks(looks, white);
     for (int k = 0; k <= 60; ++k) looks[k].color = {0.9, std::pow(10, k / 20.0), 0.001};
     expectLooks(looks, classifyLooks(looks));
-    std::vector<Look> all;
+    std::vector<TestLook> all;
     for (const double opacity : {1.0, 0.3, 1e-3, 1e-6}) {
         for (const double light : {1e-3, 0.7, 1e3}) {
             all.push_back({opacity, {light, 1 / light, 0.5}});

@@ -13,6 +13,14 @@
 
 namespace deltasplat {
 
+/// What a voxel looks like, whatever the length of a step through it.
+struct Look {
+    double extinction = 0;  ///< over one unit distance, infinite if opaque, not yet scaled
+    glm::dvec3 color{0.0};  ///< scene-linear, not multiplied by opacity
+
+    bool operator==(const Look&) const = default;
+};
+
 /// Classified colours: premultiplied RGBA in integers. Codes that look alike share a class, so that
 /// they make no deltas; class 0 is what cannot be seen.
 ///
@@ -42,11 +50,17 @@ struct ClassTable {
         Digit high{{Color{}}};
         Digit low;  ///< without colours if all are zero
     };
-    /// One or two, the coarser first. No two classes are alike in all digits.
+    /// One or two, the coarser first.
     std::vector<Plane> planes = std::vector<Plane>(1);
     /// [kSlotCount]: the class of every slot, the map that `DeltaOptions::slotMap` takes. 0 for
     /// slot 0, for codes that do not occur and for clear ones.
     std::vector<Slot> classOfSlot;
+    /// [classes]: what each looks like exactly. No two are alike, but where all 65536 codes are
+    /// not.
+    std::vector<Look> looks;
+    double unitDistanceWorld = 1;  ///< over which `looks` have their extinction
+    double extinctionScale = 1;    ///< by which their extinction is still to be multiplied
+    double stepWorld = 1;          ///< that colours are those of
     /// Value of one unit of each channel on the first plane; 0 for a channel that is zero
     /// throughout.
     glm::dvec4 scale{0.0};
@@ -57,11 +71,11 @@ struct ClassTable {
     std::size_t size() const { return planes.front().high.colors.size(); }
     /// Whether one digit says all.
     bool oneDigit() const { return planes.size() == 1 && planes.front().low.colors.empty(); }
-    /// Whether a class's number is its opacity: of one colour in one digit. All opacities have a
-    /// class then.
-    bool numberedByOpacity() const { return oneColor && oneDigit(); }
     /// Returns the value of one unit of each channel on a plane.
     glm::dvec4 scaleOf(int plane) const;
+    /// Returns the same classes for steps of another length.
+    /// @param steps  of those that they are classified for, > 0
+    ClassTable atSteps(double steps) const;
     /// Returns what a class looks like, in units of the first plane.
     glm::dvec4 unitsOf(Slot number) const;
     /// Returns what a code looks like.

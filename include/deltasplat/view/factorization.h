@@ -21,8 +21,8 @@ struct Factorization {
     bool frontToBack = true;  ///< increasing slice index goes away from the camera
     /// World vectors of one step away from the camera along the slice axis, and along u and v.
     glm::dmat3 worldFromStep{1.0};
-    /// World distance that colours are classified for: parallel, between consecutive slices along
-    /// the line of sight; from an eye, between their planes, the least that any line of sight has.
+    /// World distance between consecutive slices along the line of sight; from an eye, where it
+    /// differs from pixel to pixel, between their planes.
     double sliceStepWorld = 1;
     int resolution = 1;         ///< r: sheet pixels a voxel, the same along u and v
     double pixelsPerVoxel = 1;  ///< of the screen, along the base plane's longest stretch; from an
@@ -65,6 +65,10 @@ Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
 std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox& box,
                                             const glm::dmat4& worldFromIndex,
                                             std::optional<int> resolution = {});
+
+/// Returns the world distance between the planes of slices, the least that a line of sight goes
+/// from one to the next.
+double planeDistance(const glm::dmat4& worldFromIndex, int sliceAxis);
 
 /// Whether lines of sight of this direction, in steps along `order` (sliceOrder) of a slice axis,
 /// belong to it: none is longer, and none of a later axis as long.

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "deltasplat/image/image.h"
+#include "deltasplat/ingest/volume.h"
+#include "deltasplat/progress.h"
+#include "deltasplat/render_options.h"
+
+namespace deltasplat {
+
+/// What is to be seen, without a camera.
+struct Scene {
+    std::shared_ptr<const Volume> volume;
+    Optics optics;
+};
+
+/// A scene made ready to be rendered from anywhere: for each slice axis that a camera needs, the
+/// words that slabs are rendered from, made when they are first needed and kept. Copies share them.
+/// Thread-safe: any number of threads may render one.
+class PreparedScene {
+  public:
+    /// @throw Error(kUsage) without a volume, or for optics out of range
+    PreparedScene(Scene scene, SplatOptions options);
+
+    const Scene& scene() const;
+    const SplatOptions& options() const;
+
+    struct Impl;
+    const Impl& impl() const { return *impl_; }
+
+  private:
+    std::shared_ptr<const Impl> impl_;
+};
+
+/// Renders emission and absorption as a camera sees them: what Mode::kComposite is, into a picture
+/// of the caller's. Same scene, same camera: the same pixels as `render`, bit for bit, and on any
+/// number of threads. Times in the stats are those of this call: what was prepared before costs
+/// nothing.
+/// @param image  of the camera's size; cleared first
+/// @throw Error(kUsage) if the image has another size or an option is out of range; Error(kFailed)
+///        for a picture that does not fit this machine's memory; whatever `listener.progress`
+///        throws
+RenderStats renderComposite(const PreparedScene& scene, const Camera& camera, Image& image,
+                            const Listener& listener = {});
+
+}  // namespace deltasplat

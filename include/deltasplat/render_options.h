@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "deltasplat/delta/tolerance.h"
+#include "deltasplat/optics/class_table.h"
+#include "deltasplat/splat/footprint.h"
+#include "deltasplat/view/camera.h"
+#include "deltasplat/view/factorization.h"
+
+namespace deltasplat {
+
+/// Which voxels are stamped. All give the same pixels, bit for bit.
+enum class Method {
+    kAuto,        ///< `sparse` or `delta` for each slab, by the stamps each would need
+    kDelta,       ///< every changed voxel
+    kSparse,      ///< every visible voxel
+    kTraditional  ///< every voxel of the bounding box (Westover 1990)
+};
+
+/// Returns "auto", "delta", "sparse" or "traditional".
+std::string methodName(Method method);
+
+/// What a pixel shows of the volume along its line of sight.
+enum class Mode {
+    kComposite,  ///< emission and absorption through the transfer function, by splatting
+    kXray,       ///< the integral of the value
+    kMip         ///< the largest value
+};
+
+/// Returns "composite", "xray" or "mip".
+std::string modeName(Mode mode);
+
+/// How voxels are splatted.
+struct SplatOptions {
+    Method method = Method::kAuto;
+    /// Footprint's standard deviation in voxels, kMinSigma..kMaxSigma; empty: defaultSigma.
+    std::optional<double> sigma;
+    std::optional<int> resolution;  ///< sheet pixels a voxel; empty: chosen from the screen
+    /// Slices put between two neighbouring ones, 0..kMostBetween, with values mixed. If any, then
+    /// voxels have two sheet pixels if nothing else is asked for; and if their number is even, two
+    /// values along u and v as well. Empty: 1 where the screen asks for two sheet pixels a voxel
+    /// (and neither resolution nor footprintWidth says another thing), but 0 where what is shown is
+    /// thin (no opacity of the transfer function above 0.25 a voxel, extinction scale included),
+    /// where colours jump (TransferFunction::colorsJump), as of labels, or, with a warning, where
+    /// more than kMostDivided blocks of 8x8x8 voxels can be seen.
+    std::optional<int> between;
+    Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
+    std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for
+};
+
+/// What can be asked for. Under kXray and kMip method, tolerance, resolution, extinction and unit
+/// distance have no effect, under kMip sigma neither; the transfer function has none but for the
+/// colours of `mipColors`.
+struct RenderOptions : SplatOptions {
+    Mode mode = Mode::kComposite;
+    /// kMip: the transfer function's colour of the value, opaque, instead of the value itself.
+    bool mipColors = false;
+    CameraOptions camera;
+    Optics optics;
+};
+
+inline constexpr int kMostBetween = 7;
+inline constexpr std::size_t kMostDivided = std::size_t{1} << 16;
+
+/// What was done and how long it took. Times are wall-clock seconds.
+struct RenderStats {
+    Method method = Method::kAuto;
+    Mode mode = Mode::kComposite;
+    std::uint64_t voxels = 0;   ///< of the bounding box, those that they are divided into
+    std::uint64_t visible = 0;  ///< whose classified colour is not zero; kXray: active ones whose
+                                ///< value is not 0; kMip: active ones
+    std::uint64_t deltas =
+        0;  ///< whose classified colour differs from the slice before, key slices included
+    std::uint64_t stamps = 0;  ///< footprints added
+    int slices = 0;            ///< those put between others among them
+    int between = 0;           ///< slices put between two neighbouring ones
+    int parts = 1;             ///< voxels that each was divided into: those are what is counted
+    int slabs = 0;
+    int sliceAxis = 2;
+    int resolution = 1;
+    int footprint = 0;            ///< width and height of the footprint in sheet pixels
+    double prepareSeconds = 0;    ///< classification and taking differences
+    double splatSeconds = 0;      ///< walking and stamping, its share of the wall time of all
+                                  ///< slabs; kXray, kMip: following the lines of sight
+    double compositeSeconds = 0;  ///< compositing and merging, likewise; kXray: the footprint
+    double warpSeconds = 0;
+    double renderSeconds = 0;  ///< splat, composite, merge and warp
+    Tolerance tolerance;
+    /// Most that a pixel may differ from the exact picture's, but for the rounding of floats
+    /// (docs/method.md): 0 without a tolerance, infinity where it is not known.
+    double errorBoundColor = 0;
+    double errorBoundAlpha = 0;
+};
+
+}  // namespace deltasplat

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "prepared_axis.h"
+
+#include <utility>
+
+#include "default_floats.h"
+#include "delta/code_blocks.h"
+#include "deltasplat/error.h"
+#include "optics/hold_rule.h"
+#include "optics/largest_alpha.h"
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+Encoding encodingOf(Method method) {
+    switch (method) {
+        case Method::kAuto:
+            return Encoding::kSmaller;
+        case Method::kDelta:
+            return Encoding::kChanges;
+        default:
+            return Encoding::kWhole;
+    }
+}
+
+// Optics as the volume has them, for levels to be seen by.
+Optics withRange(const Volume& volume, Optics optics) {
+    if (!optics.range) optics.range = defaultRange(volume);
+    return optics;
+}
+
+Scene requireVolume(Scene scene) {
+    if (scene.volume) return scene;
+    throw Error(ErrorCode::kUsage, gotExpected("scene", "no volume", "one"));
+}
+
+// Whether what is shown is thin. Of thin voxels, two sheet pixels show little that one does not,
+// and values mixed little more (docs/decisions.md). Not what is seen decides, lest a voxel or an
+// angle change the picture of all others.
+bool showsThin(const Volume& volume, const Optics& optics) {
+    constexpr double kMost = 0.25;
+    return largestAlpha(volume, optics) <= kMost;
+}
+
+std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, int sliceAxis,
+                                            const Subdivision& parts, double steps,
+                                            const Listener& listener) {
+    const Volume& volume = *scene.scene.volume;
+    const Tolerance& tolerance = scene.options.tolerance;
+    std::optional<ValueMixer> mixer;
+    if (parts.divides()) mixer.emplace(volume, parts);
+    const Volume& seen = mixer ? mixer->levels() : volume;
+    // What is held does not depend on the camera: straight ways decide.
+    const double straight = planeDistance(volume.worldFromIndex, sliceAxis) / parts.slices;
+    const double first = tolerance.isExact() ? steps : 1;
+    const auto axis = std::make_shared<PreparedAxis>(PreparedAxis{
+        sliceAxis, parts, steps, classify(seen, scene.optics, straight * first), {}, {}});
+    listener.report(0.05);
+    axis->deltas =
+        packDeltas(volume, {sliceAxis, encodingOf(scene.options.method), axis->classes.classOfSlot,
+                            holdRule(seen, axis->classes, tolerance), mixer ? &*mixer : nullptr});
+    if (steps != first) axis->classes = axis->classes.atSteps(steps);
+    if (!axis->classes.oneDigit()) axis->digitVoxels.emplace(axis->deltas, axis->classes);
+    return axis;
+}
+
+}  // namespace
+
+std::uint64_t PreparedAxis::stamps(Method method) const {
+    std::uint64_t stamps = 0;
+    for (const PlannedSlab& slab : deltas.slabs)
+        stamps += method == Method::kTraditional ? 0 : slab.stamps();
+    return method == Method::kTraditional ? std::uint64_t(deltas.box.voxels()) : stamps;
+}
+
+PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne)
+    : scene(requireVolume(std::move(ofScene))),
+      optics(withRange(*scene.volume, scene.optics)),
+      options(std::move(withOptions)),
+      isThin(showsThin(*scene.volume, scene.optics)),
+      isForOne(forOne) {}
+
+std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
+                                                              const Subdivision& parts,
+                                                              double steps,
+                                                              const Listener& listener) const {
+    std::shared_ptr<Place> place;
+    {
+        const std::lock_guard lock(mutex_);
+        std::shared_ptr<Place>& known = places_[{sliceAxis, parts.slices, parts.within}];
+        if (!known) known = std::make_shared<Place>();
+        place = known;
+    }
+    const std::lock_guard lock(place->mutex);
+    // Work of another picture, taken on while waiting here, might want the same axis.
+    if (!place->axis)
+        isolated([&] {
+            place->axis = prepare(*this, sliceAxis, parts, isForOne ? steps : 1, listener);
+        });
+    return place->axis;
+}
+
+std::size_t PreparedScene::Impl::blocksSeen(int sliceAxis) const {
+    const Volume& volume = *scene.volume;
+    const ClassTable classes =
+        classify(volume, optics, planeDistance(volume.worldFromIndex, sliceAxis));
+    return BlockReader(*volume.codes, nullptr, sliceAxis, classes.classOfSlot).blocks().size();
+}
+
+PreparedScene::PreparedScene(Scene scene, SplatOptions options) {
+    const DefaultFloats floats;
+    impl_ = std::make_shared<const Impl>(std::move(scene), std::move(options));
+}
+
+const Scene& PreparedScene::scene() const {
+    return impl_->scene;
+}
+
+const SplatOptions& PreparedScene::options() const {
+    return impl_->options;
+}
+
+}  // namespace deltasplat

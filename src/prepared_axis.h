@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "delta/packed_deltas.h"
+#include "deltasplat/prepared_scene.h"
+#include "splat/digit_voxels.h"
+
+namespace deltasplat {
+
+/// A volume as slices along one axis: what slabs are rendered from, whatever the camera.
+struct PreparedAxis {
+    int sliceAxis;
+    Subdivision parts;
+    double steps;  ///< that classes are coloured for, straight ways from slice to slice
+    ClassTable classes;
+    PackedDeltas deltas;
+    std::optional<DigitVoxels> digitVoxels;  ///< where classes have several digits
+
+    /// Footprints that a method adds.
+    std::uint64_t stamps(Method method) const;
+};
+
+/// The axes of a scene.
+struct PreparedScene::Impl {
+    /// @param forOne  whether there will be one picture only
+    Impl(Scene ofScene, SplatOptions withOptions, bool forOne = false);
+
+    Scene scene;
+    Optics optics;  ///< with the range that the volume has
+    SplatOptions options;
+    bool isThin;
+    bool isForOne;
+
+    /// Returns an axis, made if it is not there.
+    /// @param steps  what the picture in hand wants classes to be coloured for, for which they are
+    /// if there will be no other
+    std::shared_ptr<const PreparedAxis> axis(int sliceAxis, const Subdivision& parts, double steps,
+                                             const Listener& listener) const;
+    /// Returns how many blocks of 8x8x8 voxels can be seen.
+    std::size_t blocksSeen(int sliceAxis) const;
+
+  private:
+    struct Place {
+        std::mutex mutex;
+        std::shared_ptr<const PreparedAxis> axis;
+    };
+
+    mutable std::mutex mutex_;
+    mutable std::map<std::array<int, 3>, std::shared_ptr<Place>> places_;  // by axis and parts
+};
+
+/// As the public one, of a scene's insides.
+RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& camera, Image& image,
+                            const Listener& listener);
+
+}  // namespace deltasplat
