@@ -77,7 +77,7 @@ std::uint64_t PreparedAxis::stamps(Method method) const {
 PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne)
     : scene(requireVolume(std::move(ofScene))),
       optics(withRange(*scene.volume, scene.optics)),
-      options(std::move(withOptions)),
+      options(withOptions),
       isThin(showsThin(*scene.volume, scene.optics)),
       isForOne(forOne) {}
 
@@ -110,7 +110,7 @@ std::size_t PreparedScene::Impl::blocksSeen(int sliceAxis) const {
 
 PreparedScene::PreparedScene(Scene scene, SplatOptions options) {
     const DefaultFloats floats;
-    impl_ = std::make_shared<const Impl>(std::move(scene), std::move(options));
+    impl_ = std::make_shared<const Impl>(std::move(scene), options);
 }
 
 const Scene& PreparedScene::scene() const {

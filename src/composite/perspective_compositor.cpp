@@ -152,7 +152,8 @@ void PerspectiveCompositor::addRun(Sheets sheets, int slice, glm::ivec2 first, i
                       std::min(last - x, kMostScaled),
                       nullptr,
                       layer.pixel({x, first.y})};
-        while (run.columns(columns_.taps) > kMostScaledColumns) run.pixels /= 2;
+        // The base plane is never so coarse that one pixel reads as many.
+        while (run.pixels > 1 && run.columns(columns_.taps) > kMostScaledColumns) run.pixels /= 2;
         run.steps = stepsOf(slice, {x, first.y}, run.pixels);
         runs_.push_back(run);
         x += run.pixels;
@@ -170,7 +171,7 @@ void PerspectiveCompositor::flush() {
 const float* PerspectiveCompositor::stepsOf(int slice, glm::ivec2 first, int pixels) {
     const float* steps = steps_ ? steps_->at(first) : nullptr;
     if (!plane_.isCut(slice)) return steps;
-    shares_.resize(std::size_t(pixels + StepLengths::kSpare));
+    shares_.resize(std::size_t(pixels) + StepLengths::kSpare);
     for (int i = 0; i < pixels; ++i) {
         const auto share = float(plane_.shareOf(slice, first + glm::ivec2(i, 0)));
         shares_[std::size_t(i)] = steps ? share * steps[i] : share;

@@ -39,7 +39,7 @@ HWY_INLINE void sumRows(const ScaledSlice& slice, const ScaledRun& run, float* c
     // No more than a sheet's rows have spare pixels for.
     const hn::CappedTag<float, kChannels == 4 ? 16 : 8> tag;
     const hn::RebindToSigned<decltype(tag)> whole;
-    const std::size_t count = std::size_t(kChannels * run.columns(slice.columnTaps));
+    const std::size_t count = std::size_t{kChannels} * std::size_t(run.columns(slice.columnTaps));
     for (std::size_t p = 0; p < slice.scales.size(); ++p) {
         const auto scale = loadScale<kChannels>(tag, slice.scales[p]);
         const auto weight = [&](int n) { return hn::Mul(scale, hn::Set(tag, run.rowWeights[n])); };

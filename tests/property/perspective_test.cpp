@@ -136,7 +136,7 @@ RenderOptions optionsOf(double opacity, Projection projection, glm::ivec2 size) 
 }
 
 double marchedDb(const TestVolume& volume, const RenderResult& result, double opacity) {
-    return psnr(result.image, marched(volume, result.camera, opacity, 0.1));
+    return psnr(result.image, marched(volume, result.camera, opacity, 0.2));
 }
 
 TEST(Perspective, agreesWithARayMarcherOnSmoothVolumes) {
