@@ -96,8 +96,8 @@ class RegionWarper {
 
     // What a pixel reads.
     struct Place {
-        glm::dvec2 position;  // on the raster, from its first pixel
-        glm::u8vec2 rungs;    // filters along the raster's axes
+        glm::dvec2 position{0.0};  // on the raster, from its first pixel
+        glm::u8vec2 rungs{0};      // filters along the raster's axes
         bool belongs = false;
     };
 
