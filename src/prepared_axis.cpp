@@ -65,13 +65,20 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     return axis;
 }
 
+std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
+    const Volume& volume = *scene.scene.volume;
+    const ClassTable classes =
+        classify(volume, scene.optics, planeDistance(volume.worldFromIndex, sliceAxis));
+    return BlockReader(*volume.codes, nullptr, sliceAxis, classes.classOfSlot).blocks().size();
+}
+
 }  // namespace
 
 std::uint64_t PreparedAxis::stamps(Method method) const {
+    if (method == Method::kTraditional) return std::uint64_t(deltas.box.voxels());
     std::uint64_t stamps = 0;
-    for (const PlannedSlab& slab : deltas.slabs)
-        stamps += method == Method::kTraditional ? 0 : slab.stamps();
-    return method == Method::kTraditional ? std::uint64_t(deltas.box.voxels()) : stamps;
+    for (const PlannedSlab& slab : deltas.slabs) stamps += slab.stamps();
+    return stamps;
 }
 
 PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne)
@@ -102,10 +109,10 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
 }
 
 std::size_t PreparedScene::Impl::blocksSeen(int sliceAxis) const {
-    const Volume& volume = *scene.volume;
-    const ClassTable classes =
-        classify(volume, optics, planeDistance(volume.worldFromIndex, sliceAxis));
-    return BlockReader(*volume.codes, nullptr, sliceAxis, classes.classOfSlot).blocks().size();
+    const std::lock_guard lock(blocksMutex_);
+    std::optional<std::size_t>& blocks = blocksSeen_[std::size_t(sliceAxis)];
+    if (!blocks) isolated([&] { blocks = countBlocks(*this, sliceAxis); });
+    return *blocks;
 }
 
 PreparedScene::PreparedScene(Scene scene, SplatOptions options) {

@@ -6,7 +6,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <utility>
 
 #include "delta/packed_deltas.h"
 #include "deltasplat/prepared_scene.h"
@@ -43,7 +42,7 @@ struct PreparedScene::Impl {
     /// if there will be no other
     std::shared_ptr<const PreparedAxis> axis(int sliceAxis, const Subdivision& parts, double steps,
                                              const Listener& listener) const;
-    /// Returns how many blocks of 8x8x8 voxels can be seen.
+    /// Returns how many blocks of 8x8x8 voxels can be seen; counted once for each axis.
     std::size_t blocksSeen(int sliceAxis) const;
 
   private:
@@ -54,6 +53,8 @@ struct PreparedScene::Impl {
 
     mutable std::mutex mutex_;
     mutable std::map<std::array<int, 3>, std::shared_ptr<Place>> places_;  // by axis and parts
+    mutable std::mutex blocksMutex_;
+    mutable std::array<std::optional<std::size_t>, 3> blocksSeen_;  // [slice axis]
 };
 
 /// As the public one, of a scene's insides.

@@ -72,9 +72,10 @@ class CompositeRender {
   private:
     void runView(const Factorization& view, const Listener& listener) {
         const Clock::time_point start = Clock::now();
+        // From an eye, each pixel has its own.
+        const double steps = view.eye ? 1 : stepsOf(view);
         const std::shared_ptr<const PreparedAxis> axis =
-            scene_.axis(view.sliceAxis, plan_->partsAlong(view.sliceAxis),
-                        view.eye ? 1 : stepsOf(view), listener);
+            scene_.axis(view.sliceAxis, plan_->partsAlong(view.sliceAxis), steps, listener);
         stats_.prepareSeconds += secondsSince(start);
         countIn(*axis);
         listener.report(0.2);
@@ -83,7 +84,7 @@ class CompositeRender {
         if (view.eye) {
             renderRegion(*axis, view, listener);
         } else {
-            renderParallel(*axis, view, listener);
+            renderParallel(*axis, view, steps, listener);
         }
         stats_.renderSeconds += secondsSince(renderStart);
     }
@@ -108,16 +109,15 @@ class CompositeRender {
         return std::abs(steps - 1) < kSame ? 1 : steps;
     }
 
-    void renderParallel(const PreparedAxis& axis, const Factorization& view,
+    void renderParallel(const PreparedAxis& axis, const Factorization& view, double steps,
                         const Listener& listener) {
-        const double steps = stepsOf(view);
-        Colors colors{&axis.classes, axis.digitVoxels ? &*axis.digitVoxels : nullptr};
+        Colors colors = colorsOf(axis.classes, axis.digitVoxels);
         std::optional<ClassTable> oblique;
         std::optional<DigitVoxels> digitVoxels;
         if (steps != axis.steps) {
             oblique = axis.classes.atSteps(steps / axis.steps);
             if (!oblique->oneDigit()) digitVoxels.emplace(axis.deltas, *oblique);
-            colors = {&*oblique, digitVoxels ? &*digitVoxels : nullptr};
+            colors = colorsOf(*oblique, digitVoxels);
         }
         const Footprint footprint = footprintOf(axis, view);
         const SheetLayout layout = layoutOf(axis, footprint);
@@ -138,6 +138,9 @@ class CompositeRender {
         const ClassTable* classes;
         const DigitVoxels* digitVoxels;
     };
+    static Colors colorsOf(const ClassTable& classes, const std::optional<DigitVoxels>& voxels) {
+        return {&classes, voxels ? &*voxels : nullptr};
+    }
 
     Footprint footprintOf(const PreparedAxis& axis, const Factorization& view) {
         const int within = axis.parts.within;
@@ -187,7 +190,7 @@ class CompositeRender {
         const SheetLayout layout = layoutOf(axis, footprint);
         const double density = densityOf(axis, thinView, layout.resolution);
         const BasePlane plane(thinView, camera_, layout.firstSlice, layout.firstVoxel, 1 / density);
-        const Colors colors{&axis.classes, axis.digitVoxels ? &*axis.digitVoxels : nullptr};
+        const Colors colors = colorsOf(axis.classes, axis.digitVoxels);
         Layer merged = renderSlabs(axis, colors, footprint, layout, plane, listener);
         if (axis.classes.oneColor) lengthenSteps(plane, merged);
         listener.report(0.95);
@@ -232,7 +235,7 @@ class CompositeRender {
                 for (int x = span.x; x < span.y; ++x)
                     steps.push_back(float(plane.stepsAt({layer.box.min.x + x, first.y})));
                 const std::size_t count = steps.size();
-                steps.resize(count + StepLengths::kSpare);
+                steps.resize(count + kStepsSpare);
                 repeatOpacity(layer.pixel(first), steps.data(), count);
             }
         });

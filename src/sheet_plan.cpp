@@ -2,7 +2,6 @@
 #include "sheet_plan.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "deltasplat/error.h"

@@ -9,12 +9,26 @@
 #include <cmath>
 
 #include "composite/full_rows.h"
+#include "optics/opacity_steps.h"
 
 namespace deltasplat {
 namespace {
 
 // Pixels between two runs that are not worth an end and a beginning.
 constexpr int kShortGap = 12;
+
+// Returns the base pixels [x, y) along an axis, of those of a box, that read any of the sheet
+// pixels [first, last).
+glm::ivec2 readersOf(const SheetReading& reading, int axis, int first, int last,
+                     const PlaneBox& box) {
+    const double start = reading.offset[axis] + reading.fraction[axis];
+    const double reach = readingReach(reading);
+    const auto bounded = [&](double pixel) {
+        return int(std::clamp(pixel, double(box.min[axis]), double(box.max[axis])));
+    };
+    return {bounded(std::floor((first - reach - start) / reading.scale)),
+            bounded(std::ceil((last - 1 + reach - start) / reading.scale) + 1)};
+}
 
 }  // namespace
 
@@ -36,7 +50,7 @@ void PerspectiveCompositor::composite(Sheets sheets, int slice, const SheetReadi
               plane_.frontToBack()};
     for (std::size_t p = 0; p < sheets.size(); ++p) slice_.sheets[p] = sheets[p]->row(0);
     findTiles(reading, layout.tiles().x);
-    for (int y = box_.min.y; y < box_.max.y; ++y) addRow(sheets, slice, y, layer);
+    for (int y = box_.min.y; y < box_.max.y; ++y) addRow(slice, y, layer);
     flush();
 }
 
@@ -58,16 +72,9 @@ PlaneBox PerspectiveCompositor::seenBox(Sheets sheets, const SheetReading& readi
     }
     if (any == 0) return {};
     const SheetBox full{{kTilePixels * firstTile, firstFull_}, {kTilePixels * lastTile, lastFull_}};
-    const double reach = readingReach(reading);
-    PlaneBox seen = box;
-    for (int axis = 0; axis < 2; ++axis) {
-        const double start = reading.offset[axis] + reading.fraction[axis];
-        const double first = std::floor((full.min[axis] - reach - start) / reading.scale);
-        const double last = std::ceil((full.max[axis] - 1 + reach - start) / reading.scale) + 1;
-        seen.min[axis] = int(std::clamp(first, double(box.min[axis]), double(box.max[axis])));
-        seen.max[axis] = int(std::clamp(last, double(box.min[axis]), double(box.max[axis])));
-    }
-    return seen;
+    const glm::ivec2 x = readersOf(reading, 0, full.min.x, full.max.x, box);
+    const glm::ivec2 y = readersOf(reading, 1, full.min.y, full.max.y, box);
+    return {{x.x, y.x}, {x.y, y.y}};
 }
 
 // Looks at all rows of tiles in which any of the sheet rows [firstRow, lastRow) lies.
@@ -92,7 +99,7 @@ void PerspectiveCompositor::findFull(Sheets sheets, int firstRow, int lastRow) {
     for (std::size_t i = 0; i < full_.size(); ++i) seen_[i % words_] |= full_[i];
 }
 
-void PerspectiveCompositor::addRow(Sheets sheets, int slice, int y, Layer& layer) {
+void PerspectiveCompositor::addRow(int slice, int y, Layer& layer) {
     const int firstRow = rows_.first[std::size_t(y - box_.min.y)];
     std::fill(seen_.begin(), seen_.end(), 0);
     std::uint64_t any = 0;
@@ -111,37 +118,27 @@ void PerspectiveCompositor::addRow(Sheets sheets, int slice, int y, Layer& layer
         if (to <= from) return;
         // What is nearly together is done together.
         if (from > last + kShortGap) {
-            addRun(sheets, slice, {first, y}, last, layer);
+            addRun(slice, {first, y}, last, layer);
             first = from;
         }
         last = std::max(last, to);
     });
-    addRun(sheets, slice, {first, y}, last, layer);
+    addRun(slice, {first, y}, last, layer);
 }
 
 // Finds the columns of the box that read each tile.
 void PerspectiveCompositor::findTiles(const SheetReading& reading, int tiles) {
-    const double start = reading.offset.x + reading.fraction.x;
-    const double reach = readingReach(reading);
-    tiles_.resize(std::size_t(tiles));
-    for (int tile = 0; tile < tiles; ++tile) {
-        const double begin = kTilePixels * tile - reach - start;
-        const double end = kTilePixels * (tile + 1) - 1 + reach - start;
-        const auto bounded = [&](double x) {
-            return int(std::clamp(x, double(box_.min.x), double(box_.max.x)));
-        };
-        tiles_[std::size_t(tile)] = {bounded(std::floor(begin / reading.scale)),
-                                     bounded(std::ceil(end / reading.scale) + 1)};
-    }
+    tiles_.clear();
+    for (int tile = 0; tile < tiles; ++tile)
+        tiles_.push_back(readersOf(reading, 0, kTilePixels * tile, kTilePixels * (tile + 1), box_));
 }
 
 // Takes on pixels [first.x, last) of a row.
-void PerspectiveCompositor::addRun(Sheets sheets, int slice, glm::ivec2 first, int last,
-                                   Layer& layer) {
+void PerspectiveCompositor::addRun(int slice, glm::ivec2 first, int last, Layer& layer) {
     if (first.x >= last) return;
     layer.extend(first.y, first.x, last);
     const auto row = std::size_t(first.y - box_.min.y);
-    const std::size_t firstOfRow = sheets.front()->pitch() * std::size_t(rows_.first[row]);
+    const std::size_t firstOfRow = slice_.pitch * std::size_t(rows_.first[row]);
     for (int x = first.x; x < last;) {
         const auto column = std::size_t(x - box_.min.x);
         ScaledRun run{firstOfRow + std::size_t(layer.channels * columns_.first[column]),
@@ -171,7 +168,7 @@ void PerspectiveCompositor::flush() {
 const float* PerspectiveCompositor::stepsOf(int slice, glm::ivec2 first, int pixels) {
     const float* steps = steps_ ? steps_->at(first) : nullptr;
     if (!plane_.isCut(slice)) return steps;
-    shares_.resize(std::size_t(pixels) + StepLengths::kSpare);
+    shares_.resize(std::size_t(pixels) + kStepsSpare);
     for (int i = 0; i < pixels; ++i) {
         const auto share = float(plane_.shareOf(slice, first + glm::ivec2(i, 0)));
         shares_[std::size_t(i)] = steps ? share * steps[i] : share;

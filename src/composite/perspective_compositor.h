@@ -36,8 +36,8 @@ class PerspectiveCompositor {
     void findFull(Sheets sheets, int firstRow, int lastRow);
     PlaneBox seenBox(Sheets sheets, const SheetReading& reading, const PlaneBox& box);
     void findTiles(const SheetReading& reading, int tiles);
-    void addRow(Sheets sheets, int slice, int y, Layer& layer);
-    void addRun(Sheets sheets, int slice, glm::ivec2 first, int last, Layer& layer);
+    void addRow(int slice, int y, Layer& layer);
+    void addRun(int slice, glm::ivec2 first, int last, Layer& layer);
     void flush();
     const float* stepsOf(int slice, glm::ivec2 first, int pixels);
 

@@ -56,7 +56,7 @@ struct ScaledRun {
     const float* pairWeights;    ///< as ScaledTaps::pairs, or null
     int pixels;                  ///< at most kMostScaled; columns at most kMostScaledColumns
     /// For how many steps through the slice each pixel's opacity counts: `[pixels]`, and what a
-    /// vector reads over the end (StepLengths::kSpare). Of one channel null: one.
+    /// vector reads over the end (kStepsSpare). Of one channel null: one.
     const float* steps;
     float* layer;  ///< the layer at the run's first pixel
 

@@ -127,17 +127,7 @@ PlaneBox SlabRenderer::boxOf(const Strip& strip, const SeenSlab& seen) const {
 // The part of the sheet that a slab needs for a strip.
 SheetLayout SlabRenderer::layoutOf(const Strip& strip, const SeenSlab& seen) const {
     const SheetLayout& whole = input_.layout;
-    if (input_.plane.isParallel()) {
-        if (strips_.size() == 1) return whole;
-        SheetBox rows{{0, whole.sizePixels.y}, {whole.sizePixels.x, 0}};
-        for (const int slice : {seen.firstSlice, seen.lastSlice}) {
-            const int offset = readingOf(input_.plane, whole, slice).offset.y;
-            rows.min.y = std::min(rows.min.y, strip.first + offset);
-            // Reading takes in the row behind the last as well.
-            rows.max.y = std::max(rows.max.y, strip.last + offset + 1);
-        }
-        return layoutPart(whole, rows);
-    }
+    if (input_.plane.isParallel() && strips_.size() == 1) return whole;
     const PlaneBox box = boxOf(strip, seen);
     SheetBox part{whole.sizePixels, {0, 0}};
     for (const int slice : {seen.firstSlice, seen.lastSlice}) {

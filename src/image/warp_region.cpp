@@ -90,7 +90,7 @@ class RegionWarper {
     double gain() const { return ladder_.gain() * ladder_.gain(); }
 
   private:
-    // What is looked at at once, and has one filter.
+    // What is looked at at once to find out whether the raster is empty there.
     static constexpr int kBand = 8;
     static constexpr int kStretch = 16;
 

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "optics/opacity_steps.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -121,7 +122,7 @@ double BasePlane::stepsAt(glm::ivec2 pixel) const {
 }
 
 StepLengths::StepLengths(const BasePlane& plane, const PlaneBox& planeBox)
-    : box(planeBox), values(std::size_t(box.size().x) * std::size_t(box.size().y) + kSpare) {
+    : box(planeBox), values(std::size_t(box.size().x) * std::size_t(box.size().y) + kStepsSpare) {
     parallelForChunks(std::size_t(box.size().y), [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
             float* steps = &values[row * std::size_t(box.size().x)];

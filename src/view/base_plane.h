@@ -96,11 +96,8 @@ class BasePlane {
 /// How many steps each base plane pixel's line of sight takes through a slice (stepsAt), `[row]
 /// [width]`. Multi-threaded.
 struct StepLengths {
-    /// More values behind the last row, for vectors to read.
-    static constexpr int kSpare = 16;
-
     PlaneBox box;
-    std::vector<float> values;
+    std::vector<float> values;  ///< and kStepsSpare more
 
     StepLengths() = default;
     StepLengths(const BasePlane& plane, const PlaneBox& planeBox);

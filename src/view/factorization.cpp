@@ -206,7 +206,6 @@ Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
     step[order[1]] = -result.shiftPerSlice.x;
     step[order[2]] = -result.shiftPerSlice.y;
     result.sliceStepWorld = glm::length(worldFromIndexLinear * step);
-    result.worldFromStep = stepsOf(worldFromIndexLinear, order, result.frontToBack);
 
     // Pixels go to the plane through the target, then along the line of sight to the base plane.
     const auto baseFromWorldVector = [&](const glm::dvec3& world) {
@@ -289,8 +288,6 @@ Factorization subdivided(const Factorization& view, const Subdivision& parts) {
     result.shiftPerSlice *= within / parts.slices;
     result.sliceStepWorld /= parts.slices;
     result.pixelsPerVoxel /= within;
-    for (int axis = 0; axis < 3; ++axis)
-        result.worldFromStep[axis] /= axis == 0 ? double(parts.slices) : within;
     // The first thin voxel lies before the middle of the one that it is a part of, on each axis.
     const glm::dvec2 first =
         0.5 * (within - 1) + within * (0.5 - 0.5 / parts.slices) * view.shiftPerSlice;

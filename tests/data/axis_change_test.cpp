@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <string>
 
+#include "data/data_scene.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/render.h"
 
@@ -16,27 +17,14 @@ namespace deltasplat {
 namespace {
 
 const std::filesystem::path kData = DELTASPLAT_SHARED_DATA;
-const std::filesystem::path kTransferFunctions = kData / "../bench";
+const std::filesystem::path kTransferFunctions = test::transferFunctionsOf(kData);
 
-struct Scene {
-    const char* file;
-    const char* transferFunction;
-};
+class AxisChange : public testing::TestWithParam<test::DataScene> {};
 
-void PrintTo(const Scene& scene, std::ostream* out) {
-    *out << scene.file;
-}
+INSTANTIATE_TEST_SUITE_P(Data, AxisChange, test::dataScenes());
 
-class AxisChange : public testing::TestWithParam<Scene> {};
-
-INSTANTIATE_TEST_SUITE_P(
-    Data, AxisChange,
-    testing::Values(Scene{"engine/engine_256x256x128_uint8.raw.gz", "tf_ct.json"},
-                    Scene{"boston_teapot/boston_teapot_256x256x178_uint8.raw.gz", "tf_ct.json"},
-                    Scene{"vdb_smoke/smoke.vdb", "tf_fog.json"}));
-
-RenderResult renderTurned(const Volume& volume, const Scene& scene, int size, double azimuth,
-                          double elevation) {
+RenderResult renderTurned(const Volume& volume, const test::DataScene& scene, int size,
+                          double azimuth, double elevation) {
     RenderOptions options;
     options.camera.sizePixels = glm::ivec2(size);
     options.optics.transferFunction =
@@ -47,11 +35,7 @@ RenderResult renderTurned(const Volume& volume, const Scene& scene, int size, do
 }
 
 double psnr(const Image& a, const Image& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
-        sum += std::pow(double(a.rgba[i]) - double(b.rgba[i]), 2);
-    }
-    return -10 * std::log10(sum / double(a.rgba.size()));
+    return -10 * std::log10(test::meanSquare(a, b));
 }
 
 TEST_P(AxisChange, PicturesOnBothSidesOfFortyFiveDegreesAgree) {

@@ -45,9 +45,9 @@ struct CameraOptions {
         targetWorld;  ///< falls on the middle of the picture; default: middle of the box
     /// kOrtho: world width of the picture; default: the box of voxel centres just fits both ways.
     std::optional<double> frameWidthWorld;
-    /// Where lines of sight begin, unless they are parallel. It then looks at the target, if
-    /// neither `direction` nor `view` is meant (see `looksAtTarget`); angles turn the line of sight
-    /// about the eye. Default: `distanceWorld` before the target; kLatlong: the target.
+    /// Where lines of sight begin, unless they are parallel. From there it looks in `direction`, or
+    /// else at the target; angles turn the line of sight about the eye. Default: `distanceWorld`
+    /// before the target; kLatlong: the target.
     std::optional<glm::dvec3> eyeWorld;
     /// kPerspective: full vertical angle of view, more than 0 and less than 180 degrees; default:
     /// by `focalMm` and `apertureMm` if one is given, else kDefaultFov.
@@ -105,7 +105,7 @@ struct Camera {
     glm::dmat4 cameraFromWorld() const;
     /// OpenEXR's worldToNDC: (0, 0) is the upper left corner of the picture, (1, 1) the lower right
     /// one; z, which has no meaning there, is that of cameraFromWorld. kLatlong, which no matrix
-    /// describes, has that of an upright picture as wide as high around the target.
+    /// describes, has that of a parallel picture of its frame.
     glm::dmat4 ndcFromWorld() const;
 };
 

@@ -19,8 +19,6 @@ namespace deltasplat {
 struct Factorization {
     int sliceAxis = 2;        ///< the volume axis most parallel to the lines of sight
     bool frontToBack = true;  ///< increasing slice index goes away from the camera
-    /// World vectors of one step away from the camera along the slice axis, and along u and v.
-    glm::dmat3 worldFromStep{1.0};
     /// World distance between consecutive slices along the line of sight; from an eye, where it
     /// differs from pixel to pixel, between their planes.
     double sliceStepWorld = 1;
@@ -35,6 +33,8 @@ struct Factorization {
 
     /// Index position (slice, u, v) that lines of sight begin at; empty: parallel.
     std::optional<glm::dvec3> eye;
+    /// World vectors of one step away from the eye along the slice axis, and along u and v.
+    glm::dmat3 worldFromStep{1.0};
     /// Slopes that belong to this slice axis, along u and v, and of these the box that the picture
     /// shows.
     double slopeLimit = 1;
