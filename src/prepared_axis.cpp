@@ -24,9 +24,11 @@ Encoding encodingOf(Method method) {
     }
 }
 
-// Optics as the volume has them, for levels to be seen by.
-Optics withRange(const Volume& volume, Optics optics) {
+// Optics as the volume has them, for levels to be seen by. Where voxels have colours of their own
+// classes tell opacities apart, nothing else.
+Optics opticsOf(const Volume& volume, Optics optics) {
     if (!optics.range) optics.range = defaultRange(volume);
+    if (optics.colorBy != ColorBy::kValue) optics.transferFunction.colors = {{0, glm::dvec3(1)}};
     return optics;
 }
 
@@ -54,14 +56,28 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     // What is held does not depend on the camera: straight ways decide.
     const double straight = planeDistance(volume.worldFromIndex, sliceAxis) / parts.slices;
     const double first = tolerance.isExact() ? steps : 1;
-    const auto axis = std::make_shared<PreparedAxis>(PreparedAxis{
-        sliceAxis, parts, steps, classify(seen, scene.optics, straight * first), {}, {}});
+    const auto axis = std::make_shared<PreparedAxis>();
+    axis->sliceAxis = sliceAxis;
+    axis->parts = parts;
+    axis->steps = steps;
+    axis->classes = classify(seen, scene.optics, straight * first);
     listener.report(0.05);
-    axis->deltas =
-        packDeltas(volume, {sliceAxis, encodingOf(scene.options.method), axis->classes.classOfSlot,
-                            holdRule(seen, axis->classes, tolerance), mixer ? &*mixer : nullptr});
+    PackOptions pack{sliceAxis, encodingOf(scene.options.method), axis->classes.classOfSlot,
+                     holdRule(seen, axis->classes, tolerance), mixer ? &*mixer : nullptr};
+    const VoxelPainter* painter = scene.painter.get();
+    if (painter) {
+        axis->classes.oneColor = false;
+        pack.painter = painter;
+        pack.colorHolds =
+            colorHoldRule(VoxelRounder(axis->classes, painter->brightest()), tolerance);
+    }
+    axis->deltas = packDeltas(volume, pack);
     if (steps != first) axis->classes = axis->classes.atSteps(steps);
-    if (!axis->classes.oneDigit()) axis->digitVoxels.emplace(axis->deltas, axis->classes);
+    if (painter) {
+        axis->own.emplace(axis->deltas, axis->classes, painter->brightest());
+    } else if (!axis->classes.oneDigit()) {
+        axis->digitVoxels.emplace(axis->deltas, axis->classes);
+    }
     return axis;
 }
 
@@ -83,7 +99,8 @@ std::uint64_t PreparedAxis::stamps(Method method) const {
 
 PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne)
     : scene(requireVolume(std::move(ofScene))),
-      optics(withRange(*scene.volume, scene.optics)),
+      optics(opticsOf(*scene.volume, scene.optics)),
+      painter(makePainter(*scene.volume, scene.optics.colorBy)),
       options(withOptions),
       isThin(showsThin(*scene.volume, scene.optics)),
       isForOne(forOne) {}

@@ -9,18 +9,21 @@
 
 #include "delta/packed_deltas.h"
 #include "deltasplat/prepared_scene.h"
+#include "kept_memory.h"
 #include "splat/digit_voxels.h"
+#include "splat/word_colors.h"
 
 namespace deltasplat {
 
 /// A volume as slices along one axis: what slabs are rendered from, whatever the camera.
 struct PreparedAxis {
-    int sliceAxis;
+    int sliceAxis = 2;
     Subdivision parts;
-    double steps;  ///< that classes are coloured for, straight ways from slice to slice
+    double steps = 1;  ///< that classes are coloured for, straight ways from slice to slice
     ClassTable classes;
     PackedDeltas deltas;
     std::optional<DigitVoxels> digitVoxels;  ///< where classes have several digits
+    std::optional<WordColors> own;           ///< where voxels have colours of their own
 
     /// Footprints that a method adds.
     std::uint64_t stamps(Method method) const;
@@ -32,7 +35,8 @@ struct PreparedScene::Impl {
     Impl(Scene ofScene, SplatOptions withOptions, bool forOne = false);
 
     Scene scene;
-    Optics optics;  ///< with the range that the volume has
+    Optics optics;  ///< with the range that the volume has, and white if voxels have own colours
+    std::unique_ptr<const VoxelPainter> painter;  ///< of own colours; null: there are none
     SplatOptions options;
     bool isThin;
     bool isForOne;
@@ -58,7 +62,8 @@ struct PreparedScene::Impl {
 };
 
 /// As the public one, of a scene's insides.
-RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& camera, Image& image,
-                            const Listener& listener);
+/// @param memory  for sheets and layers
+RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& camera,
+                            KeptMemory& memory, Image& image, const Listener& listener);
 
 }  // namespace deltasplat

@@ -63,7 +63,8 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
         // The volume outlives the scene.
         const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
         const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
-        stats = renderComposite(scene, result.camera, result.image, listener);
+        KeptMemory memory;
+        stats = renderComposite(scene, result.camera, memory, result.image, listener);
     } else {
         if (options.camera.projection != Projection::kOrtho) {
             throw Error(ErrorCode::kUsage,

@@ -42,6 +42,11 @@ Parser<Projection> projection() {
                              projectionName);
 }
 
+Parser<ColorBy> colorBy() {
+    return named<ColorBy>({ColorBy::kValue, ColorBy::kX, ColorBy::kY, ColorBy::kZ, ColorBy::kIndex},
+                          colorByName);
+}
+
 Parser<std::int64_t> bits() {
     return [](const std::string& option, const std::string& text) {
         return choice({"8", "16"})(option, text) == "8" ? 8 : 16;
@@ -189,6 +194,11 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
                    "opacity (default: the smallest voxel size)");
     group.addValue("--extinction", "S", optics.extinctionScale, number(0, 1e30),
                    withDefault("Scales the extinction", numberText(optics.extinctionScale)));
+    group.addValue("--color-by", "WHAT", optics.colorBy, colorBy(),
+                   withDefault("Where colours come from: value, the transfer function, or to find\n"
+                               "one's way by x, y, z, from blue to red along the world's axis, or\n"
+                               "index, which grows along i, j and k in red, green and blue",
+                               colorByName(optics.colorBy)));
     group.addValue("--background", "R,G,B[,A]", options.background, color(),
                    "Scene-linear colour behind the volume (default: transparent)");
 }

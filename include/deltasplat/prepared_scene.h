@@ -34,14 +34,32 @@ class PreparedScene {
     std::shared_ptr<const Impl> impl_;
 };
 
-/// Renders emission and absorption as a camera sees them: what Mode::kComposite is, into a picture
-/// of the caller's. Same scene, same camera: the same pixels as `render`, bit for bit, and on any
-/// number of threads. Times in the stats are those of this call: what was prepared before costs
-/// nothing.
-/// @param image  of the camera's size; cleared first
-/// @throw Error(kUsage) if the image has another size or an option is out of range; Error(kFailed)
-///        for a picture that does not fit this machine's memory; whatever `listener.progress`
-///        throws
+/// Renders pictures of prepared scenes and keeps the memory that they take, for the next: at most
+/// what was in use at one time, until the renderer is gone. Thread-safe.
+class Renderer {
+  public:
+    Renderer();
+    ~Renderer();
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+
+    /// Renders emission and absorption as a camera sees them: what Mode::kComposite is, into a
+    /// picture of the caller's. Same scene, same camera: the same pixels as `render`, bit for bit,
+    /// and on any number of threads. Times in the stats are those of this call: what was prepared
+    /// before costs nothing.
+    /// @param image  of the camera's size; cleared first
+    /// @throw Error(kUsage) if the image has another size or an option is out of range;
+    ///        Error(kFailed) for a picture that does not fit this machine's memory; whatever
+    ///        `listener.progress` throws
+    RenderStats render(const PreparedScene& scene, const Camera& camera, Image& image,
+                       const Listener& listener = {});
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Renders one picture of a prepared scene, as Renderer::render.
 RenderStats renderComposite(const PreparedScene& scene, const Camera& camera, Image& image,
                             const Listener& listener = {});
 

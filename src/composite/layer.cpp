@@ -16,14 +16,21 @@ void Layer::reset(const PlaneBox& planeBox) {
     spans.assign(std::size_t(box.size().y), kNothing);
 }
 
+void mergeRowBehind(Layer& front, const LayerRow& row, int y) {
+    const glm::ivec2 span = row.span;
+    if (span.x >= span.y) return;
+    const glm::ivec2 first(row.firstColumn + span.x, y);
+    front.extend(y, first.x, first.x + span.y - span.x);
+    mergeBehind(front.pixel(first), row.values + front.channels * std::ptrdiff_t{span.x},
+                std::size_t(span.y - span.x), front.channels);
+}
+
 void mergeRowBehind(Layer& front, const Layer& layer, int y) {
     if (y < layer.box.min.y || y >= layer.box.max.y) return;
-    const glm::ivec2 span = layer.spans[std::size_t(y - layer.box.min.y)];
-    if (span.x >= span.y) return;
-    const glm::ivec2 first(layer.box.min.x + span.x, y);
-    front.extend(y, first.x, first.x + span.y - span.x);
-    mergeBehind(front.pixel(first), layer.pixel(first), std::size_t(span.y - span.x),
-                front.channels);
+    const auto row = std::size_t(y - layer.box.min.y);
+    const std::size_t width = std::size_t(layer.channels) * std::size_t(layer.box.size().x);
+    mergeRowBehind(front, {layer.values.data() + row * width, layer.box.min.x, layer.spans[row]},
+                   y);
 }
 
 }  // namespace deltasplat

@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <memory_resource>
 #include <vector>
 
 #include "composite/over_kernels.h"
@@ -18,15 +19,17 @@ namespace deltasplat {
 struct Layer {
     PlaneBox box;
     int channels;
-    std::vector<float> values;
+    std::pmr::vector<float> values;
 
     /// [rows]: columns [x, y) of the box, outside of which a row is zero.
     std::vector<glm::ivec2> spans;
 
-    explicit Layer(const PlaneBox& planeBox, int channelCount = 4)
+    /// @param memory  for the values
+    explicit Layer(const PlaneBox& planeBox, int channelCount = 4,
+                   std::pmr::memory_resource& memory = *std::pmr::get_default_resource())
         : box(planeBox),
           channels(channelCount),
-          values(std::size_t(channels) * box.size().x * box.size().y),
+          values(std::size_t(channels) * box.size().x * box.size().y, &memory),
           spans(std::size_t(box.size().y), kNothing) {}
 
     /// Makes an empty layer of the same number of channels, in the memory that this one has.
@@ -46,6 +49,15 @@ struct Layer {
     static constexpr glm::ivec2 kNothing{std::numeric_limits<int>::max(), 0};
 };
 
+/// A row of a layer.
+struct LayerRow {
+    const float* values;  ///< [width][channels]
+    int firstColumn;      ///< of the base plane
+    glm::ivec2 span;      ///< columns [x, y) outside of which it is zero
+};
+
+/// Puts row `y` behind a layer that covers it.
+void mergeRowBehind(Layer& front, const LayerRow& row, int y);
 /// Puts row `y` of a layer, if it has it, behind another layer that covers it.
 void mergeRowBehind(Layer& front, const Layer& layer, int y);
 

@@ -8,7 +8,7 @@ namespace deltasplat {
 Layer LayerFold::take(const PlaneBox& box) {
     std::unique_lock lock(mutex_);
     ++taken_;
-    Layer layer({}, channels_);
+    Layer layer({}, channels_, *front_.values.get_allocator().resource());
     if (idle_.empty()) {
         lock.unlock();
         // Slabs of the same length reach boxes that differ by a pixel.

@@ -24,41 +24,52 @@ double layerBytes(const PlaneBox& box, int channels) {
 
 }  // namespace
 
-SlabRenderer::SlabRenderer(const SlabInput& input, const Listener& listener)
+std::vector<SeenSlab> seenSlabs(const SlabInput& input) {
+    std::vector<SeenSlab> seen;
+    for (const PlannedSlab& slab : input.deltas.slabs) {
+        glm::ivec2 slices(slab.firstSlice, slab.firstSlice + slab.sliceCount - 1);
+        if (!input.plane.isParallel()) slices = input.plane.seen(slices);
+        if (slices.y >= slices.x) seen.push_back({&slab, slices.x, slices.y});
+    }
+    if (!input.plane.frontToBack()) std::reverse(seen.begin(), seen.end());
+    return seen;
+}
+
+PlaneBox reachOfSeen(const SlabInput& input, const SeenSlab& seen) {
+    return reachOf(input.plane, input.layout, seen.firstSlice,
+                   seen.lastSlice - seen.firstSlice + 1);
+}
+
+PlaneBox reachOfAll(const SlabInput& input, const std::vector<SeenSlab>& seen) {
+    PlaneBox all;
+    for (const SeenSlab& one : seen) {
+        const PlaneBox reach = reachOfSeen(input, one);
+        const bool isFirst = &one == &seen.front();
+        all.min = isFirst ? reach.min : glm::min(all.min, reach.min);
+        all.max = isFirst ? reach.max : glm::max(all.max, reach.max);
+    }
+    return all;
+}
+
+SlabRenderer::SlabRenderer(const SlabInput& input, const Listener& listener,
+                           std::optional<int> only)
     : input_(input),
       progress_(listener),
       channels_(input.layout.channels),
-      splat_{input.deltas, input.classes, input.footprint, input.stampEmptyVoxels,
-             input.digitVoxels},
-      merged_({}, channels_) {
+      splat_{input.deltas,      input.classes, input.footprint, input.stampEmptyVoxels,
+             input.digitVoxels, input.own,     input.memory},
+      seen_(seenSlabs(input)),
+      merged_({}, channels_, input.memory) {
     for (int plane = 0; plane < int(input.classes.planes.size()); ++plane)
         scales_.emplace_back(input.classes.scaleOf(plane) / double(Footprint::kOne));
-    findSeen();
+    if (only) seen_ = {seen_[std::size_t(*only)]};
+    reach_ = reachOfAll(input, seen_);
     if (seen_.empty() || reach_.empty()) return;
     cutIntoStrips();
     findLargest();
     requireSlabMemory();
-    if (!input.plane.isParallel() && channels_ == 4) steps_ = StepLengths(input.plane, reach_);
-}
-
-void SlabRenderer::findSeen() {
-    for (const PlannedSlab& slab : input_.deltas.slabs) {
-        glm::ivec2 slices(slab.firstSlice, slab.firstSlice + slab.sliceCount - 1);
-        if (!input_.plane.isParallel()) slices = input_.plane.seen(slices);
-        if (slices.y < slices.x) continue;
-        const SeenSlab seen{&slab, slices.x, slices.y};
-        const PlaneBox reach = reachOfSlab(seen);
-        const bool isFirst = seen_.empty();
-        reach_.min = isFirst ? reach.min : glm::min(reach_.min, reach.min);
-        reach_.max = isFirst ? reach.max : glm::max(reach_.max, reach.max);
-        seen_.push_back(seen);
-    }
-    if (!input_.plane.frontToBack()) std::reverse(seen_.begin(), seen_.end());
-}
-
-PlaneBox SlabRenderer::reachOfSlab(const SeenSlab& seen) const {
-    return reachOf(input_.plane, input_.layout, seen.firstSlice,
-                   seen.lastSlice - seen.firstSlice + 1);
+    if (!input.plane.isParallel() && channels_ == 4)
+        steps_.emplace(input.plane, reach_, input.memory);
 }
 
 void SlabRenderer::run() {
@@ -118,7 +129,7 @@ void SlabRenderer::cutIntoStrips() {
 
 // The base plane's part that a slab reaches in a strip.
 PlaneBox SlabRenderer::boxOf(const Strip& strip, const SeenSlab& seen) const {
-    PlaneBox box = reachOfSlab(seen);
+    PlaneBox box = reachOfSeen(input_, seen);
     box.min.y = std::clamp(strip.first, box.min.y, box.max.y);
     box.max.y = std::clamp(strip.last, box.min.y, box.max.y);
     return box;
@@ -156,7 +167,7 @@ void SlabRenderer::requireSlabMemory() const {
     double bytes = Splatter::bytes(splat_, largest_) * std::min<double>(threadCount(), pieces);
     // The front slab's is the merged one.
     for (std::size_t i = 1; i < seen_.size(); ++i)
-        bytes += layerBytes(reachOfSlab(seen_[i]), channels_);
+        bytes += layerBytes(reachOfSeen(input_, seen_[i]), channels_);
     bytes += layerBytes(reach_, channels_);
     if (!input_.plane.isParallel()) bytes += layerBytes(reach_, 1);
     requireMemory("sheets and layers at " + std::to_string(largest_.resolution) + " pixels a voxel",
@@ -201,8 +212,7 @@ double SlabRenderer::renderSlab(const SeenSlab& seen, const Strip& strip, const 
                               compositor.composite(sheets, reading, box.min.y, box.max.y, layer);
                           });
     }
-    PerspectiveCompositor compositor(input_.plane, scales_,
-                                     steps_.values.empty() ? nullptr : &steps_);
+    PerspectiveCompositor compositor(input_.plane, scales_, steps_ ? &*steps_ : nullptr);
     return walkSlices(seen, layout, box, splatter,
                       [&](const auto& sheets, int slice, const SheetReading& reading) {
                           compositor.composite(sheets, slice, reading, box, layer);

@@ -4,7 +4,9 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
+#include <memory_resource>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "composite/layer_fold.h"
@@ -20,11 +22,27 @@ struct SlabInput {
     const PackedDeltas& deltas;
     const ClassTable& classes;
     const DigitVoxels* digitVoxels;  ///< null where there is one digit
+    const WordColors* own;           ///< as SplatInput
     bool stampEmptyVoxels;           ///< as SplatInput
     const Footprint& footprint;
     const SheetLayout& layout;  ///< of whole sheets
     const BasePlane& plane;
+    std::pmr::memory_resource& memory;  ///< for sheets and layers
 };
+
+/// A slab of which some slices are seen: those of [firstSlice, lastSlice].
+struct SeenSlab {
+    const PlannedSlab* slab;
+    int firstSlice;
+    int lastSlice;
+};
+
+/// Returns the slabs of which something may be seen, from the front on.
+std::vector<SeenSlab> seenSlabs(const SlabInput& input);
+/// Returns the base plane's part that one of them reaches.
+PlaneBox reachOfSeen(const SlabInput& input, const SeenSlab& seen);
+/// Returns the part that all of them reach.
+PlaneBox reachOfAll(const SlabInput& input, const std::vector<SeenSlab>& seen);
 
 /// Renders slabs into layers, and puts these together. Work is cut into pieces of a slab and a
 /// *strip*, some rows of the base plane that are worked on by themselves; how many strips there are
@@ -32,9 +50,11 @@ struct SlabInput {
 class SlabRenderer {
   public:
     /// @throw Error(kFailed) if sheets and layers do not fit into memory
-    SlabRenderer(const SlabInput& input, const Listener& listener);
+    /// @param only  of the slabs of which something is seen, counted from the front, the only one
+    /// to be rendered; empty: all
+    SlabRenderer(const SlabInput& input, const Listener& listener, std::optional<int> only = {});
 
-    /// Renders all slabs of which something is seen, from the front on.
+    /// Renders the slabs, from the front on.
     void run();
     /// Returns what the slabs look like together.
     Layer merge();
@@ -49,14 +69,6 @@ class SlabRenderer {
         int last;
         std::unique_ptr<LayerFold> layers;
     };
-    // A slab of which some slices are seen: those of [firstSlice, lastSlice].
-    struct SeenSlab {
-        const PlannedSlab* slab;
-        int firstSlice;
-        int lastSlice;
-    };
-    void findSeen();
-    PlaneBox reachOfSlab(const SeenSlab& seen) const;
     void cutIntoStrips();
     int stripCount() const;
     SheetLayout layoutOf(const Strip& strip, const SeenSlab& seen) const;
@@ -76,9 +88,9 @@ class SlabRenderer {
     std::vector<glm::vec4> scales_;  // of the planes of colours
     int channels_;
     SplatInput splat_;
-    std::vector<SeenSlab> seen_;  // from the front on
-    PlaneBox reach_;              // of all of them
-    StepLengths steps_;           // from an eye, of colours
+    std::vector<SeenSlab> seen_;        // from the front on
+    PlaneBox reach_;                    // of all of them
+    std::optional<StepLengths> steps_;  // from an eye, of colours
     std::vector<Strip> strips_;
     SheetLayout largest_;  // holds the part of any piece
     Layer merged_;

@@ -3,6 +3,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <type_traits>
 #include <vector>
 
@@ -66,6 +67,12 @@ GridBase::Ptr fromCodes(const Volume& volume) {
     return translate<Grid>(
         volume.codes->tree, [&](Code code) { return valueAs<T>(values[code]); },
         volume.hasBackground ? volume.background : 0);
+}
+
+// Whether OpenVDB has grids of a type.
+bool isGridType(const std::string& type) {
+    const auto types = {"float", "half", "double", "int32", "int64", "bool", "mask"};
+    return std::find(types.begin(), types.end(), type) != types.end();
 }
 
 // What a volume without OpenVDB's types becomes.
@@ -132,7 +139,8 @@ std::string typeOf(const GridBase& grid) {
 GridBase::ConstPtr gridOf(const Volume& volume) {
     openvdb::initialize();
     if (volume.source && volume.hasBackground) return volume.source->grid;
-    const std::string type = volume.hasBackground ? volume.type : smallestType(factsOf(volume));
+    const bool keepsType = volume.hasBackground && isGridType(volume.type);
+    const std::string type = keepsType ? volume.type : smallestType(factsOf(volume));
     const GridBase::ConstPtr grid =
         volume.source ? fromSource(volume.source->grid, type) : fromCodes(volume, type);
     return grid->copyGridReplacingMetadataAndTransform(metadataOf(volume),

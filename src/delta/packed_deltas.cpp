@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <memory>
 #include <numeric>
 #include <optional>
 
@@ -84,6 +85,10 @@ class Holder {
     // [kSlotCount]: the number of each slot.
     std::span<const Slot> numberOfSlot() const { return numberOf_; }
     ClassIndex classOf(Slot number) const { return classOf_[number]; }
+    // Whether a voxel may go on as another slot, of the same class or not.
+    bool allows(Slot held, Slot slot) const {
+        return held != 0 && slot != 0 && options_.holds(slots_[held], slots_[slot]);
+    }
     // Returns what a voxel goes on as.
     Slot next(Slot held, Slot slot) const {
         return next_.empty() ? ask(held, slot)
@@ -95,9 +100,7 @@ class Holder {
 
     // Slots of one class need no tolerance: the later one goes on.
     Slot ask(Slot held, Slot slot) const {
-        const bool keeps = held != 0 && slot != 0 && classOf_[held] != classOf_[slot] &&
-                           options_.holds(slots_[held], slots_[slot]);
-        return keeps ? held : slot;
+        return classOf_[held] != classOf_[slot] && allows(held, slot) ? held : slot;
     }
 
     const PackOptions& options_;
@@ -111,7 +114,7 @@ class Holder {
 struct PendingWord {
     std::uint64_t visible;
     std::uint64_t changed;
-    std::size_t classes;  // where they begin in the packer's storage
+    std::size_t classes;  // where they begin in the packer's storage, and colours in theirs
     int slice;
     glm::ivec2 block;
 };
@@ -120,6 +123,7 @@ struct PendingWord {
 constexpr std::size_t kMostWords = 9;
 constexpr double kBytesPerBlock =
     kMostWords * (sizeof(DeltaWord) + sizeof(PendingWord) + sizeof(SliceClasses));
+constexpr double kColorBytesPerBlock = kMostWords * 64 * sizeof(VoxelColor);
 
 // How voxels become classes. Null: as they are.
 struct PackTools {
@@ -127,6 +131,7 @@ struct PackTools {
     const ValueMixer* mixer = nullptr;
     const MixedSight* sight = nullptr;
     const CodeTree* codes = nullptr;  // that values are mixed from
+    glm::ivec3 first{0};              // the voxel that slices, u and v of words are counted from
 };
 
 // What a packer packs: columns of blocks (same u and v), slices in increasing order.
@@ -139,6 +144,27 @@ struct Columns {
 struct PackedColumns {
     std::vector<PendingWord> words;
     std::vector<ClassIndex> storage;
+    std::vector<VoxelColor> colors;  // likewise, if voxels have their own
+};
+
+// Colours that the voxels of a block have of their own.
+struct OwnColors {
+    using Slice = std::array<VoxelColor, 64>;
+    std::array<VoxelColor, 512> block{};
+    std::array<Slice, 4> before{};  // [part]: of the slice before it
+    std::array<Slice, 4> held{};    // [part]
+
+    // Adds to changes where what is seen has another colour than in the slice before.
+    void compare(std::size_t part, BlockChanges& changes) const {
+        const VoxelColor* last = before[part].data();
+        const VoxelColor* slice = block.data();
+        for (int s = 0; s < 8; ++s, last = slice, slice += 64) {
+            for (std::uint64_t rest = changes.visible[s]; rest != 0; rest &= rest - 1) {
+                const int n = std::countr_zero(rest);
+                if (!(slice[n] == last[n])) changes.changed[s] |= std::uint64_t{1} << n;
+            }
+        }
+    }
 };
 
 class ColumnPacker {
@@ -150,6 +176,7 @@ class ColumnPacker {
           slotMap_(slotMap),
           planner_(box),
           layout_(planner_.shortest()) {
+        if (options.painter) own_ = std::make_unique<OwnColors>();
         if (!tools.mixer) return;
         parts_ = tools.mixer->parts();
         window_.emplace(*tools.codes, options.sliceAxis, parts_.within == 1);
@@ -165,6 +192,7 @@ class ColumnPacker {
         for (int half = 0; half < parts_.within; ++half) {
             halves_[std::size_t(half)].words.reserve(most);
             halves_[std::size_t(half)].storage.reserve(64 * most);
+            if (own_) halves_[std::size_t(half)].colors.reserve(64 * most);
         }
         for (const CodeBlock* block = columns.begin; block != columns.end; ++block) {
             const bool isFirst = block == columns.begin || !follows(block);
@@ -172,6 +200,7 @@ class ColumnPacker {
             if (isFirst) {
                 before_ = {};
                 held_ = {};
+                if (own_) *own_ = {};
             }
             if (tools_.mixer) {
                 addMixed(*block);
@@ -219,23 +248,67 @@ class ColumnPacker {
 
     void read(const CodeBlock& block) {
         if (!tools_.holder) {
-            if (!block.leaf) return classes_.fill(ClassIndex(block.tileSlot));
-            return readLeaf(*block.leaf, options_.sliceAxis, mapped(slotMap_), classes_.data());
+            if (!block.leaf) {
+                classes_.fill(ClassIndex(block.tileSlot));
+            } else {
+                readLeaf(*block.leaf, options_.sliceAxis, mapped(slotMap_), classes_.data());
+            }
+            if (own_) color(block.position);
+            return;
         }
         if (block.leaf) {
             readLeaf(*block.leaf, options_.sliceAxis, mapped(slotMap_), slots_.data());
         } else {
             slots_.fill(block.tileSlot);
         }
-        hold(slots_, held_[0]);
+        hold(slots_, block.position, {0, 0});
     }
 
-    void hold(const BlockSlots& slots, std::array<Slot, 64>& before) {
+    // @param part  of the column: what was before is kept for each
+    void hold(const BlockSlots& slots, const glm::ivec3& position, const glm::ivec2& part) {
+        std::array<Slot, 64>& before = held_[numberOf(part)];
+        if (own_) return holdColors(slots, position, before, own_->held[numberOf(part)]);
         for (std::size_t i = 0; i < slots.size(); ++i) {
             Slot& held = before[i & 63];
             held = tools_.holder->next(held, slots[i]);
             classes_[i] = tools_.holder->classOf(held);
         }
+    }
+
+    // What is held is slot and colour together, each of which has to allow it.
+    void holdColors(const BlockSlots& slots, const glm::ivec3& position,
+                    std::array<Slot, 64>& before, OwnColors::Slice& colorsBefore) {
+        const Holder& holder = *tools_.holder;
+        for (std::size_t i = 0; i < slots.size(); ++i) classes_[i] = holder.classOf(slots[i]);
+        color(position);
+        for (std::size_t i = 0; i < slots.size(); ++i) {
+            Slot& held = before[i & 63];
+            VoxelColor& heldColor = colorsBefore[i & 63];
+            const VoxelLook look{classes_[i], own_->block[i]};
+            const VoxelLook heldLook{holder.classOf(held), heldColor};
+            const bool keeps = !(heldLook == look) && holder.allows(held, slots[i]) &&
+                               options_.colorHolds(heldLook, look);
+            if (!keeps) {
+                held = slots[i];
+                heldColor = look.color;
+            }
+            classes_[i] = holder.classOf(held);
+            own_->block[i] = heldColor;
+        }
+    }
+
+    // Gives the classes in hand colours of their own.
+    // @param position  of their block, (slice, u, v)
+    void color(const glm::ivec3& position) {
+        const glm::ivec3 order = sliceOrder(options_.sliceAxis);
+        const glm::dvec3 per(parts_.slices, parts_.within, parts_.within);
+        BlockPlace place{glm::dvec3(0), glm::dmat3(0)};
+        for (int axis = 0; axis < 3; ++axis) {
+            const int thin = 8 * position[axis];
+            place.first[order[axis]] = tools_.first[axis] + (thin + 0.5) / per[axis] - 0.5;
+            place.steps[axis][order[axis]] = 1 / per[axis];
+        }
+        options_.painter->paint(place, classes_, own_->block);
     }
 
     void addMixed(const CodeBlock& block) {
@@ -248,16 +321,16 @@ class ColumnPacker {
                 const int slices = layout_.slicesOf(position.x);
                 // The box may begin and end within a block: some of what it becomes lies outside.
                 if (position.x < layout_.firstBlock || slices <= 0) return;
-                std::array<Slot, 64>& held = held_[numberOf(part)];
                 const int number = (part.x * parts_.slices + s) * parts_.within + part.y;
                 const BlockSlots& slots = mixed_[std::size_t(number)];
                 if (!isSeen) {
                     classes_.fill(kEmptySlot);
-                    held.fill(kEmptySlot);
+                    held_[numberOf(part)].fill(kEmptySlot);
                 } else if (tools_.holder) {
-                    hold(slots, held);
+                    hold(slots, position, part);
                 } else {
                     std::copy(slots.begin(), slots.end(), classes_.begin());
+                    if (own_) color(position);
                 }
                 add(position, part, slices);
             });
@@ -272,6 +345,7 @@ class ColumnPacker {
         BlockChanges changes;
         compareClasses(before.data(), classes_.data(), changes.visible.data(),
                        changes.changed.data());
+        if (own_) own_->compare(numberOf(part), changes);
         for (int s = 0; s < slices; ++s) {
             const std::uint64_t visible = changes.visible[s];
             const std::uint64_t changed = changes.changed[s];
@@ -285,8 +359,12 @@ class ColumnPacker {
             packed.words.push_back(
                 {visible, changed, packed.storage.size(), slice, {position.y, position.z}});
             packed.storage.insert(packed.storage.end(), &classes_[64 * s], &classes_[64 * s] + 64);
+            if (!own_) continue;
+            const VoxelColor* colors = &own_->block[64 * std::size_t(s)];
+            packed.colors.insert(packed.colors.end(), colors, colors + 64);
         }
         std::copy_n(&classes_[7 * 64], 64, before.begin());
+        if (own_) std::copy_n(&own_->block[7 * 64], 64, own_->before[numberOf(part)].begin());
     }
 
     struct Window {
@@ -309,6 +387,7 @@ class ColumnPacker {
     std::optional<Window> window_;
     std::vector<BlockSlots> mixed_;  // [part along u][along slices][along v]
     std::array<PackedColumns, 2> halves_;
+    std::unique_ptr<OwnColors> own_;  // null: classes say all
 };
 
 // Cuts the blocks into runs of whole columns, for each of which there is one packer. The cuts
@@ -355,7 +434,7 @@ IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& part
 
 // Puts the packers' words in the order of slices.
 void collectWords(const std::vector<PackedColumns*>& columns, const SlabLayout& layout,
-                  PackedDeltas& packed) {
+                  bool hasColors, PackedDeltas& packed) {
     const auto sliceOf = [&](const PendingWord& word) {
         return std::size_t(word.slice - packed.box.min.x);
     };
@@ -374,13 +453,17 @@ void collectWords(const std::vector<PackedColumns*>& columns, const SlabLayout& 
     std::partial_sum(packed.begins.begin(), packed.begins.end(), packed.begins.begin());
     packed.words.resize(packed.begins.back());
     std::vector<std::size_t> next(packed.begins.begin(), packed.begins.end() - 1);
+    if (hasColors) packed.colors.resize(packed.words.size());
     for (PackedColumns* column : columns) {
         packed.storage.push_back(std::move(column->storage));
         const ClassIndex* classes = packed.storage.back().data();
+        packed.colorStorage.push_back(std::move(column->colors));
+        const VoxelColor* colors = packed.colorStorage.back().data();
         for (const PendingWord& word : column->words) {
             if (!needed(word)) continue;
-            packed.words[next[sliceOf(word)]++] = {word.visible, changed(word),
-                                                   classes + word.classes, word.block};
+            const std::size_t place = next[sliceOf(word)]++;
+            packed.words[place] = {word.visible, changed(word), classes + word.classes, word.block};
+            if (hasColors) packed.colors[place] = colors + word.classes;
         }
     }
 }
@@ -415,15 +498,16 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     const std::vector<CodeBlock> blocks =
         sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
               : BlockReader(*volume.codes, nullptr, options.sliceAxis, slotMap).takeBlocks();
+    const double blockBytes = kBytesPerBlock + (options.painter ? kColorBytesPerBlock : 0);
     requireMemory(
         parts.divides() ? "delta grid of divided voxels (--between 0: undivided)" : "delta grid",
-        double(blocks.size()) * parts.voxels() * kBytesPerBlock + 16.0 * packed.box.dims().x);
+        double(blocks.size()) * parts.voxels() * blockBytes + 16.0 * packed.box.dims().x);
 
     const std::vector<Columns> runs = cutAtColumns(blocks, parts.within > 1);
     std::vector<ColumnPacker> packers;
     packers.reserve(runs.size());
     const PackTools tools{holder ? &*holder : nullptr, mixer, sight ? &*sight : nullptr,
-                          volume.codes.get()};
+                          volume.codes.get(), parts.origin};
     for (std::size_t i = 0; i < runs.size(); ++i)
         packers.emplace_back(packed.box, options, tools, slotMap);
     parallelFor(packers.size(), [&](std::size_t i) { packers[i].run(runs[i]); });
@@ -431,7 +515,8 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     for (const ColumnPacker& packer : packers) planner.add(packer.planner());
     SlabPlan plan = planner.plan(options.encoding);
     packed.slabs = std::move(plan.slabs);
-    collectWords(inOrder(runs, packers, parts.within), plan.layout, packed);
+    collectWords(inOrder(runs, packers, parts.within), plan.layout, options.painter != nullptr,
+                 packed);
     return packed;
 }
 

@@ -40,4 +40,9 @@ struct DenseSource {
 /// tree layer by layer, so that what is uniform takes no memory.
 Volume readDense(const DenseSource& source, const ReadOptions& options, const Listener& listener);
 
+/// Reads a dense volume of which voxels with the value `background` are empty, or those that are
+/// NaN if it is: what a .vdb of the others would be.
+Volume readSparse(const DenseSource& source, double background, const ReadOptions& options,
+                  const Listener& listener);
+
 }  // namespace deltasplat

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/Prune.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -13,9 +16,12 @@
 #include "ingest/code_tree.h"
 #include "ingest/dense_source.h"
 #include "ingest/dense_tree_builder.h"
+#include "ingest/grid_values.h"
+#include "ingest/grid_volume.h"
 #include "ingest/mixed_blocks.h"
 #include "ingest/raw_values.h"
 #include "ingest/readers.h"
+#include "ingest/scalar_grids.h"
 #include "ingest/source_grid.h"
 #include "ingest/value_cast.h"
 #include "ingest/vdb_transform.h"
@@ -252,13 +258,14 @@ void readCodes(const DenseSource& source, const ReadOptions& options, const Surv
     warnOfCodeError(source.where, volume, listener);
 }
 
+// @param nonFinite  what NaN and infinities are read as
 template <typename Grid>
-openvdb::GridBase::Ptr readGrid(const DenseSource& source, const ReadOptions& options,
+openvdb::GridBase::Ptr readGrid(const DenseSource& source, double nonFinite,
                                 const Listener& listener) {
     using Value = typename Grid::ValueType;
     auto grid = Grid::create();
     LayerAdder<typename Grid::TreeType> adder(source, grid->tree());
-    const auto nanValue = valueAs<Value>(options.nanValue.value_or(0));
+    const auto nanValue = valueAs<Value>(nonFinite);
     source.forEachLayer(
         [&](int first, int, const std::byte* bytes) {
             adder.add(
@@ -274,20 +281,48 @@ openvdb::GridBase::Ptr readGrid(const DenseSource& source, const ReadOptions& op
     return grid;
 }
 
-openvdb::GridBase::Ptr readSourceGrid(const DenseSource& source, const ReadOptions& options,
+openvdb::GridBase::Ptr readSourceGrid(const DenseSource& source, double nonFinite,
                                       const Listener& listener) {
     openvdb::initialize();
     switch (source.type) {
         case RawType::kFloat32:
-            return readGrid<openvdb::FloatGrid>(source, options, listener);
+            return readGrid<openvdb::FloatGrid>(source, nonFinite, listener);
         case RawType::kFloat64:
         case RawType::kUint64:  // beyond what an Int64Grid holds
-            return readGrid<openvdb::DoubleGrid>(source, options, listener);
-        case RawType::kInt32:
-            return readGrid<openvdb::Int32Grid>(source, options, listener);
+            return readGrid<openvdb::DoubleGrid>(source, nonFinite, listener);
+        case RawType::kUint32:
+        case RawType::kInt64:
+            return readGrid<openvdb::Int64Grid>(source, nonFinite, listener);
         default:
-            return readGrid<openvdb::Int64Grid>(source, options, listener);
+            return readGrid<openvdb::Int32Grid>(source, nonFinite, listener);
     }
+}
+
+// Makes inactive what has a value, and that value the background; NaN stands for itself, and makes
+// the background 0.
+template <typename Grid>
+void dropValue(Grid& grid, double dropped) {
+    using Value = typename Grid::ValueType;
+    const auto isDropped = [&](Value value) {
+        return double(value) == dropped || (std::isnan(dropped) && double(value) != double(value));
+    };
+    const Value background = std::isnan(dropped) ? Value{} : valueAs<Value>(dropped);
+    std::vector<typename Grid::TreeType::LeafNodeType*> leaves;
+    grid.tree().getNodes(leaves);
+    forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            for (auto voxel = leaves[i]->beginValueOn(); voxel; ++voxel) {
+                if (isDropped(*voxel)) leaves[i]->setValueOff(voxel.pos(), background);
+            }
+        }
+    });
+    forActiveTiles(grid.tree(), [&](const auto& tile) {
+        if (!isDropped(*tile)) return;
+        tile.setValue(background);
+        tile.setActiveState(false);
+    });
+    openvdb::tools::changeBackground(grid.tree(), background);
+    openvdb::tools::pruneInactive(grid.tree());
 }
 
 // Where memory is limited, what the volume will take is known before any of it is taken.
@@ -321,7 +356,8 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
     const double coded = keep ? 0.75 : 1;
     readCodes(source, options, survey, partOf(listener, scanned, coded), volume);
     if (keep) {
-        auto grid = readSourceGrid(source, options, partOf(listener, coded, 1));
+        auto grid =
+            readSourceGrid(source, options.nanValue.value_or(0), partOf(listener, coded, 1));
         volume.source = std::make_shared<const SourceGrid>(SourceGrid{std::move(grid)});
     }
 
@@ -331,6 +367,29 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
     volume.space = source.space;
     volume.box = {glm::ivec3(0), glm::ivec3(source.dims) - 1};
     volume.worldFromIndex = source.worldFromIndex;
+    return volume;
+}
+
+Volume readSparse(const DenseSource& source, double background, const ReadOptions& options,
+                  const Listener& listener) {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kReadShare = 0.5;
+    // Integers that doubles do not hold are counted where they are integers still.
+    double readError = 0;
+    if (source.type == RawType::kUint64)
+        readError = scan(source, options, partOf(listener, 0, 0.1)).census.rounding;
+    const openvdb::GridBase::Ptr grid =
+        readSourceGrid(source, kNaN, partOf(listener, 0.1, kReadShare));
+    grid->apply<ScalarGrids>([&](auto& typed) { dropValue(typed, background); });
+    const Listener coding = partOf(listener, kReadShare, 1);
+    Volume volume = volumeOfGrid(grid, {coding, source.where, rawTypeName(source.type), options});
+    volume.name = source.name;
+    volume.space = source.space;
+    volume.worldFromIndex = source.worldFromIndex;
+    volume.readError = readError;
+    const std::uint64_t replaced = std::exchange(volume.replaced, 0);
+    warnOfChanges(source, options, volume, listener);
+    volume.replaced = replaced;
     return volume;
 }
 

@@ -2,9 +2,6 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -12,15 +9,12 @@
 #include "deltasplat/error.h"
 #include "ingest/default_grid.h"
 #include "ingest/delta_format.h"
-#include "ingest/grid_codes.h"
 #include "ingest/grid_metadata.h"
+#include "ingest/grid_volume.h"
 #include "ingest/not_finite.h"
 #include "ingest/read_delta_grid.h"
 #include "ingest/readers.h"
-#include "ingest/source_grid.h"
 #include "ingest/vdb_file.h"
-#include "ingest/vdb_transform.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {
@@ -75,64 +69,28 @@ std::vector<const VdbGrid*> chooseGrids(const std::string& where, const VdbFile&
     return chosen;
 }
 
-glm::dmat4 worldFromIndex(const openvdb::math::Transform& transform, const std::string& where) {
-    if (!transform.isLinear()) {
-        fail(where, "a " + transform.mapType() + " transform", "a linear one (no frustum)");
-    }
-    glm::dmat4 matrix(0);
-    try {
-        matrix = matrixOf(transform);
-    } catch (const openvdb::ArithmeticError&) {
-        // OpenVDB's own word for a volume of a voxel below 3e-15.
-    }
-    bool finite = true;
-    for (int axis = 0; axis < 4; ++axis) {
-        finite = finite && std::isfinite(glm::dot(matrix[axis], matrix[axis]));
-    }
-    if (!finite || glm::determinant(matrix) == 0) {
-        fail(where, "a transform that cannot be inverted", "a finite affine map");
-    }
-    return matrix;
-}
-
-std::string spaceOf(const openvdb::GridBase& grid) {
-    const std::string space = textMetadata(grid, kSpaceKey);
-    return space == "RAS" || space == "LPS" ? space : "";
-}
-
-void settleBackground(Volume& volume, const ReadOptions& options, const std::string& where,
-                      const Listener& listener) {
-    if (std::isfinite(volume.background)) return;
-    const double replacement = options.nanValue.value_or(0);
-    listener.warn(where + ": background " + numberText(volume.background) + " taken as " +
-                  numberText(replacement));
-    volume.background = replacement;
-}
-
 Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& where,
                 const ReadOptions& options, const Listener& listener) {
     Listener reading;
     reading.progress = [&](double share) { listener.report(kReadShare * share); };
     const openvdb::GridBase::Ptr loaded = file.read(grid, reading);
+    const GridCodesOptions coding{listener, where, grid.valueType(), options};
     Volume volume;
-    const glm::dmat4 matrix = worldFromIndex(loaded->transform(), where);
     if (isDeltaGrid(*loaded)) {
+        // What cannot be placed is refused before it is decoded.
+        worldFromIndexOf(loaded->transform(), where);
         Listener decoding = listener;
         decoding.progress = [&](double share) {
             listener.report(kReadShare + (1 - kReadShare) * share);
         };
         volume = readDeltaGrid(static_cast<openvdb::Int32Grid&>(*loaded), file.metadata(), where,
                                options, decoding);
+        settleBackground(volume, coding);
+        if (volume.empty()) listener.warn(where + ": no active voxels");
     } else {
-        volume.worldFromIndex = matrix;
-        fillFromGrid(*loaded, {listener, where, grid.valueType(), options}, volume);
-        if (options.keepSource || (options.keepInexact && !volume.codeBook.isExact()))
-            volume.source = std::make_shared<const SourceGrid>(SourceGrid{loaded, file.metadata()});
-        volume.space = spaceOf(*loaded);
+        volume = volumeOfGrid(loaded, coding, file.metadata());
     }
     volume.name = grid.name;
-    settleBackground(volume, options, where, listener);
-    if (volume.empty()) listener.warn(where + ": no active voxels");
     return volume;
 }
 

@@ -44,10 +44,7 @@ namespace {
 void read(const std::filesystem::path& file, const ReadOptions& options, bool all,
           const VolumeVisitor& visitor, const Listener& listener) {
     const DefaultFloats floats;
-    if (options.nanValue && !std::isfinite(*options.nanValue)) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--nan", numberText(*options.nanValue), "a finite number"));
-    }
+    requireFiniteNan(options);
     const InputKind kind = findInput(file, listener);
     if (inputsAreConfined()) requireConfined(file);
     if (kind.format == InputKind::Format::kVdb) {
@@ -90,6 +87,12 @@ void requireFiniteSpan(const std::string& where, double low, double high) {
     throw Error(ErrorCode::kInput,
                 gotExpected(where, "values from " + numberText(low) + " to " + numberText(high),
                             "a range that a double can hold"));
+}
+
+void requireFiniteNan(const ReadOptions& options) {
+    if (!options.nanValue || std::isfinite(*options.nanValue)) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("--nan", numberText(*options.nanValue), "a finite number"));
 }
 
 void requireFloatNan(double nanValue) {

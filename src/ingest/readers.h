@@ -38,6 +38,9 @@ void readVdb(const std::filesystem::path& file, const ReadOptions& options, bool
 /// @throw Error(kInput) if `high - low` is no finite number: no code book spans it
 void requireFiniteSpan(const std::string& where, double low, double high);
 
+/// @throw Error(kUsage) if what is to replace NaN is no finite number itself
+void requireFiniteNan(const ReadOptions& options);
+
 /// @throw Error(kUsage) if `nanValue`, which is to replace a value, is no finite float
 void requireFloatNan(double nanValue);
 

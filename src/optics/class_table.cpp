@@ -267,12 +267,6 @@ unsigned digitsInUse(const std::vector<ColorDigits>& digits) {
     return used;
 }
 
-glm::dvec4 unitsOfDigit(const ClassTable::Digit& digit, Slot number) {
-    if (digit.colors.empty()) return glm::dvec4(0);
-    const ClassTable::Color& color = digit.colors[std::size_t(number)];
-    return {color[0], color[1], color[2], color[3]};
-}
-
 }  // namespace
 
 glm::dvec4 ClassTable::scaleOf(int plane) const {
@@ -280,16 +274,20 @@ glm::dvec4 ClassTable::scaleOf(int plane) const {
 }
 
 glm::dvec4 ClassTable::unitsOf(Slot number) const {
-    constexpr double kLow = 1.0 / (1 << kDigitBits);
-    constexpr double kFiner = 1.0 / (1 << kPlaneBits);
-    glm::dvec4 units(0.0);
-    double scaleOfPlane = 1;
-    for (const Plane& plane : planes) {
-        units += scaleOfPlane *
-                 (unitsOfDigit(plane.high, number) + kLow * unitsOfDigit(plane.low, number));
-        scaleOfPlane *= kFiner;
+    ColorDigits digits{};
+    for (std::size_t p = 0; p < planes.size(); ++p) {
+        digits[2 * p] = planes[p].high.colors[std::size_t(number)];
+        if (!planes[p].low.colors.empty())
+            digits[2 * p + 1] = planes[p].low.colors[std::size_t(number)];
     }
-    return units;
+    return deltasplat::unitsOf(digits);
+}
+
+std::vector<double> ClassTable::alphas() const {
+    std::vector<double> alphas;
+    const double unitDistances = extinctionScale * (stepWorld / unitDistanceWorld);
+    for (const Look& look : looks) alphas.push_back(alphaOf(look.extinction, unitDistances));
+    return alphas;
 }
 
 glm::dvec4 ClassTable::lightOfCode(Code code) const {

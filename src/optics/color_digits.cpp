@@ -63,6 +63,16 @@ ColorDigits digitsOf(const glm::dvec4& units) {
     return digits;
 }
 
+glm::dvec4 unitsOf(const ColorDigits& digits) {
+    constexpr double kOne[] = {1, 1.0 / (1 << ClassTable::kDigitBits)};
+    glm::dvec4 units(0.0);
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        const double one = kOne[i % 2] / (i < 2 ? 1 : kFiner);
+        for (int c = 0; c < 4; ++c) units[c] += one * digits[i][std::size_t(c)];
+    }
+    return units;
+}
+
 unsigned usedDigits(const ColorDigits& digits) {
     unsigned used = 0;
     for (std::size_t i = 0; i < digits.size(); ++i) {

@@ -15,6 +15,9 @@ using ColorDigits = std::array<ClassTable::Color, 2 * ClassTable::kMaxPlanes>;
 /// @param units  0..ClassTable::kMax in each channel: units of the first plane
 ColorDigits digitsOf(const glm::dvec4& units);
 
+/// Returns what digits stand for, in units of the first plane.
+glm::dvec4 unitsOf(const ColorDigits& digits);
+
 /// Returns which digits are not zero: bit i for digits[i].
 unsigned usedDigits(const ColorDigits& digits);
 

@@ -67,7 +67,20 @@ std::function<bool(Slot, Slot)> holdRule(const Volume& volume, const ClassTable&
     };
 }
 
-ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance, Steps steps) {
+std::function<bool(const VoxelLook&, const VoxelLook&)> colorHoldRule(const VoxelRounder& rounded,
+                                                                      const Tolerance& tolerance) {
+    if (tolerance.isExact()) return {};
+    if (tolerance.relative == 0) {
+        return
+            [](const VoxelLook& held, const VoxelLook& look) { return held.color == look.color; };
+    }
+    return [rounded, t = tolerance.relative](const VoxelLook& held, const VoxelLook& look) {
+        return looksWithin(unitsOf(rounded(held)), unitsOf(rounded(look)), t);
+    };
+}
+
+ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance, Steps steps,
+                      std::optional<double> ownBrightest) {
     if (tolerance.isExact()) return {};
     const double unknown = std::numeric_limits<double>::infinity();
     if (tolerance.relative == 0) return {unknown, unknown};
@@ -81,6 +94,8 @@ ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance, Ste
             brightest = std::max(brightest, light);
         }
     }
+    // Rounding keeps the quotient of colour and opacity to 2^-8 (ClassTable).
+    if (ownBrightest) brightest = (1 + 0x1p-7) * *ownBrightest;
     const double t = tolerance.relative;
     const double colors = classes.oneColor                ? 0
                           : steps == Steps::kAsClassified ? t

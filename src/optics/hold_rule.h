@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "deltasplat/delta/tolerance.h"
 #include "deltasplat/optics/class_table.h"
+#include "optics/voxel_rounder.h"
 
 namespace deltasplat {
 
@@ -16,6 +18,12 @@ namespace deltasplat {
 /// 1
 std::function<bool(Slot held, Slot slot)> holdRule(const Volume& volume, const ClassTable& classes,
                                                    const Tolerance& tolerance);
+
+/// The same of voxels with colours of their own, which the rule above takes to be white: whether
+/// one may go on as what it was. With a relative tolerance that holds in every channel, with a
+/// tolerance of values alone colours have to be the same. Copies the rounder.
+std::function<bool(const VoxelLook& held, const VoxelLook& look)> colorHoldRule(
+    const VoxelRounder& rounded, const Tolerance& tolerance);
 
 /// Most that a picture under a tolerance may differ from the exact one, but for the rounding of
 /// floats; infinity where that is not known.
@@ -35,6 +43,8 @@ enum class Steps {
 /// times the brightest colour if all is of one colour, otherwise 2 t times it, or (t + 2 t / (1 -
 /// t)) times it where steps are longer. One that is shorter adds to it; what is opaque has no bound
 /// then.
-ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance, Steps steps);
+/// @param brightest  of colours that voxels have of their own, in any channel; the classes' are 1
+ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance, Steps steps,
+                      std::optional<double> brightest = {});
 
 }  // namespace deltasplat

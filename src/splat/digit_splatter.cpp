@@ -41,8 +41,9 @@ void DigitSplatter::end() {
 
 double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout) {
     const double blocks = double(layout.blocks.x) * layout.blocks.y;
-    // The classes that stamps show, and their list as it grows.
-    const double stamps = blocks * (64 * sizeof(ClassIndex) + 3 * sizeof(BlockStamps));
+    // What stamps show, and their list as it grows.
+    const double shownBytes = input.own ? sizeof(ClassTable::Color) : sizeof(ClassIndex);
+    const double stamps = blocks * (64 * shownBytes + 3 * sizeof(BlockStamps));
     // The plane, which is at most half as large as the sheet, and two lists of blocks.
     const double tiles = 0.5 * double(layout.bytes()) + 48 * blocks;
     const double shown = input.digitVoxels ? sizeof(std::uint64_t) * blocks : 0;

@@ -16,7 +16,11 @@ class DigitSplatter {
     /// @param addsLow  whether sheets of the low digit are added to those that are summed
     DigitSplatter(const SplatInput& input, const SheetLayout& largest, DigitPlace digit,
                   bool addsLow)
-        : input_(input), largest_(largest), digit_(digit), addsLow_(addsLow), sheet_(largest) {
+        : input_(input),
+          largest_(largest),
+          digit_(digit),
+          addsLow_(addsLow),
+          sheet_(largest, input.memory) {
         if (input.digitVoxels && input.digitVoxels->of(digit))
             isFew_ = input.digitVoxels->fewerThan(leastChanges(), digit);
     }

@@ -103,11 +103,11 @@ SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box) {
     return part;
 }
 
-Sheet::Sheet(const SheetLayout& layout)
+Sheet::Sheet(const SheetLayout& layout, std::pmr::memory_resource& memory)
     : layout_(layout),
       reach_(layout.resolution, layout.reachPixels, layout.footprintPixels),
       bytesPerRow_((layout.tiles().x + 7) / 8 * 8),
-      pixels_(layout.bytes() / sizeof(std::int32_t)),
+      pixels_(layout.bytes() / sizeof(std::int32_t), &memory),
       full_(bytesPerRow_ * layout.tiles().y + sizeof(std::uint64_t)),
       touched_(full_.size()),
       touchedRows_(layout.tiles().y) {}

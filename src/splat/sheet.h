@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -68,7 +69,9 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int cha
 /// exact zero, so that can be told.
 class Sheet {
   public:
-    explicit Sheet(const SheetLayout& layout);
+    /// @param memory  for the pixels
+    explicit Sheet(const SheetLayout& layout,
+                   std::pmr::memory_resource& memory = *std::pmr::get_default_resource());
 
     const SheetLayout& layout() const { return layout_; }
     /// Becomes another part of the same sheet, or the whole: no larger than the layout it was made
@@ -117,7 +120,7 @@ class Sheet {
     SheetLayout layout_;
     BlockReach reach_;
     std::size_t bytesPerRow_;
-    std::vector<std::int32_t> pixels_;
+    std::pmr::vector<std::int32_t> pixels_;
     std::vector<std::uint8_t> full_;         // [tile row][bytesPerRow_], and a word more
     std::vector<std::uint8_t> touched_;      // likewise
     std::vector<std::uint8_t> touchedRows_;  // [tile row]: whether any is

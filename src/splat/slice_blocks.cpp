@@ -21,16 +21,26 @@ glm::ivec2 SliceBlocks::blockOf(const DeltaWord& word) const {
     return glm::ivec2(word.block.y, word.block.x) - layout_.firstVoxel / 8;
 }
 
-// What a word is of the digit. Of changes, those of voxels that had it or have it.
-DeltaWord SliceBlocks::ofDigit(const DeltaWord& word, bool whole) {
-    DeltaWord here = word;
-    here.visible = voxels_[&word - input_.deltas.words.data()];
-    if (whole) return here;
+// Own colours lie in the order of voxels.
+SeenWord SliceBlocks::seenOf(const DeltaWord& word) const {
+    if (!input_.own) return {word.visible, word.changed, word.classes, colors_, false};
+    static constexpr auto kInOrder = [] {
+        std::array<ClassIndex, 64> places{};
+        for (std::size_t n = 0; n < places.size(); ++n) places[n] = ClassIndex(n);
+        return places;
+    }();
+    const auto number = std::size_t(&word - input_.deltas.words.data());
+    return {word.visible, word.changed, kInOrder.data(), input_.own->of(digit_, number), true};
+}
+
+// Leaves what a word is of the digit. Of changes, those of voxels that had it or have it.
+void SliceBlocks::takeDigit(const DeltaWord& word, bool whole, SeenWord& seen) {
+    seen.visible = voxels_[&word - input_.deltas.words.data()];
+    if (whole) return;
     if (shown_.size() < count()) shown_.resize(count());
     std::uint64_t& shown = shown_[placeOf(blockOf(word))];
-    here.changed &= shown | here.visible;
-    shown = here.visible;
-    return here;
+    seen.changed &= shown | seen.visible;
+    shown = seen.visible;
 }
 
 void SliceBlocks::clear() {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "deltasplat/splat/footprint.h"
 #include "splat/digit_voxels.h"
 #include "splat/sheet.h"
+#include "splat/word_colors.h"
 
 namespace deltasplat {
 
@@ -25,10 +27,24 @@ struct SplatInput {
     bool stampEmptyVoxels;
     /// Which voxels have which digits of colours; null where there is but one.
     const DigitVoxels* digitVoxels = nullptr;
+    /// Colours that voxels have of their own, of whose table `classes` then is. Null: classes say
+    /// what a voxel looks like.
+    const WordColors* own = nullptr;
+    /// For sheets and what they are made with.
+    std::pmr::memory_resource& memory = *std::pmr::get_default_resource();
 };
 
 /// Classes of 64 empty voxels.
 inline constexpr std::array<ClassIndex, 64> kEmptyClasses{};
+
+/// Of a slice of a block, what is stamped of a digit of colours.
+struct SeenWord {
+    std::uint64_t visible;      ///< mask word of voxels that are seen
+    std::uint64_t changed;      ///< as DeltaWord::changed
+    const ClassIndex* classes;  ///< [64]: places in `colors`
+    const ClassTable::Color* colors;
+    bool hasOwn;  ///< whether colours are those of this word's voxels alone, in their order
+};
 
 /// The blocks of slices that a sheet of a digit of colours, or a part of it, is made of.
 class SliceBlocks {
@@ -37,13 +53,16 @@ class SliceBlocks {
         : input_(input),
           layout_(layout),
           stampEmptyVoxels_(input.stampEmptyVoxels && digit.plane == 0 && !digit.low),
+          digit_(digit),
+          colors_(digit.of(input.classes).colors.data()),
           voxels_(input.digitVoxels ? input.digitVoxels->of(digit) : nullptr) {}
 
     void setLayout(const SheetLayout& layout) { layout_ = layout; }
     const SheetLayout& layout() const { return layout_; }
 
     /// Calls `use(block, voxels, word)` for the blocks (v, u) of a slice that have something to
-    /// stamp: a mask word of voxels, and what else is known of them, as far as the digit goes.
+    /// stamp: a mask word of voxels, and a SeenWord of what else is known of them, as far as the
+    /// digit goes.
     /// Where colours have several, slices that are not whole come in order, with all their rows.
     /// @param rows  of blocks, [x, y)
     template <typename Use>
@@ -64,7 +83,8 @@ class SliceBlocks {
     glm::ivec2 blockOf(const DeltaWord& word) const;
     // Rows are found by wordsOf().
     bool hasColumn(glm::ivec2 block) const { return block.x >= 0 && block.x < layout_.blocks.x; }
-    DeltaWord ofDigit(const DeltaWord& word, bool whole);
+    SeenWord seenOf(const DeltaWord& word) const;
+    void takeDigit(const DeltaWord& word, bool whole, SeenWord& seen);
     std::uint64_t voxelsInBox(glm::ivec2 block) const;
     static void prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words);
 
@@ -72,6 +92,8 @@ class SliceBlocks {
     SheetLayout layout_;
     // Empty voxels are stamped once.
     bool stampEmptyVoxels_;
+    DigitPlace digit_;
+    const ClassTable::Color* colors_;   // of classes
     const std::uint64_t* voxels_;       // [word]: that have the digit; null: all that are visible
     std::vector<std::uint64_t> shown_;  // [block]: those that changes left so
 };
@@ -84,23 +106,20 @@ void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use
             prefetchClasses(&word, words);
             const glm::ivec2 block = blockOf(word);
             if (!hasColumn(block)) continue;
-            if (!voxels_) {
-                use(block, whole ? word.visible : word.changed, word);
-                continue;
-            }
-            const DeltaWord here = ofDigit(word, whole);
-            const std::uint64_t voxels = whole ? here.visible : here.changed;
-            if (voxels != 0) use(block, voxels, here);
+            SeenWord seen = seenOf(word);
+            if (voxels_) takeDigit(word, whole, seen);
+            const std::uint64_t voxels = whole ? seen.visible : seen.changed;
+            if (voxels != 0) use(block, voxels, seen);
         }
         return;
     }
-    const DeltaWord nothing{0, 0, kEmptyClasses.data(), {}};
+    const SeenWord nothing{0, 0, kEmptyClasses.data(), colors_, false};
     auto word = words.begin();
     for (int u = rows.x; u < rows.y; ++u) {
         for (int v = 0; v < layout_.blocks.x; ++v) {
             while (word != words.end() && !hasColumn(blockOf(*word))) ++word;
             const bool has = word != words.end() && blockOf(*word) == glm::ivec2(v, u);
-            use(glm::ivec2(v, u), voxelsInBox({v, u}), has ? *word : nothing);
+            use(glm::ivec2(v, u), voxelsInBox({v, u}), has ? seenOf(*word) : nothing);
             if (has) ++word;
         }
     }

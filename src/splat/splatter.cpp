@@ -14,7 +14,7 @@ PlaneSplatter::PlaneSplatter(const SplatInput& input, const SheetLayout& largest
     : high_(input, largest, {plane, false}, hasLow(input, plane)) {
     if (!hasLow(input, plane)) return;
     low_.emplace(input, largest, DigitPlace{plane, true}, false);
-    if (!TileSplatter::fits(input.footprint)) sum_.emplace(largest);
+    if (!TileSplatter::fits(input.footprint)) sum_.emplace(largest, input.memory);
 }
 
 void PlaneSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {

@@ -109,12 +109,13 @@ class Rows<kChannels, 0> {
 
 // Goes through the active voxels of blocks, along u first: that is down the rows of the sheet,
 // where consecutive stamps meet the very vectors that were just stored.
+template <class Stamps>
 class ActiveVoxels {
   public:
-    explicit ActiveVoxels(std::span<const BlockStamps> blocks)
+    explicit ActiveVoxels(std::span<const Stamps> blocks)
         : block_(blocks.data()), last_(block_ + blocks.size() - 1), rest_(block_->byColumn) {}
 
-    const BlockStamps& block() const { return *block_; }
+    const Stamps& block() const { return *block_; }
     int voxel() const {
         const int n = std::countr_zero(rest_);
         return 8 * (n & 7) + (n >> 3);
@@ -129,30 +130,59 @@ class ActiveVoxels {
     }
 
   private:
-    const BlockStamps* block_;
-    const BlockStamps* last_;
+    const Stamps* block_;
+    const Stamps* last_;
     std::uint64_t rest_;  // of the block's voxels
 };
 
-template <int kChannels, int kWidth, bool kChanges>
-void stampBlocksOf(std::span<const BlockStamps> blocks,
-                   const ClassTable::Color* HWY_RESTRICT colors, const StampWeights& weights,
-                   const StampPlaces& places) {
+// The colours of a block's voxel, and what it showed before.
+class ClassColors {
+  public:
+    explicit ClassColors(const ClassTable::Color* colors) : colors_(colors) {}
+    HWY_INLINE const ClassTable::Color& of(const BlockStamps& block, int n) const {
+        return colors_[block.classes[n]];
+    }
+    HWY_INLINE const ClassTable::Color& shown(const BlockStamps& block, int n) const {
+        return colors_[block.shown[n]];
+    }
+    HWY_INLINE static void show(const BlockStamps& block, int n) {
+        block.shown[n] = block.classes[n];
+    }
+
+  private:
+    const ClassTable::Color* HWY_RESTRICT colors_;
+};
+
+struct OwnColors {
+    HWY_INLINE static const ClassTable::Color& of(const ColorStamps& block, int n) {
+        return block.colors[n];
+    }
+    HWY_INLINE static const ClassTable::Color& shown(const ColorStamps& block, int n) {
+        return block.shown[n];
+    }
+    HWY_INLINE static void show(const ColorStamps& block, int n) {
+        block.shown[n] = block.colors[n];
+    }
+};
+
+template <int kChannels, int kWidth, bool kChanges, class Stamps, class Colors>
+void stampBlocksOf(std::span<const Stamps> blocks, const Colors& colors,
+                   const StampWeights& weights, const StampPlaces& places) {
     std::size_t count = 0;
-    for (const BlockStamps& block : blocks) count += std::size_t(std::popcount(block.byColumn));
+    for (const Stamps& block : blocks) count += std::size_t(std::popcount(block.byColumn));
     const Rows<kChannels, kWidth> rows(weights);
     const std::size_t pitch = places.pitch;
-    ActiveVoxels voxels(blocks);
+    ActiveVoxels<Stamps> voxels(blocks);
     hn::Vec<IntTag> color;
     std::int32_t* row;
     // Colour and place are loaded one stamp ahead, or the stamp would wait for them.
     const auto load = [&]() HWY_ATTR {
-        const BlockStamps& block = voxels.block();
+        const Stamps& block = voxels.block();
         const int n = voxels.voxel();
-        auto bits = loadColor<kChannels>(colors[block.classes[n]]);
+        auto bits = loadColor<kChannels>(colors.of(block, n));
         if constexpr (kChanges) {
-            bits = hn::Sub(bits, loadColor<kChannels>(colors[block.shown[n]]));
-            block.shown[n] = block.classes[n];
+            bits = hn::Sub(bits, loadColor<kChannels>(colors.shown(block, n)));
+            colors.show(block, n);
         }
         color = asPairs(bits);
         row = block.first + std::size_t(kChannels) * places.inBlock[n];
@@ -168,8 +198,8 @@ void stampBlocksOf(std::span<const BlockStamps> blocks,
     rows.stamp(color, row, pitch);
 }
 
-template <int kChannels, bool kChanges>
-void stampBlocksIn(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
+template <int kChannels, bool kChanges, class Stamps, class Colors>
+void stampBlocksIn(std::span<const Stamps> blocks, const Colors& colors,
                    const StampWeights& weights, const StampPlaces& places) {
     switch (weights.rows) {
         case 3:
@@ -189,14 +219,22 @@ void stampBlocksIn(std::span<const BlockStamps> blocks, const ClassTable::Color*
 
 void stampWholeKernel(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
                       const StampWeights& weights, const StampPlaces& places) {
-    return weights.channels == 4 ? stampBlocksIn<4, false>(blocks, colors, weights, places)
-                                 : stampBlocksIn<1, false>(blocks, colors, weights, places);
+    const ClassColors ofClasses(colors);
+    return weights.channels == 4 ? stampBlocksIn<4, false>(blocks, ofClasses, weights, places)
+                                 : stampBlocksIn<1, false>(blocks, ofClasses, weights, places);
 }
 
 void stampChangesKernel(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
                         const StampWeights& weights, const StampPlaces& places) {
-    return weights.channels == 4 ? stampBlocksIn<4, true>(blocks, colors, weights, places)
-                                 : stampBlocksIn<1, true>(blocks, colors, weights, places);
+    const ClassColors ofClasses(colors);
+    return weights.channels == 4 ? stampBlocksIn<4, true>(blocks, ofClasses, weights, places)
+                                 : stampBlocksIn<1, true>(blocks, ofClasses, weights, places);
+}
+
+void stampOwnKernel(std::span<const ColorStamps> blocks, bool changes, const StampWeights& weights,
+                    const StampPlaces& places) {
+    return changes ? stampBlocksIn<4, true>(blocks, OwnColors(), weights, places)
+                   : stampBlocksIn<4, false>(blocks, OwnColors(), weights, places);
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -207,6 +245,7 @@ namespace deltasplat {
 
 HWY_EXPORT(stampWholeKernel);
 HWY_EXPORT(stampChangesKernel);
+HWY_EXPORT(stampOwnKernel);
 
 StampWeights::StampWeights(const Footprint& footprint, int sheetChannels)
     : channels(sheetChannels),
@@ -231,6 +270,18 @@ void stampChanges(std::span<const BlockStamps> blocks, const ClassTable::Color* 
                   const StampWeights& weights, const StampPlaces& places) {
     if (blocks.empty()) return;
     HWY_DYNAMIC_DISPATCH(stampChangesKernel)(blocks, colors, weights, places);
+}
+
+void stampWhole(std::span<const ColorStamps> blocks, const StampWeights& weights,
+                const StampPlaces& places) {
+    if (blocks.empty()) return;
+    HWY_DYNAMIC_DISPATCH(stampOwnKernel)(blocks, false, weights, places);
+}
+
+void stampChanges(std::span<const ColorStamps> blocks, const StampWeights& weights,
+                  const StampPlaces& places) {
+    if (blocks.empty()) return;
+    HWY_DYNAMIC_DISPATCH(stampOwnKernel)(blocks, true, weights, places);
 }
 
 }  // namespace deltasplat

@@ -32,6 +32,14 @@ struct BlockStamps {
         first;  ///< sheet: of the first voxel's footprint, `[row][pitch / channels][channels]`
 };
 
+/// The same of voxels that have colours of their own, of a sheet of four channels.
+struct ColorStamps {
+    std::uint64_t byColumn;
+    const ClassTable::Color* colors;  ///< [64], n = 8 * u + v
+    ClassTable::Color* shown;         ///< [64]: those of the slice before, for stampChanges
+    std::int32_t* first;
+};
+
 /// Where stamps go.
 struct StampPlaces {
     const std::uint32_t* inBlock;  ///< [64]: pixels from the first voxel's footprint to each
@@ -49,5 +57,11 @@ void stampWhole(std::span<const BlockStamps> blocks, const ClassTable::Color* co
 /// class and that of the class it showed before, which is replaced.
 void stampChanges(std::span<const BlockStamps> blocks, const ClassTable::Color* colors,
                   const StampWeights& weights, const StampPlaces& places);
+
+/// The same of voxels' own colours.
+void stampWhole(std::span<const ColorStamps> blocks, const StampWeights& weights,
+                const StampPlaces& places);
+void stampChanges(std::span<const ColorStamps> blocks, const StampWeights& weights,
+                  const StampPlaces& places);
 
 }  // namespace deltasplat

@@ -11,10 +11,13 @@ namespace deltasplat {
 StampSplatter::StampSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
                              DigitPlace digit)
     : colors_(digit.of(input.classes).colors),
+      hasOwn_(input.own != nullptr),
       blocks_(input, largest, digit),
       sheet_(sheet),
       weights_(input.footprint, largest.channels),
-      mostBlocks_(blocks_.count()) {
+      mostBlocks_(blocks_.count()),
+      shown_(&input.memory),
+      shownColors_(&input.memory) {
     setLayout(largest);
 }
 
@@ -30,25 +33,36 @@ void StampSplatter::setLayout(const SheetLayout& layout) {
 void StampSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
     if (whole) {
         sheet_.clear();
-    } else if (shown_.empty()) {
+    } else if (hasOwn_ && shownColors_.empty()) {
+        shownColors_.resize(64 * mostBlocks_);
+    } else if (!hasOwn_ && shown_.empty()) {
         shown_.resize(64 * mostBlocks_);
     }
     const SheetLayout& layout = sheet_.layout();
     stamped_.clear();
+    stampedColors_.clear();
     const glm::ivec2 rows = whole ? blocksReaching(layout, firstRow, lastRow) : blocks_.rows();
-    blocks_.forEach(slice, whole, rows,
-                    [&](glm::ivec2 block, std::uint64_t active, const DeltaWord& word) {
-                        sheet_.show(block, word.visible, whole ? 0 : active & ~word.visible);
-                        const std::size_t place = layout.stampPlace(layout.firstVoxel + 8 * block);
-                        stamped_.push_back({transposedBits(active), word.classes,
-                                            whole ? nullptr : &shown_[64 * blocks_.placeOf(block)],
-                                            sheet_.pixels() + layout.channels * place});
-                    });
+    blocks_.forEach(
+        slice, whole, rows, [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
+            sheet_.show(block, word.visible, whole ? 0 : active & ~word.visible);
+            const std::size_t place = layout.stampPlace(layout.firstVoxel + 8 * block);
+            std::int32_t* first = sheet_.pixels() + layout.channels * place;
+            const std::size_t shown = 64 * blocks_.placeOf(block);
+            if (word.hasOwn) {
+                stampedColors_.push_back({transposedBits(active), word.colors,
+                                          whole ? nullptr : &shownColors_[shown], first});
+            } else {
+                stamped_.push_back({transposedBits(active), word.classes,
+                                    whole ? nullptr : &shown_[shown], first});
+            }
+        });
     const StampPlaces places{placeInBlock_.data(), sheet_.pitch()};
     if (whole) {
         stampWhole(stamped_, colors_.data(), weights_, places);
+        stampWhole(stampedColors_, weights_, places);
     } else {
         stampChanges(stamped_, colors_.data(), weights_, places);
+        stampChanges(stampedColors_, weights_, places);
     }
     sheet_.settle();
 }
@@ -57,6 +71,7 @@ void StampSplatter::clear() {
     blocks_.clear();
     sheet_.clear();
     std::fill(shown_.begin(), shown_.end(), ClassIndex{kEmptySlot});
+    std::fill(shownColors_.begin(), shownColors_.end(), ClassTable::Color{});
 }
 
 }  // namespace deltasplat

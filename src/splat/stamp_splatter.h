@@ -29,14 +29,19 @@ class StampSplatter {
 
   private:
     const std::vector<ClassTable::Color>& colors_;
+    bool hasOwn_;  // whether voxels have colours of their own
     SliceBlocks blocks_;
     Sheet& sheet_;
     StampWeights weights_;
     std::size_t mostBlocks_;  // of any layout
     /// Of a voxel's footprint, from its block's first one.
     std::array<std::uint32_t, 64> placeInBlock_;
-    std::vector<BlockStamps> stamped_;  // of the slice in hand
-    std::vector<ClassIndex> shown_;     // [block][64], of slabs that are not whole
+    // Of the slice in hand, and [block][64], of slabs that are not whole; of own colours the second
+    // ones.
+    std::vector<BlockStamps> stamped_;
+    std::pmr::vector<ClassIndex> shown_;
+    std::vector<ColorStamps> stampedColors_;
+    std::pmr::vector<ClassTable::Color> shownColors_;
 };
 
 }  // namespace deltasplat

@@ -39,8 +39,8 @@ TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, 
       weights_(weightsOf(input.footprint, largest.channels)),
       marginVoxels_(marginOf(largest, std::holds_alternative<CellWeights>(weights_))),
       pitch_(std::size_t(largest.channels) * (8 * largest.blocks.x + 2 * marginVoxels_ + 8)),
-      plane_(pitch_ * (8 * largest.blocks.y + 2 * marginVoxels_)),
-      shown_(blocks_.count()) {
+      plane_(pitch_ * (8 * largest.blocks.y + 2 * marginVoxels_), &input.memory),
+      shown_(blocks_.count(), &input.memory) {
     if (largest.channels == 4) return;
     for (const ClassTable::Color& color : colors_) opacities_.push_back(color[3]);
 }
@@ -98,11 +98,11 @@ void TileSplatter::clear() {
 
 void TileSplatter::paintChanges(int slice) {
     blocks_.forEach(slice, false, blocks_.rows(),
-                    [&](glm::ivec2 block, std::uint64_t active, const DeltaWord& word) {
+                    [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
                         Shown& shown = shown_[blocks_.placeOf(block)];
                         if (shown.voxels == 0) shownBlocks_.push_back(block);
                         shown.voxels |= active;
-                        paint(block, active, word.classes);
+                        paint(block, active, word.classes, word.colors);
                     });
 }
 
@@ -111,9 +111,9 @@ void TileSplatter::paintWhole(int slice, glm::ivec2 rows) {
     before_.swap(shownBlocks_);
     shownBlocks_.clear();
     blocks_.forEach(slice, true, rows,
-                    [&](glm::ivec2 block, std::uint64_t active, const DeltaWord& word) {
+                    [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
                         Shown& shown = shown_[blocks_.placeOf(block)];
-                        paint(block, active | shown.voxels, word.classes);
+                        paint(block, active | shown.voxels, word.classes, word.colors);
                         shown = {active, slice};
                         shownBlocks_.push_back(block);
                     });
@@ -124,25 +124,25 @@ void TileSplatter::paintWhole(int slice, glm::ivec2 rows) {
 
 void TileSplatter::takeAway(glm::ivec2 block) {
     Shown& shown = shown_[blocks_.placeOf(block)];
-    paint(block, shown.voxels, kEmptyClasses.data());
+    paint(block, shown.voxels, kEmptyClasses.data(), colors_.data());
     shown.voxels = 0;
 }
 
 // Writes the colours of voxels of a block.
-void TileSplatter::paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes) {
+void TileSplatter::paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes,
+                         const ClassTable::Color* colors) {
     sheet_.touch(block, voxels);
     const SheetLayout& layout = sheet_.layout();
     std::int16_t* first = planeAt(8 * block + marginVoxels_);
     if (layout.channels == 4) {
-        paintColors(first, voxels, classes);
+        paintColors(first, voxels, classes, colors);
     } else {
         paintOpacities(first, classes);
     }
 }
 
-void TileSplatter::paintColors(std::int16_t* plane, std::uint64_t voxels,
-                               const ClassIndex* classes) const {
-    const ClassTable::Color* colors = colors_.data();
+void TileSplatter::paintColors(std::int16_t* plane, std::uint64_t voxels, const ClassIndex* classes,
+                               const ClassTable::Color* colors) const {
     // Where most voxels change, it is faster to write all.
     constexpr int kFew = 24;
     if (std::popcount(voxels) >= kFew) {

@@ -55,8 +55,10 @@ class TileSplatter {
     void sumTiles(int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
     void addLow(const Sheet& low, int row, std::span<const std::uint8_t> touched,
                 std::span<std::uint8_t> full);
-    void paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes);
-    void paintColors(std::int16_t* plane, std::uint64_t voxels, const ClassIndex* classes) const;
+    void paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes,
+               const ClassTable::Color* colors);
+    void paintColors(std::int16_t* plane, std::uint64_t voxels, const ClassIndex* classes,
+                     const ClassTable::Color* colors) const;
     void paintOpacities(std::int16_t* plane, const ClassIndex* classes) const;
     std::int16_t* planeAt(glm::ivec2 voxel);
 
@@ -64,14 +66,14 @@ class TileSplatter {
     SliceBlocks blocks_;
     Sheet& sheet_;
     std::variant<TileWeights, CellWeights> weights_;
-    int marginVoxels_;                     // of the plane
-    std::size_t pitch_;                    // likewise
-    std::vector<std::int16_t> plane_;      // colours shown, a margin around them
-    std::vector<Shown> shown_;             // [block]
-    std::vector<glm::ivec2> shownBlocks_;  // those with voxels
-    std::vector<glm::ivec2> before_;       // likewise, in the slice before
-    std::vector<std::int16_t> opacities_;  // of one colour: [classes]
-    std::vector<std::uint8_t> lowRows_;    // [tile]: of the row of tiles in hand
+    int marginVoxels_;                      // of the plane
+    std::size_t pitch_;                     // likewise
+    std::pmr::vector<std::int16_t> plane_;  // colours shown, a margin around them
+    std::pmr::vector<Shown> shown_;         // [block]
+    std::vector<glm::ivec2> shownBlocks_;   // those with voxels
+    std::vector<glm::ivec2> before_;        // likewise, in the slice before
+    std::vector<std::int16_t> opacities_;   // of one colour: [classes]
+    std::vector<std::uint8_t> lowRows_;     // [tile]: of the row of tiles in hand
 };
 
 }  // namespace deltasplat

@@ -121,8 +121,10 @@ double BasePlane::stepsAt(glm::ivec2 pixel) const {
     return glm::length(rayOf(positionOf(pixel))) / stepWorld_;
 }
 
-StepLengths::StepLengths(const BasePlane& plane, const PlaneBox& planeBox)
-    : box(planeBox), values(std::size_t(box.size().x) * std::size_t(box.size().y) + kStepsSpare) {
+StepLengths::StepLengths(const BasePlane& plane, const PlaneBox& planeBox,
+                         std::pmr::memory_resource& memory)
+    : box(planeBox),
+      values(std::size_t(box.size().x) * std::size_t(box.size().y) + kStepsSpare, &memory) {
     parallelForChunks(std::size_t(box.size().y), [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
             float* steps = &values[row * std::size_t(box.size().x)];

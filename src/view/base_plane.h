@@ -4,6 +4,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory_resource>
 #include <optional>
 #include <vector>
 
@@ -97,10 +98,10 @@ class BasePlane {
 /// [width]`. Multi-threaded.
 struct StepLengths {
     PlaneBox box;
-    std::vector<float> values;  ///< and kStepsSpare more
+    std::pmr::vector<float> values;  ///< and kStepsSpare more
 
-    StepLengths() = default;
-    StepLengths(const BasePlane& plane, const PlaneBox& planeBox);
+    StepLengths(const BasePlane& plane, const PlaneBox& planeBox,
+                std::pmr::memory_resource& memory);
     const float* at(glm::ivec2 pixel) const {
         const glm::ivec2 p = pixel - box.min;
         return &values[std::size_t(p.y) * std::size_t(box.size().x) + std::size_t(p.x)];

@@ -134,6 +134,32 @@ TEST(Identity, AlsoOfColorsThatTakeSeveralDigits) {
     }
 }
 
+// On one plane and on two, by all ways of splatting, divided and not.
+TEST(Identity, AlsoOfColorsThatVoxelsHaveOfTheirOwn) {
+    for (const ColorBy look : {ColorBy::kIndex, ColorBy::kZ}) {
+        const Volume volume = test::randomVolume(kBoxes[0], 21, 0.5, {1, 1.5, 0.8});
+        for (const glm::dvec3& direction : {kDirections[0], kDirections[1]}) {
+            RenderOptions options = optionsFor(direction);
+            options.optics.colorBy = look;
+            for (const bool wide : {false, true}) {
+                if (wide) makeWide(options.optics.transferFunction, false);
+                for (const int resolution : {1, 2, 3, 5}) {
+                    if (resolution > 3 && direction != kDirections[0]) continue;
+                    options.resolution = resolution;
+                    options.tolerance = {resolution == 2 ? 0.1 : 0.0, resolution == 3 ? 20.0 : 0.0};
+                    expectSamePixels(volume, options);
+                }
+            }
+            options.resolution.reset();
+            options.between = 1;
+            options.tolerance = {};
+            expectSamePixels(volume, options);
+            options.tolerance = {0.1, 0};
+            expectSamePixels(volume, options);
+        }
+    }
+}
+
 // Of solid shapes little changes: slabs are joined, and small footprints are stamped too. They
 // begin and end between blocks, at negative indices; one hides the other, and a few voxels come and
 // go.

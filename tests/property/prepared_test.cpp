@@ -13,61 +13,23 @@
 #include "deltasplat/render.h"
 #include "deltasplat/threads.h"
 #include "prepared_axis.h"
-#include "support/make_volume.h"
+#include "support/some_scene.h"
 
 namespace deltasplat {
 namespace {
 
-std::shared_ptr<const Volume> someVolume() {
-    return std::make_shared<const Volume>(
-        test::randomVolume({{0, 0, 0}, {33, 26, 28}}, 11, 0.5, {1, 1.2, 0.8}));
-}
-
-Optics someOptics(bool several) {
-    Optics optics;
-    optics.transferFunction.colors = {{0, {1, 0, 0.5}}};
-    if (several) optics.transferFunction.colors.push_back({255, {0.2, 1, 0}});
-    optics.transferFunction.opacities = {{60, 0, 0.5, 0}, {200, 0.3, 0.5, 0}, {255, 1, 0.5, 0}};
-    return optics;
-}
-
-// Parallel and from an eye, straight and oblique, from near and from afar.
-std::vector<CameraOptions> someCameras() {
-    std::vector<CameraOptions> cameras;
-    for (int i = 0; i < 8; ++i) {
-        CameraOptions camera;
-        camera.sizePixels = {90, 70};
-        camera.view = i % 2 == 0 ? "front" : "left";
-        camera.azimuthDegrees = 17.0 * i;
-        camera.elevationDegrees = 9.0 * i;
-        if (i >= 4) {
-            camera.projection = Projection::kPerspective;
-            camera.fovDegrees = 20.0 * (i - 3);
-        }
-        cameras.push_back(camera);
-    }
-    cameras.emplace_back();
-    cameras.back().projection = Projection::kLatlong;
-    cameras.back().sizePixels = {96, 48};
-    return cameras;
-}
-
-Camera cameraOf(const Volume& volume, const CameraOptions& options) {
-    return makeCamera(options, volume.box, volume.worldFromIndex, volume.space);
-}
-
-Image pictureOf(const PreparedScene& scene, const CameraOptions& options) {
-    const Camera camera = cameraOf(*scene.scene().volume, options);
-    Image image(camera.sizePixels);
-    renderComposite(scene, camera, image);
-    return image;
-}
+using test::cameraOf;
+using test::Colors;
+using test::pictureOf;
+using test::someCameras;
+using test::someOptics;
+using test::someVolume;
 
 TEST(Prepared, givesThePixelsOfRender) {
-    for (const bool several : {false, true}) {
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral, Colors::kOwn}) {
         for (const double tolerance : {0.0, 0.1}) {
             RenderOptions options;
-            options.optics = someOptics(several);
+            options.optics = someOptics(colors);
             options.tolerance.relative = tolerance;
             const PreparedScene scene({someVolume(), options.optics}, options);
             for (int round = 0; round < 2; ++round) {
@@ -75,7 +37,7 @@ TEST(Prepared, givesThePixelsOfRender) {
                     options.camera = camera;
                     EXPECT_EQ(pictureOf(scene, camera).rgba,
                               render(*scene.scene().volume, options).image.rgba)
-                        << several << ' ' << tolerance << ' ' << camera.azimuthDegrees;
+                        << int(colors) << ' ' << tolerance << ' ' << camera.azimuthDegrees;
                 }
             }
         }
@@ -84,7 +46,7 @@ TEST(Prepared, givesThePixelsOfRender) {
 
 // A camera that turns needs each axis once, whatever the angle.
 TEST(Prepared, preparesEachAxisOnce) {
-    const PreparedScene scene({someVolume(), someOptics(true)}, SplatOptions());
+    const PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, SplatOptions());
     const Subdivision whole;
     std::vector<std::shared_ptr<const PreparedAxis>> axes;
     for (int axis = 0; axis < 3; ++axis) axes.push_back(scene.impl().axis(axis, whole, 1, {}));
@@ -106,8 +68,8 @@ TEST(Prepared, preparesEachAxisOnce) {
 
 // Also while none of the axes is there yet.
 TEST(Prepared, anyNumberOfThreadsMayRenderOneScene) {
-    for (const bool several : {false, true}) {
-        const PreparedScene scene({someVolume(), someOptics(several)}, SplatOptions());
+    for (const Colors colors : {Colors::kOne, Colors::kOwn}) {
+        const PreparedScene scene({someVolume(), someOptics(colors)}, SplatOptions());
         const std::vector<CameraOptions> cameras = someCameras();
         std::vector<Image> pictures(2 * cameras.size());
         std::vector<std::thread> threads;
@@ -123,9 +85,32 @@ TEST(Prepared, anyNumberOfThreadsMayRenderOneScene) {
     }
 }
 
+// Nor does what memory held before, and who else uses it.
+TEST(Prepared, renderersKeepMemoryAndNothingElse) {
+    Renderer renderer;
+    for (int round = 0; round < 2; ++round) {
+        for (const Colors colors : {Colors::kSeveral, Colors::kOwn, Colors::kOne}) {
+            const PreparedScene scene({someVolume(), someOptics(colors)}, SplatOptions());
+            const std::vector<CameraOptions> cameras = someCameras();
+            std::vector<Image> pictures(cameras.size());
+            std::vector<std::thread> threads;
+            for (std::size_t i = 0; i < cameras.size(); ++i) {
+                threads.emplace_back([&, i] {
+                    const Camera camera = cameraOf(*scene.scene().volume, cameras[i]);
+                    pictures[i] = Image(camera.sizePixels);
+                    renderer.render(scene, camera, pictures[i]);
+                });
+            }
+            for (std::thread& thread : threads) thread.join();
+            for (std::size_t i = 0; i < cameras.size(); ++i)
+                EXPECT_EQ(pictures[i].rgba, pictureOf(scene, cameras[i]).rgba) << i;
+        }
+    }
+}
+
 // What was in the picture before makes no difference.
 TEST(Prepared, picturesAreCleared) {
-    const PreparedScene scene({someVolume(), someOptics(true)}, SplatOptions());
+    const PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, SplatOptions());
     CameraOptions options;
     options.sizePixels = {60, 50};
     const Camera camera = cameraOf(*scene.scene().volume, options);
@@ -148,13 +133,13 @@ std::string messageOf(const std::function<void()>& call) {
 TEST(Prepared, refusesWhatCannotBeMeant) {
     EXPECT_EQ(messageOf([] { PreparedScene({}, SplatOptions()); }),
               "scene: got no volume; expected one");
-    Optics none = someOptics(false);
+    Optics none = someOptics(Colors::kOne);
     none.transferFunction.opacities.clear();
     EXPECT_EQ(messageOf([&] {
                   PreparedScene({someVolume(), none}, SplatOptions());
               }),
               "transfer function's opacities: got none; expected at least one");
-    const PreparedScene scene({someVolume(), someOptics(false)}, SplatOptions());
+    const PreparedScene scene({someVolume(), someOptics(Colors::kOne)}, SplatOptions());
     const Camera camera = cameraOf(*scene.scene().volume, CameraOptions());
     Image small({100, 512});
     EXPECT_EQ(

@@ -183,7 +183,7 @@ TEST(SliceBlocks, TraditionalTakesEveryVoxelOfTheBox) {
     SliceBlocks blocks(input, scene.layout);
     std::vector<glm::ivec2> found;
     blocks.forEach(kBox.min.x, true, blocks.rows(),
-                   [&](glm::ivec2 block, std::uint64_t voxels, const DeltaWord&) {
+                   [&](glm::ivec2 block, std::uint64_t voxels, const SeenWord&) {
                        const glm::ivec2 first = scene.layout.firstVoxel + 8 * block;
                        for (int n = 0; n < 64; ++n) {
                            if (voxels >> n & 1) found.push_back(first + glm::ivec2(n % 8, n / 8));

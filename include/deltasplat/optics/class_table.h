@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "deltasplat/delta/delta_grid.h"
@@ -76,15 +77,31 @@ struct ClassTable {
     /// Returns the same classes for steps of another length.
     /// @param steps  of those that they are classified for, > 0
     ClassTable atSteps(double steps) const;
+    /// Returns the share of light that each class takes away in a step, `[classes]`.
+    std::vector<double> alphas() const;
     /// Returns what a class looks like, in units of the first plane.
     glm::dvec4 unitsOf(Slot number) const;
     /// Returns what a code looks like.
     glm::dvec4 lightOfCode(Code code) const;
 };
 
+/// Where the colours of voxels come from; opacity is always the transfer function's. All but the
+/// first are looks to find one's way by.
+enum class ColorBy {
+    kValue,  ///< the transfer function
+    kX,      ///< world x: blue where the volume begins, red where it ends
+    kY,      ///< likewise
+    kZ,      ///< likewise
+    kIndex   ///< voxel index: red, green and blue grow from 0 to 1 along i, j and k
+};
+
+/// Returns "value", "x", "y", "z" or "index".
+std::string colorByName(ColorBy colorBy);
+
 /// What turns data values into light.
 struct Optics {
     TransferFunction transferFunction;
+    ColorBy colorBy = ColorBy::kValue;
     /// Data values of 0 and 1 of a normalized transfer function, the first the smaller; empty:
     /// defaultRange.
     std::optional<glm::dvec2> range;

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/layered_picture.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "default_floats.h"
+#include "deltasplat/error.h"
+#include "kept_memory.h"
+#include "picture_view.h"
+
+namespace deltasplat {
+namespace {
+
+[[noreturn]] void refuse(const std::string& got, const std::string& expected) {
+    throw Error(ErrorCode::kUsage, gotExpected("layers of a picture", got, expected));
+}
+
+std::string boxText(const glm::ivec2& min, const glm::ivec2& max) {
+    return std::to_string(max.x - min.x) + "x" + std::to_string(max.y - min.y) + " at " +
+           std::to_string(min.x) + "," + std::to_string(min.y);
+}
+
+// A layer may have come from anywhere.
+void requireFits(const SlabLayer& layer, const PlaneBox& box, int channels) {
+    if (layer.min != box.min || layer.max != box.max || layer.channels != channels) {
+        refuse("one of " + boxText(layer.min, layer.max) + ", channels " +
+                   std::to_string(layer.channels),
+               boxText(box.min, box.max) + ", channels " + std::to_string(channels) + " for slab " +
+                   std::to_string(layer.slab));
+    }
+    const glm::ivec2 size = box.size();
+    const auto isInside = [&](const glm::ivec2& span) {
+        return span.x >= span.y || (span.x >= 0 && span.y <= size.x);
+    };
+    if (layer.values.size() != std::size_t(channels) * std::size_t(size.x) * std::size_t(size.y) ||
+        layer.spans.size() != std::size_t(size.y) ||
+        !std::all_of(layer.spans.begin(), layer.spans.end(), isInside)) {
+        refuse("values or spans of another size than the layer's of slab " +
+                   std::to_string(layer.slab),
+               "those that were rendered");
+    }
+}
+
+}  // namespace
+
+struct LayeredPicture::Impl {
+    // A slab of a view of which something may be seen, counted from the front.
+    struct Place {
+        std::size_t view;
+        int slab;
+    };
+
+    Impl(const PreparedScene& ofScene, const Camera& ofCamera, const Listener& listener)
+        : scene(ofScene), camera(ofCamera) {
+        const PreparedScene::Impl& prepared = scene.impl();
+        const Volume& volume = *prepared.scene.volume;
+        const std::vector<Factorization> all = viewsOf(camera, volume, prepared.options);
+        const SheetPlan plan(prepared, all.front(), listener);
+        if (volume.empty()) return;
+        for (const Factorization& view : all) {
+            views.push_back(std::make_unique<PictureView>(
+                prepared, camera, view, plan,
+                prepared.axis(view.sliceAxis, plan.partsAlong(view.sliceAxis),
+                              stepsOf(view, volume), listener),
+                memory));
+            seen.push_back(seenSlabs(views.back()->slabs()));
+            for (int slab = 0; slab < int(seen.back().size()); ++slab)
+                slabs.push_back({views.size() - 1, slab});
+        }
+    }
+
+    const Place& placeOf(int slab) const {
+        if (slab < 0 || slab >= int(slabs.size())) {
+            refuse("slab " + std::to_string(slab),
+                   "one of " + std::to_string(slabs.size()) + ", counted from 0");
+        }
+        return slabs[std::size_t(slab)];
+    }
+
+    // All layers by their slabs.
+    std::vector<const SlabLayer*> ordered(std::span<const SlabLayer> layers) const {
+        std::vector<const SlabLayer*> bySlab(slabs.size());
+        for (const SlabLayer& layer : layers) {
+            placeOf(layer.slab);
+            const SlabLayer*& known = bySlab[std::size_t(layer.slab)];
+            if (known) refuse("slab " + std::to_string(layer.slab) + " twice", "each once");
+            known = &layer;
+        }
+        const auto missing = std::find(bySlab.begin(), bySlab.end(), nullptr);
+        if (missing != bySlab.end()) {
+            refuse("none for slab " + std::to_string(missing - bySlab.begin()),
+                   "one for each of " + std::to_string(slabs.size()) + " slabs");
+        }
+        return bySlab;
+    }
+
+    PreparedScene scene;
+    Camera camera;
+    mutable KeptMemory memory;
+    std::vector<std::unique_ptr<const PictureView>> views;
+    std::vector<std::vector<SeenSlab>> seen;  // [view]
+    std::vector<Place> slabs;
+};
+
+LayeredPicture::LayeredPicture(const PreparedScene& scene, const Camera& camera,
+                               const Listener& listener) {
+    const DefaultFloats floats;
+    impl_ = std::make_unique<const Impl>(scene, camera, listener);
+}
+LayeredPicture::~LayeredPicture() = default;
+LayeredPicture::LayeredPicture(LayeredPicture&&) noexcept = default;
+LayeredPicture& LayeredPicture::operator=(LayeredPicture&&) noexcept = default;
+
+int LayeredPicture::slabs() const {
+    return int(impl_->slabs.size());
+}
+
+SlabLayer LayeredPicture::render(int slab, const Listener& listener) const {
+    const DefaultFloats floats;
+    const Impl::Place& place = impl_->placeOf(slab);
+    SlabRenderer renderer(impl_->views[place.view]->slabs(), listener, place.slab);
+    renderer.run();
+    const Layer layer = renderer.merge();
+    SlabLayer result{slab, layer.box.min, layer.box.max, layer.channels, {}, layer.spans};
+    result.values.assign(layer.values.begin(), layer.values.end());
+    return result;
+}
+
+void LayeredPicture::fold(std::span<const SlabLayer> layers, Image& image) const {
+    const DefaultFloats floats;
+    requireSize(impl_->camera, image);
+    const std::vector<const SlabLayer*> ordered = impl_->ordered(layers);
+    for (std::size_t slab = 0; slab < ordered.size(); ++slab) {
+        const Impl::Place& place = impl_->slabs[slab];
+        const SlabInput& input = impl_->views[place.view]->slabs();
+        const SeenSlab& seen = impl_->seen[place.view][std::size_t(place.slab)];
+        const PlaneBox reach = reachOfSeen(input, seen);
+        // Of what is out of sight there is no layer.
+        requireFits(*ordered[slab], reach.empty() ? PlaneBox{} : reach, input.layout.channels);
+    }
+    std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
+    std::size_t next = 0;
+    for (std::size_t view = 0; view < impl_->views.size(); ++view) {
+        const PictureView& picture = *impl_->views[view];
+        const PlaneBox reach = reachOfAll(picture.slabs(), impl_->seen[view]);
+        Layer merged(reach, picture.slabs().layout.channels, impl_->memory);
+        for (; next < ordered.size() && impl_->slabs[next].view == view; ++next) {
+            const SlabLayer& layer = *ordered[next];
+            for (int y = layer.min.y; y < layer.max.y; ++y) {
+                const auto row = std::size_t(y - layer.min.y);
+                const auto width = std::size_t(layer.max.x - layer.min.x);
+                mergeRowBehind(merged,
+                               {layer.values.data() + row * width * std::size_t(layer.channels),
+                                layer.min.x, layer.spans[row]},
+                               y);
+            }
+        }
+        picture.show(merged, image);
+    }
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/openvdb_grid.h"
+
+#include "convert/volume_grid.h"
+#include "default_floats.h"
+#include "deltasplat/error.h"
+#include "ingest/delta_format.h"
+#include "ingest/grid_volume.h"
+#include "ingest/readers.h"
+
+namespace deltasplat {
+namespace {
+
+// Whether reading writes to a grid: level sets become fog, and NaN what replaces it.
+bool isChanged(const openvdb::GridBase& grid, const ReadOptions& options) {
+    const bool isReal = grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>();
+    const bool isLevelSet = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
+    return isReal && (options.nanValue || (isLevelSet && options.levelSetToFog));
+}
+
+}  // namespace
+
+Volume makeVolume(const openvdb::GridBase::ConstPtr& grid, const ReadOptions& options,
+                  const Listener& listener) {
+    const DefaultFloats floats;
+    const std::string where = "OpenVDB grid";
+    if (!grid) throw Error(ErrorCode::kUsage, gotExpected(where, "none", "a grid"));
+    openvdb::initialize();
+    requireFiniteNan(options);
+    if (isDeltaGrid(*grid)) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(where, "the differences of a delta grid",
+                                "the volume itself: readVolume reads a delta grid's file"));
+    }
+    const openvdb::GridBase::Ptr own = isChanged(*grid, options)
+                                           ? grid->deepCopyGrid()
+                                           : openvdb::ConstPtrCast<openvdb::GridBase>(grid);
+    Volume volume = volumeOfGrid(own, {listener, where, typeOf(*grid), options});
+    volume.name = grid->getName();
+    listener.report(1);
+    return volume;
+}
+
+openvdb::GridBase::ConstPtr makeGrid(const Volume& volume) {
+    const DefaultFloats floats;
+    return gridOf(volume);
+}
+
+}  // namespace deltasplat

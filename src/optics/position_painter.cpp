@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/mat4x4.hpp>
+#include <limits>
+
+#include "optics/voxel_painter.h"
+
+namespace deltasplat {
+namespace {
+
+// Colours that grow evenly from one end of the volume to the other.
+class PositionPainter : public VoxelPainter {
+  public:
+    // A channel is slopes[channel] * index position + starts[channel], of 0..1.
+    PositionPainter(const glm::dmat3& slopes, const glm::dvec3& starts)
+        : slopes_(slopes), starts_(starts) {}
+
+    glm::dvec3 brightest() const override { return glm::dvec3(1); }
+
+    void paint(const BlockPlace& place, std::span<const std::uint16_t, 512> classes,
+               std::span<VoxelColor, 512> colors) const override {
+        for (std::size_t n = 0; n < colors.size(); ++n) {
+            if (classes[n] == 0) continue;
+            const glm::dvec3 steps(double(n / 64), double(n / 8 % 8), double(n % 8));
+            const glm::dvec3 index = place.first + place.steps * steps;
+            glm::dvec3 color;
+            for (int c = 0; c < 3; ++c) color[c] = glm::dot(slopes_[c], index) + starts_[c];
+            colors[n] = VoxelColor::of(glm::clamp(color, 0.0, 1.0));
+        }
+    }
+
+  private:
+    glm::dmat3 slopes_;  // [channel]
+    glm::dvec3 starts_;
+};
+
+// A number that grows evenly: slope * index position + start.
+struct Share {
+    glm::dvec3 slope{0.0};
+    double start = 0;
+};
+
+// Of the way from the voxel centre that lies lowest along `slope` to the highest; 0 if there is but
+// one place.
+Share shareAlong(const glm::dvec3& slope, const IndexBox& box) {
+    double low = 0;
+    double high = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double ends[] = {slope[axis] * box.min[axis], slope[axis] * box.max[axis]};
+        low += std::min(ends[0], ends[1]);
+        high += std::max(ends[0], ends[1]);
+    }
+    if (!(high - low > 0)) return {};
+    return {slope / (high - low), -low / (high - low)};
+}
+
+}  // namespace
+
+std::string colorByName(ColorBy colorBy) {
+    switch (colorBy) {
+        case ColorBy::kValue:
+            return "value";
+        case ColorBy::kX:
+            return "x";
+        case ColorBy::kY:
+            return "y";
+        case ColorBy::kZ:
+            return "z";
+        case ColorBy::kIndex:
+            return "index";
+    }
+    return "value";
+}
+
+std::unique_ptr<const VoxelPainter> makePainter(const Volume& volume, ColorBy colorBy) {
+    if (colorBy == ColorBy::kValue || volume.empty()) return nullptr;
+    glm::dmat3 slopes(0.0);
+    glm::dvec3 starts(0.0);
+    const auto setChannel = [&](int channel, const Share& share) {
+        slopes[channel] = share.slope;
+        starts[channel] = share.start;
+    };
+    if (colorBy == ColorBy::kIndex) {
+        for (int axis = 0; axis < 3; ++axis) {
+            glm::dvec3 along(0.0);
+            along[axis] = 1;
+            setChannel(axis, shareAlong(along, volume.box));
+        }
+    } else {
+        const int axis = int(colorBy) - int(ColorBy::kX);
+        const glm::dmat4& world = volume.worldFromIndex;
+        const Share share =
+            shareAlong({world[0][axis], world[1][axis], world[2][axis]}, volume.box);
+        setChannel(0, share);
+        setChannel(2, {-share.slope, 1 - share.start});
+    }
+    return std::make_unique<PositionPainter>(slopes, starts);
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "deltasplat/error.h"
+#include "image/warp.h"
+#include "image/warp_region.h"
+#include "optics/opacity_steps.h"
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+// Of the picture's pixels that a line of the base plane has at most, seen from an eye: about what
+// parallel projection has on average.
+constexpr double kPixelsOfScreen = 0.7;
+
+Raster rasterOf(const Layer& layer, const ClassTable& classes) {
+    Raster raster{layer.box.min, layer.box.size(), layer.values.data(), layer.channels};
+    raster.spans = layer.spans;
+    // Of one colour, every channel is a fixed share of the opacity.
+    if (classes.oneColor) raster.color = glm::dvec3(classes.scale) / classes.scale.a;
+    return raster;
+}
+
+}  // namespace
+
+std::vector<Factorization> viewsOf(const Camera& camera, const Volume& volume,
+                                   const SplatOptions& options) {
+    if (camera.projection == Projection::kOrtho)
+        return {factorize(camera, volume.worldFromIndex, options.resolution)};
+    return factorizeRegions(camera, volume.box, volume.worldFromIndex, options.resolution);
+}
+
+double stepsOf(const Factorization& view, const Volume& volume) {
+    if (view.eye) return 1;
+    // Rounding makes no straight view an oblique one.
+    constexpr double kSame = 1e-12;
+    const double steps = view.sliceStepWorld / planeDistance(volume.worldFromIndex, view.sliceAxis);
+    return std::abs(steps - 1) < kSame ? 1 : steps;
+}
+
+void requireSize(const Camera& camera, const Image& image) {
+    const glm::ivec2 size = camera.sizePixels;
+    const std::size_t values = std::size_t{4} * std::size_t(size.x) * std::size_t(size.y);
+    if (image.size == size && image.rgba.size() == values) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("image",
+                            std::to_string(image.size.x) + "x" + std::to_string(image.size.y) +
+                                " pixels, " + std::to_string(image.rgba.size()) + " values",
+                            "the camera's " + std::to_string(size.x) + "x" +
+                                std::to_string(size.y) + ", four values each"));
+}
+
+PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
+                         const Factorization& view, const SheetPlan& plan,
+                         std::shared_ptr<const PreparedAxis> axis,
+                         std::pmr::memory_resource& memory)
+    : scene_(scene),
+      camera_(camera),
+      view_(view),
+      axis_(std::move(axis)),
+      steps_(stepsOf(view, *scene.scene.volume)),
+      thinView_(subdivided(view, axis_->parts)),
+      footprint_(makeViewFootprint(plan)),
+      layout_(layoutSheet(axis_->deltas.box, footprint_, axis_->classes.oneColor ? 1 : 4)) {
+    if (view.eye) {
+        plane_.emplace(thinView_, camera, layout_.firstSlice, layout_.firstVoxel, 1 / densityOf());
+    } else {
+        plane_.emplace(thinView_, layout_.firstSlice, layout_.firstVoxel, layout_.resolution,
+                       layout_.offsetPixels);
+    }
+    if (steps_ != axis_->steps) colorSteps();
+    const auto either = [](const auto& here, const auto& there) {
+        return here ? &*here : there ? &*there : nullptr;
+    };
+    const WordColors* own = either(own_, axis_->own);
+    const ClassTable& classes = own ? own->table() : classes_ ? *classes_ : axis_->classes;
+    const DigitVoxels* digitVoxels = own        ? own->digitVoxels()
+                                     : classes_ ? either(digitVoxels_, std::optional<DigitVoxels>())
+                                                : either(axis_->digitVoxels, digitVoxels_);
+    slabs_.emplace(SlabInput{axis_->deltas, classes, digitVoxels, own,
+                             scene.options.method == Method::kTraditional, footprint_, layout_,
+                             *plane_, memory});
+}
+
+void PictureView::colorSteps() {
+    classes_ = axis_->classes.atSteps(steps_ / axis_->steps);
+    if (scene_.painter) {
+        own_.emplace(axis_->deltas, *classes_, scene_.painter->brightest());
+    } else if (!classes_->oneDigit()) {
+        digitVoxels_.emplace(axis_->deltas, *classes_);
+    }
+}
+
+Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
+    const int within = axis_->parts.within;
+    const double pixels = view_.pixelsPerVoxel / within;
+    const double sigma = scene_.options.sigma.value_or(defaultSigma(pixels) / within);
+    // The kernel is round in voxels, however many slices there are; seen along the middle line of
+    // sight.
+    const glm::dvec2 shift =
+        view_.eye ? 0.5 * (view_.slopeMin + view_.slopeMax) : view_.shiftPerSlice;
+    return makeFootprint(sigma, {shift.y, shift.x}, plan.resolution(),
+                         scene_.options.footprintWidth, within);
+}
+
+// Base plane pixels that a slope of 1 takes: as many as the farthest slice has sheet pixels, which
+// is the most that there is to show, or fewer: as many as the picture needs, but at least as many
+// as there are voxels in the slice in the middle. What is averaged before it is composited is not
+// what is seen of it.
+double PictureView::densityOf() const {
+    const IndexBox& box = axis_->deltas.box;
+    const Factorization& view = thinView_;
+    const double farthest = view.frontToBack ? box.max.x - view.eye->x : view.eye->x - box.min.x;
+    const double nearest =
+        std::max(0.0, view.frontToBack ? box.min.x - view.eye->x : view.eye->x - box.max.x);
+    const double middle = 0.5 * (nearest + farthest);
+    const double needed =
+        std::max(kPixelsOfScreen * view.pixelsPerSlope, middle / axis_->parts.within);
+    const double most = layout_.resolution * std::max(farthest, 1.0);
+    // Reading sheets that are not averaged takes so much less time.
+    constexpr double kWorthMore = 1.3;
+    return most < kWorthMore * needed ? most : needed;
+}
+
+double PictureView::show(Layer& layer, Image& image) const {
+    const Raster raster = rasterOf(layer, slabs_->classes);
+    if (!view_.eye) {
+        const glm::dmat3& map = plane_->pixelFromPicture();
+        warp(raster, map, WarpFilter::kSharp, image);
+        return warpGain(map);
+    }
+    if (slabs_->classes.oneColor) lengthenSteps(layer);
+    return warpRegion(raster, camera_, view_, thinView_, *plane_, image);
+}
+
+// Opacities are those of ways straight through the slices: makes them those of the lines of sight.
+void PictureView::lengthenSteps(Layer& layer) const {
+    parallelForChunks(std::size_t(layer.box.size().y), [&](std::size_t begin, std::size_t end) {
+        std::vector<float> steps;
+        for (std::size_t row = begin; row < end; ++row) {
+            const glm::ivec2 span = layer.spans[row];
+            if (span.x >= span.y) continue;
+            const glm::ivec2 first = layer.box.min + glm::ivec2(span.x, int(row));
+            steps.clear();
+            for (int x = span.x; x < span.y; ++x)
+                steps.push_back(float(plane_->stepsAt({layer.box.min.x + x, first.y})));
+            const std::size_t count = steps.size();
+            steps.resize(count + kStepsSpare);
+            repeatOpacity(layer.pixel(first), steps.data(), count);
+        }
+    });
+}
+
+ErrorBound PictureView::errorBound() const {
+    std::optional<double> brightest;
+    if (scene_.painter) {
+        const glm::dvec3 color = scene_.painter->brightest();
+        brightest = std::max({color.x, color.y, color.z});
+    }
+    const IndexBox& box = axis_->deltas.box;
+    const Steps steps = view_.eye && plane_->cutsAny({box.min.x, box.max.x}) ? Steps::kOneShorter
+                        : view_.eye || steps_ != 1                           ? Steps::kLonger
+                                                                             : Steps::kAsClassified;
+    return deltasplat::errorBound(axis_->classes, scene_.options.tolerance, steps, brightest);
+}
+
+}  // namespace deltasplat

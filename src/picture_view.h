@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <memory_resource>
+#include <optional>
+#include <vector>
+
+#include "composite/slab_renderer.h"
+#include "optics/hold_rule.h"
+#include "prepared_axis.h"
+#include "sheet_plan.h"
+
+namespace deltasplat {
+
+/// Returns how a camera sees a volume: one view, or one for each region of what an eye sees.
+std::vector<Factorization> viewsOf(const Camera& camera, const Volume& volume,
+                                   const SplatOptions& options);
+
+/// Of a view, how long the way from one slice to the next is, as a multiple of the straight one;
+/// from an eye, where each pixel has its own, 1.
+double stepsOf(const Factorization& view, const Volume& volume);
+
+/// @throw Error(kUsage) if the image has not the camera's size
+void requireSize(const Camera& camera, const Image& image);
+
+/// A view of a picture, of a volume that is not empty: what its slabs are made of, how they lie on
+/// the base plane, and how that is seen.
+class PictureView {
+  public:
+    /// @param axis    of the view's slice axis
+    /// @param memory  for layers and sheets
+    PictureView(const PreparedScene::Impl& scene, const Camera& camera, const Factorization& view,
+                const SheetPlan& plan, std::shared_ptr<const PreparedAxis> axis,
+                std::pmr::memory_resource& memory);
+    // What slabs are made of refers to it.
+    PictureView(const PictureView&) = delete;
+    PictureView& operator=(const PictureView&) = delete;
+
+    const SlabInput& slabs() const { return *slabs_; }
+    const Footprint& footprint() const { return footprint_; }
+    const PreparedAxis& axis() const { return *axis_; }
+    /// Writes what is seen of the base plane into the picture. Changes the layer on the way.
+    /// @return the most that this can enlarge a difference of layers
+    double show(Layer& layer, Image& image) const;
+    /// Most that a layer may differ from the exact one.
+    ErrorBound errorBound() const;
+
+  private:
+    void colorSteps();
+    Footprint makeViewFootprint(const SheetPlan& plan) const;
+    double densityOf() const;
+    void lengthenSteps(Layer& layer) const;
+
+    const PreparedScene::Impl& scene_;
+    const Camera& camera_;
+    Factorization view_;
+    std::shared_ptr<const PreparedAxis> axis_;
+    double steps_;
+    // What the axis has for other steps.
+    std::optional<ClassTable> classes_;
+    std::optional<DigitVoxels> digitVoxels_;
+    std::optional<WordColors> own_;
+    Factorization thinView_;
+    Footprint footprint_;
+    SheetLayout layout_;
+    std::optional<BasePlane> plane_;
+    std::optional<SlabInput> slabs_;
+};
+
+}  // namespace deltasplat

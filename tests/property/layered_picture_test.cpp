@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slabs rendered one by one, here or elsewhere, make the picture that is rendered at once.
+#include "deltasplat/layered_picture.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <random>
+#include <string>
+#include <thread>
+
+#include "deltasplat/error.h"
+#include "deltasplat/threads.h"
+#include "support/some_scene.h"
+
+namespace deltasplat {
+namespace {
+
+using test::cameraOf;
+using test::Colors;
+using test::someCameras;
+using test::someOptics;
+using test::someVolume;
+
+PreparedScene sceneOf(Colors colors, double tolerance = 0) {
+    SplatOptions options;
+    options.tolerance.relative = tolerance;
+    return PreparedScene({someVolume(), someOptics(colors)}, options);
+}
+
+std::vector<SlabLayer> layersOf(const LayeredPicture& picture) {
+    std::vector<SlabLayer> layers;
+    for (int slab = 0; slab < picture.slabs(); ++slab) layers.push_back(picture.render(slab));
+    return layers;
+}
+
+TEST(LayeredPicture, givesThePixelsOfThePictureAtOnce) {
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral, Colors::kOwn}) {
+        for (const double tolerance : {0.0, 0.1}) {
+            const PreparedScene scene = sceneOf(colors, tolerance);
+            // As another process would.
+            const PreparedScene elsewhere = sceneOf(colors, tolerance);
+            for (const CameraOptions& options : someCameras()) {
+                const Camera camera = cameraOf(*scene.scene().volume, options);
+                const LayeredPicture here(scene, camera);
+                const LayeredPicture there(elsewhere, camera);
+                ASSERT_EQ(here.slabs(), there.slabs());
+                EXPECT_GT(here.slabs(), 1);
+                std::vector<SlabLayer> layers;
+                for (int slab = 0; slab < here.slabs(); ++slab) {
+                    const ThreadLimit limit(1 + slab % 3);
+                    layers.push_back((slab % 2 == 0 ? here : there).render(slab));
+                }
+                std::shuffle(layers.begin(), layers.end(), std::mt19937(3));
+                Image image(camera.sizePixels);
+                std::fill(image.rgba.begin(), image.rgba.end(), 5.0f);
+                here.fold(layers, image);
+                EXPECT_EQ(image.rgba, test::pictureOf(scene, options).rgba);
+            }
+        }
+    }
+}
+
+TEST(LayeredPicture, anyNumberOfThreadsMayRenderSlabs) {
+    const PreparedScene scene = sceneOf(Colors::kSeveral);
+    const CameraOptions options = someCameras()[5];
+    const LayeredPicture picture(scene, cameraOf(*scene.scene().volume, options));
+    std::vector<SlabLayer> layers(std::size_t(picture.slabs()));
+    std::vector<std::thread> threads;
+    for (int slab = 0; slab < picture.slabs(); ++slab)
+        threads.emplace_back([&, slab] { layers[std::size_t(slab)] = picture.render(slab); });
+    for (std::thread& thread : threads) thread.join();
+    Image image(options.sizePixels);
+    picture.fold(layers, image);
+    EXPECT_EQ(image.rgba, test::pictureOf(scene, options).rgba);
+}
+
+TEST(LayeredPicture, ofAnEmptyVolumeIsTransparent) {
+    const auto nothing = std::make_shared<const Volume>(
+        test::makeVolume({}, [](int, int, int) { return test::kInactive; }));
+    const PreparedScene scene({nothing, someOptics(Colors::kOne)}, SplatOptions());
+    CameraOptions options;
+    options.sizePixels = {10, 10};
+    const LayeredPicture picture(scene, cameraOf(*nothing, options));
+    EXPECT_EQ(picture.slabs(), 0);
+    Image image(options.sizePixels);
+    image.rgba[7] = 1;
+    picture.fold({}, image);
+    EXPECT_EQ(image.rgba, Image(options.sizePixels).rgba);
+}
+
+std::string messageOf(const std::function<void()>& call) {
+    try {
+        call();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(LayeredPicture, refusesLayersThatAreNotItsOwn) {
+    const PreparedScene scene = sceneOf(Colors::kSeveral);
+    const CameraOptions options = someCameras()[1];
+    const LayeredPicture picture(scene, cameraOf(*scene.scene().volume, options));
+    const std::vector<SlabLayer> layers = layersOf(picture);
+    const std::string slabs = std::to_string(layers.size());
+    Image image(options.sizePixels);
+    const auto messageFor = [&](const std::function<void(std::vector<SlabLayer>&)>& change) {
+        std::vector<SlabLayer> changed = layers;
+        change(changed);
+        return messageOf([&] { picture.fold(changed, image); });
+    };
+    EXPECT_EQ(messageFor([](auto&) {}), "no error");
+    EXPECT_EQ(messageFor([](auto& all) { all.pop_back(); }),
+              "layers of a picture: got none for slab " + std::to_string(layers.size() - 1) +
+                  "; expected one for each of " + slabs + " slabs");
+    EXPECT_EQ(messageFor([](auto& all) { all[1].slab = 0; }),
+              "layers of a picture: got slab 0 twice; expected each once");
+    EXPECT_EQ(messageFor([](auto& all) { all[0].slab = -1; }),
+              "layers of a picture: got slab -1; expected one of " + slabs + ", counted from 0");
+    EXPECT_NE(messageFor([](auto& all) { ++all[0].max.x; }).find("for slab 0"), std::string::npos);
+    EXPECT_NE(messageFor([](auto& all) { all[0].values.pop_back(); }).find("another size"),
+              std::string::npos);
+    EXPECT_NE(messageFor([](auto& all) {
+                  all[0].spans[3] = {-5, 4};
+              }).find("another size"),
+              std::string::npos);
+    EXPECT_EQ(messageOf([&] { picture.render(int(layers.size())); }),
+              "layers of a picture: got slab " + slabs + "; expected one of " + slabs +
+                  ", counted from 0");
+    // Nothing was changed by what was refused.
+    Image other({3, 3});
+    EXPECT_NE(messageOf([&] { picture.fold(layers, other); }).find("image: got 3x3"),
+              std::string::npos);
+    EXPECT_EQ(other.rgba, Image({3, 3}).rgba);
+}
+
+}  // namespace
+}  // namespace deltasplat

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "deltasplat/prepared_scene.h"
+#include "support/make_volume.h"
+
+namespace deltasplat::test {
+
+inline std::shared_ptr<const Volume> someVolume() {
+    return std::make_shared<const Volume>(
+        randomVolume({{0, 0, 0}, {33, 26, 28}}, 11, 0.5, {1, 1.2, 0.8}));
+}
+
+/// Of one colour, of several, or of voxels' own.
+enum class Colors { kOne, kSeveral, kOwn };
+
+inline Optics someOptics(Colors colors) {
+    Optics optics;
+    optics.transferFunction.colors = {{0, {1, 0, 0.5}}};
+    if (colors != Colors::kOne) optics.transferFunction.colors.push_back({255, {0.2, 1, 0}});
+    if (colors == Colors::kOwn) optics.colorBy = ColorBy::kIndex;
+    optics.transferFunction.opacities = {{60, 0, 0.5, 0}, {200, 0.3, 0.5, 0}, {255, 1, 0.5, 0}};
+    return optics;
+}
+
+/// Parallel and from an eye, straight and oblique, from near and from afar.
+inline std::vector<CameraOptions> someCameras() {
+    std::vector<CameraOptions> cameras;
+    for (int i = 0; i < 8; ++i) {
+        CameraOptions camera;
+        camera.sizePixels = {90, 70};
+        camera.view = i % 2 == 0 ? "front" : "left";
+        camera.azimuthDegrees = 17.0 * i;
+        camera.elevationDegrees = 9.0 * i;
+        if (i >= 4) {
+            camera.projection = Projection::kPerspective;
+            camera.fovDegrees = 20.0 * (i - 3);
+        }
+        cameras.push_back(camera);
+    }
+    cameras.emplace_back();
+    cameras.back().projection = Projection::kLatlong;
+    cameras.back().sizePixels = {96, 48};
+    return cameras;
+}
+
+inline Camera cameraOf(const Volume& volume, const CameraOptions& options) {
+    return makeCamera(options, volume.box, volume.worldFromIndex, volume.space);
+}
+
+inline Image pictureOf(const PreparedScene& scene, const CameraOptions& options) {
+    const Camera camera = cameraOf(*scene.scene().volume, options);
+    Image image(camera.sizePixels);
+    renderComposite(scene, camera, image);
+    return image;
+}
+
+}  // namespace deltasplat::test
