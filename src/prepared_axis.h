@@ -61,7 +61,7 @@ struct PreparedScene::Impl {
     mutable std::array<std::optional<std::size_t>, 3> blocksSeen_;  // [slice axis]
 };
 
-/// As the public one, of a scene's insides.
+/// As the public one, of a scene's insides, into a picture of the camera's size that is clear.
 /// @param memory  for sheets and layers
 RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& camera,
                             KeptMemory& memory, Image& image, const Listener& listener);

@@ -119,6 +119,8 @@ Renderer::~Renderer() = default;
 
 RenderStats Renderer::render(const PreparedScene& scene, const Camera& camera, Image& image,
                              const Listener& listener) {
+    requireSize(camera, image);
+    std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
     const RenderStats stats = renderComposite(scene.impl(), camera, impl_->memory, image, listener);
     impl_->memory.endPicture();
     return stats;
@@ -132,8 +134,6 @@ RenderStats renderComposite(const PreparedScene& scene, const Camera& camera, Im
 RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& camera,
                             KeptMemory& memory, Image& image, const Listener& listener) {
     const DefaultFloats floats;
-    requireSize(camera, image);
-    std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
     const std::vector<Factorization> views = viewsOf(camera, *scene.scene.volume, scene.options);
     RenderStats stats;
     stats.mode = Mode::kComposite;

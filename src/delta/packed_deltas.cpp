@@ -154,8 +154,9 @@ struct OwnColors {
     std::array<Slice, 4> before{};  // [part]: of the slice before it
     std::array<Slice, 4> held{};    // [part]
 
-    // Adds to changes where what is seen has another colour than in the slice before.
-    void compare(std::size_t part, BlockChanges& changes) const {
+    // Adds to changes where what is seen has another colour than in the slice before. Not inline,
+    // as what follows: the path without own colours stays as small as it is.
+    [[gnu::noinline]] void compare(std::size_t part, BlockChanges& changes) const {
         const VoxelColor* last = before[part].data();
         const VoxelColor* slice = block.data();
         for (int s = 0; s < 8; ++s, last = slice, slice += 64) {
@@ -276,8 +277,9 @@ class ColumnPacker {
     }
 
     // What is held is slot and colour together, each of which has to allow it.
-    void holdColors(const BlockSlots& slots, const glm::ivec3& position,
-                    std::array<Slot, 64>& before, OwnColors::Slice& colorsBefore) {
+    [[gnu::noinline]] void holdColors(const BlockSlots& slots, const glm::ivec3& position,
+                                      std::array<Slot, 64>& before,
+                                      OwnColors::Slice& colorsBefore) {
         const Holder& holder = *tools_.holder;
         for (std::size_t i = 0; i < slots.size(); ++i) classes_[i] = holder.classOf(slots[i]);
         color(position);
@@ -299,7 +301,7 @@ class ColumnPacker {
 
     // Gives the classes in hand colours of their own.
     // @param position  of their block, (slice, u, v)
-    void color(const glm::ivec3& position) {
+    [[gnu::noinline]] void color(const glm::ivec3& position) {
         const glm::ivec3 order = sliceOrder(options_.sliceAxis);
         const glm::dvec3 per(parts_.slices, parts_.within, parts_.within);
         BlockPlace place{glm::dvec3(0), glm::dmat3(0)};

@@ -107,18 +107,19 @@ class ColorRounder {
             oneColor_ = oneColor_ && one.color == first->color;
         }
         oneColor_ = oneColor_ && first;
+        // What is too small for a scale is nothing.
+        scale_ = largest_ / double(ClassTable::kMax);
     }
 
     bool oneColor() const { return oneColor_; }
-    // What is too small for a scale is nothing.
-    glm::dvec4 scale() const { return largest_ / double(ClassTable::kMax); }
+    const glm::dvec4& scale() const { return scale_; }
 
     ColorDigits operator()(const Light& one) const {
         glm::dvec4 exact = premultiplied(one);
         for (int c = 0; c < 4; ++c)
-            exact[c] = scale()[c] == 0 ? 0 : exact[c] / largest_[c] * ClassTable::kMax;
+            exact[c] = scale_[c] == 0 ? 0 : exact[c] / largest_[c] * ClassTable::kMax;
         // Of one colour, all channels are the opacity: equal, however division rounds.
-        for (int c = 0; oneColor_ && c < 3; ++c) exact[c] = scale()[c] == 0 ? 0 : exact.a;
+        for (int c = 0; oneColor_ && c < 3; ++c) exact[c] = scale_[c] == 0 ? 0 : exact.a;
         const ColorDigits digits = digitsOf(exact);
         const auto isClear = [](const ClassTable::Color& color) { return color[3] == 0; };
         // What lets all light through shows nothing.
@@ -129,6 +130,7 @@ class ColorRounder {
     static glm::dvec4 premultiplied(const Light& one) { return {one.alpha * one.color, one.alpha}; }
 
     glm::dvec4 largest_{0.0};
+    glm::dvec4 scale_{0.0};
     bool oneColor_;
 };
 
@@ -142,22 +144,39 @@ std::vector<ColorDigits> roundColors(const std::vector<Light>& lights,
     return digits;
 }
 
-// Gives equal looks equal numbers, in the order in which they come, beginning with 1. An open hash
-// table at most half full: several times as fast as sorting.
+// Whether looks of codes in order become ever more or ever less opaque, but for those that are as
+// the one before: then there are no others that are equal.
+bool areInOrder(const std::vector<CodeLook>& codes) {
+    bool rising = true;
+    bool falling = true;
+    for (std::size_t i = 1; i < codes.size(); ++i) {
+        const Look& before = codes[i - 1].look;
+        const Look& look = codes[i].look;
+        const bool same = look == before;
+        rising = rising && (same || look.extinction > before.extinction);
+        falling = falling && (same || look.extinction < before.extinction);
+    }
+    return rising || falling;
+}
+
+// Gives equal looks equal numbers, in the order in which they come, beginning with 1. If need be by
+// an open hash table at most half full: several times as fast as sorting.
 class LookNumbers {
   public:
-    explicit LookNumbers(std::size_t looks)
-        : placeBits_(std::bit_width(2 * looks)), numberAt_(std::size_t{1} << placeBits_) {}
+    explicit LookNumbers(const std::vector<CodeLook>& codes) : inOrder_(areInOrder(codes)) {
+        looks_.reserve(codes.size() + 1);
+        if (inOrder_) return;
+        placeBits_ = std::bit_width(2 * codes.size());
+        numberAt_.resize(std::size_t{1} << placeBits_);
+    }
 
     Slot numberOf(const Look& look) {
+        if (looks_.size() > 1 && look == looks_.back()) return Slot(looks_.size() - 1);
+        if (inOrder_) return add(look);
         std::size_t place = hashOf(look) >> (64 - placeBits_);
         while (numberAt_[place] != 0 && !(looks_[std::size_t(numberAt_[place])] == look))
             place = (place + 1) % numberAt_.size();
-        if (numberAt_[place] == 0) {
-            if (looks_.size() == ClassTable::kMaxClasses) return ClassTable::kMaxClasses - 1;
-            numberAt_[place] = Slot(looks_.size());
-            looks_.push_back(look);
-        }
+        if (numberAt_[place] == 0) numberAt_[place] = add(look);
         return numberAt_[place];
     }
 
@@ -165,6 +184,11 @@ class LookNumbers {
     std::vector<Look> take() { return std::move(looks_); }
 
   private:
+    Slot add(const Look& look) {
+        if (looks_.size() == ClassTable::kMaxClasses) return ClassTable::kMaxClasses - 1;
+        looks_.push_back(look);
+        return Slot(looks_.size() - 1);
+    }
     static std::uint64_t hashOf(const Look& look) {
         constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 / golden ratio (D. Knuth)
         std::uint64_t hash = 0;
@@ -174,7 +198,8 @@ class LookNumbers {
         return hash;
     }
 
-    int placeBits_;
+    bool inOrder_;
+    int placeBits_ = 0;
     std::vector<Slot> numberAt_;  // 0 where nothing is
     std::vector<Look> looks_{Look{}};
 };
@@ -192,27 +217,35 @@ std::vector<Slot> orderByDigits(std::vector<ColorDigits>& colors, std::vector<Lo
         };
         return std::pair(keyOf(a), a) < std::pair(keyOf(b), b);
     });
+    std::array<std::size_t, kUses> placeOf;
+    for (std::size_t i = 0; i < uses.size(); ++i) placeOf[uses[i]] = i;
     std::vector<std::uint8_t> useOf;
+    useOf.reserve(colors.size());
     std::array<bool, kUses> occurs{};
+    bool ordered = true;
     for (const ColorDigits& color : colors) {
-        useOf.push_back(std::uint8_t(usedDigits(color)));
-        occurs[useOf.back()] = true;
+        const unsigned use = usedDigits(color);
+        ordered = ordered && (useOf.empty() || placeOf[useOf.back()] <= placeOf[use]);
+        useOf.push_back(std::uint8_t(use));
+        occurs[use] = true;
     }
     std::vector<Slot> numbers(colors.size());
-    std::vector<ColorDigits> ordered;
-    std::vector<Look> orderedLooks;
-    ordered.reserve(colors.size());
-    orderedLooks.reserve(colors.size());
+    std::iota(numbers.begin(), numbers.end(), Slot{0});
+    if (ordered) return numbers;
+    std::vector<ColorDigits> newColors;
+    std::vector<Look> newLooks;
+    newColors.reserve(colors.size());
+    newLooks.reserve(colors.size());
     for (const unsigned use : uses) {
         for (std::size_t i = 0; occurs[use] && i < colors.size(); ++i) {
             if (useOf[i] != use) continue;
-            numbers[i] = Slot(ordered.size());
-            ordered.push_back(colors[i]);
-            orderedLooks.push_back(looks[i]);
+            numbers[i] = Slot(newColors.size());
+            newColors.push_back(colors[i]);
+            newLooks.push_back(looks[i]);
         }
     }
-    colors = std::move(ordered);
-    looks = std::move(orderedLooks);
+    colors = std::move(newColors);
+    looks = std::move(newLooks);
     return numbers;
 }
 
@@ -220,6 +253,7 @@ std::vector<Slot> orderByDigits(std::vector<ColorDigits>& colors, std::vector<Lo
 void takeDigit(const std::vector<ColorDigits>& colors, std::size_t i, bool always,
                ClassTable::Digit& digit) {
     digit.colors.clear();
+    digit.colors.reserve(colors.size());
     for (const ColorDigits& color : colors) digit.colors.push_back(color[i]);
     const auto isUsed = [](const ClassTable::Color& color) { return color != ClassTable::Color{}; };
     const auto& all = digit.colors;
@@ -242,8 +276,9 @@ void takeDigits(const std::vector<ColorDigits>& colors, ClassTable& table) {
 // @param digits  of the visible codes
 void numberByLook(const std::vector<CodeLook>& visible, const std::vector<ColorDigits>& digits,
                   ClassTable& table) {
-    LookNumbers numbers(visible.size());
+    LookNumbers numbers(visible);
     std::vector<ColorDigits> colors{ColorDigits{}};
+    colors.reserve(visible.size() + 1);
     for (std::size_t i = 0; i < visible.size(); ++i) {
         // What lets all light through shows nothing.
         if (usedDigits(digits[i]) == 0) continue;
