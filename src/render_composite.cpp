@@ -7,6 +7,7 @@
 #include "default_floats.h"
 #include "deltasplat/prepared_scene.h"
 #include "kept_memory.h"
+#include "number_text.h"
 #include "picture_view.h"
 #include "stopwatch.h"
 
@@ -39,6 +40,7 @@ class CompositeRender {
             const auto share = [&](double part) { return (double(i) + part) / views.size(); };
             runView(views[i], partOf(listener, share(0), share(1)));
         }
+        warnOfEmptyPicture(listener);
     }
 
   private:
@@ -60,6 +62,20 @@ class CompositeRender {
         stats_.warpSeconds += secondsSince(warpStart);
         if (!options_.tolerance.isExact()) countIn(picture.errorBound(), gain);
         stats_.renderSeconds += secondsSince(renderStart);
+    }
+
+    // Who reads an empty volume has been told so.
+    void warnOfEmptyPicture(const Listener& listener) const {
+        const auto isZero = [](float value) { return value == 0; };
+        if (volume_.empty() || !std::all_of(image_.rgba.begin(), image_.rgba.end(), isZero)) return;
+        if (stats_.visible == 0) {
+            listener.warn("picture: empty, for transfer function and extinction show none of the "
+                          "values " +
+                          numberText(volume_.valueMin) + " to " + numberText(volume_.valueMax));
+        } else {
+            listener.warn("picture: empty, for what can be seen of the volume lies outside of it, "
+                          "or before the near plane");
+        }
     }
 
     void countIn(const PreparedAxis& axis) {

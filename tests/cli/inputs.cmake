@@ -108,6 +108,18 @@ deltasplat_cli_test(input.tf.range ARGS render cube_8x8x8_uint8.raw -o out.exr -
     STDERR "deltasplat: warning: --range: has no effect on a transfer function that is not normalized")
 deltasplat_cli_test(input.range.ramp ARGS render cube_8x8x8_uint8.raw -o out.exr --range 0,1
     CREATES out.exr)
+# What shows nothing says why.
+set(outside "picture: empty, for what can be seen of the volume lies outside of it, or before the near plane")
+deltasplat_cli_test(empty_picture.target ARGS render cube_8x8x8_uint8.raw -o out.png --target 100,0,0
+    STDERR "deltasplat: warning: ${outside}" CREATES out.png)
+deltasplat_cli_test(empty_picture.near
+    ARGS render cube_8x8x8_uint8.raw -o out.png --projection perspective --near 1e6
+    STDERR "deltasplat: warning: ${outside}" CREATES out.png)
+deltasplat_cli_test(empty_picture.extinction
+    ARGS render cube_8x8x8_uint8.raw -o out.png --extinction 0
+    STDERR_MATCHES "warning: picture: empty, for transfer function and extinction show none of the values"
+    CREATES out.png)
+
 foreach(mode xray mip)
     deltasplat_cli_test(input.range.${mode} CREATES out.exr
         ARGS render cube_8x8x8_uint8.raw -o out.exr --range 0,1 --mode ${mode}

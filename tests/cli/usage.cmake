@@ -122,6 +122,7 @@ deltasplat_cli_test(usage.dashes_for_outputs EXIT 2 ARGS convert -- ${cube} --fl
 deltasplat_refusal(method "--method: got fast; expected auto, delta, sparse or traditional"
     --method fast)
 deltasplat_refusal(mode "--mode: got average; expected composite, xray or mip" --mode average)
+deltasplat_refusal(color_by "--color-by: got hue; expected value, x, y, z or index" --color-by hue)
 deltasplat_refusal(projection "--projection: got fisheye; expected ortho, perspective or latlong"
     --projection fisheye)
 deltasplat_refusal(level_set "--level-set: got maybe; expected fog or keep" --level-set maybe)
