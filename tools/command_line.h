@@ -37,7 +37,7 @@ struct Subcommand {
     std::function<void(const Session&)> run;
     /// Asked after run(): the exit code, if it has more to say than that all went well.
     std::function<int()> exitCode = {};
-    /// Exit code of everything that goes wrong but an interrupt; empty: the number of ErrorCode.
+    /// Exit code of everything that goes wrong but an interrupt; empty: one for each ErrorCode.
     std::optional<int> errorExit = {};
     /// Subcommands of its own, of which one may be called in its place.
     std::vector<Subcommand> nested = {};

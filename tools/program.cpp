@@ -36,6 +36,22 @@ std::string quoted(const std::string& argument) {
     return text + "'";
 }
 
+int exitCodeOf(ErrorCode code) {
+    switch (code) {
+        case ErrorCode::kFailed:
+            return 1;
+        case ErrorCode::kUsage:
+            return 2;
+        case ErrorCode::kInput:
+            return 3;
+        case ErrorCode::kOutput:
+            return 4;
+        case ErrorCode::kInterrupted:
+            return 130;
+    }
+    return 1;
+}
+
 std::string commandLine(const std::vector<std::string>& arguments) {
     std::string line = quoted(std::filesystem::path(arguments.at(0)).filename().string());
     for (std::size_t i = 1; i < arguments.size(); ++i) line += " " + quoted(arguments[i]);
@@ -212,7 +228,7 @@ int execute(const std::vector<std::string>& arguments,
         const auto code = subcommands.back().errorExit;
         app.preparse_callback([&errorExit, code](std::size_t) {
             errorExit = code;
-            setTerminateExitCode(code.value_or(int(ErrorCode::kFailed)));
+            setTerminateExitCode(code.value_or(exitCodeOf(ErrorCode::kFailed)));
         });
         for (const Subcommand& nested : subcommands.back().nested)
             addCommonOptions(*nested.app, session.common);
@@ -243,7 +259,7 @@ int complain(const std::vector<std::string>& arguments, const std::string& what,
 int fail(const std::vector<std::string>& arguments, const std::string& what, ErrorCode code,
          std::optional<int> errorExit) {
     if (isInterrupted()) return complain(arguments, "interrupted", interruptExitCode());
-    return complain(arguments, what, errorExit.value_or(int(code)));
+    return complain(arguments, what, errorExit.value_or(exitCodeOf(code)));
 }
 
 }  // namespace

@@ -7,13 +7,14 @@
 
 namespace deltasplat {
 
-/// What kind of thing went wrong; the number is the program's exit code.
-enum class ErrorCode : int {
-    kFailed = 1,        ///< failed while working
-    kUsage = 2,         ///< an option or an argument is wrong
-    kInput = 3,         ///< an input cannot be read or is invalid
-    kOutput = 4,        ///< an output cannot be written
-    kInterrupted = 130  ///< stopped by the caller
+/// What kind of thing went wrong. The numbers have no meaning: what a program ends with is its own
+/// choice.
+enum class ErrorCode {
+    kFailed,      ///< failed while working
+    kUsage,       ///< an option or an argument is wrong
+    kInput,       ///< an input cannot be read or is invalid
+    kOutput,      ///< an output cannot be written
+    kInterrupted  ///< stopped by the caller
 };
 
 /// The one exception the library throws on purpose. `what()` is one line without a final full stop:

@@ -136,7 +136,7 @@ TEST(AtomicFile, NoticesAFullDisk) {
     const fs::path link = folder / "out.png";
     fs::create_symlink("/dev/full", link);
     EXPECT_EQ(errorOf([&] { writeFileAtomically(link, "bytes"); }),
-              "4: " + link.string() + ": cannot be written: No space left on device");
+              "output: " + link.string() + ": cannot be written: No space left on device");
     EXPECT_EQ(fs::read_symlink(link), "/dev/full");
     EXPECT_EQ(folder.count(), 1);
 }
@@ -149,7 +149,8 @@ TEST(AtomicFile, NoticesAFileSizeLimit) {
         const test::FileSizeLimit limit(9999);
         error = errorOf([&] { writeFileAtomically(folder / "out.raw", bytes); });
     }
-    EXPECT_EQ(error, "4: " + (folder / "out.raw").string() + ": cannot be written: File too large");
+    EXPECT_EQ(error,
+              "output: " + (folder / "out.raw").string() + ": cannot be written: File too large");
     EXPECT_EQ(folder.count(), 0);
 }
 
@@ -157,18 +158,19 @@ TEST(AtomicFile, NamesTheFinalFileWhenTheFolderIsMissing) {
     const test::TempFolder folder;
     const fs::path file = folder / "missing/out.exr";
     EXPECT_EQ(errorOf([&] { const AtomicFile probe(file); }),
-              "4: " + file.string() + ": cannot be written: No such file or directory");
+              "output: " + file.string() + ": cannot be written: No such file or directory");
 }
 
 TEST(AtomicFile, RefusesFoldersAndEmptyNames) {
     const test::TempFolder folder;
     EXPECT_EQ(errorOf([&] { const AtomicFile probe(folder.path()); }),
-              "4: " + folder.path().string() + ": cannot be written: Is a directory");
+              "output: " + folder.path().string() + ": cannot be written: Is a directory");
     EXPECT_EQ(errorOf([&] { const AtomicFile probe(""); }),
-              "4: : cannot be written: No such file or directory");
+              "output: : cannot be written: No such file or directory");
     writeFileAtomically(folder / "file", "");
-    EXPECT_EQ(errorOf([&] { const AtomicFile probe(folder / "file/out.exr"); }),
-              "4: " + (folder / "file/out.exr").string() + ": cannot be written: Not a directory");
+    EXPECT_EQ(
+        errorOf([&] { const AtomicFile probe(folder / "file/out.exr"); }),
+        "output: " + (folder / "file/out.exr").string() + ": cannot be written: Not a directory");
 }
 
 TEST(AtomicFile, RefusesReadOnlyFilesAndFolders) {
@@ -176,11 +178,13 @@ TEST(AtomicFile, RefusesReadOnlyFilesAndFolders) {
     const test::TempFolder folder;
     writeFileAtomically(folder / "out.raw", "precious");
     ::chmod((folder / "out.raw").c_str(), 0400);
-    EXPECT_EQ(errorOf([&] { writeFileAtomically(folder / "out.raw", ""); }),
-              "4: " + (folder / "out.raw").string() + ": cannot be written: Permission denied");
+    EXPECT_EQ(
+        errorOf([&] { writeFileAtomically(folder / "out.raw", ""); }),
+        "output: " + (folder / "out.raw").string() + ": cannot be written: Permission denied");
     ::chmod(folder.path().c_str(), 0500);
-    EXPECT_EQ(errorOf([&] { writeFileAtomically(folder / "new.raw", ""); }),
-              "4: " + (folder / "new.raw").string() + ": cannot be written: Permission denied");
+    EXPECT_EQ(
+        errorOf([&] { writeFileAtomically(folder / "new.raw", ""); }),
+        "output: " + (folder / "new.raw").string() + ": cannot be written: Permission denied");
     ::chmod(folder.path().c_str(), 0700);
 }
 
@@ -188,7 +192,8 @@ TEST(AtomicFile, HoldsBackWhatTheGateHoldsBack) {
     const test::TempFolder folder;
     writeFileAtomically(folder / "out.raw", "old");
     setCommitGate([] { throw Error(ErrorCode::kInterrupted, "not now"); });
-    EXPECT_EQ(errorOf([&] { writeFileAtomically(folder / "out.raw", "new"); }), "130: not now");
+    EXPECT_EQ(errorOf([&] { writeFileAtomically(folder / "out.raw", "new"); }),
+              "interrupted: not now");
     setCommitGate(nullptr);
     EXPECT_EQ(readBytes(folder / "out.raw"), "old");
     EXPECT_EQ(folder.count(), 1);

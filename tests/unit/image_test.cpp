@@ -313,7 +313,7 @@ TEST(WriteImage, NoticesAFullDisk) {
             errorOf([&] {
                 writeImage(folder / name, randomImage({4, 4}), {});
             }),
-            "4: " + (folder / name).string() + ": cannot be written: No space left on device");
+            "output: " + (folder / name).string() + ": cannot be written: No space left on device");
         EXPECT_TRUE(fs::is_symlink(folder / name));
     }
     EXPECT_EQ(folder.count(), 2);
@@ -329,21 +329,22 @@ TEST(CheckImageFile, RefusesWhatCannot) {
     const auto check = [](const fs::path& file, const ImageFileOptions& options) {
         return errorOf([&] { checkImageFile(file, {8, 8}, options); });
     };
-    EXPECT_EQ(check("out.gif", {}), "2: out.gif: got extension \".gif\"; expected .exr or .png");
-    EXPECT_EQ(check("out", {}), "2: out: got extension \"\"; expected .exr or .png");
+    EXPECT_EQ(check("out.gif", {}),
+              "usage: out.gif: got extension \".gif\"; expected .exr or .png");
+    EXPECT_EQ(check("out", {}), "usage: out: got extension \"\"; expected .exr or .png");
     ImageFileOptions twelve;
     twelve.bits = 12;
-    EXPECT_EQ(check("out.png", twelve), "2: --bits: got 12; expected 8 or 16");
+    EXPECT_EQ(check("out.png", twelve), "usage: --bits: got 12; expected 8 or 16");
     ImageFileOptions floats;
     floats.floatExr = true;
-    EXPECT_EQ(check("out.png", floats), "2: --float: got out.png; expected an .exr file");
+    EXPECT_EQ(check("out.png", floats), "usage: --float: got out.png; expected an .exr file");
     EXPECT_EQ(check("no_such_folder/out.png", {}),
-              "4: no_such_folder/out.png: cannot be written: No such file or directory");
+              "output: no_such_folder/out.png: cannot be written: No such file or directory");
 }
 
 TEST(WriteImage, RefusesAPictureWithoutPixels) {
     EXPECT_EQ(errorOf([] { writeImage("out.png", Image(), {}); }),
-              "2: out.png: got 0x0 pixels; expected at least 1x1");
+              "usage: out.png: got 0x0 pixels; expected at least 1x1");
 }
 
 TEST(CompositeOver, PutsAStraightColourBehind) {

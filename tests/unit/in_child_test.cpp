@@ -44,7 +44,7 @@ TEST(InChild, WorkThatSomebodyEndsIsNotBadInput) {
     std::byte byte{};
     const auto killed = [](std::byte*) -> bool { return ::raise(SIGKILL) == 0; };
     EXPECT_EQ(errorOf([&] { inChild(1, killed, &byte); }),
-              "1: unpacking in a process of its own failed: it was ended by signal 9");
+              "failed: unpacking in a process of its own failed: it was ended by signal 9");
 }
 
 TEST(InChild, AForkThatFailsIsNotBadInput) {
@@ -60,7 +60,7 @@ TEST(InChild, AForkThatFailsIsNotBadInput) {
             inChild(
                 1, [](auto*) { return true; }, &byte);
         });
-        ::_exit(error == "no error" ? 2 : error.rfind("1: unpacking in a process", 0) != 0);
+        ::_exit(error == "no error" ? 2 : error.rfind("failed: unpacking in a process", 0) != 0);
     }
     int status = 0;
     ::waitpid(other, &status, 0);

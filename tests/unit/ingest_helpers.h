@@ -74,7 +74,7 @@ void expectError(ErrorCode code, const std::string& message, const Act& act) {
         act();
         FAIL() << "no error; expected: " << message;
     } catch (const Error& error) {
-        EXPECT_EQ(int(error.code()), int(code));
+        EXPECT_EQ(error.code(), code);
         EXPECT_EQ(error.what(), message);
     }
 }

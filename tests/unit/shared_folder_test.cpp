@@ -66,7 +66,7 @@ TEST(SharedFolder, WritesNothingToWhereItsNameIsRedirected) {
     fs::create_symlink(other / "victim", folder / kTemporary);
     file.write("picture", 7);
     const std::string problem =
-        "4: " + (folder / "out.png").string() +
+        "output: " + (folder / "out.png").string() +
         ": got another file in place of the one written; expected a folder in which others leave "
         "files alone";
     EXPECT_EQ(errorOf([&] { file.commit(); }), problem);
@@ -107,7 +107,7 @@ TEST(SharedFolder, LinksThatLeadNowhereAreErrors) {
         return errorOf([&] { writeFileAtomically(folder / name, ""); });
     };
     const auto expected = [&](const std::string& name, const std::string& why) {
-        return "4: " + (folder / name).string() + ": cannot be written: " + why;
+        return "output: " + (folder / name).string() + ": cannot be written: " + why;
     };
     EXPECT_EQ(error("a.png"), expected("a.png", "Too many levels of symbolic links"));
     EXPECT_EQ(error("c.png"), expected("c.png", "No such file or directory"));
@@ -157,8 +157,9 @@ TEST(SharedFolder, LinksOfStrangersAreNotFollowed) {
     ASSERT_EQ(::lchown((folder / "out.png").c_str(), 12345, 12345), 0);
     for (const int mode : {01777, 0777, 01775, 0775, 0770, 0702}) {
         fs::permissions(folder.path(), fs::perms(mode));
-        EXPECT_EQ(errorOf([&] { writeFileAtomically(folder / "out.png", "x"); }),
-                  "4: " + (folder / "out.png").string() + ": cannot be written: Permission denied")
+        EXPECT_EQ(
+            errorOf([&] { writeFileAtomically(folder / "out.png", "x"); }),
+            "output: " + (folder / "out.png").string() + ": cannot be written: Permission denied")
             << std::oct << mode;
         EXPECT_EQ(other.count(), 0);
     }

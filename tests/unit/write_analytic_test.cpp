@@ -176,7 +176,7 @@ TEST(WriteAnalyticFile, NoticesAFullDevice) {
         const fs::path link = folder / name;
         fs::create_symlink("/dev/full", link);
         EXPECT_EQ(errorOf([&] { writeAnalytic(makeAnalytic("slab"), link, options(kDims)); }),
-                  "4: " + link.string() + ": cannot be written: No space left on device");
+                  "output: " + link.string() + ": cannot be written: No space left on device");
         EXPECT_EQ(fs::read_symlink(link), "/dev/full");
     }
     EXPECT_EQ(folder.count(), 2);
@@ -196,7 +196,7 @@ TEST(WriteAnalyticFile, NoticesALimitAnywhereInTheFile) {
                 const test::FileSizeLimit limit(bytes);
                 error = errorOf([&] { writeAnalytic(volume, file, options({32, 32, 32})); });
             }
-            EXPECT_EQ(error, "4: " + file.string() + ": cannot be written: File too large");
+            EXPECT_EQ(error, "output: " + file.string() + ": cannot be written: File too large");
             EXPECT_EQ(folder.count(), 0);
         }
     }
@@ -207,22 +207,23 @@ TEST(WriteAnalyticFile, RefusesWhatItCannotWrite) {
         return errorOf([&] { writeAnalytic(makeAnalytic("slab"), file, wrong); });
     };
     EXPECT_EQ(error("out.raw", options({0, 4, 4})),
-              "2: --dims: got 0x4x4; expected three numbers of at least 1");
+              "usage: --dims: got 0x4x4; expected three numbers of at least 1");
     EXPECT_EQ(error("out.vdb", options({4, 4, -1})),
-              "2: --dims: got 4x4x-1; expected three numbers of at least 1");
+              "usage: --dims: got 4x4x-1; expected three numbers of at least 1");
     EXPECT_EQ(error("out.raw.gz", options(kDims)),
-              "2: out.raw.gz: got extension \".gz\"; expected .raw or .vdb");
+              "usage: out.raw.gz: got extension \".gz\"; expected .raw or .vdb");
     EXPECT_EQ(error("out.raw", options(kDims, "int8")),
-              "2: --type: got \"int8\"; expected uint8, uint16 or float32 for .raw");
+              "usage: --type: got \"int8\"; expected uint8, uint16 or float32 for .raw");
     EXPECT_EQ(error("out.vdb", options(kDims, "uint8")),
-              "2: --type: got \"uint8\"; expected float32 for .vdb");
+              "usage: --type: got \"uint8\"; expected float32 for .vdb");
     AnalyticFileOptions flat = options(kDims);
     flat.spacing = {1, 0, 2.5};
-    EXPECT_EQ(error("out.vdb", flat), "2: --spacing: got 1,0,2.5; expected three numbers above 0");
+    EXPECT_EQ(error("out.vdb", flat),
+              "usage: --spacing: got 1,0,2.5; expected three numbers above 0");
     EXPECT_EQ(error("no_such_folder/out.vdb", options(kDims)),
-              "4: no_such_folder/out.vdb: cannot be written: No such file or directory");
+              "output: no_such_folder/out.vdb: cannot be written: No such file or directory");
     EXPECT_EQ(error("no_such_folder/out.raw", options(kDims)),
-              "4: no_such_folder/out.raw: cannot be written: No such file or directory");
+              "output: no_such_folder/out.raw: cannot be written: No such file or directory");
 }
 
 TEST(WriteAnalyticFile, ReportsProgressAndCanBeStopped) {
@@ -245,7 +246,7 @@ TEST(WriteAnalyticFile, ReportsProgressAndCanBeStopped) {
             errorOf([&] {
                 writeAnalytic(makeAnalytic("slab"), folder / name, options({32, 32, 32}), listener);
             }),
-            "130: interrupted");
+            "interrupted: interrupted");
         EXPECT_EQ(folder.count(), 0);
     }
 }
