@@ -79,7 +79,7 @@ void require(ErrorCode code, const std::string& what, double bytes) {
     if (bytes <= available) return;
     throw Error(code, what + ": needs " + humanBytes(bytes) + " of memory; expected at most " +
                           humanBytes(available) + ", which " +
-                          (available == left ? "--max-memory leaves" : "is available"));
+                          (available == left ? "`memoryLimit` leaves" : "is available"));
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 constexpr double kBytesPerPixel = 48;
 
 void requireImageMemory(glm::ivec2 size) {
-    requireMemory("--size " + std::to_string(size.x) + "x" + std::to_string(size.y),
+    requireMemory("`sizePixels` " + std::to_string(size.x) + "x" + std::to_string(size.y),
                   kBytesPerPixel * size.x * size.y);
 }
 
@@ -68,8 +68,8 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
     } else {
         if (options.camera.projection != Projection::kOrtho) {
             throw Error(ErrorCode::kUsage,
-                        gotExpected("--projection", projectionName(options.camera.projection),
-                                    "ortho for --mode " + modeName(options.mode)));
+                        gotExpected("`projection`", projectionName(options.camera.projection),
+                                    "ortho for `mode` " + modeName(options.mode)));
         }
         const Factorization view =
             factorize(result.camera, volume.worldFromIndex, options.resolution);

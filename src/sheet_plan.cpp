@@ -19,17 +19,17 @@ bool canBeDivided(const IndexBox& box, int between) {
 void checkBetween(int between) {
     if (between >= 0 && between <= kMostBetween) return;
     throw Error(ErrorCode::kUsage,
-                gotExpected("--between", std::to_string(between),
+                gotExpected("`between`", std::to_string(between),
                             "a whole number within 0.." + std::to_string(kMostBetween)));
 }
 
 [[noreturn]] void throwTooWide(const IndexBox& box, int between) {
     const glm::ivec3 dims = box.dims();
     throw Error(ErrorCode::kFailed,
-                gotExpected("--between " + std::to_string(between),
+                gotExpected("`between` " + std::to_string(between),
                             std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
                                 std::to_string(dims.z) + " voxels",
-                            "at most 2^30 parts of them along each axis (--between 0: undivided)"));
+                            "at most 2^30 parts of them along each axis (`between` 0: undivided)"));
 }
 
 // Whether voxels are divided where the screen asks for it and nobody says otherwise.
@@ -48,7 +48,7 @@ bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
     if (blocks <= kMostDivided) return true;
     listener.warn("voxels are too many to be divided (" + std::to_string(blocks) +
                   " blocks of 8x8x8 can be seen, at most " + std::to_string(kMostDivided) +
-                  " are): drawn as they are; --between 1 divides them");
+                  " are): drawn as they are; `between` 1 divides them");
     return false;
 }
 

@@ -7,13 +7,14 @@
 #include <cmath>
 #include <cstdio>
 
+#include "flag_names.h"
 #include "interrupt.h"
 #include "printable.h"
 
 namespace deltasplat {
 
 void showError(const std::string& what) {
-    std::fprintf(stderr, "deltasplat: %s\n", printable(what).c_str());
+    std::fprintf(stderr, "deltasplat: %s\n", printable(withFlagNames(what)).c_str());
 }
 
 ProgressDisplay::ProgressDisplay(const CommonOptions& options)
@@ -38,7 +39,7 @@ Listener ProgressDisplay::stage(double begin, double end) {
 void ProgressDisplay::warn(const std::string& line) {
     if (!showsWarnings_) return;
     clearBar();
-    std::fprintf(stderr, "deltasplat: warning: %s\n", printable(line).c_str());
+    std::fprintf(stderr, "deltasplat: warning: %s\n", printable(withFlagNames(line)).c_str());
 }
 
 void ProgressDisplay::show(double share) {

@@ -10,7 +10,7 @@
 
 namespace deltasplat {
 
-/// Shows on standard error, in one line, what went wrong.
+/// Shows on standard error, in one line, what went wrong; fields become flags, as in a warning.
 void showError(const std::string& what);
 
 /// Shows on standard error how far the work is: a bar with the time left on a terminal; elsewhere,
@@ -27,7 +27,7 @@ class ProgressDisplay {
     /// it stops the work when the user interrupts. The display must outlive it.
     Listener stage(double begin, double end);
 
-    /// Shows a one-line remark.
+    /// Shows a one-line remark, with flags where the library names fields.
     void warn(const std::string& line);
 
   private:

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "deltasplat/atomic_file.h"
+#include "flag_names.h"
 
 namespace deltasplat {
 namespace {
@@ -29,7 +30,7 @@ std::string currentProblem() {
 [[noreturn]] void fail() {
     removeTemporaryFiles();
     const std::string what = std::current_exception() ? currentProblem() : "an unknown failure";
-    const std::string line = "deltasplat: " + what + "\n";
+    const std::string line = "deltasplat: " + withFlagNames(what) + "\n";
     (void)!::write(STDERR_FILENO, line.data(), line.size());
     ::_exit(exitCode);
 }

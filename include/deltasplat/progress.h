@@ -12,7 +12,8 @@ struct Listener {
     /// always from the same one. May throw (`Error` with `kInterrupted`) to stop the work: nothing
     /// is left behind.
     std::function<void(double)> progress;
-    /// Receives a one-line remark that is no error, without prefix or line end.
+    /// Receives a one-line remark that is no error, without prefix or line end; options are named
+    /// as in Error.
     std::function<void(const std::string&)> warning;
 
     void report(double share) const {

@@ -24,8 +24,8 @@ bool namesBigEndian(const std::string& file, const DenseLayout& layout) {
 void notePlace(const DenseLayout& layout, const std::string& lack, std::string options,
                Notes& notes) {
     const glm::dvec3 spacing = layout.spacing(), origin = layout.origin();
-    if (spacing != glm::dvec3(1)) options += " --spacing " + numberText(spacing);
-    if (origin != glm::dvec3(0)) options += " --origin " + numberText(origin);
+    if (spacing != glm::dvec3(1)) options += " `spacing` " + numberText(spacing);
+    if (origin != glm::dvec3(0)) options += " `origin` " + numberText(origin);
 
     const glm::dmat4 readBack = glm::scale(glm::translate(glm::dmat4(1), origin), spacing);
     std::string dropped;
@@ -44,8 +44,8 @@ void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
     const bool ordered = rawTypeBytes(layout.type) > 1;
     layout.bigEndian = ordered && namesBigEndian(file, layout);
     if (!saysLayout(file, {layout.dims, layout.type, layout.bigEndian, 0})) {
-        options += " --dims " + layout.dimsText() + " --type " + rawTypeName(layout.type);
-        if (ordered) options += layout.bigEndian ? " --endian big" : " --endian little";
+        options += " `dims` " + layout.dimsText() + " `type` " + rawTypeName(layout.type);
+        if (ordered) options += layout.bigEndian ? " `bigEndian=true`" : " `bigEndian=false`";
     }
     notePlace(layout, "no header", options, notes);
 }

@@ -49,7 +49,7 @@ void requireValue(const GridBase& grid, double value) {
     if (type == "bool" || type == "mask") holds = value == 0 || value == 1;
     if (holds) return;
     throw Error(ErrorCode::kUsage,
-                gotExpected("--background", numberText(value), "a value of type " + type));
+                gotExpected("`background`", numberText(value), "a value of type " + type));
 }
 
 GridBase::ConstPtr sparseGrid(const GridBase::ConstPtr& grid, const Volume& volume,
@@ -57,13 +57,13 @@ GridBase::ConstPtr sparseGrid(const GridBase::ConstPtr& grid, const Volume& volu
     const std::optional<double> dropped = droppedValue(volume, options);
     if (!dropped) {
         notes.remark(
-            "--background: no value is frequent enough to be one; every voxel stays active");
+            "`dropBackground`: no value is frequent enough to be one; every voxel stays active");
         return grid;
     }
     const double value = *dropped;
     // Inactive voxels that are there already have a value, which another background would change.
     if (volume.hasBackground && value != volume.background) {
-        notes.remark("--background: has no effect on " + quoted(volume.name) +
+        notes.remark("`background`: has no effect on " + quoted(volume.name) +
                      ", whose background is " + numberText(volume.background));
         return grid;
     }

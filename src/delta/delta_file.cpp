@@ -26,9 +26,9 @@
 namespace deltasplat {
 namespace {
 
-void checkTolerance(const std::string& flag, double tolerance) {
+void checkTolerance(const std::string& option, double tolerance) {
     if (std::isfinite(tolerance) && tolerance >= 0) return;
-    throw Error(ErrorCode::kUsage, gotExpected(flag, numberText(tolerance), "a number >= 0"));
+    throw Error(ErrorCode::kUsage, gotExpected(option, numberText(tolerance), "a number >= 0"));
 }
 
 // What no delta speaks of: inactive voxels, or in a volume without any the most frequent code.
@@ -73,19 +73,20 @@ void requireRoom(const Tolerance& tolerance, const Volume& volume) {
         if (volume.histogram[std::size_t(code)] > 0)
             codeError = std::max(codeError, book.largestErrorOf(Code(code)));
     }
-    const auto refuse = [&](const char* flag, double got, const std::string& expected) {
+    const auto refuse = [&](const char* option, double got, const std::string& expected) {
         throw Error(ErrorCode::kUsage,
-                    gotExpected(flag, numberText(got),
+                    gotExpected(option, numberText(got),
                                 expected + ": values are stored with errors up to " +
                                     numberText(codeError) + " (" + book.name() + " code book)"));
     };
     if (tolerance.value > 0 && tolerance.value < codeError)
-        refuse("--tolerance-value", tolerance.value, "at least " + numberText(codeError));
+        refuse("`tolerance.value`", tolerance.value, "at least " + numberText(codeError));
     if (tolerance.relative > 0 && book.relativeError == 0)
-        refuse("--tolerance", tolerance.relative,
-               "a larger share, or --tolerance-value, for these values");
+        refuse("`tolerance.relative`", tolerance.relative,
+               "a larger share, or `tolerance.value`, for these values");
     if (tolerance.relative > 0 && tolerance.relative < book.relativeError)
-        refuse("--tolerance", tolerance.relative, "at least " + numberText(book.relativeError));
+        refuse("`tolerance.relative`", tolerance.relative,
+               "at least " + numberText(book.relativeError));
 }
 
 // The codes of a table, otherwise those up to the largest one in use.
@@ -163,8 +164,8 @@ DeltaFile::~DeltaFile() = default;
 DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& options,
                               const Listener& listener) {
     const DefaultFloats floats;
-    checkTolerance("--tolerance", options.tolerance.relative);
-    checkTolerance("--tolerance-value", options.tolerance.value);
+    checkTolerance("`tolerance.relative`", options.tolerance.relative);
+    checkTolerance("`tolerance.value`", options.tolerance.value);
     requireRoom(options.tolerance, volume);
 
     const openvdb::GridBase::ConstPtr source = volume.source ? volume.source->grid : nullptr;
@@ -229,7 +230,7 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
         throw Error(ErrorCode::kFailed,
                     gotExpected("grid \"" + volume.name + "\"",
                                 "a largest error of " + numberText(entry.maxError),
-                                "at most " + numberText(*options.maxError) + " (--max-error)"));
+                                "at most " + numberText(*options.maxError) + " (`maxError`)"));
     }
     impl_->grids.push_back(grid);
     listener.report(1);

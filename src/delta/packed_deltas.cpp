@@ -502,7 +502,7 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
               : BlockReader(*volume.codes, nullptr, options.sliceAxis, slotMap).takeBlocks();
     const double blockBytes = kBytesPerBlock + (options.painter ? kColorBytesPerBlock : 0);
     requireMemory(
-        parts.divides() ? "delta grid of divided voxels (--between 0: undivided)" : "delta grid",
+        parts.divides() ? "delta grid of divided voxels (`between` 0: undivided)" : "delta grid",
         double(blocks.size()) * parts.voxels() * blockBytes + 16.0 * packed.box.dims().x);
 
     const std::vector<Columns> runs = cutAtColumns(blocks, parts.within > 1);

@@ -38,15 +38,15 @@ void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
     const Format format = formatOf(file);
     if (options.bits != 8 && options.bits != 16) {
         throw Error(ErrorCode::kUsage,
-                    gotExpected("--bits", std::to_string(options.bits), "8 or 16"));
+                    gotExpected("`bits`", std::to_string(options.bits), "8 or 16"));
     }
     if (options.floatExr && format != Format::kExr) {
-        throw Error(ErrorCode::kUsage, gotExpected("--float", file.string(), "an .exr file"));
+        throw Error(ErrorCode::kUsage, gotExpected("`floatExr`", file.string(), "an .exr file"));
     }
     if (format == Format::kPng && (size.x > kMaxPngSide || size.y > kMaxPngSide)) {
         throw Error(
             ErrorCode::kUsage,
-            gotExpected("--size", std::to_string(size.x) + "x" + std::to_string(size.y),
+            gotExpected("`image.size`", std::to_string(size.x) + "x" + std::to_string(size.y),
                         "sides of at most " + std::to_string(kMaxPngSide) + " pixels in a .png"));
     }
 }

@@ -8,7 +8,7 @@ namespace deltasplat {
 std::int64_t chooseVolume(const std::string& where, const std::string& axes, std::int64_t count,
                           const std::optional<std::int64_t>& chosen) {
     const std::string which =
-        count == 1 ? "--volume 0" : "--volume 0 to " + std::to_string(count - 1);
+        count == 1 ? "`volume` 0" : "`volume` 0 to " + std::to_string(count - 1);
     const std::string held =
         std::to_string(count) + (count == 1 ? " volume (" : " volumes (") + axes + ")";
     if (!chosen && count > 1) {

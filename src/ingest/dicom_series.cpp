@@ -33,13 +33,13 @@ DicomSeries chooseSeries(const std::filesystem::path& input, std::vector<DicomSe
         if (chosen != series.end()) return std::move(*chosen);
         throw Error(ErrorCode::kInput,
                     gotExpected(input.string(), "no DICOM series " + nameOf(*uid),
-                                "--series of " + listText(series)));
+                                "`series` of " + listText(series)));
     }
     if (series.size() == 1) return std::move(series.front());
     throw Error(ErrorCode::kInput, gotExpected(input.string(),
                                                std::to_string(series.size()) + " DICOM series (" +
                                                    listText(series) + ")",
-                                               "one, chosen by --series UID"));
+                                               "one, chosen by `series` UID"));
 }
 
 }  // namespace deltasplat

@@ -38,7 +38,7 @@ std::uint64_t settleNonFinite(Grid& grid, const GridCodesOptions& options) {
             std::to_string(range.first.z()) + ")";
         throw NotFinite(
             ErrorCode::kInput,
-            gotExpected(options.where, got, "finite values (--nan VALUE replaces them)"));
+            gotExpected(options.where, got, "finite values (`nanValue` VALUE replaces them)"));
     }
     if constexpr (std::is_same_v<typename Grid::ValueType, float>) {
         requireFloatNan(*options.reading.nanValue);

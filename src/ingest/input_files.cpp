@@ -71,7 +71,7 @@ void requireConfined(const std::filesystem::path& input) {
         throw Error(ErrorCode::kInput,
                     gotExpected(input.string(),
                                 "the file " + printable(file.string()) + " outside of its folder",
-                                "files inside of it (--confine)"));
+                                "files inside of it (`confineInputs`)"));
     }
 }
 

@@ -128,9 +128,9 @@ glm::i64vec3 resolveDims(const std::filesystem::path& file, const RawFormat& for
                          const NameParts& parts) {
     if (!format.dims && parts.dims[0].empty()) {
         refuse(file.string(), "no dimensions",
-               "--dims XxYxZ and --type TYPE, or a name such as volume_256x256x128_uint8.raw");
+               "`dims` XxYxZ and `type` TYPE, or a name such as volume_256x256x128_uint8.raw");
     }
-    const std::string where = format.dims ? "--dims" : file.string();
+    const std::string where = format.dims ? "`dims`" : file.string();
     const glm::i64vec3 dims = format.dims ? *format.dims : dimsFromName(where, parts);
     for (int axis = 0; axis < 3; ++axis) {
         if (dims[axis] < 1 || dims[axis] > kMaxDim) {
@@ -145,11 +145,11 @@ const TypeInfo& resolveType(const std::filesystem::path& file, const RawFormat& 
                             const NameParts& parts) {
     if (!format.type && parts.type.empty()) {
         refuse(file.string(), "no value type",
-               "--type TYPE, or a name such as volume_256x256x128_uint8.raw");
+               "`type` TYPE, or a name such as volume_256x256x128_uint8.raw");
     }
     const std::string& name = format.type ? *format.type : parts.type;
     const TypeInfo* info = findType(name);
-    if (info == nullptr && format.type) refuse("--type", name, kKnownTypes);
+    if (info == nullptr && format.type) refuse("`type`", name, kKnownTypes);
     if (info == nullptr) refuse(file.string(), "value type " + name, kKnownTypes);
     return *info;
 }
@@ -164,7 +164,7 @@ void checkSize(const std::string& where, const RawLayout& layout) {
                "at most 9223372036854775807 bytes");
     }
     if (layout.skipBytes > std::uint64_t(limit) - layout.dataBytes()) {
-        refuse("--skip-bytes", std::to_string(layout.skipBytes),
+        refuse("`skipBytes`", std::to_string(layout.skipBytes),
                "less than 9223372036854775807 bytes together with the voxels");
     }
 }
@@ -190,11 +190,11 @@ void requireGeometry(const RawFormat& format) {
     for (int axis = 0; axis < 3; ++axis) {
         const double spacing = format.spacing[axis];
         if (spacing >= 1 / kMostLength && spacing <= kMostLength) continue;
-        refuse("--spacing", numberText(spacing),
+        refuse("`spacing`", numberText(spacing),
                "three numbers from " + numberText(1 / kMostLength) + " to " + most);
     }
     if (glm::length(format.origin) <= kMostLength) return;
-    refuse("--origin", numberText(format.origin), "a place within " + most + " of 0,0,0");
+    refuse("`origin`", numberText(format.origin), "a place within " + most + " of 0,0,0");
 }
 
 RawLayout resolveRawLayout(const std::filesystem::path& file, const RawFormat& format) {
@@ -205,7 +205,7 @@ RawLayout resolveRawLayout(const std::filesystem::path& file, const RawFormat& f
     layout.bigEndian = format.bigEndian.value_or(parts.bigEndian.value_or(false));
     layout.skipBytes = format.skipBytes;
     requireGeometry(format);
-    checkSize(format.dims ? "--dims" : file.string(), layout);
+    checkSize(format.dims ? "`dims`" : file.string(), layout);
     return layout;
 }
 

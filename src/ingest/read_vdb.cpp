@@ -164,7 +164,7 @@ void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool
                                            [](const VdbGrid& grid) { return grid.isScalar(); });
         if (scalars > 1) {
             listener.warn(path.string() + ": reading grid \"" + chosen[0]->name + "\" of " +
-                          std::to_string(scalars) + " scalar grids (--grid chooses another)");
+                          std::to_string(scalars) + " scalar grids (`gridName` chooses another)");
         }
     }
     GridReader reader(file, options, visitor);

@@ -92,13 +92,13 @@ void requireFiniteSpan(const std::string& where, double low, double high) {
 void requireFiniteNan(const ReadOptions& options) {
     if (!options.nanValue || std::isfinite(*options.nanValue)) return;
     throw Error(ErrorCode::kUsage,
-                gotExpected("--nan", numberText(*options.nanValue), "a finite number"));
+                gotExpected("`nanValue`", numberText(*options.nanValue), "a finite number"));
 }
 
 void requireFloatNan(double nanValue) {
     if (std::abs(nanValue) <= double(std::numeric_limits<float>::max())) return;
     throw Error(ErrorCode::kUsage,
-                gotExpected("--nan", numberText(nanValue), "a value that is finite as float"));
+                gotExpected("`nanValue`", numberText(nanValue), "a value that is finite as float"));
 }
 
 void summarize(Volume& volume) {

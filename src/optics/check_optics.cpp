@@ -56,16 +56,16 @@ void checkOptics(const Optics& optics) {
     checkTransferFunction(optics.transferFunction);
     if (optics.unitDistance) {
         const double unit = *optics.unitDistance;
-        requireThat(std::isfinite(unit) && unit > 0, "--unit-distance", numberText(unit),
+        requireThat(std::isfinite(unit) && unit > 0, "`unitDistance`", numberText(unit),
                     "a number > 0");
     }
     const double extinction = optics.extinctionScale;
-    requireThat(std::isfinite(extinction) && extinction >= 0, "--extinction",
+    requireThat(std::isfinite(extinction) && extinction >= 0, "`extinctionScale`",
                 numberText(extinction), "a number >= 0");
     if (optics.range) {
         const glm::dvec2 range = *optics.range;
         requireThat(std::isfinite(range.x) && std::isfinite(range.y) && range.x < range.y,
-                    "--range", numberText(range), "LO,HI with LO < HI");
+                    "`range`", numberText(range), "LO,HI with LO < HI");
     }
 }
 

@@ -79,7 +79,7 @@ Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolu
     const DefaultFloats floats;
     if (!(sigmaVoxels * perVoxel >= kMinSigma && sigmaVoxels <= kMaxSigma)) {
         throw Error(ErrorCode::kUsage,
-                    gotExpected("--sigma", numberText(sigmaVoxels),
+                    gotExpected("`sigma`", numberText(sigmaVoxels),
                                 "a number of voxels from " + numberText(kMinSigma) + " to " +
                                     numberText(kMaxSigma)));
     }

@@ -33,7 +33,7 @@ void requireCountable(const glm::i64vec2& size, std::int64_t shift) {
         return;
     }
     throw Error(ErrorCode::kUsage, gotExpected("sheet", text + " pixels",
-                                               "at most 4294967295, a smaller --resolution"));
+                                               "at most 4294967295, a smaller `resolution`"));
 }
 
 // Sets bits of the eight bytes from `first` on, each in a byte of `bits`.

@@ -50,7 +50,7 @@ SampleType sampleType(const std::string& name) {
     if (name == "uint16") return {RawType::kUint16, 2, storeWhole<std::uint16_t>};
     if (name == "float32") return {RawType::kFloat32, 4, storeFloat};
     throw Error(ErrorCode::kUsage,
-                gotExpected("--type", "\"" + name + "\"", "uint8, uint16 or float32 for .raw"));
+                gotExpected("`type`", "\"" + name + "\"", "uint8, uint16 or float32 for .raw"));
 }
 
 void writeRaw(const AnalyticVolume& volume, const std::filesystem::path& file,
@@ -58,7 +58,7 @@ void writeRaw(const AnalyticVolume& volume, const std::filesystem::path& file,
     const SampleType type = sampleType(options.type);
     const glm::ivec3 dims = options.dims;
     const std::size_t rowBytes = std::size_t(dims.x) * type.bytes;
-    requireMemory("--dims", double(rowBytes) * dims.y);
+    requireMemory("`dims`", double(rowBytes) * dims.y);
 
     saysLayout(file, {dims, type.raw, false, 0});
 
@@ -111,10 +111,10 @@ openvdb::FloatGrid::Ptr sampleGrid(const AnalyticVolume& volume, const AnalyticF
     const std::size_t layerLeaves = std::size_t(leaves.y) * std::size_t(leaves.z);
     // What a layer takes is known only when it is there, so room is asked for one full layer more.
     constexpr double kLeafBytes = sizeof(Leaf) + Leaf::SIZE * sizeof(float) + sizeof(void*);
-    requireMemory("--dims", kLeafBytes * double(layerLeaves));
+    requireMemory("`dims`", kLeafBytes * double(layerLeaves));
     std::vector<std::unique_ptr<Leaf>> layer(layerLeaves);
     for (int x = 0; x < leaves.x; ++x) {
-        requireMemory("--dims", kLeafBytes * double(layerLeaves));
+        requireMemory("`dims`", kLeafBytes * double(layerLeaves));
         parallelFor(layer.size(), [&](std::size_t i) {
             const int y = int(i / std::size_t(leaves.z)), z = int(i % std::size_t(leaves.z));
             layer[i] = sampleLeaf(volume, {x * kEdge, y * kEdge, z * kEdge}, options.dims);
@@ -130,7 +130,7 @@ void writeGrid(const AnalyticVolume& volume, const std::filesystem::path& file,
                const AnalyticFileOptions& options, const Listener& listener) {
     if (!options.type.empty() && options.type != "float32") {
         throw Error(ErrorCode::kUsage,
-                    gotExpected("--type", "\"" + options.type + "\"", "float32 for .vdb"));
+                    gotExpected("`type`", "\"" + options.type + "\"", "float32 for .vdb"));
     }
     { const AtomicFile probe(file); }  // a bad name should fail before the work, not after
     const openvdb::FloatGrid::Ptr grid = sampleGrid(volume, options, listener);
@@ -147,7 +147,7 @@ void checkOptions(const AnalyticFileOptions& options) {
     const glm::ivec3& dims = options.dims;
     if (dims.x < 1 || dims.y < 1 || dims.z < 1) {
         throw Error(ErrorCode::kUsage,
-                    gotExpected("--dims",
+                    gotExpected("`dims`",
                                 std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
                                     std::to_string(dims.z),
                                 "three numbers of at least 1"));
@@ -156,7 +156,7 @@ void checkOptions(const AnalyticFileOptions& options) {
         const double spacing = options.spacing[axis];
         if (spacing > 0 && std::isfinite(spacing)) continue;
         throw Error(ErrorCode::kUsage,
-                    gotExpected("--spacing", numberText(options.spacing), "three numbers above 0"));
+                    gotExpected("`spacing`", numberText(options.spacing), "three numbers above 0"));
     }
 }
 

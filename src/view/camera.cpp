@@ -31,8 +31,8 @@ const NamedView kNamedViews[] = {
     {"iso", {-1, -1, -1}, {0, 1, 0}},
 };
 
-[[noreturn]] void refuse(const char* flag, const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(flag, got, expected));
+[[noreturn]] void refuse(const char* option, const std::string& got, const std::string& expected) {
+    throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
 }
 
 const NamedView& namedView(const std::string& name) {
@@ -41,7 +41,7 @@ const NamedView& namedView(const std::string& name) {
         if (name == view.name) return view;
         known += (known.empty() ? "" : ", ") + std::string(view.name);
     }
-    refuse("--view", name, "one of " + known);
+    refuse("`view`", name, "one of " + known);
 }
 
 // How who looks at the front of the volume stands in the world.
@@ -72,76 +72,80 @@ bool isFinite(const glm::dvec3& v) {
 }
 
 // Scales to length 1 without overflow on the way.
-glm::dvec3 unitVector(const char* flag, const glm::dvec3& v) {
+glm::dvec3 unitVector(const char* option, const glm::dvec3& v) {
     const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     if (!isFinite(v) || largest == 0) {
-        refuse(flag, numberText(v), "three finite numbers, not all of them 0");
+        refuse(option, numberText(v), "three finite numbers, not all of them 0");
     }
     return glm::normalize(v / largest);
 }
 
-void checkNumber(const char* flag, double number) {
-    if (!std::isfinite(number)) refuse(flag, numberText(number), "a finite number");
+void checkNumber(const char* option, double number) {
+    if (!std::isfinite(number)) refuse(option, numberText(number), "a finite number");
 }
 
-void checkPositive(const char* flag, const std::optional<double>& number) {
+void checkPositive(const char* option, const std::optional<double>& number) {
     if (number && !(std::isfinite(*number) && *number > 0))
-        refuse(flag, numberText(*number), "a finite number > 0");
+        refuse(option, numberText(*number), "a finite number > 0");
 }
 
 void checkSize(const CameraOptions& options) {
     const glm::ivec2 size = options.sizePixels;
     const std::string text = std::to_string(size.x) + "x" + std::to_string(size.y);
-    if (size.x < 1 || size.y < 1) refuse("--size", text, "WxH, each at least 1");
+    if (size.x < 1 || size.y < 1) refuse("`sizePixels`", text, "WxH, each at least 1");
     if (options.projection == Projection::kLatlong && size.x != 2 * std::int64_t{size.y})
-        refuse("--size", text, "twice as wide as high for --projection latlong");
+        refuse("`sizePixels`", text, "twice as wide as high for `projection` latlong");
 }
 
 // What one projection has and another has not must not be asked for.
 void checkProjection(const CameraOptions& options) {
-    const auto requireFor = [&](bool given, bool allowed, const char* flag, const char* expected) {
+    const auto requireFor = [&](bool given, bool allowed, const char* option,
+                                const char* expected) {
         if (given && !allowed)
-            refuse(flag, "--projection " + projectionName(options.projection), expected);
+            refuse(option, "`projection` " + projectionName(options.projection), expected);
     };
     const bool parallel = options.projection == Projection::kOrtho;
     const bool flat = options.projection == Projection::kPerspective;
-    requireFor(options.frameWidthWorld.has_value(), parallel, "--frame-width",
-               "--projection ortho, of which it is an option");
-    requireFor(options.eyeWorld.has_value(), !parallel, "--eye",
-               "--projection perspective or latlong");
-    requireFor(options.nearWorld != 0, !parallel, "--near", "--projection perspective or latlong");
-    for (const auto& [flag, given] : {std::pair("--fov", options.fovDegrees.has_value()),
-                                      std::pair("--focal", options.focalMm.has_value()),
-                                      std::pair("--aperture", options.apertureMm.has_value()),
-                                      std::pair("--distance", options.distanceWorld.has_value())})
-        requireFor(given, flat, flag, "--projection perspective");
+    requireFor(options.frameWidthWorld.has_value(), parallel, "`frameWidthWorld`",
+               "`projection` ortho, of which it is an option");
+    requireFor(options.eyeWorld.has_value(), !parallel, "`eyeWorld`",
+               "`projection` perspective or latlong");
+    requireFor(options.nearWorld != 0, !parallel, "`nearWorld`",
+               "`projection` perspective or latlong");
+    for (const auto& [option, given] :
+         {std::pair("`fovDegrees`", options.fovDegrees.has_value()),
+          std::pair("`focalMm`", options.focalMm.has_value()),
+          std::pair("`apertureMm`", options.apertureMm.has_value()),
+          std::pair("`distanceWorld`", options.distanceWorld.has_value())})
+        requireFor(given, flat, option, "`projection` perspective");
 }
 
 void checkLens(const CameraOptions& options) {
     if (options.fovDegrees && !(*options.fovDegrees > 0 && *options.fovDegrees < 180)) {
-        refuse("--fov", numberText(*options.fovDegrees),
+        refuse("`fovDegrees`", numberText(*options.fovDegrees),
                "a number of degrees greater than 0 and less than 180");
     }
-    checkPositive("--focal", options.focalMm);
-    checkPositive("--aperture", options.apertureMm);
+    checkPositive("`focalMm`", options.focalMm);
+    checkPositive("`apertureMm`", options.apertureMm);
     if (options.fovDegrees && (options.focalMm || options.apertureMm)) {
-        refuse("--fov", std::string("it and ") + (options.focalMm ? "--focal" : "--aperture"),
+        refuse("`fovDegrees`",
+               std::string("it and ") + (options.focalMm ? "`focalMm`" : "`apertureMm`"),
                "the angle of view one way or the other");
     }
 }
 
 void checkEye(const CameraOptions& options) {
-    checkPositive("--distance", options.distanceWorld);
+    checkPositive("`distanceWorld`", options.distanceWorld);
     const double nearest = options.nearWorld;
     if (!(std::isfinite(nearest) && nearest >= 0))
-        refuse("--near", numberText(nearest), "a finite number of at least 0");
+        refuse("`nearWorld`", numberText(nearest), "a finite number of at least 0");
     if (!options.eyeWorld) return;
     const glm::dvec3 eye = *options.eyeWorld;
-    if (!isFinite(eye)) refuse("--eye", numberText(eye), "three finite numbers");
+    if (!isFinite(eye)) refuse("`eyeWorld`", numberText(eye), "three finite numbers");
     if (options.distanceWorld)
-        refuse("--distance", "it and --eye", "the eye's place one way or the other");
+        refuse("`distanceWorld`", "it and `eyeWorld`", "the eye's place one way or the other");
     if (options.direction && options.targetWorld) {
-        refuse("--direction", "it, --eye and --target",
+        refuse("`direction`", "it, `eyeWorld` and `targetWorld`",
                "a line of sight one way or the other: without one of them");
     }
 }
@@ -150,15 +154,15 @@ void checkOptions(const CameraOptions& options) {
     checkProjection(options);
     checkLens(options);
     checkEye(options);
-    checkNumber("--azimuth", options.azimuthDegrees);
-    checkNumber("--elevation", options.elevationDegrees);
-    checkNumber("--roll", options.rollDegrees);
+    checkNumber("`azimuthDegrees`", options.azimuthDegrees);
+    checkNumber("`elevationDegrees`", options.elevationDegrees);
+    checkNumber("`rollDegrees`", options.rollDegrees);
     if (options.targetWorld && !isFinite(*options.targetWorld)) {
-        refuse("--target", numberText(*options.targetWorld), "three finite numbers");
+        refuse("`targetWorld`", numberText(*options.targetWorld), "three finite numbers");
     }
     const double width = options.frameWidthWorld.value_or(1);
     if (!std::isfinite(width) || width <= 0) {
-        refuse("--frame-width", numberText(width), "a number > 0");
+        refuse("`frameWidthWorld`", numberText(width), "a number > 0");
     }
     checkSize(options);
 }
@@ -181,8 +185,8 @@ std::optional<glm::dvec3> givenDirection(const CameraOptions& options, const glm
     if (options.direction || !options.eyeWorld) return options.direction;
     const glm::dvec3 direction = target - *options.eyeWorld;
     if (isFinite(direction) && direction != glm::dvec3(0)) return direction;
-    refuse("--eye", numberText(*options.eyeWorld),
-           "another place than the target " + numberText(target) + ", or a --direction to look in");
+    refuse("`eyeWorld`", numberText(*options.eyeWorld),
+           "another place than the target " + numberText(target) + ", or a `direction` to look in");
 }
 
 // Sets the three axes as a person turns a camera that looks along `pointed`, or else as the view
@@ -192,12 +196,12 @@ void orient(Camera& camera, const CameraOptions& options, const Viewer& viewer,
     const NamedView& view = namedView(pointed ? "front" : viewFrom(viewer, options.view));
     const glm::dvec3 givenUp = options.up.value_or(viewer.toWorld(view.up));
     const glm::dvec3 givenDirection = pointed.value_or(viewer.toWorld(view.direction));
-    const glm::dvec3 up = unitVector("--up", givenUp);
-    glm::dvec3 direction = unitVector("--direction", givenDirection);
+    const glm::dvec3 up = unitVector("`up`", givenUp);
+    glm::dvec3 direction = unitVector("`direction`", givenDirection);
     if (glm::length(glm::cross(direction, up)) < 1e-9) {
-        refuse(options.direction || !pointed ? (pointed ? "--direction" : "--up") : "--eye",
+        refuse(options.direction || !pointed ? (pointed ? "`direction`" : "`up`") : "`eyeWorld`",
                numberText(givenDirection) + " as direction, parallel to up " + numberText(givenUp),
-               "directions that differ (another --view, --direction or --up)");
+               "directions that differ (another `view`, `direction` or `up`)");
     }
 
     // The azimuth goes about the up that was given, the rest about the camera's own axes.
@@ -321,8 +325,8 @@ void placeEye(Camera& camera, const CameraOptions& options, const glm::dvec3& ta
     camera.frameWidthWorld = 2 * distance * tangent;
     if (!std::isfinite(camera.frameWidthWorld) || camera.frameWidthWorld <= 0 ||
         !isFinite(camera.targetWorld)) {
-        refuse(options.eyeWorld ? "--eye" : "--distance", numberText(distance) + " to the target",
-               "a distance that numbers can hold");
+        refuse(options.eyeWorld ? "`eyeWorld`" : "`distanceWorld`",
+               numberText(distance) + " to the target", "a distance that numbers can hold");
     }
 }
 

@@ -68,14 +68,14 @@ int screenResolution(double pixelsPerVoxel) {
 
 void requireFinite(const glm::dvec3& eye) {
     if (std::isfinite(eye.x) && std::isfinite(eye.y) && std::isfinite(eye.z)) return;
-    throw Error(ErrorCode::kUsage, gotExpected("--eye", "voxel index " + numberText(eye),
+    throw Error(ErrorCode::kUsage, gotExpected("`eyeWorld`", "voxel index " + numberText(eye),
                                                "a place that numbers can hold"));
 }
 
 void checkResolution(int resolution) {
     if (resolution >= 1 && resolution <= kMaxResolution) return;
     throw Error(ErrorCode::kUsage,
-                gotExpected("--resolution", std::to_string(resolution),
+                gotExpected("`resolution`", std::to_string(resolution),
                             "a whole number within 1.." + std::to_string(kMaxResolution)));
 }
 

@@ -1,6 +1,10 @@
 # What the program says to those who call it: help, versions and everything that ends with 2.
 set(cube cube_8x8x8_uint8.raw)
 
+# The library's texts name options by their fields, of which the program makes flags.
+deltasplat_script_test(option_names option_names.sh ARGS $<TARGET_FILE:deltasplat_tool>
+    ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/cli/option_names)
+
 # Declares a rendering of the cube that has to be refused: name, message, options.
 function(deltasplat_refusal name message)
     deltasplat_cli_test(usage.${name} EXIT 2 STDERR "deltasplat: ${message}"

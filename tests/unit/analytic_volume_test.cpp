@@ -58,14 +58,15 @@ TEST(AnalyticVolume, EveryNameMakesAVolumeOfValuesFromZeroToOne) {
 }
 
 TEST(AnalyticVolume, RefusesUnknownNamesAndBadNoise) {
-    EXPECT_EQ(errorOf([] { makeAnalytic("Engine"); }),
-              "usage: NAME: got \"Engine\"; expected one of marschner-lobb, hydrogen, shepp-logan, "
-              "engine, cloud, slab, vessels");
+    EXPECT_EQ(
+        errorOf([] { makeAnalytic("Engine"); }),
+        "usage: `name`: got \"Engine\"; expected one of marschner-lobb, hydrogen, shepp-logan, "
+        "engine, cloud, slab, vessels");
     EXPECT_EQ(errorOf([] { makeAnalytic("engine", 1, -0.5); }),
-              "usage: --noise: got -0.500000; expected a number of at least 0");
+              "usage: `noise`: got -0.500000; expected a number of at least 0");
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(errorOf([=] { makeAnalytic("engine", 1, nan); }),
-              "usage: --noise: got nan; expected a number of at least 0");
+              "usage: `noise`: got nan; expected a number of at least 0");
 }
 
 TEST(MarschnerLobb, HasThePublishedValues) {

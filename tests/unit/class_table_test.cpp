@@ -128,19 +128,19 @@ TEST(Classify, refusesOpticsOutOfRangeByTheFlagsName) {
     };
     Optics optics = ramp();
     optics.unitDistance = 0;
-    EXPECT_EQ(messageOf(optics), "--unit-distance: got 0; expected a number > 0");
+    EXPECT_EQ(messageOf(optics), "`unitDistance`: got 0; expected a number > 0");
     optics.unitDistance = INFINITY;
-    EXPECT_EQ(messageOf(optics), "--unit-distance: got inf; expected a number > 0");
+    EXPECT_EQ(messageOf(optics), "`unitDistance`: got inf; expected a number > 0");
     optics = ramp();
     optics.extinctionScale = -1;
-    EXPECT_EQ(messageOf(optics), "--extinction: got -1; expected a number >= 0");
+    EXPECT_EQ(messageOf(optics), "`extinctionScale`: got -1; expected a number >= 0");
     optics.extinctionScale = NAN;
-    EXPECT_EQ(messageOf(optics), "--extinction: got nan; expected a number >= 0");
+    EXPECT_EQ(messageOf(optics), "`extinctionScale`: got nan; expected a number >= 0");
     optics = ramp();
     optics.range = glm::dvec2(5, 2.5);
-    EXPECT_EQ(messageOf(optics), "--range: got 5,2.5; expected LO,HI with LO < HI");
+    EXPECT_EQ(messageOf(optics), "`range`: got 5,2.5; expected LO,HI with LO < HI");
     optics.range = glm::dvec2(5, 5);
-    EXPECT_EQ(messageOf(optics), "--range: got 5,5; expected LO,HI with LO < HI");
+    EXPECT_EQ(messageOf(optics), "`range`: got 5,5; expected LO,HI with LO < HI");
 }
 
 // Few steps of opacity and colour, so that codes share colours.

@@ -94,7 +94,7 @@ TEST(DropBackground, NothingStandsOut) {
     options.dropBackground = true;
     const WriteReport report = write("out.vdb", rawVolume(values, kDims, "uint8"), options);
     EXPECT_EQ(report.notes[0],
-              "out.vdb: --background: no value is frequent enough to be one; every voxel stays "
+              "out.vdb: `dropBackground`: no value is frequent enough to be one; every voxel stays "
               "active");
     EXPECT_EQ(readGrid<openvdb::FloatGrid>("out.vdb")->activeVoxelCount(), values.size());
 }
@@ -121,7 +121,7 @@ TEST(DropBackground, AGridThatHasOne) {
 
     options.background = 5;
     const WriteReport other = write("out.vdb", readKept("in.vdb"), options);
-    EXPECT_EQ(other.notes, std::vector<std::string>{"out.vdb: --background: has no effect on grid "
+    EXPECT_EQ(other.notes, std::vector<std::string>{"out.vdb: `background`: has no effect on grid "
                                                     "\"a\", whose background is 0"});
     EXPECT_EQ(readGrid<openvdb::FloatGrid>("out.vdb")->activeVoxelCount(),
               grid->activeVoxelCount());
@@ -132,11 +132,11 @@ TEST(DropBackground, AValueThatTheTypeCannotHold) {
     WriteOptions options;
     options.dropBackground = true;
     options.background = 1e300;
-    expectError(ErrorCode::kUsage, "--background: got 1e+300; expected a value of type float", [&] {
+    expectError(ErrorCode::kUsage, "`background`: got 1e+300; expected a value of type float", [&] {
         write("out.vdb", rawVolume(island<std::uint8_t>(0), kDims, "uint8"), options);
     });
     options.background = 0.5;
-    expectError(ErrorCode::kUsage, "--background: got 0.5; expected a value of type int32", [&] {
+    expectError(ErrorCode::kUsage, "`background`: got 0.5; expected a value of type int32", [&] {
         write("out.vdb", rawVolume(island<std::int32_t>(16777217), kDims, "int32"), options);
     });
 }

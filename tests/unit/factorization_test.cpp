@@ -199,7 +199,7 @@ TEST(Factorization, refusesResolutionsOutOfRangeAndFlatWorlds) {
             ADD_FAILURE() << resolution;
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::kUsage);
-            EXPECT_EQ(std::string(error.what()), "--resolution: got " + std::to_string(resolution) +
+            EXPECT_EQ(std::string(error.what()), "`resolution`: got " + std::to_string(resolution) +
                                                      "; expected a whole number within 1..16");
         }
     }

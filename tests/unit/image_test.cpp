@@ -334,10 +334,10 @@ TEST(CheckImageFile, RefusesWhatCannot) {
     EXPECT_EQ(check("out", {}), "usage: out: got extension \"\"; expected .exr or .png");
     ImageFileOptions twelve;
     twelve.bits = 12;
-    EXPECT_EQ(check("out.png", twelve), "usage: --bits: got 12; expected 8 or 16");
+    EXPECT_EQ(check("out.png", twelve), "usage: `bits`: got 12; expected 8 or 16");
     ImageFileOptions floats;
     floats.floatExr = true;
-    EXPECT_EQ(check("out.png", floats), "usage: --float: got out.png; expected an .exr file");
+    EXPECT_EQ(check("out.png", floats), "usage: `floatExr`: got out.png; expected an .exr file");
     EXPECT_EQ(check("no_such_folder/out.png", {}),
               "output: no_such_folder/out.png: cannot be written: No such file or directory");
 }

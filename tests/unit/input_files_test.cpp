@@ -101,7 +101,7 @@ TEST(InputFiles, ReadersConfineWhenAsked) {
     confineInputs();
     expectError(ErrorCode::kInput,
                 "in/a.raw: got the file in/a.raw outside of its folder; expected files inside of "
-                "it (--confine)",
+                "it (`confineInputs`)",
                 [&] { readVolume("in/a.raw", options); });
 }
 

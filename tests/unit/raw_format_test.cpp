@@ -85,7 +85,7 @@ TEST(RawFormat, OptionsAndNameComplete) {
 
 TEST(RawFormat, MissingDimsAndType) {
     const std::string dims =
-        "vol.raw: got no dimensions; expected --dims XxYxZ and --type TYPE, or a name such as "
+        "vol.raw: got no dimensions; expected `dims` XxYxZ and `type` TYPE, or a name such as "
         "volume_256x256x128_uint8.raw";
     expectUsage(dims, "vol.raw", {});
     RawFormat format;
@@ -94,7 +94,7 @@ TEST(RawFormat, MissingDimsAndType) {
     format.type.reset();
     format.dims = {1, 1, 1};
     expectUsage(
-        "vol.raw: got no value type; expected --type TYPE, or a name such as "
+        "vol.raw: got no value type; expected `type` TYPE, or a name such as "
         "volume_256x256x128_uint8.raw",
         "vol.raw", format);
 }
@@ -102,11 +102,11 @@ TEST(RawFormat, MissingDimsAndType) {
 TEST(RawFormat, DimsOutOfRange) {
     RawFormat format;
     format.dims = {0, 4, 4};
-    expectUsage("--dims: got 0x4x4; expected each 1..1073741824", "a_1x2x3_uint8.raw", format);
+    expectUsage("`dims`: got 0x4x4; expected each 1..1073741824", "a_1x2x3_uint8.raw", format);
     format.dims = {4, 4, -3};
-    expectUsage("--dims: got 4x4x-3; expected each 1..1073741824", "a_1x2x3_uint8.raw", format);
+    expectUsage("`dims`: got 4x4x-3; expected each 1..1073741824", "a_1x2x3_uint8.raw", format);
     format.dims = {4, std::int64_t{1} << 31, 1};
-    expectUsage("--dims: got 4x2147483648x1; expected each 1..1073741824", "a_1x2x3_uint8.raw",
+    expectUsage("`dims`: got 4x2147483648x1; expected each 1..1073741824", "a_1x2x3_uint8.raw",
                 format);
     expectUsage("a_4x0x3_uint8.raw: got dims 4x0x3; expected each 1..1073741824",
                 "a_4x0x3_uint8.raw", {});
@@ -121,20 +121,20 @@ TEST(RawFormat, ProductOverflows) {
     format.dims = {1 << 30, 1 << 30, 8};
     format.type = "uint8";
     expectUsage(
-        "--dims: got 1073741824x1073741824x8 uint8; expected at most 9223372036854775807 "
+        "`dims`: got 1073741824x1073741824x8 uint8; expected at most 9223372036854775807 "
         "bytes",
         "a.raw", format);
     format.dims = {1 << 30, 1 << 30, 7};
     EXPECT_EQ(resolveRawLayout("a.raw", format).dataBytes(), std::uint64_t{7} << 60);
     format.type = "uint16";
     expectUsage(
-        "--dims: got 1073741824x1073741824x7 uint16; expected at most "
+        "`dims`: got 1073741824x1073741824x7 uint16; expected at most "
         "9223372036854775807 bytes",
         "a.raw", format);
     format.dims = {1, 1, 1};
     format.skipBytes = std::numeric_limits<std::uint64_t>::max();
     expectUsage(
-        "--skip-bytes: got 18446744073709551615; expected less than 9223372036854775807 "
+        "`skipBytes`: got 18446744073709551615; expected less than 9223372036854775807 "
         "bytes together with the voxels",
         "a.raw", format);
 }
@@ -142,7 +142,7 @@ TEST(RawFormat, ProductOverflows) {
 TEST(RawFormat, UnknownType) {
     RawFormat format;
     format.type = "uint12";
-    expectUsage(std::string("--type: got uint12; expected ") + kTypes, "a_1x2x3_uint8.raw", format);
+    expectUsage(std::string("`type`: got uint12; expected ") + kTypes, "a_1x2x3_uint8.raw", format);
     expectUsage(std::string("a_1x2x3_uint12be.raw: got value type uint12be; expected ") + kTypes,
                 "a_1x2x3_uint12be.raw", {});
 }
@@ -153,7 +153,7 @@ TEST(RawFormat, SpacingAndOrigin) {
     for (const double spacing : {0.0, 1e-16, 1e16, std::numeric_limits<double>::infinity(),
                                  std::numeric_limits<double>::quiet_NaN()}) {
         format.spacing = {1, spacing, 1};
-        expectUsage("--spacing: got " + numberText(spacing) +
+        expectUsage("`spacing`: got " + numberText(spacing) +
                         "; expected three numbers from 1e-15 to 1e+15",
                     file, format);
     }
@@ -161,10 +161,10 @@ TEST(RawFormat, SpacingAndOrigin) {
     format.origin = {-1e15, 0, 0};
     EXPECT_NO_THROW(resolveRawLayout(file, format));
     format.origin = {-1e15, 1e12, 0};
-    expectUsage("--origin: got -1e+15,1e+12,0; expected a place within 1e+15 of 0,0,0", file,
+    expectUsage("`origin`: got -1e+15,1e+12,0; expected a place within 1e+15 of 0,0,0", file,
                 format);
     format.origin = {0, std::numeric_limits<double>::quiet_NaN(), 0};
-    expectUsage("--origin: got 0,nan,0; expected a place within 1e+15 of 0,0,0", file, format);
+    expectUsage("`origin`: got 0,nan,0; expected a place within 1e+15 of 0,0,0", file, format);
 }
 
 TEST(FileName, Extensions) {

@@ -209,7 +209,7 @@ TEST(ReadDicomError, SlicesThatDiffer) {
         [](auto& files) { files[3].orientation = "0\\1\\0\\1\\0\\0"; });
     expectRefusedWith(
         "scan: got 2 DICOM series (1.2.3: 3 files, 1.2.4: 2 files); expected one, chosen by "
-        "--series UID",
+        "`series` UID",
         [](auto& files) { files[3].series = files[1].series = "1.2.4"; });
 }
 
@@ -302,13 +302,13 @@ TEST(ReadDicom, SeriesAreChosen) {
     EXPECT_EQ(valuesOf(second), expected(3));
     const std::string all = "1.2.100: 1 file, 1.2.3: 5 files, 1.2.99: 3 files";
     options.series = "1.2.9";
-    expectRefused("scan: got no DICOM series 1.2.9; expected --series of " + all, "scan", options);
+    expectRefused("scan: got no DICOM series 1.2.9; expected `series` of " + all, "scan", options);
     options.series = "";
-    expectRefused("scan: got no DICOM series \"\"; expected --series of " + all, "scan", options);
+    expectRefused("scan: got no DICOM series \"\"; expected `series` of " + all, "scan", options);
     options.series = "1.2.100";
     expectRefused("scan/report.dcm: got no image; expected a DICOM slice with rows and columns",
                   "scan", options);
-    expectRefused("scan: got 3 DICOM series (" + all + "); expected one, chosen by --series UID",
+    expectRefused("scan: got 3 DICOM series (" + all + "); expected one, chosen by `series` UID",
                   "scan");
 }
 
@@ -322,7 +322,7 @@ TEST(ReadDicomError, EverySeriesIsNamed) {
         all += (i == 0 ? "" : ", ") + files[std::size_t(i)].series + ": 1 file";
     }
     write(files);
-    expectRefused("scan: got 24 DICOM series (" + all + "); expected one, chosen by --series UID",
+    expectRefused("scan: got 24 DICOM series (" + all + "); expected one, chosen by `series` UID",
                   "scan");
 }
 

@@ -136,7 +136,7 @@ TEST(ReadImages, SpacingAndOrigin) {
     EXPECT_EQ(readVolume("a.#.png", options).worldFromIndex,
               glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
     options.raw.spacing.y = 0;
-    expectError(ErrorCode::kUsage, "--spacing: got 0; expected three numbers from 1e-15 to 1e+15",
+    expectError(ErrorCode::kUsage, "`spacing`: got 0; expected three numbers from 1e-15 to 1e+15",
                 [&] { readVolume("a.#.png", options); });
 }
 

@@ -62,7 +62,7 @@ TEST(ReadNiftiError, Dims) {
     expectRefusedWith("got dims 4x3x0; expected each 1..1073741824", [](NiftiFile& file) {
         file.dims = {4, 3, 0};
     });
-    expectRefusedWith("got 2 volumes (dims 2x3x2x2); expected one, chosen by --volume 0 to 1",
+    expectRefusedWith("got 2 volumes (dims 2x3x2x2); expected one, chosen by `volume` 0 to 1",
                       [](NiftiFile& file) {
                           file.dims = {2, 3, 2, 2};
                       });

@@ -253,12 +253,12 @@ TEST(ReadNifti, AVolumeThatIsNotThere) {
     for (const std::int64_t volume : {std::int64_t{5}, std::int64_t{-1}, INT64_MAX}) {
         options.volume = volume;
         expectRefused("a.nii: got no volume " + std::to_string(volume) +
-                          " among 5 volumes (dims 4x3x2x5); expected --volume 0 to 4",
+                          " among 5 volumes (dims 4x3x2x5); expected `volume` 0 to 4",
                       "a.nii", options);
     }
     writeBytes("b.nii", sample().bytes());
     options.volume = 1;
-    expectRefused("b.nii: got no volume 1 among 1 volume (dims 4x3x2); expected --volume 0",
+    expectRefused("b.nii: got no volume 1 among 1 volume (dims 4x3x2); expected `volume` 0",
                   "b.nii", options);
     options.volume = 0;
     EXPECT_EQ(valuesOf(readVolume("b.nii", options)), kRamp);

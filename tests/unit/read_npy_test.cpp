@@ -110,7 +110,7 @@ TEST(ReadNpy, AxesOfOne) {
     EXPECT_EQ(valuesOf(readVolume("a.npy")), ramp<double>(24));
     writeBytes("a.npy", npy(dictionary("<u2", "(4, 1, 3, 2)"), bytesOf(ramp<std::uint16_t>(24))));
     expectRefused(
-        "a.npy: got 4 volumes (shape (4, 1, 3, 2)); expected one, chosen by --volume 0 to 3",
+        "a.npy: got 4 volumes (shape (4, 1, 3, 2)); expected one, chosen by `volume` 0 to 3",
         "a.npy");
 }
 
@@ -134,7 +134,7 @@ TEST(ReadNpy, VolumesAreChosen) {
     ReadOptions beyond;
     beyond.volume = 6;
     expectRefused(
-        "b.npy: got no volume 6 among 6 volumes (shape (2, 3, 2, 3, 4)); expected --volume 0 to 5",
+        "b.npy: got no volume 6 among 6 volumes (shape (2, 3, 2, 3, 4)); expected `volume` 0 to 5",
         "b.npy", beyond);
     writeBytes("b.npy", npy(dictionary("<f2", "(2, 3)"), data.substr(0, 12)));
     beyond.volume = 0;
@@ -221,7 +221,7 @@ TEST(WriteNpy, PlaceIsNoted) {
     volumes.push_back(readVolume("a.npy", options));
     EXPECT_EQ(
         writeVolumes("b.npy", std::move(volumes)).notes,
-        std::vector<std::string>{"b.npy: no place in its header; read it with --spacing 2,3,4"});
+        std::vector<std::string>{"b.npy: no place in its header; read it with `spacing` 2,3,4"});
 }
 
 }  // namespace

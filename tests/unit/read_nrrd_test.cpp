@@ -177,7 +177,7 @@ TEST(ReadNrrd, NaNIsReplaced) {
     writeBytes("a.nrrd", nrrd({{"type", "float"}}) + "\n" + bytesOf(values));
     expectRefused(
         "a.nrrd: got 1 NaN or infinite values, the first at (3, 1, 0); expected finite values "
-        "(--nan VALUE replaces them)",
+        "(`nanValue` VALUE replaces them)",
         "a.nrrd");
     ReadOptions options;
     options.nanValue = -1;

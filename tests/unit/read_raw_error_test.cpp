@@ -146,7 +146,7 @@ TEST(ReadRawError, NonFiniteValues) {
     const std::string message =
         file +
         ": got 3 NaN or infinite values, the first at (4, 6, 13); expected finite values "
-        "(--nan VALUE replaces them)";
+        "(`nanValue` VALUE replaces them)";
     writeBytes(file, bytesOf(values));
     expectInput(message, file);
     ReadOptions options;
@@ -154,7 +154,7 @@ TEST(ReadRawError, NonFiniteValues) {
     writeBytes(file, bytesOf(values, true));
     expectInput(message, file, options);
     options.nanValue = std::nan("");
-    expectError(ErrorCode::kUsage, "--nan: got nan; expected a finite number",
+    expectError(ErrorCode::kUsage, "`nanValue`: got nan; expected a finite number",
                 [&] { readVolume(file, options); });
 }
 

@@ -122,13 +122,13 @@ TEST(ReadVdbError, NonFiniteValues) {
     writeGrids("a.vdb", {grid});
     expectInput(
         "a.vdb: grid \"g\": got 3 NaN or infinite active values, the first at (15, 3, 4); "
-        "expected finite values (--nan VALUE replaces them)",
+        "expected finite values (`nanValue` VALUE replaces them)",
         "a.vdb");
     grid->tree().addTile(1, Coord(-8, -16, -24), std::nanf(""), true);
     writeGrids("a.vdb", {grid});
     expectInput(
         "a.vdb: grid \"g\": got 515 NaN or infinite active values, the first at (-8, -16, -24); "
-        "expected finite values (--nan VALUE replaces them)",
+        "expected finite values (`nanValue` VALUE replaces them)",
         "a.vdb");
 }
 

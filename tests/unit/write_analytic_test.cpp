@@ -207,19 +207,19 @@ TEST(WriteAnalyticFile, RefusesWhatItCannotWrite) {
         return errorOf([&] { writeAnalytic(makeAnalytic("slab"), file, wrong); });
     };
     EXPECT_EQ(error("out.raw", options({0, 4, 4})),
-              "usage: --dims: got 0x4x4; expected three numbers of at least 1");
+              "usage: `dims`: got 0x4x4; expected three numbers of at least 1");
     EXPECT_EQ(error("out.vdb", options({4, 4, -1})),
-              "usage: --dims: got 4x4x-1; expected three numbers of at least 1");
+              "usage: `dims`: got 4x4x-1; expected three numbers of at least 1");
     EXPECT_EQ(error("out.raw.gz", options(kDims)),
               "usage: out.raw.gz: got extension \".gz\"; expected .raw or .vdb");
     EXPECT_EQ(error("out.raw", options(kDims, "int8")),
-              "usage: --type: got \"int8\"; expected uint8, uint16 or float32 for .raw");
+              "usage: `type`: got \"int8\"; expected uint8, uint16 or float32 for .raw");
     EXPECT_EQ(error("out.vdb", options(kDims, "uint8")),
-              "usage: --type: got \"uint8\"; expected float32 for .vdb");
+              "usage: `type`: got \"uint8\"; expected float32 for .vdb");
     AnalyticFileOptions flat = options(kDims);
     flat.spacing = {1, 0, 2.5};
     EXPECT_EQ(error("out.vdb", flat),
-              "usage: --spacing: got 1,0,2.5; expected three numbers above 0");
+              "usage: `spacing`: got 1,0,2.5; expected three numbers above 0");
     EXPECT_EQ(error("no_such_folder/out.vdb", options(kDims)),
               "output: no_such_folder/out.vdb: cannot be written: No such file or directory");
     EXPECT_EQ(error("no_such_folder/out.raw", options(kDims)),

@@ -186,8 +186,8 @@ TEST(WriteDense, AGridBecomesItsActiveBox) {
     const WriteReport report = write("out.raw", readKept("in.vdb"));
     EXPECT_FALSE(report.lossless);
     const std::vector<std::string> notes = {
-        "out.raw: no header; read it with --dims 32x13x13 --type float32 --endian little "
-        "--spacing 0.25,0.25,0.25 --origin -2.75,-0.75,1.25",
+        "out.raw: no header; read it with `dims` 32x13x13 `type` float32 `bigEndian=false` "
+        "`spacing` 0.25,0.25,0.25 `origin` -2.75,-0.75,1.25",
         "out.raw: 4894 inactive voxels become voxels like the others, with the value they hold "
         "(background 2.5)",
         "out.raw: the grid's name \"density\", class \"unknown\" and other metadata are left out"};

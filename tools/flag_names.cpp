@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "flag_names.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
+namespace deltasplat {
+namespace {
+
+struct FlagName {
+    std::string_view field;  // as the library has it between backquotes
+    std::string_view flag;
+};
+
+// A field of a nested struct stands without it, unless another one has the same name.
+constexpr FlagName kFlagNames[] = {
+    {"apertureMm", "--aperture"},
+    {"azimuthDegrees", "--azimuth"},
+    {"background", "--background"},
+    {"between", "--between"},
+    {"bigEndian=false", "--endian little"},
+    {"bigEndian=true", "--endian big"},
+    {"bits", "--bits"},
+    {"confineInputs", "--confine"},
+    {"dims", "--dims"},
+    {"direction", "--direction"},
+    {"distanceWorld", "--distance"},
+    {"dropBackground", "--background"},
+    {"elevationDegrees", "--elevation"},
+    {"extinctionScale", "--extinction"},
+    {"eyeWorld", "--eye"},
+    {"floatExr", "--float"},
+    {"focalMm", "--focal"},
+    {"fovDegrees", "--fov"},
+    {"frameWidthWorld", "--frame-width"},
+    {"gridName", "--grid"},
+    {"image.size", "--size"},
+    {"maxError", "--max-error"},
+    {"memoryLimit", "--max-memory"},
+    {"mode", "--mode"},
+    {"name", "NAME"},
+    {"nanValue", "--nan"},
+    {"nearWorld", "--near"},
+    {"noise", "--noise"},
+    {"origin", "--origin"},
+    {"projection", "--projection"},
+    {"range", "--range"},
+    {"resolution", "--resolution"},
+    {"rollDegrees", "--roll"},
+    {"series", "--series"},
+    {"sigma", "--sigma"},
+    {"sizePixels", "--size"},
+    {"skipBytes", "--skip-bytes"},
+    {"spacing", "--spacing"},
+    {"targetWorld", "--target"},
+    {"tolerance.relative", "--tolerance"},
+    {"tolerance.value", "--tolerance-value"},
+    {"type", "--type"},
+    {"unitDistance", "--unit-distance"},
+    {"up", "--up"},
+    {"view", "--view"},
+    {"volume", "--volume"},
+};
+
+}  // namespace
+
+std::string withFlagNames(const std::string& text) {
+    std::string said;
+    std::string_view rest = text;
+    while (!rest.empty()) {
+        const std::size_t open = std::min(rest.find('`'), rest.size());
+        said += rest.substr(0, open);
+        rest.remove_prefix(open);
+        const std::size_t close = rest.find('`', 1);
+        const std::string_view field =
+            close < rest.size() ? rest.substr(1, close - 1) : std::string_view();
+        const auto known = std::find_if(std::begin(kFlagNames), std::end(kFlagNames),
+                                        [&](const FlagName& name) { return name.field == field; });
+        if (known != std::end(kFlagNames)) {
+            said += known->flag;
+            rest.remove_prefix(close + 1);
+        } else if (!rest.empty()) {
+            // What follows may be one, and its end the beginning of another.
+            said += '`';
+            rest.remove_prefix(1);
+        }
+    }
+    return said;
+}
+
+}  // namespace deltasplat
