@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ingest/code_tree.h"
+#include "ingest/code_values.h"
 #include "ingest/raw_load.h"
 #include "ingest/scalar_grids.h"
 #include "ingest/source_grid.h"
@@ -88,12 +89,8 @@ ReadBox treeReader(const Tree& tree, const ValueOf& valueOf) {
 }
 
 ReadBox codeReader(const Volume& volume) {
-    std::vector<double> values(kCodeCount);
-    for (int code = 0; code < kCodeCount; ++code) {
-        values[std::size_t(code)] = volume.codeBook.valueOf(Code(code));
-    }
     return treeReader(volume.codes->tree,
-                      [values = std::move(values), background = volume.background](
+                      [values = valuesOfCodes(volume.codeBook), background = volume.background](
                           Code code, bool active) { return active ? values[code] : background; });
 }
 

@@ -9,6 +9,7 @@
 
 #include "convert/value_facts.h"
 #include "ingest/code_tree.h"
+#include "ingest/code_values.h"
 #include "ingest/grid_metadata.h"
 #include "ingest/grid_values.h"
 #include "ingest/scalar_grids.h"
@@ -60,10 +61,7 @@ typename Grid::Ptr translate(const Tree& tree, const ValueOf& valueOf, double ba
 template <typename Grid>
 GridBase::Ptr fromCodes(const Volume& volume) {
     using T = typename Grid::ValueType;
-    std::vector<double> values(kCodeCount);
-    for (int code = 0; code < kCodeCount; ++code) {
-        values[std::size_t(code)] = volume.codeBook.valueOf(Code(code));
-    }
+    const std::vector<double> values = valuesOfCodes(volume.codeBook);
     return translate<Grid>(
         volume.codes->tree, [&](Code code) { return valueAs<T>(values[code]); },
         volume.hasBackground ? volume.background : 0);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "delta/block_finder.h"
 
+#include "ingest/leaf_slices.h"
+
 namespace deltasplat {
 
 BlockFinder::BlockFinder(const CodeTree& codes, int sliceAxis)
-    : accessor_(codes.tree), order_(sliceOrder(sliceAxis)) {}
+    : accessor_(codes.tree), sliceAxis_(sliceAxis) {}
 
 std::optional<CodeBlock> BlockFinder::find(const glm::ivec3& position) const {
-    openvdb::Coord origin;
-    for (int i = 0; i < 3; ++i) origin[order_[i]] = 8 * position[i];
+    const openvdb::Coord origin = blockOrigin(position, sliceAxis_);
     CodeBlock found;
     found.position = position;
     found.leaf = accessor_.probeConstLeaf(origin);

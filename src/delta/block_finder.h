@@ -18,7 +18,7 @@ class BlockFinder {
 
   private:
     openvdb::tree::ValueAccessor<const CodeTree::Tree> accessor_;
-    glm::ivec3 order_;
+    int sliceAxis_;
 };
 
 }  // namespace deltasplat

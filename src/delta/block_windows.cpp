@@ -22,8 +22,7 @@ BlockWindows::BlockWindows(const BlockReader& reader, const SlabLayout& layout)
 
 bool BlockWindows::continues(std::size_t i) const {
     const std::vector<CodeBlock>& blocks = reader_.blocks();
-    return i > 0 && i < blocks.size() &&
-           blocks[i].position == blocks[i - 1].position + glm::ivec3(1, 0, 0) &&
+    return i > 0 && i < blocks.size() && follows(blocks[i - 1], blocks[i]) &&
            !layout_.startsSlab(blocks[i].position.x);
 }
 

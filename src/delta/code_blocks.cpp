@@ -5,6 +5,7 @@
 #include <iterator>
 #include <tuple>
 
+#include "ingest/leaf_slices.h"
 #include "memory.h"
 
 namespace deltasplat {
@@ -125,45 +126,38 @@ void BlockReader::addTile(const openvdb::CoordBBox& box, Slot slot) {
 }
 
 void BlockReader::readBlock(const CodeBlock& block, BlockSlots& slots) const {
-    readSlices(block, 0, slots.data());
+    if (block.leaf) {
+        readLeafSlices(
+            *block.leaf, sliceAxis_, [this](Code code) { return slotOf(code); }, slots.data());
+    } else {
+        slots.fill(block.inactive ? kEmptySlot : block.tileSlot);
+    }
+    readInactive(block, 0, slots.data());
 }
 
 void BlockReader::readLastSlice(const CodeBlock& block, std::span<Slot, 64> slots) const {
-    readSlices(block, 7, slots.data());
-}
-
-void BlockReader::readSlices(const CodeBlock& block, int firstSlice, Slot* slots) const {
-    if (!block.leaf && !block.inactive) {
-        std::fill_n(slots, 64 * (8 - firstSlice), block.tileSlot);
-        return;
-    }
     if (block.leaf) {
-        readLeaf(*block.leaf, firstSlice, slots, [&](Slot& slot, bool active, Code code) {
-            slot = active ? slotOf(code) : kEmptySlot;
+        const Code* codes = block.leaf->buffer().data();
+        const auto& active = block.leaf->getValueMask();
+        Slot* slot = slots.data();
+        forLeafVoxels(sliceAxis_, {7, 0, 0}, glm::ivec3(7), [&](const glm::ivec3&, int n) {
+            *slot++ = active.isOn(openvdb::Index(n)) ? slotOf(codes[n]) : kEmptySlot;
         });
     } else {
-        std::fill_n(slots, 64 * (8 - firstSlice), kEmptySlot);
+        std::fill(slots.begin(), slots.end(), block.inactive ? kEmptySlot : block.tileSlot);
     }
-    if (!block.inactive) return;
-    readLeaf(*block.inactive, firstSlice, slots, [](Slot& slot, bool active, Code number) {
-        if (active) slot = inactiveSlot(number);
-    });
+    readInactive(block, 7, slots.data());
 }
 
-template <typename Use>
-void BlockReader::readLeaf(const CodeTree::Leaf& leaf, int firstSlice, Slot* slots,
-                           const Use& use) const {
-    const Code* codes = leaf.buffer().data();
-    const auto& active = leaf.getValueMask();
-    const glm::ivec3 stride = toSliceOrder(kLeafStride, sliceAxis_);
-    for (int s = firstSlice; s < 8; ++s) {
-        for (int u = 0; u < 8; ++u) {
-            for (int v = 0; v < 8; ++v) {
-                const int n = s * stride.x + u * stride.y + v * stride.z;
-                use(*slots++, active.isOn(openvdb::Index(n)), codes[n]);
-            }
-        }
-    }
+// Adds inactive voxels that hold a value of their own to slots that begin with a slice.
+void BlockReader::readInactive(const CodeBlock& block, int firstSlice, Slot* slots) const {
+    if (!block.inactive) return;
+    const Code* numbers = block.inactive->buffer().data();
+    const auto& active = block.inactive->getValueMask();
+    forLeafVoxels(sliceAxis_, {firstSlice, 0, 0}, glm::ivec3(7), [&](const glm::ivec3&, int n) {
+        if (active.isOn(openvdb::Index(n))) *slots = inactiveSlot(numbers[n]);
+        ++slots;
+    });
 }
 
 }  // namespace deltasplat

@@ -11,9 +11,6 @@
 
 namespace deltasplat {
 
-/// How far apart neighbours along x, y and z lie in a leaf's buffer.
-inline constexpr glm::ivec3 kLeafStride{64, 8, 1};
-
 /// An 8x8x8 block of active voxels, in (slice, u, v) order: a leaf of the code tree, or a piece of
 /// a tile.
 struct CodeBlock {
@@ -26,6 +23,16 @@ struct CodeBlock {
     Code lowest = 0;
     Code highest = 0;
 };
+
+/// Whether two blocks lie one behind the other along the slice axis, however far.
+inline bool shareColumn(const CodeBlock& a, const CodeBlock& b) {
+    return a.position.y == b.position.y && a.position.z == b.position.z;
+}
+
+/// Whether a block lies right behind another along the slice axis.
+inline bool follows(const CodeBlock& before, const CodeBlock& block) {
+    return block.position == before.position + glm::ivec3(1, 0, 0);
+}
 
 /// Slots of a block, `[slice][u][v]`.
 using BlockSlots = std::array<Slot, 512>;
@@ -51,9 +58,7 @@ class BlockReader {
     void listBlocks(const CodeTree& codes, const CodeTree* inactive);
     void addTile(const openvdb::CoordBBox& box, Slot slot);
     void mergeDoubles();
-    void readSlices(const CodeBlock& block, int firstSlice, Slot* slots) const;
-    template <typename Use>
-    void readLeaf(const CodeTree::Leaf& leaf, int firstSlice, Slot* slots, const Use& use) const;
+    void readInactive(const CodeBlock& block, int firstSlice, Slot* slots) const;
     Slot slotOf(Code code) const { return slotMap_.empty() ? code + 1 : slotMap_[code + 1]; }
 
     std::span<const Slot> slotMap_;

@@ -2,7 +2,6 @@
 #include "delta/hold_values.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -11,10 +10,13 @@
 
 #include "delta/block_windows.h"
 #include "delta/code_blocks.h"
+#include "delta/hold_slots.h"
 #include "ingest/code_statistics.h"
+#include "ingest/leaf_slices.h"
 #include "ingest/readers.h"
 #include "memory.h"
 #include "parallel.h"
+#include "run_begins.h"
 
 namespace deltasplat {
 namespace {
@@ -69,16 +71,14 @@ class ColumnHolder {
   public:
     ColumnHolder(const BlockReader& reader, const SlabLayout& layout, const HoldRule& rule,
                  int sliceAxis)
-        : reader_(reader), layout_(layout), rule_(rule), sliceAxis_(sliceAxis) {
-        stride_ = toSliceOrder(glm::ivec3(64, 8, 1), sliceAxis);
-    }
+        : reader_(reader), layout_(layout), rule_(rule), sliceAxis_(sliceAxis) {}
 
     void run(const CodeBlock* begin, const CodeBlock* end, std::vector<Changed>& changed) const {
-        std::array<Slot, 64> held{};
+        HeldSlots held{};
         BlockSlots slots;
         for (const CodeBlock* block = begin; block != end; ++block) {
-            const bool follows = block != begin && block[-1].position.x + 1 == block->position.x;
-            if (!follows || layout_.startsSlab(block->position.x)) held.fill(kEmptySlot);
+            const bool goesOn = block != begin && follows(block[-1], *block);
+            if (!goesOn || layout_.startsSlab(block->position.x)) held.fill(kEmptySlot);
             reader_.readBlock(*block, slots);
             if (hold(slots, held)) changed.push_back(replaced(*block, slots));
         }
@@ -86,35 +86,29 @@ class ColumnHolder {
 
   private:
     // Returns whether any slot was replaced by the one held.
-    bool hold(BlockSlots& slots, std::array<Slot, 64>& held) const {
+    bool hold(BlockSlots& slots, HeldSlots& held) const {
         bool any = false;
-        for (std::size_t i = 0; i < slots.size(); ++i) {
-            Slot& before = held[i & 63];
-            if (before != slots[i] && rule_.holds(before, slots[i])) {
-                slots[i] = before;
-                any = true;
-            }
-            before = slots[i];
-        }
+        const auto next = [&](Slot before, Slot slot) {
+            return rule_.holds(before, slot) ? before : slot;
+        };
+        holdSlots(slots, held, next, [&](std::size_t i, Slot slot) {
+            any |= slots[i] != slot;
+            slots[i] = slot;
+        });
         return any;
     }
 
     Changed replaced(const CodeBlock& block, const BlockSlots& slots) const {
-        const glm::ivec3 xyz = 8 * fromSliceOrder(block.position, sliceAxis_);
-        Changed changed{{xyz.x, xyz.y, xyz.z}, nullptr};
+        Changed changed{blockOrigin(block.position, sliceAxis_), nullptr};
         changed.leaf = block.leaf ? std::make_unique<CodeTree::Leaf>(*block.leaf)
                                   : std::make_unique<CodeTree::Leaf>(changed.origin, Code(0), true);
         Code* codes = changed.leaf->buffer().data();
-        for (int s = 0, i = 0; s < 8; ++s) {
-            for (int u = 0; u < 8; ++u) {
-                for (int v = 0; v < 8; ++v, ++i) {
-                    // What is empty keeps its code.
-                    if (slots[std::size_t(i)] != kEmptySlot)
-                        codes[s * stride_.x + u * stride_.y + v * stride_.z] =
-                            Code(slots[std::size_t(i)] - 1);
-                }
-            }
-        }
+        const Slot* slot = slots.data();
+        forLeafVoxels(sliceAxis_, [&](const glm::ivec3&, int n) {
+            // What is empty keeps its code.
+            if (*slot != kEmptySlot) codes[n] = Code(*slot - 1);
+            ++slot;
+        });
         return changed;
     }
 
@@ -122,20 +116,7 @@ class ColumnHolder {
     const SlabLayout& layout_;
     const HoldRule& rule_;
     int sliceAxis_;
-    glm::ivec3 stride_{1};
 };
-
-// Returns where each column of blocks begins, and at the end their number.
-std::vector<std::size_t> columnsOf(const std::vector<CodeBlock>& blocks) {
-    std::vector<std::size_t> begins;
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-        const bool begins_here = i == 0 || blocks[i].position.y != blocks[i - 1].position.y ||
-                                 blocks[i].position.z != blocks[i - 1].position.z;
-        if (begins_here) begins.push_back(i);
-    }
-    begins.push_back(blocks.size());
-    return begins;
-}
 
 }  // namespace
 
@@ -148,7 +129,7 @@ void holdValues(Volume& volume, int sliceAxis, int keyInterval, const Tolerance&
     const ColumnHolder holder(reader, layout, rule, sliceAxis);
     requireMemory("tolerance", double(reader.blocks().size()) * (sizeof(Changed) + 1200));
 
-    const std::vector<std::size_t> columns = columnsOf(reader.blocks());
+    const std::vector<std::size_t> columns = runBegins(reader.blocks(), shareColumn);
     std::vector<std::vector<Changed>> changed(columns.size() - 1);
     parallelForChunks(changed.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "ingest/leaf_slices.h"
+
 namespace deltasplat {
 
 bool MixWindow::isUniform() const {
@@ -11,9 +13,7 @@ bool MixWindow::isUniform() const {
 }
 
 MixWindowReader::MixWindowReader(const CodeTree& codes, int sliceAxis, bool alongSlicesOnly)
-    : finder_(codes, sliceAxis),
-      stride_(toSliceOrder(kLeafStride, sliceAxis)),
-      reach_(alongSlicesOnly ? 0 : 1) {}
+    : finder_(codes, sliceAxis), sliceAxis_(sliceAxis), reach_(alongSlicesOnly ? 0 : 1) {}
 
 void MixWindowReader::read(const CodeBlock& block, MixWindow& window) const {
     for (int s = -1; s <= 1; ++s) {
@@ -40,14 +40,9 @@ void MixWindowReader::readPart(const CodeBlock* block, const glm::ivec3& side,
         last[i] = side[i] > 0 ? 0 : 7;
     }
     const auto forAll = [&](const auto& slotOf) {
-        for (int s = first.x; s <= last.x; ++s) {
-            for (int u = first.y; u <= last.y; ++u) {
-                for (int v = first.z; v <= last.z; ++v) {
-                    const int n = s * stride_.x + u * stride_.y + v * stride_.z;
-                    window.at(8 * side + glm::ivec3(s, u, v)) = slotOf(n);
-                }
-            }
-        }
+        forLeafVoxels(sliceAxis_, first, last, [&](const glm::ivec3& place, int n) {
+            window.at(8 * side + place) = slotOf(n);
+        });
     };
     const CodeTree::Leaf* leaf = block ? block->leaf : nullptr;
     if (!leaf) {

@@ -39,8 +39,8 @@ class MixWindowReader {
     void readPart(const CodeBlock* block, const glm::ivec3& side, MixWindow& window) const;
 
     BlockFinder finder_;
-    glm::ivec3 stride_;  // in a leaf's buffer, along slices, u and v
-    int reach_;          // blocks beside
+    int sliceAxis_;
+    int reach_;  // blocks beside
 };
 
 }  // namespace deltasplat

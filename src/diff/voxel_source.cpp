@@ -12,6 +12,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/code_tree.h"
+#include "ingest/code_values.h"
 #include "ingest/source_grid.h"
 
 namespace deltasplat {
@@ -170,12 +171,6 @@ std::shared_ptr<const Tree> moved(const Tree& tree, const Coord& offset) {
     return result;
 }
 
-std::shared_ptr<const std::vector<double>> tableOf(const CodeBook& book) {
-    auto table = std::make_shared<std::vector<double>>(kCodeCount);
-    for (int code = 0; code < kCodeCount; ++code) (*table)[code] = book.valueOf(Code(code));
-    return table;
-}
-
 // Calls use(typed grid) for the volume's own grid.
 template <typename Use>
 void withSource(const Volume& volume, const Use& use) {
@@ -213,7 +208,9 @@ VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background, 
     if (volume.source) {
         withSource(volume, [&](const auto& grid) { readTree(grid.tree(), {nullptr, wide}); });
     } else {
-        readTree(volume.codes->tree, {tableOf(volume.codeBook), wide});
+        readTree(
+            volume.codes->tree,
+            {std::make_shared<const std::vector<double>>(valuesOfCodes(volume.codeBook)), wide});
     }
 }
 

@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "deltasplat/error.h"
+#include "ingest/leaf_slices.h"
 #include "memory.h"
 #include "parallel.h"
+#include "run_begins.h"
 
 namespace deltasplat {
 namespace {
@@ -58,8 +60,6 @@ class Decoder {
           first_(toSliceOrder(header.box.min, header.sliceAxis)),
           last_(toSliceOrder(header.box.max, header.sliceAxis)),
           blocksPerSlab_(header.keyInterval / 8) {
-        const glm::ivec3 strides{64, 8, 1};
-        stride_ = toSliceOrder(strides, header.sliceAxis);
         if (!header.restActive) return;
         restCode_ = header.book.codeOf(header.background);
     }
@@ -161,23 +161,13 @@ class Decoder {
         return result;
     }
 
-    openvdb::Coord originOf(const glm::ivec3& position) const {
-        const glm::ivec3 xyz = 8 * fromSliceOrder(position, header_.sliceAxis);
-        return {xyz.x, xyz.y, xyz.z};
-    }
-
     void makeLeaves(const std::array<Slot, 512>& slots, Block& block) const {
-        const openvdb::Coord origin = originOf(block.position);
+        const openvdb::Coord origin = blockOrigin(block.position, header_.sliceAxis);
         block.codes = std::make_unique<Leaf>(origin, Code{0}, false);
-        for (int s = 0, i = 0; s < 8; ++s) {
-            for (int u = 0; u < 8; ++u) {
-                for (int v = 0; v < 8; ++v, ++i) {
-                    const int n = s * stride_.x + u * stride_.y + v * stride_.z;
-                    const glm::ivec3 place = 8 * block.position + glm::ivec3(s, u, v);
-                    setVoxel(slots[i], place, openvdb::Index(n), origin, block);
-                }
-            }
-        }
+        const Slot* slot = slots.data();
+        forLeafVoxels(header_.sliceAxis, [&](const glm::ivec3& place, int n) {
+            setVoxel(*slot++, 8 * block.position + place, openvdb::Index(n), origin, block);
+        });
         if (block.codes->isEmpty()) block.codes.reset();
     }
 
@@ -201,7 +191,6 @@ class Decoder {
     glm::ivec3 first_;
     glm::ivec3 last_;
     int blocksPerSlab_;
-    glm::ivec3 stride_{1};  // of a leaf's buffer along slice, u and v
     Code restCode_ = 0;
 };
 
@@ -230,16 +219,12 @@ std::vector<const DeltaLeaf*> orderedLeaves(const openvdb::Int32Tree& tree,
 // Returns where in `leaves` each column begins, and at the end their number.
 std::vector<std::size_t> columnsOf(const std::vector<const DeltaLeaf*>& leaves,
                                    const Decoder& decoder) {
-    std::vector<std::size_t> begins;
-    const auto column = [&](std::size_t i) {
-        const glm::ivec3 p = blockOf(*leaves[i]);
+    const auto column = [&](const DeltaLeaf* leaf) {
+        const glm::ivec3 p = blockOf(*leaf);
         return glm::ivec3(decoder.slabOf(p.x), p.y, p.z);
     };
-    for (std::size_t i = 0; i < leaves.size(); ++i) {
-        if (i == 0 || column(i) != column(i - 1)) begins.push_back(i);
-    }
-    begins.push_back(leaves.size());
-    return begins;
+    return runBegins(
+        leaves, [&](const DeltaLeaf* a, const DeltaLeaf* b) { return column(a) == column(b); });
 }
 
 void checkSlabs(const std::vector<const DeltaLeaf*>& leaves, const Decoder& decoder,
@@ -258,11 +243,6 @@ void checkSlabs(const std::vector<const DeltaLeaf*>& leaves, const Decoder& deco
     }
 }
 
-openvdb::Coord cornerOf(const Block& block, int sliceAxis) {
-    const glm::ivec3 xyz = 8 * fromSliceOrder(block.position, sliceAxis);
-    return {xyz.x, xyz.y, xyz.z};
-}
-
 // Puts blocks into the trees.
 class Collector {
   public:
@@ -275,7 +255,7 @@ class Collector {
     void add(std::vector<Block>& blocks) {
         for (Block& block : blocks) {
             count(block);
-            const openvdb::Coord corner = cornerOf(block, header_.sliceAxis);
+            const openvdb::Coord corner = blockOrigin(block.position, header_.sliceAxis);
             askForNode(corner);
             if (block.codes) codes_.addLeaf(block.codes.release());
             if (block.inactive) inactive_.addLeaf(block.inactive.release());

@@ -7,6 +7,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/byte_source.h"
+#include "ingest/file_name.h"
 #include "memory.h"
 
 namespace deltasplat {
@@ -89,13 +90,20 @@ void requireRawSize(const RawFile& file) {
     }
 }
 
-std::function<void(const DenseSource::LayerUse& use, const Listener& listener)> rawLayersOf(
-    const RawFile& file) {
-    return [file, checked = std::make_shared<bool>(false)](const DenseSource::LayerUse& use,
-                                                           const Listener& listener) {
+DenseSource denseSourceOf(const RawFile& file) {
+    DenseSource source;
+    source.where = file.path.string();
+    source.name = nameWithoutExtensions(file.path);
+    source.dims = file.layout.dims;
+    source.type = file.layout.type;
+    source.bigEndian = file.layout.bigEndian;
+    source.volumes = file.volumes;
+    source.forEachLayer = [file, checked = std::make_shared<bool>(false)](
+                              const DenseSource::LayerUse& use, const Listener& listener) {
         readLayers(file, *checked ? PackedEnd::kIsKnown : PackedEnd::kIsChecked, use, listener);
         *checked = true;
     };
+    return source;
 }
 
 }  // namespace deltasplat

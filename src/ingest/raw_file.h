@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 
 #include "ingest/dense_source.h"
 
@@ -34,10 +33,9 @@ struct RawFile {
 /// @throw Error(kInput) "<path>: got 500 bytes; expected 512 (8x8x8 uint8)"
 void requireRawSize(const RawFile& file);
 
-/// Returns what DenseSource::forEachLayer has to be for a file. Other volumes of a plain file are
-/// not touched, those of a packed one are unpacked and passed over: what follows the volume only
-/// the first time, when the file is checked up to its end.
-std::function<void(const DenseSource::LayerUse& use, const Listener& listener)> rawLayersOf(
-    const RawFile& file);
+/// Returns what readDense takes for a file; where it lies in the world is left to be said. Other
+/// volumes of a plain file are not touched, those of a packed one are unpacked and passed over:
+/// what follows the volume only the first time, when the file is checked up to its end.
+DenseSource denseSourceOf(const RawFile& file);
 
 }  // namespace deltasplat

@@ -15,16 +15,9 @@ DenseSource openNifti(const std::filesystem::path& path, const ReadOptions& opti
     requireRawSize(file);
     file.volume =
         chooseVolume(path.string(), "dims " + header.dims, header.volumes, options.volume);
-    DenseSource source;
-    source.where = path.string();
-    source.name = nameWithoutExtensions(path);
-    source.dims = header.layout.dims;
-    source.type = header.layout.type;
-    source.bigEndian = header.layout.bigEndian;
+    DenseSource source = denseSourceOf(file);
     source.worldFromIndex = header.worldFromIndex;
     source.space = header.space;
-    source.volumes = header.volumes;
-    source.forEachLayer = rawLayersOf(file);
     return rescaled(std::move(source), header.rescale);
 }
 

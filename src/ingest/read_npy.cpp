@@ -9,7 +9,6 @@
 #include <memory>
 
 #include "ingest/choose_volume.h"
-#include "ingest/file_name.h"
 #include "ingest/npy_header.h"
 #include "ingest/raw_file.h"
 #include "ingest/raw_load.h"
@@ -66,16 +65,9 @@ DenseSource openNpy(const std::filesystem::path& path, const ReadOptions& option
     requireRawSize(file);
     file.volume =
         chooseVolume(path.string(), "shape " + header.shape, header.volumes, options.volume);
-    DenseSource source;
-    source.where = path.string();
-    source.name = nameWithoutExtensions(path);
-    source.dims = header.layout.dims;
-    source.type = header.layout.type;
-    source.bigEndian = header.layout.bigEndian;
+    DenseSource source = denseSourceOf(file);
     source.worldFromIndex =
         glm::scale(glm::translate(glm::dmat4(1), format.origin), format.spacing);
-    source.volumes = header.volumes;
-    source.forEachLayer = rawLayersOf(file);
     return header.half ? fromHalves(std::move(source)) : source;
 }
 

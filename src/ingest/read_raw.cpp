@@ -12,15 +12,9 @@ DenseSource openRaw(const std::filesystem::path& path, const RawFormat& format) 
     const RawFile file{path, resolveRawLayout(path, format), lowerExtension(path) == ".raw.gz",
                        false};
     requireRawSize(file);
-    DenseSource source;
-    source.where = path.string();
-    source.name = nameWithoutExtensions(path);
-    source.dims = file.layout.dims;
-    source.type = file.layout.type;
-    source.bigEndian = file.layout.bigEndian;
+    DenseSource source = denseSourceOf(file);
     source.worldFromIndex =
         glm::scale(glm::translate(glm::dmat4(1), format.origin), format.spacing);
-    source.forEachLayer = rawLayersOf(file);
     return source;
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "delta/block_windows.h"
+#include "ingest/leaf_slices.h"
 #include "ingest/scalar_grids.h"
 #include "ingest/source_grid.h"
 #include "memory.h"
@@ -52,18 +53,12 @@ std::vector<Slot> readValues(const Volume& volume, RayRule rule, RayVolume& rays
     return slots;
 }
 
-openvdb::Coord originOf(const CodeBlock& block, int sliceAxis) {
-    const glm::ivec3 origin = fromSliceOrder(block.position * 8, sliceAxis);
-    return {origin.x, origin.y, origin.z};
-}
-
 template <typename Leaf>
 void placeValues(const Leaf& leaf, int sliceAxis, const BlockPlace& place) {
-    for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
-        const glm::ivec3 at = toSliceOrder(glm::ivec3(n >> 6, n >> 3 & 7, n & 7), sliceAxis);
+    forLeafVoxels(sliceAxis, [&](const glm::ivec3& at, int n) {
         place.first[std::size_t(at.x) * place.sliceStep + std::size_t(at.y) * place.rowStep +
-                    std::size_t(at.z)] = floatOf(double(leaf.getValue(n)));
-    }
+                    std::size_t(at.z)] = floatOf(double(leaf.getValue(openvdb::Index(n))));
+    });
 }
 
 void placeValue(float value, const BlockPlace& place) {
@@ -85,7 +80,7 @@ void readSource(const Volume& volume, RayRule rule, std::vector<Slot>& slots, Ra
         const auto& tree = grid.constTree();
         rays.sourceValues = [&tree, axis = rays.sliceAxis](const CodeBlock& block,
                                                            const BlockPlace& place) {
-            const openvdb::Coord origin = originOf(block, axis);
+            const openvdb::Coord origin = blockOrigin(block.position, axis);
             const auto* const leaf = tree.probeConstLeaf(origin);
             leaf ? placeValues(*leaf, axis, place)
                  : placeValue(floatOf(double(tree.getValue(origin))), place);
@@ -99,7 +94,7 @@ void dropZeros(const Volume& volume, int sliceAxis, std::vector<CodeBlock>& bloc
         const auto& tree = grid.constTree();
         std::erase_if(blocks, [&](const CodeBlock& block) {
             if (block.leaf) return false;
-            const openvdb::Coord origin = originOf(block, sliceAxis);
+            const openvdb::Coord origin = blockOrigin(block.position, sliceAxis);
             return !tree.probeConstLeaf(origin) && double(tree.getValue(origin)) == 0;
         });
     });
