@@ -14,9 +14,12 @@
 #include "delta/block_kernels.h"
 #include "delta/block_windows.h"
 #include "delta/code_blocks.h"
+#include "delta/hold_slots.h"
 #include "delta/mixed_sight.h"
+#include "ingest/leaf_slices.h"
 #include "memory.h"
 #include "parallel.h"
+#include "run_begins.h"
 
 namespace deltasplat {
 namespace {
@@ -24,35 +27,6 @@ namespace {
 // Classes of a block, `[slice][u][v]`, and of one slice of it.
 using BlockClasses = std::array<ClassIndex, 512>;
 using SliceClasses = std::array<ClassIndex, 64>;
-
-// Reads a leaf, kStep: how far neighbours along x, y and z lie in `out`.
-template <int kStepX, int kStepY, int kStepZ, typename SlotOf, typename Out>
-void readLeafInSteps(const CodeTree::Leaf& leaf, const SlotOf& slotOf, Out* out) {
-    const Code* codes = leaf.buffer().data();
-    for (int x = 0; x < 8; ++x) {
-        for (int y = 0; y < 8; ++y) {
-            for (int z = 0; z < 8; ++z) {
-                out[x * kStepX + y * kStepY + z * kStepZ] = Out(slotOf(*codes++));
-            }
-        }
-    }
-    if (leaf.isDense()) return;
-    for (int x = 0; x < 8; ++x) {
-        std::uint64_t inactive = ~leaf.getValueMask().getWord<std::uint64_t>(openvdb::Index(x));
-        for (; inactive != 0; inactive &= inactive - 1) {
-            const int n = std::countr_zero(inactive);
-            out[x * kStepX + (n >> 3) * kStepY + (n & 7) * kStepZ] = kEmptySlot;
-        }
-    }
-}
-
-// Reads a leaf in (slice, u, v) order.
-template <typename SlotOf, typename Out>
-void readLeaf(const CodeTree::Leaf& leaf, int sliceAxis, const SlotOf& slotOf, Out* out) {
-    if (sliceAxis == 0) return readLeafInSteps<64, 8, 1>(leaf, slotOf, out);
-    if (sliceAxis == 1) return readLeafInSteps<1, 64, 8>(leaf, slotOf, out);
-    readLeafInSteps<8, 1, 64>(leaf, slotOf, out);
-}
 
 // Calls use(slotOf) with what a code's slot is under a map.
 inline auto mapped(std::span<const Slot> slotMap) {
@@ -196,8 +170,8 @@ class ColumnPacker {
             if (own_) halves_[std::size_t(half)].colors.reserve(64 * most);
         }
         for (const CodeBlock* block = columns.begin; block != columns.end; ++block) {
-            const bool isFirst = block == columns.begin || !follows(block);
-            const bool isLast = block + 1 == columns.end || !follows(block + 1);
+            const bool isFirst = block == columns.begin || !follows(block[-1], *block);
+            const bool isLast = block + 1 == columns.end || !follows(*block, block[1]);
             if (isFirst) {
                 before_ = {};
                 held_ = {};
@@ -222,10 +196,6 @@ class ColumnPacker {
     const SlabPlanner& planner() const { return planner_; }
 
   private:
-    static bool follows(const CodeBlock* block) {
-        return block->position == block[-1].position + glm::ivec3(1, 0, 0);
-    }
-
     // Calls use(part) for the parts of a column along u and v.
     template <typename Use>
     void forParts(const Use& use) const {
@@ -252,13 +222,13 @@ class ColumnPacker {
             if (!block.leaf) {
                 classes_.fill(ClassIndex(block.tileSlot));
             } else {
-                readLeaf(*block.leaf, options_.sliceAxis, mapped(slotMap_), classes_.data());
+                readLeafSlices(*block.leaf, options_.sliceAxis, mapped(slotMap_), classes_.data());
             }
             if (own_) color(block.position);
             return;
         }
         if (block.leaf) {
-            readLeaf(*block.leaf, options_.sliceAxis, mapped(slotMap_), slots_.data());
+            readLeafSlices(*block.leaf, options_.sliceAxis, mapped(slotMap_), slots_.data());
         } else {
             slots_.fill(block.tileSlot);
         }
@@ -267,19 +237,17 @@ class ColumnPacker {
 
     // @param part  of the column: what was before is kept for each
     void hold(const BlockSlots& slots, const glm::ivec3& position, const glm::ivec2& part) {
-        std::array<Slot, 64>& before = held_[numberOf(part)];
-        if (own_) return holdColors(slots, position, before, own_->held[numberOf(part)]);
-        for (std::size_t i = 0; i < slots.size(); ++i) {
-            Slot& held = before[i & 63];
-            held = tools_.holder->next(held, slots[i]);
-            classes_[i] = tools_.holder->classOf(held);
-        }
+        HeldSlots& held = held_[numberOf(part)];
+        if (own_) return holdColors(slots, position, held, own_->held[numberOf(part)]);
+        const Holder& holder = *tools_.holder;
+        const auto next = [&](Slot before, Slot slot) { return holder.next(before, slot); };
+        holdSlots(slots, held, next,
+                  [&](std::size_t i, Slot slot) { classes_[i] = holder.classOf(slot); });
     }
 
     // What is held is slot and colour together, each of which has to allow it.
     [[gnu::noinline]] void holdColors(const BlockSlots& slots, const glm::ivec3& position,
-                                      std::array<Slot, 64>& before,
-                                      OwnColors::Slice& colorsBefore) {
+                                      HeldSlots& before, OwnColors::Slice& colorsBefore) {
         const Holder& holder = *tools_.holder;
         for (std::size_t i = 0; i < slots.size(); ++i) classes_[i] = holder.classOf(slots[i]);
         color(position);
@@ -382,9 +350,9 @@ class ColumnPacker {
     SlabPlanner planner_;
     SlabLayout layout_;  // of the shortest slabs that there may be
     Subdivision parts_;
-    BlockClasses classes_{};                      // of the block in hand
-    std::array<SliceClasses, 4> before_{};        // [part]: of the slice before it
-    std::array<std::array<Slot, 64>, 4> held_{};  // [part]
+    BlockClasses classes_{};                // of the block in hand
+    std::array<SliceClasses, 4> before_{};  // [part]: of the slice before it
+    std::array<HeldSlots, 4> held_{};       // [part]
     BlockSlots slots_{};
     std::optional<Window> window_;
     std::vector<BlockSlots> mixed_;  // [part along u][along slices][along v]
@@ -398,15 +366,15 @@ class ColumnPacker {
 std::vector<Columns> cutAtColumns(const std::vector<CodeBlock>& blocks, bool atRows) {
     const std::ptrdiff_t least = std::max<std::ptrdiff_t>(128, std::ptrdiff_t(blocks.size()) / 256);
     std::vector<Columns> runs;
-    const CodeBlock* const end = blocks.data() + blocks.size();
+    const std::vector<std::size_t> columns = runBegins(blocks, shareColumn);
     const CodeBlock* begin = blocks.data();
-    for (const CodeBlock* block = begin; block != end;) {
-        const bool isLast = ++block == end;
-        const bool newRow = isLast || block->position.y != block[-1].position.y;
-        const bool newColumn = newRow || block->position.z != block[-1].position.z;
-        if (!newColumn || (block - begin < least && !isLast && !(newRow && atRows))) continue;
-        runs.push_back({begin, block});
-        begin = block;
+    for (std::size_t i = 1; i < columns.size(); ++i) {
+        const CodeBlock* const end = blocks.data() + columns[i];
+        const bool isLast = columns[i] == blocks.size();
+        const bool endsRow = isLast || end->position.y != end[-1].position.y;
+        if (end - begin < least && !isLast && !(endsRow && atRows)) continue;
+        runs.push_back({begin, end});
+        begin = end;
     }
     return runs;
 }
