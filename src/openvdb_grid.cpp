@@ -4,8 +4,8 @@
 #include "convert/volume_grid.h"
 #include "default_floats.h"
 #include "deltasplat/error.h"
-#include "ingest/delta_format.h"
-#include "ingest/grid_volume.h"
+#include "ingest/delta/delta_format.h"
+#include "ingest/grids/grid_volume.h"
 #include "ingest/readers.h"
 
 namespace deltasplat {

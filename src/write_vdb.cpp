@@ -21,7 +21,7 @@
 
 #include "cannot_write.h"
 #include "deltasplat/atomic_file.h"
-#include "ingest/scalar_grids.h"
+#include "ingest/grids/scalar_grids.h"
 #include "parallel_grid.h"
 
 namespace deltasplat {

@@ -8,8 +8,8 @@
 #include <cstdio>
 
 #include "flag_names.h"
-#include "interrupt.h"
 #include "printable.h"
+#include "process/interrupt.h"
 
 namespace deltasplat {
 

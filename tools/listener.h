@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "command_line.h"
 #include "deltasplat/progress.h"
+#include "options/command_line.h"
 
 namespace deltasplat {
 

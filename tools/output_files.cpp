@@ -9,9 +9,9 @@
 
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
-#include "ingest/input_files.h"
-#include "interrupt.h"
+#include "ingest/files/input_files.h"
 #include "output_target.h"
+#include "process/interrupt.h"
 
 namespace deltasplat {
 namespace {

@@ -15,12 +15,12 @@
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
-#include "interrupt.h"
 #include "listener.h"
 #include "printable.h"
-#include "reuse_memory.h"
+#include "process/interrupt.h"
+#include "process/reuse_memory.h"
+#include "process/terminate.h"
 #include "suggest.h"
-#include "terminate.h"
 
 namespace deltasplat {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "number_text.h"
-#include "parse.h"
+#include "options/parse.h"
 
 namespace deltasplat {
 namespace {

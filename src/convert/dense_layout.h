@@ -7,7 +7,7 @@
 #include <string>
 
 #include "convert/write_report.h"
-#include "ingest/raw_format.h"
+#include "ingest/raw/raw_format.h"
 
 namespace deltasplat {
 

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "ingest/grid_metadata.h"
-#include "ingest/source_grid.h"
+#include "ingest/grids/grid_metadata.h"
+#include "ingest/grids/source_grid.h"
 #include "number_text.h"
 
 namespace deltasplat {

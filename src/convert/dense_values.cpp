@@ -10,12 +10,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "ingest/code_tree.h"
-#include "ingest/code_values.h"
-#include "ingest/raw_load.h"
-#include "ingest/scalar_grids.h"
-#include "ingest/source_grid.h"
-#include "ingest/value_cast.h"
+#include "ingest/codes/code_tree.h"
+#include "ingest/codes/code_values.h"
+#include "ingest/grids/scalar_grids.h"
+#include "ingest/grids/source_grid.h"
+#include "ingest/raw/raw_load.h"
+#include "ingest/values/value_cast.h"
 #include "little_endian.h"
 
 namespace deltasplat {

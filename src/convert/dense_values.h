@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "deltasplat/ingest/volume.h"
-#include "ingest/raw_format.h"
+#include "ingest/raw/raw_format.h"
 
 namespace deltasplat {
 

@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
-#include "ingest/grid_values.h"
-#include "ingest/scalar_grids.h"
-#include "ingest/source_grid.h"
+#include "ingest/grids/grid_values.h"
+#include "ingest/grids/scalar_grids.h"
+#include "ingest/grids/source_grid.h"
 
 namespace deltasplat {
 namespace {

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <vector>
 
-#include "ingest/grid_values.h"
+#include "ingest/grids/grid_values.h"
 
 namespace deltasplat {
 namespace {

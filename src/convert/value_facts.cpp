@@ -6,10 +6,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "ingest/grid_values.h"
-#include "ingest/raw_load.h"
-#include "ingest/scalar_grids.h"
-#include "ingest/source_grid.h"
+#include "ingest/grids/grid_values.h"
+#include "ingest/grids/scalar_grids.h"
+#include "ingest/grids/source_grid.h"
+#include "ingest/raw/raw_load.h"
 
 namespace deltasplat {
 namespace {

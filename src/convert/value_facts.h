@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "deltasplat/ingest/volume.h"
-#include "ingest/raw_format.h"
+#include "ingest/raw/raw_format.h"
 
 namespace deltasplat {
 

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "convert/value_facts.h"
-#include "ingest/code_tree.h"
-#include "ingest/code_values.h"
-#include "ingest/grid_metadata.h"
-#include "ingest/grid_values.h"
-#include "ingest/scalar_grids.h"
-#include "ingest/source_grid.h"
-#include "ingest/value_cast.h"
-#include "ingest/vdb_transform.h"
+#include "ingest/codes/code_tree.h"
+#include "ingest/codes/code_values.h"
+#include "ingest/grids/grid_metadata.h"
+#include "ingest/grids/grid_values.h"
+#include "ingest/grids/scalar_grids.h"
+#include "ingest/grids/source_grid.h"
+#include "ingest/values/value_cast.h"
+#include "ingest/vdb/vdb_transform.h"
 
 namespace deltasplat {
 namespace {

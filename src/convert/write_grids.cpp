@@ -14,7 +14,7 @@
 #include "convert/write_report.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/value_statistics.h"
-#include "ingest/source_grid.h"
+#include "ingest/grids/source_grid.h"
 #include "number_text.h"
 #include "write_vdb.h"
 

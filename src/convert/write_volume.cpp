@@ -9,7 +9,7 @@
 #include "default_floats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
-#include "ingest/file_name.h"
+#include "ingest/files/file_name.h"
 #include "printable.h"
 
 namespace deltasplat {

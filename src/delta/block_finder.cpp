@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "delta/block_finder.h"
 
-#include "ingest/leaf_slices.h"
+#include "ingest/codes/leaf_slices.h"
 
 namespace deltasplat {
 

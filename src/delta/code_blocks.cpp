@@ -5,7 +5,7 @@
 #include <iterator>
 #include <tuple>
 
-#include "ingest/leaf_slices.h"
+#include "ingest/codes/leaf_slices.h"
 #include "memory.h"
 
 namespace deltasplat {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "deltasplat/delta/delta_grid.h"
-#include "ingest/code_tree.h"
+#include "ingest/codes/code_tree.h"
 
 namespace deltasplat {
 

@@ -6,9 +6,9 @@
 #include <bit>
 #include <type_traits>
 
-#include "ingest/book_encoder.h"
-#include "ingest/distinct_values.h"
-#include "ingest/grid_values.h"
+#include "ingest/codes/book_encoder.h"
+#include "ingest/grids/grid_values.h"
+#include "ingest/values/distinct_values.h"
 
 namespace deltasplat {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "ingest/code_tree.h"
+#include "ingest/codes/code_tree.h"
 
 namespace deltasplat {
 

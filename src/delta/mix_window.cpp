@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "ingest/leaf_slices.h"
+#include "ingest/codes/leaf_slices.h"
 
 namespace deltasplat {
 

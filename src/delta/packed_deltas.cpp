@@ -16,7 +16,7 @@
 #include "delta/code_blocks.h"
 #include "delta/hold_slots.h"
 #include "delta/mixed_sight.h"
-#include "ingest/leaf_slices.h"
+#include "ingest/codes/leaf_slices.h"
 #include "memory.h"
 #include "parallel.h"
 #include "run_begins.h"

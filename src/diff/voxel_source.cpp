@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "deltasplat/error.h"
-#include "ingest/code_tree.h"
-#include "ingest/code_values.h"
-#include "ingest/source_grid.h"
+#include "ingest/codes/code_tree.h"
+#include "ingest/codes/code_values.h"
+#include "ingest/grids/source_grid.h"
 
 namespace deltasplat {
 namespace {

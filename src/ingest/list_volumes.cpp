@@ -5,14 +5,14 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
-#include "ingest/default_grid.h"
-#include "ingest/delta_format.h"
-#include "ingest/dicom_series.h"
-#include "ingest/grid_metadata.h"
-#include "ingest/input_files.h"
-#include "ingest/input_kind.h"
-#include "ingest/open_dense.h"
-#include "ingest/vdb_file.h"
+#include "ingest/delta/delta_format.h"
+#include "ingest/dense/open_dense.h"
+#include "ingest/dicom/dicom_series.h"
+#include "ingest/files/input_files.h"
+#include "ingest/files/input_kind.h"
+#include "ingest/grids/grid_metadata.h"
+#include "ingest/vdb/default_grid.h"
+#include "ingest/vdb/vdb_file.h"
 
 namespace deltasplat {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
-#include "ingest/dense_source.h"
+#include "ingest/dense/dense_source.h"
 #include "ingest/placement.h"
 #include "ingest/readers.h"
 #include "number_text.h"

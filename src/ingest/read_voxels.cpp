@@ -5,9 +5,9 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/make_volume.h"
-#include "ingest/code_tree.h"
-#include "ingest/scalar_grids.h"
-#include "ingest/source_grid.h"
+#include "ingest/codes/code_tree.h"
+#include "ingest/grids/scalar_grids.h"
+#include "ingest/grids/source_grid.h"
 #include "parallel.h"
 
 namespace deltasplat {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/dense_source.h"
+#include "ingest/dense/dense_source.h"
 
 namespace deltasplat {
 

@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "delta/block_windows.h"
-#include "ingest/leaf_slices.h"
-#include "ingest/scalar_grids.h"
-#include "ingest/source_grid.h"
+#include "ingest/codes/leaf_slices.h"
+#include "ingest/grids/scalar_grids.h"
+#include "ingest/grids/source_grid.h"
 #include "memory.h"
 
 namespace deltasplat {

@@ -13,7 +13,7 @@
 #include "default_floats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
-#include "ingest/raw_format.h"
+#include "ingest/raw/raw_format.h"
 #include "little_endian.h"
 #include "lower_case.h"
 #include "memory.h"

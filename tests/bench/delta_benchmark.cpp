@@ -19,7 +19,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
-#include "ingest/raw_format.h"
+#include "ingest/raw/raw_format.h"
 #include "parallel.h"
 #include "stopwatch.h"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <map>
 
-#include "ingest/code_tree.h"
+#include "ingest/codes/code_tree.h"
 #include "unit/convert_helpers.h"
 #include "unit/vdb_compare.h"
 

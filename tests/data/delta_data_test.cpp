@@ -12,7 +12,7 @@
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/source_grid.h"
+#include "ingest/grids/source_grid.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {

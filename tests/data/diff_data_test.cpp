@@ -12,8 +12,8 @@
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/code_tree.h"
-#include "ingest/source_grid.h"
+#include "ingest/codes/code_tree.h"
+#include "ingest/grids/source_grid.h"
 
 namespace deltasplat {
 namespace {

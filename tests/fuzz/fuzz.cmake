@@ -23,7 +23,7 @@ function(deltasplat_fuzz name)
     endif()
     foreach(program ${programs})
         target_include_directories(${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}
-                                   ${PROJECT_SOURCE_DIR}/src)
+            ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tools)
         target_link_libraries(${program} PRIVATE deltasplat::deltasplat OpenVDB::openvdb
             OpenImageIO::OpenImageIO ZLIB::ZLIB GTest::gtest)
         deltasplat_compile_options(${program})
@@ -32,7 +32,7 @@ endfunction()
 
 deltasplat_fuzz(delta_fuzz MUTATIONS 50)
 deltasplat_fuzz(raw_fuzz MUTATIONS 10)
-deltasplat_fuzz(raw_name_fuzz SOURCES ${PROJECT_SOURCE_DIR}/tools/parse.cpp)
+deltasplat_fuzz(raw_name_fuzz SOURCES ${PROJECT_SOURCE_DIR}/tools/options/parse.cpp)
 deltasplat_fuzz(transfer_function_fuzz)
 deltasplat_fuzz(vdb_fuzz MUTATIONS 50)
 deltasplat_fuzz(image_fuzz MUTATIONS 400)

@@ -15,7 +15,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/render.h"
-#include "ingest/code_tree.h"
+#include "ingest/codes/code_tree.h"
 
 namespace deltasplat::fuzz {
 namespace {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <sstream>
 
-#include "../tools/parse.h"
+#include "../tools/options/parse.h"
 #include "fuzz/fuzz_target.h"
-#include "ingest/raw_format.h"
+#include "ingest/raw/raw_format.h"
 
 namespace deltasplat::fuzz {
 namespace {

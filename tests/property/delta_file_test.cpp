@@ -15,8 +15,8 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/code_tree.h"
-#include "ingest/source_grid.h"
+#include "ingest/codes/code_tree.h"
+#include "ingest/grids/source_grid.h"
 #include "reference/plain_delta_reader.h"
 #include "unit/ingest_helpers.h"
 

@@ -11,7 +11,7 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "deltasplat/render.h"
-#include "ingest/code_tree.h"
+#include "ingest/codes/code_tree.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {

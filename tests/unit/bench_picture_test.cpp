@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "../tools/bench_page_file.h"
-#include "../tools/heat_map.h"
-#include "../tools/picture_data.h"
+#include "../tools/bench/bench_page_file.h"
+#include "../tools/bench/heat_map.h"
+#include "../tools/bench/picture_data.h"
 #include "deltasplat/error.h"
 #include "srgb.h"
 #include "unit/temp_folder.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "../tools/bench_runs.h"
+#include "../tools/bench/bench_runs.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "../tools/bench_words.h"
-#include "../tools/render_stats.h"
+#include "../tools/bench/bench_words.h"
+#include "../tools/render/render_stats.h"
 #include "support/make_volume.h"
 
 namespace deltasplat {

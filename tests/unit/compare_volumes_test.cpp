@@ -13,7 +13,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "ingest/source_grid.h"
+#include "ingest/grids/source_grid.h"
 #include "support/make_volume.h"
 
 namespace deltasplat {

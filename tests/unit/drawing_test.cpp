@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "../tools/drawing.h"
+#include "../tools/drawing/drawing.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <numbers>
 #include <set>
 
-#include "../tools/plot_file.h"
-#include "../tools/stroke_font.h"
-#include "../tools/utf8_text.h"
+#include "../tools/drawing/plot_file.h"
+#include "../tools/drawing/stroke_font.h"
+#include "../tools/text/utf8_text.h"
 #include "deltasplat/error.h"
 #include "unit/temp_folder.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/code_tree.h"
+#include "ingest/codes/code_tree.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat::testing {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/in_child.h"
+#include "ingest/guards/in_child.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -9,7 +9,7 @@
 
 #include <array>
 
-#include "interrupt.h"
+#include "process/interrupt.h"
 #include "unit/file_limits.h"
 
 namespace deltasplat {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "interrupt.h"
+#include "process/interrupt.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/raw_format.h"
+#include "ingest/raw/raw_format.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "ingest/file_name.h"
+#include "ingest/files/file_name.h"
 #include "number_text.h"
 #include "unit/ingest_helpers.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "../tools/slice_plot.h"
+#include "../tools/info/slice_plot.h"
 
 #include <gtest/gtest.h>
 

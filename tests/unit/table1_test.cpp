@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "../tools/table1.h"
+#include "../tools/table1/table1.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "../tools/ct_ramp.h"
+#include "../tools/table1/ct_ramp.h"
 #include "deltasplat/view/camera.h"
 #include "support/make_volume.h"
 

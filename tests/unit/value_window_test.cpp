@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "value_window.h"
+#include "render/value_window.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "deltasplat/ingest/volume.h"
-#include "ingest/code_tree.h"
+#include "ingest/codes/code_tree.h"
 
 namespace deltasplat::testing {
 

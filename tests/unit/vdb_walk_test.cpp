@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/vdb_walk.h"
+#include "ingest/vdb/vdb_walk.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
-#include "ingest/vdb_file.h"
+#include "ingest/vdb/vdb_file.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <memory>
+#include <string>
+
+#include "deltasplat/progress.h"
+#include "ingest/codes/code_tree.h"
+#include "ingest/delta/delta_format.h"
+
+namespace deltasplat {
+
+/// What the deltas of a volume add up to, in the volume's own index space.
+struct DecodedDeltas {
+    std::shared_ptr<CodeTree> codes = std::make_shared<CodeTree>();
+    /// Active where the volume has inactive voxels with a value of their own; holds the value's
+    /// number in DeltaHeader::inactiveValues.
+    std::shared_ptr<CodeTree> inactive = std::make_shared<CodeTree>();
+};
+
+/// Adds up the deltas along the slices, slab by slab. Active tiles of `grid` become voxels.
+/// Multi-threaded; deterministic.
+/// @throw Error(kInput) if the deltas contradict the header or lead outside of the code book, or if
+///        the header alone asks for more than memory holds; Error(kFailed) if the codes do not fit
+///        into memory, whatever the listener throws
+DecodedDeltas decodeDeltas(openvdb::Int32Grid& grid, const DeltaHeader& header,
+                           const std::string& where, const Listener& listener);
+
+}  // namespace deltasplat

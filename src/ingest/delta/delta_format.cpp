@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/delta/delta_format.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "deltasplat/error.h"
+#include "ingest/delta/number_list.h"
+#include "ingest/values/value_cast.h"
+#include "number_text.h"
+#include "printable.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr const char* kVersionKey = "delta_version";
+constexpr const char* kAxisNames[] = {"x", "y", "z"};
+
+// Reads entries of the metadata, each refused if it is not what it must be.
+class Entries {
+  public:
+    Entries(const openvdb::MetaMap& metadata, const std::string& where)
+        : metadata_(metadata), where_(where) {}
+
+    [[noreturn]] void fail(const std::string& key, const std::string& got,
+                           const std::string& expected) const {
+        throw Error(ErrorCode::kInput,
+                    gotExpected(where_ + ": metadata \"" + key + "\"", got, expected));
+    }
+
+    template <typename T>
+    T get(const std::string& key, const std::string& expected) const {
+        const auto found = metadata_.getMetadata<openvdb::TypedMetadata<T>>(key);
+        if (found) return found->value();
+        const auto other = metadata_[key];
+        fail(key, other ? "type " + printable(other->typeName()) : "nothing", expected);
+    }
+
+    int whole(const std::string& key, int low, int high) const {
+        const std::string expected =
+            "an int32 within " + std::to_string(low) + ".." + std::to_string(high);
+        const auto value = get<std::int32_t>(key, expected);
+        if (value < low || value > high) fail(key, std::to_string(value), expected);
+        return value;
+    }
+
+    double finite(const std::string& key) const {
+        const auto value = get<double>(key, "a double");
+        if (!std::isfinite(value)) fail(key, numberText(value), "a finite double");
+        return value;
+    }
+
+    double notNegative(const std::string& key) const {
+        const double value = finite(key);
+        if (value < 0) fail(key, numberText(value), "a double of at least 0");
+        return value;
+    }
+
+    /// Returns the place of the text in the list of words.
+    int choice(const std::string& key, const std::vector<std::string>& words) const {
+        std::string expected = "one of";
+        for (const std::string& word : words) expected += " \"" + word + "\"";
+        const auto text = get<std::string>(key, expected);
+        const auto found = std::find(words.begin(), words.end(), text);
+        if (found == words.end()) fail(key, "\"" + shortened(text) + "\"", expected);
+        return int(found - words.begin());
+    }
+
+    template <typename Number>
+    std::vector<Number> list(const std::string& key, std::size_t most) const {
+        const std::string expected =
+            "at most " + std::to_string(most) + " numbers with one space between";
+        const auto text = get<std::string>(key, expected);
+        const auto numbers = parseList<Number>(text);
+        if (!numbers) fail(key, "\"" + shortened(text) + "\"", expected);
+        if (numbers->size() > most) fail(key, std::to_string(numbers->size()), expected);
+        return *numbers;
+    }
+
+    static std::string shortened(const std::string& text) {
+        return printable(text.size() <= 40 ? text : text.substr(0, 40) + "...");
+    }
+
+  private:
+    const openvdb::MetaMap& metadata_;
+    const std::string& where_;
+};
+
+std::string textOr(const openvdb::MetaMap& metadata, const char* key) {
+    const auto found = metadata.getMetadata<openvdb::StringMetadata>(key);
+    return found ? printable(found->value()) : std::string();
+}
+
+std::vector<double> takeTable(const Entries& entries) {
+    const auto table = entries.list<double>("delta_table", kCodeCount);
+    const auto before = [](double a, double b) {
+        return a != b ? a < b : std::signbit(a) && !std::signbit(b);
+    };
+    bool sound = !table.empty();
+    for (std::size_t i = 0; sound && i < table.size(); ++i)
+        sound = std::isfinite(table[i]) && (i == 0 || before(table[i - 1], table[i]));
+    if (!sound) entries.fail("delta_table", "no increasing finite numbers", "at least one");
+    return table;
+}
+
+std::vector<CodeBook::Piece> takePieces(const Entries& entries) {
+    const std::string key = "delta_pieces";
+    const auto numbers = entries.list<double>(key, 3 * std::size_t(kCodeCount));
+    const auto refuse = [&](const std::string& got) {
+        entries.fail(key, got, "groups of a first value, a step and a count, in increasing order");
+    };
+    if (numbers.empty() || numbers.size() % 3 != 0)
+        refuse(std::to_string(numbers.size()) + " numbers");
+    std::vector<CodeBook::Piece> pieces;
+    int codes = 0;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < numbers.size(); i += 3) {
+        const double first = numbers[i], step = numbers[i + 1], count = numbers[i + 2];
+        const double last = first + step * (count - 1);
+        const bool whole = count >= 1 && count <= kCodeCount - codes && count == std::floor(count);
+        const bool rises = std::isfinite(step) && step >= 0 && (count == 1 || first + step > first);
+        if (!whole || !rises || !std::isfinite(last) || !(first > highest))
+            refuse(numberText(first) + " " + numberText(step) + " " + numberText(count));
+        pieces.push_back({first, step, int(count)});
+        codes += int(count);
+        highest = last;
+    }
+    return pieces;
+}
+
+void takeBook(const Entries& entries, DeltaHeader& header) {
+    switch (entries.choice("delta_code_book", {"integer", "half", "linear", "table", "pieces"})) {
+        case 0:
+            header.book = {CodeBook::Kind::kInteger, entries.finite("delta_offset"), 1, nullptr, 0};
+            break;
+        case 1:
+            header.book = CodeBook::half();
+            break;
+        case 2:
+            header.book = {CodeBook::Kind::kLinear, entries.finite("delta_offset"),
+                           entries.notNegative("delta_step"), nullptr, 0};
+            break;
+        case 3:
+            header.book = CodeBook::ofTable(takeTable(entries));
+            break;
+        default:
+            header.book = CodeBook::ofPieces(takePieces(entries));
+    }
+    header.codeCount = entries.whole("delta_code_count", 1, kCodeCount);
+    if (header.book.table && header.codeCount != int(header.book.table->size()))
+        entries.fail("delta_code_count", std::to_string(header.codeCount),
+                     std::to_string(header.book.table->size()) + ", the numbers of " +
+                         (header.book.pieces ? "delta_pieces" : "delta_table"));
+    const double last = header.book.valueOf(Code(header.codeCount - 1));
+    if (header.book.kind != CodeBook::Kind::kHalf && !std::isfinite(last))
+        entries.fail("delta_step", numberText(header.book.step), "finite values");
+}
+
+void takeBox(const Entries& entries, DeltaHeader& header) {
+    constexpr int kFarthest = 1 << 30;
+    const auto low = entries.get<openvdb::Vec3i>("delta_box_min", "a vec3i");
+    const auto high = entries.get<openvdb::Vec3i>("delta_box_max", "a vec3i");
+    double voxels = 1;
+    bool sound = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        header.box.min[axis] = low[axis];
+        header.box.max[axis] = high[axis];
+        sound = sound && low[axis] > -kFarthest && high[axis] < kFarthest;
+        voxels *= double(high[axis]) - low[axis] + 1;
+    }
+    if (header.box.empty()) header.box = {};
+    if (!sound || (!header.box.empty() && voxels > 0x1p62)) {
+        entries.fail("delta_box_max", high.str() + " with minimum " + low.str(),
+                     "indices within 2^30 of 0 and a box of at most 2^62 voxels");
+    }
+}
+
+// What rests has to be a code, and the source's type has to hold the background and the book.
+void requireHeldValues(const Entries& entries, const DeltaHeader& header) {
+    const double background = header.background;
+    const auto refuse = [&](const std::string& expected) {
+        entries.fail("delta_background", numberText(background), expected);
+    };
+    if (header.restActive) {
+        const CodeBook& book = header.book;
+        const Code code = std::isfinite(background) ? book.codeOf(background) : Code{0};
+        if (code >= header.codeCount || book.valueOf(code) != background)
+            refuse("the value of a code, for active voxels to rest at");
+    }
+    const std::string& tree = header.sourceTree;
+    if (tree == "float" && std::isfinite(background) &&
+        double(valueAs<float>(background)) != background)
+        refuse("a float");
+    if (tree.empty() || tree == "float" || tree == "double") return;
+    if (background != std::floor(background) || std::fabs(background) > 0x1p63)
+        refuse("a whole number of type " + tree);
+    if (header.book.kind == CodeBook::Kind::kHalf)
+        entries.fail("delta_code_book", "\"half\"", "a book of whole numbers for type " + tree);
+}
+
+}  // namespace
+
+bool isDeltaGrid(const openvdb::GridBase& grid) {
+    return isDeltaGrid(grid.valueType(), grid) && grid.isType<openvdb::Int32Grid>();
+}
+
+bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata) {
+    return valueType == "int32" && bool(metadata[kVersionKey]);
+}
+
+void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
+    using namespace openvdb;
+    const auto vector = [](const glm::ivec3& v) { return Vec3IMetadata({v.x, v.y, v.z}); };
+    metadata.insertMeta(kVersionKey, Int32Metadata(header.book.pieces ? 2 : 1));
+    metadata.insertMeta("delta_slice_axis", StringMetadata(kAxisNames[header.sliceAxis]));
+    metadata.insertMeta("delta_key_interval", Int32Metadata(header.keyInterval));
+    metadata.insertMeta("delta_box_min", vector(header.box.min));
+    metadata.insertMeta("delta_box_max", vector(header.box.max));
+    metadata.insertMeta("delta_code_book", StringMetadata(header.book.name()));
+    metadata.insertMeta("delta_code_count", Int32Metadata(header.codeCount));
+    if (header.book.kind == CodeBook::Kind::kInteger || header.book.kind == CodeBook::Kind::kLinear)
+        metadata.insertMeta("delta_offset", DoubleMetadata(header.book.offset));
+    if (header.book.kind == CodeBook::Kind::kLinear)
+        metadata.insertMeta("delta_step", DoubleMetadata(header.book.step));
+    if (header.book.pieces) {
+        std::vector<double> numbers;
+        for (const CodeBook::Piece& piece : *header.book.pieces)
+            numbers.insert(numbers.end(), {piece.first, piece.step, double(piece.count)});
+        metadata.insertMeta("delta_pieces", StringMetadata(listText(numbers)));
+    } else if (header.book.table)
+        metadata.insertMeta("delta_table", StringMetadata(listText(*header.book.table)));
+    metadata.insertMeta("delta_source_type", StringMetadata(header.sourceType));
+    metadata.insertMeta("delta_source_tree", StringMetadata(header.sourceTree));
+    metadata.insertMeta("delta_source_map", StringMetadata(header.sourceMap));
+    metadata.insertMeta("delta_space", StringMetadata(header.space));
+    metadata.insertMeta("delta_background", DoubleMetadata(header.background));
+    metadata.insertMeta("delta_rest", StringMetadata(header.restActive ? "active" : "inactive"));
+    metadata.insertMeta("delta_inactive_values", StringMetadata(listText(header.inactiveValues)));
+    metadata.insertMeta("delta_active", Int64Metadata(std::int64_t(header.active)));
+    metadata.insertMeta("delta_slab_deltas", StringMetadata(listText(header.slabDeltas)));
+    metadata.insertMeta("delta_tolerance", DoubleMetadata(header.tolerance));
+    metadata.insertMeta("delta_tolerance_value", DoubleMetadata(header.toleranceValue));
+    metadata.insertMeta("delta_max_error", DoubleMetadata(header.maxError));
+}
+
+DeltaHeader takeDeltaHeader(const openvdb::MetaMap& metadata, const std::string& where) {
+    const Entries entries(metadata, where);
+    DeltaHeader header;
+    entries.whole(kVersionKey, 1, DeltaHeader::kVersion);
+    header.sliceAxis = entries.choice("delta_slice_axis", {"x", "y", "z"});
+    header.keyInterval = entries.whole("delta_key_interval", 8, 1 << 30);
+    if (header.keyInterval % 8 != 0)
+        entries.fail("delta_key_interval", std::to_string(header.keyInterval), "a multiple of 8");
+    takeBox(entries, header);
+    takeBook(entries, header);
+    header.sourceType = printable(entries.get<std::string>("delta_source_type", "a string"));
+    header.sourceTree =
+        std::vector<std::string>{
+            "", "float", "double", "int32", "int64", "bool", "mask"}[std::size_t(entries.choice(
+            "delta_source_tree", {"", "float", "double", "int32", "int64", "bool", "mask"}))];
+    header.sourceMap = textOr(metadata, "delta_source_map");
+    header.space = textOr(metadata, "delta_space");
+    header.background = entries.get<double>("delta_background", "a double");
+    header.restActive = entries.choice("delta_rest", {"inactive", "active"}) == 1;
+    requireHeldValues(entries, header);
+    header.inactiveValues = entries.list<double>("delta_inactive_values", kCodeCount);
+    const auto active = entries.get<std::int64_t>("delta_active", "an int64");
+    if (active < 0) entries.fail("delta_active", std::to_string(active), "a count");
+    header.active = std::uint64_t(active);
+    header.slabDeltas = entries.list<std::uint64_t>("delta_slab_deltas", std::size_t{1} << 27);
+    header.tolerance = entries.notNegative("delta_tolerance");
+    header.toleranceValue = entries.notNegative("delta_tolerance_value");
+    header.maxError = entries.notNegative("delta_max_error");
+    return header;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/mat4x4.hpp>
+#include <string>
+
+#include "deltasplat/ingest/read_volume.h"
+#include "ingest/raw/raw_format.h"
+
+namespace deltasplat {
+
+/// A volume without empty places that comes slice by slice, whatever file it lies in: what every
+/// reader of dense formats hands to readDense.
+struct DenseSource {
+    std::string where;     ///< file or folder, for messages
+    std::string name;      ///< the volume's name
+    glm::i64vec3 dims{1};  ///< voxels along x, y, z; each 1..2^30
+    RawType type = RawType::kUint8;
+    bool bigEndian = false;  ///< of the bytes that forEachLayer gives
+    glm::dmat4 worldFromIndex{1.0};
+    std::string space;         ///< as Volume::space
+    std::int64_t volumes = 1;  ///< how many volumes its file has, one of which it is
+
+    /// Receives `slices` slices from number `first` on, x fastest, without gaps.
+    using LayerUse = std::function<void(int first, int slices, const std::byte* bytes)>;
+    /// Calls the function for layers of kLayerSlices slices (fewer at the end) from first to last,
+    /// and reports the share done. May be called more than once, and then starts again.
+    /// @throw Error(kInput) if the file turns out not to be what it claimed
+    std::function<void(const LayerUse& use, const Listener& listener)> forEachLayer;
+
+    static constexpr int kLayerSlices = 8;
+    std::size_t rowBytes() const { return std::size_t(dims.x) * std::size_t(rawTypeBytes(type)); }
+    std::size_t sliceBytes() const { return rowBytes() * std::size_t(dims.y); }
+};
+
+/// Reads a dense volume as readVolume promises: chooses the code book, replaces NaN, builds the
+/// tree layer by layer, so that what is uniform takes no memory.
+Volume readDense(const DenseSource& source, const ReadOptions& options, const Listener& listener);
+
+/// Reads a dense volume of which voxels with the value `background` are empty, or those that are
+/// NaN if it is: what a .vdb of the others would be.
+Volume readSparse(const DenseSource& source, double background, const ReadOptions& options,
+                  const Listener& listener);
+
+}  // namespace deltasplat

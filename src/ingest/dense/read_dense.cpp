@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/Prune.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "deltasplat/error.h"
+#include "deltasplat/memory_limit.h"
+#include "ingest/codes/code_tree.h"
+#include "ingest/dense/dense_source.h"
+#include "ingest/dense/dense_tree_builder.h"
+#include "ingest/dense/mixed_blocks.h"
+#include "ingest/grids/grid_values.h"
+#include "ingest/grids/grid_volume.h"
+#include "ingest/grids/scalar_grids.h"
+#include "ingest/grids/source_grid.h"
+#include "ingest/raw/raw_values.h"
+#include "ingest/readers.h"
+#include "ingest/values/value_cast.h"
+#include "ingest/vdb/vdb_transform.h"
+#include "memory.h"
+#include "number_text.h"
+
+namespace deltasplat {
+namespace {
+
+// Half of the progress for each of two readings, all of it for the only one.
+Listener partOf(const Listener& listener, double begin, double end) {
+    Listener part;
+    part.progress = [&listener, begin, end](double share) {
+        listener.report(begin + (end - begin) * share);
+    };
+    part.warning = listener.warning;
+    return part;
+}
+
+std::string placeText(const glm::i64vec3& dims, std::uint64_t position) {
+    const auto width = std::uint64_t(dims.x);
+    const auto height = std::uint64_t(dims.y);
+    return "(" + std::to_string(position % width) + ", " +
+           std::to_string(position / width % height) + ", " +
+           std::to_string(position / width / height) + ")";
+}
+
+RawScan scan(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
+    RawScan whole;
+    if (options.bits) whole.census.distinct.giveUp();
+    source.forEachLayer(
+        [&](int, int slices, const std::byte* bytes) {
+            const std::size_t count =
+                std::size_t(source.dims.x) * std::size_t(source.dims.y) * std::size_t(slices);
+            whole.append(scanRawValues(bytes, count, source.type, source.bigEndian,
+                                       !whole.census.distinct.tooMany()));
+        },
+        listener);
+    return whole;
+}
+
+void settleNonFinite(const DenseSource& source, RawScan& scan, std::optional<double> nanValue) {
+    if (scan.nonFinite == 0) return;
+    if (!nanValue) {
+        throw Error(
+            ErrorCode::kInput,
+            gotExpected(source.where,
+                        std::to_string(scan.nonFinite) + " NaN or infinite values, the first at " +
+                            placeText(source.dims, scan.firstNonFinite),
+                        "finite values (`nanValue` VALUE replaces them)"));
+    }
+    if (source.type == RawType::kFloat32) {
+        requireFloatNan(*nanValue);
+        scan.census.add(float(*nanValue));
+    } else {
+        scan.census.add(*nanValue);
+    }
+    FrequentValues replaced;
+    replaced.add(*nanValue, scan.nonFinite);
+    scan.frequent.append(replaced);
+}
+
+// Values that, for all that is known, a twentieth of the voxels have.
+std::vector<FrequentValue> frequentOf(const RawScan& scan) {
+    std::vector<FrequentValue> frequent = scan.frequent.values();
+    const double voxels = double(scan.census.count);
+    std::erase_if(frequent,
+                  [&](const FrequentValue& one) { return double(one.count) < voxels / 20; });
+    return frequent;
+}
+
+// Types that do not fit 16 bits are read twice: first for what their codes have to tell apart.
+bool needsScan(RawType type) {
+    return rawTypeBytes(type) > 2;
+}
+
+CodeBook fixedBook(RawType type) {
+    if (type == RawType::kInt8) return CodeBook::integer(std::numeric_limits<std::int8_t>::min());
+    if (type == RawType::kInt16) return CodeBook::integer(std::numeric_limits<std::int16_t>::min());
+    return CodeBook::integer(0);
+}
+
+// What is known of a source's values before they become codes.
+struct Survey {
+    double bulkMagnitude = 0;      // as for ErrorMeter
+    double low = 0, high = 0;      // of the values
+    std::vector<double> frequent;  // which may be the most frequent one
+};
+
+// Reads everything to find out which codes there have to be.
+Survey chooseBook(const DenseSource& source, const ReadOptions& options, const Listener& listener,
+                  Volume& volume) {
+    RawScan whole = scan(source, options, listener);
+    settleNonFinite(source, whole, options.nanValue);
+    volume.replaced = whole.nonFinite;
+    volume.readError = whole.census.rounding;
+    const bool real = source.type == RawType::kFloat32 || source.type == RawType::kFloat64;
+    whole.census.frequent = frequentOf(whole);
+    volume.codeBook = chooseBook(whole.census, real, options, source.where);
+    Survey survey{bulkMagnitude(whole.census), whole.census.min, whole.census.max, {}};
+    for (const FrequentValue& one : whole.census.frequent) survey.frequent.push_back(one.value);
+    return survey;
+}
+
+void warnOfChanges(const DenseSource& source, const ReadOptions& options, const Volume& volume,
+                   const Listener& listener) {
+    if (volume.replaced > 0) {
+        listener.warn(source.where + ": " + std::to_string(volume.replaced) +
+                      " NaN or infinite values replaced by " + numberText(*options.nanValue));
+    }
+    if (volume.readError > 0) {
+        listener.warn(source.where + ": values read as the nearest doubles, off by up to " +
+                      numberText(volume.readError));
+    }
+}
+
+// Adds the layers of a source to a tree, block by block.
+template <typename Tree>
+class LayerAdder {
+  public:
+    using Value = typename Tree::ValueType;
+
+    LayerAdder(const DenseSource& source, Tree& tree)
+        : source_(source), builder_(tree, glm::ivec3(source.dims)) {
+        const int slices = std::min<int>(int(source.dims.z), DenseSource::kLayerSlices);
+        requireMemory(source.where,
+                      double(source.sliceBytes()) * slices + builder_.worstLayerBytes());
+    }
+
+    int strips() const { return builder_.strips(); }
+
+    /// Reads a block by fill(block, values).
+    template <typename Fill, typename Tally>
+    void add(int first, const std::byte* bytes, const Fill& fill, const Tally& tally) {
+        requireMemory(source_.where, builder_.worstLayerBytes());
+        const std::size_t valueBytes = std::size_t(rawTypeBytes(source_.type));
+        builder_.addLayer(
+            first,
+            [&](const glm::ivec2& corner, const glm::ivec3& size, Value* values) {
+                const std::size_t start =
+                    std::size_t(corner.y) * source_.rowBytes() + std::size_t(corner.x) * valueBytes;
+                fill(RawBlock{bytes + start, source_.rowBytes(), source_.sliceBytes(), size},
+                     values);
+            },
+            tally);
+    }
+
+  private:
+    const DenseSource& source_;
+    DenseTreeBuilder<Tree> builder_;
+};
+
+// Counts codes, strip by strip.
+class CodeCounter {
+  public:
+    explicit CodeCounter(int strips) : counts_(std::size_t(strips)) {}
+
+    void operator()(std::size_t strip, const glm::ivec3& size, const Code* codes, bool uniform) {
+        std::vector<std::uint64_t>& counts = counts_[strip];
+        counts.resize(kCodeCount);
+        constexpr int kVoxels = 512;
+        if (uniform) {
+            counts[codes[0]] += kVoxels;
+            return;
+        }
+        // Places beyond the volume's end hold 0.
+        for (int n = 0; n < kVoxels; ++n) ++counts[codes[n]];
+        counts[0] -= std::uint64_t(kVoxels - size.x * size.y * size.z);
+    }
+
+    std::vector<std::uint64_t> sum() const {
+        std::vector<std::uint64_t> sum(kCodeCount);
+        for (const std::vector<std::uint64_t>& counts : counts_) {
+            for (std::size_t code = 0; code < counts.size(); ++code) sum[code] += counts[code];
+        }
+        return sum;
+    }
+
+  private:
+    std::vector<std::vector<std::uint64_t>> counts_;
+};
+
+// Keeps the most frequent of some values.
+void keepMostFrequent(const std::vector<double>& values, const std::vector<std::uint64_t>& counts,
+                      Volume& volume) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const FrequentValue one{values[i], counts[i]};
+        std::optional<FrequentValue>& most = volume.mostFrequent;
+        if (!most || one.count > most->count ||
+            (one.count == most->count && one.value < most->value))
+            most = one;
+    }
+}
+
+// Whether a value is not exact goes with it: then errors are measured, and what is frequent
+// counted.
+void readCodes(const DenseSource& source, const ReadOptions& options, const Survey& survey,
+               const Listener& listener, Volume& volume) {
+    auto codes = std::make_shared<CodeTree>();
+    LayerAdder<CodeTree::Tree> adder(source, codes->tree);
+    const BookEncoder encoder(volume.codeBook);
+    ErrorMeter meter(volume.codeBook, survey.bulkMagnitude);
+    const bool exact = volume.codeBook.isExact();
+    const RawCoding coding{source.type,
+                           source.bigEndian,
+                           volume.codeBook,
+                           encoder,
+                           options.nanValue.value_or(0),
+                           exact ? nullptr : &meter};
+    const EncodeBlock encode = blockEncoder(coding);
+    CodeCounter counter(adder.strips());
+    const std::vector<double> frequent = exact ? std::vector<double>() : survey.frequent;
+    std::vector<std::uint64_t> counts(frequent.size());
+    source.forEachLayer(
+        [&](int first, int slices, const std::byte* bytes) {
+            const std::size_t values =
+                std::size_t(source.dims.x) * std::size_t(source.dims.y) * std::size_t(slices);
+            const auto more = countEqual(bytes, values, coding, frequent);
+            std::transform(more.begin(), more.end(), counts.begin(), counts.begin(), std::plus());
+            adder.add(
+                first, bytes,
+                [&](const RawBlock& block, Code* values) { encode(block, coding, values); },
+                [&](auto&&... block) { counter(block...); });
+        },
+        listener);
+    volume.histogram = counter.sum();
+    volume.codes = std::move(codes);
+    summarize(volume);
+    if (exact) return;
+    volume.valueMin = survey.low;
+    volume.valueMax = survey.high;
+    volume.mostFrequent = FrequentValue{volume.mostFrequent->value, 0};
+    keepMostFrequent(frequent, counts, volume);
+    volume.codeError = meter.error();
+    warnOfCodeError(source.where, volume, listener);
+}
+
+// @param nonFinite  what NaN and infinities are read as
+template <typename Grid>
+openvdb::GridBase::Ptr readGrid(const DenseSource& source, double nonFinite,
+                                const Listener& listener) {
+    using Value = typename Grid::ValueType;
+    auto grid = Grid::create();
+    LayerAdder<typename Grid::TreeType> adder(source, grid->tree());
+    const auto nanValue = valueAs<Value>(nonFinite);
+    source.forEachLayer(
+        [&](int first, int, const std::byte* bytes) {
+            adder.add(
+                first, bytes,
+                [&](const RawBlock& block, Value* values) {
+                    readValues(block, source.type, source.bigEndian, nanValue, values);
+                },
+                [](auto&&...) {});
+        },
+        listener);
+    grid->setTransform(makeTransform(source.worldFromIndex));
+    grid->setName(source.name);
+    return grid;
+}
+
+openvdb::GridBase::Ptr readSourceGrid(const DenseSource& source, double nonFinite,
+                                      const Listener& listener) {
+    openvdb::initialize();
+    switch (source.type) {
+        case RawType::kFloat32:
+            return readGrid<openvdb::FloatGrid>(source, nonFinite, listener);
+        case RawType::kFloat64:
+        case RawType::kUint64:  // beyond what an Int64Grid holds
+            return readGrid<openvdb::DoubleGrid>(source, nonFinite, listener);
+        case RawType::kUint32:
+        case RawType::kInt64:
+            return readGrid<openvdb::Int64Grid>(source, nonFinite, listener);
+        default:
+            return readGrid<openvdb::Int32Grid>(source, nonFinite, listener);
+    }
+}
+
+// Makes inactive what has a value, and that value the background; NaN stands for itself, and makes
+// the background 0.
+template <typename Grid>
+void dropValue(Grid& grid, double dropped) {
+    using Value = typename Grid::ValueType;
+    const auto isDropped = [&](Value value) {
+        return double(value) == dropped || (std::isnan(dropped) && double(value) != double(value));
+    };
+    const Value background = std::isnan(dropped) ? Value{} : valueAs<Value>(dropped);
+    std::vector<typename Grid::TreeType::LeafNodeType*> leaves;
+    grid.tree().getNodes(leaves);
+    forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            for (auto voxel = leaves[i]->beginValueOn(); voxel; ++voxel) {
+                if (isDropped(*voxel)) leaves[i]->setValueOff(voxel.pos(), background);
+            }
+        }
+    });
+    forActiveTiles(grid.tree(), [&](const auto& tile) {
+        if (!isDropped(*tile)) return;
+        tile.setValue(background);
+        tile.setActiveState(false);
+    });
+    openvdb::tools::changeBackground(grid.tree(), background);
+    openvdb::tools::pruneInactive(grid.tree());
+}
+
+// Where memory is limited, what the volume will take is known before any of it is taken.
+void requireLimit(const DenseSource& source, const ReadOptions& options, bool keep,
+                  const Listener& listener) {
+    if (memoryLimit() == 0) return;
+    Listener stopping;
+    stopping.progress = [&](double) { listener.report(0); };
+    double bytesPerBlock =
+        sizeof(CodeTree::Leaf) + CodeTree::Leaf::SIZE * sizeof(Code) + options.bytesPerBlock;
+    if (keep) {
+        bytesPerBlock += sizeof(CodeTree::Leaf) +
+                         CodeTree::Leaf::SIZE * double(rawTypeBytes(source.type)) +
+                         options.bytesPerInexactBlock;
+    }
+    requireMemory(source.where, double(countMixedBlocks(source, stopping)) * bytesPerBlock);
+}
+
+}  // namespace
+
+Volume readDense(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
+    const double scanned = needsScan(source.type) ? 0.5 : 0.0;
+    Volume volume;
+    volume.codeBook = fixedBook(source.type);
+    Survey survey;
+    if (needsScan(source.type))
+        survey = chooseBook(source, options, partOf(listener, 0, scanned), volume);
+    warnOfChanges(source, options, volume, listener);
+    const bool keep = (options.keepSource || options.keepInexact) && !volume.codeBook.isExact();
+    requireLimit(source, options, keep, listener);
+    const double coded = keep ? 0.75 : 1;
+    readCodes(source, options, survey, partOf(listener, scanned, coded), volume);
+    if (keep) {
+        auto grid =
+            readSourceGrid(source, options.nanValue.value_or(0), partOf(listener, coded, 1));
+        volume.source = std::make_shared<const SourceGrid>(SourceGrid{std::move(grid)});
+    }
+
+    volume.name = source.name;
+    volume.type = rawTypeName(source.type);
+    volume.gridClass = "unknown";
+    volume.space = source.space;
+    volume.box = {glm::ivec3(0), glm::ivec3(source.dims) - 1};
+    volume.worldFromIndex = source.worldFromIndex;
+    return volume;
+}
+
+Volume readSparse(const DenseSource& source, double background, const ReadOptions& options,
+                  const Listener& listener) {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kReadShare = 0.5;
+    // Integers that doubles do not hold are counted where they are integers still.
+    double readError = 0;
+    if (source.type == RawType::kUint64)
+        readError = scan(source, options, partOf(listener, 0, 0.1)).census.rounding;
+    const openvdb::GridBase::Ptr grid =
+        readSourceGrid(source, kNaN, partOf(listener, 0.1, kReadShare));
+    grid->apply<ScalarGrids>([&](auto& typed) { dropValue(typed, background); });
+    const Listener coding = partOf(listener, kReadShare, 1);
+    Volume volume = volumeOfGrid(grid, {coding, source.where, rawTypeName(source.type), options});
+    volume.name = source.name;
+    volume.space = source.space;
+    volume.worldFromIndex = source.worldFromIndex;
+    volume.readError = readError;
+    const std::uint64_t replaced = std::exchange(volume.replaced, 0);
+    warnOfChanges(source, options, volume, listener);
+    volume.replaced = replaced;
+    return volume;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/files/file_bytes.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "deltasplat/error.h"
+#include "ingest/files/file_name.h"
+
+namespace deltasplat {
+
+FileBytes::FileBytes(const std::filesystem::path& file) : path_(file) {
+    requireRegularFile(file);
+    handle_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (handle_ < 0) {
+        const std::string reason = std::strerror(errno);
+        throw Error(ErrorCode::kInput,
+                    gotExpected(file.string(), "a file that cannot be opened (" + reason + ")",
+                                "a readable file"));
+    }
+    size_ = std::filesystem::file_size(file);
+}
+
+FileBytes::~FileBytes() {
+    ::close(handle_);
+}
+
+std::size_t FileBytes::read(std::uint64_t place, void* to, std::size_t bytes) const {
+    std::size_t done = 0;
+    while (done < bytes) {
+        const ssize_t got =
+            ::pread(handle_, static_cast<char*>(to) + done, bytes - done, off_t(place + done));
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) {
+            throw Error(ErrorCode::kInput,
+                        gotExpected(path_.string(), "a read error", "a readable file"));
+        }
+        if (got == 0) break;
+        done += std::size_t(got);
+    }
+    return done;
+}
+
+}  // namespace deltasplat

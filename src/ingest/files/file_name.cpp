@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/files/file_name.h"
+
+#include <system_error>
+
+#include "deltasplat/error.h"
+#include "lower_case.h"
+
+namespace deltasplat {
+
+std::string lowerExtension(const std::filesystem::path& file) {
+    std::string last = lowerCase(file.extension().string());
+    if (last != ".gz") return last;
+    return lowerCase(file.stem().extension().string()) + last;
+}
+
+std::string nameWithoutExtensions(const std::filesystem::path& file) {
+    const std::string name = file.filename().string();
+    return name.substr(0, name.size() - lowerExtension(file).size());
+}
+
+std::string folderName(const std::filesystem::path& folder) {
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::weakly_canonical(folder, error);
+    return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
+}
+
+void requireRegularFile(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    const std::string expected = "a readable file";
+    if (!std::filesystem::exists(status)) {
+        throw Error(ErrorCode::kInput, gotExpected(file.string(), "no such file", expected));
+    }
+    if (!std::filesystem::is_regular_file(status)) {
+        const bool folder = std::filesystem::is_directory(status);
+        throw Error(ErrorCode::kInput,
+                    gotExpected(file.string(), folder ? "a folder" : "no regular file", expected));
+    }
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/files/input_files.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "deltasplat/error.h"
+#include "ingest/files/file_name.h"
+#include "ingest/files/input_kind.h"
+#include "ingest/itk/text_header.h"
+#include "lower_case.h"
+#include "printable.h"
+
+namespace deltasplat {
+namespace {
+
+// The name that a header gives of its data file; empty if the data follows the header.
+std::string dataNameIn(const std::filesystem::path& header) {
+    const std::string extension = lowerExtension(header);
+    if (extension == ".nrrd" || extension == ".nhdr") {
+        const TextHeader text = readNrrdHeader(header);
+        const std::string* const name = text.find("datafile");
+        return name == nullptr ? "" : *name;
+    }
+    const std::string name = readMetaHeader(header).fields.back().value;
+    return lowerCase(name) == "local" ? "" : name;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> filesOf(const std::filesystem::path& input) {
+    try {
+        InputKind kind = findInput(input, {});
+        if (kind.format == InputKind::Format::kItk) {
+            const std::string name = dataNameIn(input);
+            if (!name.empty()) kind.files.push_back(input.parent_path() / name);
+        }
+        return kind.files;
+    } catch (const Error&) {
+        return {input};
+    }
+}
+
+namespace {
+
+bool& confined() {
+    static bool confined = false;
+    return confined;
+}
+
+}  // namespace
+
+void confineInputs() {
+    confined() = true;
+}
+
+bool inputsAreConfined() {
+    return confined();
+}
+
+void requireConfined(const std::filesystem::path& input) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path near = fs::is_directory(input, error) ? input : input.parent_path();
+    const fs::path folder = fs::canonical(fs::absolute(near.empty() ? "." : near), error);
+    for (const fs::path& file : filesOf(input)) {
+        // What is not there at all is for its reader to say.
+        const fs::path real = fs::weakly_canonical(fs::absolute(file), error);
+        const auto parted = std::mismatch(folder.begin(), folder.end(), real.begin(), real.end());
+        if (!error && !folder.empty() && parted.first == folder.end()) continue;
+        throw Error(ErrorCode::kInput,
+                    gotExpected(input.string(),
+                                "the file " + printable(file.string()) + " outside of its folder",
+                                "files inside of it (`confineInputs`)"));
+    }
+}
+
+}  // namespace deltasplat

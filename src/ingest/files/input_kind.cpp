@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/files/input_kind.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <set>
+#include <system_error>
+
+#include "deltasplat/error.h"
+#include "ingest/files/file_name.h"
+#include "ingest/images/image_stack.h"
+#include "printable.h"
+
+namespace deltasplat {
+namespace {
+
+using Format = InputKind::Format;
+using Files = std::vector<std::filesystem::path>;
+
+const std::map<std::string, Format>& formats() {
+    static const std::map<std::string, Format> kFormats{
+        {".vdb", Format::kVdb},    {".raw", Format::kRaw},     {".raw.gz", Format::kRaw},
+        {".npy", Format::kNpy},    {".nii", Format::kNifti},   {".nii.gz", Format::kNifti},
+        {".nrrd", Format::kItk},   {".nhdr", Format::kItk},    {".mhd", Format::kItk},
+        {".mha", Format::kItk},    {".dcm", Format::kDicom},   {".bmp", Format::kImages},
+        {".exr", Format::kImages}, {".jpeg", Format::kImages}, {".jpg", Format::kImages},
+        {".pgm", Format::kImages}, {".png", Format::kImages},  {".tif", Format::kImages},
+        {".tiff", Format::kImages}};
+    return kFormats;
+}
+
+constexpr const char* kReadable =
+    ".vdb, .raw, .raw.gz, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .dcm, .tif, .png, .jpg, "
+    ".bmp, "
+    ".pgm or .exr";
+
+[[noreturn]] void refuse(const std::filesystem::path& input, const std::string& got,
+                         const std::string& expected) {
+    throw Error(ErrorCode::kInput, gotExpected(input.string(), got, expected));
+}
+
+bool isImage(const std::filesystem::path& file) {
+    const auto found = formats().find(lowerExtension(file));
+    return found != formats().end() && found->second == Format::kImages;
+}
+
+// DICOM files have names of all kinds, but four letters behind 128 bytes that mean nothing.
+bool isDicom(const std::filesystem::path& file) {
+    std::array<char, 132> bytes{};
+    std::ifstream in(file, std::ios::binary);
+    if (!in) refuse(file, "a file that cannot be opened", "a readable file");
+    return in.read(bytes.data(), bytes.size()) && std::memcmp(&bytes[128], "DICM", 4) == 0;
+}
+
+// Regular files that are not hidden, in the order of their names. What is neither that nor a folder
+// may be a slice that is not there: nobody knows.
+Files filesIn(const std::filesystem::path& folder) {
+    Files files;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        std::error_code ignored;
+        const std::string name = entry.path().filename().string();
+        if (name[0] == '.' || entry.is_directory(ignored)) continue;
+        requireRegularFile(entry.path());
+        files.push_back(entry.path());
+    }
+    if (error) refuse(folder, "a folder that cannot be read", "a readable folder");
+    sortByNumbers(files);
+    return files;
+}
+
+void warnOfOthers(const std::filesystem::path& folder, const Files& all, const Files& taken,
+                  const std::string& what, const Listener& listener) {
+    if (all.size() == taken.size()) return;
+    // Both are in one order.
+    const auto other = std::mismatch(all.begin(), all.end(), taken.begin(), taken.end()).first;
+    listener.warn(folder.string() + ": " + std::to_string(all.size() - taken.size()) +
+                  " files that are no " + what + " are passed over, the first " +
+                  printable(other->filename().string()));
+}
+
+template <typename Test>
+Files filesThat(const Files& files, const Test& test) {
+    Files taken;
+    std::copy_if(files.begin(), files.end(), std::back_inserter(taken), test);
+    return taken;
+}
+
+// An extension that says what a file is, and does not count it.
+std::string kindExtension(const std::filesystem::path& file) {
+    const std::string extension = lowerExtension(file);
+    const bool word = std::any_of(extension.begin(), extension.end(),
+                                  [](char c) { return c >= 'a' && c <= 'z'; });
+    return word ? extension : "";
+}
+
+// What is named as slices are but has no DICOM header has lost it: a volume without it would look
+// right and be wrong.
+void requireNoCutSlice(const std::filesystem::path& folder, const Files& all, const Files& dicom) {
+    std::set<std::string> names;
+    std::set<std::string> extensions{".dcm"};
+    for (const std::filesystem::path& file : dicom) {
+        names.insert(withoutNumbers(file.filename().string()));
+        extensions.insert(kindExtension(file));
+    }
+    extensions.erase("");
+    Files others;
+    std::set_difference(all.begin(), all.end(), dicom.begin(), dicom.end(),
+                        std::back_inserter(others), namedBefore);
+    for (const std::filesystem::path& file : others) {
+        const bool alike = names.contains(withoutNumbers(file.filename().string())) ||
+                           extensions.contains(kindExtension(file));
+        if (!alike || file.filename() == "DICOMDIR") continue;
+        refuse(folder,
+               printable(file.filename().string()) +
+                   ", which is named as its slices are but is no DICOM",
+               "whole slices");
+    }
+}
+
+InputKind findInFolder(const std::filesystem::path& folder, const Listener& listener) {
+    const Files all = filesIn(folder);
+    // A DICOMDIR is a table of contents in the same format.
+    const Files dicom = filesThat(
+        all, [](const auto& file) { return file.filename() != "DICOMDIR" && isDicom(file); });
+    if (!dicom.empty()) {
+        requireNoCutSlice(folder, all, dicom);
+        warnOfOthers(folder, all, dicom, "DICOM", listener);
+        return {Format::kDicom, folderName(folder), dicom};
+    }
+    const Files images = filesThat(all, isImage);
+    if (images.empty()) {
+        refuse(folder, "a folder without DICOM files and images",
+               "a DICOM folder, a folder of images, or a file");
+    }
+    const std::string extension = lowerExtension(images.front());
+    for (const std::filesystem::path& image : images) {
+        if (lowerExtension(image) == extension) continue;
+        refuse(folder, "images of several kinds (" + extension + ", " + lowerExtension(image) + ")",
+               "a folder with the images of one stack");
+    }
+    requireNoHole(folder, images);
+    warnOfOthers(folder, all, images, "images", listener);
+    return {Format::kImages, folderName(folder), images};
+}
+
+std::string nameOfPattern(const StackPattern& pattern) {
+    const std::size_t end = pattern.before.find_last_not_of("._- ");
+    return end == std::string::npos ? "stack" : pattern.before.substr(0, end + 1);
+}
+
+}  // namespace
+
+InputKind findInput(const std::filesystem::path& input, const Listener& listener) {
+    std::error_code error;
+    if (std::filesystem::is_directory(input, error)) return findInFolder(input, listener);
+    const std::optional<StackPattern> pattern = stackPattern(input);
+    if (pattern && isImage(input) && !std::filesystem::exists(input, error)) {
+        return {Format::kImages, nameOfPattern(*pattern), stackFiles(input, *pattern)};
+    }
+    requireRegularFile(input);
+    const std::string extension = lowerExtension(input);
+    const auto found = formats().find(extension);
+    if (found == formats().end()) refuse(input, "extension \"" + extension + "\"", kReadable);
+    return {found->second, nameWithoutExtensions(input), {input}};
+}
+
+}  // namespace deltasplat

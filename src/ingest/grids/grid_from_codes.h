@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Grid.h>
+
+#include <type_traits>
+#include <vector>
+
+#include "deltasplat/ingest/code_book.h"
+#include "ingest/codes/code_tree.h"
+#include "ingest/grids/grid_values.h"
+#include "ingest/values/value_cast.h"
+
+namespace deltasplat {
+
+/// Makes a grid of the values that codes stand for, active where they are, tiles as tiles.
+/// Multi-threaded.
+template <typename Grid>
+typename Grid::Ptr gridFromCodes(const CodeTree::Tree& codes, const CodeBook& book,
+                                 typename Grid::ValueType background) {
+    using Tree = typename Grid::TreeType;
+    using Value = typename Grid::ValueType;
+    auto tree = typename Tree::Ptr(new Tree(codes, background, openvdb::TopologyCopy()));
+    const auto valueOf = [&](Code code) { return valueAs<Value>(book.valueOf(code)); };
+    if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
+        std::vector<const CodeTree::Leaf*> sources;
+        std::vector<typename Tree::LeafNodeType*> targets;
+        codes.getNodes(sources);
+        tree->getNodes(targets);
+        forLeafRuns(sources.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Code* from = sources[i]->buffer().data();
+                for (auto on = sources[i]->valueMask().beginOn(); on; ++on)
+                    targets[i]->setValueOnly(on.pos(), valueOf(from[on.pos()]));
+            }
+        });
+        forActiveTiles(*tree, [&](const auto& tile) {
+            tile.setValue(valueOf(codes.getValue(tile.getCoord())));
+        });
+    }
+    return Grid::create(tree);
+}
+
+}  // namespace deltasplat

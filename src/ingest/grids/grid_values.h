@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Types.h>
+#include <openvdb/math/Coord.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "ingest/values/value_census.h"
+#include "parallel.h"
+
+namespace deltasplat {
+
+/// What the active values of a grid hold.
+struct GridScan {
+    ValueCensus census;           ///< of the finite values
+    std::uint64_t nonFinite = 0;  ///< voxels
+    openvdb::Coord first;         ///< the non-finite voxel with the smallest z, then y, then x
+
+    void addNonFinite(const openvdb::Coord& place, std::uint64_t voxels) {
+        if (nonFinite == 0 || isBefore(place, first)) first = place;
+        nonFinite += voxels;
+    }
+    void append(const GridScan& other) {
+        census.append(other.census);
+        if (other.nonFinite > 0) addNonFinite(other.first, other.nonFinite);
+    }
+    static bool isBefore(const openvdb::Coord& a, const openvdb::Coord& b) {
+        if (a.z() != b.z()) return a.z() < b.z();
+        return a.y() != b.y() ? a.y() < b.y() : a.x() < b.x();
+    }
+};
+
+template <typename T>
+bool isFinite(T value) {
+    if constexpr (std::is_floating_point_v<T>) return std::isfinite(value);
+    return true;
+}
+
+/// How many leaves one thread takes at a time.
+inline constexpr std::size_t kLeafRun = 128;
+
+/// Calls body(run, begin, end) for runs of leaf numbers that together are 0..count, on all threads.
+template <typename Body>
+void forLeafRuns(std::size_t count, const Body& body) {
+    parallelFor((count + kLeafRun - 1) / kLeafRun, [&](std::size_t run) {
+        body(run, run * kLeafRun, std::min(count, (run + 1) * kLeafRun));
+    });
+}
+
+/// Calls use(iterator) for every active tile of `tree`, of any level.
+template <typename Tree, typename Use>
+void forActiveTiles(Tree& tree, const Use& use) {
+    auto tile = tree.beginValueOn();  // constant where the tree is
+    tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
+    for (; tile; ++tile) use(tile);
+}
+
+/// What a scan is to find out besides the census' numbers.
+struct ScanWishes {
+    bool distinct = true;  ///< different values
+    bool survey = true;    ///< where values lie
+};
+
+/// Returns what the active values of `tree` hold; the result does not depend on the thread count.
+template <typename Tree>
+GridScan scanTree(Tree& tree, const ScanWishes& wishes) {
+    std::vector<typename Tree::LeafNodeType*> leaves;
+    tree.getNodes(leaves);
+    const auto add = [](GridScan& scan, const auto& value, std::uint64_t voxels) {
+        if (isFinite(*value)) {
+            scan.census.add(*value);
+        } else {
+            scan.addNonFinite(value.getCoord(), voxels);
+        }
+    };
+    GridScan whole;
+    if (!wishes.distinct) whole.census.distinct.giveUp();
+    whole.census.skipSurvey = !wishes.survey;
+    // Runs are put together as they are done: what each of them collects is large.
+    constexpr std::size_t kBatch = 64 * kLeafRun;
+    for (std::size_t start = 0; start < leaves.size(); start += kBatch) {
+        const std::size_t count = std::min(kBatch, leaves.size() - start);
+        std::vector<GridScan> scans((count + kLeafRun - 1) / kLeafRun);
+        forLeafRuns(count, [&](std::size_t run, std::size_t begin, std::size_t end) {
+            ValueCensus& census = scans[run].census;
+            if (whole.census.distinct.tooMany()) census.distinct.giveUp();
+            census.skipSurvey = !wishes.survey;
+            for (std::size_t i = start + begin; i < start + end; ++i) {
+                for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel)
+                    add(scans[run], voxel, 1);
+            }
+        });
+        for (const GridScan& scan : scans) whole.append(scan);
+    }
+    forActiveTiles(tree, [&](const auto& tile) { add(whole, tile, tile.getVoxelCount()); });
+    return whole;
+}
+
+/// Gives every active value that is NaN or infinite the value `replacement`.
+template <typename Tree>
+void replaceNonFinite(Tree& tree, typename Tree::ValueType replacement) {
+    for (auto value = tree.beginValueOn(); value; ++value) {
+        if (!isFinite(*value)) value.setValue(replacement);
+    }
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Grid.h>
+
+#include "ingest/grids/grid_codes.h"
+
+namespace deltasplat {
+
+/// Makes a volume of a scalar grid: all of it but its name, and Volume::source where `options` ask
+/// for it, which then is this grid. The grid may be changed on the way.
+/// @param fileMetadata  goes into the source; may be null
+/// @throw as fillFromGrid; Error(kInput) for a transform that is not linear
+Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& options,
+                    openvdb::MetaMap::ConstPtr fileMetadata = nullptr);
+
+/// Returns the affine matrix of a transform.
+/// @param where  for messages
+/// @throw Error(kInput) if it is not linear, or cannot be inverted
+glm::dmat4 worldFromIndexOf(const openvdb::math::Transform& transform, const std::string& where);
+
+/// A background of NaN or infinity is taken as what replaces NaN, or 0, with a warning.
+void settleBackground(Volume& volume, const GridCodesOptions& options);
+
+}  // namespace deltasplat

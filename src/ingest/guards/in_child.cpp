@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/guards/in_child.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <new>
+#include <string>
+#include <system_error>
+
+#include "deltasplat/error.h"
+
+namespace deltasplat {
+namespace {
+
+// Memory that parent and child both see.
+class SharedBytes {
+  public:
+    explicit SharedBytes(std::size_t bytes) : bytes_(bytes) {
+        void* const place =
+            ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+        if (place == MAP_FAILED) throw std::bad_alloc();
+        place_ = static_cast<std::byte*>(place);
+    }
+    ~SharedBytes() { ::munmap(place_, bytes_); }
+    SharedBytes(const SharedBytes&) = delete;
+    SharedBytes& operator=(const SharedBytes&) = delete;
+    std::byte* get() const { return place_; }
+
+  private:
+    std::size_t bytes_;
+    std::byte* place_ = nullptr;
+};
+
+void limit(int what, rlim_t most, rlim_t atLast) {
+    const rlimit limits{most, atLast};
+    ::setrlimit(what, &limits);
+}
+
+// A signal for the parent is to end the child, not to be remembered by it.
+void forgetSignalHandlers() {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGALRM}) ::signal(signal, SIG_DFL);
+}
+
+void endWithParent(pid_t parent) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    // It may have ended before it could be said.
+    if (::getppid() != parent) ::_exit(0);
+}
+
+[[noreturn]] void runChild(pid_t parent, const std::function<bool(std::byte*)>& work,
+                           std::byte* shared) {
+    endWithParent(parent);
+    forgetSignalHandlers();
+    constexpr rlim_t kSeconds = 60;
+    limit(RLIMIT_CORE, 0, 0);
+    // One more, so that it is SIGXCPU that ends the child.
+    limit(RLIMIT_CPU, kSeconds, kSeconds + 1);
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::dup2(nowhere, STDERR_FILENO);
+    try {
+        if (work(shared + 1)) shared[0] = std::byte{1};
+    } catch (...) {
+        // The parent sees that nothing was done.
+    }
+    ::_exit(0);
+}
+
+[[noreturn]] void fail(const std::string& why) {
+    throw Error(ErrorCode::kFailed, "unpacking in a process of its own failed: " + why);
+}
+
+}  // namespace
+
+bool inChild(std::size_t bytes, const std::function<bool(std::byte*)>& work, std::byte* to) {
+    // The first byte says that the others are there.
+    const SharedBytes shared(bytes + 1);
+    const pid_t parent = ::getpid();
+    const pid_t child = ::fork();
+    if (child < 0) fail(std::generic_category().message(errno));
+    if (child == 0) runChild(parent, work, shared.get());
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    // No library ends itself like that: it is a lack of memory, or somebody's wish.
+    for (const int signal : {SIGKILL, SIGTERM, SIGINT, SIGHUP}) {
+        if (WIFSIGNALED(status) && WTERMSIG(status) == signal)
+            fail("it was ended by signal " + std::to_string(signal));
+    }
+    if (shared.get()[0] == std::byte{0}) return false;
+    std::memcpy(to, shared.get() + 1, bytes);
+    return true;
+}
+
+}  // namespace deltasplat

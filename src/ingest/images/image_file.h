@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "ingest/images/tiff_pages.h"
+
+namespace deltasplat {
+
+/// How many pages an image file has, and where those of a TIFF are.
+class ImagePages {
+  public:
+    ImagePages() = default;
+    /// @throw Error(kInput) if the file is no image, or a TIFF that is not whole
+    explicit ImagePages(const std::filesystem::path& file);
+
+    int count() const { return tiff_ ? int(tiff_->pages.size()) : count_; }
+    const std::optional<TiffPages>& tiff() const { return tiff_; }
+
+  private:
+    std::optional<TiffPages> tiff_;
+    int count_ = 1;
+};
+
+class OnePageProxy;
+
+/// One page of an image file, open.
+class ImageFile {
+  public:
+    /// @throw Error(kInput) if OpenImageIO refuses it
+    ImageFile(const std::filesystem::path& file, const ImagePages& pages, int page);
+    ~ImageFile();
+    ImageFile(const ImageFile&) = delete;
+    ImageFile& operator=(const ImageFile&) = delete;
+
+    const OIIO::ImageSpec& spec() const { return spec_; }
+    /// Reads the first channels of all pixels.
+    /// @throw Error(kInput) if OpenImageIO refuses them, or complains of them
+    void read(int channels, OIIO::TypeDesc type, void* to);
+
+  private:
+    bool readNative(int channels, void* to);
+    bool readPixels(int channels, OIIO::TypeDesc type, void* to);
+
+    std::filesystem::path file_;
+    std::unique_ptr<OnePageProxy> proxy_;  // used by input_
+    std::unique_ptr<OIIO::ImageInput> input_;
+    OIIO::ImageSpec spec_;
+    int page_ = 0;  // as OpenImageIO counts
+};
+
+}  // namespace deltasplat

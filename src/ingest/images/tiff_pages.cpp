@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: TIFF 6.0 (Aldus, 1992), sections 2, 8 and 15, and BigTIFF as libtiff has it: wider
+// numbers, all else alike.
+#include "ingest/images/tiff_pages.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "deltasplat/error.h"
+#include "ingest/files/file_bytes.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr int kWidth = 256, kHeight = 257, kBits = 258, kCompression = 259, kPhotometric = 262,
+              kStripPlaces = 273, kSamples = 277, kStripRows = 278, kStripBytes = 279,
+              kPlanar = 284, kTileWidth = 322, kTileHeight = 323, kTilePlaces = 324,
+              kTileBytes = 325;
+constexpr std::uint64_t kUnpacked = 1, kSeparate = 2, kYcbcr = 6;
+
+// Bytes of one value of each type; 0 for types that there are none of.
+constexpr std::array<std::uint64_t, 19> kTypeBytes{0, 1, 1, 2, 4, 8, 1, 1, 2, 4,
+                                                   8, 4, 8, 4, 0, 0, 8, 8, 8};
+
+// One line of a page's table.
+struct Entry {
+    int type = 0;
+    std::uint64_t count = 0;
+    std::uint64_t place = 0;  // of its values
+};
+using Table = std::map<int, Entry>;
+
+class Walk {
+  public:
+    explicit Walk(const std::filesystem::path& file) : where_(file.string()), file_(file) {}
+
+    TiffPages run() {
+        std::uint64_t next = readHead();
+        std::set<std::uint64_t> seen;
+        while (next != 0 || pages_.pages.empty()) {
+            if (!seen.insert(next).second) refuse("pages that follow each other in a ring");
+            next = walkPage(next);
+        }
+        return std::move(pages_);
+    }
+
+  private:
+    [[noreturn]] void refuse(const std::string& got, const std::string& expected) const {
+        throw Error(ErrorCode::kInput, gotExpected(where_, got, expected));
+    }
+    [[noreturn]] void refuse(const std::string& got) const { refuse(got, "a whole TIFF"); }
+    std::string page() const { return "page " + std::to_string(pages_.pages.size() + 1); }
+
+    void requireInside(std::uint64_t place, std::uint64_t bytes) const {
+        if (place <= file_.size() && bytes <= file_.size() - place) return;
+        refuse(page() + " that goes on behind the " + std::to_string(file_.size()) +
+               " bytes of the file");
+    }
+    std::string bytesAt(std::uint64_t place, std::uint64_t bytes) const {
+        requireInside(place, bytes);
+        std::string text(std::size_t(bytes), '\0');
+        if (file_.read(place, text.data(), text.size()) != text.size()) refuse("a read error");
+        return text;
+    }
+
+    std::uint64_t number(const std::string& bytes, std::size_t at, std::size_t width) const {
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < width; ++i) {
+            const std::size_t digit = at + (pages_.bigEndian ? i : width - 1 - i);
+            value = value << 8 | static_cast<unsigned char>(bytes[digit]);
+        }
+        return value;
+    }
+    std::uint64_t offset(const std::string& bytes, std::size_t at) const {
+        return number(bytes, at, std::size_t(pages_.offsetBytes));
+    }
+
+    // Returns the place of the first page.
+    std::uint64_t readHead() {
+        const std::string head = bytesAt(0, std::min<std::uint64_t>(16, file_.size()));
+        pages_.bigEndian = head.starts_with("MM");
+        const bool ordered = head.size() >= 8 && (pages_.bigEndian || head.starts_with("II"));
+        const std::uint64_t version = ordered ? number(head, 2, 2) : 0;
+        if (version == 42) return number(head, 4, 4);
+        if (version != 43 || head.size() < 16 || number(head, 4, 2) != 8) {
+            refuse("no TIFF header", "a TIFF file");
+        }
+        pages_.offsetBytes = 8;
+        pages_.firstField = 8;
+        return number(head, 8, 8);
+    }
+
+    // Returns the place of the next page, or 0.
+    std::uint64_t walkPage(std::uint64_t place) {
+        const std::size_t width = std::size_t(pages_.offsetBytes);
+        const std::size_t countBytes = width == 8 ? 8 : 2;
+        const std::size_t entryBytes = 4 + 2 * width;
+        const std::uint64_t count = number(bytesAt(place, countBytes), 0, countBytes);
+        if (count == 0 || count > 0xffff) refuse(page() + " without a table");
+        const std::size_t last = std::size_t(count) * entryBytes;
+        const std::string bytes = bytesAt(place + countBytes, last + width);
+        Table table;
+        for (std::size_t at = 0; at < last; at += entryBytes) {
+            table.emplace(int(number(bytes, at, 2)),
+                          readEntry(bytes, at, place + countBytes + at + 4 + width));
+        }
+        requirePixels(table);
+        pages_.pages.push_back({place, place + countBytes + last});
+        return offset(bytes, last);
+    }
+
+    // Short values stand in the table itself, at `field`.
+    Entry readEntry(const std::string& bytes, std::size_t at, std::uint64_t field) const {
+        const std::size_t width = std::size_t(pages_.offsetBytes);
+        Entry entry;
+        entry.type = int(number(bytes, at + 2, 2));
+        entry.count = offset(bytes, at + 4);
+        // Types that nobody knows are nobody's to read.
+        if (entry.type >= int(kTypeBytes.size())) entry.type = 0;
+        const std::uint64_t valueBytes = kTypeBytes[std::size_t(entry.type)];
+        if (valueBytes == 0) return entry;
+        if (entry.count > file_.size()) requireInside(0, entry.count);
+        const std::uint64_t length = entry.count * valueBytes;
+        entry.place = length <= width ? field : offset(bytes, at + 4 + width);
+        requireInside(entry.place, length);
+        return entry;
+    }
+
+    // Returns the whole numbers of a line of the table; none if it has none.
+    std::vector<std::uint64_t> valuesOf(const Table& table, int tag) const {
+        std::vector<std::uint64_t> values;
+        const auto found = table.find(tag);
+        if (found == table.end()) return values;
+        const Entry& entry = found->second;
+        const bool whole =
+            entry.type == 1 || entry.type == 3 || entry.type == 4 || entry.type == 16;
+        if (!whole) return values;
+        const std::size_t width = std::size_t(kTypeBytes[std::size_t(entry.type)]);
+        const std::string bytes = bytesAt(entry.place, entry.count * width);
+        for (std::size_t at = 0; at < bytes.size(); at += width) {
+            values.push_back(number(bytes, at, width));
+        }
+        return values;
+    }
+    std::uint64_t valueOf(const Table& table, int tag, std::uint64_t missing) const {
+        const std::vector<std::uint64_t> values = valuesOf(table, tag);
+        return values.empty() ? missing : values[0];
+    }
+    std::uint64_t lengthOf(const Table& table, int tag, const char* name) const {
+        const std::uint64_t value = valueOf(table, tag, 0);
+        if (value == 0 || value > 0x7fffffff) refuse(page() + " without " + name);
+        return value;
+    }
+
+    // Strips are tiles as wide as the page.
+    void requirePixels(const Table& table) const {
+        const std::uint64_t width = lengthOf(table, kWidth, "a width");
+        const std::uint64_t height = lengthOf(table, kHeight, "a height");
+        const bool tiles = table.contains(kTileWidth);
+        const std::uint64_t columns = tiles ? lengthOf(table, kTileWidth, "tiles") : width;
+        const std::uint64_t rows = tiles ? lengthOf(table, kTileHeight, "tiles")
+                                         : std::min(height, valueOf(table, kStripRows, height));
+        if (rows == 0) refuse(page() + " with strips of no rows");
+        const std::uint64_t samples = valueOf(table, kSamples, 1);
+        const bool separate = valueOf(table, kPlanar, 1) == kSeparate;
+        const double across = std::ceil(double(width) / double(columns));
+        const double down = std::ceil(double(height) / double(rows));
+        const double wanted = across * down * (separate ? double(samples) : 1);
+        const std::vector<std::uint64_t> places =
+            valuesOf(table, tiles ? kTilePlaces : kStripPlaces);
+        if (double(places.size()) < wanted) {
+            refuse(
+                page() + " with " + std::to_string(places.size()) + (tiles ? " tiles" : " strips"),
+                "enough for " + std::to_string(width) + "x" + std::to_string(height));
+        }
+
+        // Only what is not packed has a length that is known, subsampled colours aside.
+        const bool plain = valueOf(table, kCompression, kUnpacked) == kUnpacked &&
+                           valueOf(table, kPhotometric, 1) != kYcbcr;
+        const double rowBits =
+            double(columns) * double(valueOf(table, kBits, 1)) * (separate ? 1 : double(samples));
+        const double rowBytes = plain ? std::ceil(rowBits / 8) : 0;
+        const std::vector<std::uint64_t> lengths =
+            valuesOf(table, tiles ? kTileBytes : kStripBytes);
+        for (std::size_t i = 0; i < std::size_t(wanted); ++i) {
+            const std::uint64_t row = i % std::size_t(across * down) / std::size_t(across) * rows;
+            const double least = rowBytes * double(tiles ? rows : std::min(rows, height - row));
+            requirePart(tiles ? "a tile" : "a strip", places[i],
+                        i < lengths.size() ? std::optional(lengths[i]) : std::nullopt, least);
+        }
+    }
+
+    // libtiff works out the lengths where a page does not say them.
+    void requirePart(const char* what, std::uint64_t place, std::optional<std::uint64_t> length,
+                     double least) const {
+        least = std::min(std::max(least, 1.0), 0x1p62);
+        const std::uint64_t bytes = length.value_or(std::uint64_t(least));
+        if (double(bytes) < least) {
+            refuse(page() + " with " + what + " of " + std::to_string(bytes) + " bytes",
+                   "at least " + std::to_string(std::uint64_t(least)));
+        }
+        requireInside(place, bytes);
+    }
+
+    std::string where_;
+    FileBytes file_;
+    TiffPages pages_;
+};
+
+}  // namespace
+
+TiffPages walkTiff(const std::filesystem::path& file) {
+    return Walk(file).run();
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stands in for what reads through ITK, where the library is built without it.
+#include "deltasplat/error.h"
+#include "ingest/dense/dense_source.h"
+#include "ingest/dicom/dicom_series.h"
+#include "ingest/files/file_name.h"
+#include "ingest/readers.h"
+
+namespace deltasplat {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& input, const std::string& got) {
+    throw Error(ErrorCode::kInput,
+                gotExpected(input.string(), got,
+                            "a build with DELTASPLAT_ITK=ON to read NRRD, MetaImage and DICOM"));
+}
+
+}  // namespace
+
+DenseSource openItk(const std::filesystem::path& file) {
+    refuse(file, "extension \"" + lowerExtension(file) + "\"");
+}
+
+std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
+                                    const std::vector<std::filesystem::path>&) {
+    refuse(input, "DICOM");
+}
+
+// As it is declared for those who read: they keep the series.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
+DenseSource openDicom(const std::filesystem::path& input, const std::string&, DicomSeries) {
+    refuse(input, "DICOM");
+}
+
+}  // namespace deltasplat

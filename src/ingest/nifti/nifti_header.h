@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/mat4x4.hpp>
+#include <string>
+
+#include "deltasplat/progress.h"
+#include "ingest/dense/rescale.h"
+#include "ingest/raw/raw_format.h"
+
+namespace deltasplat {
+
+/// What the header of a NIfTI-1 or NIfTI-2 file says, checked.
+struct NiftiHeader {
+    RawLayout layout;          ///< of the values of one volume as stored, behind skipBytes
+    std::int64_t volumes = 1;  ///< one behind the other; all of their bytes fit into 62 bits
+    std::string dims;          ///< of all axes, for messages: "64x64x36x120"
+    Rescale rescale;
+    glm::dmat4 worldFromIndex{1.0};
+    std::string space;  ///< "RAS", or empty if the header places the voxels nowhere
+};
+
+/// Reads the header of a .nii or .nii.gz file. Warns of what is passed over: a qform that differs
+/// from the sform, units that are no millimetres, a header that has neither form.
+/// @throw Error(kInput) if it is no NIfTI header or says what cannot be meant or is not supported
+NiftiHeader readNiftiHeader(const std::filesystem::path& file, const Listener& listener);
+
+}  // namespace deltasplat

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/raw/raw_file.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#include "deltasplat/error.h"
+#include "ingest/files/byte_source.h"
+#include "ingest/files/file_name.h"
+#include "memory.h"
+
+namespace deltasplat {
+namespace {
+
+std::string expectedSize(const RawFile& file) {
+    const RawLayout& layout = file.layout;
+    if (file.volumes == 1) return layout.expectedSize();
+    return std::to_string(layout.skipBytes + file.dataBytes()) + " (" +
+           std::to_string(layout.skipBytes) + " skipped + " + std::to_string(file.volumes) +
+           " volumes of " + std::to_string(layout.dims.x) + "x" + std::to_string(layout.dims.y) +
+           "x" + std::to_string(layout.dims.z) + " " + rawTypeName(layout.type) + ")";
+}
+
+[[noreturn]] void throwSize(const RawFile& file, const std::string& got) {
+    const std::string least = file.mayGoOn ? "at least " : "";
+    throw Error(ErrorCode::kInput,
+                gotExpected(file.path.string(), got, least + expectedSize(file)));
+}
+
+[[noreturn]] void throwSize(const RawFile& file, std::uint64_t bytes) {
+    throwSize(file, std::to_string(bytes) + (file.gzip ? " bytes unpacked" : " bytes"));
+}
+
+enum class PackedEnd { kIsChecked, kIsKnown };
+
+// What follows the last voxel says that the dims are wrong: count it for the message. A gzip stream
+// is known to be sound only at its end.
+void requireEnd(const RawFile& file, ByteSource& source, std::uint64_t done,
+                const std::function<void()>& beat) {
+    constexpr std::uint64_t kMostTail = std::uint64_t{1} << 24;
+    const std::uint64_t later = source.skip(file.laterBytes(), beat);
+    if (later != file.laterBytes()) throwSize(file, done + later);
+    const std::uint64_t more =
+        source.skip(file.mayGoOn ? kMostTail : std::numeric_limits<std::uint64_t>::max(), beat);
+    if (more != 0 && !file.mayGoOn) throwSize(file, done + later + more);
+}
+
+void readLayers(const RawFile& file, PackedEnd end, const DenseSource::LayerUse& use,
+                const Listener& listener) {
+    // What lies before the volume is passed over, where it is not packed without being read.
+    ByteSource source(file.path, file.gzip ? Packing::kGzip : Packing::kNone,
+                      file.gzip ? 0 : file.start());
+    const auto beat = [&](double share) { return [&listener, share] { listener.report(share); }; };
+    std::uint64_t done = file.gzip ? source.skip(file.start(), beat(0)) : file.start();
+    const int slices = int(file.layout.dims.z);
+    const std::size_t sliceBytes = std::size_t(file.layout.dims.x) *
+                                   std::size_t(file.layout.dims.y) *
+                                   std::size_t(rawTypeBytes(file.layout.type));
+    const int most = std::min(slices, DenseSource::kLayerSlices);
+    requireMemory(file.path.string(), double(sliceBytes) * most);
+    const auto bytes = std::make_unique_for_overwrite<std::byte[]>(sliceBytes * std::size_t(most));
+    for (int first = 0; first < slices; first += DenseSource::kLayerSlices) {
+        const int count = std::min(DenseSource::kLayerSlices, slices - first);
+        const std::size_t wanted = sliceBytes * std::size_t(count);
+        const std::size_t got = source.read(bytes.get(), wanted);
+        done += got;
+        if (got != wanted) throwSize(file, done);
+        use(first, count, bytes.get());
+        listener.report(double(first + count) / slices);
+    }
+    // The size of a plain file has been looked at.
+    const bool known = file.gzip ? end == PackedEnd::kIsKnown : file.volumes > 1;
+    if (!known) requireEnd(file, source, done, beat(1));
+}
+
+}  // namespace
+
+void requireRawSize(const RawFile& file) {
+    const std::uint64_t held = std::filesystem::file_size(file.path);
+    const std::uint64_t wanted = file.layout.skipBytes + file.dataBytes();
+    if (!file.gzip) {
+        if (held < wanted || (held > wanted && !file.mayGoOn)) throwSize(file, held);
+        return;
+    }
+    // Deflate makes at most 1032 bytes of one. What more is claimed is a lie, not a need of memory.
+    constexpr double kMostRatio = 1032;
+    if (double(held) * kMostRatio < double(wanted)) {
+        throwSize(file, std::to_string(held) + " bytes of gzip");
+    }
+}
+
+DenseSource denseSourceOf(const RawFile& file) {
+    DenseSource source;
+    source.where = file.path.string();
+    source.name = nameWithoutExtensions(file.path);
+    source.dims = file.layout.dims;
+    source.type = file.layout.type;
+    source.bigEndian = file.layout.bigEndian;
+    source.volumes = file.volumes;
+    source.forEachLayer = [file, checked = std::make_shared<bool>(false)](
+                              const DenseSource::LayerUse& use, const Listener& listener) {
+        readLayers(file, *checked ? PackedEnd::kIsKnown : PackedEnd::kIsChecked, use, listener);
+        *checked = true;
+    };
+    return source;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Types.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+
+#include "deltasplat/ingest/code_book.h"
+#include "deltasplat/ingest/read_volume.h"
+#include "ingest/codes/fitted_book.h"
+#include "ingest/values/distinct_values.h"
+#include "ingest/values/value_survey.h"
+
+namespace deltasplat {
+
+/// What finite values have in common: all that the choice of a code book depends on.
+struct ValueCensus {
+    double min = 0;
+    double max = 0;
+    double least = 0;  ///< the smallest magnitude other than 0; 0 if there is none
+    std::uint64_t count = 0;
+    bool half = true;     ///< every value is a binary16 number
+    bool whole = true;    ///< every value is a whole number, and none is -0
+    bool exact = true;    ///< a double holds every value
+    bool floats = true;   ///< a float holds every value
+    double rounding = 0;  ///< largest difference between an integer and its nearest double
+    DistinctValues distinct;
+    ValueSurvey survey;  ///< unless it was skipped
+    bool skipSurvey = false;
+    /// Values that have, or may have, many voxels: a book gives them codes of their own.
+    std::vector<FrequentValue> frequent;
+
+    template <typename T>
+    void add(T value) {
+        const auto number = double(value);
+        min = count == 0 ? number : std::min(min, number);
+        max = count == 0 ? number : std::max(max, number);
+        ++count;
+        const double magnitude = std::fabs(number);
+        if (magnitude > 0 && (least == 0 || magnitude < least)) least = magnitude;
+        if constexpr (!std::is_same_v<T, float>) floats = floats && double(float(number)) == number;
+        if constexpr (std::is_floating_point_v<T>) {
+            half = half && double(float(openvdb::math::half(float(number)))) == number;
+            whole = whole && number == std::floor(number) && (number != 0 || !std::signbit(number));
+        } else {
+            constexpr std::int64_t kMost = std::int64_t{1} << 53;
+            exact = exact && std::int64_t(value) >= -kMost && std::int64_t(value) <= kMost;
+            if constexpr (std::is_same_v<T, std::uint64_t>)
+                rounding = std::max(rounding, off(value));
+        }
+        distinct.add(number);
+        if (!skipSurvey) survey.add(number);
+    }
+    void append(const ValueCensus& next);
+
+  private:
+    static double off(std::uint64_t value) {
+        const auto number = double(value);
+        // The largest round to 2^64.
+        const std::uint64_t back = number < 0x1p64 ? std::uint64_t(number) : 0;
+        return double(std::min(back - value, value - back));
+    }
+};
+
+/// Returns the magnitude of which kBulkNeed of the bulk's width is the share kRelativeNeed.
+double bulkMagnitude(const ValueCensus& census);
+
+/// Returns the code book for values of this census: exact if there is one. Real values that are
+/// all halves get `half`; whole numbers that span at most 65536 get `integer`; at most 65536
+/// different ones `table`; others what fitBook makes of them: `pieces`, or `linear` where one
+/// ladder is as good.
+/// @param real     the source's type is real; whole numbers never get `half`
+/// @param reading  its `bits` asks for `linear` instead of an exact book, for real types; its
+///                 `relativeError` for a `table` of relative errors instead of what would not be
+///                 exact, where 65536 codes are enough for that
+/// @param where    file, for messages
+/// @throw Error(kInput) if the values lie too far apart
+CodeBook chooseBook(const ValueCensus& census, bool real, const ReadOptions& reading,
+                    const std::string& where);
+
+}  // namespace deltasplat

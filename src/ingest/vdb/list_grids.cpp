@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/ingest/list_grids.h"
+
+#include "ingest/delta/delta_format.h"
+#include "ingest/files/file_name.h"
+#include "ingest/vdb/default_grid.h"
+#include "ingest/vdb/vdb_file.h"
+
+namespace deltasplat {
+
+GridList listGrids(const std::filesystem::path& file) {
+    requireRegularFile(file);
+    GridList list;
+    const VdbFile vdb(file);
+    if (const VdbGrid* const preferred = defaultGrid(vdb)) list.preferred = preferred->name;
+    for (const VdbGrid& grid : vdb.grids()) {
+        if (grid.isScalar()) {
+            list.scalar.push_back(grid.name);
+        } else {
+            list.others.push_back(grid.describe());
+        }
+        if (grid.isScalar() && grid.type == "int32" &&
+            isDeltaGrid(grid.type, *vdb.metadata(grid))) {
+            list.deltas.push_back(grid.name);
+        } else {
+            list.ordinary.push_back(grid.describe());
+        }
+    }
+    return list;
+}
+
+}  // namespace deltasplat

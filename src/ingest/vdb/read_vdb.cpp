@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "deltasplat/error.h"
+#include "ingest/delta/delta_format.h"
+#include "ingest/delta/read_delta_grid.h"
+#include "ingest/grids/grid_metadata.h"
+#include "ingest/grids/grid_volume.h"
+#include "ingest/grids/not_finite.h"
+#include "ingest/readers.h"
+#include "ingest/vdb/default_grid.h"
+#include "ingest/vdb/vdb_file.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr const char* kScalarGrid = "a scalar grid (float, double, int32, int64, bool or mask)";
+
+// Reading and unpacking the file is by far the longer part of the work on a grid.
+constexpr double kReadShare = 0.8;
+
+[[noreturn]] void fail(const std::string& where, const std::string& got,
+                       const std::string& expected) {
+    throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
+}
+
+std::string listOf(const std::vector<VdbGrid>& grids) {
+    std::string list;
+    for (const VdbGrid& grid : grids) list += (list.empty() ? "" : ", ") + grid.describe();
+    return list;
+}
+
+// Finds "density[1]" by its unique name, and "density" as the first of that name.
+const VdbGrid& findGrid(const std::string& file, const std::vector<VdbGrid>& grids,
+                        const std::string& name) {
+    const VdbGrid* found = nullptr;
+    for (const VdbGrid& grid : grids) {
+        if (grid.name == name || (found == nullptr && grid.plainName() == name)) found = &grid;
+        if (grid.name == name) break;
+    }
+    if (found == nullptr) {
+        fail(file, "no grid \"" + name + "\"",
+             grids.empty() ? "a file with grids" : "one of " + listOf(grids));
+    }
+    if (!found->isScalar()) {
+        fail(file, "grid \"" + name + "\" of type " + found->type, kScalarGrid);
+    }
+    return *found;
+}
+
+std::vector<const VdbGrid*> chooseGrids(const std::string& where, const VdbFile& file,
+                                        const std::string& name, bool all) {
+    const std::vector<VdbGrid>& grids = file.grids();
+    if (!name.empty()) return {&findGrid(where, grids, name)};
+    const VdbGrid* const preferred = defaultGrid(file);
+    if (preferred == nullptr) {
+        fail(where, grids.empty() ? "no grids" : "only " + listOf(grids), kScalarGrid);
+    }
+    if (!all) return {preferred};
+    std::vector<const VdbGrid*> chosen;
+    for (const VdbGrid& grid : grids) {
+        if (grid.isScalar()) chosen.push_back(&grid);
+    }
+    return chosen;
+}
+
+Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& where,
+                const ReadOptions& options, const Listener& listener) {
+    Listener reading;
+    reading.progress = [&](double share) { listener.report(kReadShare * share); };
+    const openvdb::GridBase::Ptr loaded = file.read(grid, reading);
+    const GridCodesOptions coding{listener, where, grid.valueType(), options};
+    Volume volume;
+    if (isDeltaGrid(*loaded)) {
+        // What cannot be placed is refused before it is decoded.
+        worldFromIndexOf(loaded->transform(), where);
+        Listener decoding = listener;
+        decoding.progress = [&](double share) {
+            listener.report(kReadShare + (1 - kReadShare) * share);
+        };
+        volume = readDeltaGrid(static_cast<openvdb::Int32Grid&>(*loaded), file.metadata(), where,
+                               options, decoding);
+        settleBackground(volume, coding);
+        if (volume.empty()) listener.warn(where + ": no active voxels");
+    } else {
+        volume = volumeOfGrid(loaded, coding, file.metadata());
+    }
+    volume.name = grid.name;
+    return volume;
+}
+
+bool isLevelSet(const VdbFile& file, const VdbGrid& grid) {
+    return textMetadata(*file.metadata(grid), openvdb::GridBase::META_GRID_CLASS) ==
+           openvdb::GridBase::gridClassToString(openvdb::GRID_LEVEL_SET);
+}
+
+// Reads grids one after the other and hands them to a visitor.
+class GridReader {
+  public:
+    GridReader(const VdbFile& file, const ReadOptions& options, const VolumeVisitor& visitor)
+        : file_(file), options_(options), visitor_(visitor) {}
+
+    // @param amongOthers  whether it is one of several that nobody asked for by name
+    void read(const VdbGrid& grid, const std::string& where, bool amongOthers,
+              const Listener& listener) {
+        std::optional<Volume> volume = tryRead(grid, where, amongOthers, listener);
+        if (!volume) return;
+        anyTold_ = true;
+        if (visitor_.volume) visitor_.volume(std::move(*volume));
+    }
+
+    // A file of nothing but what is passed over is no valid one.
+    void finish() {
+        if (!anyTold_ && passedOver_) refuse(*passedOver_);
+    }
+
+  private:
+    std::optional<Volume> tryRead(const VdbGrid& grid, const std::string& where, bool amongOthers,
+                                  const Listener& listener) {
+        try {
+            return readGrid(file_, grid, where, options_, listener);
+        } catch (const NotFinite& error) {
+            // Solvers leave undefined distances in caches, which are of use to nobody else.
+            if (!amongOthers || !visitor_.other || !isLevelSet(file_, grid)) {
+                refuse(error);
+            } else {
+                passedOver_ = error;
+                visitor_.other(grid.name, "level set with NaN or infinite values");
+            }
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::kInput) throw;
+            refuse(error);
+        }
+        return {};
+    }
+
+    template <typename Refused>
+    void refuse(const Refused& error) {
+        if (!visitor_.invalid) throw error;
+        anyTold_ = true;
+        visitor_.invalid(error);
+    }
+
+    const VdbFile& file_;
+    const ReadOptions& options_;
+    const VolumeVisitor& visitor_;
+    bool anyTold_ = false;
+    std::optional<NotFinite> passedOver_;
+};
+
+}  // namespace
+
+void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool all,
+             const VolumeVisitor& visitor, const Listener& listener) {
+    const VdbFile file(path);
+    const auto chosen = chooseGrids(path.string(), file, options.gridName, all);
+    if (!all && options.gridName.empty()) {
+        const auto scalars = std::count_if(file.grids().begin(), file.grids().end(),
+                                           [](const VdbGrid& grid) { return grid.isScalar(); });
+        if (scalars > 1) {
+            listener.warn(path.string() + ": reading grid \"" + chosen[0]->name + "\" of " +
+                          std::to_string(scalars) + " scalar grids (`gridName` chooses another)");
+        }
+    }
+    GridReader reader(file, options, visitor);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        Listener part = listener;
+        part.progress = [&, i](double share) {
+            listener.report((double(i) + share) / double(chosen.size()));
+        };
+        const std::string where = path.string() + ": grid \"" + chosen[i]->name + "\"";
+        reader.read(*chosen[i], where, chosen.size() > 1, part);
+    }
+    reader.finish();
+    if (!all || !options.gridName.empty() || !visitor.other) return;
+    for (const VdbGrid& grid : file.grids()) {
+        if (!grid.isScalar()) visitor.other(grid.name, grid.type);
+    }
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/vdb/vdb_bytes.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string_view>
+
+#include "deltasplat/error.h"
+
+namespace deltasplat {
+namespace {
+
+struct MetadataType {
+    std::string_view name;
+    std::uint32_t bytes;
+};
+
+// OpenVDB reads these without looking at the stored size, so the size must be right.
+constexpr std::array<MetadataType, 16> kFixedTypes{{{"bool", 1},
+                                                    {"int32", 4},
+                                                    {"float", 4},
+                                                    {"int64", 8},
+                                                    {"double", 8},
+                                                    {"vec2i", 8},
+                                                    {"vec2s", 8},
+                                                    {"vec2d", 16},
+                                                    {"vec3i", 12},
+                                                    {"vec3s", 12},
+                                                    {"vec3d", 24},
+                                                    {"vec4i", 16},
+                                                    {"vec4s", 16},
+                                                    {"vec4d", 32},
+                                                    {"mat4s", 64},
+                                                    {"mat4d", 128}}};
+
+bool isKnown(const std::string& type, std::uint32_t bytes) {
+    if (type == "string") return true;
+    for (const MetadataType& known : kFixedTypes) {
+        if (type == known.name) return bytes == known.bytes;
+    }
+    return false;
+}
+
+void appendText(std::string& to, const std::string& text) {
+    appendU32(to, std::uint32_t(text.size()));
+    to += text;
+}
+
+}  // namespace
+
+VdbBytes::VdbBytes(const std::filesystem::path& file)
+    : name_(file.string()), file_(file, std::ios::in | std::ios::binary) {
+    if (!file_) {
+        throw Error(ErrorCode::kInput,
+                    gotExpected(name_, "a file that cannot be opened", "a readable file"));
+    }
+    file_.seekg(0, std::ios::end);
+    size_ = std::uint64_t(file_.tellg());
+}
+
+void VdbBytes::failCorrupt(const std::string& got, const std::string& expected) const {
+    throw Error(ErrorCode::kInput, gotExpected(name_, got, expected));
+}
+
+void VdbBytes::require(std::uint64_t count) const {
+    if (count > size_ - position_) {
+        failCorrupt(std::to_string(size_) + " bytes",
+                    "at least " + std::to_string(position_) + " + " + std::to_string(count) +
+                        " (a .vdb file that is cut short or corrupt)");
+    }
+}
+
+void VdbBytes::seek(std::uint64_t position) {
+    if (position > size_) {
+        failCorrupt(
+            std::to_string(size_) + " bytes",
+            "at least " + std::to_string(position) + " (a .vdb file that is cut short or corrupt)");
+    }
+    position_ = position;
+}
+
+void VdbBytes::skip(std::uint64_t count) {
+    require(count);
+    position_ += count;
+}
+
+void VdbBytes::read(void* to, std::uint64_t count) {
+    require(count);
+    constexpr std::uint64_t kBufferBytes = std::uint64_t{1} << 18;
+    auto* out = static_cast<char*>(to);
+    while (count > 0) {
+        if (position_ < bufferBegin_ || position_ >= bufferBegin_ + buffer_.size()) {
+            bufferBegin_ = position_;
+            buffer_.resize(std::size_t(std::min(kBufferBytes, size_ - position_)));
+            file_.seekg(std::streamoff(position_));
+            file_.read(buffer_.data(), std::streamsize(buffer_.size()));
+            if (!file_) failCorrupt("a read error", "a readable file");
+        }
+        const std::uint64_t offset = position_ - bufferBegin_;
+        const std::uint64_t part = std::min(count, buffer_.size() - offset);
+        std::memcpy(out, buffer_.data() + offset, std::size_t(part));
+        out += part;
+        position_ += part;
+        count -= part;
+    }
+}
+
+std::string VdbBytes::bytes(std::uint64_t count) {
+    require(count);
+    std::string text(std::size_t(count), '\0');
+    read(text.data(), count);
+    return text;
+}
+
+// OpenVDB itself reads its files only on little endian machines.
+template <typename T>
+T VdbBytes::number() {
+    T value;
+    read(&value, sizeof value);
+    return value;
+}
+
+std::uint8_t VdbBytes::u8() {
+    return number<std::uint8_t>();
+}
+std::uint32_t VdbBytes::u32() {
+    return number<std::uint32_t>();
+}
+std::int64_t VdbBytes::i64() {
+    return number<std::int64_t>();
+}
+
+std::string VdbBytes::text(std::uint32_t most) {
+    const std::uint32_t length = u32();
+    if (length > most) {
+        failCorrupt("a name of " + std::to_string(length) + " bytes",
+                    "at most " + std::to_string(most) + " (a corrupt .vdb file)");
+    }
+    return bytes(length);
+}
+
+std::string readMetadata(VdbBytes& bytes) {
+    const std::uint32_t count = bytes.u32();
+    std::uint32_t kept = 0;
+    std::string entries;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::string name = bytes.text();
+        const std::string type = bytes.text();
+        const std::uint32_t size = bytes.u32();
+        if (!isKnown(type, size)) {
+            bytes.skip(size);
+            continue;
+        }
+        const std::string value = bytes.bytes(size);
+        appendText(entries, name);
+        appendText(entries, type);
+        appendText(entries, value);
+        ++kept;
+    }
+    std::string metadata;
+    appendU32(metadata, kept);
+    return metadata + entries;
+}
+
+void appendU32(std::string& text, std::uint32_t value) {
+    for (int i = 0; i < 4; ++i) text += char(value >> (8 * i) & 0xff);
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/vdb/vdb_file.h"
+
+#include <openvdb/io/Compression.h>
+#include <openvdb/io/GridDescriptor.h>
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <memory>
+#include <new>
+#include <sstream>
+#include <utility>
+
+#include "deltasplat/error.h"
+#include "ingest/vdb/vdb_bytes.h"
+#include "ingest/vdb/vdb_stream.h"
+#include "ingest/vdb/vdb_walk.h"
+#include "memory.h"
+#include "printable.h"
+
+namespace deltasplat {
+namespace {
+
+// The first version that says for each grid how it is compressed, from 2013.
+constexpr std::uint32_t kOldestVersion = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
+constexpr std::uint64_t kUuidBytes = 36;
+
+constexpr std::array<const char*, 6> kScalarTypes{"float", "double", "int32",
+                                                  "int64", "bool",   "mask"};
+
+// Splits a stored type such as "Tree_float_5_4_3_HalfFloat".
+void parseType(const std::string& stored, VdbGrid& grid) {
+    static const std::string kHalf = "_HalfFloat";
+    static const std::string kFront = "Tree_";
+    static const std::string kBack = "_5_4_3";
+    std::string type = stored;
+    if (type.ends_with(kHalf)) {
+        type.resize(type.size() - kHalf.size());
+        grid.half = true;
+    }
+    grid.supported = type.starts_with(kFront) && type.ends_with(kBack);
+    if (grid.supported) {
+        type = type.substr(kFront.size(), type.size() - kFront.size() - kBack.size());
+    }
+    grid.type = type;
+}
+
+VdbGrid readDescriptor(VdbBytes& bytes, bool hasOffsets) {
+    VdbGrid grid;
+    grid.begin = bytes.position();
+    grid.uniqueName = bytes.text();
+    grid.name = printable(openvdb::io::GridDescriptor::nameAsString(grid.uniqueName));
+    parseType(printable(bytes.text()), grid);
+    grid.parentName = bytes.text();
+    const auto gridStart = std::uint64_t(bytes.i64());
+    bytes.i64();
+    grid.end = std::uint64_t(bytes.i64());
+    grid.data = bytes.position();
+    if (hasOffsets && (gridStart != grid.data || grid.end < grid.data)) {
+        bytes.failCorrupt("grid offsets that contradict each other", "a sound .vdb file");
+    }
+    return grid;
+}
+
+// Calls read(stream of buffer), and turns whatever goes wrong in OpenVDB into one kind of error.
+template <typename Read>
+auto guarded(VdbStreamBuf& buffer, const std::string& where, const Read& read) {
+    std::string got;
+    try {
+        std::istream stream(&buffer);
+        // Without this OpenVDB goes on with zeros after the end, for as long as a count says.
+        stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
+        openvdb::io::setCurrentVersion(stream);
+        return read(stream);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::ios_base::failure&) {
+        got = "data that ends too early";
+    } catch (const std::bad_alloc&) {
+        got = "sizes that memory cannot hold";
+    } catch (const std::exception& error) {
+        got = printable(error.what());
+    }
+    if (buffer.stopped()) std::rethrow_exception(buffer.stopped());
+    throw Error(ErrorCode::kInput, gotExpected(where, got, "a sound OpenVDB grid"));
+}
+
+// What stands before a grid's tree.
+struct GridHead {
+    std::string metadata;         // as readMetadata returns it
+    std::uint64_t transform = 0;  // where it starts
+    VdbValueFormat format;
+};
+
+// Reads up to the tree. The transform's own fields have no sizes: OpenVDB must say where it ends.
+GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::path& file) {
+    GridHead head;
+    if (!head.format.setType(grid.type, grid.half)) {
+        bytes.failCorrupt("a grid of type " + grid.type + " in a file without offsets",
+                          "scalar and vector grids");
+    }
+    bytes.seek(grid.data);
+    head.format.compression = bytes.u32();
+    head.metadata = readMetadata(bytes);
+    head.transform = bytes.position();
+    bytes.text(256);  // the transform's type: a length that OpenVDB would trust
+    VdbStreamBuf buffer(file);
+    buffer.addRange(head.transform, bytes.size());
+    const std::string where = file.string() + ": grid \"" + grid.name + "\"";
+    guarded(buffer, where, [&](std::istream& stream) {
+        openvdb::math::Transform().read(stream);
+        bytes.seek(head.transform + std::uint64_t(stream.tellg()));
+        return 0;
+    });
+    return head;
+}
+
+openvdb::MetaMap::ConstPtr parseMetadata(const std::string& bytes) {
+    std::istringstream stream(bytes);
+    const auto metadata = std::make_shared<openvdb::MetaMap>();
+    metadata->readMeta(stream);
+    return metadata;
+}
+
+}  // namespace
+
+bool VdbGrid::isScalar() const {
+    if (!supported) return false;
+    for (const char* scalar : kScalarTypes) {
+        if (type == scalar) return true;
+    }
+    return false;
+}
+
+std::string VdbGrid::valueType() const {
+    return half && (type == "float" || type == "double") ? "half" : type;
+}
+
+VdbFile::VdbFile(std::filesystem::path file) : file_(std::move(file)) {
+    openvdb::initialize();
+    readDirectory();
+}
+
+void VdbFile::readDirectory() {
+    VdbBytes bytes(file_);
+    if (bytes.size() < 8 || bytes.i64() != openvdb::OPENVDB_MAGIC) {
+        bytes.failCorrupt("no OpenVDB data", "a .vdb file");
+    }
+    const std::uint32_t version = bytes.u32();
+    if (version < kOldestVersion || version > openvdb::OPENVDB_FILE_VERSION) {
+        bytes.failCorrupt(
+            "OpenVDB file version " + std::to_string(version),
+            std::to_string(kOldestVersion) + ".." + std::to_string(openvdb::OPENVDB_FILE_VERSION));
+    }
+    bytes.skip(8);  // the version of the library that wrote it
+    const bool hasOffsets = bytes.u8() != 0;
+    bytes.skip(kUuidBytes);
+    headerEnd_ = bytes.position();
+    metadata_ = readMetadata(bytes);
+
+    const auto count = std::int32_t(bytes.u32());
+    for (std::int32_t i = 0; i < count; ++i) {
+        VdbGrid grid = readDescriptor(bytes, hasOffsets);
+        if (!hasOffsets) findEnd(bytes, grid);
+        bytes.seek(grid.end);
+        grids_.push_back(std::move(grid));
+    }
+}
+
+openvdb::MetaMap::ConstPtr VdbFile::metadata() const {
+    return parseMetadata(metadata_);
+}
+
+openvdb::MetaMap::ConstPtr VdbFile::metadata(const VdbGrid& grid) const {
+    VdbBytes bytes(file_);
+    return parseMetadata(readHead(bytes, grid, file_).metadata);
+}
+
+// A file written as a stream says nowhere how long its grids are.
+void VdbFile::findEnd(VdbBytes& bytes, VdbGrid& grid) const {
+    const GridHead head = readHead(bytes, grid, file_);
+    if (grid.parentName.empty()) walkTree(bytes, head.format);
+    grid.end = bytes.position();
+}
+
+const VdbGrid& VdbFile::parentOf(const VdbGrid& grid) const {
+    for (const VdbGrid& other : grids_) {
+        if (other.uniqueName == grid.parentName && other.parentName.empty()) return other;
+    }
+    throw Error(ErrorCode::kInput, gotExpected(file_.string(),
+                                               "grid \"" + grid.name +
+                                                   "\" without "
+                                                   "the grid whose voxels it shares",
+                                               "a sound .vdb file"));
+}
+
+openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listener) const {
+    std::vector<const VdbGrid*> needed{&grid};
+    if (!grid.parentName.empty()) needed.insert(needed.begin(), &parentOf(grid));
+
+    // A file of the same header with no metadata of its own and just the grids needed.
+    VdbStreamBuf buffer(file_);
+    buffer.addRange(0, headerEnd_);
+    std::string counts;
+    appendU32(counts, 0);
+    appendU32(counts, std::uint32_t(needed.size()));
+    buffer.addText(counts);
+    const std::string where = file_.string() + ": grid \"" + grid.name + "\"";
+    VdbBytes bytes(file_);
+    for (const VdbGrid* part : needed) {
+        const GridHead head = readHead(bytes, *part, file_);
+        if (part->parentName.empty()) {
+            requireMemory(where, walkTree(bytes, head.format).memoryBytes(head.format));
+        }
+        if (bytes.position() != part->end) {
+            bytes.failCorrupt("a grid that ends at byte " + std::to_string(bytes.position()),
+                              std::to_string(part->end));
+        }
+        buffer.addRange(part->begin, part->data + sizeof(std::uint32_t));
+        buffer.addText(head.metadata);
+        buffer.addRange(head.transform, part->end);
+    }
+    buffer.onProgress([&](double share) { listener.report(share); });
+    return guarded(buffer, where, [](std::istream& stream) {
+        return openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids()->back();
+    });
+}
+
+}  // namespace deltasplat

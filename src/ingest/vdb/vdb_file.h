@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Grid.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "deltasplat/progress.h"
+#include "ingest/vdb/vdb_bytes.h"
+
+namespace deltasplat {
+
+/// One grid of a .vdb file as the file's directory lists it.
+struct VdbGrid {
+    std::string name;   ///< unique in the file: "density", or "density[1]" where names repeat
+    std::string type;   ///< value type: "float", "double", "int32", "vec3s", ...
+    bool half = false;  ///< real values are stored as binary16 (writers set it for integers too)
+    bool supported = true;  ///< in OpenVDB's standard tree layout
+
+    std::string uniqueName;   ///< name as stored
+    std::string parentName;   ///< as stored, of the grid whose tree it shares; or empty
+    std::uint64_t begin = 0;  ///< where its directory entry starts
+    std::uint64_t data = 0;   ///< where the grid itself starts
+    std::uint64_t end = 0;    ///< one past its last byte
+
+    bool isScalar() const;
+    /// Returns `type`, or "half" for real values stored so.
+    std::string valueType() const;
+    /// Returns for example `density (float)`.
+    std::string describe() const { return name + " (" + valueType() + ")"; }
+    /// Returns the name without what tells grids of one name apart.
+    std::string plainName() const { return uniqueName.substr(0, uniqueName.find('\x1e')); }
+};
+
+/// A .vdb file that is checked before OpenVDB sees any of it, since OpenVDB 10 crashes on damaged
+/// ones; then OpenVDB is handed only the bytes of the grid asked for. Grids are in file order;
+/// types that OpenVDB does not know do no harm.
+class VdbFile {
+  public:
+    /// @throw Error(kInput) if this is no whole .vdb file
+    explicit VdbFile(std::filesystem::path file);
+
+    const std::vector<VdbGrid>& grids() const { return grids_; }
+    /// Returns the metadata of the file itself.
+    openvdb::MetaMap::ConstPtr metadata() const;
+    /// Returns the metadata of a scalar grid of grids().
+    /// @throw Error(kInput) if its bytes are not a sound grid
+    openvdb::MetaMap::ConstPtr metadata(const VdbGrid& grid) const;
+    /// Reads one grid of grids().
+    /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if it does not fit
+    /// into
+    ///        memory, whatever the listener throws
+    openvdb::GridBase::Ptr read(const VdbGrid& grid, const Listener& listener) const;
+
+  private:
+    void readDirectory();
+    void findEnd(VdbBytes& bytes, VdbGrid& grid) const;
+    const VdbGrid& parentOf(const VdbGrid& grid) const;
+
+    std::filesystem::path file_;
+    std::uint64_t headerEnd_ = 0;
+    std::string metadata_;  // as readMetadata returns it
+    std::vector<VdbGrid> grids_;
+};
+
+}  // namespace deltasplat

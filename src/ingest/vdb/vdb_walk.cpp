@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: the OpenVDB file format, versions 222 to 224, as OpenVDB 10's headers read it
+// (Tree.h, RootNode.h, InternalNode.h, LeafNode*.h, io/Compression.h).
+#include "ingest/vdb/vdb_walk.h"
+
+#include <openvdb/io/Compression.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace deltasplat {
+namespace {
+
+using Place = std::array<std::int32_t, 3>;
+using Leaf = VdbValueFormat::Leaf;
+
+constexpr int kUpperLog2 = 5;
+constexpr int kLowerLog2 = 4;
+constexpr int kLeafLog2 = 3;
+constexpr int kUpperExtent = 1 << (kUpperLog2 + kLowerLog2 + kLeafLog2);
+
+template <int kLog2>
+using Mask = std::array<std::uint64_t, (std::size_t{1} << (3 * kLog2)) / 64>;
+
+class Walk {
+  public:
+    Walk(VdbBytes& bytes, const VdbValueFormat& format) : bytes_(bytes), format_(format) {}
+
+    VdbTreeSize run() {
+        if (bytes_.u32() != 1) fail("a tree of several buffers");
+        bytes_.skip(format_.bytes);
+        const std::uint32_t tiles = bytes_.u32();
+        const std::uint32_t children = bytes_.u32();
+        for (std::uint32_t i = 0; i < tiles; ++i) {
+            addRoot(place());
+            bytes_.skip(format_.bytes);
+            if (bytes_.u8() > 1) fail("a tile that is neither active nor inactive");
+        }
+        for (std::uint32_t i = 0; i < children; ++i) {
+            const Place origin = place();
+            leaves_ = &addRoot(origin);
+            node<kUpperLog2>(origin);
+        }
+        // Values follow in the order of the root's map, not in that of the nodes before.
+        for (const auto& [origin, leaves] : root_) {
+            for (const Place& leaf : leaves) leafValues(leaf);
+        }
+        return size_;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& got) const {
+        bytes_.failCorrupt(got, "a sound OpenVDB tree");
+    }
+
+    Place place() {
+        Place place;
+        for (std::int32_t& index : place) index = std::int32_t(bytes_.u32());
+        return place;
+    }
+
+    std::vector<Place>& addRoot(const Place& origin) {
+        for (const std::int32_t index : origin) {
+            if ((index & (kUpperExtent - 1)) != 0) fail("a misplaced root node");
+        }
+        const auto [entry, added] = root_.try_emplace(origin);
+        if (!added) fail("two root nodes in one place");
+        return entry->second;
+    }
+
+    template <int kLog2>
+    Mask<kLog2> mask() {
+        Mask<kLog2> words;
+        bytes_.read(words.data(), sizeof words);
+        return words;
+    }
+
+    template <int kLog2>
+    void node(const Place& origin) {
+        const auto children = mask<kLog2>();
+        const auto values = mask<kLog2>();
+        for (std::size_t i = 0; i < children.size(); ++i) {
+            if ((children[i] & values[i]) != 0) fail("a node that is both tile and child");
+        }
+        ++(kLog2 == kUpperLog2 ? size_.upper : size_.lower);
+        nodeValues<kLog2>(values);
+        for (std::size_t i = 0; i < children.size(); ++i) {
+            for (std::uint64_t rest = children[i]; rest != 0; rest &= rest - 1) {
+                child<kLog2>(origin, int(i * 64) + std::countr_zero(rest));
+            }
+        }
+    }
+
+    // Children are numbered x slowest, z fastest.
+    template <int kLog2>
+    void child(const Place& origin, int number) {
+        constexpr int kChildLog2 = kLog2 == kUpperLog2 ? kLowerLog2 + kLeafLog2 : kLeafLog2;
+        constexpr int kMask = (1 << kLog2) - 1;
+        const std::array<int, 3> step{number >> (2 * kLog2), number >> kLog2 & kMask,
+                                      number & kMask};
+        Place place;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            // Origins are whole multiples, so adding cannot overflow.
+            place[axis] = origin[axis] + (step[axis] << kChildLog2);
+        }
+        if constexpr (kLog2 == kUpperLog2) {
+            node<kLowerLog2>(place);
+        } else {
+            mask<kLeafLog2>();
+            leaves_->push_back(place);
+            ++size_.leaves;
+        }
+    }
+
+    void leafValues(const Place& origin) {
+        const auto active = mask<kLeafLog2>();
+        if (format_.leaf == Leaf::kValues) {
+            nodeValues<kLeafLog2>(active);
+            return;
+        }
+        if (place() != origin) fail("a misplaced leaf");
+        if (format_.leaf == Leaf::kBools) mask<kLeafLog2>();
+    }
+
+    template <int kLog2>
+    void nodeValues(const Mask<kLog2>& active) {
+        using namespace openvdb::io;
+        const int kind = bytes_.u8();
+        const bool one = kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL;
+        const bool two = kind == MASK_AND_TWO_INACTIVE_VALS;
+        bytes_.skip(std::uint64_t(format_.bytes) * (two ? 2 : one ? 1 : 0));
+        if (kind >= MASK_AND_NO_INACTIVE_VALS && kind <= MASK_AND_TWO_INACTIVE_VALS) {
+            bytes_.skip(sizeof active);
+        }
+        std::uint64_t count = active.size() * 64;
+        if ((format_.compression & COMPRESS_ACTIVE_MASK) != 0 && kind != NO_MASK_AND_ALL_VALS) {
+            count = 0;
+            for (const std::uint64_t word : active) count += std::uint64_t(std::popcount(word));
+        }
+        data(count);
+    }
+
+    void data(std::uint64_t count) {
+        const bool half = format_.stored != format_.bytes;
+        if (half && count == 0) return;
+        const std::uint64_t expected = count * format_.stored;
+        const bool blosc = (format_.compression & openvdb::io::COMPRESS_BLOSC) != 0;
+        const bool zip = (format_.compression & openvdb::io::COMPRESS_ZIP) != 0;
+        if (!blosc && !zip) {
+            bytes_.skip(expected);
+            return;
+        }
+        const std::int64_t size = bytes_.i64();
+        if (size <= 0) {
+            // Stored as it is, with the size's sign turned.
+            if (std::uint64_t{0} - std::uint64_t(size) != expected) {
+                fail("a node of " + std::to_string(size) + " bytes instead of -" +
+                     std::to_string(expected));
+            }
+            bytes_.skip(expected);
+        } else if (blosc) {
+            bloscData(std::uint64_t(size), expected);
+        } else {
+            bytes_.skip(std::uint64_t(size));
+        }
+    }
+
+    // A Blosc chunk opens with 16 bytes, in them its unpacked and its packed size. The decoder
+    // believes those and would leave the chunk.
+    void bloscData(std::uint64_t size, std::uint64_t expected) {
+        constexpr std::uint64_t kHeader = 16;
+        if (size < kHeader) fail("a compressed node of " + std::to_string(size) + " bytes");
+        bytes_.u32();
+        const std::uint32_t unpacked = bytes_.u32();
+        bytes_.u32();
+        const std::uint32_t packed = bytes_.u32();
+        if (unpacked != expected || packed != size) fail("a compressed node of another size");
+        bytes_.skip(size - kHeader);
+    }
+
+    VdbBytes& bytes_;
+    const VdbValueFormat& format_;
+    VdbTreeSize size_;
+    std::map<Place, std::vector<Place>> root_;  // leaves of each root node, in file order
+    std::vector<Place>* leaves_ = nullptr;
+};
+
+}  // namespace
+
+bool VdbValueFormat::setType(const std::string& type, bool half) {
+    static const std::map<std::string, std::pair<std::uint32_t, bool>> kTypes{
+        {"float", {4, true}},  {"double", {8, true}}, {"int32", {4, false}},
+        {"int64", {8, false}}, {"bool", {1, false}},  {"mask", {1, false}},
+        {"vec3s", {12, true}}, {"vec3d", {24, true}}, {"vec3i", {12, false}}};
+    const auto found = kTypes.find(type);
+    if (found == kTypes.end()) return false;
+    bytes = found->second.first;
+    real = found->second.second;
+    const bool vector = type.starts_with("vec3");
+    stored = half && real ? (vector ? 6 : 2) : bytes;
+    leaf = type == "bool" ? Leaf::kBools : type == "mask" ? Leaf::kMask : Leaf::kValues;
+    return true;
+}
+
+double VdbTreeSize::memoryBytes(const VdbValueFormat& format) const {
+    // Two trees of the same nodes, whose slots hold a pointer or a value; 128 bytes of leaf beside
+    // its values.
+    const double slot = 8 + std::max<std::uint32_t>(8, format.bytes);
+    const double leafBytes = 512.0 * (2 + (format.leaf == Leaf::kValues ? format.bytes : 1)) + 256;
+    return double(leaves) * leafBytes + double(lower) * 4096 * slot + double(upper) * 32768 * slot;
+}
+
+VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format) {
+    return Walk(bytes, format).run();
+}
+
+}  // namespace deltasplat

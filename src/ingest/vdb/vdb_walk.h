@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ingest/vdb/vdb_bytes.h"
+
+namespace deltasplat {
+
+/// How a grid's values lie in a .vdb file.
+struct VdbValueFormat {
+    std::uint32_t bytes = 4;   ///< of one value
+    std::uint32_t stored = 4;  ///< of one value within a node's data: 2 for a real kept as half
+    bool real = true;          ///< float, double and vectors of them
+    enum class Leaf { kValues, kBools, kMask } leaf = Leaf::kValues;
+    std::uint32_t compression = 0;  ///< the grid's own flags, openvdb::io::COMPRESS_...
+
+    /// Sets all but the compression; returns false if `type` ("float", "vec3s", ...) is not known.
+    bool setType(const std::string& type, bool half);
+};
+
+/// What a tree is made of.
+struct VdbTreeSize {
+    std::uint64_t leaves = 0;  ///< nodes of 8^3 voxels
+    std::uint64_t lower = 0;   ///< nodes of 16^3 leaves
+    std::uint64_t upper = 0;   ///< nodes of 32^3 lower nodes
+    /// Returns about how much memory the tree and a tree of codes beside it take.
+    double memoryBytes(const VdbValueFormat& format) const;
+};
+
+/// Walks a grid's tree from its first byte to its last without unpacking it; `bytes` moves along.
+/// Everything that OpenVDB takes on trust is checked: counts, masks, places of nodes, and that each
+/// node's stored size is the size of its values (OpenVDB 10 writes past its buffer where it is
+/// not).
+/// @throw Error(kInput) at the first contradiction
+VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format);
+
+}  // namespace deltasplat

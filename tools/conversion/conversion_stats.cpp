@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conversion/conversion_stats.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "process/peak_bytes.h"
+#include "text/json_text.h"
+
+namespace deltasplat {
+
+namespace fs = std::filesystem;
+
+void ConversionStats::add(const Volume& volume) {
+    voxels += std::uint64_t(volume.box.voxels());
+    active += volume.activeCount;
+    maxError = std::max(maxError, volume.readError);
+    lossless = lossless && volume.replaced == 0 && volume.readError == 0;
+    const std::string book = volume.codeBook.name();
+    if ((", " + codeBook + ",").find(", " + book + ",") != std::string::npos) return;
+    codeBook += (codeBook.empty() ? "" : ", ") + book;
+}
+
+std::uint64_t bytesOf(const std::vector<fs::path>& files) {
+    std::uint64_t bytes = 0;
+    std::error_code ignored;
+    for (const fs::path& file : files) {
+        if (fs::is_regular_file(file, ignored)) bytes += fs::file_size(file, ignored);
+    }
+    return bytes;
+}
+
+std::string statsJson(const ConversionStats& stats) {
+    return dumpJson({
+        {"input_bytes", stats.inputBytes},
+        {"output_bytes", stats.outputBytes},
+        {"voxels", stats.voxels},
+        {"active", stats.active},
+        {"deltas", stats.deltas},
+        {"code_book", stats.codeBook},
+        {"max_error", stats.maxError},
+        {"lossless", stats.lossless},
+        {"seconds", stats.seconds},
+        {"peak_bytes", peakBytes()},
+    });
+}
+
+std::string statsSummary(const ConversionStats& stats) {
+    char text[512];
+    std::snprintf(text, sizeof text,
+                  "%llu of %llu voxels active, code book %s\n"
+                  "%llu bytes read, %llu bytes written, largest error %g, %.3f seconds\n",
+                  (unsigned long long)stats.active, (unsigned long long)stats.voxels,
+                  stats.codeBook.c_str(), (unsigned long long)stats.inputBytes,
+                  (unsigned long long)stats.outputBytes, stats.maxError, stats.seconds);
+    return text;
+}
+
+}  // namespace deltasplat

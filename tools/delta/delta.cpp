@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/delta/delta_file.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "conversion/conversion_files.h"
+#include "conversion/conversion_stats.h"
+#include "conversion/read_grids.h"
+#include "deltasplat/atomic_file.h"
+#include "deltasplat/error.h"
+#include "listener.h"
+#include "lower_case.h"
+#include "number_text.h"
+#include "options/input_options.h"
+#include "output_files.h"
+#include "stopwatch.h"
+#include "subcommands.h"
+
+namespace deltasplat {
+namespace {
+
+// What its leaf of deltas and the list of blocks takes for an 8x8x8 block that is not uniform.
+constexpr double kBytesPerBlock = 2300;
+// What measuring the error takes besides: what comes back, as codes and as reals.
+constexpr double kBytesPerInexactBlock = 3400;
+// A tolerance takes a second tree of codes and measures as well.
+constexpr double kBytesPerHeldBlock = 1200 + kBytesPerInexactBlock;
+
+// Share of the progress up to writing.
+constexpr double kTakeShare = 0.8;
+
+struct DeltaCommand {
+    std::filesystem::path input;
+    std::filesystem::path output;
+    std::filesystem::path stats;  // empty: none
+    ReadOptions read;
+    DeltaFileOptions file;
+};
+
+Parser<std::optional<int>> sliceAxis() {
+    return [](const std::string& option, const std::string& text) -> std::optional<int> {
+        const std::string name = choice({"auto", "x", "y", "z"})(option, text);
+        return name == "auto" ? std::nullopt : std::optional<int>(name[0] - 'x');
+    };
+}
+
+Parser<int> keyInterval() {
+    return [](const std::string& option, const std::string& text) {
+        const int slices = int(wholeNumber(0, 1 << 20)(option, text));
+        if (slices % 8 == 0) return slices;
+        throw Error(ErrorCode::kUsage, gotExpected(option, text, "a multiple of 8"));
+    };
+}
+
+void declareOptions(CLI::App& app, DeltaCommand& command) {
+    OptionGroup arguments(app, "Arguments");
+    arguments
+        .addValue("INPUT", "FILE", command.input, anyText(),
+                  "Volume to read, in any format that render reads; of a .vdb\n"
+                  "every scalar grid")
+        .required();
+    arguments.addValue("OUTPUT", "FILE.vdb", command.output, anyText(), "Delta grids to write")
+        .required();
+
+    OptionGroup deltas(app, "Delta grids");
+    deltas.addValue("--axis", "auto|x|y|z", command.file.sliceAxis, sliceAxis(),
+                    withDefault("Axis along which slices are compared; auto: the one with\n"
+                                "the fewest deltas",
+                                "auto"));
+    deltas.addValue("--key-interval", "N", command.file.keyInterval, keyInterval(),
+                    withDefault("Slices from one key slice to the next, a multiple of 8;\n"
+                                "0: a sixteenth of the volume, at least 8",
+                                std::to_string(command.file.keyInterval)));
+    deltas.addValue("--bits", "N", command.read.bits, wholeNumber(8, 16),
+                    "Store real values in 2^N even steps, 8..16 (default: exactly if\n"
+                    "there are at most 65536 different ones, otherwise 16)");
+    deltas.addValue("--max-error", "E", command.file.maxError, number(0),
+                    "Fail, and write nothing, if a value would come back with a\n"
+                    "larger error than E data units");
+    deltas.addValue("--tolerance", "T", command.file.tolerance.relative, number(0, 1),
+                    withDefault("Keep a voxel's value while the true one stays within T times\n"
+                                "its magnitude",
+                                numberText(command.file.tolerance.relative)));
+    deltas.addValue("--tolerance-value", "V", command.file.tolerance.value, number(0),
+                    withDefault("Keep a voxel's value while the true one stays within V data\n"
+                                "units",
+                                numberText(command.file.tolerance.value)));
+    deltas.addValue("--stats", "FILE", command.stats, anyText(),
+                    "JSON file to write: sizes, deltas, largest error, seconds");
+    addInputOptions(app, command.read);
+}
+
+void checkOutput(const DeltaCommand& command) {
+    if (lowerCase(command.output.extension().string()) != ".vdb") {
+        throw Error(
+            ErrorCode::kUsage,
+            gotExpected(command.output.string(),
+                        "extension \"" + command.output.extension().string() + "\"", ".vdb"));
+    }
+    const AtomicFile probe(command.output);
+}
+
+void add(const DeltaFileEntry& entry, ConversionStats& stats) {
+    stats.deltas += entry.deltas;
+    stats.maxError = std::max(stats.maxError, entry.maxError);
+    stats.lossless = stats.lossless && entry.lossless;
+}
+
+bool isWhole(const std::string& type) {
+    return type.rfind("int", 0) == 0 || type.rfind("uint", 0) == 0 || type == "bool" ||
+           type == "mask";
+}
+
+// Labels are whole numbers, and a label that is rounded is another one.
+void warnOfWholeNumbers(const Volume& volume, const DeltaFileEntry& entry,
+                        const DeltaCommand& command, const Listener& listener) {
+    if (!isWhole(volume.type) || volume.origin) return;
+    if (command.read.bits) listener.warn("--bits: has no effect on whole numbers");
+    if (entry.lossless || !command.file.tolerance.isExact() || entry.maxError == 0) return;
+    listener.warn("grid \"" + volume.name + "\": more than 65536 different values of type " +
+                  volume.type + " rounded, by up to " + numberText(entry.maxError) +
+                  " (--max-error 0 refuses)");
+}
+
+void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& session) {
+    checkOutput(command);
+    ConversionStats stats;
+    // Asked before writing, which may take the input's place.
+    stats.inputBytes = bytesOf(checkConversionFiles(command.input, command.output, command.stats));
+    ReadOptions reading = command.read;
+    // Half of what may be lost goes to the code book, where one is needed, the rest to holding.
+    const double relative = command.file.tolerance.relative;
+    if (relative > 0) reading.relativeError = relative / 2;
+    if (!command.file.tolerance.isExact()) reading.bytesPerBlock += kBytesPerHeldBlock;
+    {
+        ProgressDisplay display(session.common);
+        warnOfUnusedInputOptions(app, {command.input}, display);
+        DeltaFile file;
+        const Listener taking = display.stage(0, kTakeShare);
+        Listener remarks;
+        remarks.warning = taking.warning;
+        const bool complete = forEachScalarGrid(
+            command.input, reading,
+            [&](const Volume& volume) {
+                if (volume.origin && reading.bits)
+                    remarks.warn(
+                        "--bits: has no effect on delta grids, which keep their code book");
+                stats.add(volume);
+                const DeltaFileEntry entry = file.add(volume, command.file, remarks);
+                warnOfWholeNumbers(volume, entry, command, remarks);
+                add(entry, stats);
+            },
+            taking);
+        file.write(command.output);
+        display.stage(kTakeShare, 1).report(1);
+
+        stats.outputBytes = bytesOf({command.output});
+        stats.lossless = stats.lossless && complete;
+        stats.seconds = secondsSince(session.begin);
+    }
+    if (stats.maxError > 0 && !session.common.quiet)
+        printOut("largest error " + numberText(stats.maxError) + "\n");
+    writeStats(command.stats, statsJson(stats));
+    if (session.common.verbose) std::fputs(statsSummary(stats).c_str(), stderr);
+}
+
+}  // namespace
+
+Subcommand addDelta(CLI::App& program) {
+    const auto command = std::make_shared<DeltaCommand>();
+    // What is in a file is kept as it is, not as it would be rendered.
+    command->read.levelSetToFog = false;
+    command->read.keepSource = true;
+    command->read.bytesPerBlock = kBytesPerBlock;
+    command->read.bytesPerInexactBlock = kBytesPerInexactBlock;
+    CLI::App& app = addSubcommand(
+        program, "delta", "Stores a volume as delta grids: what changes from slice to slice.",
+        {"deltasplat delta smoke.vdb smoke_delta.vdb",
+         "deltasplat delta head_256x256x225_uint8.raw.gz head.vdb --tolerance-value 2"});
+    declareOptions(app, *command);
+    return {&app, [&app, command](const Session& session) { runDelta(app, *command, session); }};
+}
+
+}  // namespace deltasplat

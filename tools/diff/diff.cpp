@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "deltasplat/error.h"
+#include "deltasplat/ingest/list_grids.h"
+#include "diff/diff_options.h"
+#include "diff/diff_report.h"
+#include "ingest/files/file_name.h"
+#include "ingest/grids/not_finite.h"
+#include "listener.h"
+#include "options/input_options.h"
+#include "options/volume_choices.h"
+#include "subcommands.h"
+
+namespace deltasplat {
+namespace {
+
+// idiff's, for files that cannot be compared. Wrong usage shares it here: its usual number, 2,
+// means that the files differ.
+constexpr int kCannotCompare = 4;
+
+// Shares of the progress: the first file read, the second read, both compared.
+constexpr double kReadA = 0.45;
+constexpr double kReadB = 0.9;
+
+struct GridPair {
+    std::string a;  // empty: the default grid
+    std::string b;
+};
+
+bool isVdb(const std::filesystem::path& file) {
+    return lowerExtension(file) == ".vdb";
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<std::string> without(const std::vector<std::string>& names,
+                                 const std::vector<std::string>& others) {
+    std::vector<std::string> rest;
+    for (const std::string& name : names) {
+        if (!contains(others, name)) rest.push_back(name);
+    }
+    return rest;
+}
+
+// Grids are told apart by their names alone.
+void requireNames(const std::filesystem::path& file, const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+        if (!name.empty() && std::count(names.begin(), names.end(), name) == 1) continue;
+        throw Error(ErrorCode::kInput,
+                    gotExpected(file.string(), "several grids named \"" + name + "\" or none",
+                                "grids that each have a name of their own (or --grid NAME)"));
+    }
+}
+
+// Notes the scalar grids of a .vdb that stand beside the one compared.
+void noteOthers(const std::filesystem::path& file, std::vector<std::string>& onlyHere,
+                std::vector<std::string>& notCompared) {
+    if (!isVdb(file)) return;
+    const GridList grids = listGrids(file);
+    notCompared.insert(notCompared.end(), grids.others.begin(), grids.others.end());
+    if (!grids.preferred.empty()) onlyHere = without(grids.scalar, {grids.preferred});
+}
+
+// Finds what is to be compared with what, and notes what is in one file only.
+std::vector<GridPair> pairGrids(const DiffOptions& options, FileDiff& diff) {
+    const std::string& asked = options.read.gridName;
+    if (!asked.empty()) return {{asked, asked}};
+    if (!isVdb(options.a) || !isVdb(options.b)) {
+        noteOthers(options.a, diff.onlyInA, diff.notCompared);
+        noteOthers(options.b, diff.onlyInB, diff.notCompared);
+        return {{"", ""}};
+    }
+    const GridList a = listGrids(options.a);
+    const GridList b = listGrids(options.b);
+    for (const std::string& grid : a.others) diff.notCompared.push_back(grid);
+    for (const std::string& grid : without(b.others, a.others)) diff.notCompared.push_back(grid);
+    // Without a choice, names do not matter; without any grid, reading says so.
+    if (a.scalar.size() == 1 && b.scalar.size() == 1) return {{"", ""}};
+    if (a.scalar.empty() || b.scalar.empty()) return {{"", ""}};
+    requireNames(options.a, a.scalar);
+    requireNames(options.b, b.scalar);
+    diff.onlyInA = without(a.scalar, b.scalar);
+    diff.onlyInB = without(b.scalar, a.scalar);
+    std::vector<GridPair> pairs;
+    for (const std::string& name : without(a.scalar, diff.onlyInA)) pairs.push_back({name, name});
+    return pairs;
+}
+
+// --volume and --series choose among several. What has only one may be what another program, or
+// `convert`, made of the one chosen.
+ReadOptions optionsFor(const std::filesystem::path& file, const std::filesystem::path& other,
+                       ReadOptions options) {
+    if (!options.volume && !options.series) return options;
+    if (hasSeveral(file, options) || !hasSeveral(other, options)) return options;
+    options.volume.reset();
+    options.series.reset();
+    return options;
+}
+
+Volume readOne(const std::filesystem::path& file, const std::string& grid, ReadOptions options,
+               const Listener& listener) {
+    options.gridName = isVdb(file) ? grid : "";
+    options.keepSource = true;
+    Volume volume = readVolume(file, options, listener);
+    // The volume's own values are all that is looked at.
+    if (volume.source) volume.codes.reset();
+    return volume;
+}
+
+GridDiff compareGrids(const DiffOptions& options, const GridPair& pair,
+                      const std::function<Listener(double begin, double end)>& stage) {
+    GridDiff diff;
+    diff.a = readOne(options.a, pair.a, optionsFor(options.a, options.b, options.read),
+                     stage(0, kReadA));
+    diff.b = readOne(options.b, pair.b, optionsFor(options.b, options.a, options.read),
+                     stage(kReadA, kReadB));
+    diff.comparison = compareVolumes(diff.a, diff.b, options.compare, stage(kReadB, 1));
+    diff.verdict = judge(diff.comparison, options.compare, options.limits);
+    for (Volume* volume : {&diff.a, &diff.b}) {
+        volume->codes.reset();
+        volume->source.reset();
+        volume->histogram = {};
+    }
+    return diff;
+}
+
+// Compares two grids of several; undefined distances of solvers do not keep the others from it.
+void addComparison(const DiffOptions& options, const GridPair& pair, bool amongOthers,
+                   const std::function<Listener(double begin, double end)>& stage, FileDiff& diff) {
+    try {
+        diff.grids.push_back(compareGrids(options, pair, stage));
+    } catch (const NotFinite&) {
+        if (!amongOthers) throw;
+        diff.notCompared.push_back(pair.a + " (NaN or infinite values)");
+    }
+}
+
+Verdict runDiff(const CLI::App& app, const DiffOptions& options, const Session& session) {
+    FileDiff diff;
+    {
+        ProgressDisplay display(session.common);
+        warnOfUnusedInputOptions(app, {options.a, options.b}, display);
+        const std::vector<GridPair> pairs = pairGrids(options, diff);
+        const double count = double(pairs.size());
+        double done = 0;
+        for (const GridPair& pair : pairs) {
+            const auto stage = [&](double begin, double end) {
+                return display.stage((done + begin) / count, (done + end) / count);
+            };
+            addComparison(options, pair, pairs.size() > 1, stage, diff);
+            ++done;
+        }
+    }
+    diff.incompleteCounts = !options.limits.ignoreMissing;
+    if (options.json) {
+        printOut(jsonText(diff));
+    } else if (!session.common.quiet) {
+        printOut(plainText(diff, options));
+    }
+    return diff.verdict();
+}
+
+}  // namespace
+
+Subcommand addDiff(CLI::App& program) {
+    const auto options = std::make_shared<DiffOptions>();
+    const auto verdict = std::make_shared<Verdict>(Verdict::kPass);
+    // What is in the files is compared as it is, not as it would be rendered.
+    options->read.levelSetToFog = false;
+    CLI::App& app = addSubcommand(
+        program, "diff", "Compares two volumes as idiff compares images.",
+        {"deltasplat diff smoke.vdb restored.vdb",
+         "deltasplat diff engine_256x256x128_uint8.raw.gz lossy.vdb --fail 2 --failpercent 0.1"});
+    app.footer(
+        app.get_footer() +
+        "\n\nExit codes: 0 same, 1 warning, 2 different; 4 whatever else goes wrong (wrong usage,\n"
+        "unreadable input); 130 interrupted. With -q they are all that is said.");
+    addDiffOptions(app, *options);
+    return {&app,
+            [&app, options, verdict](const Session& session) {
+                *verdict = runDiff(app, *options, session);
+            },
+            [verdict] { return int(*verdict); }, kCannotCompare};
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drawing/plot_file.h"
+
+#include "deltasplat/atomic_file.h"
+#include "deltasplat/error.h"
+#include "deltasplat/image/write_image.h"
+#include "lower_case.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr double kPngScale = 2;
+
+bool isSvg(const std::filesystem::path& file) {
+    const std::string extension = lowerCase(file.extension().string());
+    if (extension == ".svg" || extension == ".png") return extension == ".svg";
+    throw Error(ErrorCode::kUsage,
+                gotExpected(file.string(), "extension \"" + file.extension().string() + "\"",
+                            ".png or .svg"));
+}
+
+}  // namespace
+
+void checkDrawingFile(const std::filesystem::path& file) {
+    isSvg(file);
+    const AtomicFile probe(file);
+}
+
+void writeDrawing(const std::filesystem::path& file, const Drawing& drawing) {
+    if (isSvg(file)) {
+        writeFileAtomically(file, svgText(drawing));
+    } else {
+        ImageFileOptions flat;
+        flat.dither = false;
+        writeImage(file, rasterize(drawing, kPngScale), flat);
+    }
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "info/describe_volume.h"
+
+#include "deltasplat/ingest/value_statistics.h"
+#include "deltasplat/optics/class_table.h"
+#include "info/slice_plot.h"
+#include "number_text.h"
+
+namespace deltasplat {
+namespace {
+
+// Which codes look alike in a view along an axis, and which cannot be seen.
+std::vector<Slot> slotMapOf(const GridReport& report, const DescribeOptions& options, int axis) {
+    const Volume& volume = report.volume;
+    if (options.transferFunction) {
+        Optics optics;
+        optics.transferFunction = *options.transferFunction;
+        return classify(volume, optics, volume.voxelSize()[axis]).classOfSlot;
+    }
+    if (!report.backgroundGuess) return {};
+    return slotsWithout(volume.codeBook, *report.backgroundGuess);
+}
+
+std::string visibleText(const GridReport& report, const DescribeOptions& options) {
+    if (options.transferFunction) return "not clear under " + options.transferFunctionFile;
+    if (!report.backgroundGuess) return "all voxels";
+    const std::string value = numberText(*report.backgroundGuess);
+    return report.volume.hasBackground ? "active voxels other than the background " + value
+                                       : "voxels other than " + value + ", the guessed background";
+}
+
+}  // namespace
+
+GridReport describeVolume(Volume volume, const DescribeOptions& options, bool plot) {
+    GridReport report;
+    report.backgroundGuess = guessBackground(volume);
+    report.volume = std::move(volume);
+    report.visible = visibleText(report, options);
+    for (int axis = 0; axis < 3; ++axis) {
+        report.counts[axis] = countDeltas(report.volume, axis);
+        const std::vector<Slot> slotMap = slotMapOf(report, options, axis);
+        report.stamps[axis] = predictStamps(report.volume, axis, slotMap);
+        if (!plot) continue;
+        const int slices = report.volume.box.dims()[axis];
+        report.columns[axis] =
+            countDeltasPerSlice(report.volume, axis, slotMap, slicesPerColumn(slices));
+    }
+    // The codes are counted, and the largest thing in memory.
+    report.volume.codes.reset();
+    return report;
+}
+
+}  // namespace deltasplat

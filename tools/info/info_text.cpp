@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "deltasplat/ingest/value_statistics.h"
+#include "info/info_report.h"
+#include "number_text.h"
+#include "options/parse.h"
+#include "options/volume_choices.h"
+#include "volume_place.h"
+
+namespace deltasplat {
+namespace {
+
+template <class Vector>
+std::string toText(const Vector& v, const std::string& separator) {
+    return joinNumbers({double(v.x), double(v.y), double(v.z)}, separator);
+}
+
+std::string line(const std::string& label, const std::string& value) {
+    return "  " + label + std::string(label.size() < 14 ? 14 - label.size() : 1, ' ') + value +
+           "\n";
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+    return std::string(text.size() < width ? width - text.size() : 0, ' ') + text;
+}
+
+std::string percent(double part, double whole) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f %%", whole > 0 ? 100 * part / whole : 0.0);
+    return text;
+}
+
+std::string alongText(int axis) {
+    return std::string("along ") + "xyz"[axis];
+}
+
+std::string axisText(const GridReport& report, int axis) {
+    const SliceCounts& counts = report.counts[axis];
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4f", comparability(report, axis));
+    return "comparability " + std::string(text) + " as data, " + std::to_string(counts.deltas) +
+           " deltas (" + percent(double(counts.deltas), double(report.volume.box.voxels())) + ")";
+}
+
+std::string backgroundText(const GridReport& report) {
+    const Volume& volume = report.volume;
+    if (volume.hasBackground) return numberText(volume.background);
+    if (!report.backgroundGuess) return "none that is obvious";
+    return numberText(*report.backgroundGuess) +
+           ", a guess: " + percent(double(volume.mostFrequent->count), double(volume.activeCount)) +
+           " of the voxels have it";
+}
+
+std::string deltaText(const DeltaOrigin& origin) {
+    std::string text = alongText(origin.sliceAxis) + ", a key slice every " +
+                       std::to_string(origin.keyInterval) + ", " + std::to_string(origin.deltas) +
+                       " deltas, ";
+    if (origin.maxError == 0) return text + "exact";
+    if (origin.tolerance > 0) text += "tolerance " + numberText(origin.tolerance) + ", ";
+    if (origin.toleranceValue > 0)
+        text += "tolerance value " + numberText(origin.toleranceValue) + ", ";
+    return text + "largest error " + numberText(origin.maxError);
+}
+
+std::string codeBookText(const Volume& volume) {
+    const CodeError& error = volume.codeError;
+    if (error.absolute == 0) return volume.codeBook.name();
+    char share[32];
+    std::snprintf(share, sizeof share, "%.3g %%", 100 * error.relative);
+    return volume.codeBook.name() + ", largest error " + numberText(error.absolute) +
+           (error.relative > 0 ? ", " + std::string(share) + " of a value" : "");
+}
+
+std::string valuesText(const Volume& volume) {
+    if (volume.empty()) return line("range", "none");
+    std::string shares;
+    for (const int share : {1, 50, 99}) {
+        shares += (shares.empty() ? "" : ", ") + std::to_string(share) +
+                  " %: " + numberText(percentileValue(volume, share));
+    }
+    return line("range", numberText(volume.valueMin) + " to " + numberText(volume.valueMax)) +
+           line("percentiles", shares);
+}
+
+// A bar that has its full length at 100 % and loses the same for every tenth of it.
+std::string bar(double share) {
+    constexpr double kFull = 48;
+    constexpr double kPerTenth = 12;
+    const double length = std::round(kFull + kPerTenth * std::log10(share));
+    return std::string(std::size_t(std::max(1.0, length)), '#');
+}
+
+std::string histogramText(const Volume& volume) {
+    if (volume.empty()) return "";
+    const ValueHistogram histogram = histogramOfValues(volume, 16);
+    const double width = (histogram.high - histogram.low) / double(histogram.counts.size());
+    std::vector<std::string> from;
+    std::size_t longest = 0;
+    for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
+        char edge[32];
+        std::snprintf(edge, sizeof edge, "%.6g", histogram.low + width * double(i));
+        from.push_back(edge);
+        longest = std::max(longest, from.back().size());
+        // Bins of whole numbers may go on behind the largest value, and one value has one bin.
+        if (width == 0 || histogram.low + width * double(i + 1) > volume.valueMax) break;
+    }
+    std::string text =
+        line("histogram", "values from; share of the active voxels; 12 # more: ten times as many");
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        const double share = double(histogram.counts[i]) / double(volume.activeCount);
+        char number[32];
+        std::snprintf(number, sizeof number, "%10.4f %%  ", 100 * share);
+        text += "    " + padded(from[i], std::max<std::size_t>(longest, 10)) + number +
+                (histogram.counts[i] > 0 ? bar(share) : "") + "\n";
+    }
+    return text;
+}
+
+std::string stampsText(const GridReport& report) {
+    std::string text =
+        line("stamps", "predicted for a view along an axis; visible: " + report.visible);
+    const auto row = [](const std::string& name, const std::vector<std::string>& cells) {
+        std::string words;
+        for (const std::string& cell : cells) words += padded(cell, 13);
+        return line("  " + name, words);
+    };
+    text += row("", {"traditional", "sparse", "delta", "auto"});
+    for (int axis = 0; axis < 3; ++axis) {
+        const StampCounts& stamps = report.stamps[axis];
+        text +=
+            row(alongText(axis), {std::to_string(stamps.traditional), std::to_string(stamps.sparse),
+                                  std::to_string(stamps.delta), std::to_string(stamps.automatic)});
+    }
+    return text;
+}
+
+std::string placeText(const Volume& volume) {
+    const VolumePlace place = placeOf(volume);
+    const Camera camera =
+        makeCamera(CameraOptions(), volume.box, volume.worldFromIndex, volume.space);
+    std::string directions;
+    for (int axis = 0; axis < 3; ++axis) {
+        directions += (axis > 0 ? ", " : "") + std::string(1, "ijk"[axis]) + " " +
+                      directionText(place, volume.space, axis);
+    }
+    std::string text =
+        line("world box", "(" + toText(place.min, ", ") + ") to (" + toText(place.max, ", ") + ")");
+    text += line("origin", "(" + toText(place.origin, ", ") + ")");
+    if (!volume.space.empty()) text += line("space", spaceText(volume.space));
+    text += line("directions", directions);
+    return text + line("front view", "target (" + toText(camera.targetWorld, ", ") +
+                                         "), frame width " + numberText(camera.frameWidthWorld));
+}
+
+// Which one of several it is.
+std::string choiceText(const GridReport& report) {
+    const VolumeEntry& entry = report.entry;
+    std::string text;
+    if (entry.series) text += line("series", seriesText(entry));
+    if (entry.volumes > 1) {
+        text += line("volume", std::to_string(report.volumeIndex) + " of " +
+                                   std::to_string(entry.volumes) + ", --volume 0 to " +
+                                   std::to_string(entry.volumes - 1));
+    }
+    return text;
+}
+
+std::string gridText(const GridReport& report) {
+    const Volume& v = report.volume;
+    std::string text = line("grid", v.name) + line("type", v.type) + line("class", v.gridClass);
+    text += choiceText(report);
+    text += line("dims", toText(v.box.dims(), " x "));
+    text += line("box", v.empty() ? "empty"
+                                  : "(" + toText(v.box.min, ", ") + ") to (" +
+                                        toText(v.box.max, ", ") + ")");
+    text += line("voxel size", toText(v.voxelSize(), " x ")) + placeText(v);
+    text += line("active", std::to_string(v.activeCount) + " (" +
+                               percent(double(v.activeCount), double(v.box.voxels())) + ")");
+    text += valuesText(v);
+    text += line("background", backgroundText(report)) + line("code book", codeBookText(v));
+    if (v.origin) text += line("delta grid", deltaText(*v.origin));
+    for (int axis = 0; axis < 3; ++axis) text += line(alongText(axis), axisText(report, axis));
+    return text + stampsText(report) + histogramText(v);
+}
+
+}  // namespace
+
+std::string plainText(const std::vector<FileReport>& reports) {
+    std::string text;
+    for (const FileReport& report : reports) {
+        text += (text.empty() ? "" : "\n") + report.file + "\n";
+        for (std::size_t i = 0; i < report.grids.size(); ++i)
+            text += (i > 0 ? "\n" : "") + gridText(report.grids[i]);
+        for (const std::string& grid : report.others) text += line("not read", grid);
+    }
+    return text;
+}
+
+}  // namespace deltasplat

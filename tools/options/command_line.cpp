@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "options/command_line.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "deltasplat/error.h"
+#include "version.h"
+
+namespace deltasplat {
+
+std::string withDefault(const std::string& help, const std::string& value) {
+    return help + " (default " + value + ")";
+}
+
+bool isGiven(const CLI::App& app, const std::string& name) {
+    return app.get_option(name)->count() > 0;
+}
+
+CLI::App& addSubcommand(CLI::App& program, const std::string& name, const std::string& summary,
+                        const std::vector<std::string>& examples) {
+    CLI::App& app = *program.add_subcommand(name, summary);
+    // What CLI11 does not know is reported by us, with a suggestion.
+    app.allow_extras();
+    std::string footer = "Examples:";
+    for (const std::string& example : examples) footer += "\n  " + example;
+    app.footer(footer);
+    return app;
+}
+
+void addCommonOptions(CLI::App& app, CommonOptions& options) {
+    const std::string title = "Everywhere";
+    app.set_help_flag("-h,--help", "Show this help and end")->group(title);
+    app.set_version_flag("--version", versionText, "Show the versions in use and end")
+        ->group(title);
+    OptionGroup group(app, title);
+    group.addCount("-q,--quiet", options.quiet, "Show no progress; -qq: no warnings either");
+    group.addFlag("-v,--verbose", options.verbose, "Say more about what is done and what failed");
+    group.addFlag("--progress", options.progress,
+                  "Show progress where standard error is no terminal, too: lines\n"
+                  "\"Progress: 10%\", as -v does");
+    group.addValue("--threads", "N", options.threads, wholeNumber(0, 1024),
+                   withDefault("Threads to use, 0 = all", std::to_string(options.threads)));
+    group.addValue("--max-memory", "SIZE", options.maxMemory, byteCount(),
+                   "Refuse up front what would take more memory than this, the\n"
+                   "program itself (about 150M) included, such as 4G (default: what\n"
+                   "the machine has)");
+    group.addFlag("--fsync", options.fsync,
+                  "End only when what was written would outlive a power failure");
+    group.addValue(
+        "--simd", "LEVEL", options.simd, anyText(),
+        withDefault("SIMD level, a name from --version; never changes a pixel", options.simd));
+}
+
+void requireArgument(bool given, const std::string& name, const std::string& expected) {
+    if (!given) throw Error(ErrorCode::kUsage, gotExpected(name, "nothing", expected));
+}
+
+void printOut(const std::string& text) {
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if (written && std::fflush(stdout) == 0) return;
+    throw Error(ErrorCode::kOutput,
+                std::string("standard output: cannot be written: ") + std::strerror(errno));
+}
+
+}  // namespace deltasplat

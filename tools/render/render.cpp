@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/render.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "listener.h"
+#include "lower_case.h"
+#include "number_text.h"
+#include "options/input_options.h"
+#include "output_files.h"
+#include "process/interrupt.h"
+#include "render/render_input.h"
+#include "render/render_modes.h"
+#include "render/render_options.h"
+#include "render/render_stats.h"
+#include "render/value_window.h"
+#include "stopwatch.h"
+#include "subcommands.h"
+#include "version.h"
+#include "volume_place.h"
+
+namespace deltasplat {
+namespace {
+
+// Shares of the progress that reading and rendering take, measured on the engine data set.
+constexpr double kReadShare = 0.3;
+constexpr double kRenderShare = 0.95;
+
+ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume,
+                              const RenderResult& result, const Session& session) {
+    ImageFileOptions options = command.image;
+    options.cameraFromWorld = result.camera.cameraFromWorld();
+    options.ndcFromWorld = result.camera.ndcFromWorld();
+    options.metadata = {
+        {"version", programVersion()},
+        {"commandLine", session.commandLine},
+        {"input", command.input.string()},
+        {"mode", modeName(result.stats.mode)},
+        {"camera", cameraOptionsText(result.camera)},
+        {"codeBook", volume.codeBook.name()},
+        {"codeError", codeErrorText(volume.codeError)},
+    };
+    if (result.stats.mode != Mode::kComposite) return options;
+    options.metadata.insert(options.metadata.end(),
+                            {{"method", methodName(command.picture.render.method)},
+                             {"tolerance", toleranceText(result.stats.tolerance)},
+                             {"errorBound", errorBoundText(result.stats)}});
+    return options;
+}
+
+// A background shows where the picture lets it: what may be wrong of alpha, is wrong of it as well.
+void boundOver(const std::optional<glm::vec4>& background, RenderStats& stats) {
+    if (!background || stats.tolerance.isExact()) return;
+    const glm::dvec4 color(*background);
+    stats.errorBoundColor +=
+        stats.errorBoundAlpha * color.a * std::max({color.r, color.g, color.b});
+    stats.errorBoundAlpha *= 1 - color.a;
+}
+
+// A tolerance is a promise: what it comes to is said.
+void showErrorBound(const RenderStats& stats) {
+    const std::string line =
+        "tolerance " + toleranceText(stats.tolerance) +
+        ": error of a pixel at most, scene-linear and premultiplied: " + errorBoundText(stats) +
+        "\n";
+    std::fputs(line.c_str(), stderr);
+}
+
+void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
+                         ProgressDisplay& display) {
+    warnOfUnusedInputOptions(app, {command.input}, display);
+    const bool png = lowerCase(command.output.extension().string()) == ".png";
+    if (isGiven(app, "--bits") && !png)
+        display.warn("--bits: has no effect without a .png picture");
+    if (isGiven(app, "--dither") && (!png || command.image.bits == 16))
+        display.warn("--dither: has no effect without a .png of 8 bits");
+    warnOfUnusedCameraOptions(app, display);
+    warnOfUnusedModeOptions(app, command, display);
+}
+
+// Makes the picture what is stored of it, and says in `image` what that took.
+void finishPicture(const RenderCommand& command, const Volume& volume, RenderResult& result,
+                   ImageFileOptions& image) {
+    if (storesValues(command)) return;
+    if (showsWindow(command)) {
+        const bool xray = command.picture.render.mode == Mode::kXray;
+        const glm::dvec2 window =
+            xray ? greyXray(volume, result.camera, command.window, result.image)
+                 : greyMip(command.window ? command.window : command.picture.render.optics.range,
+                           result.image);
+        image.metadata.emplace_back("window", numberText(window));
+        if (xray) image.metadata.emplace_back("xrayScale", numberText(window.y));
+    }
+    if (command.picture.background) compositeOver(result.image, *command.picture.background);
+}
+
+void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
+    applyMode(command);
+    applyProjection(app, command.picture.render.camera);
+    validate(command);
+    const PictureOptions& picture = command.picture;
+    RenderTimes times;
+    RenderResult result;
+    std::string codeBook;  // what there is to say of it
+    {
+        ProgressDisplay display(session.common);
+        warnOfUnusedOptions(app, command, display);
+        const auto beginRead = std::chrono::steady_clock::now();
+        // Everything from here on is reading; what can be refused without it has been.
+        const Listener reading = display.stage(0, kReadShare);
+        RenderOptions options = readOptics(picture, reading);
+        const Volume volume = readToRender(command.input, picture, options, reading);
+        times.read = secondsSince(beginRead);
+        codeBook = "code book " + volume.codeBook.name() + ", largest error " +
+                   codeErrorText(volume.codeError) + "\n";
+
+        result = render(volume, options, display.stage(kReadShare, kRenderShare));
+        boundOver(picture.background, result.stats);
+        ImageFileOptions image = imageOptions(command, volume, result, session);
+        finishPicture(command, volume, result, image);
+
+        const Listener writing = display.stage(kRenderShare, 1);
+        writing.report(0);
+        const auto beginWrite = std::chrono::steady_clock::now();
+        writeImage(command.output, result.image, image);
+        times.write = secondsSince(beginWrite);
+        times.total = secondsSince(session.begin);
+        writeStats(command.stats, statsJson(result, volume, times));
+        writing.report(1);
+    }
+    if (!result.stats.tolerance.isExact() && !session.common.quiet) showErrorBound(result.stats);
+    if (session.common.verbose)
+        std::fputs((codeBook + statsSummary(result, times)).c_str(), stderr);
+}
+
+}  // namespace
+
+Subcommand addRender(CLI::App& program) {
+    const auto command = std::make_shared<RenderCommand>();
+    CLI::App& app = addSubcommand(
+        program, "render", "Renders one picture of a volume.",
+        {"deltasplat render smoke.vdb -o smoke.png --view iso --size 1024x1024 "
+         "--background 0,0,0",
+         "deltasplat render engine_256x256x128_uint8.raw.gz -o engine.exr --tf examples/ct.json "
+         "--direction=-1,0.8,-0.6 --up 0,0,1"});
+    addRenderOptions(app, *command);
+    return {&app, [&app, command](const Session& session) { runRender(app, *command, session); }};
+}
+
+}  // namespace deltasplat

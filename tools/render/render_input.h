@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "render/render_options.h"
+
+namespace deltasplat {
+
+/// Returns the options to render with, the transfer function read if one was given.
+/// @throw Error(kInput) if it cannot be read
+RenderOptions readOptics(const PictureOptions& picture, const Listener& listener);
+
+/// Reads a volume and puts into `options` what depends on it: without a transfer function the grey
+/// ramp over its values.
+/// @throw Error(kInput), Error(kUsage) as readVolume
+Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
+                    RenderOptions& options, const Listener& listener);
+
+}  // namespace deltasplat

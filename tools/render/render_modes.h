@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "render/render_options.h"
+
+namespace deltasplat {
+
+/// Whether the picture is to hold values instead of light: xray and mip in a format of floats.
+bool storesValues(const RenderCommand& command);
+
+/// Whether the picture is to show values as greys.
+bool showsWindow(const RenderCommand& command);
+
+/// Sets what follows from mode and file format: values are stored as 32-bit floats, and formats of
+/// 8 or 16 bits show the transfer function's colours of largest values, if one is given.
+void applyMode(RenderCommand& command);
+
+/// Warns of options that were given and that have no effect in the mode that was.
+void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
+                             ProgressDisplay& display);
+
+}  // namespace deltasplat

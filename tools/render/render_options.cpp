@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/render_options.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "deltasplat/error.h"
+#include "deltasplat/splat/footprint.h"
+#include "number_text.h"
+#include "options/input_options.h"
+#include "output_files.h"
+
+namespace deltasplat {
+namespace {
+
+// One of some values, by their names.
+template <typename T, typename NameOf>
+Parser<T> named(std::vector<T> values, const NameOf& nameOf) {
+    return
+        [values = std::move(values), nameOf](const std::string& option, const std::string& text) {
+            std::vector<std::string> names;
+            for (const T value : values) {
+                if (nameOf(value) == text) return value;
+                names.push_back(nameOf(value));
+            }
+            throw Error(ErrorCode::kUsage, gotExpected(option, text, joinWords(names, "or")));
+        };
+}
+
+Parser<Method> method() {
+    return named<Method>({Method::kAuto, Method::kDelta, Method::kSparse, Method::kTraditional},
+                         methodName);
+}
+
+Parser<Mode> mode() {
+    return named<Mode>({Mode::kComposite, Mode::kXray, Mode::kMip}, modeName);
+}
+
+Parser<Projection> projection() {
+    return named<Projection>({Projection::kOrtho, Projection::kPerspective, Projection::kLatlong},
+                             projectionName);
+}
+
+Parser<ColorBy> colorBy() {
+    return named<ColorBy>({ColorBy::kValue, ColorBy::kX, ColorBy::kY, ColorBy::kZ, ColorBy::kIndex},
+                          colorByName);
+}
+
+Parser<std::int64_t> bits() {
+    return [](const std::string& option, const std::string& text) {
+        return choice({"8", "16"})(option, text) == "8" ? 8 : 16;
+    };
+}
+
+Parser<bool> zeroOrOne() {
+    return [](const std::string& option, const std::string& text) {
+        return choice({"0", "1"})(option, text) == "1";
+    };
+}
+
+// All of a value could not be held: what is left of it would be nothing.
+Parser<double> relativeTolerance() {
+    return [](const std::string& option, const std::string& text) {
+        const double value = number(0)(option, text);
+        if (value < 1) return value;
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(option, text, "a finite number of at least 0 and less than 1"));
+    };
+}
+
+std::string sizeText(const glm::ivec2& size) {
+    return joinNumbers({double(size.x), double(size.y)}, "x");
+}
+
+void addOutputOptions(CLI::App& app, RenderCommand& command) {
+    OptionGroup group(app, "Output");
+    group
+        .addValue("-o,--output", "FILE", command.output, anyText(),
+                  "Picture to write: .exr (scene-linear, premultiplied) or\n"
+                  ".png (sRGB)")
+        .required();
+    group.addFlag("--float", command.image.floatExr, "Store 32-bit floats in an .exr, not halves");
+    group.addValue("--bits", "8|16", command.image.bits, bits(),
+                   withDefault("Bits per channel of a .png", std::to_string(command.image.bits)));
+    group.addValue("--dither", "0|1", command.image.dither, zeroOrOne(),
+                   withDefault("Round up and down in a fixed pattern in a .png of 8 bits, so that\n"
+                               "slow ramps show no steps",
+                               command.image.dither ? "1" : "0"));
+    group.addValue("--stats", "FILE", command.stats, anyText(),
+                   "JSON file to write: what was done, how long it took in seconds");
+}
+
+void addModeOption(CLI::App& app, Mode& chosen) {
+    OptionGroup group(app, "Optics");
+    group.addValue("--mode", "NAME", chosen, mode(),
+                   withDefault("composite (emission and absorption), xray (integral of the value\n"
+                               "in world units) or mip (largest value along the line of\n"
+                               "sight): the last two store their values as 32-bit floats in\n"
+                               "an .exr, and are shown as greys in a .png (mip in the colours\n"
+                               "of --tf, if that is given)",
+                               modeName(chosen)));
+}
+
+void addWindowOption(CLI::App& app, std::optional<glm::dvec2>& window) {
+    OptionGroup group(app, "Optics");
+    group.addValue("--window", "LO,HI", window, interval(),
+                   "Values that black and white stand for in a .png of --mode xray\n"
+                   "(data units times world units) or mip (default: the 0.5th and\n"
+                   "the 99.5th percentile of the picture's; for xray at most 0)");
+}
+
+void addMethodOption(CLI::App& app, Method& chosen) {
+    OptionGroup group(app, "Splatting");
+    group.addValue("--method", "NAME", chosen, method(),
+                   withDefault("auto, delta, sparse or traditional: the same picture, bit for\n"
+                               "bit, in different times",
+                               methodName(chosen)));
+}
+
+}  // namespace
+
+void addCameraOptions(CLI::App& app, PictureOptions& options) {
+    CameraOptions& camera = options.render.camera;
+    OptionGroup group(app, "Camera");
+    group.addValue("--projection", "NAME", camera.projection, projection(),
+                   withDefault("ortho (parallel lines of sight), perspective (from an eye) or\n"
+                               "latlong (from an eye to all sides, twice as wide as high)",
+                               projectionName(camera.projection)));
+    group.addValue("--view", "NAME", camera.view, anyText(),
+                   withDefault("Where the camera is, y up: front (+z) back (-z) right (+x)\n"
+                               "left (-x) top (+y) bottom (-y) or iso (+x +y +z). Where the file\n"
+                               "says how a patient lies (RAS, LPS): up is the head's direction,\n"
+                               "front looks at the face, left and right at the patient's",
+                               camera.view));
+    group.addValue("--azimuth", "DEG", camera.azimuthDegrees, angle(),
+                   withDefault("Turns the camera to its right, about the up axis",
+                               numberText(camera.azimuthDegrees)));
+    group.addValue(
+        "--elevation", "DEG", camera.elevationDegrees, angle(),
+        withDefault("Then raises it over the target", numberText(camera.elevationDegrees)));
+    group.addValue("--roll", "DEG", camera.rollDegrees, angle(),
+                   withDefault("Then turns it clockwise about the line of sight",
+                               numberText(camera.rollDegrees)));
+    group.addValue("--direction", "X,Y,Z", camera.direction, vector3(),
+                   "The way the line of sight travels, in world space; replaces\n"
+                   "--view");
+    group.addValue("--up", "X,Y,Z", camera.up, vector3(),
+                   "What is up in the picture, in world space (default: the view's;\n"
+                   "with --direction 0,1,0, or a patient's head)");
+    group.addValue("--target", "X,Y,Z", camera.targetWorld, vector3(),
+                   "World position in the middle of the picture (default: the\n"
+                   "middle of the volume)");
+    group.addValue("--frame-width", "W", camera.frameWidthWorld, positiveLength(),
+                   "Width of the picture in world units (default: the volume fits)");
+    group.addValue("--fov", "DEG", camera.fovDegrees, number(0, 180),
+                   "perspective: vertical angle of view, less than 180 (default: " +
+                       numberText(kDefaultFov) + ")");
+    group.addValue("--focal", "MM", camera.focalMm, positiveLength(),
+                   "perspective: focal length, instead of --fov (default with\n"
+                   "--aperture: " +
+                       numberText(kDefaultFocalMm) + ")");
+    group.addValue("--aperture", "MM", camera.apertureMm, positiveLength(),
+                   "perspective: width of the film back (default with --focal: " +
+                       numberText(kDefaultApertureMm) + ")");
+    group.addValue("--eye", "X,Y,Z", camera.eyeWorld, vector3(),
+                   "perspective, latlong: world position of the eye, which looks at\n"
+                   "the target, or in --direction (default: --distance from the\n"
+                   "target; latlong: the target)");
+    group.addValue("--distance", "D", camera.distanceWorld, positiveLength(),
+                   "perspective: from the eye to the target, in world units\n"
+                   "(default: the volume fits)");
+    group.addValue("--near", "D", camera.nearWorld, number(0),
+                   withDefault("perspective, latlong: what is nearer to the eye is not seen",
+                               numberText(camera.nearWorld)));
+    group.addValue(
+        "--size", "WxH", camera.sizePixels, pixelSize(),
+        withDefault("Width and height in pixels; latlong 1024x512", sizeText(camera.sizePixels)));
+}
+
+void addOpticsOptions(CLI::App& app, PictureOptions& options) {
+    Optics& optics = options.render.optics;
+    OptionGroup group(app, "Optics");
+    group.addValue("--tf", "FILE", options.transferFunction, anyText(),
+                   "Transfer function, a ParaView JSON file (default: a ramp over the\n"
+                   "1st to 99th percentile of the values, white for fog, else from\n"
+                   "black to white)");
+    group.addValue("--range", "LO,HI", optics.range, interval(),
+                   "Data values that 0 and 1 of a normalized transfer function\n"
+                   "stand for (default: 0,255 for uint8, else all values), or\n"
+                   "without --tf the ends of the ramp");
+    group.addValue("--unit-distance", "U", optics.unitDistance, positiveLength(),
+                   "World units over which a voxel has the transfer function's\n"
+                   "opacity (default: the smallest voxel size)");
+    group.addValue("--extinction", "S", optics.extinctionScale, number(0, 1e30),
+                   withDefault("Scales the extinction", numberText(optics.extinctionScale)));
+    group.addValue("--color-by", "WHAT", optics.colorBy, colorBy(),
+                   withDefault("Where colours come from: value, the transfer function, or to find\n"
+                               "one's way by x, y, z, from blue to red along the world's axis, or\n"
+                               "index, which grows along i, j and k in red, green and blue",
+                               colorByName(optics.colorBy)));
+    group.addValue("--background", "R,G,B[,A]", options.background, color(),
+                   "Scene-linear colour behind the volume (default: transparent)");
+}
+
+void addSplattingOptions(CLI::App& app, RenderOptions& options) {
+    OptionGroup group(app, "Splatting");
+    group.addValue("--tolerance", "T", options.tolerance.relative, relativeTolerance(),
+                   withDefault("Stamp less: keep what a voxel was while it is within T times the\n"
+                               "true one, 0 <= T < 1; how far the picture may be off is proved",
+                               numberText(options.tolerance.relative)));
+    group.addValue("--tolerance-value", "V", options.tolerance.value, number(0),
+                   withDefault("The same within V data units, which bounds no picture",
+                               numberText(options.tolerance.value)));
+    group.addValue("--sigma", "V", options.sigma, number(kMinSigma, kMaxSigma),
+                   "Standard deviation of the footprint in voxels, " + numberText(kMinSigma) +
+                       " to " + numberText(kMaxSigma) +
+                       "\n(default: " + numberText(defaultSigma(1)) +
+                       " of a voxel, or of what it is divided into,\ngrowing where that covers "
+                       "more than 2 pixels, to " +
+                       numberText(defaultSigma(3)) + "\nfrom 3 pixels on)");
+    group.addValue(
+        "--between", "N", options.between, wholeNumber(0, kMostBetween),
+        "Slices put between two neighbouring ones, 0 to " + std::to_string(kMostBetween) +
+            ", values mixed;\nif any, each voxel is also divided into 2x2 within its "
+            "slice\n(default: 1 where a voxel covers 1.5 pixels or more and no\n"
+            "--resolution is given, but not for thin fog (opacities up to\n0.25 a voxel), "
+            "colours that jump, as of labels, nor more\nthan " +
+            std::to_string(kMostDivided) + " blocks of voxels; else 0)");
+    group.addValue("--resolution", "R", options.resolution, wholeNumber(1, kMaxResolution),
+                   "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
+                       " (default: chosen from the screen)");
+}
+
+void addRenderOptions(CLI::App& app, RenderCommand& command) {
+    OptionGroup arguments(app, "Arguments");
+    arguments
+        .addValue("INPUT", "FILE", command.input, anyText(),
+                  std::string("Volume to render: ") + kInputFormats)
+        .required();
+    addOutputOptions(app, command);
+    addCameraOptions(app, command.picture);
+    addModeOption(app, command.picture.render.mode);
+    addWindowOption(app, command.window);
+    addOpticsOptions(app, command.picture);
+    addMethodOption(app, command.picture.render.method);
+    addSplattingOptions(app, command.picture.render);
+    addInputOptions(app, command.picture.read);
+}
+
+void applyProjection(const CLI::App& app, CameraOptions& camera) {
+    if (camera.projection == Projection::kLatlong && !isGiven(app, "--size"))
+        camera.sizePixels = {1024, 512};
+}
+
+void checkCamera(const CameraOptions& camera) {
+    // Any box will do to have the camera's own options checked; whether up is along the line of
+    // sight may depend on whether the volume is a patient.
+    const IndexBox box{glm::ivec3(0), glm::ivec3(1)};
+    try {
+        makeCamera(camera, box, glm::dmat4(1));
+    } catch (const Error& error) {
+        try {
+            makeCamera(camera, box, glm::dmat4(1), "RAS");
+        } catch (const Error&) {
+            throw error;
+        }
+    }
+}
+
+void warnOfUnusedCameraOptions(const CLI::App& app, ProgressDisplay& display) {
+    if (isGiven(app, "--view") && isGiven(app, "--direction"))
+        display.warn("--view: has no effect with --direction");
+}
+
+void validate(const RenderCommand& command) {
+    checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
+    checkCamera(command.picture.render.camera);
+    Files others = filesRead({command.input}, command.picture.transferFunction);
+    checkOutput("--output", command.output, others, "the input and the transfer function");
+    others.push_back(command.output);
+    checkOutput("--stats", command.stats, others,
+                "the input, the transfer function and the picture");
+}
+
+}  // namespace deltasplat

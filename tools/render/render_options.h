@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+
+#include "deltasplat/image/write_image.h"
+#include "deltasplat/ingest/read_volume.h"
+#include "deltasplat/render.h"
+#include "listener.h"
+#include "options/command_line.h"
+
+namespace deltasplat {
+
+/// What to make a picture of and how: what all subcommands that render are asked.
+struct PictureOptions {
+    std::filesystem::path transferFunction;  ///< empty: a ramp
+    std::optional<glm::vec4> background;
+    ReadOptions read;
+    RenderOptions render;
+};
+
+/// What `deltasplat render` was asked to do.
+struct RenderCommand {
+    std::filesystem::path input;
+    std::filesystem::path output;
+    std::filesystem::path stats;  ///< empty: none
+    PictureOptions picture;
+    std::optional<glm::dvec2> window;  ///< xray, mip: values of black and white; empty: percentiles
+    ImageFileOptions image;
+};
+
+void addCameraOptions(CLI::App& app, PictureOptions& options);
+void addOpticsOptions(CLI::App& app, PictureOptions& options);
+/// Declares the options of splatting that all methods share.
+void addSplattingOptions(CLI::App& app, RenderOptions& options);
+
+/// Declares all options of `deltasplat render`.
+void addRenderOptions(CLI::App& app, RenderCommand& command);
+
+/// Gives a panorama the size that it has if none is asked for.
+void applyProjection(const CLI::App& app, CameraOptions& camera);
+
+/// Checks the camera before there is a volume to look at.
+/// @throw Error(kUsage) naming the option
+void checkCamera(const CameraOptions& camera);
+
+/// Warns of options that were given and that others make useless.
+void warnOfUnusedCameraOptions(const CLI::App& app, ProgressDisplay& display);
+
+/// Checks what can be checked before anything is read.
+/// @throw Error(kUsage) or, for a folder that cannot be written to, Error(kOutput)
+void validate(const RenderCommand& command);
+
+}  // namespace deltasplat

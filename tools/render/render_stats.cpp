@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/render_stats.h"
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "deltasplat/simd.h"
+#include "deltasplat/threads.h"
+#include "number_text.h"
+#include "process/peak_bytes.h"
+#include "text/axis_name.h"
+#include "text/json_text.h"
+#include "volume_place.h"
+
+namespace deltasplat {
+namespace {
+
+// What is not known is null.
+nlohmann::ordered_json boundJson(double bound) {
+    return std::isinf(bound) ? nlohmann::ordered_json() : nlohmann::ordered_json(bound);
+}
+
+std::string partsText(int parts) {
+    return parts > 1 ? "; of voxels divided into " + std::to_string(parts) : "";
+}
+
+std::string workSummary(const RenderStats& stats) {
+    char text[256];
+    const auto visible = (unsigned long long)stats.visible;
+    const auto voxels = (unsigned long long)stats.voxels;
+    if (stats.mode == Mode::kComposite) {
+        std::snprintf(text, sizeof text,
+                      "method %s: %llu stamps (%llu of %llu voxels visible, %llu deltas%s)\n",
+                      methodName(stats.method).c_str(), (unsigned long long)stats.stamps, visible,
+                      voxels, (unsigned long long)stats.deltas, partsText(stats.parts).c_str());
+    } else {
+        std::snprintf(text, sizeof text, "mode %s: %llu of %llu voxels\n",
+                      modeName(stats.mode).c_str(), visible, voxels);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string statsJson(const RenderResult& result, const Volume& volume, const RenderTimes& times) {
+    const RenderStats& stats = result.stats;
+    const nlohmann::ordered_json seconds = {
+        {"read", times.read},
+        {"prepare", stats.prepareSeconds},
+        {"splat", stats.splatSeconds},
+        {"composite", stats.compositeSeconds},
+        {"warp", stats.warpSeconds},
+        {"write", times.write},
+        {"render", stats.renderSeconds},
+        {"total", times.total},
+    };
+    nlohmann::ordered_json json = {
+        {"method", methodName(stats.method)},
+        {"mode", modeName(stats.mode)},
+        {"voxels", stats.voxels},
+        {"visible", stats.visible},
+        {"deltas", stats.deltas},
+        {"stamps", stats.stamps},
+        {"slices", stats.slices},
+        {"between", stats.between},
+        {"parts", stats.parts},
+        {"slabs", stats.slabs},
+        {"slice_axis", axisName(stats.sliceAxis)},
+        {"resolution", stats.resolution},
+        {"footprint", stats.footprint},
+        {"seconds", seconds},
+        {"peak_bytes", peakBytes()},
+        {"threads", threadCount()},
+        {"simd", simdLevel()},
+        {"tolerance", stats.tolerance.relative},
+        {"tolerance_value", stats.tolerance.value},
+        {"error_bound",
+         {{"color", boundJson(stats.errorBoundColor)},
+          {"alpha", boundJson(stats.errorBoundAlpha)}}},
+    };
+    json.update(placeJson(volume));
+    // Not those of a front view, but the picture's own.
+    json["target"] = vectorJson(result.camera.targetWorld);
+    json["frame_width"] = result.camera.frameWidthWorld;
+    json["camera"] = cameraJson(result.camera);
+    return dumpJson(json);
+}
+
+std::string toleranceText(const Tolerance& tolerance) {
+    if (tolerance.isExact()) return "0";
+    std::string text;
+    if (tolerance.relative > 0) text = numberText(tolerance.relative) + " of the colour";
+    if (tolerance.value > 0)
+        text += (text.empty() ? "" : " and ") + numberText(tolerance.value) + " data units";
+    return text;
+}
+
+std::string codeErrorText(const CodeError& error) {
+    if (error.absolute == 0) return "0";
+    return numberText(error.absolute) + ", " + numberText(error.relative) + " of a value";
+}
+
+std::string errorBoundText(const RenderStats& stats) {
+    if (std::isinf(stats.errorBoundColor)) return "unknown";
+    return "color " + numberText(stats.errorBoundColor) + ", alpha " +
+           numberText(stats.errorBoundAlpha);
+}
+
+std::string statsSummary(const RenderResult& result, const RenderTimes& times) {
+    const RenderStats& stats = result.stats;
+    char text[512];
+    std::snprintf(text, sizeof text,
+                  "%s%d slices along %s in %d slabs, %d sheet pixel%s a voxel, footprint %dx%d\n"
+                  "seconds: read %.3f, prepare %.3f, render %.3f (splat %.3f, composite %.3f, "
+                  "warp %.3f), write %.3f, total %.3f\n",
+                  workSummary(stats).c_str(), stats.slices, axisName(stats.sliceAxis).c_str(),
+                  stats.slabs, stats.resolution, stats.resolution == 1 ? "" : "s", stats.footprint,
+                  stats.footprint, times.read, stats.prepareSeconds, stats.renderSeconds,
+                  stats.splatSeconds, stats.compositeSeconds, stats.warpSeconds, times.write,
+                  times.total);
+    return text + ("camera: " + cameraOptionsText(result.camera)) + "\n";
+}
+
+}  // namespace deltasplat

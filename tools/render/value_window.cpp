@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/value_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <vector>
+
+#include "parallel.h"
+#include "srgb.h"
+
+namespace deltasplat {
+namespace {
+
+// Whether a line meets a box, by the slabs between its faces.
+bool meets(const glm::dvec3& from, const glm::dvec3& along, const glm::dvec3& low,
+           const glm::dvec3& high) {
+    double first = -std::numeric_limits<double>::infinity();
+    double last = -first;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (along[axis] == 0) {
+            if (from[axis] < low[axis] || from[axis] > high[axis]) return false;
+            continue;
+        }
+        const double a = (low[axis] - from[axis]) / along[axis];
+        const double b = (high[axis] - from[axis]) / along[axis];
+        first = std::max(first, std::min(a, b));
+        last = std::min(last, std::max(a, b));
+    }
+    return first <= last;
+}
+
+// Sets alpha to 1 where the line of sight meets the volume's box, voxels whole, else to 0.
+void coverBox(const Volume& volume, const Camera& camera, Image& image) {
+    const glm::dmat4 indexFromWorld = glm::inverse(volume.worldFromIndex);
+    const glm::dvec3 low = glm::dvec3(volume.box.min) - 0.5;
+    const glm::dvec3 high = glm::dvec3(volume.box.max) + 0.5;
+    const glm::dvec3 along = indexFromWorld * glm::dvec4(camera.direction, 0);
+    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
+        for (int x = 0; x < image.size.x; ++x) {
+            const glm::dvec3 world = camera.worldFromPixel({x + 0.5, double(y) + 0.5});
+            const glm::dvec3 from = indexFromWorld * glm::dvec4(world, 1);
+            image.pixel(x, int(y))[3] = meets(from, along, low, high) ? 1.0f : 0.0f;
+        }
+    });
+}
+
+std::vector<float> opaqueValues(const Image& image) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        if (image.rgba[i + 3] > 0) values.push_back(image.rgba[i]);
+    }
+    return values;
+}
+
+// From the 0.5th to the 99.5th percentile.
+glm::dvec2 middleOf(std::vector<float> values) {
+    if (values.empty()) return {0, 1};
+    const std::size_t rank = (values.size() - 1) / 200;  // from either end
+    const auto at = [&](std::size_t i) {
+        std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(i), values.end());
+        return double(values[i]);
+    };
+    return {at(rank), at(values.size() - 1 - rank)};
+}
+
+// One value only is white if it is above 0, for black is nothing; otherwise it is black, and
+// nothing is white.
+glm::dvec2 widened(glm::dvec2 window) {
+    if (window.x < window.y) return window;
+    if (window.y > 0) return {0, window.y};
+    return {window.y, window.y < 0 ? 0 : 1};
+}
+
+void showWindow(glm::dvec2 window, Image& image) {
+    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
+        float* rgba = image.pixel(0, int(y));
+        for (int x = 0; x < image.size.x; ++x, rgba += 4) {
+            const double level = (rgba[0] - window.x) / (window.y - window.x);
+            const double grey = rgba[3] > 0 ? linearFromSrgb(std::clamp(level, 0.0, 1.0)) : 0;
+            for (int c = 0; c < 3; ++c) rgba[c] = float(grey);
+        }
+    });
+}
+
+}  // namespace
+
+glm::dvec2 greyXray(const Volume& volume, const Camera& camera,
+                    const std::optional<glm::dvec2>& window, Image& image) {
+    if (volume.empty()) return window.value_or(glm::dvec2(0, 1));
+    coverBox(volume, camera, image);
+    std::vector<float> values = opaqueValues(image);
+    std::erase(values, 0.0f);
+    glm::dvec2 chosen = middleOf(std::move(values));
+    // Nothing is black, unless there is less.
+    chosen = window.value_or(widened({std::min(chosen.x, 0.0), chosen.y}));
+    showWindow(chosen, image);
+    return chosen;
+}
+
+glm::dvec2 greyMip(const std::optional<glm::dvec2>& window, Image& image) {
+    const glm::dvec2 chosen = window.value_or(widened(middleOf(opaqueValues(image))));
+    showWindow(chosen, image);
+    return chosen;
+}
+
+}  // namespace deltasplat
