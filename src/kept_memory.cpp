@@ -6,6 +6,8 @@
 #include <iterator>
 #include <new>
 
+#include "deltasplat/memory_limit.h"
+
 namespace deltasplat {
 namespace {
 
@@ -78,20 +80,25 @@ void KeptMemory::do_deallocate(void* memory, std::size_t bytes, std::size_t alig
     const std::size_t size = sizeOf(memory);
     const std::lock_guard lock(mutex_);
     usedBytes_ -= size;
-    idleBytes_ += size;
-    idle_.insert({size, {memory, true}});
+    try {
+        idle_.insert({size, {memory, true}});
+        idleBytes_ += size;
+    } catch (const std::bad_alloc&) {
+        freeBlock(memory);
+    }
 }
 
 void KeptMemory::endPicture() {
     const std::lock_guard lock(mutex_);
     for (auto block = idle_.begin(); block != idle_.end();) {
         const auto here = block++;
-        if (here->second.used) {
+        if (here->second.used && memoryLimit() == 0) {
             here->second.used = false;
         } else {
             release(here);
         }
     }
+    mostUsedBytes_ = usedBytes_ + idleBytes_;
 }
 
 std::size_t KeptMemory::idleBytes() const {

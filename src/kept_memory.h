@@ -18,9 +18,11 @@ class KeptMemory : public std::pmr::memory_resource {
     KeptMemory(const KeptMemory&) = delete;
     KeptMemory& operator=(const KeptMemory&) = delete;
 
-    /// Says that a picture is done: what it had no use for goes back to the system.
+    /// Says that a picture is done: what it had no use for goes back to the system; where memory is
+    /// limited (setMemoryLimit) all does, for what is kept counts as taken.
     void endPicture();
-    /// Bytes that are kept for the next who asks.
+    /// Bytes that are kept for the next who asks. Who asks for more than that, in any sizes, makes
+    /// what is held grow by no more than the rest.
     std::size_t idleBytes() const;
 
   private:

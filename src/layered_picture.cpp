@@ -9,6 +9,7 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "kept_memory.h"
+#include "memory.h"
 #include "picture_view.h"
 
 namespace deltasplat {
@@ -19,8 +20,9 @@ namespace {
 }
 
 std::string boxText(const glm::ivec2& min, const glm::ivec2& max) {
-    return std::to_string(max.x - min.x) + "x" + std::to_string(max.y - min.y) + " at " +
-           std::to_string(min.x) + "," + std::to_string(min.y);
+    const glm::i64vec2 size = glm::i64vec2(max) - glm::i64vec2(min);
+    return std::to_string(size.x) + "x" + std::to_string(size.y) + " at " + std::to_string(min.x) +
+           "," + std::to_string(min.y);
 }
 
 // A layer may have come from anywhere.
@@ -121,7 +123,10 @@ int LayeredPicture::slabs() const {
 SlabLayer LayeredPicture::render(int slab, const Listener& listener) const {
     const DefaultFloats floats;
     const Impl::Place& place = impl_->placeOf(slab);
-    SlabRenderer renderer(impl_->views[place.view]->slabs(), listener, place.slab);
+    const SlabInput& input = impl_->views[place.view]->slabs();
+    const SeenSlab& seen = impl_->seen[place.view][std::size_t(place.slab)];
+    requireMemory("layer of a slab", layerBytes(reachOfSeen(input, seen), input.layout.channels));
+    SlabRenderer renderer(input, listener, place.slab);
     renderer.run();
     const Layer layer = renderer.merge();
     SlabLayer result{slab, layer.box.min, layer.box.max, layer.channels, {}, layer.spans};
@@ -146,6 +151,7 @@ void LayeredPicture::fold(std::span<const SlabLayer> layers, Image& image) const
     for (std::size_t view = 0; view < impl_->views.size(); ++view) {
         const PictureView& picture = *impl_->views[view];
         const PlaneBox reach = reachOfAll(picture.slabs(), impl_->seen[view]);
+        requireMemory("layers of a picture", layerBytes(reach, picture.slabs().layout.channels));
         Layer merged(reach, picture.slabs().layout.channels, impl_->memory);
         for (; next < ordered.size() && impl_->slabs[next].view == view; ++next) {
             const SlabLayer& layer = *ordered[next];

@@ -7,6 +7,7 @@
 #include "ingest/delta/delta_format.h"
 #include "ingest/grids/grid_volume.h"
 #include "ingest/readers.h"
+#include "memory.h"
 
 namespace deltasplat {
 namespace {
@@ -32,9 +33,10 @@ Volume makeVolume(const openvdb::GridBase::ConstPtr& grid, const ReadOptions& op
                     gotExpected(where, "the differences of a delta grid",
                                 "the volume itself: readVolume reads a delta grid's file"));
     }
-    const openvdb::GridBase::Ptr own = isChanged(*grid, options)
-                                           ? grid->deepCopyGrid()
-                                           : openvdb::ConstPtrCast<openvdb::GridBase>(grid);
+    const bool changes = isChanged(*grid, options);
+    if (changes) requireMemory(where, double(grid->memUsage()));
+    const openvdb::GridBase::Ptr own =
+        changes ? grid->deepCopyGrid() : openvdb::ConstPtrCast<openvdb::GridBase>(grid);
     Volume volume = volumeOfGrid(own, {listener, where, typeOf(*grid), options});
     volume.name = grid->getName();
     listener.report(1);
@@ -43,6 +45,11 @@ Volume makeVolume(const openvdb::GridBase::ConstPtr& grid, const ReadOptions& op
 
 openvdb::GridBase::ConstPtr makeGrid(const Volume& volume) {
     const DefaultFloats floats;
+    if (!volume.codes) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("OpenVDB grid to make", "a volume without voxels",
+                                "one that was read or made"));
+    }
     return gridOf(volume);
 }
 

@@ -33,7 +33,11 @@ std::vector<Factorization> viewsOf(const Camera& camera, const Volume& volume,
                                    const SplatOptions& options) {
     if (camera.projection == Projection::kOrtho)
         return {factorize(camera, volume.worldFromIndex, options.resolution)};
-    return factorizeRegions(camera, volume.box, volume.worldFromIndex, options.resolution);
+    std::vector<Factorization> views =
+        factorizeRegions(camera, volume.box, volume.worldFromIndex, options.resolution);
+    if (!views.empty()) return views;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("camera", "no lines of sight", "what makeCamera returns"));
 }
 
 double stepsOf(const Factorization& view, const Volume& volume) {
@@ -47,6 +51,12 @@ double stepsOf(const Factorization& view, const Volume& volume) {
 void requireSize(const Camera& camera, const Image& image) {
     const glm::ivec2 size = camera.sizePixels;
     const std::size_t values = std::size_t{4} * std::size_t(size.x) * std::size_t(size.y);
+    if (size.x < 1 || size.y < 1) {
+        throw Error(
+            ErrorCode::kUsage,
+            gotExpected("camera", std::to_string(size.x) + "x" + std::to_string(size.y) + " pixels",
+                        "at least one each way"));
+    }
     if (image.size == size && image.rgba.size() == values) return;
     throw Error(ErrorCode::kUsage,
                 gotExpected("image",
@@ -58,8 +68,7 @@ void requireSize(const Camera& camera, const Image& image) {
 
 PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
                          const Factorization& view, const SheetPlan& plan,
-                         std::shared_ptr<const PreparedAxis> axis,
-                         std::pmr::memory_resource& memory)
+                         std::shared_ptr<const PreparedAxis> axis, KeptMemory& memory)
     : scene_(scene),
       camera_(camera),
       view_(view),

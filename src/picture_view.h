@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <memory_resource>
 #include <optional>
 #include <vector>
 
@@ -32,7 +31,7 @@ class PictureView {
     /// @param memory  for layers and sheets
     PictureView(const PreparedScene::Impl& scene, const Camera& camera, const Factorization& view,
                 const SheetPlan& plan, std::shared_ptr<const PreparedAxis> axis,
-                std::pmr::memory_resource& memory);
+                KeptMemory& memory);
     // What slabs are made of refers to it.
     PictureView(const PictureView&) = delete;
     PictureView& operator=(const PictureView&) = delete;

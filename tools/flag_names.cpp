@@ -22,6 +22,7 @@ constexpr FlagName kFlagNames[] = {
     {"bigEndian=false", "--endian little"},
     {"bigEndian=true", "--endian big"},
     {"bits", "--bits"},
+    {"colorBy", "--color-by"},
     {"confineInputs", "--confine"},
     {"dims", "--dims"},
     {"direction", "--direction"},

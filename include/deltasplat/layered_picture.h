@@ -42,8 +42,8 @@ class LayeredPicture {
     /// Puts layers together, and shows them.
     /// @param layers  of all slabs, in any order
     /// @param image   of the camera's size; cleared first
-    /// @throw Error(kUsage) if a layer is missing, is there twice or is of another picture, or if
-    ///        the image has another size
+    /// @throw Error(kUsage) if a layer is missing, is there twice or has another shape than this
+    ///        picture's, or if the image has another size
     void fold(std::span<const SlabLayer> layers, Image& image) const;
 
   private:

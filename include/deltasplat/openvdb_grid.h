@@ -11,8 +11,9 @@
 namespace deltasplat {
 
 /// Makes a volume of a scalar grid (float, double, int32, int64, bool or mask) with a linear
-/// transform: what readVolume would make of a .vdb file of it. The grid is not changed, and shared
-/// where `options` ask for the source to be kept.
+/// transform: what readVolume would make of a .vdb file of it. The grid is not changed; where
+/// `options` ask for the source to be kept it is shared, unless a level set has to become fog or
+/// NaN may have to be replaced, of which there is a copy.
 /// @param options  levelSetToFog, nanValue, bits, relativeError, keepSource, keepInexact
 /// @throw Error(kUsage) without a grid, or for one that holds the differences of a delta grid;
 ///        Error(kInput) for another type or transform, or for NaN and infinities that nothing
@@ -26,7 +27,8 @@ Volume makeVolume(const openvdb::GridBase::ConstPtr& grid, const ReadOptions& op
 /// does, else double; with name, class, transform and metadata. Tiles stay tiles, and every active
 /// voxel is active. Values come from Volume::source, or if there is none from the codes.
 /// Deterministic.
-/// @throw Error(kFailed) if OpenVDB cannot hold the volume's transform
+/// @throw Error(kUsage) for a volume without voxels (Volume::codes); Error(kFailed) if OpenVDB
+///        cannot hold the volume's transform
 openvdb::GridBase::ConstPtr makeGrid(const Volume& volume);
 
 }  // namespace deltasplat

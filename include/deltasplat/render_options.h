@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "deltasplat/delta/tolerance.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/splat/footprint.h"
+#include "deltasplat/tolerance.h"
 #include "deltasplat/view/camera.h"
 #include "deltasplat/view/factorization.h"
 
@@ -52,9 +52,9 @@ struct SplatOptions {
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for
 };
 
-/// What can be asked for. Under kXray and kMip method, tolerance, resolution, extinction and unit
-/// distance have no effect, under kMip sigma neither; the transfer function has none but for the
-/// colours of `mipColors`.
+/// What can be asked for. Under kXray and kMip method, tolerance, resolution, extinction, unit
+/// distance and colorBy have no effect, under kMip sigma neither; the transfer function has none
+/// but for the colours of `mipColors`.
 struct RenderOptions : SplatOptions {
     Mode mode = Mode::kComposite;
     /// kMip: the transfer function's colour of the value, opaque, instead of the value itself.

@@ -49,6 +49,12 @@ struct Layer {
     static constexpr glm::ivec2 kNothing{std::numeric_limits<int>::max(), 0};
 };
 
+/// Bytes that the values of a layer take.
+inline double layerBytes(const PlaneBox& box, int channels) {
+    const glm::dvec2 size = box.size();
+    return sizeof(float) * channels * size.x * size.y;
+}
+
 /// A row of a layer.
 struct LayerRow {
     const float* values;  ///< [width][channels]

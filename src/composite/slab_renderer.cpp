@@ -15,14 +15,6 @@
 #include "parallel.h"
 
 namespace deltasplat {
-namespace {
-
-double layerBytes(const PlaneBox& box, int channels) {
-    const glm::dvec2 size = box.size();
-    return sizeof(float) * channels * size.x * size.y;
-}
-
-}  // namespace
 
 std::vector<SeenSlab> seenSlabs(const SlabInput& input) {
     std::vector<SeenSlab> seen;
@@ -64,6 +56,7 @@ SlabRenderer::SlabRenderer(const SlabInput& input, const Listener& listener,
         scales_.emplace_back(input.classes.scaleOf(plane) / double(Footprint::kOne));
     if (only) seen_ = {seen_[std::size_t(*only)]};
     reach_ = reachOfAll(input, seen_);
+    for (const SeenSlab& seen : seen_) slices_ += seen.slab->sliceCount;
     if (seen_.empty() || reach_.empty()) return;
     cutIntoStrips();
     findLargest();
@@ -170,6 +163,8 @@ void SlabRenderer::requireSlabMemory() const {
         bytes += layerBytes(reachOfSeen(input_, seen_[i]), channels_);
     bytes += layerBytes(reach_, channels_);
     if (!input_.plane.isParallel()) bytes += layerBytes(reach_, 1);
+    // What is kept is there already.
+    bytes = std::max(0.0, bytes - double(input_.memory.idleBytes()));
     requireMemory("sheets and layers at " + std::to_string(largest_.resolution) + " pixels a voxel",
                   bytes);
 }
@@ -252,7 +247,7 @@ void SlabRenderer::count(const SeenSlab& seen, double compositeSeconds, double p
         slicesDone_ += double(seen.slab->sliceCount) / double(strips_.size());
         slicesDone = slicesDone_;
     }
-    progress_.report(slicesDone / input_.deltas.box.dims().x);
+    progress_.report(slicesDone / slices_);
 }
 
 }  // namespace deltasplat

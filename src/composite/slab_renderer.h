@@ -4,12 +4,12 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
-#include <memory_resource>
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include "composite/layer_fold.h"
+#include "kept_memory.h"
 #include "shared_progress.h"
 #include "splat/splatter.h"
 #include "stopwatch.h"
@@ -27,7 +27,7 @@ struct SlabInput {
     const Footprint& footprint;
     const SheetLayout& layout;  ///< of whole sheets
     const BasePlane& plane;
-    std::pmr::memory_resource& memory;  ///< for sheets and layers
+    KeptMemory& memory;  ///< for sheets and layers
 };
 
 /// A slab of which some slices are seen: those of [firstSlice, lastSlice].
@@ -100,6 +100,7 @@ class SlabRenderer {
     double compositeSeconds_ = 0;
     double pieceSeconds_ = 0;
     double slicesDone_ = 0;
+    double slices_ = 0;  // of all that is to be rendered
 };
 
 }  // namespace deltasplat

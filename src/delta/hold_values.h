@@ -4,7 +4,7 @@
 #include <span>
 
 #include "deltasplat/delta/delta_grid.h"
-#include "deltasplat/delta/tolerance.h"
+#include "deltasplat/tolerance.h"
 
 namespace deltasplat {
 

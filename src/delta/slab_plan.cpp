@@ -8,7 +8,7 @@ namespace deltasplat {
 namespace {
 
 // How many slabs there are: each costs a layer, and the fewer there are, the farther a strip's rows
-// move along a sheet (src/composite_render.cpp).
+// move along a sheet (src/composite/slab_renderer.cpp).
 constexpr int kMostSlabs = 8;
 constexpr int kLeastSlabs = 4;
 constexpr int kShortSlab = 4;  // blocks of 8 slices: slabs up to this length may be fewer

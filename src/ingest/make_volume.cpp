@@ -12,6 +12,8 @@
 #include "ingest/dense/dense_source.h"
 #include "ingest/placement.h"
 #include "ingest/readers.h"
+#include "ingest/values/value_cast.h"
+#include "memory.h"
 #include "number_text.h"
 
 namespace deltasplat {
@@ -94,6 +96,15 @@ void checkLayout(const MemoryLayout& layout) {
         refuse("space", "\"" + layout.space + "\"", "RAS, LPS or nothing");
 }
 
+// Of whole numbers a background that is none, or beyond them, could be no voxel's.
+template <typename T>
+void checkBackground(const std::optional<double>& background) {
+    if (!background || std::isnan(*background)) return;
+    if (std::is_floating_point_v<T> || double(valueAs<T>(*background)) == *background) return;
+    refuse("background", numberText(*background),
+           std::string("a value of type ") + rawTypeName(rawTypeOf<T>()));
+}
+
 // Hands over slices, as they lie in memory or gathered.
 template <typename T>
 class LayerGiver {
@@ -104,6 +115,10 @@ class LayerGiver {
     void operator()(const DenseSource::LayerUse& use, const Listener& listener) const {
         const bool contiguous = strides_ == glm::i64vec3(1, dims_.x, dims_.x * dims_.y);
         std::vector<T> gathered;
+        if (!contiguous) {
+            const auto layerSlices = std::min<std::int64_t>(DenseSource::kLayerSlices, dims_.z);
+            requireMemory(kWhere, double(sizeof(T)) * double(dims_.x * dims_.y * layerSlices));
+        }
         for (std::int64_t first = 0; first < dims_.z; first += DenseSource::kLayerSlices) {
             const std::int64_t slices =
                 std::min<std::int64_t>(DenseSource::kLayerSlices, dims_.z - first);
@@ -142,6 +157,7 @@ Volume makeVolume(std::span<const T> values, const MemoryLayout& layout, const R
     const DefaultFloats floats;
     requireFiniteNan(options);
     checkLayout(layout);
+    checkBackground<T>(layout.background);
     const glm::i64vec3 strides = stridesOf(layout, values.size());
     DenseSource source;
     source.where = kWhere;

@@ -8,6 +8,7 @@
 #include "ingest/codes/code_tree.h"
 #include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
+#include "number_text.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -41,12 +42,21 @@ void readTree(const Tree& tree, const Volume& volume, const IndexBox& box, const
 
 void readVoxels(const Volume& volume, const IndexBox& box, std::span<double> values,
                 std::span<std::uint8_t> active) {
-    const auto voxels = std::size_t(box.voxels());
+    constexpr int kMost = (1 << 30) - 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (box.min[axis] >= -kMost && box.max[axis] <= kMost) continue;
+        throw Error(ErrorCode::kUsage, gotExpected("voxels to read",
+                                                   "a box from " + std::to_string(box.min[axis]) +
+                                                       " to " + std::to_string(box.max[axis]),
+                                                   "indices within 2^30 of 0"));
+    }
+    const glm::dvec3 dims = box.dims();
+    const double voxels = dims.x * dims.y * dims.z;
     const auto requireSize = [&](const char* what, std::size_t size) {
-        if (size == voxels) return;
+        if (double(size) == voxels) return;
         throw Error(ErrorCode::kUsage,
                     gotExpected(std::string("voxels to read: ") + what,
-                                std::to_string(size) + " values", std::to_string(voxels)));
+                                std::to_string(size) + " values", numberText(voxels)));
     };
     requireSize("values", values.size());
     if (!active.empty()) requireSize("active", active.size());

@@ -59,6 +59,9 @@ void checkOptics(const Optics& optics) {
         requireThat(std::isfinite(unit) && unit > 0, "`unitDistance`", numberText(unit),
                     "a number > 0");
     }
+    const int colorBy = int(optics.colorBy);
+    requireThat(colorBy >= int(ColorBy::kValue) && colorBy <= int(ColorBy::kIndex), "`colorBy`",
+                std::to_string(colorBy), "one of ColorBy");
     const double extinction = optics.extinctionScale;
     requireThat(std::isfinite(extinction) && extinction >= 0, "`extinctionScale`",
                 numberText(extinction), "a number >= 0");

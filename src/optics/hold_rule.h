@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
-#include "deltasplat/delta/tolerance.h"
 #include "deltasplat/optics/class_table.h"
+#include "deltasplat/tolerance.h"
 #include "optics/voxel_rounder.h"
 
 namespace deltasplat {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/mat4x4.hpp>
 #include <limits>
@@ -51,8 +52,9 @@ Share shareAlong(const glm::dvec3& slope, const IndexBox& box) {
         low += std::min(ends[0], ends[1]);
         high += std::max(ends[0], ends[1]);
     }
-    if (!(high - low > 0)) return {};
-    return {slope / (high - low), -low / (high - low)};
+    const Share share{slope / (high - low), -low / (high - low)};
+    const double sum = share.slope.x + share.slope.y + share.slope.z + share.start;
+    return high - low > 0 && std::isfinite(sum) ? share : Share{};
 }
 
 }  // namespace

@@ -6,16 +6,22 @@
 namespace deltasplat {
 
 VoxelRounder::VoxelRounder(const ClassTable& classes, const glm::dvec3& brightest)
-    : alphas_(classes.alphas()) {
+    : alphas_(classes.alphas()), brightest_(brightest) {
     const double largest = *std::max_element(alphas_.begin(), alphas_.end());
     scale_ = glm::dvec4(brightest, 1) * largest / double(ClassTable::kMax);
-    for (int c = 0; c < 4; ++c) unitsOfOne_[c] = scale_[c] > 0 ? 1 / scale_[c] : 0;
+    // As shares they can be neither too large nor too small to reckon with.
+    for (double& alpha : alphas_) alpha = largest > 0 ? alpha / largest : 0;
 }
 
 ColorDigits VoxelRounder::operator()(const VoxelLook& look) const {
+    constexpr auto kMost = double(ClassTable::kMax);
     const double alpha = alphas_[look.number];
-    glm::dvec4 units = glm::dvec4(look.color.color(), 1) * alpha * unitsOfOne_;
-    for (int c = 0; c < 4; ++c) units[c] = std::min(units[c], double(ClassTable::kMax));
+    const glm::dvec3 color = look.color.color();
+    glm::dvec4 units(0, 0, 0, alpha * kMost);
+    for (int c = 0; c < 3; ++c) {
+        const double share = brightest_[c] > 0 && scale_[c] > 0 ? color[c] / brightest_[c] : 0;
+        units[c] = std::min(share, 1.0) * alpha * kMost;
+    }
     return digitsOf(units);
 }
 

@@ -9,7 +9,7 @@ namespace deltasplat {
 /// Writes colours that voxels have of their own in digits, as ClassTable says.
 class VoxelRounder {
   public:
-    /// @param classes    of opacities; outlives the rounder
+    /// @param classes    of opacities
     /// @param brightest  as VoxelPainter::brightest
     VoxelRounder(const ClassTable& classes, const glm::dvec3& brightest);
 
@@ -19,9 +19,9 @@ class VoxelRounder {
     ColorDigits operator()(const VoxelLook& look) const;
 
   private:
-    std::vector<double> alphas_;  // [classes]
+    std::vector<double> alphas_;  // [classes]: as shares of the largest
+    glm::dvec3 brightest_;
     glm::dvec4 scale_;
-    glm::dvec4 unitsOfOne_;  // how many units 1 is
 };
 
 }  // namespace deltasplat

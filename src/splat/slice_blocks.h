@@ -103,7 +103,7 @@ void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use
     const std::span<const DeltaWord> words = wordsOf(slice, rows);
     if (!stampEmptyVoxels_) {
         for (const DeltaWord& word : words) {
-            prefetchClasses(&word, words);
+            if (!input_.own) prefetchClasses(&word, words);
             const glm::ivec2 block = blockOf(word);
             if (!hasColumn(block)) continue;
             SeenWord seen = seenOf(word);

@@ -13,8 +13,8 @@
 #include <string>
 
 #include "default_floats.h"
-#include "deltasplat/delta/delta_grid.h"
 #include "deltasplat/error.h"
+#include "deltasplat/ingest/slot.h"
 #include "number_text.h"
 #include "portable_math.h"
 #include "view/affine.h"

@@ -113,6 +113,24 @@ TEST(ColorBy, leavesOpacityToTheTransferFunction) {
     }
 }
 
+// Nor is whether voxels are divided: labels are not, whatever they are coloured by.
+TEST(ColorBy, dividesWhatTheTransferFunctionDivides) {
+    const Volume labels = randomVolume({{0, 0, 0}, {12, 12, 12}}, 4, 0.2);
+    RenderOptions options;
+    options.camera.sizePixels = {80, 80};
+    TransferFunction& function = options.optics.transferFunction;
+    function.opacities = {{0, 0.9, 0.5, 0}, {255, 0.9, 0.5, 0}};
+    for (const bool jump : {true, false}) {
+        function.colors = {{0, {1, 0, 0}}, {100, {1, 0, 0}}, {100, {0, 1, 0}}, {255, {0, 1, 0}}};
+        if (!jump) function.colors.erase(function.colors.begin() + 1);
+        options.optics.colorBy = ColorBy::kValue;
+        const int between = render(labels, options).stats.between;
+        EXPECT_EQ(between, jump ? 0 : 1);
+        options.optics.colorBy = ColorBy::kIndex;
+        EXPECT_EQ(render(labels, options).stats.between, between);
+    }
+}
+
 // Voxels of one value that differ in colour make deltas: along the axis that colours change on.
 TEST(ColorBy, whatHasAnotherColorIsAChange) {
     const Volume block = makeVolume({{0, 0, 0}, {15, 15, 15}}, [](int, int, int) { return 100; });
@@ -167,6 +185,14 @@ TEST(ColorBy, staysWithinTheBoundOfATolerance) {
 
 TEST(ColorBy, takesWhatHasNoExtent) {
     RenderOptions options;
+    // Fog that is hardly there.
+    options.optics.extinctionScale = 1e-305;
+    options.optics.transferFunction.opacities = {{0, 0.5, 0.5, 0}, {255, 0.5, 0.5, 0}};
+    options.optics.transferFunction.colors = {{0, {1, 1, 1}}};
+    options.optics.colorBy = ColorBy::kX;
+    const Image thin = render(randomVolume({{0, 0, 0}, {9, 9, 9}}, 4, 0.2), options).image;
+    for (const float value : thin.rgba) ASSERT_LE(std::abs(value), 1e-30F);
+    options.optics.extinctionScale = 1;
     options.camera.sizePixels = {20, 20};
     options.optics.transferFunction.opacities = {{0, 0.5, 0.5, 0}, {255, 0.5, 0.5, 0}};
     options.optics.transferFunction.colors = {{0, {1, 1, 1}}};

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <random>
 #include <string>
 #include <thread>
@@ -120,6 +121,11 @@ TEST(LayeredPicture, refusesLayersThatAreNotItsOwn) {
     EXPECT_EQ(messageFor([](auto& all) { all[0].slab = -1; }),
               "layers of a picture: got slab -1; expected one of " + slabs + ", counted from 0");
     EXPECT_NE(messageFor([](auto& all) { ++all[0].max.x; }).find("for slab 0"), std::string::npos);
+    EXPECT_NE(messageFor([](auto& all) {
+                  all[0].min.x = std::numeric_limits<int>::min();
+                  all[0].max.x = std::numeric_limits<int>::max();
+              }).find("4294967295x"),
+              std::string::npos);
     EXPECT_NE(messageFor([](auto& all) { all[0].values.pop_back(); }).find("another size"),
               std::string::npos);
     EXPECT_NE(messageFor([](auto& all) {

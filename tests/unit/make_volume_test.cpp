@@ -173,6 +173,9 @@ TEST(MakeVolumeOfReals, takesNaNAsItIsAsked) {
     EXPECT_EQ(holes.activeCount, values.size() - 2);
     EXPECT_EQ(holes.background, 0);
     // But not infinity, or what is no number beside another background.
+    values[7] = std::numeric_limits<float>::infinity();
+    EXPECT_THROW(makeVolume(view(values), layout), Error);
+    values[7] = 1;
     layout.background = 0;
     EXPECT_THROW(makeVolume(view(values), layout), Error);
     EXPECT_EQ(makeVolume(view(values), layout, options).replaced, 2u);
@@ -216,12 +219,25 @@ TEST(MakeVolumeErrors, sayWhatWasGotAndExpected) {
     layout.background = std::numeric_limits<double>::infinity();
     EXPECT_EQ(messageFor(layout),
               "volume in memory: background: got inf; expected a finite number or NaN");
+    const std::vector<std::uint8_t> bytes(24);
+    layout.background = -1;
+    EXPECT_EQ(messageOf([&] { makeVolume(view(bytes), layout); }),
+              "volume in memory: background: got -1; expected a value of type uint8");
     layout.background.reset();
+    // Slices that lie upon each other, in more memory than there is.
+    const std::vector<float> few2(3 << 20);
+    MemoryLayout wide{{1 << 20, 1 << 20, 1}};
+    wide.strides = {1, 1, 1};
+    EXPECT_THROW(makeVolume(view(few2), wide), Error);
     layout.space = "XYZ";
     EXPECT_EQ(messageFor(layout),
               "volume in memory: space: got \"XYZ\"; expected RAS, LPS or nothing");
     layout.space.clear();
     const Volume volume = makeVolume(view(values), layout);
+    EXPECT_NE(messageOf([&] {
+                  readVoxels(volume, {{0, 0, 0}, {std::numeric_limits<int>::max(), 0, 0}}, {});
+              }).find("expected indices within 2^30 of 0"),
+              std::string::npos);
     std::vector<double> few(23);
     EXPECT_EQ(messageOf([&] { readVoxels(volume, volume.box, few); }),
               "voxels to read: values: got 23 values; expected 24");
@@ -248,7 +264,24 @@ TEST(MakeVolumeOfGrid, leavesTheGridAsItIs) {
     EXPECT_EQ(makeGrid(kept).get(), static_cast<openvdb::GridBase*>(grid.get()));
 }
 
+TEST(MakeVolumeOfGrid, keepsThePatientsSpace) {
+    const std::vector<float> values = someValues<float>();
+    MemoryLayout layout{kDims};
+    layout.background = 0;
+    layout.space = "RAS";
+    for (const bool keep : {false, true}) {
+        ReadOptions options;
+        options.keepSource = keep;
+        const Volume volume = makeVolume(view(values), layout, options);
+        EXPECT_EQ(volume.space, "RAS");
+        EXPECT_EQ(makeVolume(makeGrid(volume)).space, "RAS");
+    }
+}
+
 TEST(MakeVolumeOfGrid, refusesWhatIsNoVolume) {
+    EXPECT_EQ(messageOf([] { makeGrid(Volume()); }),
+              "OpenVDB grid to make: got a volume without voxels; expected one that was read or "
+              "made");
     EXPECT_EQ(messageOf([] { makeVolume(openvdb::GridBase::ConstPtr()); }),
               "OpenVDB grid: got none; expected a grid");
     const openvdb::GridBase::ConstPtr vectors = openvdb::Vec3SGrid::create();

@@ -6,9 +6,9 @@
 #include <memory>
 #include <optional>
 
-#include "deltasplat/delta/tolerance.h"
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/progress.h"
+#include "deltasplat/tolerance.h"
 
 namespace deltasplat {
 

@@ -21,8 +21,8 @@ struct MemoryLayout {
     /// fastest and there are no gaps, {1, dims.x, dims.x * dims.y}.
     std::optional<glm::i64vec3> strides = {};
     glm::dmat4 worldFromIndex{1.0};  ///< as Volume::worldFromIndex
-    /// Voxels of this value are empty, as those that are not active in a .vdb; NaN: those that are
-    /// NaN. Empty: all voxels are there, as in a .raw file.
+    /// Voxels of this value (of float, of the nearest float) are empty, as those that are not
+    /// active in a .vdb; NaN: those that are NaN. Empty: all voxels are there, as in a .raw file.
     std::optional<double> background = {};
     std::string name = "volume";
     std::string space = {};  ///< as Volume::space
@@ -45,6 +45,7 @@ Volume makeVolume(std::span<const T> values, const MemoryLayout& layout,
 /// Voxels that are not active have the volume's background, or 0 if it has none. Multi-threaded.
 /// @param values  [box.voxels()]
 /// @param active  [box.voxels()], 1 for active voxels and 0 for others; or empty
+/// @param box  indices within 2^30 of 0
 /// @throw Error(kUsage) if a span has another size
 void readVoxels(const Volume& volume, const IndexBox& box, std::span<double> values,
                 std::span<std::uint8_t> active = {});

@@ -54,8 +54,8 @@ struct Volume {
     std::string name;       ///< grid name, or the file's name without folder and extensions
     std::string type;       ///< value type of the source: "uint8", "float", "half", "bool", ...
     std::string gridClass;  ///< "fog volume", "level set", "staggered" or "unknown"
-    /// Whether voxels may be inactive and then hold `background`: true for .vdb, false for raw
-    /// volumes.
+    /// Whether voxels may be inactive and then hold `background`: true for .vdb and for values in
+    /// memory with a background, false for others.
     bool hasBackground = false;
     double background = 0;                  ///< value of inactive voxels
     CodeBook codeBook;                      ///< what the codes mean
@@ -68,8 +68,8 @@ struct Volume {
     /// Coordinate system of the patient that world space is: "RAS" (x to the right, y to the front,
     /// z up), "LPS" (x to the left, y to the back, z up), or empty where the file names none.
     std::string space;
-    /// What codes cannot tell, if ReadOptions::keepSource asked for it: for .vdb always, for other
-    /// formats only if the code book is not exact (then a grid of the file's value type).
+    /// What codes cannot tell, if ReadOptions::keepSource asked for it: where hasBackground always,
+    /// otherwise only if the code book is not exact (then a grid of the source's value type).
     std::shared_ptr<const SourceGrid> source;
     std::optional<DeltaOrigin> origin;  ///< only of a volume read from a delta grid
     std::uint64_t replaced = 0;         ///< NaN and infinities that ReadOptions::nanValue replaced

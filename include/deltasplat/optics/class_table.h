@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "deltasplat/delta/delta_grid.h"
+#include "deltasplat/ingest/slot.h"
+#include "deltasplat/ingest/volume.h"
 #include "deltasplat/optics/transfer_function.h"
 
 namespace deltasplat {

@@ -17,6 +17,7 @@
 #include "ingest/dense/dense_source.h"
 #include "ingest/dense/dense_tree_builder.h"
 #include "ingest/dense/mixed_blocks.h"
+#include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/grid_volume.h"
 #include "ingest/grids/scalar_grids.h"
@@ -259,14 +260,15 @@ void readCodes(const DenseSource& source, const ReadOptions& options, const Surv
     warnOfCodeError(source.where, volume, listener);
 }
 
-// @param nonFinite  what NaN and infinities are read as
+// @param nonFinite  what NaN and infinities are read as; empty: as they are
 template <typename Grid>
-openvdb::GridBase::Ptr readGrid(const DenseSource& source, double nonFinite,
+openvdb::GridBase::Ptr readGrid(const DenseSource& source, std::optional<double> nonFinite,
                                 const Listener& listener) {
     using Value = typename Grid::ValueType;
     auto grid = Grid::create();
     LayerAdder<typename Grid::TreeType> adder(source, grid->tree());
-    const auto nanValue = valueAs<Value>(nonFinite);
+    std::optional<Value> nanValue;
+    if (nonFinite) nanValue = valueAs<Value>(*nonFinite);
     source.forEachLayer(
         [&](int first, int, const std::byte* bytes) {
             adder.add(
@@ -282,7 +284,7 @@ openvdb::GridBase::Ptr readGrid(const DenseSource& source, double nonFinite,
     return grid;
 }
 
-openvdb::GridBase::Ptr readSourceGrid(const DenseSource& source, double nonFinite,
+openvdb::GridBase::Ptr readSourceGrid(const DenseSource& source, std::optional<double> nonFinite,
                                       const Listener& listener) {
     openvdb::initialize();
     switch (source.type) {
@@ -299,15 +301,15 @@ openvdb::GridBase::Ptr readSourceGrid(const DenseSource& source, double nonFinit
     }
 }
 
-// Makes inactive what has a value, and that value the background; NaN stands for itself, and makes
-// the background 0.
+// Makes inactive what has a value, as the grid's type has it, and that value the background; NaN
+// stands for itself, and makes the background 0.
 template <typename Grid>
 void dropValue(Grid& grid, double dropped) {
     using Value = typename Grid::ValueType;
-    const auto isDropped = [&](Value value) {
-        return double(value) == dropped || (std::isnan(dropped) && double(value) != double(value));
-    };
     const Value background = std::isnan(dropped) ? Value{} : valueAs<Value>(dropped);
+    const auto isDropped = [&](Value value) {
+        return std::isnan(dropped) ? double(value) != double(value) : value == background;
+    };
     std::vector<typename Grid::TreeType::LeafNodeType*> leaves;
     grid.tree().getNodes(leaves);
     forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -373,24 +375,24 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
 
 Volume readSparse(const DenseSource& source, double background, const ReadOptions& options,
                   const Listener& listener) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     constexpr double kReadShare = 0.5;
     // Integers that doubles do not hold are counted where they are integers still.
     double readError = 0;
     if (source.type == RawType::kUint64)
         readError = scan(source, options, partOf(listener, 0, 0.1)).census.rounding;
     const openvdb::GridBase::Ptr grid =
-        readSourceGrid(source, kNaN, partOf(listener, 0.1, kReadShare));
+        readSourceGrid(source, {}, partOf(listener, 0.1, kReadShare));
+    if (!source.space.empty()) grid->insertMeta(kSpaceKey, openvdb::StringMetadata(source.space));
     grid->apply<ScalarGrids>([&](auto& typed) { dropValue(typed, background); });
     const Listener coding = partOf(listener, kReadShare, 1);
     Volume volume = volumeOfGrid(grid, {coding, source.where, rawTypeName(source.type), options});
     volume.name = source.name;
-    volume.space = source.space;
     volume.worldFromIndex = source.worldFromIndex;
     volume.readError = readError;
     const std::uint64_t replaced = std::exchange(volume.replaced, 0);
     warnOfChanges(source, options, volume, listener);
     volume.replaced = replaced;
+    listener.report(1);
     return volume;
 }
 

@@ -8,9 +8,11 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "ingest/codes/code_tree.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/vdb/vdb_transform.h"
+#include "memory.h"
 #include "number_text.h"
 
 namespace deltasplat {
@@ -58,6 +60,9 @@ Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& 
                     openvdb::MetaMap::ConstPtr fileMetadata) {
     Volume volume;
     volume.worldFromIndex = worldFromIndexOf(grid->transform(), options.where);
+    requireMemory(options.where,
+                  double(grid->constBaseTree().leafCount()) *
+                      double(sizeof(CodeTree::Leaf) + CodeTree::Leaf::SIZE * sizeof(Code)));
     fillFromGrid(*grid, options, volume);
     const ReadOptions& reading = options.reading;
     if (reading.keepSource || (reading.keepInexact && !volume.codeBook.isExact())) {

@@ -182,13 +182,14 @@ std::vector<std::uint64_t> countEqual(const std::byte* bytes, std::size_t count,
 }
 
 template <typename Out>
-void readValues(const RawBlock& block, RawType type, bool bigEndian, Out nanValue, Out* values) {
+void readValues(const RawBlock& block, RawType type, bool bigEndian, std::optional<Out> nanValue,
+                Out* values) {
     const bool swap = mustSwap(bigEndian);
     withRawType(type, [&](auto zero) {
         using T = decltype(zero);
         const auto convert = [&](T value) {
             if constexpr (std::is_floating_point_v<T>) {
-                if (!std::isfinite(value)) return nanValue;
+                if (nanValue && !std::isfinite(value)) return *nanValue;
             }
             return Out(value);
         };
@@ -200,9 +201,11 @@ void readValues(const RawBlock& block, RawType type, bool bigEndian, Out nanValu
     });
 }
 
-template void readValues(const RawBlock&, RawType, bool, float, float*);
-template void readValues(const RawBlock&, RawType, bool, double, double*);
-template void readValues(const RawBlock&, RawType, bool, std::int32_t, std::int32_t*);
-template void readValues(const RawBlock&, RawType, bool, std::int64_t, std::int64_t*);
+template void readValues(const RawBlock&, RawType, bool, std::optional<float>, float*);
+template void readValues(const RawBlock&, RawType, bool, std::optional<double>, double*);
+template void readValues(const RawBlock&, RawType, bool, std::optional<std::int32_t>,
+                         std::int32_t*);
+template void readValues(const RawBlock&, RawType, bool, std::optional<std::int64_t>,
+                         std::int64_t*);
 
 }  // namespace deltasplat

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "deltasplat/ingest/code_book.h"
 #include "ingest/codes/book_encoder.h"
@@ -60,9 +61,11 @@ EncodeBlock blockEncoder(const RawCoding& coding);
 std::vector<std::uint64_t> countEqual(const std::byte* bytes, std::size_t count,
                                       const RawCoding& coding, const std::vector<double>& values);
 
-/// Writes a block's values in the order of codes, as `T`; NaN and infinities as `nanValue`.
-/// Instantiated for float, double, std::int32_t and std::int64_t, from any raw type that T holds.
+/// Writes a block's values in the order of codes, as `T`; NaN and infinities as `nanValue`, if
+/// there is one. Instantiated for float, double, std::int32_t and std::int64_t, from any raw type
+/// that T holds.
 template <typename T>
-void readValues(const RawBlock& block, RawType type, bool bigEndian, T nanValue, T* values);
+void readValues(const RawBlock& block, RawType type, bool bigEndian, std::optional<T> nanValue,
+                T* values);
 
 }  // namespace deltasplat
