@@ -69,12 +69,13 @@ class CompositeRender {
         const auto isZero = [](float value) { return value == 0; };
         if (volume_.empty() || !std::all_of(image_.rgba.begin(), image_.rgba.end(), isZero)) return;
         if (stats_.visible == 0) {
-            listener.warn("picture: empty, for transfer function and extinction show none of the "
-                          "values " +
-                          numberText(volume_.valueMin) + " to " + numberText(volume_.valueMax));
+            listener.warn(
+                "picture: empty, for transfer function and extinction show none of the values " +
+                numberText(volume_.valueMin) + " to " + numberText(volume_.valueMax));
         } else {
-            listener.warn("picture: empty, for what can be seen of the volume lies outside of it, "
-                          "or before the near plane");
+            listener.warn(
+                "picture: empty, for what can be seen of the volume lies outside of it, "
+                "before the near plane, or is far smaller than a pixel");
         }
     }
 

@@ -160,10 +160,11 @@ deltasplat_cli_test(patient.direction_parallel_to_up EXIT 2
     STDERR "deltasplat: --direction: got 0,0,1 as direction, parallel to up 0,0,1; expected directions that differ (another --view, --direction or --up)")
 deltasplat_cli_test(negative_vectors CREATES out.exr
     ARGS render ${cube} -o out.exr --direction -1,0.8,-0.6 --up=-.5,1,0 --target -1,2,-.25)
-foreach(width 1e-30 1e30)
-    deltasplat_cli_test(frame_width_${width} CREATES out.exr
-        ARGS render ${cube} -o out.exr --size 8x8 --frame-width ${width})
-endforeach()
+deltasplat_cli_test(frame_width_1e-30 CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --frame-width 1e-30)
+deltasplat_cli_test(frame_width_1e30 CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --frame-width 1e30
+    STDERR_MATCHES "deltasplat: warning: picture: empty, .* or is far smaller than a pixel")
 deltasplat_cli_test(last_value_wins CREATES out.exr
     ARGS render ${cube} -o out.exr --size 0x0x0 --size 8x8)
 
