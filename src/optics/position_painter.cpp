@@ -23,7 +23,7 @@ class PositionPainter : public VoxelPainter {
                std::span<VoxelColor, 512> colors) const override {
         for (std::size_t n = 0; n < colors.size(); ++n) {
             if (classes[n] == 0) continue;
-            const glm::dvec3 steps(double(n / 64), double(n / 8 % 8), double(n % 8));
+            const glm::dvec3 steps(glm::ivec3(n / 64, n / 8 % 8, n % 8));
             const glm::dvec3 index = place.first + place.steps * steps;
             glm::dvec3 color;
             for (int c = 0; c < 3; ++c) color[c] = glm::dot(slopes_[c], index) + starts_[c];

@@ -33,7 +33,7 @@ class WordColors {
   private:
     using Colors = std::array<ClassTable::Color, 64>;
     static std::size_t numberOf(DigitPlace digit) {
-        return std::size_t(2 * digit.plane + (digit.low ? 1 : 0));
+        return 2 * std::size_t(digit.plane) + (digit.low ? 1 : 0);
     }
     std::uint64_t voxelsOf(DigitPlace digit, std::size_t word) const;
 
