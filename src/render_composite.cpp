@@ -66,8 +66,13 @@ class CompositeRender {
 
     // Who reads an empty volume has been told so.
     void warnOfEmptyPicture(const Listener& listener) const {
-        const auto isZero = [](float value) { return value == 0; };
-        if (volume_.empty() || !std::all_of(image_.rgba.begin(), image_.rgba.end(), isZero)) return;
+        const auto isSeen = [](float value) { return value != 0; };
+        const auto& rgba = image_.rgba;
+        // Most pictures show something in the middle.
+        const auto middle = rgba.begin() + std::ptrdiff_t(rgba.size() / 2);
+        if (volume_.empty() || std::any_of(middle, rgba.end(), isSeen) ||
+            std::any_of(rgba.begin(), middle, isSeen))
+            return;
         if (stats_.visible == 0) {
             listener.warn(
                 "picture: empty, for transfer function and extinction show none of the values " +

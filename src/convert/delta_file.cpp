@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "convert/volume_grid.h"
 #include "default_floats.h"
 #include "delta/delta_tree.h"
 #include "delta/hold_values.h"
@@ -144,10 +145,6 @@ DeltaHeader headerOf(const Volume& volume, const DeltaGrid& deltas, const Rest& 
     return header;
 }
 
-std::string treeTypeOf(const openvdb::GridBase& grid) {
-    return grid.isType<openvdb::MaskGrid>() ? "mask" : grid.valueType();
-}
-
 }  // namespace
 
 struct DeltaFile::Impl {
@@ -195,7 +192,7 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     DeltaHeader header = headerOf(held, deltas, rest, inactive, options.tolerance);
     header.box = held.box;
     if (source && volume.hasBackground) {
-        header.sourceTree = treeTypeOf(*source);
+        header.sourceTree = typeOf(*source);
         header.sourceMap = source->transform().mapType();
         putSourceMetadata(*source, *grid);
         if (impl_->grids.empty() && volume.source->fileMetadata)

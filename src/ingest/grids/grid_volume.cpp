@@ -48,12 +48,14 @@ glm::dmat4 worldFromIndexOf(const openvdb::math::Transform& transform, const std
     return matrix;
 }
 
-void settleBackground(Volume& volume, const GridCodesOptions& options) {
-    if (std::isfinite(volume.background)) return;
-    const double replacement = options.reading.nanValue.value_or(0);
-    options.listener.warn(options.where + ": background " + numberText(volume.background) +
-                          " taken as " + numberText(replacement));
-    volume.background = replacement;
+void settleEmpty(Volume& volume, const GridCodesOptions& options) {
+    if (!std::isfinite(volume.background)) {
+        const double replacement = options.reading.nanValue.value_or(0);
+        options.listener.warn(options.where + ": background " + numberText(volume.background) +
+                              " taken as " + numberText(replacement));
+        volume.background = replacement;
+    }
+    if (volume.empty()) options.listener.warn(options.where + ": no active voxels");
 }
 
 Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& options,
@@ -70,8 +72,7 @@ Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& 
             std::make_shared<const SourceGrid>(SourceGrid{grid, std::move(fileMetadata)});
     }
     volume.space = spaceOf(*grid);
-    settleBackground(volume, options);
-    if (volume.empty()) options.listener.warn(options.where + ": no active voxels");
+    settleEmpty(volume, options);
     return volume;
 }
 

@@ -19,7 +19,8 @@ Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& 
 /// @throw Error(kInput) if it is not linear, or cannot be inverted
 glm::dmat4 worldFromIndexOf(const openvdb::math::Transform& transform, const std::string& where);
 
-/// A background of NaN or infinity is taken as what replaces NaN, or 0, with a warning.
-void settleBackground(Volume& volume, const GridCodesOptions& options);
+/// A background of NaN or infinity is taken as what replaces NaN, or 0, with a warning; there is
+/// one for a volume without active voxels as well.
+void settleEmpty(Volume& volume, const GridCodesOptions& options);
 
 }  // namespace deltasplat

@@ -85,8 +85,7 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
         };
         volume = readDeltaGrid(static_cast<openvdb::Int32Grid&>(*loaded), file.metadata(), where,
                                options, decoding);
-        settleBackground(volume, coding);
-        if (volume.empty()) listener.warn(where + ": no active voxels");
+        settleEmpty(volume, coding);
     } else {
         volume = volumeOfGrid(loaded, coding, file.metadata());
     }
