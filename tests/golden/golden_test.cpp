@@ -15,6 +15,7 @@
 #include "golden/golden_scenes.h"
 #include "golden/golden_volumes.h"
 #include "support/odd_floats.h"
+#include "support/simd_levels.h"
 #include "synth/hash.h"
 
 namespace deltasplat::test {
@@ -120,7 +121,7 @@ TEST(Golden, SampleVolumesAreThoseOfTheList) {
 }
 
 TEST(Golden, PicturesAreThoseOfTheListAtEverySimdLevel) {
-    for (const std::string& level : simdLevels()) {
+    for (const std::string& level : test::testedSimdLevels()) {
         setSimdLevel(level);
         EXPECT_EQ(differences(ofScenes(), "picture"), "") << level;
     }

@@ -10,6 +10,7 @@
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
 #include "support/make_volume.h"
+#include "support/simd_levels.h"
 
 namespace deltasplat {
 namespace {
@@ -48,7 +49,7 @@ void expectSamePixels(const Volume& volume, RenderOptions options) {
             EXPECT_EQ(render(volume, options).image.rgba, expected.rgba)
                 << methodName(method) << ", " << threads << " threads";
         }
-        for (const std::string& level : simdLevels()) {
+        for (const std::string& level : test::testedSimdLevels()) {
             setSimdLevel(level);
             EXPECT_EQ(render(volume, options).image.rgba, expected.rgba)
                 << methodName(method) << ", " << level;

@@ -15,6 +15,7 @@
 #include "property/test_scene.h"
 #include "reference/ray_marcher.h"
 #include "support/make_volume.h"
+#include "support/simd_levels.h"
 
 namespace deltasplat::test {
 namespace {
@@ -434,7 +435,7 @@ TEST(Perspective, methodsThreadsAndSimdLevelsGiveTheSamePixels) {
                             << methodName(method) << ", " << threads << " threads";
                     }
                 }
-                for (const std::string& level : simdLevels()) {
+                for (const std::string& level : test::testedSimdLevels()) {
                     setSimdLevel(level);
                     EXPECT_EQ(render(volume, options).image.rgba, expected.rgba) << level;
                 }

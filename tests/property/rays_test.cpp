@@ -10,6 +10,7 @@
 #include "deltasplat/threads.h"
 #include "optics/value_colors.h"
 #include "property/ray_scene.h"
+#include "support/simd_levels.h"
 
 namespace deltasplat::test {
 namespace {
@@ -150,7 +151,7 @@ TEST(Rays, ThreadsAndSimdLevelsGiveTheSamePixels) {
                 const ThreadLimit limit(threads);
                 EXPECT_EQ(render(volume, options).image.rgba, expected.rgba) << threads;
             }
-            for (const std::string& level : simdLevels()) {
+            for (const std::string& level : test::testedSimdLevels()) {
                 setSimdLevel(level);
                 EXPECT_EQ(render(volume, options).image.rgba, expected.rgba) << level;
             }

@@ -9,6 +9,7 @@
 #include "composite/layer_fold.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/simd.h"
+#include "support/simd_levels.h"
 
 namespace deltasplat {
 namespace {
@@ -160,7 +161,7 @@ TEST_P(LayerOfChannels, CompositesSumsOfPlanes) {
                     }
                 }
             }
-            for (const std::string& level : simdLevels()) {
+            for (const std::string& level : test::testedSimdLevels()) {
                 setSimdLevel(level);
                 EXPECT_EQ(compositePlanes(d, frontToBack, channels).values, layer.values) << level;
             }
@@ -208,7 +209,7 @@ TEST_P(LayerOfChannels, SameBitsAtEverySimdLevel) {
     for (const glm::dvec2 d : kShifts) {
         for (const bool frontToBack : {true, false}) {
             const auto best = compositeSlices(d, frontToBack, GetParam()).values;
-            for (const std::string& level : simdLevels()) {
+            for (const std::string& level : test::testedSimdLevels()) {
                 setSimdLevel(level);
                 EXPECT_EQ(compositeSlices(d, frontToBack, GetParam()).values, best) << level;
             }

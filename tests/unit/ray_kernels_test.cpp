@@ -12,6 +12,7 @@
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/simd.h"
 #include "rays/blur_plane.h"
+#include "support/simd_levels.h"
 
 namespace deltasplat {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 // Calls use() at every SIMD level.
 template <typename Use>
 void atEveryLevel(const Use& use) {
-    for (const std::string& level : simdLevels()) {
+    for (const std::string& level : test::testedSimdLevels()) {
         SCOPED_TRACE(level);
         setSimdLevel(level);
         use();

@@ -10,6 +10,7 @@
 #include "deltasplat/simd.h"
 #include "splat/block_reach.h"
 #include "splat/stamp_kernels.h"
+#include "support/simd_levels.h"
 
 namespace deltasplat {
 namespace {
@@ -20,7 +21,7 @@ class SheetOnEveryLevel : public testing::TestWithParam<std::string> {
     void TearDown() override { setSimdLevel("auto"); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Simd, SheetOnEveryLevel, testing::ValuesIn(simdLevels()),
+INSTANTIATE_TEST_SUITE_P(Simd, SheetOnEveryLevel, testing::ValuesIn(test::testedSimdLevels()),
                          [](const auto& level) { return level.param; });
 
 constexpr IndexBox kBox{{0, -10, 3}, {0, 20, 17}};  // slice, u, v

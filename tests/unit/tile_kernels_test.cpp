@@ -9,6 +9,7 @@
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/simd.h"
 #include "splat/cell_kernels.h"
+#include "support/simd_levels.h"
 
 namespace deltasplat {
 namespace {
@@ -23,7 +24,7 @@ class TilesOnEveryLevel : public testing::TestWithParam<std::string> {
     void TearDown() override { setSimdLevel("auto"); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Simd, TilesOnEveryLevel, testing::ValuesIn(simdLevels()),
+INSTANTIATE_TEST_SUITE_P(Simd, TilesOnEveryLevel, testing::ValuesIn(test::testedSimdLevels()),
                          [](const auto& level) { return level.param; });
 
 // A plane of random colours, of which a share is zero, and what its stamps add up to.

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "deltasplat/simd.h"
+
+namespace deltasplat::test {
+
+/// Returns the SIMD levels to be tried: all that there are. Under a sanitizer without the one for
+/// any processor, if there are others: there it takes twenty times as long as they do, and touches
+/// the same memory as the other level of four lanes.
+inline std::vector<std::string> testedSimdLevels() {
+    std::vector<std::string> levels = simdLevels();
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    if (levels.size() > 1) std::erase(levels, "EMU128");
+#endif
+    return levels;
+}
+
+}  // namespace deltasplat::test
