@@ -13,6 +13,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
+#include "support/error_of.h"
 #include "support/some_scene.h"
 
 namespace deltasplat {
@@ -20,6 +21,7 @@ namespace {
 
 using test::cameraOf;
 using test::Colors;
+using test::errorOf;
 using test::someCameras;
 using test::someOptics;
 using test::someVolume;
@@ -91,15 +93,6 @@ TEST(LayeredPicture, ofAnEmptyVolumeIsTransparent) {
     EXPECT_EQ(image.rgba, Image(options.sizePixels).rgba);
 }
 
-std::string messageOf(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "no error";
-}
-
 TEST(LayeredPicture, refusesLayersThatAreNotItsOwn) {
     const PreparedScene scene = sceneOf(Colors::kSeveral);
     const CameraOptions options = someCameras()[1];
@@ -110,16 +103,17 @@ TEST(LayeredPicture, refusesLayersThatAreNotItsOwn) {
     const auto messageFor = [&](const std::function<void(std::vector<SlabLayer>&)>& change) {
         std::vector<SlabLayer> changed = layers;
         change(changed);
-        return messageOf([&] { picture.fold(changed, image); });
+        return errorOf([&] { picture.fold(changed, image); });
     };
     EXPECT_EQ(messageFor([](auto&) {}), "no error");
     EXPECT_EQ(messageFor([](auto& all) { all.pop_back(); }),
-              "layers of a picture: got none for slab " + std::to_string(layers.size() - 1) +
+              "usage: layers of a picture: got none for slab " + std::to_string(layers.size() - 1) +
                   "; expected one for each of " + slabs + " slabs");
     EXPECT_EQ(messageFor([](auto& all) { all[1].slab = 0; }),
-              "layers of a picture: got slab 0 twice; expected each once");
-    EXPECT_EQ(messageFor([](auto& all) { all[0].slab = -1; }),
-              "layers of a picture: got slab -1; expected one of " + slabs + ", counted from 0");
+              "usage: layers of a picture: got slab 0 twice; expected each once");
+    EXPECT_EQ(
+        messageFor([](auto& all) { all[0].slab = -1; }),
+        "usage: layers of a picture: got slab -1; expected one of " + slabs + ", counted from 0");
     EXPECT_NE(messageFor([](auto& all) { ++all[0].max.x; }).find("for slab 0"), std::string::npos);
     EXPECT_NE(messageFor([](auto& all) {
                   all[0].min.x = std::numeric_limits<int>::min();
@@ -132,12 +126,12 @@ TEST(LayeredPicture, refusesLayersThatAreNotItsOwn) {
                   all[0].spans[3] = {-5, 4};
               }).find("another size"),
               std::string::npos);
-    EXPECT_EQ(messageOf([&] { picture.render(int(layers.size())); }),
-              "layers of a picture: got slab " + slabs + "; expected one of " + slabs +
+    EXPECT_EQ(errorOf([&] { picture.render(int(layers.size())); }),
+              "usage: layers of a picture: got slab " + slabs + "; expected one of " + slabs +
                   ", counted from 0");
     // Nothing was changed by what was refused.
     Image other({3, 3});
-    EXPECT_NE(messageOf([&] { picture.fold(layers, other); }).find("image: got 3x3"),
+    EXPECT_NE(errorOf([&] { picture.fold(layers, other); }).find("image: got 3x3"),
               std::string::npos);
     EXPECT_EQ(other.rgba, Image({3, 3}).rgba);
 }

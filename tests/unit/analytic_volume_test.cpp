@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-#include "unit/file_limits.h"
+#include "support/error_of.h"
 
 namespace deltasplat {
 namespace {

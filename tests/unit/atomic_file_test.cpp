@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "deltasplat/error.h"
+#include "support/error_of.h"
 #include "unit/file_limits.h"
 #include "unit/temp_folder.h"
 

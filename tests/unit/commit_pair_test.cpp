@@ -12,7 +12,7 @@
 #include <string>
 
 #include "deltasplat/atomic_file.h"
-#include "unit/file_limits.h"
+#include "support/error_of.h"
 #include "unit/temp_folder.h"
 
 namespace deltasplat {

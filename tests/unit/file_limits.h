@@ -4,10 +4,6 @@
 #include <signal.h>
 #include <sys/resource.h>
 
-#include <string>
-
-#include "deltasplat/error.h"
-
 namespace deltasplat::test {
 
 /// While it lives, this process can write files of at most `bytes`; more is an error (EFBIG).
@@ -30,33 +26,5 @@ class FileSizeLimit {
     rlimit old_{};
     void (*oldHandler_)(int) = SIG_DFL;
 };
-
-/// Returns what the code is called: "output" for ErrorCode::kOutput.
-inline std::string codeName(ErrorCode code) {
-    switch (code) {
-        case ErrorCode::kFailed:
-            return "failed";
-        case ErrorCode::kUsage:
-            return "usage";
-        case ErrorCode::kInput:
-            return "input";
-        case ErrorCode::kOutput:
-            return "output";
-        case ErrorCode::kInterrupted:
-            return "interrupted";
-    }
-    return "unknown";
-}
-
-/// Returns "<code's name>: <message>" of the Error that `action` throws, or "no error".
-template <typename Action>
-std::string errorOf(Action action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return codeName(error.code()) + ": " + error.what();
-    }
-    return "no error";
-}
 
 }  // namespace deltasplat::test

@@ -11,7 +11,7 @@
 
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/threads.h"
-#include "unit/file_limits.h"
+#include "support/error_of.h"
 #include "unit/temp_folder.h"
 
 namespace deltasplat {

@@ -10,7 +10,7 @@
 #include <array>
 
 #include "process/interrupt.h"
-#include "unit/file_limits.h"
+#include "support/error_of.h"
 
 namespace deltasplat {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
-#include "unit/file_limits.h"
+#include "support/error_of.h"
 #include "unit/temp_folder.h"
 
 namespace deltasplat {

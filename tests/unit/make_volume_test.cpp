@@ -14,10 +14,13 @@
 #include "deltasplat/error.h"
 #include "deltasplat/openvdb_grid.h"
 #include "deltasplat/render.h"
-#include "temp_folder.h"
+#include "support/error_of.h"
+#include "unit/temp_folder.h"
 
 namespace deltasplat {
 namespace {
+
+using test::errorOf;
 
 constexpr glm::i64vec3 kDims(11, 9, 20);
 
@@ -181,34 +184,28 @@ TEST(MakeVolumeOfReals, takesNaNAsItIsAsked) {
     EXPECT_EQ(makeVolume(view(values), layout, options).replaced, 2u);
 }
 
-std::string messageOf(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "no error";
-}
-
 TEST(MakeVolumeErrors, sayWhatWasGotAndExpected) {
     const std::vector<float> values(24);
     const auto messageFor = [&](const MemoryLayout& layout) {
-        return messageOf([&] { makeVolume(view(values), layout); });
+        return errorOf([&] { makeVolume(view(values), layout); });
     };
     MemoryLayout layout{{2, 3, 5}};
-    EXPECT_EQ(messageFor(layout), "volume in memory: values: got 24; expected 30 (2x3x5)");
+    EXPECT_EQ(messageFor(layout), "usage: volume in memory: values: got 24; expected 30 (2x3x5)");
     layout.dims = {2, 3, 3};
-    EXPECT_EQ(messageFor(layout), "volume in memory: values: got 24; expected 18 (2x3x3)");
+    EXPECT_EQ(messageFor(layout), "usage: volume in memory: values: got 24; expected 18 (2x3x3)");
     layout.dims = {0, 3, 3};
-    EXPECT_EQ(messageFor(layout),
-              "volume in memory: dims: got 0x3x3; expected each from 1 to 2^30, fewer than 2^60 "
-              "voxels together");
+    EXPECT_EQ(
+        messageFor(layout),
+        "usage: volume in memory: dims: got 0x3x3; expected each from 1 to 2^30, fewer than 2^60 "
+        "voxels together");
     layout.dims = {2, 3, 4};
     layout.strides = {1, 2, 7};
-    EXPECT_EQ(messageFor(layout),
-              "volume in memory: values: got 24; expected at least 27 (2x3x4 with strides 1,2,7)");
+    EXPECT_EQ(
+        messageFor(layout),
+        "usage: volume in memory: values: got 24; expected at least 27 (2x3x4 with strides 1,2,7)");
     layout.strides = {1, 0, 6};
-    EXPECT_EQ(messageFor(layout), "volume in memory: strides: got 1,0,6; expected each at least 1");
+    EXPECT_EQ(messageFor(layout),
+              "usage: volume in memory: strides: got 1,0,6; expected each at least 1");
     layout.strides.reset();
     layout.worldFromIndex[1] = glm::dvec4(0);
     EXPECT_NE(messageFor(layout).find("worldFromIndex: got a matrix that gives no place"),
@@ -218,11 +215,11 @@ TEST(MakeVolumeErrors, sayWhatWasGotAndExpected) {
     layout.worldFromIndex = glm::dmat4(1);
     layout.background = std::numeric_limits<double>::infinity();
     EXPECT_EQ(messageFor(layout),
-              "volume in memory: background: got inf; expected a finite number or NaN");
+              "usage: volume in memory: background: got inf; expected a finite number or NaN");
     const std::vector<std::uint8_t> bytes(24);
     layout.background = -1;
-    EXPECT_EQ(messageOf([&] { makeVolume(view(bytes), layout); }),
-              "volume in memory: background: got -1; expected a value of type uint8");
+    EXPECT_EQ(errorOf([&] { makeVolume(view(bytes), layout); }),
+              "usage: volume in memory: background: got -1; expected a value of type uint8");
     layout.background.reset();
     // Slices that lie upon each other, in more memory than there is.
     const std::vector<float> few2(3 << 20);
@@ -231,16 +228,16 @@ TEST(MakeVolumeErrors, sayWhatWasGotAndExpected) {
     EXPECT_THROW(makeVolume(view(few2), wide), Error);
     layout.space = "XYZ";
     EXPECT_EQ(messageFor(layout),
-              "volume in memory: space: got \"XYZ\"; expected RAS, LPS or nothing");
+              "usage: volume in memory: space: got \"XYZ\"; expected RAS, LPS or nothing");
     layout.space.clear();
     const Volume volume = makeVolume(view(values), layout);
-    EXPECT_NE(messageOf([&] {
+    EXPECT_NE(errorOf([&] {
                   readVoxels(volume, {{0, 0, 0}, {std::numeric_limits<int>::max(), 0, 0}}, {});
               }).find("expected indices within 2^30 of 0"),
               std::string::npos);
     std::vector<double> few(23);
-    EXPECT_EQ(messageOf([&] { readVoxels(volume, volume.box, few); }),
-              "voxels to read: values: got 23 values; expected 24");
+    EXPECT_EQ(errorOf([&] { readVoxels(volume, volume.box, few); }),
+              "usage: voxels to read: values: got 23 values; expected 24");
 }
 
 TEST(MakeVolumeOfGrid, leavesTheGridAsItIs) {
@@ -279,13 +276,14 @@ TEST(MakeVolumeOfGrid, keepsThePatientsSpace) {
 }
 
 TEST(MakeVolumeOfGrid, refusesWhatIsNoVolume) {
-    EXPECT_EQ(messageOf([] { makeGrid(Volume()); }),
-              "OpenVDB grid to make: got a volume without voxels; expected one that was read or "
-              "made");
-    EXPECT_EQ(messageOf([] { makeVolume(openvdb::GridBase::ConstPtr()); }),
-              "OpenVDB grid: got none; expected a grid");
+    EXPECT_EQ(
+        errorOf([] { makeGrid(Volume()); }),
+        "usage: OpenVDB grid to make: got a volume without voxels; expected one that was read or "
+        "made");
+    EXPECT_EQ(errorOf([] { makeVolume(openvdb::GridBase::ConstPtr()); }),
+              "usage: OpenVDB grid: got none; expected a grid");
     const openvdb::GridBase::ConstPtr vectors = openvdb::Vec3SGrid::create();
-    EXPECT_NE(messageOf([&] { makeVolume(vectors); }).find("expected a scalar grid"),
+    EXPECT_NE(errorOf([&] { makeVolume(vectors); }).find("expected a scalar grid"),
               std::string::npos);
 }
 

@@ -13,7 +13,7 @@
 
 #include "deltasplat/atomic_file.h"
 #include "output_target.h"
-#include "unit/file_limits.h"
+#include "support/error_of.h"
 #include "unit/temp_folder.h"
 
 namespace deltasplat {

@@ -20,10 +20,10 @@ struct Scene {
           Range range = Range::kOneDigit)
         : classes(classesOf(volume, oneColor, range)),
           deltas(packDeltas(volume, {0, encoding, classes.classOfSlot, {}})),
+          colors(deltas, classes, nullptr),
           footprint(print),
           layout(layoutSheet(deltas.box, footprint, oneColor ? 1 : 4)),
-          digitVoxels(deltas, classes),
-          input{deltas, classes, footprint, false, classes.oneDigit() ? nullptr : &digitVoxels} {}
+          input{deltas, colors, footprint, false} {}
 
     static ClassTable classesOf(const Volume& volume, bool oneColor, Range range) {
         Optics optics;
@@ -44,9 +44,9 @@ struct Scene {
 
     ClassTable classes;
     PackedDeltas deltas;
+    StepColors colors;
     Footprint footprint;
     SheetLayout layout;
-    DigitVoxels digitVoxels;
     SplatInput input;
 };
 
@@ -179,7 +179,7 @@ TEST(SliceBlocks, TraditionalTakesEveryVoxelOfTheBox) {
     PackedDeltas nothing;
     nothing.box = scene.deltas.box;
     nothing.begins.resize(std::size_t(nothing.box.dims().x) + 1);
-    const SplatInput input{nothing, scene.classes, scene.footprint, true};
+    const SplatInput input{nothing, scene.colors, scene.footprint, true};
     SliceBlocks blocks(input, scene.layout);
     std::vector<glm::ivec2> found;
     blocks.forEach(kBox.min.x, true, blocks.rows(),

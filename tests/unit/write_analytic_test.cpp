@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "deltasplat/threads.h"
+#include "support/error_of.h"
 #include "unit/file_limits.h"
 #include "unit/temp_folder.h"
 
