@@ -126,7 +126,7 @@ SlabLayer LayeredPicture::render(int slab, const Listener& listener) const {
     const SlabInput& input = impl_->views[place.view]->slabs();
     const SeenSlab& seen = impl_->seen[place.view][std::size_t(place.slab)];
     requireMemory("layer of a slab", layerBytes(reachOfSeen(input, seen), input.layout.channels));
-    SlabRenderer renderer(input, listener, place.slab);
+    SlabRenderer renderer(input, {seen}, listener);
     renderer.run();
     const Layer layer = renderer.merge();
     SlabLayer result{slab, layer.box.min, layer.box.max, layer.channels, {}, layer.spans};

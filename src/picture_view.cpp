@@ -76,34 +76,23 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
       steps_(stepsOf(view, *scene.scene.volume)),
       thinView_(subdivided(view, axis_->parts)),
       footprint_(makeViewFootprint(plan)),
-      layout_(layoutSheet(axis_->deltas.box, footprint_, axis_->classes.oneColor ? 1 : 4)) {
+      layout_(layoutSheet(axis_->deltas.box, footprint_, axis_->classes().oneColor ? 1 : 4)) {
     if (view.eye) {
         plane_.emplace(thinView_, camera, layout_.firstSlice, layout_.firstVoxel, 1 / densityOf());
     } else {
         plane_.emplace(thinView_, layout_.firstSlice, layout_.firstVoxel, layout_.resolution,
                        layout_.offsetPixels);
     }
-    if (steps_ != axis_->steps) colorSteps();
-    const auto either = [](const auto& here, const auto& there) {
-        return here ? &*here : there ? &*there : nullptr;
-    };
-    const WordColors* own = either(own_, axis_->own);
-    const ClassTable& classes = own ? own->table() : classes_ ? *classes_ : axis_->classes;
-    const DigitVoxels* digitVoxels = own        ? own->digitVoxels()
-                                     : classes_ ? either(digitVoxels_, std::optional<DigitVoxels>())
-                                                : either(axis_->digitVoxels, digitVoxels_);
-    slabs_.emplace(SlabInput{axis_->deltas, classes, digitVoxels, own,
-                             scene.options.method == Method::kTraditional, footprint_, layout_,
-                             *plane_, memory});
-}
-
-void PictureView::colorSteps() {
-    classes_ = axis_->classes.atSteps(steps_ / axis_->steps);
-    if (scene_.painter) {
-        own_.emplace(axis_->deltas, *classes_, scene_.painter->brightest());
-    } else if (!classes_->oneDigit()) {
-        digitVoxels_.emplace(axis_->deltas, *classes_);
+    if (steps_ != axis_->steps) {
+        colors_.emplace(axis_->deltas, axis_->classes().atSteps(steps_ / axis_->steps),
+                        scene.painter.get());
     }
+    const bool stampEmptyVoxels = scene.options.method == Method::kTraditional;
+    slabs_.emplace(SlabInput{
+        {axis_->deltas, colors_ ? *colors_ : axis_->colors, footprint_, stampEmptyVoxels, memory},
+        layout_,
+        *plane_,
+        memory});
 }
 
 Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
@@ -138,13 +127,13 @@ double PictureView::densityOf() const {
 }
 
 double PictureView::show(Layer& layer, Image& image) const {
-    const Raster raster = rasterOf(layer, slabs_->classes);
+    const Raster raster = rasterOf(layer, slabs_->splat.colors.table());
     if (!view_.eye) {
         const glm::dmat3& map = plane_->pixelFromPicture();
         warp(raster, map, WarpFilter::kSharp, image);
         return warpGain(map);
     }
-    if (slabs_->classes.oneColor) lengthenSteps(layer);
+    if (slabs_->splat.colors.table().oneColor) lengthenSteps(layer);
     return warpRegion(raster, camera_, view_, thinView_, *plane_, image);
 }
 
@@ -176,7 +165,7 @@ ErrorBound PictureView::errorBound() const {
     const Steps steps = view_.eye && plane_->cutsAny({box.min.x, box.max.x}) ? Steps::kOneShorter
                         : view_.eye || steps_ != 1                           ? Steps::kLonger
                                                                              : Steps::kAsClassified;
-    return deltasplat::errorBound(axis_->classes, scene_.options.tolerance, steps, brightest);
+    return deltasplat::errorBound(axis_->classes(), scene_.options.tolerance, steps, brightest);
 }
 
 }  // namespace deltasplat

@@ -46,7 +46,6 @@ class PictureView {
     ErrorBound errorBound() const;
 
   private:
-    void colorSteps();
     Footprint makeViewFootprint(const SheetPlan& plan) const;
     double densityOf() const;
     void lengthenSteps(Layer& layer) const;
@@ -56,10 +55,7 @@ class PictureView {
     Factorization view_;
     std::shared_ptr<const PreparedAxis> axis_;
     double steps_;
-    // What the axis has for other steps.
-    std::optional<ClassTable> classes_;
-    std::optional<DigitVoxels> digitVoxels_;
-    std::optional<WordColors> own_;
+    std::optional<StepColors> colors_;  // if the axis' are those of other steps
     Factorization thinView_;
     Footprint footprint_;
     SheetLayout layout_;

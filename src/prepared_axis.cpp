@@ -45,6 +45,17 @@ bool showsThin(const Volume& volume, const Optics& optics) {
     return largestAlpha(volume, optics) <= kMost;
 }
 
+// Whether steps that are so many times shorter may be too short for some class to be seen. What is
+// seen must not depend on which picture of a scene comes first.
+bool shorterMayShowLess(const ClassTable& classes, double times) {
+    // The share of the largest opacity that is sure to be seen (ClassTable), and twice that, for
+    // rounding. A class shrinks by `times` at most, and the largest does not grow.
+    const double sure = 2 * 0x1p-40 * ClassTable::kMax * times;
+    for (std::size_t number = 1; number < classes.size(); ++number)
+        if (classes.unitsOf(Slot(number)).a < sure) return true;
+    return false;
+}
+
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, int sliceAxis,
                                             const Subdivision& parts, double steps,
                                             const Listener& listener) {
@@ -55,30 +66,26 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     const Volume& seen = mixer ? mixer->levels() : volume;
     // What is held does not depend on the camera: straight ways decide.
     const double straight = planeDistance(volume.worldFromIndex, sliceAxis) / parts.slices;
-    const double first = tolerance.isExact() ? steps : 1;
-    const auto axis = std::make_shared<PreparedAxis>();
-    axis->sliceAxis = sliceAxis;
-    axis->parts = parts;
-    axis->steps = steps;
-    axis->classes = classify(seen, scene.optics, straight * first);
+    double first = tolerance.isExact() ? steps : 1;
+    ClassTable classes = classify(seen, scene.optics, straight * first);
+    if (first != 1 && shorterMayShowLess(classes, first)) {
+        first = 1;
+        classes = classify(seen, scene.optics, straight);
+    }
     listener.report(0.05);
-    PackOptions pack{sliceAxis, encodingOf(scene.options.method), axis->classes.classOfSlot,
-                     holdRule(seen, axis->classes, tolerance), mixer ? &*mixer : nullptr};
+    PackOptions pack{sliceAxis, encodingOf(scene.options.method), classes.classOfSlot,
+                     holdRule(seen, classes, tolerance), mixer ? &*mixer : nullptr};
     const VoxelPainter* painter = scene.painter.get();
     if (painter) {
-        axis->classes.oneColor = false;
+        classes.oneColor = false;
         pack.painter = painter;
-        pack.colorHolds =
-            colorHoldRule(VoxelRounder(axis->classes, painter->brightest()), tolerance);
+        pack.colorHolds = colorHoldRule(VoxelRounder(classes, painter->brightest()), tolerance);
     }
-    axis->deltas = packDeltas(volume, pack);
-    if (steps != first) axis->classes = axis->classes.atSteps(steps);
-    if (painter) {
-        axis->own.emplace(axis->deltas, axis->classes, painter->brightest());
-    } else if (!axis->classes.oneDigit()) {
-        axis->digitVoxels.emplace(axis->deltas, axis->classes);
-    }
-    return axis;
+    PackedDeltas deltas = packDeltas(volume, pack);
+    if (steps != first) classes = classes.atSteps(steps);
+    StepColors colors(deltas, std::move(classes), painter);
+    return std::make_shared<const PreparedAxis>(
+        PreparedAxis{sliceAxis, parts, std::move(deltas), steps, std::move(colors)});
 }
 
 std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {

@@ -10,21 +10,19 @@
 #include "delta/packed_deltas.h"
 #include "deltasplat/prepared_scene.h"
 #include "kept_memory.h"
-#include "splat/digit_voxels.h"
-#include "splat/word_colors.h"
+#include "splat/step_colors.h"
 
 namespace deltasplat {
 
 /// A volume as slices along one axis: what slabs are rendered from, whatever the camera.
 struct PreparedAxis {
-    int sliceAxis = 2;
+    int sliceAxis;
     Subdivision parts;
-    double steps = 1;  ///< that classes are coloured for, straight ways from slice to slice
-    ClassTable classes;
     PackedDeltas deltas;
-    std::optional<DigitVoxels> digitVoxels;  ///< where classes have several digits
-    std::optional<WordColors> own;           ///< where voxels have colours of their own
+    double steps;  ///< that colours are for, straight ways from slice to slice
+    StepColors colors;
 
+    const ClassTable& classes() const { return colors.classes(); }
     /// Footprints that a method adds.
     std::uint64_t stamps(Method method) const;
 };

@@ -108,7 +108,7 @@ class CompositeRender {
 
     Layer renderSlabs(const SlabInput& input, const Listener& listener) {
         const Clock::time_point start = Clock::now();
-        SlabRenderer slabs(input, listener);
+        SlabRenderer slabs(input, seenSlabs(input), listener);
         slabs.run();
         const double slabSeconds = secondsSince(start);
         Layer merged = slabs.merge();

@@ -18,7 +18,7 @@ namespace deltasplat {
 
 std::vector<SeenSlab> seenSlabs(const SlabInput& input) {
     std::vector<SeenSlab> seen;
-    for (const PlannedSlab& slab : input.deltas.slabs) {
+    for (const PlannedSlab& slab : input.splat.deltas.slabs) {
         glm::ivec2 slices(slab.firstSlice, slab.firstSlice + slab.sliceCount - 1);
         if (!input.plane.isParallel()) slices = input.plane.seen(slices);
         if (slices.y >= slices.x) seen.push_back({&slab, slices.x, slices.y});
@@ -43,20 +43,18 @@ PlaneBox reachOfAll(const SlabInput& input, const std::vector<SeenSlab>& seen) {
     return all;
 }
 
-SlabRenderer::SlabRenderer(const SlabInput& input, const Listener& listener,
-                           std::optional<int> only)
+SlabRenderer::SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen,
+                           const Listener& listener)
     : input_(input),
       progress_(listener),
       channels_(input.layout.channels),
-      splat_{input.deltas,      input.classes, input.footprint, input.stampEmptyVoxels,
-             input.digitVoxels, input.own,     input.memory},
-      seen_(seenSlabs(input)),
+      seen_(std::move(seen)),
+      reach_(reachOfAll(input, seen_)),
       merged_({}, channels_, input.memory) {
-    for (int plane = 0; plane < int(input.classes.planes.size()); ++plane)
-        scales_.emplace_back(input.classes.scaleOf(plane) / double(Footprint::kOne));
-    if (only) seen_ = {seen_[std::size_t(*only)]};
-    reach_ = reachOfAll(input, seen_);
-    for (const SeenSlab& seen : seen_) slices_ += seen.slab->sliceCount;
+    const ClassTable& table = input.splat.colors.table();
+    for (int plane = 0; plane < int(table.planes.size()); ++plane)
+        scales_.emplace_back(table.scaleOf(plane) / double(Footprint::kOne));
+    for (const SeenSlab& one : seen_) slices_ += one.slab->sliceCount;
     if (seen_.empty() || reach_.empty()) return;
     cutIntoStrips();
     findLargest();
@@ -72,7 +70,7 @@ void SlabRenderer::run() {
         // Whoever comes too late needs none.
         std::optional<Splatter> splatter;
         for (std::size_t i = next_++; i < pieces; i = next_++) {
-            if (!splatter) splatter.emplace(splat_, largest_);
+            if (!splatter) splatter.emplace(input_.splat, largest_);
             renderPiece(i, *splatter);
         }
     });
@@ -157,7 +155,8 @@ void SlabRenderer::findLargest() {
 // What all slabs together take: splatters for each thread, layers, and the merged one.
 void SlabRenderer::requireSlabMemory() const {
     const double pieces = double(strips_.size()) * double(seen_.size());
-    double bytes = Splatter::bytes(splat_, largest_) * std::min<double>(threadCount(), pieces);
+    double bytes =
+        Splatter::bytes(input_.splat, largest_) * std::min<double>(threadCount(), pieces);
     // The front slab's is the merged one.
     for (std::size_t i = 1; i < seen_.size(); ++i)
         bytes += layerBytes(reachOfSeen(input_, seen_[i]), channels_);

@@ -19,15 +19,10 @@ namespace deltasplat {
 
 /// What slabs are rendered from, and how they are seen.
 struct SlabInput {
-    const PackedDeltas& deltas;
-    const ClassTable& classes;
-    const DigitVoxels* digitVoxels;  ///< null where there is one digit
-    const WordColors* own;           ///< as SplatInput
-    bool stampEmptyVoxels;           ///< as SplatInput
-    const Footprint& footprint;
+    SplatInput splat;
     const SheetLayout& layout;  ///< of whole sheets
     const BasePlane& plane;
-    KeptMemory& memory;  ///< for sheets and layers
+    KeptMemory& memory;  ///< for layers, and the one for sheets
 };
 
 /// A slab of which some slices are seen: those of [firstSlice, lastSlice].
@@ -49,10 +44,9 @@ PlaneBox reachOfAll(const SlabInput& input, const std::vector<SeenSlab>& seen);
 /// changes nothing but who does what.
 class SlabRenderer {
   public:
+    /// @param seen  which, from the front on
     /// @throw Error(kFailed) if sheets and layers do not fit into memory
-    /// @param only  of the slabs of which something is seen, counted from the front, the only one
-    /// to be rendered; empty: all
-    SlabRenderer(const SlabInput& input, const Listener& listener, std::optional<int> only = {});
+    SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, const Listener& listener);
 
     /// Renders the slabs, from the front on.
     void run();
@@ -87,7 +81,6 @@ class SlabRenderer {
     SharedProgress progress_;
     std::vector<glm::vec4> scales_;  // of the planes of colours
     int channels_;
-    SplatInput splat_;
     std::vector<SeenSlab> seen_;        // from the front on
     PlaneBox reach_;                    // of all of them
     std::optional<StepLengths> steps_;  // from an eye, of colours

@@ -42,11 +42,11 @@ void DigitSplatter::end() {
 double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout) {
     const double blocks = double(layout.blocks.x) * layout.blocks.y;
     // What stamps show, and their list as it grows.
-    const double shownBytes = input.own ? sizeof(ClassTable::Color) : sizeof(ClassIndex);
+    const double shownBytes = input.colors.own() ? sizeof(ClassTable::Color) : sizeof(ClassIndex);
     const double stamps = blocks * (64 * shownBytes + 3 * sizeof(BlockStamps));
     // The plane, which is at most half as large as the sheet, and two lists of blocks.
     const double tiles = 0.5 * double(layout.bytes()) + 48 * blocks;
-    const double shown = input.digitVoxels ? sizeof(std::uint64_t) * blocks : 0;
+    const double shown = input.colors.digitVoxels() ? sizeof(std::uint64_t) * blocks : 0;
     return double(layout.bytes()) + stamps + shown +
            (TileSplatter::fits(input.footprint) ? tiles : 0);
 }

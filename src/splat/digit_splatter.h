@@ -21,8 +21,8 @@ class DigitSplatter {
           digit_(digit),
           addsLow_(addsLow),
           sheet_(largest, input.memory) {
-        if (input.digitVoxels && input.digitVoxels->of(digit))
-            isFew_ = input.digitVoxels->fewerThan(leastChanges(), digit);
+        const DigitVoxels* voxels = input.colors.digitVoxels();
+        if (voxels && voxels->of(digit)) isFew_ = voxels->fewerThan(leastChanges(), digit);
     }
     // Both ways refer to the sheet.
     DigitSplatter(const DigitSplatter&) = delete;

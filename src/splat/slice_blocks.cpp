@@ -23,14 +23,14 @@ glm::ivec2 SliceBlocks::blockOf(const DeltaWord& word) const {
 
 // Own colours lie in the order of voxels.
 SeenWord SliceBlocks::seenOf(const DeltaWord& word) const {
-    if (!input_.own) return {word.visible, word.changed, word.classes, colors_, false};
+    if (!own_) return {word.visible, word.changed, word.classes, colors_, false};
     static constexpr auto kInOrder = [] {
         std::array<ClassIndex, 64> places{};
         for (std::size_t n = 0; n < places.size(); ++n) places[n] = ClassIndex(n);
         return places;
     }();
     const auto number = std::size_t(&word - input_.deltas.words.data());
-    return {word.visible, word.changed, kInOrder.data(), input_.own->of(digit_, number), true};
+    return {word.visible, word.changed, kInOrder.data(), own_->of(digit_, number), true};
 }
 
 // Leaves what a word is of the digit. Of changes, those of voxels that had it or have it.

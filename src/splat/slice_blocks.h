@@ -11,25 +11,19 @@
 #include "delta/packed_deltas.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/splat/footprint.h"
-#include "splat/digit_voxels.h"
 #include "splat/sheet.h"
-#include "splat/word_colors.h"
+#include "splat/step_colors.h"
 
 namespace deltasplat {
 
 /// Everything that splatting slabs needs and does not change.
 struct SplatInput {
     const PackedDeltas& deltas;
-    const ClassTable& classes;
+    const StepColors& colors;
     const Footprint& footprint;
     /// Stamp every voxel of the box, the empty ones too (method `traditional`); all slabs must be
     /// whole.
     bool stampEmptyVoxels;
-    /// Which voxels have which digits of colours; null where there is but one.
-    const DigitVoxels* digitVoxels = nullptr;
-    /// Colours that voxels have of their own, of whose table `classes` then is. Null: classes say
-    /// what a voxel looks like.
-    const WordColors* own = nullptr;
     /// For sheets and what they are made with.
     std::pmr::memory_resource& memory = *std::pmr::get_default_resource();
 };
@@ -54,8 +48,10 @@ class SliceBlocks {
           layout_(layout),
           stampEmptyVoxels_(input.stampEmptyVoxels && digit.plane == 0 && !digit.low),
           digit_(digit),
-          colors_(digit.of(input.classes).colors.data()),
-          voxels_(input.digitVoxels ? input.digitVoxels->of(digit) : nullptr) {}
+          own_(input.colors.own()),
+          colors_(digit.of(input.colors.table()).colors.data()) {
+        if (const DigitVoxels* voxels = input.colors.digitVoxels()) voxels_ = voxels->of(digit);
+    }
 
     void setLayout(const SheetLayout& layout) { layout_ = layout; }
     const SheetLayout& layout() const { return layout_; }
@@ -93,8 +89,10 @@ class SliceBlocks {
     // Empty voxels are stamped once.
     bool stampEmptyVoxels_;
     DigitPlace digit_;
-    const ClassTable::Color* colors_;   // of classes
-    const std::uint64_t* voxels_;       // [word]: that have the digit; null: all that are visible
+    const WordColors* own_;            // null: classes say all
+    const ClassTable::Color* colors_;  // of classes
+    // [word]: that have the digit; null: all that are visible
+    const std::uint64_t* voxels_ = nullptr;
     std::vector<std::uint64_t> shown_;  // [block]: those that changes left so
 };
 
@@ -103,7 +101,7 @@ void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use
     const std::span<const DeltaWord> words = wordsOf(slice, rows);
     if (!stampEmptyVoxels_) {
         for (const DeltaWord& word : words) {
-            if (!input_.own) prefetchClasses(&word, words);
+            if (!own_) prefetchClasses(&word, words);
             const glm::ivec2 block = blockOf(word);
             if (!hasColumn(block)) continue;
             SeenWord seen = seenOf(word);

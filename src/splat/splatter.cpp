@@ -5,7 +5,7 @@ namespace deltasplat {
 namespace {
 
 bool hasLow(const SplatInput& input, int plane) {
-    return !DigitPlace{plane, true}.of(input.classes).colors.empty();
+    return !DigitPlace{plane, true}.of(input.colors.table()).colors.empty();
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ double PlaneSplatter::bytes(const SplatInput& input, const SheetLayout& layout, 
 }
 
 Splatter::Splatter(const SplatInput& input, const SheetLayout& largest) {
-    for (int plane = 0; plane < int(input.classes.planes.size()); ++plane)
+    for (int plane = 0; plane < int(input.colors.table().planes.size()); ++plane)
         planes_.push_back(std::make_unique<PlaneSplatter>(input, largest, plane));
     sheets_.resize(planes_.size());
 }
@@ -66,7 +66,7 @@ void Splatter::end() {
 
 double Splatter::bytes(const SplatInput& input, const SheetLayout& layout) {
     double bytes = 0;
-    for (int plane = 0; plane < int(input.classes.planes.size()); ++plane)
+    for (int plane = 0; plane < int(input.colors.table().planes.size()); ++plane)
         bytes += PlaneSplatter::bytes(input, layout, plane);
     return bytes;
 }

@@ -10,8 +10,8 @@ namespace deltasplat {
 
 StampSplatter::StampSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
                              DigitPlace digit)
-    : colors_(digit.of(input.classes).colors),
-      hasOwn_(input.own != nullptr),
+    : colors_(digit.of(input.colors.table()).colors),
+      hasOwn_(input.colors.own() != nullptr),
       blocks_(input, largest, digit),
       sheet_(sheet),
       weights_(input.footprint, largest.channels),

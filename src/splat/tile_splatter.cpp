@@ -33,7 +33,7 @@ std::uint64_t TileSplatter::leastChanges(const Footprint& footprint, int channel
 
 TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
                            DigitPlace digit)
-    : colors_(digit.of(input.classes).colors),
+    : colors_(digit.of(input.colors.table()).colors),
       blocks_(input, largest, digit),
       sheet_(sheet),
       weights_(weightsOf(input.footprint, largest.channels)),

@@ -3,7 +3,7 @@
 // `render` gives.
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <cmath>
 #include <string>
 #include <thread>
 #include <vector>
@@ -13,6 +13,7 @@
 #include "deltasplat/render.h"
 #include "deltasplat/threads.h"
 #include "prepared_axis.h"
+#include "support/error_of.h"
 #include "support/some_scene.h"
 
 namespace deltasplat {
@@ -20,6 +21,7 @@ namespace {
 
 using test::cameraOf;
 using test::Colors;
+using test::errorOf;
 using test::pictureOf;
 using test::someCameras;
 using test::someOptics;
@@ -85,6 +87,24 @@ TEST(Prepared, anyNumberOfThreadsMayRenderOneScene) {
     }
 }
 
+// Nor is anything seen in the longer steps of an oblique view that cannot be seen straight on.
+TEST(Prepared, showsAsMuchAsRenderOfWhatIsHardlyThere) {
+    constexpr int kFaint = 24;
+    Optics optics = someOptics(Colors::kOne);
+    optics.transferFunction.opacities = {{0, 1, 0.5, 0}};
+    for (int i = 1; i <= kFaint; ++i)
+        optics.transferFunction.opacities.push_back({double(i), std::exp2(-54 + 0.25 * i), 0.5, 0});
+    // Stripes beside something opaque.
+    const auto volume = std::make_shared<const Volume>(test::makeVolume(
+        {{0, 0, 0}, {23, 8 * kFaint + 7, 0}}, [](int, int y, int) { return y / 8; }));
+    const PreparedScene scene({volume, optics}, SplatOptions());
+    RenderOptions options;
+    options.optics = optics;
+    options.camera.azimuthDegrees = 40;
+    options.camera.sizePixels = {100, 200};
+    EXPECT_EQ(pictureOf(scene, options.camera).rgba, render(*volume, options).image.rgba);
+}
+
 // Nor does what memory held before, and who else uses it.
 TEST(Prepared, renderersKeepMemoryAndNothingElse) {
     Renderer renderer;
@@ -120,32 +140,22 @@ TEST(Prepared, picturesAreCleared) {
     EXPECT_EQ(image.rgba, pictureOf(scene, options).rgba);
 }
 
-std::string messageOf(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::kUsage);
-        return error.what();
-    }
-    return "no error";
-}
-
 TEST(Prepared, refusesWhatCannotBeMeant) {
-    EXPECT_EQ(messageOf([] { PreparedScene({}, SplatOptions()); }),
-              "scene: got no volume; expected one");
+    EXPECT_EQ(errorOf([] { PreparedScene({}, SplatOptions()); }),
+              "usage: scene: got no volume; expected one");
     Optics none = someOptics(Colors::kOne);
     none.transferFunction.opacities.clear();
-    EXPECT_EQ(messageOf([&] {
+    EXPECT_EQ(errorOf([&] {
                   PreparedScene({someVolume(), none}, SplatOptions());
               }),
-              "transfer function's opacities: got none; expected at least one");
+              "usage: transfer function's opacities: got none; expected at least one");
     const PreparedScene scene({someVolume(), someOptics(Colors::kOne)}, SplatOptions());
     const Camera camera = cameraOf(*scene.scene().volume, CameraOptions());
     Image small({100, 512});
-    EXPECT_EQ(
-        messageOf([&] { renderComposite(scene, camera, small); }),
-        "image: got 100x512 pixels, 204800 values; expected the camera's 512x512, four values "
-        "each");
+    EXPECT_EQ(errorOf([&] { renderComposite(scene, camera, small); }),
+              "usage: image: got 100x512 pixels, 204800 values; expected the camera's 512x512, "
+              "four values "
+              "each");
 }
 
 }  // namespace

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "deltasplat/optics/class_table.h"
+#include "optics/voxel_painter.h"
+#include "splat/digit_voxels.h"
+#include "splat/word_colors.h"
+
+namespace deltasplat {
+
+/// What the voxels of words look like in steps of one length, in digits.
+class StepColors {
+  public:
+    /// Looks at every word, if there are several digits or own colours. Multi-threaded.
+    /// @param painter  who gave the words their own colours; null: they look as their classes do
+    /// @throw Error(kFailed) if there is not enough memory
+    StepColors(const PackedDeltas& deltas, ClassTable classes, const VoxelPainter* painter);
+
+    const ClassTable& classes() const { return classes_; }
+    /// Which planes and digits there are, in which units, and of which colour, if of one; with own
+    /// colours there are no others' to look up in it.
+    const ClassTable& table() const { return own_ ? own_->table() : classes_; }
+    /// Which voxels have which digits; null where there is but one digit.
+    const DigitVoxels* digitVoxels() const {
+        if (own_) return own_->digitVoxels();
+        return digitVoxels_ ? &*digitVoxels_ : nullptr;
+    }
+    /// Colours that voxels have of their own; null if they look as their classes do.
+    const WordColors* own() const { return own_ ? &*own_ : nullptr; }
+
+  private:
+    ClassTable classes_;
+    std::optional<DigitVoxels> digitVoxels_;  // of classes
+    std::optional<WordColors> own_;
+};
+
+}  // namespace deltasplat
