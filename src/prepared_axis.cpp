@@ -51,6 +51,8 @@ bool shorterMayShowLess(const ClassTable& classes, double times) {
     // The share of the largest opacity that is sure to be seen (ClassTable), and twice that, for
     // rounding. A class shrinks by `times` at most, and the largest does not grow.
     const double sure = 2 * 0x1p-40 * ClassTable::kMax * times;
+    // On one plane there is nothing below 2^-20 of the largest.
+    if (classes.planes.size() == 1 && sure < 0x1p-20 * ClassTable::kMax) return false;
     for (std::size_t number = 1; number < classes.size(); ++number)
         if (classes.unitsOf(Slot(number)).a < sure) return true;
     return false;
