@@ -283,7 +283,9 @@ void ScaledTaps::setBetween(double start, double scale, int firstPixel, int size
     pairs.resize(first.size());
     for (std::size_t i = 0; i < first.size(); ++i) {
         const double place = start + scale * (firstPixel + int(i));
-        const double begin = std::min(std::max(std::floor(place), 0.0), most);
+        double begin = std::min(std::max(std::floor(place), 0.0), most);
+        // Rounding of places must not take two steps at once, which no scale up to 1 does.
+        if (i > 0) begin = std::min(begin, first[i - 1] + 1.0);
         const double behind = place - begin;
         first[i] = int(begin);
         // Beyond the sheet's edge, where it is zero, it does not matter what is read.

@@ -17,7 +17,8 @@ namespace deltasplat {
 class ScaledTaps {
   public:
     int taps = 2;  ///< that every pixel has
-    /// [pixels]: the first sheet pixel of each; of pairs there are kSpare more, for vectors.
+    /// [pixels]: the first sheet pixel of each, never decreasing; of pairs there are kSpare more,
+    /// for vectors, and each is at most 1 more than the one before.
     std::vector<std::int32_t> first;
     std::vector<float> weights;  ///< [pixels][taps]
     /// [pixels + kSpare]: of two taps of pixels that lie no farther apart than those of the sheet,

@@ -445,6 +445,36 @@ TEST(Perspective, methodsThreadsAndSimdLevelsGiveTheSamePixels) {
     }
 }
 
+// Where sheet pixels lie as far apart as those of the base plane and fall on them, but for
+// rounding.
+TEST(Perspective, simdLevelsAgreeWherePixelsFallOnEachOther) {
+    const Volume volume = makeVolume({{0, 0, 0}, {19, 9, 39}}, [](int, int, int) { return 200; });
+    RenderOptions options;
+    TransferFunction& function = options.optics.transferFunction;
+    function.colors = {{0, glm::dvec3(0)}, {100, glm::dvec3(1)}};
+    function.opacities = {{0, 0, 0.5, 0}, {100, 0.1, 0.5, 0}};
+    options.optics.extinctionScale = 100;
+    CameraOptions wide;
+    wide.projection = Projection::kPerspective;
+    wide.view = "iso";
+    wide.fovDegrees = 120;
+    wide.sizePixels = {240, 150};
+    CameraOptions near = wide;
+    near.eyeWorld = glm::dvec3(-5.5, -8.5, 29.5);
+    near.targetWorld = glm::dvec3(9.5, 4.5, 19.5);
+    near.fovDegrees = 90;
+    near.sizePixels = {256, 256};
+    for (const CameraOptions& camera : {wide, near}) {
+        options.camera = camera;
+        const Image expected = render(volume, options).image;
+        for (const std::string& level : test::testedSimdLevels()) {
+            setSimdLevel(level);
+            EXPECT_EQ(render(volume, options).image.rgba, expected.rgba) << level;
+        }
+        setSimdLevel("auto");
+    }
+}
+
 // Where a volume lies in index space, and where in the world, makes no difference.
 TEST(Perspective, picturesDoNotDependOnThePlaceInIndexSpace) {
     const IndexBox box{{0, 0, 0}, {20, 25, 22}};

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "composite/scaled_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "deltasplat/simd.h"
+#include "optics/opacity_steps.h"
+#include "support/simd_levels.h"
+
+namespace deltasplat {
+namespace {
+
+// Places where rounding could take a pixel too far, and others.
+std::vector<double> starts() {
+    std::vector<double> all = {0, -3.25, 5.5, 1e-300};
+    for (const double whole : {1.0, 2.0, 17.0, 18.0, 31.0, 64.0, 127.0, 255.0}) {
+        for (const double from : {whole - 32, whole}) {
+            all.push_back(std::nextafter(from, -1e9));
+            all.push_back(std::nextafter(std::nextafter(from, -1e9), -1e9));
+            all.push_back(std::nextafter(from, 1e9));
+            all.push_back(from - 1e-14);
+        }
+    }
+    return all;
+}
+
+constexpr double kScales[] = {1, 1 - 0x1p-53, 1 - 1e-9, 0.99, 0.5, 0.03, 1 + 0x1p-52, 1.01, 2.5, 7};
+
+// Kernels look a vector of pixels up in a vector of columns.
+TEST(ScaledTaps, columnsOfPairsLieNoCloserThanPixels) {
+    for (const double scale : kScales) {
+        if (scale > 1) continue;
+        for (const double start : starts()) {
+            ScaledTaps taps;
+            taps.set(start, scale, -7, 300, 256);
+            ASSERT_EQ(taps.first.size(), 300 + ScaledTaps::kSpare);
+            for (std::size_t i = 1; i < taps.first.size(); ++i) {
+                const int step = taps.first[i] - taps.first[i - 1];
+                ASSERT_TRUE(step == 0 || step == 1) << start << ' ' << scale << ' ' << i;
+            }
+        }
+    }
+}
+
+// Of a sheet that holds its own places, every pixel reads where it lies; a tent that is wider than
+// two pixels, and no whole number of them, hardly more than a hundredth beside it.
+TEST(ScaledTaps, readLinearSheets) {
+    constexpr int kSize = 400;
+    for (const double scale : kScales) {
+        for (const double start : starts()) {
+            const int pixels = int(300 / std::max(1.0, scale));
+            ScaledTaps taps;
+            taps.set(start, scale, 10, pixels, kSize);
+            for (int i = 0; i < pixels; ++i) {
+                const double place = start + scale * (10 + i);
+                if (place < taps.taps || place > kSize - taps.taps) continue;
+                double read = 0;
+                for (int tap = 0; tap < taps.taps; ++tap)
+                    read +=
+                        double(taps.of(std::size_t(i))[tap]) * (taps.first[std::size_t(i)] + tap);
+                ASSERT_NEAR(read, place, scale > 1 ? 0.02 : 1e-4)
+                    << start << ' ' << scale << ' ' << i;
+            }
+        }
+    }
+}
+
+// Composites a random sheet, with two of its rows, onto a layer.
+std::vector<float> composited(const ScaledTaps& taps, int pixels, int channels, bool frontToBack) {
+    constexpr std::size_t kSize = 400;
+    std::mt19937 random(3);
+    std::vector<std::int32_t> sheet(std::size_t(channels) * 3 * kSize);
+    for (std::int32_t& value : sheet) value = std::int32_t(random() % 32768);
+    std::vector<float> layer(std::size_t(channels * pixels));
+    for (float& value : layer) value = float(random() % 1000) / 1000;
+    std::vector<float> steps;
+    for (std::size_t i = 0; i < std::size_t(pixels) + kStepsSpare; ++i)
+        steps.push_back(1 + float(i % 7) / 10);
+    const glm::vec4 scale(1.0f / 40000);
+    const float rows[] = {0.3f, 0.7f};
+    const ScaledSlice slice{
+        {sheet.data()}, std::size_t(channels) * kSize, {&scale, 1}, 2, taps.taps, channels,
+        frontToBack};
+    std::vector<ScaledRun> runs;
+    for (int x = 0; x < pixels; x += 50) {
+        runs.push_back(
+            {std::size_t(channels * taps.first[std::size_t(x)]), rows, &taps.first[std::size_t(x)],
+             taps.of(std::size_t(x)), taps.pairs.empty() ? nullptr : &taps.pairs[std::size_t(x)],
+             std::min(50, pixels - x), &steps[std::size_t(x)], &layer[std::size_t(channels * x)]});
+    }
+    overScaled(slice, runs);
+    return layer;
+}
+
+TEST(ScaledKernels, everySimdLevelGivesTheSameBits) {
+    for (const double scale : kScales) {
+        for (const double start : starts()) {
+            const int pixels = int(300 / std::max(1.0, scale));
+            ScaledTaps taps;
+            taps.set(start, scale, 3, pixels, 399);
+            for (const int channels : {1, 4}) {
+                for (const bool frontToBack : {false, true}) {
+                    setSimdLevel("auto");
+                    const auto expected = composited(taps, pixels, channels, frontToBack);
+                    for (const std::string& level : test::testedSimdLevels()) {
+                        setSimdLevel(level);
+                        ASSERT_EQ(composited(taps, pixels, channels, frontToBack), expected)
+                            << level << ' ' << start << ' ' << scale;
+                    }
+                }
+            }
+        }
+    }
+    setSimdLevel("auto");
+}
+
+}  // namespace
+}  // namespace deltasplat
