@@ -5,6 +5,7 @@
 // of log((1 + f) / (1 - f)) = 2 atanh(f).
 #include "portable_math.h"
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 
@@ -168,6 +169,17 @@ double sineTurned(double x, int more) {
     return quarter & 2 ? -value : value;
 }
 
+// Of 0..1. Half an angle has the tangent t / (1 + sqrt(1 + t^2)); a quarter is small enough for the
+// series.
+double arcTangent(double t) {
+    for (int half = 0; half < 2; ++half) t = t / (1 + std::sqrt(1 + t * t));
+    // 1/21, -1/19, ... -1/3
+    constexpr double kSeries[] = {1 / 21.0,  -1 / 19.0, 1 / 17.0, -1 / 15.0, 1 / 13.0,
+                                  -1 / 11.0, 1 / 9.0,   -1 / 7.0, 1 / 5.0,   -1 / 3.0};
+    const double s = t * t;
+    return 4 * (t + t * (s * polynomial(s, kSeries)));
+}
+
 }  // namespace
 
 double exp(double x) {
@@ -214,6 +226,19 @@ double sin(double x) {
 
 double cos(double x) {
     return sineTurned(x, 1);
+}
+
+double atan2(double y, double x) {
+    if (std::isnan(x) || std::isnan(y)) return kNan;
+    const double a = std::abs(x);
+    const double b = std::abs(y);
+    const double larger = std::max(a, b);
+    const double smaller = std::min(a, b);
+    const double share = smaller == larger ? (larger > 0 ? 1 : 0) : smaller / larger;
+    double angle = arcTangent(share);
+    if (b > a) angle = std::numbers::pi / 2 - angle;
+    if (std::signbit(x)) angle = std::numbers::pi - angle;
+    return std::copysign(angle, y);
 }
 
 }  // namespace deltasplat::portable

@@ -22,6 +22,8 @@ double pow(double x, double y);
 /// Of radians, |x| <= 10^6; NaN beyond.
 double sin(double x);
 double cos(double x);
+/// Returns the angle of (x, y), -pi..pi, within 4 ulps; NaN if either is.
+double atan2(double y, double x);
 
 /// Returns the length of (x, y), without overflow on the way.
 inline double hypot(double x, double y) {

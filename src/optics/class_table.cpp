@@ -18,6 +18,7 @@
 #include "deltasplat/error.h"
 #include "number_text.h"
 #include "optics/check_optics.h"
+#include "optics/color_curve.h"
 #include "optics/color_digits.h"
 #include "optics/largest_alpha.h"
 #include "parallel.h"
@@ -55,6 +56,7 @@ struct CodeLook {
 
 std::vector<CodeLook> lookUp(const Volume& volume, const Optics& optics) {
     const TransferFunction& function = optics.transferFunction;
+    const ColorCurve colors(function);
     const glm::dvec2 range =
         function.normalized ? optics.range.value_or(defaultRange(volume)) : glm::dvec2(0, 1);
     std::vector<CodeLook> codes;
@@ -70,7 +72,7 @@ std::vector<CodeLook> lookUp(const Volume& volume, const Optics& optics) {
             const double x = function.normalized
                                  ? (0.5 * value - 0.5 * range.x) / (0.5 * range.y - 0.5 * range.x)
                                  : value;
-            codes[i].look = {extinctionOf(function.opacityAt(x)), function.colorAt(x)};
+            codes[i].look = {extinctionOf(function.opacityAt(x)), colors.at(x)};
         }
     });
     std::erase_if(codes, [](const CodeLook& one) { return !(one.look.extinction > 0); });

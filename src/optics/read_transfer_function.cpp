@@ -35,6 +35,12 @@ class PresetReader {
         return member->flag;
     }
 
+    // ParaView writes a switch as a number, too.
+    bool flagOrNumber(const char* name) const {
+        const LocatedJson* member = preset_.find(name);
+        return member && member->kind == Kind::kNumber ? member->number != 0 : flag(name);
+    }
+
     bool has(const char* name) const { return preset_.find(name) != nullptr; }
 
     // Calls add(x, three numbers) for each of the points, groups of four numbers.
@@ -134,6 +140,13 @@ void readColors(const std::filesystem::path& file, const PresetReader& preset,
     const std::string space = preset.text("ColorSpace", "RGB");
     if (space == "Step") {
         makeSteps(function.colors);
+    } else if (space == "HSV") {
+        function.colorSpace =
+            preset.flagOrNumber("HSVWrap") ? ColorSpace::kHsvShortest : ColorSpace::kHsv;
+    } else if (space == "Lab" || space == "CIELAB") {
+        function.colorSpace = ColorSpace::kLab;
+    } else if (space == "Diverging") {
+        function.colorSpace = ColorSpace::kDiverging;
     } else if (space != "RGB") {
         listener.warn(file.string() + ": ColorSpace " + space + " is interpolated as RGB");
     }

@@ -11,8 +11,9 @@
 #include "default_floats.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "deltasplat/optics/default_ramp.h"
+#include "optics/color_curve.h"
+#include "optics/way_between.h"
 #include "portable_math.h"
-#include "srgb.h"
 
 namespace deltasplat {
 namespace {
@@ -24,11 +25,6 @@ typename std::vector<Point>::const_iterator firstBeyond(const std::vector<Point>
                                                         double x) {
     return std::upper_bound(points.begin(), points.end(), x,
                             [](double value, const Point& point) { return value < point.x; });
-}
-
-// How far x is on the way from a to b, 0..1; halves, so that no difference overflows.
-double wayFrom(double a, double b, double x) {
-    return (0.5 * x - 0.5 * a) / (0.5 * b - 0.5 * a);
 }
 
 // Bends the way from one point to the next so that its middle is reached at `midpoint`.
@@ -78,19 +74,7 @@ glm::dvec2 bulkOf(const Volume& volume) {
 }  // namespace
 
 glm::dvec3 TransferFunction::colorAt(double x) const {
-    const auto right = firstBeyond(colors, x);
-    glm::dvec3 rgb;
-    if (right == colors.begin()) {
-        rgb = colors.front().rgb;
-    } else if (right == colors.end()) {
-        rgb = colors.back().rgb;
-    } else {
-        const ColorPoint& left = right[-1];
-        const double s = wayFrom(left.x, right->x, x);
-        for (int i = 0; i < 3; ++i) rgb[i] = std::lerp(left.rgb[i], right->rgb[i], s);
-    }
-    if (linearColors) return rgb;
-    return {linearFromSrgb(rgb.r), linearFromSrgb(rgb.g), linearFromSrgb(rgb.b)};
+    return ColorCurve(*this).at(x);
 }
 
 bool TransferFunction::colorsJump() const {
@@ -117,7 +101,7 @@ double TransferFunction::opacityAt(double x) const {
     // The left point's midpoint and sharpness shape the way to the right one; VTK takes the ends of
     // the sharpness' range for a straight line and for a step.
     const OpacityPoint& left = right[-1];
-    const double s = bendToMidpoint(wayFrom(left.x, right->x, x), left.midpoint);
+    const double s = bendToMidpoint(wayBetween(left.x, right->x, x), left.midpoint);
     if (left.sharpness < 0.01) return std::lerp(left.opacity, right->opacity, s);
     if (left.sharpness > 0.99) return s < 0.5 ? left.opacity : right->opacity;
     return sharpBlend(left.opacity, right->opacity, s, left.sharpness);

@@ -10,20 +10,28 @@
 
 namespace deltasplat {
 
-ValueColors::ValueColors(const Volume& volume, const Optics& optics)
-    : bent_(kSteps), function_(optics.transferFunction) {
+namespace {
+
+const Optics& checked(const Optics& optics) {
     checkOptics(optics);
-    const TransferFunction& function = function_;
+    return optics;
+}
+
+}  // namespace
+
+ValueColors::ValueColors(const Volume& volume, const Optics& optics)
+    : bent_(kSteps), curve_(checked(optics).transferFunction) {
+    const TransferFunction& function = optics.transferFunction;
     const glm::dvec2 range =
         function.normalized ? optics.range.value_or(defaultRange(volume)) : glm::dvec2(0, 1);
     const double low = function.colors.front().x;
     const double high = function.colors.back().x;
-    below_ = function.colorAt(std::nextafter(low, -std::numeric_limits<double>::infinity()));
+    below_ = curve_.at(std::nextafter(low, -std::numeric_limits<double>::infinity()));
     first_ = float(range.x + low * (range.y - range.x));
     const double width = (high - low) * (range.y - range.x);
     stepsPerUnit_ = width > 0 ? kSteps / width : 0;
     for (int i = 0; i <= kSteps; ++i)
-        colors_.emplace_back(function.colorAt(low + (high - low) * i / kSteps));
+        colors_.emplace_back(curve_.at(low + (high - low) * i / kSteps));
     low_ = range.x;
     unit_ = range.y - range.x;
     if (!(high > low)) return;
@@ -39,7 +47,7 @@ glm::vec3 ValueColors::colorOf(float value) const {
     if (value < first_) return below_;
     const double place = std::clamp((double(value) - first_) * stepsPerUnit_, 0.0, double(kSteps));
     const int step = std::min(int(place), kSteps - 1);
-    if (bent_[std::size_t(step)]) return function_.colorAt((double(value) - low_) / unit_);
+    if (bent_[std::size_t(step)]) return curve_.at((double(value) - low_) / unit_);
     return glm::mix(colors_[step], colors_[step + 1], float(place - step));
 }
 

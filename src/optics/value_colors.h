@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "deltasplat/optics/class_table.h"
+#include "optics/color_curve.h"
 
 namespace deltasplat {
 
@@ -25,7 +26,7 @@ class ValueColors {
     double stepsPerUnit_ = 0;        // of data values
     std::vector<glm::vec3> colors_;  // [kSteps + 1], scene-linear
     std::vector<bool> bent_;         // [kSteps]: where the colour may bend or jump on the way
-    TransferFunction function_;
+    ColorCurve curve_;
     double low_ = 0;   // data value of the function's 0
     double unit_ = 1;  // and how many its 1 is more
 };

@@ -92,6 +92,22 @@ TEST(PortableMath, HasLengthsWithinTwoUlps) {
     EXPECT_TRUE(std::isnan(portable::hypot(std::nan(""), 1)));
 }
 
+TEST(PortableMath, HasAnglesWithinFourUlps) {
+    double most = 0;
+    const std::vector<double> xs = samples(-10, 10);
+    for (int i = 1; i < kSamples; ++i) {
+        const double x = xs[std::size_t(i)], y = xs[std::size_t(i - 1)];
+        const long double exact = std::atan2((long double)y, (long double)x);
+        most = std::max(most, ulpsOff(portable::atan2(y, x), exact));
+    }
+    EXPECT_LT(most, 4);
+    for (const double y : {0.0, -0.0, 1.0, -1.0, kInfinity}) {
+        for (const double x : {0.0, -0.0, 1.0, -1.0, -kInfinity})
+            EXPECT_NEAR(portable::atan2(y, x), std::atan2(y, x), 1e-15) << y << ' ' << x;
+    }
+    EXPECT_TRUE(std::isnan(portable::atan2(std::nan(""), 1)));
+}
+
 TEST(PortableMath, IsExactWhereTheValueIs) {
     EXPECT_EQ(portable::exp(0), 1);
     EXPECT_EQ(portable::expm1(0), 0);

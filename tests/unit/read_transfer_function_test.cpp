@@ -91,10 +91,27 @@ TEST_F(ReadTransferFunction, takesAPlainObjectWithAllItsSwitches) {
 }
 
 TEST_F(ReadTransferFunction, warnsOfAnotherColorSpace) {
-    read(R"({"RGBPoints": [0,0,0,0], "Points": [0,0,0.5,0], "ColorSpace": "Lab"})");
+    read(R"({"RGBPoints": [0,0,0,0], "Points": [0,0,0.5,0], "ColorSpace": "XYZ"})");
     ASSERT_EQ(warnings_.size(), 1u);
     EXPECT_EQ(warnings_[0],
-              (folder_ / "tf.json").string() + ": ColorSpace Lab is interpolated as RGB");
+              (folder_ / "tf.json").string() + ": ColorSpace XYZ is interpolated as RGB");
+}
+
+TEST_F(ReadTransferFunction, knowsTheColorSpacesOfParaView) {
+    const auto spaceOf = [&](const std::string& members) {
+        return read("{\"RGBPoints\": [0,0,0,0], \"Points\": [0,0,0.5,0], " + members + "}")
+            .colorSpace;
+    };
+    EXPECT_EQ(spaceOf(R"("ColorSpace": "RGB")"), ColorSpace::kRgb);
+    EXPECT_EQ(spaceOf(R"("ColorSpace": "HSV")"), ColorSpace::kHsv);
+    EXPECT_EQ(spaceOf(R"("ColorSpace": "HSV", "HSVWrap": 1)"), ColorSpace::kHsvShortest);
+    EXPECT_EQ(spaceOf(R"("ColorSpace": "HSV", "HSVWrap": true)"), ColorSpace::kHsvShortest);
+    EXPECT_EQ(spaceOf(R"("ColorSpace": "HSV", "HSVWrap": false)"), ColorSpace::kHsv);
+    EXPECT_EQ(spaceOf(R"("ColorSpace": "Lab")"), ColorSpace::kLab);
+    EXPECT_EQ(spaceOf(R"("ColorSpace": "CIELAB")"), ColorSpace::kLab);
+    EXPECT_EQ(spaceOf(R"("ColorSpace": "Diverging", "NanColor": [1, 1, 0])"),
+              ColorSpace::kDiverging);
+    EXPECT_TRUE(warnings_.empty());
 }
 
 // As vtkColorTransferFunction::GetTable: of the nodes around x, the first that is not below x.

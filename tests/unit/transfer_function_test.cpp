@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+
+#include "srgb.h"
 
 namespace deltasplat {
 namespace {
@@ -45,6 +48,91 @@ TEST(TransferFunction, opacityIsAnExactLerpBetweenPlainPoints) {
     EXPECT_EQ(function.opacityAt(14), 0.625);
     for (double s = 0; s <= 1; s += 1.0 / 64) {
         EXPECT_EQ(function.opacityAt(10 + 4 * s), std::lerp(0.125, 0.625, s)) << s;
+    }
+}
+
+// The colours that vtkColorTransferFunction 9.1 gives; its own matrix has four digits.
+TEST(TransferFunction, mixesColorsAsVtkDoes) {
+    struct Case {
+        ColorSpace space;
+        glm::dvec3 from, to;
+        glm::dvec3 expected[3];  // at 0.25, 0.5 and 0.8
+    };
+    const glm::dvec3 blue(0.23137254902, 0.298039215686, 0.752941176471);
+    const glm::dvec3 red(0.705882352941, 0.0156862745098, 0.149019607843);
+    const glm::dvec3 warm(0.9, 0.2, 0.1), cold(0.2, 0.3, 0.95);
+    const glm::dvec3 grey(0.5, 0.5, 0.5), yellow(0.9, 0.8, 0.1);
+    const Case cases[] = {
+        {ColorSpace::kHsv,
+         blue,
+         red,
+         {{0.3764, 0.1749, 0.7412}, {0.6316, 0.1202, 0.7294}, {0.7153, 0.0567, 0.4387}}},
+        {ColorSpace::kHsv,
+         warm,
+         cold,
+         {{0.8649, 0.9125, 0.1241}, {0.152, 0.925, 0.1488}, {0.1792, 0.85, 0.94}}},
+        {ColorSpace::kHsvShortest,
+         warm,
+         cold,
+         {{0.9125, 0.1241, 0.4706}, {0.9218, 0.1488, 0.925}, {0.4214, 0.1792, 0.94}}},
+        {ColorSpace::kHsvShortest,
+         grey,
+         yellow,
+         {{0.6, 0.4958, 0.4667}, {0.7, 0.525, 0.3889}, {0.82, 0.6451, 0.2369}}},
+        {ColorSpace::kLab,
+         warm,
+         cold,
+         {{0.8287, 0.2165, 0.33}, {0.7299, 0.2381, 0.5315}, {0.5298, 0.2722, 0.779}}},
+        {ColorSpace::kLab,
+         grey,
+         yellow,
+         {{0.6124, 0.5712, 0.435}, {0.7135, 0.6452, 0.3603}, {0.827, 0.7371, 0.242}}},
+        {ColorSpace::kDiverging,
+         blue,
+         red,
+         {{0.5533, 0.6886, 0.9952}, {0.8654, 0.8654, 0.8654}, {0.9329, 0.5198, 0.4061}}},
+        {ColorSpace::kDiverging,
+         warm,
+         cold,
+         {{1.0, 0.6624, 0.493}, {1.0, 1.0, 1.0}, {0.6449, 0.5904, 1.0}}},
+        {ColorSpace::kDiverging,
+         grey,
+         yellow,
+         {{0.6727, 0.6421, 0.5507}, {0.8152, 0.7515, 0.5232}, {0.9067, 0.813, 0.3609}}},
+    };
+    for (const Case& one : cases) {
+        TransferFunction function = withOpacities({{0, 1, 0.5, 0}});
+        function.colorSpace = one.space;
+        function.colors = {{-3, one.from}, {-1, one.to}, {1, one.from}};
+        for (int i = 0; i < 3; ++i) {
+            const double s = std::array{0.25, 0.5, 0.8}[std::size_t(i)];
+            // And the same way back.
+            for (const double x : {-3 + 2 * s, 1 - 2 * s}) {
+                const glm::dvec3 color = function.colorAt(x);
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_NEAR(srgbFromLinear(color[c]), one.expected[i][c], 2e-3)
+                        << int(one.space) << ' ' << x << ' ' << c;
+            }
+        }
+        for (const double x : {-3.0, -1.0, 1.0}) {
+            const glm::dvec3 expected = x == -1 ? one.to : one.from;
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(function.colorAt(x)[c], linearFromSrgb(expected[c]), 1e-12);
+        }
+    }
+}
+
+// Light knows no largest value.
+TEST(TransferFunction, mixesBrightColorsWithoutCuttingThem) {
+    TransferFunction function = withOpacities({{0, 1, 0.5, 0}});
+    function.linearColors = true;
+    function.colors = {{0, {2, 1, 0.5}}, {1, {2000, 1000, 500}}};
+    for (const ColorSpace space : {ColorSpace::kRgb, ColorSpace::kHsv, ColorSpace::kLab}) {
+        function.colorSpace = space;
+        const glm::dvec3 color = function.colorAt(0.5);
+        EXPECT_GT(color.r, 100);
+        EXPECT_NEAR(color.g / color.r, 0.5, 1e-9);
+        EXPECT_NEAR(color.b / color.r, 0.25, 1e-9);
     }
 }
 

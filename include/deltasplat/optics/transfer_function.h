@@ -12,6 +12,15 @@
 
 namespace deltasplat {
 
+/// In which space colours between two points of a transfer function are mixed, as VTK has them.
+enum class ColorSpace {
+    kRgb,          ///< as they are given
+    kHsv,          ///< by hue, through all hues between the two, by saturation and value
+    kHsvShortest,  ///< likewise, by the shorter way around the circle of hues
+    kLab,          ///< CIE L*a*b*
+    kDiverging  ///< by magnitude, saturation and hue of L*a*b*, through white between two colours
+};
+
 /// Colour and opacity as functions of the data value, in the form ParaView saves them.
 ///
 /// Of several points at the same x the last one counts at x itself, so that two make a step.
@@ -32,9 +41,11 @@ struct TransferFunction {
     std::vector<OpacityPoint> opacities;  ///< at least one; x not decreasing
     bool normalized = false;    ///< x runs over 0..1 of a data range instead of data values
     bool linearColors = false;  ///< colours are scene-linear; otherwise sRGB
+    ColorSpace colorSpace = ColorSpace::kRgb;
 
-    /// Returns the scene-linear, not premultiplied colour at x (sRGB points are interpolated as
-    /// sRGB). Constant beyond the first and the last point.
+    /// Returns the scene-linear, not premultiplied colour at x. Constant beyond the first and the
+    /// last point. What L*a*b* makes of sRGB colours that no screen shows is brought back to what
+    /// one does.
     glm::dvec3 colorAt(double x) const;
     /// Returns the opacity 0..1 over one unit distance at x, with midpoint and sharpness as VTK
     /// understands them. Constant beyond the first and the last point.
@@ -45,10 +56,11 @@ struct TransferFunction {
 
 /// Reads the first transfer function of a ParaView JSON file (an array of presets, or one object):
 /// `Name`, `RGBPoints`, `Points`, `Normalized`, `ColorSpaceOfPoints`, `ColorSpace`; other members
-/// are passed over. Colours are interpolated as RGB, or held for each interval where `ColorSpace`
-/// is "Step" (the colour of its right end, which belongs to it; its left end has its own colour);
-/// another colour space brings a warning. Linear colours may be brighter than 1. A file without
-/// `Points` gets opacities from 0 at the first colour's x to 1 at the last one's, with a warning.
+/// are passed over. `ColorSpace` is "RGB", "HSV" (with `HSVWrap`), "Lab" or "CIELAB", "Diverging",
+/// or "Step": each interval has the colour of its right end, which belongs to it; its left end has
+/// its own colour. Another colour space is mixed as RGB, with a warning. Linear colours may be
+/// brighter than 1. A file without `Points` gets opacities from 0 at the first colour's x to 1 at
+/// the last one's, with a warning.
 /// @throw Error(kInput) naming file, line and what was expected, if it is missing or malformed
 TransferFunction readTransferFunction(const std::filesystem::path& file,
                                       const Listener& listener = {});

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optics/color_space.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "portable_math.h"
+
+namespace deltasplat {
+namespace {
+
+// Columns: what red, green and blue have of X, Y and Z, in shares of white's, whose own are then
+// (1, 1, 1) to the last digit.
+const glm::dmat3 kShareOfWhite = [] {
+    glm::dmat3 shares(0.4124, 0.2126, 0.0193, 0.3576, 0.7152, 0.1192, 0.1805, 0.0722, 0.9505);
+    for (int row = 0; row < 3; ++row) {
+        const double white = shares[0][row] + shares[1][row] + shares[2][row];
+        for (int color = 0; color < 3; ++color) shares[color][row] /= white;
+    }
+    return shares;
+}();
+const glm::dmat3 kFromShareOfWhite = glm::inverse(kShareOfWhite);
+
+// What is darker is a straight line.
+constexpr double kBend = 6.0 / 29;
+
+double lightness(double share) {
+    if (share > kBend * kBend * kBend) return portable::pow(share, 1.0 / 3);
+    return share / (3 * kBend * kBend) + 4.0 / 29;
+}
+
+double shareOf(double lightness) {
+    if (lightness > kBend) return lightness * lightness * lightness;
+    return 3 * kBend * kBend * (lightness - 4.0 / 29);
+}
+
+}  // namespace
+
+glm::dvec3 labFromLinear(const glm::dvec3& rgb) {
+    const glm::dvec3 share = kShareOfWhite * rgb;
+    const double x = lightness(share.x);
+    const double y = lightness(share.y);
+    return {116 * y - 16, 500 * (x - y), 200 * (y - lightness(share.z))};
+}
+
+glm::dvec3 linearFromLab(const glm::dvec3& lab) {
+    const double y = (lab.x + 16) / 116;
+    return kFromShareOfWhite *
+           glm::dvec3(shareOf(y + lab.y / 500), shareOf(y), shareOf(y - lab.z / 200));
+}
+
+glm::dvec3 mshFromLab(const glm::dvec3& lab) {
+    const double chroma = portable::hypot(lab.y, lab.z);
+    // Of grey, rounding makes any hue.
+    constexpr double kGrey = 1e-3;
+    const double magnitude = portable::hypot(lab.x, chroma);
+    if (chroma <= kGrey * magnitude) return {magnitude, 0, 0};
+    return {magnitude, portable::atan2(chroma, lab.x), portable::atan2(lab.z, lab.y)};
+}
+
+glm::dvec3 labFromMsh(const glm::dvec3& msh) {
+    const double chroma = msh.x * portable::sin(msh.y);
+    return {msh.x * portable::cos(msh.y), chroma * portable::cos(msh.z),
+            chroma * portable::sin(msh.z)};
+}
+
+glm::dvec3 hsvFromRgb(const glm::dvec3& rgb) {
+    const double most = std::max({rgb.r, rgb.g, rgb.b});
+    const double spread = most - std::min({rgb.r, rgb.g, rgb.b});
+    if (!(spread > 0)) return {0, 0, most};
+    const double sixth = rgb.r == most   ? (rgb.g - rgb.b) / spread
+                         : rgb.g == most ? 2 + (rgb.b - rgb.r) / spread
+                                         : 4 + (rgb.r - rgb.g) / spread;
+    return {(sixth < 0 ? sixth + 6 : sixth) / 6, spread / most, most};
+}
+
+glm::dvec3 rgbFromHsv(const glm::dvec3& hsv) {
+    glm::dvec3 rgb;
+    for (int c = 0; c < 3; ++c) {
+        // How far the hue is from the channel's, in sixths of a turn, both ways around.
+        const double away = std::abs(hsv.x * 6 - 2 * c);
+        const double nearest = std::min(away, 6 - away);
+        rgb[c] = hsv.z * (1 - hsv.y * std::clamp(nearest - 1, 0.0, 1.0));
+    }
+    return rgb;
+}
+
+}  // namespace deltasplat
