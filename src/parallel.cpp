@@ -18,6 +18,11 @@
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 
+#ifdef DELTASPLAT_TSAN
+extern "C" void __tsan_acquire(void* place);
+extern "C" void __tsan_release(void* place);
+#endif
+
 namespace deltasplat {
 
 namespace {
@@ -95,6 +100,23 @@ ThreadLimits& threadLimits() {
     return limits;
 }
 
+// Tells ThreadSanitizer that what was written before is there for what comes after. It does not see
+// how TBB's threads wait for each other, and therefore does not look at this file (CMakeLists.txt).
+class HandOver {
+  public:
+#ifdef DELTASPLAT_TSAN
+    void give() {
+        __tsan_release(this);
+    }
+    void take() {
+        __tsan_acquire(this);
+    }
+#else
+    void give() {}
+    void take() {}
+#endif
+};
+
 }  // namespace
 
 ThreadLimit::ThreadLimit(int threads) {
@@ -120,20 +142,25 @@ int threadCount() {
 }
 
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+    HandOver toOthers, back;
     // A grain of one keeps threads busy when the pieces differ much in size, as slabs do.
     const auto run = [&] {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1),
                           [&](const tbb::blocked_range<std::size_t>& range) {
+                              toOthers.take();
                               const DefaultFloats floats;
                               for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
+                              back.give();
                           });
     };
+    toOthers.give();
     const auto limit = threadLimits().current();
     if (limit) {
         limit->arena.execute(run);
     } else {
         run();
     }
+    back.take();
 }
 
 void isolated(const std::function<void()>& body) {
