@@ -10,6 +10,7 @@
 #include "number_text.h"
 #include "picture_view.h"
 #include "stopwatch.h"
+#include "view/affine.h"
 
 namespace deltasplat {
 namespace {
@@ -78,9 +79,11 @@ class CompositeRender {
                 "picture: empty, for transfer function and extinction show none of the values " +
                 numberText(volume_.valueMin) + " to " + numberText(volume_.valueMax));
         } else {
+            const WorldBox world = worldBox(volume_.box, volume_.worldFromIndex);
             listener.warn(
-                "picture: empty, for what can be seen of the volume lies outside of it, "
-                "before the near plane, or is far smaller than a pixel");
+                "picture: empty, for what can be seen of the volume lies outside of it, before the "
+                "near plane, or is far smaller than a pixel; the volume lies in the world from " +
+                numberText(world.min) + " to " + numberText(world.max));
         }
     }
 

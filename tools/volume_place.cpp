@@ -53,15 +53,7 @@ VolumePlace placeOf(const Volume& volume) {
     place.origin = glm::dvec3(matrix[3]);
     for (int axis = 0; axis < 3; ++axis)
         place.directions[axis] = glm::dvec3(matrix[axis]) / volume.voxelSize()[axis];
-    const IndexBox box = volume.box.empty() ? IndexBox{glm::ivec3(0), glm::ivec3(0)} : volume.box;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 index(corner & 1 ? box.max.x : box.min.x,
-                               corner & 2 ? box.max.y : box.min.y,
-                               corner & 4 ? box.max.z : box.min.z, 1);
-        const glm::dvec3 world(matrix * index);
-        place.min = corner == 0 ? world : glm::min(place.min, world);
-        place.max = corner == 0 ? world : glm::max(place.max, world);
-    }
+    place.box = worldBox(volume.box, matrix);
     return place;
 }
 
@@ -92,7 +84,7 @@ Json placeJson(const Volume& volume) {
     const Camera camera =
         makeCamera(CameraOptions(), volume.box, volume.worldFromIndex, volume.space);
     const glm::dmat3& d = place.directions;
-    return {{"world_box", {vectorJson(place.min), vectorJson(place.max)}},
+    return {{"world_box", {vectorJson(place.box.min), vectorJson(place.box.max)}},
             {"origin", vectorJson(place.origin)},
             {"directions", {vectorJson(d[0]), vectorJson(d[1]), vectorJson(d[2])}},
             {"space", volume.space.empty() ? Json() : Json(volume.space)},

@@ -8,13 +8,13 @@
 
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/view/camera.h"
+#include "view/affine.h"
 
 namespace deltasplat {
 
 /// Where a volume lies in the world.
 struct VolumePlace {
-    glm::dvec3 min{0.0};         ///< of the box around all voxel centres
-    glm::dvec3 max{0.0};         ///< likewise
+    WorldBox box;                ///< around all voxel centres
     glm::dvec3 origin{0.0};      ///< where the centre of voxel (0, 0, 0) lies, or would
     glm::dmat3 directions{1.0};  ///< unit vectors along i, j and k, as columns
 };

@@ -2,6 +2,7 @@
 #include "view/affine.h"
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -23,6 +24,20 @@ void requireInvertible(const glm::dmat4& worldFromIndex) {
     throw Error(ErrorCode::kInput,
                 gotExpected("worldFromIndex", "voxels of volume " + numberText(volume),
                             "a finite transform that can be inverted"));
+}
+
+WorldBox worldBox(const IndexBox& box, const glm::dmat4& worldFromIndex) {
+    const IndexBox full = box.empty() ? IndexBox{glm::ivec3(0), glm::ivec3(0)} : box;
+    WorldBox world;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 index(corner & 1 ? full.max.x : full.min.x,
+                               corner & 2 ? full.max.y : full.min.y,
+                               corner & 4 ? full.max.z : full.min.z, 1);
+        const glm::dvec3 place(worldFromIndex * index);
+        world.min = corner == 0 ? place : glm::min(world.min, place);
+        world.max = corner == 0 ? place : glm::max(world.max, place);
+    }
+    return world;
 }
 
 }  // namespace deltasplat

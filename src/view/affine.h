@@ -3,11 +3,24 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "deltasplat/ingest/volume.h"
 
 namespace deltasplat {
 
 /// Throws unless the transform maps three-dimensional space onto itself one to one.
 /// @throw Error(kInput) if an entry is not finite or the voxels have no volume
 void requireInvertible(const glm::dmat4& worldFromIndex);
+
+/// A box in the world, along its axes.
+struct WorldBox {
+    glm::dvec3 min{0.0};
+    glm::dvec3 max{0.0};
+};
+
+/// Returns the smallest that holds the centres of all voxels of a box, or, of an empty one, of
+/// voxel (0, 0, 0).
+WorldBox worldBox(const IndexBox& box, const glm::dmat4& worldFromIndex);
 
 }  // namespace deltasplat

@@ -180,28 +180,42 @@ glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double degrees) {
     return v * cosine + glm::cross(axis, v) * sine + axis * (glm::dot(axis, v) * (1 - cosine));
 }
 
-// The line of sight that somebody names or points at: of an eye, the way to what it looks at.
+// The line of sight that somebody names or points at: of an eye, the way to what it looks at. One
+// that sees all sides need not look at anything.
 std::optional<glm::dvec3> givenDirection(const CameraOptions& options, const glm::dvec3& target) {
     if (options.direction || !options.eyeWorld) return options.direction;
     const glm::dvec3 direction = target - *options.eyeWorld;
     if (isFinite(direction) && direction != glm::dvec3(0)) return direction;
+    if (options.projection == Projection::kLatlong && isFinite(direction)) return {};
     refuse("`eyeWorld`", numberText(*options.eyeWorld),
            "another place than the target " + numberText(target) + ", or a `direction` to look in");
+}
+
+bool areParallel(const glm::dvec3& a, const glm::dvec3& b) {
+    return glm::length(glm::cross(a, b)) < 1e-9;
+}
+
+// What is up where nobody says: of somebody who looks straight up or down, as the views have it.
+glm::dvec3 defaultUp(const Viewer& viewer, const glm::dvec3& direction) {
+    const glm::dvec3 up = viewer.toWorld(namedView("front").up);
+    if (!areParallel(direction, up)) return up;
+    return viewer.toWorld(namedView(glm::dot(direction, up) < 0 ? "top" : "bottom").up);
 }
 
 // Sets the three axes as a person turns a camera that looks along `pointed`, or else as the view
 // says, head towards `up`.
 void orient(Camera& camera, const CameraOptions& options, const Viewer& viewer,
             const std::optional<glm::dvec3>& pointed) {
-    const NamedView& view = namedView(pointed ? "front" : viewFrom(viewer, options.view));
-    const glm::dvec3 givenUp = options.up.value_or(viewer.toWorld(view.up));
-    const glm::dvec3 givenDirection = pointed.value_or(viewer.toWorld(view.direction));
-    const glm::dvec3 up = unitVector("`up`", givenUp);
-    glm::dvec3 direction = unitVector("`direction`", givenDirection);
-    if (glm::length(glm::cross(direction, up)) < 1e-9) {
-        refuse(options.direction || !pointed ? (pointed ? "`direction`" : "`up`") : "`eyeWorld`",
-               numberText(givenDirection) + " as direction, parallel to up " + numberText(givenUp),
-               "directions that differ (another `view`, `direction` or `up`)");
+    const NamedView& view = namedView(viewFrom(viewer, options.view));
+    glm::dvec3 direction =
+        unitVector("`direction`", pointed.value_or(viewer.toWorld(view.direction)));
+    const glm::dvec3 up = unitVector(
+        "`up`",
+        options.up.value_or(pointed ? defaultUp(viewer, direction) : viewer.toWorld(view.up)));
+    if (areParallel(direction, up)) {
+        refuse("`up`",
+               numberText(*options.up) + ", parallel to the line of sight " + numberText(direction),
+               "a direction that differs from it");
     }
 
     // The azimuth goes about the up that was given, the rest about the camera's own axes.
@@ -249,22 +263,6 @@ double clearDistance(const Camera& camera, const IndexBox& box, const glm::dmat4
     return distance;
 }
 
-// Returns the angle of a vector to the x axis, towards y: Newton's method from within 0.004 of it.
-double angleOf(double x, double y) {
-    const double length = portable::hypot(x, y);
-    if (!(length > 0)) return 0;
-    const double a = std::abs(x);
-    const double b = std::abs(y);
-    const double share = std::min(a, b) / std::max(a, b);
-    double angle = share * (std::numbers::pi / 4 + 0.273 * (1 - share));
-    if (b > a) angle = std::numbers::pi / 2 - angle;
-    if (x < 0) angle = std::numbers::pi - angle;
-    if (y < 0) angle = -angle;
-    for (int i = 0; i < 3; ++i)
-        angle += (y * portable::cos(angle) - x * portable::sin(angle)) / length;
-    return angle;
-}
-
 // Half the width of the picture at distance 1.
 double tangentOf(const CameraOptions& options) {
     constexpr double kRadians = std::numbers::pi / 180;
@@ -309,7 +307,7 @@ void placeEye(Camera& camera, const CameraOptions& options, const glm::dvec3& ta
         distance = std::max(glm::dot(target - *options.eyeWorld, camera.direction),
                             glm::length(glm::dvec3(worldFromIndex[0])));
         camera.targetWorld = *options.eyeWorld + distance * camera.direction;
-    } else if (options.eyeWorld) {
+    } else if (options.eyeWorld && target != *options.eyeWorld) {
         // Turned about the eye, the line of sight leads elsewhere.
         distance = glm::distance(target, *options.eyeWorld);
         camera.targetWorld = *options.eyeWorld + distance * camera.direction;
@@ -346,12 +344,15 @@ std::string projectionName(Projection projection) {
 
 double Camera::fovDegrees() const {
     const double height = frameWidthWorld * sizePixels.y / sizePixels.x;
-    return 360 / std::numbers::pi * angleOf(targetDistanceWorld, 0.5 * height);
+    return 360 / std::numbers::pi * portable::atan2(0.5 * height, targetDistanceWorld);
 }
 
 glm::dvec3 Camera::rayThrough(glm::dvec2 pixel) const {
     if (projection == Projection::kOrtho) return direction;
-    if (projection == Projection::kPerspective) return worldFromPixel(pixel) - eyeWorld();
+    if (projection == Projection::kPerspective) {
+        const glm::dvec2 offset = (pixel - 0.5 * glm::dvec2(sizePixels)) * pixelWorld();
+        return targetDistanceWorld * direction + offset.x * right - offset.y * up;
+    }
     const double longitude = 2 * std::numbers::pi * (pixel.x / sizePixels.x - 0.5);
     const double latitude = std::numbers::pi * (0.5 - pixel.y / sizePixels.y);
     return portable::cos(latitude) *
@@ -374,8 +375,9 @@ glm::dvec2 Camera::pixelFromWorld(const glm::dvec3& world) const {
     } else if (projection == Projection::kLatlong) {
         const glm::dvec3 ray = world - eyeWorld();
         const glm::dvec2 level(glm::dot(ray, direction), glm::dot(ray, right));
-        const double longitude = angleOf(level.x, level.y);
-        const double latitude = angleOf(portable::hypot(level.x, level.y), glm::dot(ray, up));
+        const double longitude = portable::atan2(level.y, level.x);
+        const double latitude =
+            portable::atan2(glm::dot(ray, up), portable::hypot(level.x, level.y));
         return {sizePixels.x * (0.5 + longitude / (2 * std::numbers::pi)),
                 sizePixels.y * (0.5 - latitude / std::numbers::pi)};
     }

@@ -109,7 +109,7 @@ deltasplat_cli_test(input.tf.range ARGS render cube_8x8x8_uint8.raw -o out.exr -
 deltasplat_cli_test(input.range.ramp ARGS render cube_8x8x8_uint8.raw -o out.exr --range 0,1
     CREATES out.exr)
 # What shows nothing says why.
-set(outside "picture: empty, for what can be seen of the volume lies outside of it, before the near plane, or is far smaller than a pixel")
+set(outside "picture: empty, for what can be seen of the volume lies outside of it, before the near plane, or is far smaller than a pixel; the volume lies in the world from 0,0,0 to 7,7,7")
 deltasplat_cli_test(empty_picture.target ARGS render cube_8x8x8_uint8.raw -o out.png --target 100,0,0
     STDERR "deltasplat: warning: ${outside}" CREATES out.png)
 deltasplat_cli_test(empty_picture.near

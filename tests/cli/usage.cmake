@@ -137,10 +137,10 @@ deltasplat_refusal(view
 
 # Cameras that cannot be.
 deltasplat_refusal(direction_parallel_to_up
-    "--direction: got 0,1,0 as direction, parallel to up 0,1,0; expected directions that differ (another --view, --direction or --up)"
-    --direction 0,1,0)
+    "--up: got 0,3,0, parallel to the line of sight 0,1,0; expected a direction that differs from it"
+    --direction 0,1,0 --up 0,3,0)
 deltasplat_refusal(direction_against_up
-    "--direction: got 0,0,-1 as direction, parallel to up 0,0,2; expected directions that differ (another --view, --direction or --up)"
+    "--up: got 0,0,2, parallel to the line of sight 0,0,-1; expected a direction that differs from it"
     --direction 0,0,-1 --up 0,0,2)
 deltasplat_refusal(direction_zero
     "--direction: got 0,0,0; expected three finite numbers, not all of them 0" --direction 0,0,0)
@@ -156,15 +156,19 @@ deltasplat_cli_test(patient.direction CREATES out.exr
 deltasplat_cli_test(patient.up CREATES out.exr
     ARGS render patient.vdb -o out.exr --view front --up 0,0,1)
 deltasplat_cli_test(patient.direction_parallel_to_up EXIT 2
-    ARGS render patient.vdb -o out.exr --direction 0,0,1
-    STDERR "deltasplat: --direction: got 0,0,1 as direction, parallel to up 0,0,1; expected directions that differ (another --view, --direction or --up)")
+    ARGS render patient.vdb -o out.exr --direction 0,0,1 --up 0,0,1
+    STDERR "deltasplat: --up: got 0,0,1, parallel to the line of sight 0,0,1; expected a direction that differs from it")
+deltasplat_cli_test(straight_up CREATES out.exr ARGS render ${cube} -o out.exr --direction 0,1,0)
+deltasplat_cli_test(view_of_an_eye CREATES out.exr
+    ARGS render ${cube} -o out.exr --projection perspective --eye 4,40,4 --target 4,4,4 --view top
+    STDERR "deltasplat: warning: --view: has no effect with --eye")
 deltasplat_cli_test(negative_vectors CREATES out.exr
     ARGS render ${cube} -o out.exr --direction -1,0.8,-0.6 --up=-.5,1,0 --target -1,2,-.25)
 deltasplat_cli_test(frame_width_1e-30 CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --frame-width 1e-30)
 deltasplat_cli_test(frame_width_1e30 CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --frame-width 1e30
-    STDERR_MATCHES "deltasplat: warning: picture: empty, .* or is far smaller than a pixel")
+    STDERR_MATCHES "deltasplat: warning: picture: empty, .* or is far smaller than a pixel; the volume lies .*")
 deltasplat_cli_test(last_value_wins CREATES out.exr
     ARGS render ${cube} -o out.exr --size 0x0x0 --size 8x8)
 
@@ -174,7 +178,7 @@ deltasplat_refusal(fov_zero "--fov: got 0; expected a number of degrees greater 
 deltasplat_refusal(fov_half_turn
     "--fov: got 180; expected a number of degrees greater than 0 and less than 180"
     --projection perspective --fov 180)
-deltasplat_refusal(fov_nan "--fov: got nan; expected a finite number from 0 to 180"
+deltasplat_refusal(fov_nan "--fov: got nan; expected a number of degrees greater than 0 and less than 180"
     --projection perspective --fov nan)
 deltasplat_refusal(fov_twice "--fov: got it and --focal; expected the angle of view one way or the other"
     --projection perspective --fov 40 --focal 35)

@@ -60,7 +60,7 @@ void addBenchOptions(CLI::App& app, BenchCommand& command) {
 void warnOfUnusedOptions(const CLI::App& app, const BenchCommand& command,
                          ProgressDisplay& display) {
     warnOfUnusedInputOptions(app, {command.inputs.begin(), command.inputs.end()}, display);
-    warnOfUnusedCameraOptions(app, display);
+    warnOfUnusedCameraOptions(app, command.picture.render.camera, display);
     if (isGiven(app, "--background") && command.report.empty())
         display.warn("--background: has no effect without --report");
 }

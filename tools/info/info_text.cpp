@@ -146,8 +146,8 @@ std::string placeText(const Volume& volume) {
         directions += (axis > 0 ? ", " : "") + std::string(1, "ijk"[axis]) + " " +
                       directionText(place, volume.space, axis);
     }
-    std::string text =
-        line("world box", "(" + toText(place.min, ", ") + ") to (" + toText(place.max, ", ") + ")");
+    std::string text = line("world box", "(" + toText(place.box.min, ", ") + ") to (" +
+                                             toText(place.box.max, ", ") + ")");
     text += line("origin", "(" + toText(place.origin, ", ") + ")");
     if (!volume.space.empty()) text += line("space", spaceText(volume.space));
     text += line("directions", directions);

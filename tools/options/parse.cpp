@@ -139,6 +139,15 @@ Parser<double> positiveLength() {
     return number(1e-30, 1e30);
 }
 
+Parser<double> angleOfView() {
+    return [](const std::string& option, const std::string& text) {
+        const std::optional<double> value = toNumber<double>(text);
+        if (!value || !(*value > 0 && *value < 180))
+            refuse(option, text, "a number of degrees greater than 0 and less than 180");
+        return *value;
+    };
+}
+
 Parser<double> angle() {
     return number(-1e6, 1e6);
 }

@@ -30,6 +30,8 @@ Parser<std::uint64_t> byteCount();
 Parser<glm::dvec3> vector3(double most = 1e30);
 /// A world length, or what is multiplied by one.
 Parser<double> positiveLength();
+/// Degrees, more than 0 and less than 180.
+Parser<double> angleOfView();
 /// Degrees of which the fractions still count.
 Parser<double> angle();
 /// `X,Y,Z`, world lengths of a voxel whose volume is still an ordinary number.

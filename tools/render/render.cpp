@@ -76,7 +76,7 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
         display.warn("--bits: has no effect without a .png picture");
     if (isGiven(app, "--dither") && (!png || command.image.bits == 16))
         display.warn("--dither: has no effect without a .png of 8 bits");
-    warnOfUnusedCameraOptions(app, display);
+    warnOfUnusedCameraOptions(app, command.picture.render.camera, display);
     warnOfUnusedModeOptions(app, command, display);
 }
 

@@ -96,9 +96,9 @@ void addModeOption(CLI::App& app, Mode& chosen) {
     group.addValue("--mode", "NAME", chosen, mode(),
                    withDefault("composite (emission and absorption), xray (integral of the value\n"
                                "in world units) or mip (largest value along the line of\n"
-                               "sight): the last two store their values as 32-bit floats in\n"
-                               "an .exr, and are shown as greys in a .png (mip in the colours\n"
-                               "of --tf, if that is given)",
+                               "sight): the last two, of --projection ortho only, store their\n"
+                               "values as 32-bit floats in an .exr, and are shown as greys in\n"
+                               "a .png (mip in the colours of --tf, if that is given)",
                                modeName(chosen)));
 }
 
@@ -134,7 +134,8 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
                                "front looks at the face, left and right at the patient's",
                                camera.view));
     group.addValue("--azimuth", "DEG", camera.azimuthDegrees, angle(),
-                   withDefault("Turns the camera to its right, about the up axis",
+                   withDefault("Turns the camera to its right, about the up axis through the\n"
+                               "target, or through --eye, if that is given",
                                numberText(camera.azimuthDegrees)));
     group.addValue(
         "--elevation", "DEG", camera.elevationDegrees, angle(),
@@ -147,13 +148,13 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
                    "--view");
     group.addValue("--up", "X,Y,Z", camera.up, vector3(),
                    "What is up in the picture, in world space (default: the view's;\n"
-                   "with --direction 0,1,0, or a patient's head)");
+                   "with --direction or --eye 0,1,0, or a patient's head)");
     group.addValue("--target", "X,Y,Z", camera.targetWorld, vector3(),
                    "World position in the middle of the picture (default: the\n"
                    "middle of the volume)");
     group.addValue("--frame-width", "W", camera.frameWidthWorld, positiveLength(),
                    "Width of the picture in world units (default: the volume fits)");
-    group.addValue("--fov", "DEG", camera.fovDegrees, number(0, 180),
+    group.addValue("--fov", "DEG", camera.fovDegrees, angleOfView(),
                    "perspective: vertical angle of view, less than 180 (default: " +
                        numberText(kDefaultFov) + ")");
     group.addValue("--focal", "MM", camera.focalMm, positiveLength(),
@@ -268,9 +269,14 @@ void checkCamera(const CameraOptions& camera) {
     }
 }
 
-void warnOfUnusedCameraOptions(const CLI::App& app, ProgressDisplay& display) {
-    if (isGiven(app, "--view") && isGiven(app, "--direction"))
+void warnOfUnusedCameraOptions(const CLI::App& app, const CameraOptions& camera,
+                               ProgressDisplay& display) {
+    if (!isGiven(app, "--view")) return;
+    if (isGiven(app, "--direction")) {
         display.warn("--view: has no effect with --direction");
+    } else if (camera.eyeWorld && camera.eyeWorld != camera.targetWorld) {
+        display.warn("--view: has no effect with --eye");
+    }
 }
 
 void validate(const RenderCommand& command) {

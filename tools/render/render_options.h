@@ -48,7 +48,8 @@ void applyProjection(const CLI::App& app, CameraOptions& camera);
 void checkCamera(const CameraOptions& camera);
 
 /// Warns of options that were given and that others make useless.
-void warnOfUnusedCameraOptions(const CLI::App& app, ProgressDisplay& display);
+void warnOfUnusedCameraOptions(const CLI::App& app, const CameraOptions& camera,
+                               ProgressDisplay& display);
 
 /// Checks what can be checked before anything is read.
 /// @throw Error(kUsage) or, for a folder that cannot be written to, Error(kOutput)

@@ -38,16 +38,18 @@ struct CameraOptions {
     double elevationDegrees = 0;
     double rollDegrees = 0;  ///< then turns it clockwise (seen from behind) about the line of sight
     std::optional<glm::dvec3> direction;  ///< the way the line of sight travels; replaces `view`
-    /// Default: the view's; where `direction` is given +y, or in a patient's space the head's
-    /// direction. Not parallel to the direction.
+    /// Default: the view's; where `direction` or `eyeWorld` is given +y, or in a patient's space
+    /// the head's direction, and straight down or up as in top or bottom. Not parallel to the
+    /// direction.
     std::optional<glm::dvec3> up;
     std::optional<glm::dvec3>
         targetWorld;  ///< falls on the middle of the picture; default: middle of the box
     /// kOrtho: world width of the picture; default: the box of voxel centres just fits both ways.
     std::optional<double> frameWidthWorld;
     /// Where lines of sight begin, unless they are parallel. From there it looks in `direction`, or
-    /// else at the target; angles turn the line of sight about the eye. Default: `distanceWorld`
-    /// before the target; kLatlong: the target.
+    /// else at the target, whatever the view (kLatlong, at the target: as the view says); angles
+    /// turn the line of sight about the eye. Default: `distanceWorld` before the target; kLatlong:
+    /// the target.
     std::optional<glm::dvec3> eyeWorld;
     /// kPerspective: full vertical angle of view, more than 0 and less than 180 degrees; default:
     /// by `focalMm` and `apertureMm` if one is given, else kDefaultFov.
@@ -113,7 +115,8 @@ struct Camera {
 /// end-on) is framed as one voxel of the smallest size.
 /// @param space  as Volume::space: "RAS", "LPS", or anything else for no patient
 /// @throw Error(kUsage) naming the option if the view's name is unknown, a number is not finite,
-///        the direction is zero or parallel to up, the eye is the target that it looks at, the
+///        the direction is zero or parallel to a given up, the eye is the target that it looks
+///        at, the
 ///        frame width, the distance, the angle of view or the size is out of range, or a panorama
 ///        is not twice as wide as high; Error(kInput) if worldFromIndex is not finite or cannot be
 ///        inverted
