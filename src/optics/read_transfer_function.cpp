@@ -3,10 +3,12 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/transfer_function.h"
+#include "deltasplat/optics/transfer_function_names.h"
 #include "number_text.h"
 #include "optics/located_json.h"
 
@@ -100,15 +102,29 @@ class PresetReader {
     const LocatedJson& preset_;
 };
 
-const LocatedJson& firstPreset(const std::filesystem::path& file, const LocatedJson& root) {
-    const LocatedJson* preset = &root;
-    if (root.kind == Kind::kArray && !root.members.empty()) preset = &root.members[0].value;
-    if (preset->kind == Kind::kObject) return *preset;
-    const std::string got =
-        preset == &root && root.kind == Kind::kArray ? "an empty array" : preset->quoted();
-    throw Error(ErrorCode::kInput,
-                gotExpected(file.string() + ":" + std::to_string(preset->line), got,
-                            "a transfer function, an object with RGBPoints"));
+// All of a file's transfer functions: one, or an array.
+std::vector<const LocatedJson*> presetsOf(const std::filesystem::path& file,
+                                          const LocatedJson& root) {
+    std::vector<const LocatedJson*> presets;
+    if (root.kind == Kind::kArray) {
+        for (const LocatedMember& member : root.members) presets.push_back(&member.value);
+    } else {
+        presets.push_back(&root);
+    }
+    const auto fail = [&](const LocatedJson& json, const std::string& got) {
+        throw Error(ErrorCode::kInput,
+                    gotExpected(file.string() + ":" + std::to_string(json.line), got,
+                                "a transfer function, an object with RGBPoints"));
+    };
+    if (presets.empty()) fail(root, "an empty array");
+    for (const LocatedJson* preset : presets)
+        if (preset->kind != Kind::kObject) fail(*preset, preset->quoted());
+    return presets;
+}
+
+std::string nameOf(const std::filesystem::path& file, const LocatedJson& preset,
+                   const std::string& otherwise) {
+    return PresetReader(file, preset).text("Name", otherwise);
 }
 
 // Where the interval behind `left` begins: so little behind it that what lies at the point itself,
@@ -170,18 +186,46 @@ void readOpacities(const std::filesystem::path& file, const PresetReader& preset
                   numberText(low) + " to 1 at " + numberText(high));
 }
 
-}  // namespace
-
-TransferFunction readTransferFunction(const std::filesystem::path& file, const Listener& listener) {
-    const DefaultFloats floats;
-    const LocatedJson root = readLocatedJson(file);
-    const PresetReader preset(file, firstPreset(file, root));
+TransferFunction readPreset(const std::filesystem::path& file, const LocatedJson& json,
+                            const Listener& listener) {
+    const PresetReader preset(file, json);
     TransferFunction function;
-    function.name = preset.text("Name", file.stem().string());
+    function.name = nameOf(file, json, file.stem().string());
     function.normalized = preset.flag("Normalized");
     readColors(file, preset, listener, function);
     readOpacities(file, preset, listener, function);
     return function;
+}
+
+}  // namespace
+
+std::vector<std::string> transferFunctionNames(const std::filesystem::path& file) {
+    const LocatedJson root = readLocatedJson(file);
+    std::vector<std::string> names;
+    for (const LocatedJson* preset : presetsOf(file, root))
+        names.push_back(nameOf(file, *preset, ""));
+    return names;
+}
+
+TransferFunction readTransferFunction(const std::filesystem::path& file, const Listener& listener) {
+    const DefaultFloats floats;
+    const LocatedJson root = readLocatedJson(file);
+    return readPreset(file, *presetsOf(file, root).front(), listener);
+}
+
+TransferFunction readTransferFunction(const std::filesystem::path& file, const std::string& name,
+                                      const Listener& listener) {
+    const DefaultFloats floats;
+    const LocatedJson root = readLocatedJson(file);
+    std::string known;
+    for (const LocatedJson* preset : presetsOf(file, root)) {
+        const std::string here = nameOf(file, *preset, "");
+        if (here == name) return readPreset(file, *preset, listener);
+        known += (known.empty() ? "" : ", ") + here;
+    }
+    throw Error(ErrorCode::kInput,
+                gotExpected(file.string(), "no transfer function \"" + name + "\"",
+                            "one of those it has: " + known));
 }
 
 }  // namespace deltasplat

@@ -62,15 +62,6 @@ TransferFunction greyRamp(const glm::dvec2& range) {
     return ramp;
 }
 
-// From the 1st to the 99th percentile of all that is no background.
-glm::dvec2 bulkOf(const Volume& volume) {
-    const std::vector<std::uint64_t> counts = countsWithoutBackground(volume);
-    if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t count) { return count == 0; }))
-        return {volume.background, volume.background + 1};
-    return {volume.codeBook.valueOf(percentileCode(counts, 1)),
-            volume.codeBook.valueOf(percentileCode(counts, 99))};
-}
-
 }  // namespace
 
 glm::dvec3 TransferFunction::colorAt(double x) const {
@@ -113,9 +104,17 @@ bool isFog(const Volume& volume) {
             volume.name == "density");
 }
 
+glm::dvec2 bulkRange(const Volume& volume) {
+    const std::vector<std::uint64_t> counts = countsWithoutBackground(volume);
+    if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t count) { return count == 0; }))
+        return {volume.background, volume.background + 1};
+    return {volume.codeBook.valueOf(percentileCode(counts, 1)),
+            volume.codeBook.valueOf(percentileCode(counts, 99))};
+}
+
 TransferFunction defaultRamp(const Volume& volume) {
     const DefaultFloats floats;
-    return defaultRamp(volume, bulkOf(volume));
+    return defaultRamp(volume, bulkRange(volume));
 }
 
 TransferFunction defaultRamp(const Volume& volume, const glm::dvec2& range) {

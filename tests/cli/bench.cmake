@@ -4,7 +4,7 @@ set(cube cube_8x8x8_uint8.raw)
 set(quick --repeats 1 --size 16x16)
 
 deltasplat_cli_test(help_bench ARGS bench --help
-    STDOUT_MATCHES "--repeats N.*default 7.*--report DIR.*--view.*--tf FILE.*--tolerance T.*--grid.*Examples:.*deltasplat bench.*deltasplat bench")
+    STDOUT_MATCHES "--repeats N.*default 7.*--report DIR.*--view.*--tf FILE.PRESET.*--tolerance T.*--grid.*Examples:.*deltasplat bench.*deltasplat bench")
 
 set(number "[0-9]+([.][0-9]+)? +")
 set(row "${number}${number}${number}${number}${number}${number}${number}${number}[0-9.]+ +[0-9.]+")

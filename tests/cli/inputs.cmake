@@ -108,6 +108,22 @@ deltasplat_cli_test(input.tf.range ARGS render cube_8x8x8_uint8.raw -o out.exr -
     STDERR "deltasplat: warning: --range: has no effect on a transfer function that is not normalized")
 deltasplat_cli_test(input.range.ramp ARGS render cube_8x8x8_uint8.raw -o out.exr --range 0,1
     CREATES out.exr)
+# One of several in a file, tables of labels, presets.
+deltasplat_cli_test(input.tf.second ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_several.json:second
+    CREATES out.exr)
+deltasplat_cli_test(input.tf.third EXIT 3
+    ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_several.json:third
+    STDERR "deltasplat: tf_several.json: got no transfer function \"third\"; expected one of those it has: first, second")
+deltasplat_cli_test(input.tf.labels ARGS render cube_8x8x8_uint8.raw -o out.exr --tf labels.ctbl
+    CREATES out.exr)
+deltasplat_cli_test(input.tf.preset ARGS render cube_8x8x8_uint8.raw -o out.exr --tf viridis CREATES out.exr)
+deltasplat_cli_test(input.tf.preset_of_info ARGS info ball.vdb --tf mr
+    STDOUT_MATCHES "visible: not clear under mr")
+deltasplat_cli_test(input.tf.no_preset EXIT 2 ARGS render cube_8x8x8_uint8.raw -o out.exr --tf viridi
+    STDERR_MATCHES "deltasplat: --tf: got viridi; expected a file, or one of grey, .*coolwarm Did you mean 'viridis'[?]")
+deltasplat_cli_test(input.tf.no_hounsfield ARGS render cube_8x8x8_uint8.raw -o out.exr --tf ct-bone
+    CREATES out.exr
+    STDERR_MATCHES "deltasplat: warning: --tf: ct-bone is for Hounsfield units [(]air -1000, water 0[)], which values from .* are hardly.*picture: empty.*")
 # What shows nothing says why.
 set(outside "picture: empty, for what can be seen of the volume lies outside of it, before the near plane, or is far smaller than a pixel; the volume lies in the world from 0,0,0 to 7,7,7")
 deltasplat_cli_test(empty_picture.target ARGS render cube_8x8x8_uint8.raw -o out.png --target 100,0,0

@@ -8,6 +8,7 @@
 #include "bench/bench_report.h"
 #include "listener.h"
 #include "options/input_options.h"
+#include "options/transfer_function_option.h"
 #include "output_files.h"
 #include "process/interrupt.h"
 #include "render/render_input.h"
@@ -102,7 +103,8 @@ void checkReport(const BenchCommand& command) {
     std::error_code ignored;
     if (!exists(page, ignored)) return;
     const Files inputs(command.inputs.begin(), command.inputs.end());
-    checkOutput("--report", page, filesRead(inputs, command.picture.transferFunction),
+    checkOutput("--report", page,
+                filesRead(inputs, parseTransferFunction(command.picture.transferFunction).file),
                 "the inputs and the transfer function");
 }
 

@@ -5,6 +5,7 @@
 #include "deltasplat/optics/class_table.h"
 #include "info/slice_plot.h"
 #include "number_text.h"
+#include "options/transfer_function_option.h"
 
 namespace deltasplat {
 namespace {
@@ -15,6 +16,7 @@ std::vector<Slot> slotMapOf(const GridReport& report, const DescribeOptions& opt
     if (options.transferFunction) {
         Optics optics;
         optics.transferFunction = *options.transferFunction;
+        if (options.preset) fitPreset(*options.preset, volume, optics);
         return classify(volume, optics, volume.voxelSize()[axis]).classOfSlot;
     }
     if (!report.backgroundGuess) return {};

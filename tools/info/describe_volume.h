@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "deltasplat/optics/transfer_function.h"
+#include "deltasplat/optics/presets.h"
 #include "info/info_report.h"
 
 namespace deltasplat {
@@ -12,6 +12,7 @@ namespace deltasplat {
 struct DescribeOptions {
     /// What stamps are predicted for; empty: for all voxels but the guessed background.
     std::optional<TransferFunction> transferFunction;
+    const Preset* preset = nullptr;    ///< that it is, or null
     std::string transferFunctionFile;  ///< its name, for people
 };
 

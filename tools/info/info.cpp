@@ -12,6 +12,7 @@
 #include "info/slice_plot.h"
 #include "listener.h"
 #include "options/input_options.h"
+#include "options/transfer_function_option.h"
 #include "options/volume_choices.h"
 #include "output_files.h"
 #include "process/interrupt.h"
@@ -123,7 +124,8 @@ void addFile(const std::string& file, const InfoOptions& options, const Describe
 DescribeOptions describeOptions(const InfoOptions& options, const Listener& listener) {
     DescribeOptions describe;
     if (options.transferFunction.empty()) return describe;
-    describe.transferFunction = readTransferFunction(options.transferFunction, listener);
+    describe.transferFunction = readTransferFunctionOption(options.transferFunction, listener);
+    describe.preset = parseTransferFunction(options.transferFunction).preset;
     describe.transferFunctionFile = options.transferFunction.filename().string();
     return describe;
 }
@@ -159,7 +161,8 @@ void runInfo(const CLI::App& app, const InfoOptions& options, const Session& ses
     if (!options.plot.empty()) {
         checkDrawingFile(options.plot);
         const Files inputs(options.inputs.begin(), options.inputs.end());
-        checkOutput("--plot", options.plot, filesRead(inputs, options.transferFunction),
+        checkOutput("--plot", options.plot,
+                    filesRead(inputs, parseTransferFunction(options.transferFunction).file),
                     "the inputs and the transfer function");
     }
     Findings found;
@@ -210,9 +213,9 @@ Subcommand addInfo(CLI::App& program) {
                     "for each grid, up to " +
                         std::to_string(kMaxPlots));
     OptionGroup(app, "Optics")
-        .addValue("--tf", "FILE", options->transferFunction, anyText(),
-                  "Transfer function, a ParaView JSON file, that stamps and picture\n"
-                  "are for (default: all voxels but the background are visible)");
+        .addValue("--tf", "FILE|PRESET", options->transferFunction, anyText(),
+                  "Transfer function, as for render, that stamps and picture are\n"
+                  "for (default: all voxels but the background are visible)");
     addInputOptions(app, options->read);
     return {&app, [&app, options](const Session& session) { runInfo(app, *options, session); }};
 }

@@ -9,6 +9,7 @@
 #include "deltasplat/splat/footprint.h"
 #include "number_text.h"
 #include "options/input_options.h"
+#include "options/transfer_function_option.h"
 #include "output_files.h"
 
 namespace deltasplat {
@@ -69,6 +70,21 @@ Parser<double> relativeTolerance() {
     };
 }
 
+// A few to a line.
+std::string presetNames() {
+    constexpr std::size_t kMostInLine = 60;
+    std::string text, line;
+    for (const Preset& preset : presets()) {
+        if (line.size() + preset.name.size() > kMostInLine) {
+            text += "\n" + line;
+            line.clear();
+        }
+        line += (line.empty() ? "" : " ") + preset.name;
+        if (&preset != &presets().back()) line += ",";
+    }
+    return text + "\n" + line;
+}
+
 std::string sizeText(const glm::ivec2& size) {
     return joinNumbers({double(size.x), double(size.y)}, "x");
 }
@@ -98,7 +114,8 @@ void addModeOption(CLI::App& app, Mode& chosen) {
                                "in world units) or mip (largest value along the line of\n"
                                "sight): the last two, of --projection ortho only, store their\n"
                                "values as 32-bit floats in an .exr, and are shown as greys in\n"
-                               "a .png (mip in the colours of --tf, if that is given)",
+                               "a .png (mip in the colours of --tf, if that is\n"
+                               "given)",
                                modeName(chosen)));
 }
 
@@ -182,14 +199,18 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
 void addOpticsOptions(CLI::App& app, PictureOptions& options) {
     Optics& optics = options.render.optics;
     OptionGroup group(app, "Optics");
-    group.addValue("--tf", "FILE", options.transferFunction, anyText(),
-                   "Transfer function, a ParaView JSON file (default: a ramp over the\n"
-                   "1st to 99th percentile of the values, white for fog, else from\n"
-                   "black to white)");
+    group.addValue("--tf", "FILE|PRESET", options.transferFunction, anyText(),
+                   "Transfer function: a ParaView JSON file, FILE:NAME for one of\n"
+                   "several in it, a table of labels (3D Slicer's .ctbl, ITK-SNAP's\n"
+                   ".txt or .label), or a preset:" +
+                       presetNames() +
+                       "\n(default: a ramp over the 1st to 99th percentile of the values,\n"
+                       "white for fog, else from black to white)");
     group.addValue("--range", "LO,HI", optics.range, interval(),
                    "Data values that 0 and 1 of a normalized transfer function\n"
-                   "stand for (default: 0,255 for uint8, else all values), or\n"
-                   "without --tf the ends of the ramp");
+                   "stand for (default: 0,255 for uint8, else all values; of a\n"
+                   "preset the 1st to 99th percentile), or without --tf the ends of\n"
+                   "the ramp");
     group.addValue("--unit-distance", "U", optics.unitDistance, positiveLength(),
                    "World units over which a voxel has the transfer function's\n"
                    "opacity (default: the smallest voxel size)");
@@ -282,7 +303,8 @@ void warnOfUnusedCameraOptions(const CLI::App& app, const CameraOptions& camera,
 void validate(const RenderCommand& command) {
     checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     checkCamera(command.picture.render.camera);
-    Files others = filesRead({command.input}, command.picture.transferFunction);
+    Files others =
+        filesRead({command.input}, parseTransferFunction(command.picture.transferFunction).file);
     checkOutput("--output", command.output, others, "the input and the transfer function");
     others.push_back(command.output);
     checkOutput("--stats", command.stats, others,

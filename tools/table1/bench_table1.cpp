@@ -8,6 +8,7 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
 #include "listener.h"
+#include "options/transfer_function_option.h"
 #include "table1/ct_ramp.h"
 #include "table1/table1.h"
 
@@ -118,7 +119,7 @@ void runTable1(const CLI::App& app, const Table1Command& command, const Session&
     ProgressDisplay display(session.common);
     const bool ramp = command.transferFunction.empty();
     const TransferFunction transferFunction =
-        ramp ? ctRamp() : readTransferFunction(command.transferFunction, display.stage(0, 0));
+        ramp ? ctRamp() : readTransferFunctionOption(command.transferFunction, display.stage(0, 0));
 
     Findings found;
     found.report.machine = thisMachine();

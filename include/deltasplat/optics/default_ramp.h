@@ -12,6 +12,11 @@ namespace deltasplat {
 /// class. Other values (of a scanner, of a temperature) mean more than their amount.
 bool isFog(const Volume& volume);
 
+/// Returns where most values lie: from the 1st to the 99th percentile of the active ones other than
+/// the background. Both are the same where nearly all are; of a volume with nothing but background
+/// they are the background and 1 more.
+glm::dvec2 bulkRange(const Volume& volume);
+
 /// Returns defaultRamp(volume) with other ends.
 /// @param range  the values that are clear and as dense as the ramp gets; range.x < range.y
 TransferFunction defaultRamp(const Volume& volume, const glm::dvec2& range);

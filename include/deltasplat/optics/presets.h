@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "deltasplat/optics/transfer_function.h"
+
+namespace deltasplat {
+
+/// A transfer function that need not be read from a file.
+struct Preset {
+    /// What its points' x are.
+    enum class Values {
+        kRange,       ///< shares of a range of data values: it is normalized
+        kHounsfield,  ///< Hounsfield units, as CT scanners give them: air is -1000, water 0
+        kLabels       ///< whole numbers that name what a voxel belongs to; 0 is nothing
+    };
+    std::string name;
+    Values values = Values::kRange;
+    std::string summary;  ///< what it is for, in a few words
+};
+
+/// Returns all there are, those for the same kind of data together.
+const std::vector<Preset>& presets();
+
+/// Returns the preset of that name, or null.
+const Preset* findPreset(const std::string& name);
+
+/// Returns a preset's transfer function.
+/// @throw Error(kUsage) naming all presets, if there is none of that name
+TransferFunction presetFunction(const std::string& name);
+
+}  // namespace deltasplat

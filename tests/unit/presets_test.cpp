@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/optics/presets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <glm/geometric.hpp>
+
+#include "deltasplat/optics/transfer_function_names.h"
+#include "optics/check_optics.h"
+#include "optics/read_label_table.h"
+#include "srgb.h"
+#include "support/error_of.h"
+#include "unit/temp_folder.h"
+
+namespace deltasplat {
+namespace {
+
+using test::errorOf;
+
+double lightnessOf(const glm::dvec3& linear) {
+    return glm::dot(linear, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
+
+TEST(Presets, canBeRenderedWith) {
+    ASSERT_GE(presets().size(), 18u);
+    for (const Preset& preset : presets()) {
+        SCOPED_TRACE(preset.name);
+        Optics optics;
+        optics.transferFunction = presetFunction(preset.name);
+        EXPECT_NO_THROW(checkOptics(optics));
+        EXPECT_EQ(optics.transferFunction.name, preset.name);
+        EXPECT_EQ(optics.transferFunction.normalized, preset.values == Preset::Values::kRange);
+        EXPECT_FALSE(preset.summary.empty());
+        EXPECT_EQ(findPreset(preset.name), &preset);
+        // Something is seen, and something is not.
+        const TransferFunction& function = optics.transferFunction;
+        double most = 0, least = 1;
+        for (int i = 0; i <= 4000; ++i) {
+            const double x = function.normalized ? i / 4000.0 : i - 1000.0;
+            most = std::max(most, function.opacityAt(x));
+            least = std::min(least, function.opacityAt(x));
+        }
+        EXPECT_GE(most, 0.05);
+        EXPECT_EQ(least, 0);
+    }
+}
+
+TEST(Presets, showOfAScanWhatTheirNamesSay) {
+    const auto opacity = [](const char* name, double hounsfield) {
+        return presetFunction(name).opacityAt(hounsfield);
+    };
+    for (const char* name : {"ct-bone", "ct-soft-tissue", "ct-lung", "ct-angio"})
+        EXPECT_EQ(opacity(name, -1000), 0) << name;
+    EXPECT_EQ(opacity("ct-bone", 60), 0);
+    EXPECT_GT(opacity("ct-bone", 1000), 0.5);
+    EXPECT_GT(opacity("ct-soft-tissue", 50), 0.1);
+    EXPECT_GT(opacity("ct-soft-tissue", 800), opacity("ct-soft-tissue", 50));
+    EXPECT_GT(opacity("ct-lung", -800), 0);
+    EXPECT_EQ(opacity("ct-lung", 50), 0);
+    EXPECT_EQ(opacity("ct-angio", 60), 0);
+    EXPECT_GT(opacity("ct-angio", 300), 0.3);
+}
+
+// As published: ends and a middle of each map.
+TEST(Presets, haveTheColorsOfWellKnownMaps) {
+    struct Known {
+        const char* name;
+        double x;
+        int r, g, b;
+    };
+    for (const Known& known :
+         {Known{"viridis", 0, 68, 1, 84}, Known{"viridis", 1, 253, 231, 37},
+          Known{"viridis", 0.5, 33, 145, 140}, Known{"inferno", 0, 0, 0, 4},
+          Known{"inferno", 1, 252, 255, 164}, Known{"magma", 1, 252, 253, 191},
+          Known{"plasma", 0, 13, 8, 135}, Known{"cividis", 1, 254, 232, 56},
+          Known{"turbo", 0, 48, 18, 59}, Known{"turbo", 1, 122, 4, 3},
+          Known{"coolwarm", 0, 59, 76, 192}, Known{"coolwarm", 0.5, 221, 221, 221}}) {
+        const glm::dvec3 color = presetFunction(known.name).colorAt(known.x);
+        const int expected[] = {known.r, known.g, known.b};
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(255 * srgbFromLinear(color[c]), expected[c], 1) << known.name << ' ' << c;
+    }
+    for (const char* name : {"viridis", "inferno", "magma", "plasma", "cividis", "grey"}) {
+        const TransferFunction function = presetFunction(name);
+        for (int i = 1; i <= 50; ++i) {
+            EXPECT_GT(lightnessOf(function.colorAt(i / 50.0)),
+                      lightnessOf(function.colorAt((i - 1) / 50.0)))
+                << name << ' ' << i;
+        }
+    }
+}
+
+TEST(Presets, giveEveryLabelItsOwnColor) {
+    const TransferFunction labels = presetFunction("labels");
+    EXPECT_EQ(labels.opacityAt(0), 0);
+    EXPECT_EQ(labels.opacityAt(-3), 0);
+    EXPECT_TRUE(labels.colorsJump());
+    for (int label = 1; label <= 1000; ++label) {
+        const glm::dvec3 color = labels.colorAt(label);
+        EXPECT_EQ(labels.opacityAt(label), 0.4);
+        EXPECT_EQ(labels.colorAt(label + 0.4), color);
+        EXPECT_EQ(labels.colorAt(label - 0.4), color);
+        EXPECT_GT(glm::distance(labels.colorAt(label + 1), color), 0.2) << label;
+    }
+}
+
+TEST(Presets, areNamedWhereThereIsNone) {
+    EXPECT_EQ(findPreset("bone"), nullptr);
+    const std::string error = errorOf([] { presetFunction("bone"); });
+    EXPECT_EQ(error.find("usage: preset: got bone; expected one of grey, ct-bone, "), 0u) << error;
+}
+
+class TransferFunctionFile : public ::testing::Test {
+  protected:
+    std::filesystem::path write(const std::string& name, const std::string& text) {
+        const std::filesystem::path file = folder_.path() / name;
+        std::ofstream(file, std::ios::binary) << text;
+        return file;
+    }
+    // Without the folder.
+    std::string errorFor(const std::filesystem::path& file) {
+        std::string error = errorOf([&] { readLabelTable(file); });
+        const std::size_t at = error.find(folder_.path().string() + "/");
+        if (at != std::string::npos) error.erase(at, folder_.path().string().size() + 1);
+        return error;
+    }
+
+    test::TempFolder folder_;
+};
+
+TEST_F(TransferFunctionFile, holdsSeveral) {
+    const auto file =
+        write("all.json", R"([{"Name": "a", "RGBPoints": [0,0.1,0,0], "Points": [0,1,0.5,0]},
+        {"Name": "b: c", "RGBPoints": [0,0.2,0,0], "Points": [0,1,0.5,0]},
+        {"RGBPoints": [0,0.3,0,0], "Points": [0,1,0.5,0]}])");
+    EXPECT_EQ(transferFunctionNames(file), (std::vector<std::string>{"a", "b: c", ""}));
+    EXPECT_EQ(readTransferFunction(file).name, "a");
+    EXPECT_EQ(readTransferFunction(file, "b: c").colors[0].rgb.r, 0.2);
+    EXPECT_NE(
+        errorOf([&] {
+            readTransferFunction(file, "d");
+        }).find("all.json: got no transfer function \"d\"; expected one of those it has: a, b: c"),
+        std::string::npos);
+}
+
+TEST_F(TransferFunctionFile, mayBeATableOf3dSlicer) {
+    const TransferFunction function = readLabelTable(write("tissue.ctbl",
+                                                           "# Color table file tissue\n# 3 values\n"
+                                                           "0 background 0 0 0 0\n"
+                                                           "2 bone 241 214 145 255\r\n"
+                                                           "\n3 skin 177 122 101 102\n"
+                                                           "7 no_alpha 0 255 0\n"));
+    EXPECT_EQ(function.name, "tissue");
+    EXPECT_EQ(function.opacityAt(0), 0);
+    EXPECT_EQ(function.opacityAt(1), 0);
+    EXPECT_EQ(function.opacityAt(2), 1);
+    EXPECT_EQ(function.opacityAt(3), 0.4);
+    EXPECT_EQ(function.opacityAt(5), 0);
+    EXPECT_EQ(function.opacityAt(7), 1);
+    EXPECT_EQ(function.opacityAt(8), 0);
+    EXPECT_NEAR(srgbFromLinear(function.colorAt(2).r), 241 / 255.0, 1e-12);
+    EXPECT_NEAR(srgbFromLinear(function.colorAt(3).b), 101 / 255.0, 1e-12);
+}
+
+TEST_F(TransferFunctionFile, mayBeLabelsOfItkSnap) {
+    const TransferFunction function =
+        readLabelTable(write("labels.txt",
+                             "################\n# ITK-SnAP Label Description File\n"
+                             "    0     0    0    0        0  0  0    \"Clear Label\"\n"
+                             "    1   255    0    0        0.5  1  1    \"Left lung, upper lobe\"\n"
+                             "    2     0  255    0        1  0  1    \"hidden\"\n"));
+    EXPECT_EQ(function.opacityAt(1), 0.5);
+    EXPECT_EQ(function.opacityAt(2), 0);
+    EXPECT_EQ(function.colorAt(1), glm::dvec3(1, 0, 0));
+}
+
+TEST_F(TransferFunctionFile, ofLabelsSaysWhichLineIsNone) {
+    EXPECT_EQ(errorFor(write("a.ctbl", "# nothing\n")),
+              "input: a.ctbl: got no labels; expected at least one");
+    for (const char* line : {"1 bone 241 214", "x bone 1 2 3 255", "1 bone 1 2 300 255",
+                             "1 bone 1 2 3 -1", "1.5 bone 1 2 3 255", "1 bone 1 nan 3 255"}) {
+        const std::string error = errorFor(write("b.ctbl", std::string("\n") + line + "\n"));
+        EXPECT_EQ(
+            error.find(std::string("input: b.ctbl:2: got \"") + line + "\"; expected label, "), 0u)
+            << error;
+    }
+    EXPECT_EQ(errorFor(folder_.path() / "none.ctbl"),
+              "input: none.ctbl: got no file that can be read; expected a table of labels");
+}
+
+}  // namespace
+}  // namespace deltasplat
