@@ -124,6 +124,12 @@ deltasplat_cli_test(input.tf.no_preset EXIT 2 ARGS render cube_8x8x8_uint8.raw -
 deltasplat_cli_test(input.tf.no_hounsfield ARGS render cube_8x8x8_uint8.raw -o out.exr --tf ct-bone
     CREATES out.exr
     STDERR_MATCHES "deltasplat: warning: --tf: ct-bone is for Hounsfield units [(]air -1000, water 0[)], which values from .* are hardly.*picture: empty.*")
+deltasplat_cli_test(input.tf.list ARGS render --list-tf STDOUT_MATCHES "grey .*ct-bone +Hounsfield units.*coolwarm")
+deltasplat_cli_test(input.tf.list_whatever_else ARGS render missing.vdb -o out.png --list-tf
+    STDOUT_MATCHES "grey .*coolwarm")
+deltasplat_cli_test(input.tf.list_drawn ARGS render --list-tf presets.png CREATES presets.png)
+deltasplat_cli_test(input.tf.list_no_drawing EXIT 2 ARGS render --list-tf=presets.txt
+    STDERR "deltasplat: presets.txt: got extension \".txt\"; expected .png or .svg")
 # What shows nothing says why.
 set(outside "picture: empty, for what can be seen of the volume lies outside of it, before the near plane, or is far smaller than a pixel; the volume lies in the world from 0,0,0 to 7,7,7")
 deltasplat_cli_test(empty_picture.target ARGS render cube_8x8x8_uint8.raw -o out.png --target 100,0,0

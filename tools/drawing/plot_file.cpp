@@ -11,15 +11,22 @@ namespace {
 
 constexpr double kPngScale = 2;
 
+std::string extensionOf(const std::filesystem::path& file) {
+    return lowerCase(file.extension().string());
+}
+
 bool isSvg(const std::filesystem::path& file) {
-    const std::string extension = lowerCase(file.extension().string());
-    if (extension == ".svg" || extension == ".png") return extension == ".svg";
+    if (isDrawingFile(file)) return extensionOf(file) == ".svg";
     throw Error(ErrorCode::kUsage,
                 gotExpected(file.string(), "extension \"" + file.extension().string() + "\"",
                             ".png or .svg"));
 }
 
 }  // namespace
+
+bool isDrawingFile(const std::filesystem::path& file) {
+    return extensionOf(file) == ".svg" || extensionOf(file) == ".png";
+}
 
 void checkDrawingFile(const std::filesystem::path& file) {
     isSvg(file);

@@ -7,6 +7,9 @@
 
 namespace deltasplat {
 
+/// Whether writeDrawing knows the extension: .png or .svg.
+bool isDrawingFile(const std::filesystem::path& file);
+
 /// Throws unless writeDrawing could write this file: asked before long work.
 /// @throw Error(kUsage) for an extension other than .png and .svg; Error(kOutput) if the folder
 /// does not exist or cannot be written to

@@ -69,6 +69,24 @@ class OptionGroup {
     void addFlag(const std::string& names, bool& target, const std::string& help) {
         app_.add_flag(names, target, help)->group(title_);
     }
+    /// Declares an option that is answered in place of what the subcommand does, whatever else is
+    /// given or missing, with a value or without. What follows it may be a value, or the
+    /// subcommand's first argument, which is therefore told as well.
+    void addQuestion(
+        const std::string& name, const std::string& placeholder,
+        const std::function<void(const std::string& value, const std::string& argument)>& answer,
+        const std::string& help) {
+        app_.add_option_function<std::string>(
+                name,
+                [&app = app_, answer](const std::string& value) {
+                    answer(value, firstPositional(app));
+                    throw CLI::Success();
+                },
+                help)
+            ->type_name(placeholder)
+            ->expected(0, 1)
+            ->group(title_);
+    }
     /// Declares a flag that counts how often it is given, here and wherever else `target` is.
     void addCount(const std::string& names, int& target, const std::string& help) {
         app_.add_flag_function(
@@ -77,6 +95,12 @@ class OptionGroup {
     }
 
   private:
+    static std::string firstPositional(const CLI::App& app) {
+        for (const CLI::Option* option : app.get_options())
+            if (option->get_positional() && !option->empty()) return option->results().front();
+        return "";
+    }
+
     CLI::App& app_;
     std::string title_;
 };

@@ -7,10 +7,13 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/splat/footprint.h"
+#include "drawing/plot_file.h"
 #include "number_text.h"
 #include "options/input_options.h"
 #include "options/transfer_function_option.h"
 #include "output_files.h"
+#include "program.h"
+#include "render/list_presets.h"
 
 namespace deltasplat {
 namespace {
@@ -68,6 +71,16 @@ Parser<double> relativeTolerance() {
         throw Error(ErrorCode::kUsage,
                     gotExpected(option, text, "a finite number of at least 0 and less than 1"));
     };
+}
+
+// @param input  what is named as a volume to render: a drawing is none
+void listPresets(const std::string& file, const std::string& input) {
+    const std::string drawing = file.empty() && isDrawingFile(input) ? input : file;
+    if (drawing.empty()) {
+        printOut(presetList());
+    } else {
+        writeDrawing(drawing, presetSwatches());
+    }
 }
 
 // A few to a line.
@@ -206,6 +219,8 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
                        presetNames() +
                        "\n(default: a ramp over the 1st to 99th percentile of the values,\n"
                        "white for fog, else from black to white)");
+    group.addQuestion("--list-tf", "FILE", listPresets,
+                      "Only list the presets, or draw them to FILE (.png or .svg)");
     group.addValue("--range", "LO,HI", optics.range, interval(),
                    "Data values that 0 and 1 of a normalized transfer function\n"
                    "stand for (default: 0,255 for uint8, else all values; of a\n"
