@@ -15,7 +15,7 @@ find "$cache" -type f -mtime +30 -delete
 key_of() {
     local command
     command=$(grep -B 1 -F "\"file\": \"$PWD/$1\"" build/release/compile_commands.json |
-        sed -n 's/^ *"command": "\(.*\)",$/\1/p' | sed 's/\\\(["\\]\)/\1/g; s/ -o [^ ]* -c / -E -P -CC /')
+        sed -n 's/^ *"command": "\(.*\)",$/\1/p' | sed 's/\\\(["\\]\)/\1/g; s/ -o [^ ]* -c / -E -P -C /')
     [[ -n $command ]] || {
         echo "tidy.sh: got no command for $1 in build/release; expected one (cmake --preset release)" >&2
         return 1
