@@ -91,29 +91,59 @@ const Subcommand* called(const std::vector<Subcommand>& subcommands) {
     return nullptr;
 }
 
+// Which subcommand an argument is of, walking over them.
+class CalledSubcommand {
+  public:
+    explicit CalledSubcommand(const std::vector<Subcommand>& subcommands)
+        : callable_(&subcommands) {}
+
+    // Returns the one that the next argument names or is of, or null.
+    const CLI::App* next(const std::string& argument) {
+        const auto named = std::find_if(callable_->begin(), callable_->end(), [&](const auto& s) {
+            return s.app->get_name() == argument;
+        });
+        if (named == callable_->end()) return app_;
+        callable_ = &named->nested;
+        return app_ = named->app;
+    }
+
+  private:
+    const CLI::App* app_ = nullptr;
+    const std::vector<Subcommand>* callable_;
+};
+
 // Spells a long option of the subcommand with two dashes where it was written with one, as users of
 // idiff and oiiotool do: "-fail" is no "-f ail"; and what CLI11 takes for the value "=x" of "-o=x"
 // as
 // "-ox". What follows "--" is no option.
 void spellWithTwoDashes(std::vector<std::string>& arguments,
                         const std::vector<Subcommand>& subcommands) {
-    const CLI::App* app = nullptr;
-    const std::vector<Subcommand>* callable = &subcommands;
+    CalledSubcommand called(subcommands);
     for (std::string& argument : arguments) {
         if (argument == "--") break;
-        const auto named = std::find_if(callable->begin(), callable->end(), [&](const auto& s) {
-            return s.app->get_name() == argument;
-        });
-        if (named != callable->end()) {
-            app = named->app;
-            callable = &named->nested;
-        }
+        const CLI::App* const app = called.next(argument);
         if (app == nullptr || argument.size() < 3 || argument[0] != '-') continue;
         const std::string name = "-" + argument.substr(0, argument.find('='));
         if (app->get_option_no_throw(name) != nullptr) argument.insert(0, 1, '-');
         const bool isShort = argument.size() > 3 && argument[1] != '-' && argument[2] == '=';
         if (isShort && app->get_option_no_throw(argument.substr(0, 2)) != nullptr)
             argument.erase(2, 1);
+    }
+}
+
+// Joins an option that may have a value with what follows it, unless that is an option: CLI11 takes
+// it for an argument of the subcommand if one is missing, and then nobody knows which it is.
+void joinPossibleValues(std::vector<std::string>& arguments,
+                        const std::vector<Subcommand>& subcommands) {
+    CalledSubcommand called(subcommands);
+    for (std::size_t i = 0; i + 1 < arguments.size() && arguments[i] != "--"; ++i) {
+        const CLI::App* const app = called.next(arguments[i]);
+        if (app == nullptr || looksLikeOption(arguments[i + 1])) continue;
+        const CLI::Option* const option = app->get_option_no_throw(arguments[i]);
+        if (option == nullptr || option->get_positional()) continue;
+        if (option->get_items_expected_max() == 0 || option->get_items_expected_min() > 0) continue;
+        arguments[i] += "=" + arguments[i + 1];
+        arguments.erase(arguments.begin() + std::ptrdiff_t(i) + 1);
     }
 }
 
@@ -159,6 +189,7 @@ const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcom
                         const std::vector<std::string>& arguments) {
     std::vector<std::string> spelt(arguments.begin() + 1, arguments.end());
     spellWithTwoDashes(spelt, subcommands);
+    joinPossibleValues(spelt, subcommands);
     std::vector<std::string> reversed(spelt.rbegin(), spelt.rend());
     try {
         program.parse(reversed);

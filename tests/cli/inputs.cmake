@@ -128,6 +128,8 @@ deltasplat_cli_test(input.tf.list ARGS render --list-tf STDOUT_MATCHES "grey .*c
 deltasplat_cli_test(input.tf.list_whatever_else ARGS render missing.vdb -o out.png --list-tf
     STDOUT_MATCHES "grey .*coolwarm")
 deltasplat_cli_test(input.tf.list_drawn ARGS render --list-tf presets.png CREATES presets.png)
+deltasplat_cli_test(input.tf.list_drawn_of_bench ARGS bench --list-tf=presets.svg CREATES presets.svg)
+deltasplat_cli_test(input.flag_before ARGS render -q --float cube_8x8x8_uint8.raw -o out.exr CREATES out.exr)
 deltasplat_cli_test(input.tf.list_no_drawing EXIT 2 ARGS render --list-tf=presets.txt
     STDERR "deltasplat: presets.txt: got extension \".txt\"; expected .png or .svg")
 # What shows nothing says why.

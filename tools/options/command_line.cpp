@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "options/command_line.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -9,6 +10,19 @@
 #include "version.h"
 
 namespace deltasplat {
+namespace {
+
+constexpr const char* kCommonTitle = "Everywhere";
+
+}  // namespace
+
+bool OptionGroup::isMoreGiven(const CLI::App& app, const std::string& name) {
+    const std::vector<const CLI::Option*> options = app.get_options();
+    return std::any_of(options.begin(), options.end(), [&](const CLI::Option* option) {
+        return option->count() > 0 && !option->check_name(name) &&
+               option->get_group() != kCommonTitle;
+    });
+}
 
 std::string withDefault(const std::string& help, const std::string& value) {
     return help + " (default " + value + ")";
@@ -30,11 +44,10 @@ CLI::App& addSubcommand(CLI::App& program, const std::string& name, const std::s
 }
 
 void addCommonOptions(CLI::App& app, CommonOptions& options) {
-    const std::string title = "Everywhere";
-    app.set_help_flag("-h,--help", "Show this help and end")->group(title);
+    app.set_help_flag("-h,--help", "Show this help and end")->group(kCommonTitle);
     app.set_version_flag("--version", versionText, "Show the versions in use and end")
-        ->group(title);
-    OptionGroup group(app, title);
+        ->group(kCommonTitle);
+    OptionGroup group(app, kCommonTitle);
     group.addCount("-q,--quiet", options.quiet, "Show no progress; -qq: no warnings either");
     group.addFlag("-v,--verbose", options.verbose, "Say more about what is done and what failed");
     group.addFlag("--progress", options.progress,

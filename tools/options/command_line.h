@@ -70,16 +70,16 @@ class OptionGroup {
         app_.add_flag(names, target, help)->group(title_);
     }
     /// Declares an option that is answered in place of what the subcommand does, whatever else is
-    /// given or missing, with a value or without. What follows it may be a value, or the
-    /// subcommand's first argument, which is therefore told as well.
-    void addQuestion(
-        const std::string& name, const std::string& placeholder,
-        const std::function<void(const std::string& value, const std::string& argument)>& answer,
-        const std::string& help) {
+    /// given or missing, with a value or without: what follows it is its value, unless that is an
+    /// option. The answer is told whether the subcommand was asked for more, options of
+    /// addCommonOptions aside.
+    void addQuestion(const std::string& name, const std::string& placeholder,
+                     const std::function<void(const std::string& value, bool isMoreGiven)>& answer,
+                     const std::string& help) {
         app_.add_option_function<std::string>(
                 name,
-                [&app = app_, answer](const std::string& value) {
-                    answer(value, firstPositional(app));
+                [&app = app_, name, answer](const std::string& value) {
+                    answer(value, isMoreGiven(app, name));
                     throw CLI::Success();
                 },
                 help)
@@ -95,11 +95,7 @@ class OptionGroup {
     }
 
   private:
-    static std::string firstPositional(const CLI::App& app) {
-        for (const CLI::Option* option : app.get_options())
-            if (option->get_positional() && !option->empty()) return option->results().front();
-        return "";
-    }
+    static bool isMoreGiven(const CLI::App& app, const std::string& name);
 
     CLI::App& app_;
     std::string title_;

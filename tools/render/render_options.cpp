@@ -73,14 +73,15 @@ Parser<double> relativeTolerance() {
     };
 }
 
-// @param input  what is named as a volume to render: a drawing is none
-void listPresets(const std::string& file, const std::string& input) {
-    const std::string drawing = file.empty() && isDrawingFile(input) ? input : file;
-    if (drawing.empty()) {
-        printOut(presetList());
-    } else {
-        writeDrawing(drawing, presetSwatches());
+// What is there already may be the volume that the rest of the command line is about.
+void listPresets(const std::string& file, bool isMoreGiven) {
+    if (file.empty()) return printOut(presetList());
+    std::error_code ignored;
+    if (isMoreGiven && std::filesystem::exists(file, ignored)) {
+        throw Error(ErrorCode::kUsage, gotExpected("--list-tf", file + " (a file that exists)",
+                                                   "a new one, or no other options"));
     }
+    writeDrawing(file, presetSwatches());
 }
 
 // A few to a line.
@@ -220,7 +221,8 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
                        "\n(default: a ramp over the 1st to 99th percentile of the values,\n"
                        "white for fog, else from black to white)");
     group.addQuestion("--list-tf", "FILE", listPresets,
-                      "Only list the presets, or draw them to FILE (.png or .svg)");
+                      "Only list the presets, or draw them to FILE (.png or .svg; with\n"
+                      "other options a new one)");
     group.addValue("--range", "LO,HI", optics.range, interval(),
                    "Data values that 0 and 1 of a normalized transfer function\n"
                    "stand for (default: 0,255 for uint8, else all values; of a\n"

@@ -26,7 +26,7 @@ find . -type f -exec md5sum {} + | sort >../inputs_kept.before
 refused() {
     local code=0
     "$program" "$@" -q 2>message || code=$?
-    [[ $code == 2 && $(cat message) == *"; expected another "* ]] ||
+    [[ $code == 2 && $(cat message) =~ "; expected "("another "|"a new one") ]] ||
         { echo "$*: got exit code $code and: $(cat message)"; exit 1; }
     rm message
 }
@@ -53,7 +53,17 @@ refused render v_8x9x10_uint8.raw -o p.png --tf tf.json --stats tf.json
 refused render v_8x9x10_uint8.raw -o p.png --tf tf.json --stats link.json
 refused render v_8x9x10_uint8.raw -o new.exr --stats dangling.json
 refused convert 'slices/s.####.png' o.vdb --stats slices/s.0001.png
+refused render slices/s.0001.png --list-tf slices/s.0001.png
+refused render 'slices/s.####.png' -o p.png --list-tf slices/s.0002.png
+refused render --list-tf s.png -o p.png
 refused bench v_8x9x10_uint8.raw --tf page/index.html --report page
+
+# Listed, whatever the input is called.
+for listed in "render s.png -o p.png --list-tf" "render slices/s.0001.png --list-tf -q" \
+    "bench s.png --list-tf"; do
+    # shellcheck disable=SC2086
+    [[ $("$program" $listed) == grey*coolwarm* ]] || { echo "$listed: lists no presets"; exit 1; }
+done
 
 find . -type f -exec md5sum {} + | sort | diff ../inputs_kept.before - ||
     { echo "files changed"; exit 1; }
