@@ -45,8 +45,8 @@ struct SplatOptions {
     /// values along u and v as well. Empty: 1 where the screen asks for two sheet pixels a voxel
     /// (and neither resolution nor footprintWidth says another thing), but 0 where what is shown is
     /// thin (no opacity of the transfer function above 0.25 a voxel, extinction scale included),
-    /// where colours jump (TransferFunction::colorsJump), as of labels, or, with a warning, where
-    /// more than kMostDivided blocks of 8x8x8 voxels can be seen.
+    /// where colours jump or values are labels (TransferFunction::colorsJump), or, with a warning,
+    /// where more than kMostDivided blocks of 8x8x8 voxels can be seen.
     std::optional<int> between;
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for

@@ -5,17 +5,24 @@ namespace deltasplat {
 
 TransferFunction labelFunction(const std::vector<LabelLook>& looks) {
     TransferFunction function;
+    function.categorical = true;
     // Of several points at the same place the last one counts.
     function.opacities = {{looks.front().label - 0.5, 0, 0.5, 0}};
     for (const LabelLook& look : looks) {
         const double begin = look.label - 0.5;
         const double end = look.label + 0.5;
-        if (function.opacities.back().x < begin) function.opacities.push_back({begin, 0, 0.5, 0});
-        for (const double x : {begin, end}) {
-            function.colors.push_back({x, look.rgb});
-            function.opacities.push_back({x, look.opacity, 0.5, 0});
+        for (const double x : {begin, end}) function.colors.push_back({x, look.rgb});
+        auto& opacities = function.opacities;
+        const std::size_t last = opacities.size() - 1;
+        if (last > 0 && opacities[last].x == begin && opacities[last - 1].opacity == look.opacity) {
+            // As opaque as the label before: no step between them.
+            opacities.resize(last - 1);
+        } else {
+            if (opacities.back().x < begin) opacities.push_back({begin, 0, 0.5, 0});
+            opacities.push_back({begin, look.opacity, 0.5, 0});
         }
-        function.opacities.push_back({end, 0, 0.5, 0});
+        opacities.push_back({end, look.opacity, 0.5, 0});
+        opacities.push_back({end, 0, 0.5, 0});
     }
     return function;
 }

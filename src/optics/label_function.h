@@ -17,7 +17,7 @@ struct LabelLook {
 };
 
 /// Returns the transfer function of data values that are labels: each has its own look half way to
-/// its neighbours, all others are clear.
+/// its neighbours, all others are clear. It is categorical.
 /// @param looks  at least one, labels rising
 TransferFunction labelFunction(const std::vector<LabelLook>& looks);
 

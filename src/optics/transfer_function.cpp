@@ -69,6 +69,7 @@ glm::dvec3 TransferFunction::colorAt(double x) const {
 }
 
 bool TransferFunction::colorsJump() const {
+    if (categorical) return true;
     // As close as "Step" puts the points of a jump, and closer than anybody else would.
     constexpr double kShare = 0x1p-30;
     for (std::size_t i = 1; i < colors.size(); ++i) {

@@ -12,7 +12,9 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/render.h"
+#include "optics/label_function.h"
 #include "property/test_scene.h"
+#include "support/make_volume.h"
 
 namespace deltasplat::test {
 namespace {
@@ -142,6 +144,25 @@ TEST(Between, doesNotDependOnWhatIsSeen) {
 }
 
 // What blocks of 8 voxels begin where makes no difference: values that lie across a corner count.
+// Between labels 1 and 5 lies no 3, and beside the only one that is seen nothing of it.
+TEST(Between, isNoneOfLabels) {
+    const Volume volume = makeVolume({{0, 0, 0}, {15, 15, 15}}, [](int x, int y, int z) {
+        const glm::dvec3 away = glm::dvec3(x, y, z) - 7.5;
+        return glm::dot(away, away) < 25 ? 5 : 1;
+    });
+    RenderOptions options;
+    options.camera.sizePixels = {64, 64};
+    for (const std::vector<LabelLook>& looks :
+         {std::vector<LabelLook>{{1, {1, 0, 0}, 0}, {3, {0, 1, 0}, 1}, {5, {0, 0, 1}, 1}},
+          std::vector<LabelLook>{{5, {0, 0, 1}, 1}}}) {
+        options.optics.transferFunction = labelFunction(looks);
+        const RenderResult result = render(volume, options);
+        EXPECT_EQ(result.stats.between, 0);
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) ASSERT_EQ(result.image.pixel(x, y)[1], 0) << x << ' ' << y;
+    }
+}
+
 TEST(Between, findsWhatIsSeenAcrossCorners) {
     RenderOptions options;
     options.between = 1;

@@ -164,6 +164,27 @@ TEST_F(TransferFunctionFile, mayBeATableOf3dSlicer) {
     EXPECT_NEAR(srgbFromLinear(function.colorAt(3).b), 101 / 255.0, 1e-12);
 }
 
+TEST_F(TransferFunctionFile, ofLabelsIsCategorical) {
+    for (const char* lines : {"1 a 255 0 0 0\n3 b 0 255 0 255\n5 c 0 0 255 255\n",
+                              "5 c 0 0 255 255\n", "1 a 9 9 9\n2 b 9 9 9\n"}) {
+        const TransferFunction function = readLabelTable(write("gaps.ctbl", lines));
+        EXPECT_TRUE(function.categorical) << lines;
+        EXPECT_TRUE(function.colorsJump()) << lines;
+    }
+}
+
+// As in the table, where neighbours share a step and where not.
+TEST_F(TransferFunctionFile, ofLabelsHasTheirOpacities) {
+    const TransferFunction function =
+        readLabelTable(write("steps.ctbl",
+                             "1 a 0 0 0 51\n2 b 0 0 0 51\n3 c 0 0 0 51\n4 d 0 0 0 102\n"
+                             "6 e 0 0 0 102\n"));
+    const double expected[] = {0, 0.2, 0.2, 0.2, 0.4, 0, 0.4, 0};
+    for (int label = 0; label < 8; ++label)
+        for (const double x : {label - 0.49, label + 0.0, label + 0.49})
+            EXPECT_EQ(function.opacityAt(x), expected[label]) << x;
+}
+
 TEST_F(TransferFunctionFile, mayBeLabelsOfItkSnap) {
     const TransferFunction function =
         readLabelTable(write("labels.txt",

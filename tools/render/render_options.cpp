@@ -264,7 +264,7 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
             ", values mixed;\nif any, each voxel is also divided into 2x2 within its "
             "slice\n(default: 1 where a voxel covers 1.5 pixels or more and no\n"
             "--resolution is given, but not for thin fog (opacities up to\n0.25 a voxel), "
-            "colours that jump, as of labels, nor more\nthan " +
+            "labels and colours that jump, nor more\nthan " +
             std::to_string(kMostDivided) + " blocks of voxels; else 0)");
     group.addValue("--resolution", "R", options.resolution, wholeNumber(1, kMaxResolution),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +

@@ -42,6 +42,7 @@ struct TransferFunction {
     bool normalized = false;    ///< x runs over 0..1 of a data range instead of data values
     bool linearColors = false;  ///< colours are scene-linear; otherwise sRGB
     ColorSpace colorSpace = ColorSpace::kRgb;
+    bool categorical = false;  ///< values are labels: nothing lies between two of them
 
     /// Returns the scene-linear, not premultiplied colour at x. Constant beyond the first and the
     /// last point. What L*a*b* makes of sRGB colours that no screen shows is brought back to what
@@ -50,7 +51,8 @@ struct TransferFunction {
     /// Returns the opacity 0..1 over one unit distance at x, with midpoint and sharpness as VTK
     /// understands them. Constant beyond the first and the last point.
     double opacityAt(double x) const;
-    /// Whether a colour that is seen changes at once to another, as between labels.
+    /// Whether values must not be mixed before they get colours: a colour that is seen changes at
+    /// once to another, or values are labels, of which others may lie between any two.
     bool colorsJump() const;
 };
 
