@@ -32,7 +32,7 @@ const std::vector<Preset> kPresets = {
     {"pet", Values::kRange, "activity: black, purple, red, yellow, white"},
     {"fire", Values::kRange, "flames, brighter than white where hot (scene-linear)"},
     {"smoke", Values::kRange, "white fog, the more the denser"},
-    {"labels", Values::kLabels, "a colour for each whole number, 0 is clear"},
+    {"labels", Values::kLabels, "a colour for each whole number to 65535, 0 is clear"},
     {"viridis", Values::kRange, "even steps of lightness: purple, green, yellow"},
     {"inferno", Values::kRange, "even steps: black, red, yellow"},
     {"magma", Values::kRange, "even steps: black, magenta, pale yellow"},
@@ -143,10 +143,9 @@ glm::dvec3 labelColor(int label) {
 }
 
 TransferFunction labels() {
-    // More tell nobody anything.
-    constexpr int kLabels = 1024;
     std::vector<LabelLook> looks;
-    for (int label = 1; label <= kLabels; ++label) looks.push_back({label, labelColor(label), 0.4});
+    for (int label = 1; label <= kLargestPresetLabel; ++label)
+        looks.push_back({label, labelColor(label), 0.4});
     return labelFunction(looks);
 }
 

@@ -124,6 +124,8 @@ deltasplat_cli_test(input.tf.no_preset EXIT 2 ARGS render cube_8x8x8_uint8.raw -
 deltasplat_cli_test(input.tf.no_hounsfield ARGS render cube_8x8x8_uint8.raw -o out.exr --tf ct-bone
     CREATES out.exr
     STDERR_MATCHES "deltasplat: warning: --tf: ct-bone is for Hounsfield units [(]air -1000, water 0[)], which values from .* are hardly.*picture: empty.*")
+deltasplat_cli_test(input.tf.labels_of_wholes ARGS render ball.vdb -o out.exr --tf labels CREATES out.exr
+    STDERR_MATCHES "deltasplat: warning: --tf: labels is for whole numbers, and values from .* to .* lie between, such as .*")
 deltasplat_cli_test(input.tf.list ARGS render --list-tf STDOUT_MATCHES "grey .*ct-bone +Hounsfield units.*coolwarm")
 deltasplat_cli_test(input.tf.list_whatever_else ARGS render missing.vdb -o out.png --list-tf
     STDOUT_MATCHES "grey .*coolwarm")

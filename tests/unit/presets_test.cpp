@@ -9,6 +9,7 @@
 
 #include "deltasplat/optics/transfer_function_names.h"
 #include "optics/check_optics.h"
+#include "optics/color_curve.h"
 #include "optics/read_label_table.h"
 #include "srgb.h"
 #include "support/error_of.h"
@@ -97,12 +98,14 @@ TEST(Presets, giveEveryLabelItsOwnColor) {
     EXPECT_EQ(labels.opacityAt(0), 0);
     EXPECT_EQ(labels.opacityAt(-3), 0);
     EXPECT_TRUE(labels.colorsJump());
-    for (int label = 1; label <= 1000; ++label) {
-        const glm::dvec3 color = labels.colorAt(label);
-        EXPECT_EQ(labels.opacityAt(label), 0.4);
-        EXPECT_EQ(labels.colorAt(label + 0.4), color);
-        EXPECT_EQ(labels.colorAt(label - 0.4), color);
-        EXPECT_GT(glm::distance(labels.colorAt(label + 1), color), 0.2) << label;
+    const ColorCurve curve(labels);
+    for (int label = 1; label <= 65535; ++label) {
+        const glm::dvec3 color = curve.at(label);
+        ASSERT_EQ(labels.opacityAt(label), 0.4) << label;
+        ASSERT_EQ(curve.at(label + 0.4), color) << label;
+        ASSERT_EQ(curve.at(label - 0.4), color) << label;
+        if (label == 65535) break;
+        ASSERT_GT(glm::distance(curve.at(label + 1), color), 0.2) << label;
     }
 }
 

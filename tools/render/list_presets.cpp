@@ -6,6 +6,7 @@
 
 #include "deltasplat/optics/presets.h"
 #include "number_text.h"
+#include "optics/color_curve.h"
 #include "srgb.h"
 
 namespace deltasplat {
@@ -59,6 +60,7 @@ constexpr int kSteps = 180;
 void drawPreset(const Preset& preset, double top, Drawing& drawing) {
     const TransferFunction function = presetFunction(preset.name);
     const glm::dvec2 part = shownPart(preset, function);
+    const ColorCurve colors(function);
     const double bottom = top + kBarHeight + kCurveHeight;
     Area under{{{kBarLeft, bottom}}, {120, 120, 120}, 1};
     for (int i = 0; i < kSteps; ++i) {
@@ -66,7 +68,7 @@ void drawPreset(const Preset& preset, double top, Drawing& drawing) {
         const double right = kBarLeft + kBarWidth * (i + 1) / kSteps;
         const double x = part.x + (part.y - part.x) * (i + 0.5) / kSteps;
         drawing.items.emplace_back(
-            rectangle({left, top}, {right, top + kBarHeight}, shown(function.colorAt(x))));
+            rectangle({left, top}, {right, top + kBarHeight}, shown(colors.at(x))));
         // Its root, for what is thin to be seen beside what is dense.
         const double height = kCurveHeight * std::sqrt(function.opacityAt(x));
         under.points.push_back({left, bottom - height});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/render_input.h"
 
+#include <cmath>
+#include <optional>
 #include <string>
 
 #include "deltasplat/optics/default_ramp.h"
@@ -9,6 +11,16 @@
 
 namespace deltasplat {
 namespace {
+
+// Returns a value that is no whole number, if there is one.
+std::optional<double> anyBroken(const Volume& volume) {
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+        if (volume.histogram[code] == 0) continue;
+        const double value = volume.codeBook.valueOf(Code(code));
+        if (value != std::floor(value)) return value;
+    }
+    return {};
+}
 
 // Who sees little of it should know why.
 void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener& listener) {
@@ -21,11 +33,15 @@ void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener&
                       " is for Hounsfield units (air -1000, water 0), which " + values +
                       " are hardly");
     }
-    const bool real = volume.type == "float" || volume.type == "double" ||
-                      volume.type == "float32" || volume.type == "float64";
-    if (preset.values == Preset::Values::kLabels && real) {
+    if (preset.values != Preset::Values::kLabels) return;
+    if (const std::optional<double> broken = anyBroken(volume)) {
         listener.warn("--tf: " + preset.name + " is for whole numbers, and " + values +
-                      " of type " + volume.type + " may lie between");
+                      " lie between, such as " + numberText(*broken));
+    }
+    if (volume.valueMax > kLargestPresetLabel) {
+        listener.warn("--tf: " + preset.name + " has colours for 1 to " +
+                      std::to_string(kLargestPresetLabel) + ", and of the " + values +
+                      " those that are more are clear");
     }
 }
 

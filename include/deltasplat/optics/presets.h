@@ -21,6 +21,9 @@ struct Preset {
     std::string summary;  ///< what it is for, in a few words
 };
 
+/// What is more is clear under the preset `labels`.
+inline constexpr int kLargestPresetLabel = 65535;
+
 /// Returns all there are, those for the same kind of data together.
 const std::vector<Preset>& presets();
 
