@@ -3,17 +3,16 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "deltasplat/error.h"
 #include "number_text.h"
+#include "optics/small_text.h"
 
 namespace deltasplat {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
 constexpr std::size_t kMaxDepth = 32;
 constexpr std::size_t kMaxQuoted = 40;
 
@@ -148,26 +147,6 @@ class TreeBuilder {
     std::vector<LocatedJson*> open_;  // stays valid: only the innermost's members grow
 };
 
-std::string readText(const std::filesystem::path& file) {
-    std::error_code ignored;
-    // Looked at first, because opening a pipe waits for who writes to it.
-    const bool regular = std::filesystem::is_regular_file(file, ignored);
-    std::ifstream in;
-    if (regular) in.open(file, std::ios::binary);
-    if (!in.is_open()) {
-        throw Error(ErrorCode::kInput, gotExpected(file.string(), "no file that can be read",
-                                                   "a transfer function (ParaView's JSON)"));
-    }
-    std::string text(kMaxBytes + 1, '\0');
-    in.read(text.data(), std::streamsize(text.size()));
-    text.resize(std::size_t(in.gcount()));
-    if (text.size() > kMaxBytes) {
-        throw Error(ErrorCode::kInput, gotExpected(file.string(), "more than 16 MiB",
-                                                   "a transfer function (ParaView's JSON)"));
-    }
-    return text;
-}
-
 }  // namespace
 
 const LocatedJson* LocatedJson::find(std::string_view name) const {
@@ -195,7 +174,7 @@ std::string LocatedJson::quoted() const {
 }
 
 LocatedJson readLocatedJson(const std::filesystem::path& file) {
-    const std::string text = readText(file);
+    const std::string text = readSmallText(file, "a transfer function (ParaView's JSON)");
     TreeBuilder builder(file, text);
     const char* const end = text.data() + text.size();
     Json::sax_parse(TrackingIterator{text.data(), &builder.place_},

@@ -4,10 +4,10 @@
 #include "optics/read_label_table.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iomanip>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -15,18 +15,24 @@
 #include <vector>
 
 #include "deltasplat/error.h"
+#include "optics/small_text.h"
 
 namespace deltasplat {
 namespace {
 
-// The words of a line; one in double quotes may have spaces, and keeps its first quote.
+// The words of a line; one in double quotes may have spaces, and keeps its first quote. Without
+// any, the line is malformed.
 std::vector<std::string> wordsOf(const std::string& line) {
-    std::istringstream in(line);
+    constexpr const char* kSpaces = " \t\r\v\f";
     std::vector<std::string> words;
-    for (std::string word; in >> std::ws && !in.eof();) {
-        const bool quoted = in.peek() == '"';
-        in >> std::quoted(word);
-        words.push_back(quoted ? '"' + word : word);
+    for (std::size_t at = line.find_first_not_of(kSpaces); at != std::string::npos;
+         at = line.find_first_not_of(kSpaces, at)) {
+        const bool quoted = line[at] == '"';
+        const std::size_t end =
+            quoted ? line.find('"', at + 1) : line.find_first_of(kSpaces, at + 1);
+        if (quoted && end == std::string::npos) return {};
+        words.push_back(line.substr(at, end - at));
+        at = quoted ? end + 1 : std::min(end, line.size());
     }
     return words;
 }
@@ -42,16 +48,19 @@ std::optional<double> numberOf(const std::string& word) {
 // The numbers of a line: label, red, green, blue, 0..255, and opacity, 0..1.
 using Numbers = std::vector<std::optional<double>>;
 
-// 3D Slicer: label, name, red, green, blue, alpha 0..255. ITK-SNAP: label, red, green, blue, alpha
-// 0..1, visible, mesh visible, "name".
+bool isOfSnap(const std::vector<std::string>& words) {
+    return words.size() == 8 && words[7].front() == '"';
+}
+
+// 3D Slicer: label, name, red, green, blue, alpha 0..255, which may be missing. ITK-SNAP: label,
+// red, green, blue, alpha 0..1, visible, mesh visible, "name".
 std::optional<LabelLook> lookOf(const std::vector<std::string>& words) {
-    const bool snap = words.size() >= 8 && words[7].front() == '"';
-    if (!snap && words.size() < 5) return {};
-    const std::size_t red = snap ? 1 : 2;
-    Numbers numbers = {numberOf(words[0])};
-    for (std::size_t i = red; i < red + 3; ++i) numbers.push_back(numberOf(words[i]));
-    numbers.push_back(words.size() > red + 3 ? numberOf(words[red + 3]) : 255);
-    if (snap) numbers.push_back(numberOf(words[5]));
+    const bool snap = isOfSnap(words);
+    if (!snap && words.size() != 5 && words.size() != 6) return {};
+    Numbers numbers;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        if (i != (snap ? 7 : 1)) numbers.push_back(numberOf(words[i]));
+    if (words.size() == 5) numbers.emplace_back(255);
     const auto isMissing = [](const auto& number) { return !number; };
     if (std::any_of(numbers.begin(), numbers.end(), isMissing)) return {};
 
@@ -68,32 +77,54 @@ std::optional<LabelLook> lookOf(const std::vector<std::string>& words) {
     return look;
 }
 
+// As much of a line as a message can hold.
+std::string quoted(const std::string& line) {
+    constexpr std::size_t kMost = 60;
+    if (line.size() <= kMost) return '"' + line + '"';
+    std::size_t end = kMost;
+    // Not within a character of UTF-8.
+    while (end > 0 && (std::uint8_t(line[end]) & 0xC0) == 0x80) --end;
+    return '"' + line.substr(0, end) + "...\"";
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, int number, const std::string& line) {
+    throw Error(ErrorCode::kInput,
+                gotExpected(file.string() + ":" + std::to_string(number), quoted(line),
+                            "label, name, red, green, blue and perhaps alpha (0..255), or label, "
+                            "red, green, blue (0..255), alpha (0..1), visible, mesh, \"name\""));
+}
+
+// @param ofSlicer  whether alpha is 0..255, as in FreeSurfer's tables, which look the same
+void warnOfClear(const std::filesystem::path& file, bool ofSlicer, const Listener& listener) {
+    listener.warn(file.string() + ": all labels are clear" +
+                  (ofSlicer ? ", for each has an alpha of 0; where that means opaque, as in tables "
+                              "of FreeSurfer, replace it by 255"
+                            : ", for each is hidden or has an alpha of 0"));
+}
+
 }  // namespace
 
-TransferFunction readLabelTable(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    if (!in)
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file.string(), "no file that can be read", "a table of labels"));
+TransferFunction readLabelTable(const std::filesystem::path& file, const Listener& listener) {
+    std::istringstream in(readSmallText(file, "a table of labels"));
     std::map<int, LabelLook> looks;
+    bool ofSlicer = false;
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {
+        while (!line.empty() && std::isspace(std::uint8_t(line.back()))) line.pop_back();
+        const std::size_t first = line.find_first_not_of(" \t\v\f");
+        if (first == std::string::npos || line[first] == '#') continue;
         const std::vector<std::string> words = wordsOf(line);
-        if (words.empty() || words.front().front() == '#') continue;
         const std::optional<LabelLook> look = lookOf(words);
-        if (!look) {
-            throw Error(ErrorCode::kInput,
-                        gotExpected(file.string() + ":" + std::to_string(number),
-                                    "\"" + line.substr(0, 60) + "\"",
-                                    "label, name, red, green, blue, alpha (0..255), or label, red, "
-                                    "green, blue (0..255), alpha (0..1), visible, mesh, \"name\""));
-        }
+        if (!look) refuse(file, number, line);
         looks[look->label] = *look;
+        ofSlicer = !isOfSnap(words);
     }
     if (looks.empty())
         throw Error(ErrorCode::kInput, gotExpected(file.string(), "no labels", "at least one"));
     std::vector<LabelLook> rising;
     for (const auto& [label, look] : looks) rising.push_back(look);
+    const auto isClear = [](const LabelLook& look) { return look.opacity == 0; };
+    if (std::all_of(rising.begin(), rising.end(), isClear)) warnOfClear(file, ofSlicer, listener);
     TransferFunction function = labelFunction(rising);
     function.name = file.stem().string();
     return function;

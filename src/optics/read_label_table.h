@@ -7,10 +7,12 @@
 
 namespace deltasplat {
 
-/// Reads the looks of labels: a colour table of 3D Slicer (.ctbl), or label descriptions of
-/// ITK-SNAP. Labels that are not listed, hidden ones and those without opacity are clear; of a
-/// label that is listed twice the last line counts.
+/// Reads the looks of labels: a colour table of 3D Slicer (.ctbl; index, name, red, green, blue and
+/// perhaps alpha, all of 0..255), or label descriptions of ITK-SNAP (index, red, green, blue of
+/// 0..255, alpha of 0..1, visible, mesh visible, "name"). Labels that are not listed, hidden ones
+/// and those without opacity are clear, with a warning where nothing else is listed; of a label
+/// that is listed twice the last line counts.
 /// @throw Error(kInput) naming file and line, if it is missing or malformed
-TransferFunction readLabelTable(const std::filesystem::path& file);
+TransferFunction readLabelTable(const std::filesystem::path& file, const Listener& listener = {});
 
 }  // namespace deltasplat

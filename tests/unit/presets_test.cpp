@@ -122,6 +122,17 @@ class TransferFunctionFile : public ::testing::Test {
         std::ofstream(file, std::ios::binary) << text;
         return file;
     }
+    TransferFunction read(const std::filesystem::path& file) {
+        Listener listener;
+        listener.warning = [this](const std::string& line) { warnings_.push_back(line); };
+        return readLabelTable(file, listener);
+    }
+    static void expectColor(const TransferFunction& function, double x, const glm::dvec3& bytes) {
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(255 * srgbFromLinear(function.colorAt(x)[c]), bytes[c], 1e-9)
+                << x << ' ' << c;
+        }
+    }
     // Without the folder.
     std::string errorFor(const std::filesystem::path& file) {
         std::string error = errorOf([&] { readLabelTable(file); });
@@ -131,6 +142,7 @@ class TransferFunctionFile : public ::testing::Test {
     }
 
     test::TempFolder folder_;
+    std::vector<std::string> warnings_;
 };
 
 TEST_F(TransferFunctionFile, holdsSeveral) {
@@ -149,12 +161,12 @@ TEST_F(TransferFunctionFile, holdsSeveral) {
 }
 
 TEST_F(TransferFunctionFile, mayBeATableOf3dSlicer) {
-    const TransferFunction function = readLabelTable(write("tissue.ctbl",
-                                                           "# Color table file tissue\n# 3 values\n"
-                                                           "0 background 0 0 0 0\n"
-                                                           "2 bone 241 214 145 255\r\n"
-                                                           "\n3 skin 177 122 101 102\n"
-                                                           "7 no_alpha 0 255 0\n"));
+    const TransferFunction function = read(write("tissue.ctbl",
+                                                 "# Color table file tissue\n# 3 values\n"
+                                                 "0 background 0 0 0 0\n"
+                                                 "2 bone 241 214 145 255\r\n"
+                                                 "\n3 skin 177 122 101 102\n"
+                                                 "7 no_alpha 0 255 0\n"));
     EXPECT_EQ(function.name, "tissue");
     EXPECT_EQ(function.opacityAt(0), 0);
     EXPECT_EQ(function.opacityAt(1), 0);
@@ -163,8 +175,10 @@ TEST_F(TransferFunctionFile, mayBeATableOf3dSlicer) {
     EXPECT_EQ(function.opacityAt(5), 0);
     EXPECT_EQ(function.opacityAt(7), 1);
     EXPECT_EQ(function.opacityAt(8), 0);
-    EXPECT_NEAR(srgbFromLinear(function.colorAt(2).r), 241 / 255.0, 1e-12);
-    EXPECT_NEAR(srgbFromLinear(function.colorAt(3).b), 101 / 255.0, 1e-12);
+    expectColor(function, 2, {241, 214, 145});
+    expectColor(function, 3, {177, 122, 101});
+    expectColor(function, 7, {0, 255, 0});
+    EXPECT_TRUE(warnings_.empty());
 }
 
 TEST_F(TransferFunctionFile, ofLabelsIsCategorical) {
@@ -190,28 +204,74 @@ TEST_F(TransferFunctionFile, ofLabelsHasTheirOpacities) {
 
 TEST_F(TransferFunctionFile, mayBeLabelsOfItkSnap) {
     const TransferFunction function =
-        readLabelTable(write("labels.txt",
-                             "################\n# ITK-SnAP Label Description File\n"
-                             "    0     0    0    0        0  0  0    \"Clear Label\"\n"
-                             "    1   255    0    0        0.5  1  1    \"Left lung, upper lobe\"\n"
-                             "    2     0  255    0        1  0  1    \"hidden\"\n"));
+        read(write("labels.txt",
+                   "################\n# ITK-SnAP Label Description File\n"
+                   "    0     0    0    0        0  0  0    \"Clear Label\"\n"
+                   "    1   255   10   20        0.5  1  1    \"Left lung, upper lobe\"\n"
+                   "    2    30  255   40        1  0  1    \"hidden\"\n"));
     EXPECT_EQ(function.opacityAt(1), 0.5);
     EXPECT_EQ(function.opacityAt(2), 0);
-    EXPECT_EQ(function.colorAt(1), glm::dvec3(1, 0, 0));
+    expectColor(function, 1, {255, 10, 20});
+    expectColor(function, 2, {30, 255, 40});
+    EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(TransferFunctionFile, ofLabelsWarnsWhereAllAreClear) {
+    read(write("free.ctbl", "0 Unknown 0 0 0 0\n4 Left-Lateral-Ventricle 120 18 134 0\n"));
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_[0].find("free.ctbl: all labels are clear, for each has an alpha of 0; where"
+                                " that means opaque, as in tables of FreeSurfer, replace it by "
+                                "255"),
+              std::string::npos);
+    warnings_.clear();
+    read(write("snap.label", "1 255 0 0 1 0 1 \"hidden\"\n"));
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_[0].find("all labels are clear, for each is hidden"), std::string::npos);
+}
+
+TEST_F(TransferFunctionFile, ofLabelsMayBeginWithAByteOrderMark) {
+    EXPECT_EQ(readLabelTable(write("bom.ctbl",
+                                   "\xEF\xBB\xBF"
+                                   "1 a 1 2 3 255\n"))
+                  .opacityAt(1),
+              1);
+    EXPECT_EQ(readTransferFunction(write("bom.json",
+                                         "\xEF\xBB\xBF{\"RGBPoints\": [0,0.1,0,0], \"Points\": "
+                                         "[0,1,0.5,0]}"))
+                  .colors[0]
+                  .rgb.r,
+              0.1);
+}
+
+// Alone, and not within a character.
+TEST_F(TransferFunctionFile, ofLabelsQuotesWholeCharacters) {
+    const std::string letters = "1 " + std::string(57, 'x');
+    EXPECT_EQ(errorFor(write("a.ctbl", letters + "\u00e4\u00e4\n"))
+                  .find("input: a.ctbl:1: got \"" + letters + "...\"; expected label, "),
+              0u);
+    EXPECT_EQ(errorFor(write("a.ctbl", letters + "x\u00e4\n"))
+                  .find("input: a.ctbl:1: got \"" + letters + "x...\"; expected label, "),
+              0u);
 }
 
 TEST_F(TransferFunctionFile, ofLabelsSaysWhichLineIsNone) {
     EXPECT_EQ(errorFor(write("a.ctbl", "# nothing\n")),
               "input: a.ctbl: got no labels; expected at least one");
-    for (const char* line : {"1 bone 241 214", "x bone 1 2 3 255", "1 bone 1 2 300 255",
-                             "1 bone 1 2 3 -1", "1.5 bone 1 2 3 255", "1 bone 1 nan 3 255"}) {
+    for (const char* line :
+         {"1 bone 241 214", "x bone 1 2 3 255", "1 bone 1 2 300 255", "1 bone 1 2 3 -1",
+          "1 bone 1 2 3 255 7", "1 left lung 1 2 3 255", "1 bone 1 2 3 x", "1 2 3 4 0.5 1 1 bone",
+          "1 2 3 4 0.5 1 1 \"bone", "1 2 3 4 0.5 1 \"bone\"", "1 2 3 4 0.5 1 x \"bone\"",
+          "1 2 3 4 0.5 1 1 \"bone\" 1", "1 2 3 4 1.5 1 1 \"bone\"", "1.5 bone 1 2 3 255",
+          "1 bone 1 nan 3 255"}) {
         const std::string error = errorFor(write("b.ctbl", std::string("\n") + line + "\n"));
         EXPECT_EQ(
             error.find(std::string("input: b.ctbl:2: got \"") + line + "\"; expected label, "), 0u)
             << error;
     }
-    EXPECT_EQ(errorFor(folder_.path() / "none.ctbl"),
-              "input: none.ctbl: got no file that can be read; expected a table of labels");
+    std::filesystem::create_directory(folder_.path() / "folder.ctbl");
+    for (const std::string name : {"none.ctbl", "folder.ctbl"})
+        EXPECT_EQ(errorFor(folder_.path() / name),
+                  "input: " + name + ": got no file that can be read; expected a table of labels");
 }
 
 }  // namespace

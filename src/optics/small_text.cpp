@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optics/small_text.h"
+
+#include <cstddef>
+#include <fstream>
+
+#include "deltasplat/error.h"
+
+namespace deltasplat {
+
+std::string readSmallText(const std::filesystem::path& file, const std::string& expected) {
+    constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+    const auto fail = [&](const std::string& got) {
+        throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
+    };
+    std::error_code ignored;
+    // Looked at first, because opening a pipe waits for who writes to it.
+    const bool regular = std::filesystem::is_regular_file(file, ignored);
+    std::ifstream in;
+    if (regular) in.open(file, std::ios::binary);
+    if (!in.is_open()) fail("no file that can be read");
+    std::string text(kMaxBytes + 1, '\0');
+    in.read(text.data(), std::streamsize(text.size()));
+    if (in.bad()) fail("no file that can be read");
+    text.resize(std::size_t(in.gcount()));
+    if (text.size() > kMaxBytes) fail("more than 16 MiB");
+    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+    return text;
+}
+
+}  // namespace deltasplat
