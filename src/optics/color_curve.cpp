@@ -30,6 +30,9 @@ constexpr double kGreySaturation = 0.05;
 // evenly, and away from purple.
 double hueOfGreyBeside(const glm::dvec3& color, double magnitude) {
     if (color.x >= magnitude - 0.1) return color.z;
+    // Beside what is next to black it would spin many times around.
+    constexpr double kBlackShare = 0.01;
+    if (color.x < kBlackShare * magnitude) return color.z;
     const double spin = color.y * std::sqrt(magnitude * magnitude - color.x * color.x) /
                         (color.x * portable::sin(color.y));
     return color.z > -0.3 * pi ? color.z + spin : color.z - spin;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
@@ -39,7 +40,9 @@ double shareOf(double lightness) {
 }  // namespace
 
 glm::dvec3 labFromLinear(const glm::dvec3& rgb) {
-    const glm::dvec3 share = kShareOfWhite * rgb;
+    // What is brighter would not come back as finite numbers.
+    constexpr double kBrightest = 1e200;
+    const glm::dvec3 share = kShareOfWhite * glm::min(rgb, glm::dvec3(kBrightest));
     const double x = lightness(share.x);
     const double y = lightness(share.y);
     return {116 * y - 16, 500 * (x - y), 200 * (y - lightness(share.z))};
@@ -53,10 +56,11 @@ glm::dvec3 linearFromLab(const glm::dvec3& lab) {
 
 glm::dvec3 mshFromLab(const glm::dvec3& lab) {
     const double chroma = portable::hypot(lab.y, lab.z);
-    // Of grey, rounding makes any hue.
+    // Of grey, rounding makes any hue; and what is darker than any colour of 8 bits shows none.
     constexpr double kGrey = 1e-3;
+    constexpr double kBlack = 0.1;
     const double magnitude = portable::hypot(lab.x, chroma);
-    if (chroma <= kGrey * magnitude) return {magnitude, 0, 0};
+    if (chroma <= kGrey * magnitude || magnitude < kBlack) return {magnitude, 0, 0};
     return {magnitude, portable::atan2(chroma, lab.x), portable::atan2(lab.z, lab.y)};
 }
 

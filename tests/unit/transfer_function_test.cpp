@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "srgb.h"
 
@@ -134,6 +135,49 @@ TEST(TransferFunction, mixesBrightColorsWithoutCuttingThem) {
         EXPECT_NEAR(color.g / color.r, 0.5, 1e-9);
         EXPECT_NEAR(color.b / color.r, 0.25, 1e-9);
     }
+}
+
+// Next to black there are hues, and brightest light has room to be mixed.
+TEST(TransferFunction, mixesFiniteColorsOfAnyTwo) {
+    constexpr double kMost = std::numeric_limits<double>::max();
+    for (const bool linear : {false, true}) {
+        std::vector<double> parts = {0, 1e-9, 1e-4, 0.04, 1};
+        if (linear) parts = {0, 1e-9, 1, 1e300, kMost};
+        std::vector<glm::dvec3> colors;
+        for (const double r : parts)
+            for (const double g : parts)
+                for (const double b : parts) colors.emplace_back(r, g, b);
+        for (const ColorSpace space : {ColorSpace::kRgb, ColorSpace::kHsv, ColorSpace::kHsvShortest,
+                                       ColorSpace::kLab, ColorSpace::kDiverging}) {
+            TransferFunction function = withOpacities({{0, 1, 0.5, 0}});
+            function.linearColors = linear;
+            function.colorSpace = space;
+            for (const glm::dvec3& from : colors) {
+                for (const glm::dvec3& to : colors) {
+                    function.colors = {{0, from}, {255, to}};
+                    for (const double x : {1e-3, 100.0, 250.0}) {
+                        const glm::dvec3 color = function.colorAt(x);
+                        for (int c = 0; c < 3; ++c) {
+                            ASSERT_TRUE(color[c] >= 0 && color[c] <= (linear ? kMost : 1 + 1e-9))
+                                << int(space) << ": " << from.r << ' ' << from.g << ' ' << from.b
+                                << " to " << to.r << ' ' << to.g << ' ' << to.b << ": " << color[c];
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+// As beside black itself.
+TEST(TransferFunction, makesNoRainbowBesideWhatIsNextToBlack) {
+    TransferFunction function = withOpacities({{0, 1, 0.5, 0}});
+    function.colorSpace = ColorSpace::kDiverging;
+    function.colors = {{0, {0, 0, 0}}, {255, {1, 1, 1}}};
+    const glm::dvec3 grey = function.colorAt(100);
+    EXPECT_GT(grey.g, 0.01);
+    function.colors[0].rgb.b = 1e-9;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(function.colorAt(100)[c], grey[c], 1e-6);
 }
 
 TEST(TransferFunction, isConstantBeyondTheEnds) {
