@@ -9,7 +9,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "default_floats.h"
 #include "deltasplat/error.h"
+#include "deltasplat/optics/default_ramp.h"
 #include "optics/color_maps.h"
 #include "optics/color_space.h"
 #include "optics/label_function.h"
@@ -188,6 +190,17 @@ TransferFunction presetFunction(const std::string& name) {
     function.name = name;
     function.normalized = preset->values == Values::kRange;
     return function;
+}
+
+void fitPreset(const Preset& preset, const Volume& volume, Optics& optics) {
+    if (preset.values != Values::kRange || optics.range) return;
+    const DefaultFloats floats;
+    glm::dvec2 range = bulkRange(volume);
+    // A range has some width: so little that no other value lies in it.
+    constexpr double kLeast = 1e-300;
+    if (range.x == range.y)
+        range.x = std::min(std::nextafter(range.y, -HUGE_VAL), range.y - kLeast);
+    optics.range = range;
 }
 
 }  // namespace deltasplat

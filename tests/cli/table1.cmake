@@ -7,7 +7,7 @@ set(head cthead_256x256x225_uint8.raw.gz)
 set(engine engine_256x256x128_uint8.raw.gz)
 
 deltasplat_cli_test(help_table1 ARGS bench table1 --help
-    STDOUT_MATCHES "Usage: deltasplat bench table1 .*DATA_FOLDER.*--repeats N.*default 7.*--tf FILE.*--json.*${fuel}.*${ear}.*${head}.*${engine}.*Examples:.*deltasplat bench table1")
+    STDOUT_MATCHES "Usage: deltasplat bench table1 .*DATA_FOLDER.*--repeats N.*default 7.*--tf FILE.PRESET.*--json.*${fuel}.*${ear}.*${head}.*${engine}.*Examples:.*deltasplat bench table1")
 deltasplat_cli_test(help_bench_names_table1 ARGS bench --help STDOUT_MATCHES "Subcommands:.*table1 ")
 
 set(number "[0-9]+([.][0-9]+)?")

@@ -7,12 +7,15 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 
+#include "deltasplat/optics/default_ramp.h"
 #include "deltasplat/optics/transfer_function_names.h"
 #include "optics/check_optics.h"
 #include "optics/color_curve.h"
 #include "optics/read_label_table.h"
+#include "optics/value_colors.h"
 #include "srgb.h"
 #include "support/error_of.h"
+#include "support/make_volume.h"
 #include "unit/temp_folder.h"
 
 namespace deltasplat {
@@ -89,6 +92,60 @@ TEST(Presets, haveTheColorsOfWellKnownMaps) {
             EXPECT_GT(lightnessOf(function.colorAt(i / 50.0)),
                       lightnessOf(function.colorAt((i - 1) / 50.0)))
                 << name << ' ' << i;
+        }
+    }
+}
+
+glm::dvec2 fittedRange(const char* preset, const Volume& volume) {
+    Optics optics;
+    fitPreset(*findPreset(preset), volume, optics);
+    return optics.range.value_or(glm::dvec2(-1));
+}
+
+// One voxel in a hundred is far below, and one far above the others.
+TEST(Presets, ofARangeShowWhereMostValuesLie) {
+    const Volume volume = test::makeVolume({{0, 0, 0}, {99, 99, 0}}, [](int x, int y, int) {
+        return y == 0 ? (x == 0 ? 9000 : 5) : 1000 + y;
+    });
+    const glm::dvec2 range = bulkRange(volume);
+    EXPECT_GT(range.x, 4);
+    EXPECT_LT(range.y, 1100);
+    EXPECT_EQ(fittedRange("viridis", volume), range);
+    EXPECT_EQ(fittedRange("ct-bone", volume), glm::dvec2(-1));
+    EXPECT_EQ(fittedRange("labels", volume), glm::dvec2(-1));
+    Optics optics;
+    optics.range = {2, 3};
+    fitPreset(*findPreset("viridis"), volume, optics);
+    EXPECT_EQ(optics.range, glm::dvec2(2, 3));
+}
+
+// As the default ramp: clear below the value that nearly all have, from there on at the top.
+TEST(Presets, ofARangeAreAStepWhereNearlyAllIsOneValue) {
+    for (const int most : {0, 7}) {
+        Volume volume = test::makeVolume({{0, 0, 0}, {9, 9, 9}}, [&](int x, int y, int z) {
+            if (x + y + z == 0) return 1000;
+            return x + y + z == 1 && most > 0 ? most - 1 : most;
+        });
+        volume.background = 60000;
+        for (const char* name : {"viridis", "fire", "mr"}) {
+            SCOPED_TRACE(name + std::to_string(most));
+            Optics optics;
+            optics.transferFunction = presetFunction(name);
+            fitPreset(*findPreset(name), volume, optics);
+            EXPECT_NO_THROW(checkOptics(optics));
+            const ClassTable table = classify(volume, optics, 1);
+            const double opacity = optics.transferFunction.opacityAt(1);
+            const glm::dvec3 color = optics.transferFunction.colorAt(1);
+            const ValueColors colors(volume, optics);
+            for (const int value : {most, 1000}) {
+                const glm::dvec4 light = table.lightOfCode(Code(value));
+                EXPECT_NEAR(light.a, opacity, 1e-4);
+                for (int c = 0; c < 3; ++c) {
+                    EXPECT_NEAR(light[c], opacity * color[c], 1e-4 * (1 + color[c]));
+                    EXPECT_NEAR(colors.colorOf(float(value))[c], color[c], 1e-5);
+                }
+            }
+            EXPECT_TRUE(most == 0 || table.lightOfCode(Code(most - 1)).a == 0);
         }
     }
 }

@@ -5,7 +5,6 @@
 #include "deltasplat/optics/class_table.h"
 #include "info/slice_plot.h"
 #include "number_text.h"
-#include "options/transfer_function_option.h"
 
 namespace deltasplat {
 namespace {

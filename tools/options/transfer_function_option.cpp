@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "deltasplat/error.h"
-#include "deltasplat/optics/default_ramp.h"
 #include "deltasplat/optics/transfer_function_names.h"
 #include "lower_case.h"
 #include "optics/read_label_table.h"
@@ -57,12 +56,6 @@ TransferFunction readTransferFunctionOption(const std::filesystem::path& given,
     if (extension == ".ctbl" || extension == ".label" || extension == ".txt")
         return readLabelTable(option.file);
     return readTransferFunction(option.file, listener);
-}
-
-void fitPreset(const Preset& preset, const Volume& volume, Optics& optics) {
-    if (preset.values != Preset::Values::kRange || optics.range) return;
-    const glm::dvec2 bulk = bulkRange(volume);
-    if (bulk.x < bulk.y) optics.range = bulk;
 }
 
 }  // namespace deltasplat

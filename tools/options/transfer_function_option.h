@@ -3,7 +3,6 @@
 
 #include <filesystem>
 
-#include "deltasplat/optics/class_table.h"
 #include "deltasplat/optics/presets.h"
 #include "deltasplat/optics/transfer_function.h"
 
@@ -25,8 +24,5 @@ TransferFunctionOption parseTransferFunction(const std::filesystem::path& given)
 /// preset, and looks like no file's name
 TransferFunction readTransferFunctionOption(const std::filesystem::path& given,
                                             const Listener& listener);
-
-/// Lets a preset of a range show where most values of the volume lie, if no range is given.
-void fitPreset(const Preset& preset, const Volume& volume, Optics& optics);
 
 }  // namespace deltasplat

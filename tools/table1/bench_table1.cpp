@@ -36,9 +36,9 @@ void addTable1Options(CLI::App& app, Table1Command& command) {
     group.addValue(
         "--repeats", "N", command.repeats, wholeNumber(1, 100000),
         withDefault("Rounds that count, after one to warm up", std::to_string(command.repeats)));
-    group.addValue("--tf", "FILE", command.transferFunction, anyText(),
-                   "Transfer function, a ParaView JSON file (default: a CT ramp, clear\n"
-                   "below 22 % of the range: that of examples/ct.json)");
+    group.addValue("--tf", "FILE|PRESET", command.transferFunction, anyText(),
+                   "Transfer function, as for render (default: a CT ramp, clear below\n"
+                   "22 % of the range: that of examples/ct.json)");
     OptionGroup output(app, "Output");
     output.addFlag("--json", command.json, "Print one JSON object, times in seconds");
 }
@@ -68,14 +68,21 @@ void checkThreads(const CLI::App& app, int threads) {
     }
 }
 
+// What is rendered with; the preset is the one that the function is of, or null.
+struct ChosenFunction {
+    TransferFunction function;
+    const Preset* preset = nullptr;
+};
+
 void measure(const Table1DataSet& dataSet, const std::filesystem::path& file,
-             const TransferFunction& transferFunction, ProgressDisplay& display, double begin,
-             double end, Findings& found) {
+             const ChosenFunction& chosen, ProgressDisplay& display, double begin, double end,
+             Findings& found) {
     const auto stage = [&](double from, double to) {
         return display.stage(begin + (end - begin) * from, begin + (end - begin) * to);
     };
     const Volume volume = readVolume(file, {}, stage(0, 0.1));
-    RenderOptions options = table1Options(volume, transferFunction);
+    RenderOptions options = table1Options(volume, chosen.function);
+    if (chosen.preset) fitPreset(*chosen.preset, volume, options.optics);
     const auto run = [&](double from, double to) {
         return BenchEntry{file.string(), "composite",
                           measureMethods(volume, options, found.report.repeats, stage(from, to))};
@@ -89,7 +96,7 @@ void measure(const Table1DataSet& dataSet, const std::filesystem::path& file,
 }
 
 // A volume that is missing or cannot be read does not keep the others from being measured.
-void measureAll(const Table1Command& command, const TransferFunction& transferFunction,
+void measureAll(const Table1Command& command, const ChosenFunction& chosen,
                 ProgressDisplay& display, Findings& found) {
     const auto files = findTable1Files(command.folder, display.stage(0, 0));
     for (std::size_t i = 0; i < kTable1.size(); ++i) {
@@ -103,7 +110,7 @@ void measureAll(const Table1Command& command, const TransferFunction& transferFu
         }
         const double count = kTable1.size();
         try {
-            measure(kTable1[i], file->second, transferFunction, display, double(i) / count,
+            measure(kTable1[i], file->second, chosen, display, double(i) / count,
                     double(i + 1) / count, found);
         } catch (const Error& error) {
             if (error.code() == ErrorCode::kInterrupted) throw;
@@ -118,15 +125,18 @@ void runTable1(const CLI::App& app, const Table1Command& command, const Session&
     const ThreadLimit limit(1);
     ProgressDisplay display(session.common);
     const bool ramp = command.transferFunction.empty();
-    const TransferFunction transferFunction =
-        ramp ? ctRamp() : readTransferFunctionOption(command.transferFunction, display.stage(0, 0));
+    ChosenFunction chosen{ctRamp()};
+    if (!ramp) {
+        chosen = {readTransferFunctionOption(command.transferFunction, display.stage(0, 0)),
+                  parseTransferFunction(command.transferFunction).preset};
+    }
 
     Findings found;
     found.report.machine = thisMachine();
     found.report.transferFunction =
         ramp ? "CT ramp, clear below 22 % of the range" : command.transferFunction.string();
     found.report.repeats = command.repeats;
-    measureAll(command, transferFunction, display, found);
+    measureAll(command, chosen, display, found);
     if (!found.report.rows.empty())
         printOut(command.json ? jsonText(found.report) : plainText(found.report));
     throwFailures(found.failures);

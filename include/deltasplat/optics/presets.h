@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "deltasplat/optics/class_table.h"
 #include "deltasplat/optics/transfer_function.h"
 
 namespace deltasplat {
@@ -12,7 +13,7 @@ namespace deltasplat {
 struct Preset {
     /// What its points' x are.
     enum class Values {
-        kRange,       ///< shares of a range of data values: it is normalized
+        kRange,       ///< shares of a range of data values, see fitPreset: it is normalized
         kHounsfield,  ///< Hounsfield units, as CT scanners give them: air is -1000, water 0
         kLabels       ///< whole numbers that name what a voxel belongs to; 0 is nothing
     };
@@ -33,5 +34,12 @@ const Preset* findPreset(const std::string& name);
 /// Returns a preset's transfer function.
 /// @throw Error(kUsage) naming all presets, if there is none of that name
 TransferFunction presetFunction(const std::string& name);
+
+/// Lets a preset of a range show where most values of the volume lie: unless `optics.range` is
+/// given, it becomes bulkRange(volume), the 1st to the 99th percentile (default_ramp.h). Where both
+/// are the same value, the preset is as below its range below that value, and as at the range's
+/// end from there on, as defaultRamp is. Without this a normalized function's range is
+/// defaultRange. Presets of other values are left alone.
+void fitPreset(const Preset& preset, const Volume& volume, Optics& optics);
 
 }  // namespace deltasplat
