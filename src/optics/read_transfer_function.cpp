@@ -102,6 +102,12 @@ class PresetReader {
     const LocatedJson& preset_;
 };
 
+[[noreturn]] void refusePreset(const std::filesystem::path& file, const LocatedJson& json,
+                               const std::string& got) {
+    throw Error(ErrorCode::kInput, gotExpected(file.string() + ":" + std::to_string(json.line), got,
+                                               "a transfer function, an object with RGBPoints"));
+}
+
 // All of a file's transfer functions: one, or an array.
 std::vector<const LocatedJson*> presetsOf(const std::filesystem::path& file,
                                           const LocatedJson& root) {
@@ -111,20 +117,14 @@ std::vector<const LocatedJson*> presetsOf(const std::filesystem::path& file,
     } else {
         presets.push_back(&root);
     }
-    const auto fail = [&](const LocatedJson& json, const std::string& got) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file.string() + ":" + std::to_string(json.line), got,
-                                "a transfer function, an object with RGBPoints"));
-    };
-    if (presets.empty()) fail(root, "an empty array");
-    for (const LocatedJson* preset : presets)
-        if (preset->kind != Kind::kObject) fail(*preset, preset->quoted());
+    if (presets.empty()) refusePreset(file, root, "an empty array");
     return presets;
 }
 
-std::string nameOf(const std::filesystem::path& file, const LocatedJson& preset,
-                   const std::string& otherwise) {
-    return PresetReader(file, preset).text("Name", otherwise);
+// "" for one without a name, and for one that is malformed: that is said of the one that is read.
+std::string nameOf(const LocatedJson& preset) {
+    const LocatedJson* name = preset.kind == Kind::kObject ? preset.find("Name") : nullptr;
+    return name && name->kind == Kind::kString ? name->text : "";
 }
 
 // Where the interval behind `left` begins: so little behind it that what lies at the point itself,
@@ -188,9 +188,10 @@ void readOpacities(const std::filesystem::path& file, const PresetReader& preset
 
 TransferFunction readPreset(const std::filesystem::path& file, const LocatedJson& json,
                             const Listener& listener) {
+    if (json.kind != Kind::kObject) refusePreset(file, json, json.quoted());
     const PresetReader preset(file, json);
     TransferFunction function;
-    function.name = nameOf(file, json, file.stem().string());
+    function.name = preset.text("Name", file.stem().string());
     function.normalized = preset.flag("Normalized");
     readColors(file, preset, listener, function);
     readOpacities(file, preset, listener, function);
@@ -202,8 +203,7 @@ TransferFunction readPreset(const std::filesystem::path& file, const LocatedJson
 std::vector<std::string> transferFunctionNames(const std::filesystem::path& file) {
     const LocatedJson root = readLocatedJson(file);
     std::vector<std::string> names;
-    for (const LocatedJson* preset : presetsOf(file, root))
-        names.push_back(nameOf(file, *preset, ""));
+    for (const LocatedJson* preset : presetsOf(file, root)) names.push_back(nameOf(*preset));
     return names;
 }
 
@@ -219,13 +219,14 @@ TransferFunction readTransferFunction(const std::filesystem::path& file, const s
     const LocatedJson root = readLocatedJson(file);
     std::string known;
     for (const LocatedJson* preset : presetsOf(file, root)) {
-        const std::string here = nameOf(file, *preset, "");
+        const std::string here = nameOf(*preset);
         if (here == name) return readPreset(file, *preset, listener);
-        known += (known.empty() ? "" : ", ") + here;
+        if (!here.empty()) known += (known.empty() ? "" : ", ") + here;
     }
     throw Error(ErrorCode::kInput,
                 gotExpected(file.string(), "no transfer function \"" + name + "\"",
-                            "one of those it has: " + known));
+                            known.empty() ? "none, for those it has are without names"
+                                          : "one of those it has: " + known));
 }
 
 }  // namespace deltasplat

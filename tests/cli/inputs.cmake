@@ -114,13 +114,20 @@ deltasplat_cli_test(input.tf.second ARGS render cube_8x8x8_uint8.raw -o out.exr 
 deltasplat_cli_test(input.tf.third EXIT 3
     ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_several.json:third
     STDERR "deltasplat: tf_several.json: got no transfer function \"third\"; expected one of those it has: first, second")
+deltasplat_cli_test(input.tf.no_name EXIT 2 ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_several.json:
+    STDERR "deltasplat: --tf: got tf_several.json:; expected a name behind the colon")
+deltasplat_cli_test(input.tf.labels_by_name EXIT 2
+    ARGS render cube_8x8x8_uint8.raw -o out.exr --tf labels.ctbl:bone
+    STDERR "deltasplat: --tf: got labels.ctbl:bone; expected labels.ctbl alone, a table of labels, which holds no transfer functions with names")
 deltasplat_cli_test(input.tf.labels ARGS render cube_8x8x8_uint8.raw -o out.exr --tf labels.ctbl
     CREATES out.exr)
 deltasplat_cli_test(input.tf.preset ARGS render cube_8x8x8_uint8.raw -o out.exr --tf viridis CREATES out.exr)
 deltasplat_cli_test(input.tf.preset_of_info ARGS info ball.vdb --tf mr
     STDOUT_MATCHES "visible: not clear under mr")
 deltasplat_cli_test(input.tf.no_preset EXIT 2 ARGS render cube_8x8x8_uint8.raw -o out.exr --tf viridi
-    STDERR_MATCHES "deltasplat: --tf: got viridi; expected a file, or one of grey, .*coolwarm Did you mean 'viridis'[?]")
+    STDERR_MATCHES "deltasplat: --tf: got viridi; expected a file, or one of grey, .*coolwarm[.] Did you mean 'viridis'[?]")
+deltasplat_cli_test(input.tf.no_suggestion EXIT 2 ARGS render cube_8x8x8_uint8.raw -o out.exr --tf aquarium
+    STDERR_MATCHES "deltasplat: --tf: got aquarium; expected a file, or one of grey, .*coolwarm")
 deltasplat_cli_test(input.tf.no_hounsfield ARGS render cube_8x8x8_uint8.raw -o out.exr --tf ct-bone
     CREATES out.exr
     STDERR_MATCHES "deltasplat: warning: --tf: ct-bone is for Hounsfield units [(]air -1000, water 0[)], which values from .* are hardly.*picture: empty.*")

@@ -48,6 +48,8 @@ deltasplat_script_test(camera_lock camera_lock.sh
 set_tests_properties(cli.camera_lock PROPERTIES FIXTURES_REQUIRED cli_files)
 deltasplat_script_test(fog_over_plate fog_over_plate.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/fog_over_plate)
+deltasplat_script_test(transfer_functions transfer_functions.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/transfer_functions)
 deltasplat_script_test(modes modes.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/modes)
 deltasplat_script_test(identity.simd identity.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/identity_simd every synth --size 90x70)

@@ -164,6 +164,7 @@ TEST(Presets, giveEveryLabelItsOwnColor) {
         if (label == 65535) break;
         ASSERT_GT(glm::distance(curve.at(label + 1), color), 0.2) << label;
     }
+    EXPECT_EQ(labels.opacityAt(65536), 0);
 }
 
 TEST(Presets, areNamedWhereThereIsNone) {
@@ -215,6 +216,21 @@ TEST_F(TransferFunctionFile, holdsSeveral) {
             readTransferFunction(file, "d");
         }).find("all.json: got no transfer function \"d\"; expected one of those it has: a, b: c"),
         std::string::npos);
+}
+
+TEST_F(TransferFunctionFile, mayHoldMalformedOnesBesideTheOneChosen) {
+    const auto file = write("all.json", R"([{"Name": 7}, "none", {"Name": "bad", "RGBPoints": 1},
+        {"Name": "good", "RGBPoints": [0,0.2,0,0], "Points": [0,1,0.5,0]}])");
+    EXPECT_EQ(transferFunctionNames(file), (std::vector<std::string>{"", "", "bad", "good"}));
+    EXPECT_EQ(readTransferFunction(file, "good").colors[0].rgb.r, 0.2);
+    const auto ends = [](const std::string& text, const std::string& end) {
+        return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+    };
+    EXPECT_TRUE(ends(errorOf([&] { readTransferFunction(file); }), "expected text in Name"));
+    EXPECT_TRUE(ends(errorOf([&] { readTransferFunction(file, "none"); }),
+                     "expected one of those it has: bad, good"));
+    EXPECT_NE(errorOf([&] { readTransferFunction(file, "bad"); }).find("all.json:1: got 1"),
+              std::string::npos);
 }
 
 TEST_F(TransferFunctionFile, mayBeATableOf3dSlicer) {

@@ -8,6 +8,7 @@
 #include "deltasplat/optics/transfer_function_names.h"
 #include "lower_case.h"
 #include "optics/read_label_table.h"
+#include "optics/small_text.h"
 #include "suggest.h"
 
 namespace deltasplat {
@@ -15,11 +16,20 @@ namespace {
 
 bool isThere(const std::filesystem::path& file) {
     std::error_code error;
-    return std::filesystem::exists(file, error);
+    return std::filesystem::is_regular_file(file, error);
 }
 
 bool looksLikeFile(const std::string& text) {
     return text.find_first_of("./:") != std::string::npos;
+}
+
+// A table of labels by its extension, unless what is in the file is JSON.
+bool isLabelTable(const std::filesystem::path& file) {
+    const std::string extension = lowerCase(file.extension().string());
+    if (extension != ".ctbl" && extension != ".label" && extension != ".txt") return false;
+    const std::string text = readSmallText(file, "a table of labels");
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    return first == std::string::npos || (text[first] != '[' && text[first] != '{');
 }
 
 [[noreturn]] void refuse(const std::string& text) {
@@ -29,8 +39,9 @@ bool looksLikeFile(const std::string& text) {
         names.push_back(preset.name);
         known += (known.empty() ? "" : ", ") + preset.name;
     }
-    throw Error(ErrorCode::kUsage,
-                gotExpected("--tf", text, "a file, or one of " + known + suggestion(text, names)));
+    const std::string guess = suggestion(text, names);
+    if (!guess.empty()) known += "." + guess;
+    throw Error(ErrorCode::kUsage, gotExpected("--tf", text, "a file, or one of " + known));
 }
 
 }  // namespace
@@ -40,9 +51,16 @@ TransferFunctionOption parseTransferFunction(const std::filesystem::path& given)
     if (text.empty()) return {};
     if (isThere(given)) return {given, "", nullptr};
     if (const Preset* preset = findPreset(text)) return {{}, "", preset};
-    const std::size_t colon = text.rfind(':');
-    if (colon != std::string::npos && isThere(text.substr(0, colon)))
-        return {text.substr(0, colon), text.substr(colon + 1), nullptr};
+    // Names have colons, and so may files.
+    for (std::size_t colon = text.rfind(':'); colon != std::string::npos && colon > 0;
+         colon = text.rfind(':', colon - 1)) {
+        const std::filesystem::path file = text.substr(0, colon);
+        if (!isThere(file)) continue;
+        const std::string name = text.substr(colon + 1);
+        if (name.empty())
+            throw Error(ErrorCode::kUsage, gotExpected("--tf", text, "a name behind the colon"));
+        return {file, name, nullptr};
+    }
     if (!looksLikeFile(text)) refuse(text);
     return {given, "", nullptr};
 }
@@ -51,10 +69,15 @@ TransferFunction readTransferFunctionOption(const std::filesystem::path& given,
                                             const Listener& listener) {
     const TransferFunctionOption option = parseTransferFunction(given);
     if (option.preset) return presetFunction(option.preset->name);
+    const bool isTable = isLabelTable(option.file);
+    if (isTable && option.name.empty()) return readLabelTable(option.file, listener);
+    if (isTable) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--tf", given.string(),
+                                option.file.string() + " alone, a table of labels, which holds no "
+                                                       "transfer functions with names"));
+    }
     if (!option.name.empty()) return readTransferFunction(option.file, option.name, listener);
-    const std::string extension = lowerCase(option.file.extension().string());
-    if (extension == ".ctbl" || extension == ".label" || extension == ".txt")
-        return readLabelTable(option.file);
     return readTransferFunction(option.file, listener);
 }
 
