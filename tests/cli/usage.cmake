@@ -162,6 +162,12 @@ deltasplat_cli_test(straight_up CREATES out.exr ARGS render ${cube} -o out.exr -
 deltasplat_cli_test(view_of_an_eye CREATES out.exr
     ARGS render ${cube} -o out.exr --projection perspective --eye 4,40,4 --target 4,4,4 --view top
     STDERR "deltasplat: warning: --view: has no effect with --eye")
+# An eye at the target, which no one has named, looks around as the view says.
+deltasplat_cli_test(view_of_an_eye_at_the_middle CREATES out.exr
+    ARGS render ${cube} -o out.exr --projection latlong --size 64x32 --eye 3.5,3.5,3.5 --view top)
+deltasplat_cli_test(view_of_an_eye_beside_the_middle CREATES out.exr
+    ARGS render ${cube} -o out.exr --projection latlong --size 64x32 --eye 3.5,3.5,4 --view top
+    STDERR "deltasplat: warning: --view: has no effect with --eye")
 deltasplat_cli_test(negative_vectors CREATES out.exr
     ARGS render ${cube} -o out.exr --direction -1,0.8,-0.6 --up=-.5,1,0 --target -1,2,-.25)
 deltasplat_cli_test(frame_width_1e-30 CREATES out.exr

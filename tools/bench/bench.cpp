@@ -61,17 +61,18 @@ void addBenchOptions(CLI::App& app, BenchCommand& command) {
 void warnOfUnusedOptions(const CLI::App& app, const BenchCommand& command,
                          ProgressDisplay& display) {
     warnOfUnusedInputOptions(app, {command.inputs.begin(), command.inputs.end()}, display);
-    warnOfUnusedCameraOptions(app, command.picture.render.camera, display);
     if (isGiven(app, "--background") && command.report.empty())
         display.warn("--background: has no effect without --report");
 }
 
-void measure(const std::string& input, const BenchCommand& command, RenderOptions options,
-             ProgressDisplay& display, double begin, double end, Findings& found) {
+void measure(const CLI::App& app, const std::string& input, const BenchCommand& command,
+             RenderOptions options, ProgressDisplay& display, double begin, double end,
+             Findings& found) {
     const double read = begin + (end - begin) * kReadShare;
     try {
         const Volume volume =
             readToRender(input, command.picture, options, display.stage(begin, read));
+        warnOfUnusedView(app, options.camera, volume, display.stage(read, read));
         found.report.entries.push_back(
             {input, modeName(command.picture.render.mode),
              measureMethods(volume, options, command.repeats, display.stage(read, end))});
@@ -91,7 +92,7 @@ Findings measureAll(const CLI::App& app, const BenchCommand& command, const Sess
     const double count = double(command.inputs.size());
     double done = 0;
     for (const std::string& input : command.inputs) {
-        measure(input, command, options, display, done / count, (done + 1) / count, found);
+        measure(app, input, command, options, display, done / count, (done + 1) / count, found);
         ++done;
     }
     return found;

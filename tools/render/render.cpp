@@ -76,7 +76,6 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
         display.warn("--bits: has no effect without a .png picture");
     if (isGiven(app, "--dither") && (!png || command.image.bits == 16))
         display.warn("--dither: has no effect without a .png of 8 bits");
-    warnOfUnusedCameraOptions(app, command.picture.render.camera, display);
     warnOfUnusedModeOptions(app, command, display);
 }
 
@@ -112,6 +111,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         const Listener reading = display.stage(0, kReadShare);
         RenderOptions options = readOptics(picture, reading);
         const Volume volume = readToRender(command.input, picture, options, reading);
+        warnOfUnusedView(app, options.camera, volume, reading);
         times.read = secondsSince(beginRead);
         codeBook = "code book " + volume.codeBook.name() + ", largest error " +
                    codeErrorText(volume.codeError) + "\n";

@@ -307,14 +307,16 @@ void checkCamera(const CameraOptions& camera) {
     }
 }
 
-void warnOfUnusedCameraOptions(const CLI::App& app, const CameraOptions& camera,
-                               ProgressDisplay& display) {
+void warnOfUnusedView(const CLI::App& app, const CameraOptions& options, const Volume& volume,
+                      const Listener& listener) {
     if (!isGiven(app, "--view")) return;
-    if (isGiven(app, "--direction")) {
-        display.warn("--view: has no effect with --direction");
-    } else if (camera.eyeWorld && camera.eyeWorld != camera.targetWorld) {
-        display.warn("--view: has no effect with --eye");
-    }
+    if (isGiven(app, "--direction")) return listener.warn("--view: has no effect with --direction");
+    if (!options.eyeWorld) return;
+    // An eye at the target, which may be the middle of the volume, looks as the view says.
+    const Camera middle =
+        makeCamera(CameraOptions(), volume.box, volume.worldFromIndex, volume.space);
+    if (*options.eyeWorld != options.targetWorld.value_or(middle.targetWorld))
+        listener.warn("--view: has no effect with --eye");
 }
 
 void validate(const RenderCommand& command) {

@@ -47,9 +47,9 @@ void applyProjection(const CLI::App& app, CameraOptions& camera);
 /// @throw Error(kUsage) naming the option
 void checkCamera(const CameraOptions& camera);
 
-/// Warns of options that were given and that others make useless.
-void warnOfUnusedCameraOptions(const CLI::App& app, const CameraOptions& camera,
-                               ProgressDisplay& display);
+/// Warns of a --view that was given where other options say where a camera on this volume looks.
+void warnOfUnusedView(const CLI::App& app, const CameraOptions& options, const Volume& volume,
+                      const Listener& listener);
 
 /// Checks what can be checked before anything is read.
 /// @throw Error(kUsage) or, for a folder that cannot be written to, Error(kOutput)
