@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs clang-tidy over the library and the program. Needs a configured build/release.
 # What was found clean is not looked at again before its text, that of a header it includes, or the
-# checks change: what the preprocessor makes of it is noted in ${XDG_CACHE_HOME:-~/.cache}/deltasplat.
+# checks change: a hash of all that is noted in ${XDG_CACHE_HOME:-~/.cache}/deltasplat.
 # Usage: bash scripts/tidy.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -11,15 +11,22 @@ cache=${XDG_CACHE_HOME:-$HOME/.cache}/deltasplat/tidy
 mkdir -p "$cache"
 find "$cache" -type f -mtime +30 -delete
 
-# Of a file, a hash of all that clang-tidy has to say depends on; comments may silence a check.
-# Nothing of a file that is not compiled here: clang-tidy then guesses how it would be.
+# Of a file, a hash of all that clang-tidy has to say depends on: its text and that of the project's
+# headers, for macros and what only clang compiles, and of other headers what the preprocessor makes
+# of them. Nothing of a file that is not compiled here: clang-tidy then guesses how it would be.
 key_of() {
-    local command
+    local command texts
     command=$(grep -B 1 -F "\"file\": \"$PWD/$1\"" build/release/compile_commands.json |
-        sed -n 's/^ *"command": "\(.*\)",$/\1/p' | sed 's/\\\(["\\]\)/\1/g; s/ -o [^ ]* -c / -E -P -C /')
+        sed -n 's/^ *"command": "\(.*\)",$/\1/p' | sed 's/\\\(["\\]\)/\1/g; s/ -o [^ ]* -c / -E -P /')
     [[ -n $command ]] || return 0
-    { echo "${command//$PWD/}"; clang-tidy --version; cat .clang-tidy; eval "$command"; } |
-        sha256sum | cut -d ' ' -f 1
+    texts=$(eval "${command/ -E -P / -MM }" | sed 's/^[^ ]*: / /; s/\\$//')
+    {
+        echo "${command//$PWD/}"
+        clang-tidy --version
+        # shellcheck disable=SC2086
+        cat .clang-tidy scripts/tidy.sh $texts
+        eval "$command"
+    } | sha256sum | cut -d ' ' -f 1
 }
 
 look_at() {
