@@ -12,6 +12,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "default_floats.h"
@@ -100,6 +101,19 @@ ThreadLimits& threadLimits() {
     return limits;
 }
 
+// Calls a function at the end of a block, however that ends.
+template <typename Function>
+class AtEnd {
+  public:
+    explicit AtEnd(Function function) : function_(std::move(function)) {}
+    ~AtEnd() { function_(); }
+    AtEnd(const AtEnd&) = delete;
+    AtEnd& operator=(const AtEnd&) = delete;
+
+  private:
+    Function function_;
+};
+
 // Tells ThreadSanitizer that what was written before is there for what comes after. It does not see
 // how TBB's threads wait for each other, and therefore does not look at this file (CMakeLists.txt).
 class HandOver {
@@ -148,11 +162,13 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1),
                           [&](const tbb::blocked_range<std::size_t>& range) {
                               toOthers.take();
+                              const AtEnd give([&] { back.give(); });
                               const DefaultFloats floats;
                               for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
-                              back.give();
                           });
     };
+    // What a body throws comes from another thread, too.
+    const AtEnd take([&] { back.take(); });
     toOthers.give();
     const auto limit = threadLimits().current();
     if (limit) {
@@ -160,7 +176,6 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
     } else {
         run();
     }
-    back.take();
 }
 
 void isolated(const std::function<void()>& body) {

@@ -7,7 +7,8 @@
 /// ulp from one machine to the next (glibc picks variants with and without FMA), and must not enter
 /// pixels. These are made of additions, multiplications, divisions and exact functions alone, in an
 /// order that is fixed, and are compiled without contraction. They are within 1 ulp of the true
-/// value (tests/unit/portable_math_test.cpp). Deterministic and thread-safe; nothing is thrown.
+/// value, atan2 within 4 (tests/unit/portable_math_test.cpp). Deterministic and thread-safe;
+/// nothing is thrown.
 namespace deltasplat::portable {
 
 double exp(double x);
