@@ -83,9 +83,16 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
         plane_.emplace(thinView_, layout_.firstSlice, layout_.firstVoxel, layout_.resolution,
                        layout_.offsetPixels);
     }
-    if (steps_ != axis_->steps) {
-        colors_.emplace(axis_->deltas, axis_->classes().atSteps(steps_ / axis_->steps),
-                        scene.painter.get());
+    const VoxelPainter* painter = scene.painter.get();
+    const bool isLit = painter && painter->dependsOnCamera();
+    if (isLit || steps_ != axis_->steps) {
+        ClassTable classes = steps_ == axis_->steps
+                                 ? axis_->classes()
+                                 : axis_->classes().atSteps(steps_ / axis_->steps);
+        const LitScene lit{camera, worldFromVoxels()};
+        std::unique_ptr<const LookLight> light;
+        if (painter) light = painter->lightOf(classes, isLit ? &lit : nullptr);
+        colors_.emplace(axis_->deltas, std::move(classes), light.get(), memory);
     }
     const bool stampEmptyVoxels = scene.options.method == Method::kTraditional;
     slabs_.emplace(SlabInput{
@@ -105,6 +112,20 @@ Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
         view_.eye ? 0.5 * (view_.slopeMin + view_.slopeMax) : view_.shiftPerSlice;
     return makeFootprint(sigma, {shift.y, shift.x}, plan.resolution(),
                          scene_.options.footprintWidth, within);
+}
+
+// The transform of voxels as words count them: (slice, u, v), of what is divided its parts.
+glm::dmat4 PictureView::worldFromVoxels() const {
+    const Subdivision& parts = axis_->parts;
+    const glm::ivec3 order = sliceOrder(axis_->sliceAxis);
+    const glm::dvec3 per(parts.slices, parts.within, parts.within);
+    glm::dmat4 indexFromVoxel(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        indexFromVoxel[axis][order[axis]] = 1 / per[axis];
+        indexFromVoxel[3][order[axis]] = parts.origin[axis] + 0.5 / per[axis] - 0.5;
+    }
+    indexFromVoxel[3][3] = 1;
+    return scene_.scene.volume->worldFromIndex * indexFromVoxel;
 }
 
 // Base plane pixels that a slope of 1 takes: as many as the farthest slice has sheet pixels, which
@@ -156,9 +177,12 @@ void PictureView::lengthenSteps(Layer& layer) const {
 }
 
 ErrorBound PictureView::errorBound() const {
+    // What is lit is not held.
+    if (scene_.painter && scene_.painter->dependsOnCamera()) return {};
     std::optional<double> brightest;
     if (scene_.painter) {
-        const glm::dvec3 color = scene_.painter->brightest();
+        const glm::dvec3 color =
+            scene_.painter->lightOf(axis_->classes(), nullptr)->units().brightest();
         brightest = std::max({color.x, color.y, color.z});
     }
     const IndexBox& box = axis_->deltas.box;

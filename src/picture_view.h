@@ -48,6 +48,7 @@ class PictureView {
   private:
     Footprint makeViewFootprint(const SheetPlan& plan) const;
     double densityOf() const;
+    glm::dmat4 worldFromVoxels() const;
     void lengthenSteps(Layer& layer) const;
 
     const PreparedScene::Impl& scene_;
@@ -55,7 +56,7 @@ class PictureView {
     Factorization view_;
     std::shared_ptr<const PreparedAxis> axis_;
     double steps_;
-    std::optional<StepColors> colors_;  // if the axis' are those of other steps
+    std::optional<StepColors> colors_;  // if the axis' are those of other steps, or not lit
     Factorization thinView_;
     Footprint footprint_;
     SheetLayout layout_;

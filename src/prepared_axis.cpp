@@ -24,11 +24,11 @@ Encoding encodingOf(Method method) {
     }
 }
 
-// Optics as the volume has them, for levels to be seen by. Where voxels have colours of their own
+// Optics as the volume has them, for levels to be seen by. Where a painter knows all colours,
 // classes tell opacities apart, nothing else.
-Optics opticsOf(const Volume& volume, Optics optics) {
+Optics opticsOf(const Volume& volume, Optics optics, const VoxelPainter* painter) {
     if (!optics.range) optics.range = defaultRange(volume);
-    if (optics.colorBy != ColorBy::kValue) optics.transferFunction.colors = {{0, glm::dvec3(1)}};
+    if (painter && !painter->needsColors()) optics.transferFunction.colors = {{0, glm::dvec3(1)}};
     return optics;
 }
 
@@ -78,14 +78,26 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     PackOptions pack{sliceAxis, encodingOf(scene.options.method), classes.classOfSlot,
                      holdRule(seen, classes, tolerance), mixer ? &*mixer : nullptr};
     const VoxelPainter* painter = scene.painter.get();
+    const bool isLit = painter && painter->dependsOnCamera();
+    std::unique_ptr<const LookLight> light;
     if (painter) {
         classes.oneColor = false;
         pack.painter = painter;
-        pack.colorHolds = colorHoldRule(VoxelRounder(classes, painter->brightest()), tolerance);
+        if (isLit) {
+            // What may be held would depend on the camera: all is exact.
+            pack.holds = {};
+        } else {
+            light = painter->lightOf(classes, nullptr);
+            pack.looksHold = looksHoldRule(light->units(), tolerance);
+        }
     }
     PackedDeltas deltas = packDeltas(volume, pack);
-    if (steps != first) classes = classes.atSteps(steps);
-    StepColors colors(deltas, std::move(classes), painter);
+    if (steps != first) {
+        classes = classes.atSteps(steps);
+        if (light) light = painter->lightOf(classes, nullptr);
+    }
+    StepColors colors = isLit ? StepColors(std::move(classes))
+                              : StepColors(deltas, std::move(classes), light.get());
     return std::make_shared<const PreparedAxis>(
         PreparedAxis{sliceAxis, parts, std::move(deltas), steps, std::move(colors)});
 }
@@ -108,8 +120,8 @@ std::uint64_t PreparedAxis::stamps(Method method) const {
 
 PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne)
     : scene(requireVolume(std::move(ofScene))),
-      optics(opticsOf(*scene.volume, scene.optics)),
-      painter(makePainter(*scene.volume, scene.optics.colorBy)),
+      painter(makePainter(*scene.volume, scene.optics)),
+      optics(opticsOf(*scene.volume, scene.optics, painter.get())),
       options(withOptions),
       isThin(showsThin(*scene.volume, scene.optics)),
       isForOne(forOne) {}

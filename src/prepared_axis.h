@@ -19,8 +19,8 @@ struct PreparedAxis {
     int sliceAxis;
     Subdivision parts;
     PackedDeltas deltas;
-    double steps;  ///< that colours are for, straight ways from slice to slice
-    StepColors colors;
+    double steps;       ///< that colours are for, straight ways from slice to slice
+    StepColors colors;  ///< of classes alone where looks depend on the camera
 
     const ClassTable& classes() const { return colors.classes(); }
     /// Footprints that a method adds.
@@ -33,8 +33,8 @@ struct PreparedScene::Impl {
     Impl(Scene ofScene, SplatOptions withOptions, bool forOne = false);
 
     Scene scene;
-    Optics optics;  ///< with the range that the volume has, and white if voxels have own colours
-    std::unique_ptr<const VoxelPainter> painter;  ///< of own colours; null: there are none
+    std::unique_ptr<const VoxelPainter> painter;  ///< of own looks; null: there are none
+    Optics optics;  ///< with the range that the volume has, and white if painted colours are others
     SplatOptions options;
     bool isThin;
     bool isForOne;

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <optional>
 
+#include "delta/block_gradients.h"
 #include "delta/block_kernels.h"
 #include "delta/block_windows.h"
 #include "delta/code_blocks.h"
@@ -88,7 +89,7 @@ class Holder {
 struct PendingWord {
     std::uint64_t visible;
     std::uint64_t changed;
-    std::size_t classes;  // where they begin in the packer's storage, and colours in theirs
+    std::size_t classes;  // where they begin in the packer's storage, and looks in theirs
     int slice;
     glm::ivec2 block;
 };
@@ -97,7 +98,7 @@ struct PendingWord {
 constexpr std::size_t kMostWords = 9;
 constexpr double kBytesPerBlock =
     kMostWords * (sizeof(DeltaWord) + sizeof(PendingWord) + sizeof(SliceClasses));
-constexpr double kColorBytesPerBlock = kMostWords * 64 * sizeof(VoxelColor);
+constexpr double kLookBytesPerBlock = kMostWords * 64 * sizeof(OwnLook);
 
 // How voxels become classes. Null: as they are.
 struct PackTools {
@@ -118,21 +119,21 @@ struct Columns {
 struct PackedColumns {
     std::vector<PendingWord> words;
     std::vector<ClassIndex> storage;
-    std::vector<VoxelColor> colors;  // likewise, if voxels have their own
+    std::vector<OwnLook> looks;  // likewise, if voxels have their own
 };
 
-// Colours that the voxels of a block have of their own.
-struct OwnColors {
-    using Slice = std::array<VoxelColor, 64>;
-    std::array<VoxelColor, 512> block{};
+// Looks that the voxels of a block have of their own.
+struct OwnLooks {
+    using Slice = std::array<OwnLook, 64>;
+    std::array<OwnLook, 512> block{};
     std::array<Slice, 4> before{};  // [part]: of the slice before it
     std::array<Slice, 4> held{};    // [part]
 
-    // Adds to changes where what is seen has another colour than in the slice before. Not inline,
-    // as what follows: the path without own colours stays as small as it is.
+    // Adds to changes where what is seen has another look than in the slice before. Not inline, as
+    // what follows: the path without own looks stays as small as it is.
     [[gnu::noinline]] void compare(std::size_t part, BlockChanges& changes) const {
-        const VoxelColor* last = before[part].data();
-        const VoxelColor* slice = block.data();
+        const OwnLook* last = before[part].data();
+        const OwnLook* slice = block.data();
         for (int s = 0; s < 8; ++s, last = slice, slice += 64) {
             for (std::uint64_t rest = changes.visible[s]; rest != 0; rest &= rest - 1) {
                 const int n = std::countr_zero(rest);
@@ -151,9 +152,9 @@ class ColumnPacker {
           slotMap_(slotMap),
           planner_(box),
           layout_(planner_.shortest()) {
-        if (options.painter) own_ = std::make_unique<OwnColors>();
+        if (tools.mixer) parts_ = tools.mixer->parts();
+        if (options.painter) own_ = std::make_unique<OwnLooks>();
         if (!tools.mixer) return;
-        parts_ = tools.mixer->parts();
         window_.emplace(*tools.codes, options.sliceAxis, parts_.within == 1);
         const int blocks = parts_.voxels();
         mixed_.resize(std::size_t(blocks));
@@ -167,9 +168,13 @@ class ColumnPacker {
         for (int half = 0; half < parts_.within; ++half) {
             halves_[std::size_t(half)].words.reserve(most);
             halves_[std::size_t(half)].storage.reserve(64 * most);
-            if (own_) halves_[std::size_t(half)].colors.reserve(64 * most);
+            if (own_) halves_[std::size_t(half)].looks.reserve(64 * most);
         }
+        if (const GradientScale* scale = own_ ? options_.painter->gradientScale() : nullptr)
+            gradientReader_.emplace(*tools_.codes, options_.sliceAxis, parts_, *scale);
         for (const CodeBlock* block = columns.begin; block != columns.end; ++block) {
+            inHand_ = block;
+            blockGradients_ = {};
             const bool isFirst = block == columns.begin || !follows(block[-1], *block);
             const bool isLast = block + 1 == columns.end || !follows(*block, block[1]);
             if (isFirst) {
@@ -189,6 +194,7 @@ class ColumnPacker {
             classes_.fill(kEmptySlot);
             forParts([&](const glm::ivec2& part) { add(partOf(*block, next, part), part, 1); });
         }
+        gradientReader_.reset();
     }
 
     /// Of the parts of columns along u, one.
@@ -224,7 +230,7 @@ class ColumnPacker {
             } else {
                 readLeafSlices(*block.leaf, options_.sliceAxis, mapped(slotMap_), classes_.data());
             }
-            if (own_) color(block.position);
+            if (own_) paint(block.position, 0);
             return;
         }
         if (block.leaf) {
@@ -232,44 +238,49 @@ class ColumnPacker {
         } else {
             slots_.fill(block.tileSlot);
         }
-        hold(slots_, block.position, {0, 0});
+        hold(slots_, block.position, {0, 0}, 0);
     }
 
-    // @param part  of the column: what was before is kept for each
-    void hold(const BlockSlots& slots, const glm::ivec3& position, const glm::ivec2& part) {
+    // @param part    of the column: what was before is kept for each
+    // @param number  of what the block in hand becomes
+    void hold(const BlockSlots& slots, const glm::ivec3& position, const glm::ivec2& part,
+              int number) {
         HeldSlots& held = held_[numberOf(part)];
-        if (own_) return holdColors(slots, position, held, own_->held[numberOf(part)]);
+        if (own_) return holdLooks(slots, position, number, held, own_->held[numberOf(part)]);
         const Holder& holder = *tools_.holder;
         const auto next = [&](Slot before, Slot slot) { return holder.next(before, slot); };
         holdSlots(slots, held, next,
                   [&](std::size_t i, Slot slot) { classes_[i] = holder.classOf(slot); });
     }
 
-    // What is held is slot and colour together, each of which has to allow it.
-    [[gnu::noinline]] void holdColors(const BlockSlots& slots, const glm::ivec3& position,
-                                      HeldSlots& before, OwnColors::Slice& colorsBefore) {
+    // What is held is slot and look together, each of which has to allow it.
+    [[gnu::noinline]] void holdLooks(const BlockSlots& slots, const glm::ivec3& position,
+                                     int number, HeldSlots& before, OwnLooks::Slice& looksBefore) {
         const Holder& holder = *tools_.holder;
         for (std::size_t i = 0; i < slots.size(); ++i) classes_[i] = holder.classOf(slots[i]);
-        color(position);
+        paint(position, number);
         for (std::size_t i = 0; i < slots.size(); ++i) {
             Slot& held = before[i & 63];
-            VoxelColor& heldColor = colorsBefore[i & 63];
+            OwnLook& heldOwn = looksBefore[i & 63];
             const VoxelLook look{classes_[i], own_->block[i]};
-            const VoxelLook heldLook{holder.classOf(held), heldColor};
+            const VoxelLook heldLook{holder.classOf(held), heldOwn};
             const bool keeps = !(heldLook == look) && holder.allows(held, slots[i]) &&
-                               options_.colorHolds(heldLook, look);
+                               options_.looksHold(heldLook, look);
             if (!keeps) {
                 held = slots[i];
-                heldColor = look.color;
+                heldOwn = look.own;
             }
             classes_[i] = holder.classOf(held);
-            own_->block[i] = heldColor;
+            own_->block[i] = heldOwn;
         }
     }
 
-    // Gives the classes in hand colours of their own.
+    // Gives the classes in hand looks of their own.
     // @param position  of their block, (slice, u, v)
-    [[gnu::noinline]] void color(const glm::ivec3& position) {
+    // @param number    of what the block in hand becomes
+    [[gnu::noinline]] void paint(const glm::ivec3& position, int number) {
+        const auto isSeen = [](ClassIndex one) { return one != 0; };
+        if (std::none_of(classes_.begin(), classes_.end(), isSeen)) return;
         const glm::ivec3 order = sliceOrder(options_.sliceAxis);
         const glm::dvec3 per(parts_.slices, parts_.within, parts_.within);
         BlockPlace place{glm::dvec3(0), glm::dmat3(0)};
@@ -278,7 +289,12 @@ class ColumnPacker {
             place.first[order[axis]] = tools_.first[axis] + (thin + 0.5) / per[axis] - 0.5;
             place.steps[axis][order[axis]] = 1 / per[axis];
         }
-        options_.painter->paint(place, classes_, own_->block);
+        const BlockGradients* gradients = nullptr;
+        if (gradientReader_) {
+            if (blockGradients_.empty()) blockGradients_ = gradientReader_->read(*inHand_);
+            gradients = &blockGradients_[std::size_t(number)];
+        }
+        options_.painter->paint(place, gradients, classes_, own_->block);
     }
 
     void addMixed(const CodeBlock& block) {
@@ -297,10 +313,10 @@ class ColumnPacker {
                     classes_.fill(kEmptySlot);
                     held_[numberOf(part)].fill(kEmptySlot);
                 } else if (tools_.holder) {
-                    hold(slots, position, part);
+                    hold(slots, position, part, number);
                 } else {
                     std::copy(slots.begin(), slots.end(), classes_.begin());
-                    if (own_) color(position);
+                    if (own_) paint(position, number);
                 }
                 add(position, part, slices);
             });
@@ -330,8 +346,8 @@ class ColumnPacker {
                 {visible, changed, packed.storage.size(), slice, {position.y, position.z}});
             packed.storage.insert(packed.storage.end(), &classes_[64 * s], &classes_[64 * s] + 64);
             if (!own_) continue;
-            const VoxelColor* colors = &own_->block[64 * std::size_t(s)];
-            packed.colors.insert(packed.colors.end(), colors, colors + 64);
+            const OwnLook* looks = &own_->block[64 * std::size_t(s)];
+            packed.looks.insert(packed.looks.end(), looks, looks + 64);
         }
         std::copy_n(&classes_[7 * 64], 64, before.begin());
         if (own_) std::copy_n(&own_->block[7 * 64], 64, own_->before[numberOf(part)].begin());
@@ -357,7 +373,10 @@ class ColumnPacker {
     std::optional<Window> window_;
     std::vector<BlockSlots> mixed_;  // [part along u][along slices][along v]
     std::array<PackedColumns, 2> halves_;
-    std::unique_ptr<OwnColors> own_;  // null: classes say all
+    std::unique_ptr<OwnLooks> own_;  // null: classes say all
+    std::optional<GradientReader> gradientReader_;
+    const CodeBlock* inHand_ = nullptr;
+    std::span<const BlockGradients> blockGradients_;  // of it, once they are asked for
 };
 
 // Cuts the blocks into runs of whole columns, for each of which there is one packer. The cuts
@@ -404,7 +423,7 @@ IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& part
 
 // Puts the packers' words in the order of slices.
 void collectWords(const std::vector<PackedColumns*>& columns, const SlabLayout& layout,
-                  bool hasColors, PackedDeltas& packed) {
+                  bool hasLooks, PackedDeltas& packed) {
     const auto sliceOf = [&](const PendingWord& word) {
         return std::size_t(word.slice - packed.box.min.x);
     };
@@ -423,17 +442,17 @@ void collectWords(const std::vector<PackedColumns*>& columns, const SlabLayout& 
     std::partial_sum(packed.begins.begin(), packed.begins.end(), packed.begins.begin());
     packed.words.resize(packed.begins.back());
     std::vector<std::size_t> next(packed.begins.begin(), packed.begins.end() - 1);
-    if (hasColors) packed.colors.resize(packed.words.size());
+    if (hasLooks) packed.looks.resize(packed.words.size());
     for (PackedColumns* column : columns) {
         packed.storage.push_back(std::move(column->storage));
         const ClassIndex* classes = packed.storage.back().data();
-        packed.colorStorage.push_back(std::move(column->colors));
-        const VoxelColor* colors = packed.colorStorage.back().data();
+        packed.lookStorage.push_back(std::move(column->looks));
+        const OwnLook* looks = packed.lookStorage.back().data();
         for (const PendingWord& word : column->words) {
             if (!needed(word)) continue;
             const std::size_t place = next[sliceOf(word)]++;
             packed.words[place] = {word.visible, changed(word), classes + word.classes, word.block};
-            if (hasColors) packed.colors[place] = colors + word.classes;
+            if (hasLooks) packed.looks[place] = looks + word.classes;
         }
     }
 }
@@ -468,7 +487,7 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     const std::vector<CodeBlock> blocks =
         sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
               : BlockReader(*volume.codes, nullptr, options.sliceAxis, slotMap).takeBlocks();
-    const double blockBytes = kBytesPerBlock + (options.painter ? kColorBytesPerBlock : 0);
+    const double blockBytes = kBytesPerBlock + (options.painter ? kLookBytesPerBlock : 0);
     requireMemory(
         parts.divides() ? "delta grid of divided voxels (`between` 0: undivided)" : "delta grid",
         double(blocks.size()) * parts.voxels() * blockBytes + 16.0 * packed.box.dims().x);

@@ -20,7 +20,7 @@ using ClassIndex = std::uint16_t;
 /// them.
 struct DeltaWord {
     std::uint64_t visible;  ///< whose class is not empty
-    /// Whose class or own colour differs from the slice before; in a key slice, visible.
+    /// Whose class or own look differs from the slice before; in a key slice, visible.
     std::uint64_t changed;
     const ClassIndex* classes;  ///< [64]: of all voxels in this slice
     glm::ivec2 block;           ///< (u, v) of the first voxel divided by 8
@@ -50,9 +50,9 @@ struct PackedDeltas {
     std::vector<DeltaWord> words;     ///< by slice, u and v
     std::vector<std::size_t> begins;  ///< [slices + 1]: the first of each slice's words
     std::vector<std::vector<ClassIndex>> storage;  ///< what the words point into
-    /// [word]: where voxels have colours of their own, those of its voxels, [64]; else empty.
-    std::vector<const VoxelColor*> colors;
-    std::vector<std::vector<VoxelColor>> colorStorage;  ///< what those point into
+    /// [word]: where voxels have looks of their own, those of its voxels, [64]; else empty.
+    std::vector<const OwnLook*> looks;
+    std::vector<std::vector<OwnLook>> lookStorage;  ///< what those point into
 };
 
 /// How to pack deltas.
@@ -66,11 +66,11 @@ struct PackOptions {
     /// Divides voxels into thin ones, which then are what voxels are. Slots are those of its
     /// levels. Null: none.
     const ValueMixer* mixer = nullptr;
-    /// Gives voxels colours of their own. Null: classes say all.
+    /// Gives voxels looks of their own. Null: classes say all.
     const VoxelPainter* painter = nullptr;
     /// With a painter, may a voxel go on as the first, for which `holds` has to allow it as well?
     /// Empty: never.
-    std::function<bool(const VoxelLook& held, const VoxelLook& look)> colorHolds = {};
+    std::function<bool(const VoxelLook& held, const VoxelLook& look)> looksHold = {};
 };
 
 /// Takes the differences of consecutive slices, in one pass over the leaves that can be seen, and

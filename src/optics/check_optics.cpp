@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,29 @@ void checkPlaces(const char* points, const std::vector<Point>& all) {
         requireThat(i == 0 || all[i - 1].x <= x, points,
                     "x = " + numberText(x) + " behind " + numberText(i == 0 ? x : all[i - 1].x),
                     "x not decreasing");
+    }
+}
+
+void checkLight(const char* option, double number) {
+    requireThat(number >= 0 && number <= kMostLight, option, numberText(number),
+                "a number within 0..1e6");
+}
+
+void checkShading(const Shading& shading) {
+    checkLight("`shading.ambient`", shading.ambient);
+    checkLight("`shading.diffuse`", shading.diffuse);
+    checkLight("`shading.specular`", shading.specular);
+    checkLight("`shading.shininess`", shading.shininess);
+    for (const Light& light : shading.lights) {
+        checkLight("`shading.lights` strength", light.strength);
+        for (int i = 0; i < 3; ++i) {
+            checkLight("`shading.lights` colour", light.color[i]);
+            requireThat(std::isfinite(light.direction[i]), "`shading.lights` direction",
+                        numberText(light.direction), "finite numbers");
+        }
+        const glm::dvec3 way = glm::abs(light.direction);
+        requireThat(light.frame == LightFrame::kHead || std::max({way.x, way.y, way.z}) > 0,
+                    "`shading.lights` direction", numberText(light.direction), "not all 0");
     }
 }
 
@@ -62,6 +86,11 @@ void checkOptics(const Optics& optics) {
     const int colorBy = int(optics.colorBy);
     requireThat(colorBy >= int(ColorBy::kValue) && colorBy <= int(ColorBy::kIndex), "`colorBy`",
                 std::to_string(colorBy), "one of ColorBy");
+    if (optics.shading) {
+        requireThat(optics.colorBy == ColorBy::kValue, "`shading`",
+                    "`colorBy` " + colorByName(optics.colorBy) + " besides", "`colorBy` value");
+        checkShading(*optics.shading);
+    }
     const double extinction = optics.extinctionScale;
     requireThat(std::isfinite(extinction) && extinction >= 0, "`extinctionScale`",
                 numberText(extinction), "a number >= 0");

@@ -80,15 +80,15 @@ std::vector<CodeLook> lookUp(const Volume& volume, const Optics& optics) {
 }
 
 // A look's light for one step, before it is rounded.
-struct Light {
+struct StepLight {
     double alpha = 0;
     glm::dvec3 color{0.0};  // not multiplied by alpha
 };
 
 // Of an index, what it stands for looks like.
 template <typename LookOf>
-std::vector<Light> lightOf(std::size_t count, const LookOf& lookOf, double unitDistances) {
-    std::vector<Light> lights(count);
+std::vector<StepLight> lightOf(std::size_t count, const LookOf& lookOf, double unitDistances) {
+    std::vector<StepLight> lights(count);
     parallelForChunks(count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             lights[i] = {alphaOf(lookOf(i).extinction, unitDistances), lookOf(i).color};
@@ -99,10 +99,10 @@ std::vector<Light> lightOf(std::size_t count, const LookOf& lookOf, double unitD
 // Rounds the colours of all visible codes with one scale a channel.
 class ColorRounder {
   public:
-    explicit ColorRounder(const std::vector<Light>& lights) {
-        const Light* first = nullptr;
+    explicit ColorRounder(const std::vector<StepLight>& lights) {
+        const StepLight* first = nullptr;
         oneColor_ = true;
-        for (const Light& one : lights) {
+        for (const StepLight& one : lights) {
             if (!(one.alpha > 0)) continue;
             if (!first) first = &one;
             largest_ = glm::max(largest_, premultiplied(one));
@@ -116,7 +116,7 @@ class ColorRounder {
     bool oneColor() const { return oneColor_; }
     const glm::dvec4& scale() const { return scale_; }
 
-    ColorDigits operator()(const Light& one) const {
+    ColorDigits operator()(const StepLight& one) const {
         glm::dvec4 exact = premultiplied(one);
         for (int c = 0; c < 4; ++c)
             exact[c] = scale_[c] == 0 ? 0 : exact[c] / largest_[c] * ClassTable::kMax;
@@ -129,7 +129,9 @@ class ColorRounder {
     }
 
   private:
-    static glm::dvec4 premultiplied(const Light& one) { return {one.alpha * one.color, one.alpha}; }
+    static glm::dvec4 premultiplied(const StepLight& one) {
+        return {one.alpha * one.color, one.alpha};
+    }
 
     glm::dvec4 largest_{0.0};
     glm::dvec4 scale_{0.0};
@@ -137,7 +139,7 @@ class ColorRounder {
 };
 
 // Returns lights in digits, in their order. A volume of floats may have tens of thousands.
-std::vector<ColorDigits> roundColors(const std::vector<Light>& lights,
+std::vector<ColorDigits> roundColors(const std::vector<StepLight>& lights,
                                      const ColorRounder& rounded) {
     std::vector<ColorDigits> digits(lights.size());
     parallelForChunks(lights.size(), [&](std::size_t begin, std::size_t end) {
@@ -340,7 +342,7 @@ ClassTable ClassTable::atSteps(double steps) const {
     table.extinctionScale = extinctionScale;
     table.stepWorld = stepWorld * steps;
     table.oneColor = oneColor;
-    const std::vector<Light> lights = lightOf(
+    const std::vector<StepLight> lights = lightOf(
         looks.size(), [&](std::size_t i) { return looks[i]; },
         extinctionScale * (table.stepWorld / unitDistanceWorld));
     const ColorRounder rounded(lights);
@@ -359,7 +361,7 @@ ClassTable classify(const Volume& volume, const Optics& optics, double sliceStep
     table.unitDistanceWorld = unitDistanceOf(volume, optics);
     table.extinctionScale = optics.extinctionScale;
     table.stepWorld = sliceStepWorld;
-    const std::vector<Light> lights = lightOf(
+    const std::vector<StepLight> lights = lightOf(
         visible.size(), [&](std::size_t i) { return visible[i].look; },
         table.extinctionScale * (sliceStepWorld / table.unitDistanceWorld));
     const ColorRounder rounded(lights);

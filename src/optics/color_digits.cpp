@@ -10,11 +10,7 @@ namespace deltasplat {
 namespace {
 
 constexpr double kFiner = double(1 << ClassTable::kPlaneBits);
-// What is less belongs on the second plane.
-constexpr double kLeastOfPlane = ClassTable::kMax / kFiner;
-// Below 2^-40 of the largest, what is off by no more than at 2^-40 is right.
-constexpr double kLeastUnits = kLeastOfPlane / kFiner;
-constexpr double kColorShare = 0x1p-8;
+static_assert(kLeastUnits == kLeastOfPlane / kFiner);
 
 double nearest(double units) {
     return std::min(std::round(units), double(ClassTable::kMax));

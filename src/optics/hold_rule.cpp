@@ -8,6 +8,8 @@
 
 #include "deltasplat/error.h"
 #include "number_text.h"
+#include "optics/color_digits.h"
+#include "optics/own_colors.h"
 #include "portable_math.h"
 
 namespace deltasplat {
@@ -68,15 +70,18 @@ std::function<bool(Slot, Slot)> holdRule(const Volume& volume, const ClassTable&
     };
 }
 
-std::function<bool(const VoxelLook&, const VoxelLook&)> colorHoldRule(const VoxelRounder& rounded,
+std::function<bool(const VoxelLook&, const VoxelLook&)> looksHoldRule(const VoxelUnits& units,
                                                                       const Tolerance& tolerance) {
     if (tolerance.isExact()) return {};
     if (tolerance.relative == 0) {
-        return
-            [](const VoxelLook& held, const VoxelLook& look) { return held.color == look.color; };
+        return [](const VoxelLook& held, const VoxelLook& look) { return held.own == look.own; };
     }
-    return [rounded, t = tolerance.relative](const VoxelLook& held, const VoxelLook& look) {
-        return looksWithin(unitsOf(rounded(held)), unitsOf(rounded(look)), t);
+    const auto lightOf = [units](const VoxelLook& look) {
+        return unitsOf(
+            digitsOf(glm::dvec4(units.unitsOf(look.number, glm::vec3(colorOfLook(look.own))))));
+    };
+    return [lightOf, t = tolerance.relative](const VoxelLook& held, const VoxelLook& look) {
+        return looksWithin(lightOf(held), lightOf(look), t);
     };
 }
 

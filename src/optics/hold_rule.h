@@ -6,7 +6,8 @@
 
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/tolerance.h"
-#include "optics/voxel_rounder.h"
+#include "optics/voxel_painter.h"
+#include "optics/voxel_units.h"
 
 namespace deltasplat {
 
@@ -19,11 +20,11 @@ namespace deltasplat {
 std::function<bool(Slot held, Slot slot)> holdRule(const Volume& volume, const ClassTable& classes,
                                                    const Tolerance& tolerance);
 
-/// The same of voxels with colours of their own, which the rule above takes to be white: whether
-/// one may go on as what it was. With a relative tolerance that holds in every channel, with a
-/// tolerance of values alone colours have to be the same. Copies the rounder.
-std::function<bool(const VoxelLook& held, const VoxelLook& look)> colorHoldRule(
-    const VoxelRounder& rounded, const Tolerance& tolerance);
+/// The same of voxels whose looks are colours of their own (own_colors.h), which the rule above
+/// takes to be white: whether one may go on as what it was. With a relative tolerance that holds in
+/// every channel, with a tolerance of values alone colours have to be the same. Copies the units.
+std::function<bool(const VoxelLook& held, const VoxelLook& look)> looksHoldRule(
+    const VoxelUnits& units, const Tolerance& tolerance);
 
 /// Most that a picture under a tolerance may differ from the exact one, but for the rounding of
 /// floats; infinity where that is not known.

@@ -5,10 +5,26 @@
 #include <glm/mat4x4.hpp>
 #include <limits>
 
+#include "optics/own_colors.h"
+#include "optics/painters.h"
 #include "optics/voxel_painter.h"
 
 namespace deltasplat {
 namespace {
+
+// Looks are colours.
+class OwnColors : public LookLight {
+  public:
+    explicit OwnColors(const ClassTable& classes) : LookLight(VoxelUnits(classes, glm::dvec3(1))) {}
+
+    void light(const WordPlace&, const std::uint16_t* classes, const OwnLook* looks,
+               WordUnits& colors) const override {
+        for (std::size_t n = 0; n < 64; ++n) {
+            const glm::vec4 color = units().unitsOf(classes[n], glm::vec3(colorOfLook(looks[n])));
+            for (int c = 0; c < 4; ++c) colors[std::size_t(c)][n] = color[c];
+        }
+    }
+};
 
 // Colours that grow evenly from one end of the volume to the other.
 class PositionPainter : public VoxelPainter {
@@ -17,18 +33,25 @@ class PositionPainter : public VoxelPainter {
     PositionPainter(const glm::dmat3& slopes, const glm::dvec3& starts)
         : slopes_(slopes), starts_(starts) {}
 
-    glm::dvec3 brightest() const override { return glm::dvec3(1); }
+    bool needsColors() const override { return false; }
+    bool dependsOnCamera() const override { return false; }
 
-    void paint(const BlockPlace& place, std::span<const std::uint16_t, 512> classes,
-               std::span<VoxelColor, 512> colors) const override {
-        for (std::size_t n = 0; n < colors.size(); ++n) {
+    void paint(const BlockPlace& place, const BlockGradients*,
+               std::span<const std::uint16_t, 512> classes,
+               std::span<OwnLook, 512> looks) const override {
+        for (std::size_t n = 0; n < looks.size(); ++n) {
             if (classes[n] == 0) continue;
             const glm::dvec3 steps(glm::ivec3(n / 64, n / 8 % 8, n % 8));
             const glm::dvec3 index = place.first + place.steps * steps;
             glm::dvec3 color;
             for (int c = 0; c < 3; ++c) color[c] = glm::dot(slopes_[c], index) + starts_[c];
-            colors[n] = VoxelColor::of(glm::clamp(color, 0.0, 1.0));
+            looks[n] = lookOfColor(glm::clamp(color, 0.0, 1.0));
         }
+    }
+
+    std::unique_ptr<const LookLight> lightOf(const ClassTable& classes,
+                                             const LitScene*) const override {
+        return std::make_unique<OwnColors>(classes);
     }
 
   private:
@@ -75,8 +98,7 @@ std::string colorByName(ColorBy colorBy) {
     return "value";
 }
 
-std::unique_ptr<const VoxelPainter> makePainter(const Volume& volume, ColorBy colorBy) {
-    if (colorBy == ColorBy::kValue || volume.empty()) return nullptr;
+std::unique_ptr<const VoxelPainter> makePositionPainter(const Volume& volume, ColorBy colorBy) {
     glm::dmat3 slopes(0.0);
     glm::dvec3 starts(0.0);
     const auto setChannel = [&](int channel, const Share& share) {

@@ -5,10 +5,11 @@
 
 namespace deltasplat {
 
-StepColors::StepColors(const PackedDeltas& deltas, ClassTable classes, const VoxelPainter* painter)
+StepColors::StepColors(const PackedDeltas& deltas, ClassTable classes, const LookLight* light,
+                       std::pmr::memory_resource& memory)
     : classes_(std::move(classes)) {
-    if (painter) {
-        own_.emplace(deltas, classes_, painter->brightest());
+    if (light) {
+        own_.emplace(deltas, *light, memory);
     } else if (!classes_.oneDigit()) {
         digitVoxels_.emplace(deltas, classes_);
     }

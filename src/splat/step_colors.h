@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory_resource>
 #include <optional>
+#include <utility>
 
 #include "deltasplat/optics/class_table.h"
 #include "optics/voxel_painter.h"
@@ -10,13 +12,17 @@
 
 namespace deltasplat {
 
-/// What the voxels of words look like in steps of one length, in digits.
+/// What the voxels of words are seen as in steps of one length, in digits.
 class StepColors {
   public:
-    /// Looks at every word, if there are several digits or own colours. Multi-threaded.
-    /// @param painter  who gave the words their own colours; null: they look as their classes do
+    /// Looks at every word, if there are several digits or own looks. Multi-threaded.
+    /// @param light  what own looks are seen as; null: they look as their classes do
     /// @throw Error(kFailed) if there is not enough memory
-    StepColors(const PackedDeltas& deltas, ClassTable classes, const VoxelPainter* painter);
+    /// @param memory  for colours; must outlive them
+    StepColors(const PackedDeltas& deltas, ClassTable classes, const LookLight* light,
+               std::pmr::memory_resource& memory = *std::pmr::get_default_resource());
+    /// Of classes alone, whose words are not looked at: of looks that are seen from nowhere yet.
+    explicit StepColors(ClassTable classes) : classes_(std::move(classes)) {}
 
     const ClassTable& classes() const { return classes_; }
     /// Which planes and digits there are, in which units, and of which colour, if of one; with own

@@ -2,24 +2,24 @@
 #pragma once
 
 #include <array>
-#include <glm/vec3.hpp>
-#include <vector>
+#include <memory_resource>
 
 #include "delta/packed_deltas.h"
 #include "deltasplat/optics/class_table.h"
 #include "splat/digit_voxels.h"
+#include "uncleared_array.h"
 
 namespace deltasplat {
 
-/// What the voxels of words look like that have colours of their own: in digits, and premultiplied
+/// What the voxels of words are seen as that have looks of their own: in digits, and premultiplied
 /// by the opacity that their class has in a step.
 class WordColors {
   public:
     /// Looks at every word. Multi-threaded.
-    /// @param classes    of opacities
-    /// @param brightest  as VoxelPainter::brightest
+    /// @param memory   for colours
     /// @throw Error(kFailed) if there is not enough memory
-    WordColors(const PackedDeltas& deltas, const ClassTable& classes, const glm::dvec3& brightest);
+    WordColors(const PackedDeltas& deltas, const LookLight& light,
+               std::pmr::memory_resource& memory);
 
     /// Which planes and digits there are, and in which units; of classes there is the empty one.
     const ClassTable& table() const { return table_; }
@@ -38,7 +38,7 @@ class WordColors {
     std::uint64_t voxelsOf(DigitPlace digit, std::size_t word) const;
 
     ClassTable table_;
-    std::array<std::vector<Colors>, 2 * ClassTable::kMaxPlanes> digits_;  // [digit][word]
+    std::array<UnclearedArray<Colors>, 2 * ClassTable::kMaxPlanes> digits_;  // [digit][word]
     DigitVoxels digitVoxels_;
 };
 

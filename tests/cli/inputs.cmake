@@ -154,6 +154,9 @@ deltasplat_cli_test(empty_picture.extinction
     CREATES out.png)
 
 foreach(mode xray mip)
+    deltasplat_cli_test(input.light.${mode} CREATES out.exr
+        ARGS render cube_8x8x8_uint8.raw -o out.exr --light head --mode ${mode}
+        STDERR "deltasplat: warning: --light: has no effect with --mode ${mode}")
     deltasplat_cli_test(input.range.${mode} CREATES out.exr
         ARGS render cube_8x8x8_uint8.raw -o out.exr --range 0,1 --mode ${mode}
         STDERR "deltasplat: warning: --range: has no effect with --mode ${mode}")

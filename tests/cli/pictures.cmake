@@ -50,12 +50,16 @@ deltasplat_script_test(fog_over_plate fog_over_plate.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/fog_over_plate)
 deltasplat_script_test(transfer_functions transfer_functions.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/transfer_functions)
+deltasplat_script_test(shading shading.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/shading)
 deltasplat_script_test(modes modes.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/modes)
 deltasplat_script_test(identity.simd identity.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/identity_simd every synth --size 90x70)
 deltasplat_script_test(identity.fine identity.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/identity_fine every synth --size 90x70
          --sigma 0.7 --resolution 3)
+deltasplat_script_test(identity.lit identity.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/identity_lit every synth --size 90x70
+         --light view:1,-1,-1 --light head:0.5)
 
 # The promise on real data; without the data the tests are there and say that they were skipped.
 function(deltasplat_identity_test name file transfer_function)

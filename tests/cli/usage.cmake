@@ -127,6 +127,16 @@ deltasplat_refusal(method "--method: got fast; expected auto, delta, sparse or t
     --method fast)
 deltasplat_refusal(mode "--mode: got average; expected composite, xray or mip" --mode average)
 deltasplat_refusal(color_by "--color-by: got hue; expected value, x, y, z or index" --color-by hue)
+deltasplat_refusal(shade_and_color_by
+    "--shade: got --color-by index besides; expected --color-by value" --shade --color-by index)
+foreach(light up 1,2 0,0,0 view head: head:1:2:3 1,2,3:1,1 1,2,3:1,1,1:-1 world:1,2,3)
+    string(MAKE_C_IDENTIFIER "light_${light}" test)
+    deltasplat_refusal(${test}
+        "--light: got ${light}; expected head, X,Y,Z or view:X,Y,Z, not all 0, then, if wanted, :R,G,B and :STRENGTH, as in view:1,-1,-1:1,0.9,0.8:1.5"
+        --light ${light})
+endforeach()
+deltasplat_refusal(shininess "--shininess: got -1; expected a finite number from 0 to 1e+06"
+    --shininess -1)
 deltasplat_refusal(projection "--projection: got fisheye; expected ortho, perspective or latlong"
     --projection fisheye)
 deltasplat_refusal(level_set "--level-set: got maybe; expected fog or keep" --level-set maybe)

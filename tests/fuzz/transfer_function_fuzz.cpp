@@ -44,7 +44,9 @@ void check(const TransferFunction& function) {
     }
     for (const double x : {-1e300, -1.0, 0.0, 0.3, 1.0, 255.0, 1e300}) sample(function, x);
 
-    const ClassTable table = classify(smallVolume(), {function, {}, {}, 1}, 1);
+    Optics optics;
+    optics.transferFunction = function;
+    const ClassTable table = classify(smallVolume(), optics, 1);
     for (int channel = 0; channel < 4; ++channel)
         require(std::isfinite(table.scale[channel]) && table.scale[channel] >= 0, "finite scales");
 }

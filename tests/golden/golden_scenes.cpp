@@ -166,6 +166,24 @@ void addEyes(Scenes& scenes) {
     scenes.add("panorama-decades", "decades", panorama, colored());
 }
 
+// Of voxels that have looks of their own.
+void addLooks(Scenes& scenes) {
+    scenes.add("color-by-index", "engine", turned(33, 21), colored()).optics.colorBy =
+        ColorBy::kIndex;
+    Shading shading;
+    shading.lights.push_back({LightFrame::kWorld, {1, -2, 0.5}, {1, 0.8, 0.3}, 0.7});
+    shading.lights.push_back({LightFrame::kView, {-1, -1, -1}, {0.2, 0.3, 1}, 0.5});
+    scenes.add("shaded", "engine", turned(33, 21), colored()).optics.shading = shading;
+    scenes.add("shaded-decades", "decades", turned(33, 21), colored()).optics.shading = shading;
+    RenderOptions& divided = scenes.add("shaded-divided", "cloud", turned(10, 50), bent());
+    divided.optics.shading = shading;
+    divided.between = 1;
+    CameraOptions camera = turned(33, 21);
+    camera.projection = Projection::kPerspective;
+    camera.fovDegrees = 60;
+    scenes.add("shaded-perspective", "engine", camera, colored()).optics.shading = shading;
+}
+
 }  // namespace
 
 std::vector<GoldenScene> goldenScenes() {
@@ -175,6 +193,7 @@ std::vector<GoldenScene> goldenScenes() {
     addOptions(scenes);
     addRays(scenes);
     addEyes(scenes);
+    addLooks(scenes);
     return scenes.take();
 }
 

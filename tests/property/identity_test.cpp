@@ -136,12 +136,17 @@ TEST(Identity, AlsoOfColorsThatTakeSeveralDigits) {
 }
 
 // On one plane and on two, by all ways of splatting, divided and not.
-TEST(Identity, AlsoOfColorsThatVoxelsHaveOfTheirOwn) {
-    for (const ColorBy look : {ColorBy::kIndex, ColorBy::kZ}) {
+TEST(Identity, AlsoOfLooksThatVoxelsHaveOfTheirOwn) {
+    for (const std::optional<ColorBy> look :
+         {std::optional(ColorBy::kIndex), std::optional(ColorBy::kZ), std::optional<ColorBy>()}) {
         const Volume volume = test::randomVolume(kBoxes[0], 21, 0.5, {1, 1.5, 0.8});
         for (const glm::dvec3& direction : {kDirections[0], kDirections[1]}) {
             RenderOptions options = optionsFor(direction);
-            options.optics.colorBy = look;
+            if (look) {
+                options.optics.colorBy = *look;
+            } else {
+                options.optics.shading.emplace();
+            }
             for (const bool wide : {false, true}) {
                 if (wide) makeWide(options.optics.transferFunction, false);
                 for (const int resolution : {1, 2, 3, 5}) {

@@ -15,14 +15,17 @@ inline std::shared_ptr<const Volume> someVolume() {
         randomVolume({{0, 0, 0}, {33, 26, 28}}, 11, 0.5, {1, 1.2, 0.8}));
 }
 
-/// Of one colour, of several, or of voxels' own.
-enum class Colors { kOne, kSeveral, kOwn };
+/// Of one colour, of several, of voxels' own, or lit.
+enum class Colors { kOne, kSeveral, kOwn, kLit };
 
 inline Optics someOptics(Colors colors) {
     Optics optics;
     optics.transferFunction.colors = {{0, {1, 0, 0.5}}};
     if (colors != Colors::kOne) optics.transferFunction.colors.push_back({255, {0.2, 1, 0}});
     if (colors == Colors::kOwn) optics.colorBy = ColorBy::kIndex;
+    if (colors == Colors::kLit)
+        optics.shading = Shading{
+            0.1, 0.6, 0.3, 7, {Light{}, {LightFrame::kWorld, {1, -2, 0.5}, {1, 0.8, 0.3}, 0.7}}};
     optics.transferFunction.opacities = {{60, 0, 0.5, 0}, {200, 0.3, 0.5, 0}, {255, 1, 0.5, 0}};
     return optics;
 }

@@ -54,6 +54,7 @@ void addBenchOptions(CLI::App& app, BenchCommand& command) {
                     "tables that needs nothing else; made if it does not exist");
     addCameraOptions(app, command.picture);
     addOpticsOptions(app, command.picture);
+    addShadingOptions(app, command.picture.shading);
     addSplattingOptions(app, command.picture.render);
     addInputOptions(app, command.picture.read);
 }

@@ -66,6 +66,29 @@ class OptionGroup {
                     ->take_last()
                     ->group(title_);
     }
+    /// Declares an option with a value that may be given several times.
+    template <class T>
+    void addEach(const std::string& name, const std::string& placeholder, std::vector<T>& target,
+                 Parser<T> parse, const std::string& help) {
+        app_.add_option_function<std::vector<std::string>>(
+                name,
+                [&target, parse, name](const std::vector<std::string>& texts) {
+                    for (const std::string& text : texts) target.push_back(parse(name, text));
+                },
+                help)
+            ->type_name(placeholder)
+            ->expected(1)
+            ->take_all()
+            ->group(title_);
+    }
+    /// Declares a pair of flags that say yes and no; of several the last counts.
+    void addSwitch(const std::string& yes, const std::string& no, std::optional<bool>& target,
+                   const std::string& help) {
+        app_.add_flag_function(
+                yes + ",!" + no, [&target](std::int64_t count) { target = count > 0; }, help)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
+            ->group(title_);
+    }
     void addFlag(const std::string& names, bool& target, const std::string& help) {
         app_.add_flag(names, target, help)->group(title_);
     }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "deltasplat/error.h"
 #include "deltasplat/optics/default_ramp.h"
 #include "number_text.h"
 #include "options/transfer_function_option.h"
@@ -45,10 +46,25 @@ void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener&
     }
 }
 
+// Surfaces are shaded unless something else is wanted: those of level sets and of scanned bodies.
+std::optional<Shading> shadingOf(const PictureOptions& picture, const Volume& volume,
+                                 const Preset* preset) {
+    if (picture.render.mode != Mode::kComposite) return {};
+    const bool isScan = preset && preset->values == Preset::Values::kHounsfield;
+    const bool ownColors = picture.render.optics.colorBy == ColorBy::kValue;
+    return picture.shading.of(ownColors && (isScan || volume.fromLevelSet));
+}
+
 }  // namespace
 
 RenderOptions readOptics(const PictureOptions& picture, const Listener& listener) {
     RenderOptions options = picture.render;
+    const ColorBy colorBy = options.optics.colorBy;
+    if (picture.shading.shades.value_or(false) && colorBy != ColorBy::kValue) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--shade", "--color-by " + colorByName(colorBy) + " besides",
+                                "--color-by value"));
+    }
     const bool ramp = picture.transferFunction.empty();
     if (!ramp) {
         options.optics.transferFunction =
@@ -65,8 +81,11 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     ReadOptions read = picture.read;
     read.keepInexact = picture.render.mode != Mode::kComposite;
     Volume volume = readVolume(input, read, listener);
+    const Preset* preset = picture.transferFunction.empty()
+                               ? nullptr
+                               : parseTransferFunction(picture.transferFunction).preset;
+    options.optics.shading = shadingOf(picture, volume, preset);
     if (!picture.transferFunction.empty()) {
-        const Preset* preset = parseTransferFunction(picture.transferFunction).preset;
         if (!preset) return volume;
         fitPreset(*preset, volume, options.optics);
         warnOfOtherData(*preset, volume, listener);

@@ -39,9 +39,10 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
     if (isGiven(app, "--window") && !showsWindow(command))
         display.warn("--window: has no effect without --mode xray or mip, in an .exr or with --tf");
     if (mode == Mode::kComposite) return;
-    std::vector<std::string> unused = {"--method",        "--tolerance", "--tolerance-value",
-                                       "--resolution",    "--between",   "--extinction",
-                                       "--unit-distance", "--color-by"};
+    std::vector<std::string> unused = {
+        "--method",     "--tolerance",     "--tolerance-value", "--resolution", "--between",
+        "--extinction", "--unit-distance", "--color-by",        "--shade",      "--light",
+        "--ambient",    "--diffuse",       "--specular",        "--shininess"};
     if (mode == Mode::kMip) unused.push_back("--sigma");
     if (mode == Mode::kXray || isExr(command.output))
         unused.insert(unused.end(), {"--tf", "--range"});

@@ -282,6 +282,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addModeOption(app, command.picture.render.mode);
     addWindowOption(app, command.window);
     addOpticsOptions(app, command.picture);
+    addShadingOptions(app, command.picture.shading);
     addMethodOption(app, command.picture.render.method);
     addSplattingOptions(app, command.picture.render);
     addInputOptions(app, command.picture.read);

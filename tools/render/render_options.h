@@ -11,6 +11,7 @@
 #include "deltasplat/render.h"
 #include "listener.h"
 #include "options/command_line.h"
+#include "options/shading_options.h"
 
 namespace deltasplat {
 
@@ -20,6 +21,7 @@ struct PictureOptions {
     std::optional<glm::vec4> background;
     ReadOptions read;
     RenderOptions render;
+    ShadingChoice shading;
 };
 
 /// What `deltasplat render` was asked to do.

@@ -51,9 +51,10 @@ struct DeltaOrigin {
 /// Every voxel of a raw volume is active; a .vdb brings its own active states. What is inactive is
 /// empty.
 struct Volume {
-    std::string name;       ///< grid name, or the file's name without folder and extensions
-    std::string type;       ///< value type of the source: "uint8", "float", "half", "bool", ...
-    std::string gridClass;  ///< "fog volume", "level set", "staggered" or "unknown"
+    std::string name;           ///< grid name, or the file's name without folder and extensions
+    std::string type;           ///< value type of the source: "uint8", "float", "half", "bool", ...
+    std::string gridClass;      ///< "fog volume", "level set", "staggered" or "unknown"
+    bool fromLevelSet = false;  ///< a fog volume that a level set was made into
     /// Whether voxels may be inactive and then hold `background`: true for .vdb and for values in
     /// memory with a background, false for others.
     bool hasBackground = false;

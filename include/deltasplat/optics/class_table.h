@@ -11,6 +11,7 @@
 
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/ingest/volume.h"
+#include "deltasplat/optics/shading.h"
 #include "deltasplat/optics/transfer_function.h"
 
 namespace deltasplat {
@@ -109,6 +110,9 @@ struct Optics {
     std::optional<double>
         unitDistance;  ///< world units of one opacity step, > 0; empty: the smallest voxel size
     double extinctionScale = 1;  ///< >= 0; multiplies the extinction
+    /// Lights that what is shown reflects; empty: it shines by itself, in the transfer function's
+    /// colours. Not with another colorBy than kValue.
+    std::optional<Shading> shading;
 };
 
 /// Classifies every code that occurs in the volume: extinction per world unit sigma_t = -ln(1 -

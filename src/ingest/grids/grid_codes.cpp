@@ -50,17 +50,20 @@ std::uint64_t settleNonFinite(Grid& grid, const GridCodesOptions& options) {
     return range.nonFinite;
 }
 
+// Returns whether the grid was a level set, and has been made fog.
 template <typename Grid>
-void makeFog(Grid& grid, const GridCodesOptions& options) {
-    if (grid.getGridClass() != openvdb::GRID_LEVEL_SET || !options.reading.levelSetToFog) return;
+bool makeFog(Grid& grid, const GridCodesOptions& options) {
+    if (grid.getGridClass() != openvdb::GRID_LEVEL_SET || !options.reading.levelSetToFog)
+        return false;
     // Simulation caches label whole fields of distances as level sets, with a background of 0.
     const double width = double(grid.background());
     if (!(width > 0) || !std::isfinite(width)) {
         options.listener.warn(options.where + ": level set with background " + numberText(width) +
                               " kept as it is, not made fog");
-        return;
+        return false;
     }
     openvdb::tools::sdfToFogVolume(grid);
+    return true;
 }
 
 template <typename Tree>
@@ -121,7 +124,7 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     using T = typename Grid::ValueType;
     if constexpr (std::is_floating_point_v<T>) {
         volume.replaced = settleNonFinite(grid, options);
-        makeFog(grid, options);
+        volume.fromLevelSet = makeFog(grid, options);
     }
     constexpr bool kReal = std::is_floating_point_v<T>;
     GridScan scan = scanTree(

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/block_gradients.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "delta/mix_rows.h"
+#include "ingest/codes/leaf_slices.h"
+
+namespace deltasplat {
+namespace {
+
+// Half the difference of the values on both sides, or all of that to the one that is there; NaN
+// where nothing is.
+inline float centralDifference(float before, float here, float after) {
+    const bool hasBefore = before == before;
+    const bool hasAfter = after == after;
+    const float first = hasBefore ? before : here;
+    const float last = hasAfter ? after : here;
+    const float share = hasBefore && hasAfter ? 0.5f : 1.0f;
+    const float nothing = here - here;  // or 0
+    return (last - first) * share + nothing;
+}
+
+}  // namespace
+
+GradientReader::GradientReader(const CodeTree& codes, int sliceAxis, const Subdivision& parts,
+                               const GradientScale& scale)
+    : finder_(codes, sliceAxis), sliceAxis_(sliceAxis), parts_(parts), scale_(scale) {
+    const int blocks = parts.voxels();
+    gradients_.resize(std::size_t(blocks));
+}
+
+std::span<const BlockGradients> GradientReader::read(const CodeBlock& block) {
+    readValues(block);
+    const glm::ivec3 order = sliceOrder(sliceAxis_);
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto channel = std::size_t(order[axis]);
+        if (!parts_.divides()) {
+            takeDifferences(axis, 0, gradients_.front()[channel].data());
+            continue;
+        }
+        std::array<float, MixWindow::kSide * MixWindow::kPlane> window;
+        takeDifferences(axis, 1, window.data());
+        mixRows(window, parts_, [&](int part, int place, const float* row) {
+            std::copy_n(row, 8, &gradients_[std::size_t(part)][channel][std::size_t(place)]);
+        });
+    }
+    return gradients_;
+}
+
+void GradientReader::readValues(const CodeBlock& block) {
+    for (int s = -1; s <= 1; ++s) {
+        for (int u = -1; u <= 1; ++u) {
+            for (int v = -1; v <= 1; ++v) {
+                const glm::ivec3 side(s, u, v);
+                const std::optional<CodeBlock> found = finder_.find(block.position + side);
+                readPart(found ? &*found : nullptr, side);
+            }
+        }
+    }
+}
+
+// Reads what the rim has of a block on one side of its own (each component -1, 0 or 1).
+void GradientReader::readPart(const CodeBlock* block, const glm::ivec3& side) {
+    glm::ivec3 first, last;
+    for (int i = 0; i < 3; ++i) {
+        first[i] = side[i] < 0 ? 8 - kRim : 0;
+        last[i] = side[i] > 0 ? kRim - 1 : 7;
+    }
+    const auto forAll = [&](const auto& valueOf) {
+        forLeafVoxels(sliceAxis_, first, last, [&](const glm::ivec3& place, int n) {
+            const glm::ivec3 at = 8 * side + place + kRim;
+            const int index = (at.x * kSide + at.y) * kSide + at.z;
+            values_[std::size_t(index)] = valueOf(n);
+        });
+    };
+    const float nothing = scale_.background.value_or(std::numeric_limits<float>::quiet_NaN());
+    const CodeTree::Leaf* leaf = block ? block->leaf : nullptr;
+    if (!leaf) {
+        const bool isThere = block && block->tileSlot != kEmptySlot;
+        const float value = isThere ? scale_.ofCode[std::size_t(block->tileSlot) - 1] : nothing;
+        return forAll([&](int) { return value; });
+    }
+    const Code* codes = leaf->buffer().data();
+    const float* ofCode = scale_.ofCode.data();
+    if (leaf->isDense()) return forAll([&](int n) { return ofCode[codes[n]]; });
+    forAll([&](int n) { return leaf->isValueOn(openvdb::Index(n)) ? ofCode[codes[n]] : nothing; });
+}
+
+// Differences along an axis, (slice, u, v) order, of the block's voxels and a rim of theirs.
+void GradientReader::takeDifferences(int axis, int rim, float* out) const {
+    constexpr int kStrides[] = {kSide * kSide, kSide, 1};
+    const int stride = kStrides[axis];
+    const int side = 8 + 2 * rim;
+    for (int s = 0; s < side; ++s) {
+        for (int u = 0; u < side; ++u, out += side) {
+            const int first = kRim - rim;
+            const int row = ((s + first) * kSide + u + first) * kSide + first;
+            const float* here = values_.data() + row;
+            for (int v = 0; v < side; ++v)
+                out[v] = centralDifference(here[v - stride], here[v], here[v + stride]);
+        }
+    }
+}
+
+}  // namespace deltasplat

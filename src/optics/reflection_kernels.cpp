@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: J. F. Blinn, Models of Light Reflection for Computer Synthesized Pictures, 1977.
+// The lighting of voxels, compiled once for each SIMD level. Every voxel is reckoned by itself, in
+// one order of additions, so that every level gives the same bits.
+#include "optics/reflection_kernels.h"
+
+#include <cstring>
+
+#include "simd_targets.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "optics/reflection_kernels.cpp"
+#include "hwy/foreach_target.h"
+// After foreach_target.h, as Highway asks.
+#include "hwy/highway.h"
+#include "optics/opacity_steps-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace deltasplat::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+struct Vector3 {
+    Vector x, y, z;
+};
+
+HWY_INLINE Vector3 vectorOf(const glm::vec3& v) {
+    const FullTag tag;
+    return {hn::Set(tag, v.x), hn::Set(tag, v.y), hn::Set(tag, v.z)};
+}
+
+HWY_INLINE Vector dot(const Vector3& a, const Vector3& b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+
+HWY_INLINE Vector3 scaled(const Vector3& a, Vector share) {
+    return {hn::Mul(a.x, share), hn::Mul(a.y, share), hn::Mul(a.z, share)};
+}
+
+HWY_INLINE Vector3 sum(const Vector3& a, const Vector3& b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+
+// Of length 1; what has none stays as it is.
+HWY_INLINE Vector3 normalized(const Vector3& a) {
+    const auto length = hn::Sqrt(dot(a, a));
+    return scaled(a, hn::Div(constant(1), hn::Max(length, constant(1e-30))));
+}
+
+// x^y for 0 <= x <= 1.
+HWY_INLINE Vector power(Vector x, Vector y) {
+    return hn::Sub(constant(1), opacityOfSteps(hn::Sub(constant(1), x), y));
+}
+
+// The ways of a vector of voxels, from voxel n on.
+HWY_INLINE Vector3 waysFrom(const WaysToEye& ways, int n) {
+    const FullTag tag;
+    const hn::RebindToSigned<FullTag> whole;
+    const auto number = hn::Add(hn::Iota(whole, 0), hn::Set(whole, n));
+    const auto u = hn::ConvertTo(tag, hn::ShiftRight<3>(number));
+    const auto v = hn::ConvertTo(tag, hn::And(number, hn::Set(whole, 7)));
+    return normalized(sum(vectorOf(ways.first),
+                          sum(scaled(vectorOf(ways.alongU), u), scaled(vectorOf(ways.alongV), v))));
+}
+
+// The gradients of a vector of voxels, times kMostSlope.
+HWY_INLINE Vector3 gradientsOf(const OwnLook* looks) {
+    const FullTag tag;
+    const hn::RebindToSigned<FullTag> whole;
+    hn::Vec<decltype(whole)> low, high;
+    hn::LoadInterleaved2(whole, reinterpret_cast<const std::int32_t*>(looks), low, high);
+    return {hn::ConvertTo(tag, hn::ShiftRight<16>(hn::ShiftLeft<16>(low))),
+            hn::ConvertTo(tag, hn::ShiftRight<16>(low)),
+            hn::ConvertTo(tag, hn::ShiftRight<16>(hn::ShiftLeft<16>(high)))};
+}
+
+// The premultiplied colours of a vector of voxels: those of their classes.
+HWY_INLINE void loadColors(const glm::vec4* colors, const std::uint16_t* classes,
+                           Vector (&rgba)[4]) {
+    const FullTag tag;
+    const hn::RebindToSigned<FullTag> whole;
+    const hn::Rebind<std::uint16_t, FullTag> narrow;
+    const auto first = hn::ShiftLeft<2>(hn::PromoteTo(whole, hn::LoadU(narrow, classes)));
+    const float* channels = &colors->x;
+    for (int c = 0; c < 4; ++c) rgba[c] = hn::GatherIndex(tag, channels + c, first);
+}
+
+template <bool kFromEye>
+void reflectFrom(const Reflection& reflection, const WordToLight& word, WordUnits& units) {
+    const FullTag tag;
+    constexpr int kLanes = int(hn::MaxLanes(FullTag()));
+    const auto zero = hn::Zero(tag);
+    for (int n = 0; n < 64; n += kLanes) {
+        const auto toCamera = kFromEye ? waysFrom(*word.ways, n) : vectorOf(reflection.toCamera);
+        const auto gradient = scaled(gradientsOf(word.looks + n), constant(1 / double(kMostSlope)));
+        const auto shaded = hn::Min(hn::Sqrt(dot(gradient, gradient)), constant(1));
+        const auto unshaded = hn::Mul(constant(0.25), hn::Sub(constant(1), shaded));
+        const auto perShaded = hn::Div(constant(1), hn::Max(shaded, constant(1e-5)));
+        // The side that faces the camera.
+        const auto isTurned = hn::Lt(dot(gradient, toCamera), zero);
+        const Vector3 normal{hn::IfThenElse(isTurned, hn::Neg(gradient.x), gradient.x),
+                             hn::IfThenElse(isTurned, hn::Neg(gradient.y), gradient.y),
+                             hn::IfThenElse(isTurned, hn::Neg(gradient.z), gradient.z)};
+        Vector3 share = vectorOf(glm::vec3(reflection.ambient));
+        Vector3 highlights{zero, zero, zero};
+        for (const Ray& ray : reflection.rays) {
+            const auto toLight = ray.fromCamera ? toCamera : vectorOf(ray.toLight);
+            const auto facing = hn::Max(dot(normal, toLight), zero);
+            const auto onAverage =
+                hn::Mul(unshaded, hn::Max(hn::Add(constant(1), dot(toLight, toCamera)), zero));
+            share = sum(share, scaled(vectorOf(ray.diffuse), hn::Add(facing, onAverage)));
+            if (!reflection.hasSpecular) continue;
+            const auto half = ray.fromCamera ? toCamera
+                              : kFromEye     ? normalized(sum(toLight, toCamera))
+                                             : vectorOf(ray.half);
+            const auto cosine = hn::Mul(hn::Max(dot(normal, half), zero), perShaded);
+            const auto highlight = power(cosine, hn::Set(tag, reflection.shininess));
+            const auto isLit = hn::Gt(facing, zero);
+            highlights =
+                sum(highlights, scaled(vectorOf(ray.specular),
+                                       hn::IfThenElseZero(isLit, hn::Mul(shaded, highlight))));
+        }
+        Vector rgba[4];
+        loadColors(word.colors, word.classes + n, rgba);
+        const auto place = [&](std::size_t channel) { return &units[channel][std::size_t(n)]; };
+        hn::StoreU(mulAdd(rgba[0], share.x, hn::Mul(rgba[3], highlights.x)), tag, place(0));
+        hn::StoreU(mulAdd(rgba[1], share.y, hn::Mul(rgba[3], highlights.y)), tag, place(1));
+        hn::StoreU(mulAdd(rgba[2], share.z, hn::Mul(rgba[3], highlights.z)), tag, place(2));
+        hn::StoreU(rgba[3], tag, place(3));
+    }
+}
+
+void reflectKernel(const Reflection& reflection, const WordToLight& word, WordUnits& units) {
+    if (reflection.fromEye) {
+        reflectFrom<true>(reflection, word, units);
+    } else {
+        reflectFrom<false>(reflection, word, units);
+    }
+}
+
+}  // namespace deltasplat::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace deltasplat {
+
+HWY_EXPORT(reflectKernel);
+
+void reflect(const Reflection& reflection, const WordToLight& word, WordUnits& units) {
+    HWY_DYNAMIC_DISPATCH(reflectKernel)(reflection, word, units);
+}
+
+}  // namespace deltasplat
+#endif

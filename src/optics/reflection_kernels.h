@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "optics/voxel_painter.h"
+
+namespace deltasplat {
+
+/// The largest component of a gradient's direction, as a look states it.
+inline constexpr float kMostSlope = 32767;
+
+/// A light that comes from one direction everywhere, or from the camera.
+struct Ray {
+    bool fromCamera;    ///< then the vectors are those to the camera
+    glm::vec3 toLight;  ///< of length 1
+    glm::vec3 half;  ///< half-way to the camera, of length 1; only where all see it from one side
+    glm::vec3 diffuse;   ///< colour times strength times the share that is reflected evenly
+    glm::vec3 specular;  ///< that is mirrored, likewise, in units of VoxelUnits for an alpha of 1
+};
+
+/// What voxels reflect (Shading).
+struct Reflection {
+    float ambient;
+    float shininess;
+    bool hasSpecular;
+    std::vector<Ray> rays;
+    bool fromEye;        ///< each voxel has its own way to the camera
+    glm::vec3 toCamera;  ///< of length 1, unless it has
+};
+
+/// The ways to the camera from a word's voxels, of any length: `first + u * alongU + v * alongV`.
+struct WaysToEye {
+    glm::vec3 first;
+    glm::vec3 alongU;
+    glm::vec3 alongV;
+};
+
+/// What is lit.
+struct WordToLight {
+    const glm::vec4* colors;       ///< of classes, premultiplied
+    const std::uint16_t* classes;  ///< [64]
+    /// [64]: gradients in the world, of length kMostSlope times the share that is shaded
+    const OwnLook* looks;
+    const WaysToEye* ways;  ///< null unless `fromEye`
+};
+
+/// Returns the premultiplied colours that voxels reflect. The same bits at every SIMD level.
+void reflect(const Reflection& reflection, const WordToLight& word, WordUnits& units);
+
+}  // namespace deltasplat

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optics/voxel_units.h"
+
+#include <algorithm>
+
+namespace deltasplat {
+
+VoxelUnits::VoxelUnits(const ClassTable& classes, const glm::dvec3& brightest)
+    : brightest_(brightest) {
+    const std::vector<double> alphas = classes.alphas();
+    const double largest = *std::max_element(alphas.begin(), alphas.end());
+    scale_ = glm::dvec4(brightest, 1) * largest / double(ClassTable::kMax);
+    // As shares they can be neither too large nor too small to reckon with.
+    for (const double alpha : alphas)
+        alphas_.push_back(largest > 0 ? float(alpha / largest * ClassTable::kMax) : 0);
+    for (int c = 0; c < 3; ++c)
+        shares_[c] = brightest[c] > 0 && scale_[c] > 0 ? float(1 / brightest[c]) : 0;
+}
+
+glm::vec4 VoxelUnits::unitsOf(std::uint16_t number, const glm::vec3& color) const {
+    const float alpha = alphaOf(number);
+    glm::vec4 units(0, 0, 0, alpha);
+    for (int c = 0; c < 3; ++c) units[c] = std::min(color[c] * shares_[c], 1.0f) * alpha;
+    return units;
+}
+
+}  // namespace deltasplat

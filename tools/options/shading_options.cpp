@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "options/shading_options.h"
+
+#include <string>
+
+#include "deltasplat/error.h"
+#include "number_text.h"
+#include "options/command_line.h"
+#include "options/parse.h"
+
+namespace deltasplat {
+namespace {
+
+std::vector<std::string> partsOf(const std::string& text) {
+    std::vector<std::string> parts;
+    std::size_t begin = 0;
+    for (std::size_t end; (end = text.find(':', begin)) != std::string::npos; begin = end + 1)
+        parts.push_back(text.substr(begin, end - begin));
+    parts.push_back(text.substr(begin));
+    return parts;
+}
+
+// Where it comes from, then its colour, if any, then its strength, if any.
+Light parseLight(const std::string& option, const std::string& text) {
+    const auto refuse = [&] {
+        return Error(ErrorCode::kUsage,
+                     gotExpected(option, text,
+                                 "head, X,Y,Z or view:X,Y,Z, not all 0, then, if wanted, :R,G,B "
+                                 "and :STRENGTH, as in view:1,-1,-1:1,0.9,0.8:1.5"));
+    };
+    const std::vector<std::string> parts = partsOf(text);
+    std::size_t next = 0;
+    Light light;
+    try {
+        if (parts[0] == "head") {
+            next = 1;
+        } else {
+            light.frame = parts[0] == "view" ? LightFrame::kView : LightFrame::kWorld;
+            if (light.frame == LightFrame::kView) next = 1;
+            light.direction = vector3()(option, next < parts.size() ? parts[next] : "");
+            ++next;
+        }
+        if (next < parts.size() && parts[next].find(',') != std::string::npos)
+            light.color = glm::dvec3(color()(option, parts[next++]));
+        if (next < parts.size()) light.strength = number(0, kMostLight)(option, parts[next++]);
+    } catch (const Error&) {
+        throw refuse();
+    }
+    if (next != parts.size() || light.direction == glm::dvec3(0)) throw refuse();
+    return light;
+}
+
+}  // namespace
+
+std::optional<Shading> ShadingChoice::of(bool suits) const {
+    if (!shades.value_or(suits)) return {};
+    Shading result = shading;
+    if (!lights.empty()) result.lights = lights;
+    return result;
+}
+
+void addShadingOptions(CLI::App& app, ShadingChoice& choice) {
+    OptionGroup group(app, "Shading");
+    Shading& shading = choice.shading;
+    const auto turnOn = [&](const auto& parse) {
+        return [&choice, parse](const std::string& option, const std::string& text) {
+            if (!choice.shades) choice.shades = true;
+            return parse(option, text);
+        };
+    };
+    group.addSwitch("--shade", "--no-shade", choice.shades,
+                    "Light what is shown as surfaces, by the gradient of the values:\n"
+                    "in relief (default: for level sets and presets of CT, and where\n"
+                    "anything below is given)");
+    group.addEach("--light", "LIGHT", choice.lights, Parser<Light>(turnOn(parseLight)),
+                  "head (from the camera, the default) or X,Y,Z, the way that light\n"
+                  "travels in the world, or view:X,Y,Z in the picture (right, up,\n"
+                  "towards the camera); then :R,G,B and :STRENGTH, if wanted. Can be\n"
+                  "given several times");
+    const auto addShare = [&](const std::string& name, double& target, const std::string& help) {
+        group.addValue(name, "K", target, Parser<double>(turnOn(number(0, kMostLight))),
+                       withDefault(help, numberText(target)));
+    };
+    addShare("--ambient", shading.ambient, "Share of its colour that is seen without any light");
+    addShare("--diffuse", shading.diffuse, "Share that light reflects evenly to all sides");
+    addShare("--specular", shading.specular, "Share of light that surfaces mirror, in its colour");
+    addShare("--shininess", shading.shininess, "How small highlights are: exponent of the cosine");
+}
+
+}  // namespace deltasplat
