@@ -105,6 +105,20 @@ bool isFog(const Volume& volume) {
             volume.name == "density");
 }
 
+bool isHounsfield(const Volume& volume) {
+    if (volume.space.empty() || volume.empty()) return false;
+    const auto shareWithin = [&](double low, double high) {
+        double count = 0;
+        for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+            if (volume.histogram[code] == 0) continue;
+            const double value = volume.codeBook.valueOf(Code(code));
+            if (value >= low && value <= high) count += double(volume.histogram[code]);
+        }
+        return count / double(volume.activeCount);
+    };
+    return shareWithin(-1100, -900) >= 0.01 && shareWithin(-200, 300) >= 0.02;
+}
+
 glm::dvec2 bulkRange(const Volume& volume) {
     const std::vector<std::uint64_t> counts = countsWithoutBackground(volume);
     if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t count) { return count == 0; }))

@@ -51,6 +51,12 @@ deltasplat_script_test(fog_over_plate fog_over_plate.sh
 deltasplat_script_test(transfer_functions transfer_functions.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/transfer_functions)
 deltasplat_script_test(shading shading.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/shading)
+add_test(NAME cli.first_look
+         COMMAND bash ${DELTASPLAT_CLI_SCRIPTS}/if_present.sh
+                 ${DELTASPLAT_SHARED_DATA}/dicom_chest_ct
+                 bash ${DELTASPLAT_CLI_SCRIPTS}/first_look.sh ${tool} ${DELTASPLAT_OIIOTOOL}
+                 ${scratch}/first_look ${DELTASPLAT_SHARED_DATA}/dicom_chest_ct)
+set_tests_properties(cli.first_look PROPERTIES LABELS "cli;data" TIMEOUT 600 SKIP_RETURN_CODE 77)
 deltasplat_script_test(modes modes.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/modes)
 deltasplat_script_test(identity.simd identity.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/identity_simd every synth --size 90x70)

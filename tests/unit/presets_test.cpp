@@ -150,6 +150,24 @@ TEST(Presets, ofARangeAreAStepWhereNearlyAllIsOneValue) {
     }
 }
 
+// A tenth of air, the rest tissue, in a patient; what a scanner has not seen does not matter.
+Volume scan(double air, double tissue, const std::string& space = "LPS") {
+    Volume volume =
+        test::makeVolume({{0, 0, 0}, {9, 9, 9}}, [](int x, int, int) { return x < 2 ? x : 2; });
+    volume.codeBook = CodeBook::ofTable({-3024, air, tissue});
+    volume.space = space;
+    return volume;
+}
+
+TEST(Presets, knowScansInHounsfieldUnits) {
+    EXPECT_TRUE(isHounsfield(scan(-1000, 40)));
+    EXPECT_FALSE(isHounsfield(scan(-1000, 40, "")));
+    EXPECT_FALSE(isHounsfield(scan(0, 40)));
+    EXPECT_FALSE(isHounsfield(scan(-1000, 900)));
+    EXPECT_FALSE(isHounsfield(Volume{}));
+    EXPECT_NE(findPreset(kScanPreset), nullptr);
+}
+
 TEST(Presets, giveEveryLabelItsOwnColor) {
     const TransferFunction labels = presetFunction("labels");
     EXPECT_EQ(labels.opacityAt(0), 0);

@@ -46,6 +46,14 @@ void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener&
     }
 }
 
+// The preset that is named or, where nothing is, that of a CT scan for one; else null.
+const Preset* presetOf(const PictureOptions& picture, const Volume& volume) {
+    if (!picture.transferFunction.empty())
+        return parseTransferFunction(picture.transferFunction).preset;
+    const bool isFree = picture.render.mode == Mode::kComposite && !picture.render.optics.range;
+    return isFree && isHounsfield(volume) ? findPreset(kScanPreset) : nullptr;
+}
+
 // Surfaces are shaded unless something else is wanted: those of level sets and of scanned bodies.
 std::optional<Shading> shadingOf(const PictureOptions& picture, const Volume& volume,
                                  const Preset* preset) {
@@ -81,10 +89,12 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     ReadOptions read = picture.read;
     read.keepInexact = picture.render.mode != Mode::kComposite;
     Volume volume = readVolume(input, read, listener);
-    const Preset* preset = picture.transferFunction.empty()
-                               ? nullptr
-                               : parseTransferFunction(picture.transferFunction).preset;
+    const Preset* preset = presetOf(picture, volume);
     options.optics.shading = shadingOf(picture, volume, preset);
+    if (picture.transferFunction.empty() && preset) {
+        options.optics.transferFunction = presetFunction(preset->name);
+        return volume;
+    }
     if (!picture.transferFunction.empty()) {
         if (!preset) return volume;
         fitPreset(*preset, volume, options.optics);

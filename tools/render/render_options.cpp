@@ -217,9 +217,10 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
                    "Transfer function: a ParaView JSON file, FILE:NAME for one of\n"
                    "several in it, a table of labels (3D Slicer's .ctbl, ITK-SNAP's\n"
                    ".txt or .label), or a preset:" +
-                       presetNames() +
-                       "\n(default: a ramp over the 1st to 99th percentile of the values,\n"
-                       "white for fog, else from black to white)");
+                       presetNames() + "\n(default: " + kScanPreset +
+                       " for CT scans, in Hounsfield units of a\n"
+                       "patient; else a ramp over the 1st to 99th percentile of the\n"
+                       "values, white for fog, else from black to white)");
     group.addQuestion("--list-tf", "FILE", listPresets,
                       "Only list the presets, or draw them to FILE (.png or .svg; with\n"
                       "other options a new one)");

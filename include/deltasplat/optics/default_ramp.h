@@ -12,6 +12,11 @@ namespace deltasplat {
 /// class. Other values (of a scanner, of a temperature) mean more than their amount.
 bool isFog(const Volume& volume);
 
+/// Whether a volume's values are Hounsfield units, as CT scanners give them: it lies in a patient's
+/// space (Volume::space), at least a hundredth of it is air (-1100 to -900) and a fiftieth soft
+/// tissue (-200 to 300). What is less than air, as what a scanner has not seen, does not matter.
+bool isHounsfield(const Volume& volume);
+
 /// Returns where most values lie: from the 1st to the 99th percentile of the active ones other than
 /// the background. Both are the same where nearly all are; of a volume with nothing but background
 /// they are the background and 1 more.

@@ -28,6 +28,9 @@ inline constexpr int kLargestPresetLabel = 65535;
 /// Returns all there are, those for the same kind of data together.
 const std::vector<Preset>& presets();
 
+/// Shows what a first look at a CT scan is for.
+inline constexpr const char* kScanPreset = "ct-soft-tissue";
+
 /// Returns the preset of that name, or null.
 const Preset* findPreset(const std::string& name);
 
