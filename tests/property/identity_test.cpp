@@ -151,6 +151,8 @@ TEST(Identity, AlsoOfLooksThatVoxelsHaveOfTheirOwn) {
                 if (wide) makeWide(options.optics.transferFunction, false);
                 for (const int resolution : {1, 2, 3, 5}) {
                     if (resolution > 3 && direction != kDirections[0]) continue;
+                    // What is lit is splatted as what has colours.
+                    if (resolution > 1 && !look) continue;
                     options.resolution = resolution;
                     options.tolerance = {resolution == 2 ? 0.1 : 0.0, resolution == 3 ? 20.0 : 0.0};
                     expectSamePixels(volume, options);
