@@ -4,8 +4,6 @@
 // one order of additions, so that every level gives the same bits.
 #include "optics/reflection_kernels.h"
 
-#include <cstring>
-
 #include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -28,7 +28,6 @@ class WordLighter {
             const auto behind = std::upper_bound(begins.begin(), begins.end(), word);
             slice_ = std::size_t(behind - begins.begin() - 1);
         }
-        prefetch(word + kAhead);
         const DeltaWord& one = deltas_.words[word];
         const WordPlace place(deltas_.box.min.x + int(slice_), 8 * one.block);
         light_.light(place, one.classes, deltas_.looks[word], units_);
@@ -36,20 +35,6 @@ class WordLighter {
     }
 
   private:
-    // Words of one slice lie far from each other, where columns were packed.
-    static constexpr std::size_t kAhead = 4;
-    static constexpr std::size_t kCacheLine = 64;
-
-    void prefetch(std::size_t word) const {
-        if (word >= deltas_.words.size()) return;
-        const auto* classes = reinterpret_cast<const char*>(deltas_.words[word].classes);
-        for (std::size_t i = 0; i < 64 * sizeof(ClassIndex); i += kCacheLine)
-            __builtin_prefetch(classes + i);
-        const auto* looks = reinterpret_cast<const char*>(deltas_.looks[word]);
-        for (std::size_t i = 0; i < 64 * sizeof(OwnLook); i += kCacheLine)
-            __builtin_prefetch(looks + i);
-    }
-
     const PackedDeltas& deltas_;
     const LookLight& light_;
     std::size_t slice_ = 0;  // of the word in hand, counted from the first

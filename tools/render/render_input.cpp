@@ -59,8 +59,8 @@ std::optional<Shading> shadingOf(const PictureOptions& picture, const Volume& vo
                                  const Preset* preset) {
     if (picture.render.mode != Mode::kComposite) return {};
     const bool isScan = preset && preset->values == Preset::Values::kHounsfield;
-    const bool ownColors = picture.render.optics.colorBy == ColorBy::kValue;
-    return picture.shading.of(ownColors && (isScan || volume.fromLevelSet));
+    const bool byValue = picture.render.optics.colorBy == ColorBy::kValue;
+    return picture.shading.of(byValue && (isScan || volume.fromLevelSet));
 }
 
 }  // namespace
