@@ -11,6 +11,7 @@
 #include "image/warp_region.h"
 #include "optics/opacity_steps.h"
 #include "parallel.h"
+#include "view/thin_voxels.h"
 
 namespace deltasplat {
 namespace {
@@ -89,7 +90,8 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
         ClassTable classes = steps_ == axis_->steps
                                  ? axis_->classes()
                                  : axis_->classes().atSteps(steps_ / axis_->steps);
-        const LitScene lit{camera, worldFromVoxels()};
+        const LitScene lit{camera, scene.scene.volume->worldFromIndex *
+                                       indexFromThinVoxel(axis_->sliceAxis, axis_->parts)};
         std::unique_ptr<const LookLight> light;
         if (painter) light = painter->lightOf(classes, isLit ? &lit : nullptr);
         colors_.emplace(axis_->deltas, std::move(classes), light.get(), memory);
@@ -112,20 +114,6 @@ Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
         view_.eye ? 0.5 * (view_.slopeMin + view_.slopeMax) : view_.shiftPerSlice;
     return makeFootprint(sigma, {shift.y, shift.x}, plan.resolution(),
                          scene_.options.footprintWidth, within);
-}
-
-// The transform of voxels as words count them: (slice, u, v), of what is divided its parts.
-glm::dmat4 PictureView::worldFromVoxels() const {
-    const Subdivision& parts = axis_->parts;
-    const glm::ivec3 order = sliceOrder(axis_->sliceAxis);
-    const glm::dvec3 per(parts.slices, parts.within, parts.within);
-    glm::dmat4 indexFromVoxel(0.0);
-    for (int axis = 0; axis < 3; ++axis) {
-        indexFromVoxel[axis][order[axis]] = 1 / per[axis];
-        indexFromVoxel[3][order[axis]] = parts.origin[axis] + 0.5 / per[axis] - 0.5;
-    }
-    indexFromVoxel[3][3] = 1;
-    return scene_.scene.volume->worldFromIndex * indexFromVoxel;
 }
 
 // Base plane pixels that a slope of 1 takes: as many as the farthest slice has sheet pixels, which
@@ -177,8 +165,7 @@ void PictureView::lengthenSteps(Layer& layer) const {
 }
 
 ErrorBound PictureView::errorBound() const {
-    // What is lit is not held.
-    if (scene_.painter && scene_.painter->dependsOnCamera()) return {};
+    if (scene_.painter && !scene_.painter->mayHold()) return {};
     std::optional<double> brightest;
     if (scene_.painter) {
         const glm::dvec3 color =

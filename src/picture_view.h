@@ -48,7 +48,6 @@ class PictureView {
   private:
     Footprint makeViewFootprint(const SheetPlan& plan) const;
     double densityOf() const;
-    glm::dmat4 worldFromVoxels() const;
     void lengthenSteps(Layer& layer) const;
 
     const PreparedScene::Impl& scene_;

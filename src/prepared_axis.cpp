@@ -42,7 +42,7 @@ Scene requireVolume(Scene scene) {
 // angle change the picture of all others.
 bool showsThin(const Volume& volume, const Optics& optics) {
     constexpr double kMost = 0.25;
-    return largestAlpha(volume, optics) <= kMost;
+    return !optics.surface && largestAlpha(volume, optics) <= kMost;
 }
 
 // Whether steps that are so many times shorter may be too short for some class to be seen. What is
@@ -64,7 +64,8 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     const Volume& volume = *scene.scene.volume;
     const Tolerance& tolerance = scene.options.tolerance;
     std::optional<ValueMixer> mixer;
-    if (parts.divides()) mixer.emplace(volume, parts);
+    const VoxelPainter* painter = scene.painter.get();
+    if (parts.divides() || (painter && painter->choosesClasses())) mixer.emplace(volume, parts);
     const Volume& seen = mixer ? mixer->levels() : volume;
     // What is held does not depend on the camera: straight ways decide.
     const double straight = planeDistance(volume.worldFromIndex, sliceAxis) / parts.slices;
@@ -77,18 +78,16 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     listener.report(0.05);
     PackOptions pack{sliceAxis, encodingOf(scene.options.method), classes.classOfSlot,
                      holdRule(seen, classes, tolerance), mixer ? &*mixer : nullptr};
-    const VoxelPainter* painter = scene.painter.get();
     const bool isLit = painter && painter->dependsOnCamera();
     std::unique_ptr<const LookLight> light;
     if (painter) {
         classes.oneColor = false;
         pack.painter = painter;
-        if (isLit) {
-            // What may be held would depend on the camera: all is exact.
-            pack.holds = {};
-        } else {
-            light = painter->lightOf(classes, nullptr);
+        if (!isLit) light = painter->lightOf(classes, nullptr);
+        if (painter->mayHold()) {
             pack.looksHold = looksHoldRule(light->units(), tolerance);
+        } else {
+            pack.holds = {};
         }
     }
     PackedDeltas deltas = packDeltas(volume, pack);

@@ -39,7 +39,8 @@ bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
     const SplatOptions& options = scene.options;
     if (view.resolution < 2 || options.resolution || options.footprintWidth) return false;
     // Of the transfer function that was asked for, whatever colours are by.
-    if (scene.scene.optics.transferFunction.colorsJump()) return false;
+    const Optics& optics = scene.scene.optics;
+    if (!optics.surface && optics.transferFunction.colorsJump()) return false;
     if (volume.empty() || scene.isThin) return false;
     if (!canBeDivided(volume.box, 1)) {
         listener.warn("the volume is too wide for voxels to be divided: drawn as they are");

@@ -29,25 +29,33 @@ GradientReader::GradientReader(const CodeTree& codes, int sliceAxis, const Subdi
                                const GradientScale& scale)
     : finder_(codes, sliceAxis), sliceAxis_(sliceAxis), parts_(parts), scale_(scale) {
     const int blocks = parts.voxels();
-    gradients_.resize(std::size_t(blocks));
+    fields_.resize(std::size_t(blocks));
 }
 
-std::span<const BlockGradients> GradientReader::read(const CodeBlock& block) {
+std::span<const BlockField> GradientReader::read(const CodeBlock& block) {
     readValues(block);
     const glm::ivec3 order = sliceOrder(sliceAxis_);
     for (int axis = 0; axis < 3; ++axis) {
         const auto channel = std::size_t(order[axis]);
-        if (!parts_.divides()) {
-            takeDifferences(axis, 0, gradients_.front()[channel].data());
-            continue;
-        }
-        std::array<float, MixWindow::kSide * MixWindow::kPlane> window;
-        takeDifferences(axis, 1, window.data());
-        mixRows(window, parts_, [&](int part, int place, const float* row) {
-            std::copy_n(row, 8, &gradients_[std::size_t(part)][channel][std::size_t(place)]);
-        });
+        fill([&](int rim, float* out) { takeDifferences(axis, rim, out); },
+             [&](BlockField & field) -> auto& { return field.gradients[channel]; });
     }
-    return gradients_;
+    if (scale_.withValues) {
+        fill([&](int rim, float* out) { takeValues(rim, out); },
+             [](BlockField & field) -> auto& { return field.values; });
+    }
+    return fields_;
+}
+
+// Fills an array of each field with what take(rim, out) takes of the block and a rim around it.
+template <typename Take, typename ArrayOf>
+void GradientReader::fill(const Take& take, const ArrayOf& arrayOf) {
+    if (!parts_.divides()) return take(0, arrayOf(fields_.front()).data());
+    std::array<float, MixWindow::kSide * MixWindow::kPlane> window;
+    take(1, window.data());
+    mixRows(window, parts_, [&](int part, int place, const float* row) {
+        std::copy_n(row, 8, &arrayOf(fields_[std::size_t(part)])[std::size_t(place)]);
+    });
 }
 
 void GradientReader::readValues(const CodeBlock& block) {
@@ -101,6 +109,18 @@ void GradientReader::takeDifferences(int axis, int rim, float* out) const {
             const float* here = values_.data() + row;
             for (int v = 0; v < side; ++v)
                 out[v] = centralDifference(here[v - stride], here[v], here[v + stride]);
+        }
+    }
+}
+
+// Values of the block's voxels and a rim of theirs.
+void GradientReader::takeValues(int rim, float* out) const {
+    const int side = 8 + 2 * rim;
+    const int first = kRim - rim;
+    for (int s = 0; s < side; ++s) {
+        for (int u = 0; u < side; ++u, out += side) {
+            const int row = ((s + first) * kSide + u + first) * kSide + first;
+            std::copy_n(values_.data() + row, side, out);
         }
     }
 }

@@ -22,9 +22,10 @@ class GradientReader {
     GradientReader(const CodeTree& codes, int sliceAxis, const Subdivision& parts,
                    const GradientScale& scale);
 
-    /// Returns the gradients of a block, or of all that it becomes:
+    /// Returns the gradients of a block, and its values if they are wanted, or those of all that it
+    /// becomes:
     /// `[parts.within along u][parts.slices][parts.within along v]`.
-    std::span<const BlockGradients> read(const CodeBlock& block);
+    std::span<const BlockField> read(const CodeBlock& block);
 
   private:
     // Of a block, two voxels around it: gradients are mixed from those of neighbours.
@@ -33,14 +34,17 @@ class GradientReader {
 
     void readValues(const CodeBlock& block);
     void readPart(const CodeBlock* block, const glm::ivec3& side);
+    template <typename Take, typename ArrayOf>
+    void fill(const Take& take, const ArrayOf& arrayOf);
     void takeDifferences(int axis, int rim, float* out) const;
+    void takeValues(int rim, float* out) const;
 
     BlockFinder finder_;
     int sliceAxis_;
     Subdivision parts_;
     const GradientScale& scale_;
     std::array<float, kSide * kSide * kSide> values_;  // [slice][u][v], NaN where nothing is
-    std::vector<BlockGradients> gradients_;
+    std::vector<BlockField> fields_;
 };
 
 }  // namespace deltasplat

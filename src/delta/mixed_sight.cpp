@@ -34,9 +34,10 @@ std::vector<glm::ivec3> widened(const std::vector<glm::ivec3>& places, const glm
     return united(united(before, places), behind);
 }
 
+// Without any code if the lowest is above the highest.
 struct CodeRange {
-    Code lowest;
-    Code highest;
+    Code lowest = std::numeric_limits<Code>::max();
+    Code highest = 0;
 
     void add(const CodeRange& other) {
         lowest = std::min(lowest, other.lowest);
@@ -61,8 +62,8 @@ void addNeighbours(const std::vector<CodeBlock>& blocks, const glm::ivec3& step,
 
 }  // namespace
 
-MixedSight::MixedSight(const ValueMixer& mixer, std::span<const Slot> slotMap)
-    : mixer_(mixer), before_(kSlotCount, 0) {
+MixedSight::MixedSight(const ValueMixer& mixer, std::span<const Slot> slotMap, bool byAllSides)
+    : mixer_(mixer), byAllSides_(byAllSides), before_(kSlotCount, 0) {
     for (std::size_t level = 0; level < kCodeCount; ++level)
         before_[level + 1] = before_[level] + (slotMap[level + 1] != kEmptySlot);
 }
@@ -123,7 +124,8 @@ std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAx
     places.reserve(seen.size());
     for (const CodeBlock& block : seen) places.push_back(block.position);
     places = widened(places, {1, 0, 0});
-    if (mixer_.parts().within > 1) places = widened(widened(places, {0, 0, 1}), {0, 1, 0});
+    const bool alongAll = byAllSides_ || mixer_.parts().within > 1;
+    if (alongAll) places = widened(widened(places, {0, 0, 1}), {0, 1, 0});
 
     const BlockFinder finder(codes, sliceAxis);
     std::vector<CodeBlock> blocks;
@@ -141,6 +143,10 @@ std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAx
                 found->highest = leaf.highest;
             }
             blocks.push_back(*found);
+        } else if (byAllSides_) {
+            blocks.push_back({place});
+            ranges.push_back(CodeRange());
+            continue;
         } else {
             continue;
         }
@@ -150,14 +156,16 @@ std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAx
                                     : CodeRange{tile, tile});
     }
     addNeighbours(blocks, {1, 0, 0}, ranges);
-    if (mixer_.parts().within > 1) {
+    if (alongAll) {
         // In the order in which values are mixed: what lies across a corner comes by the same way.
         addNeighbours(blocks, {0, 1, 0}, ranges);
         addNeighbours(blocks, {0, 0, 1}, ranges);
     }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-        if (isSeenBetween(ranges[i].lowest, ranges[i].highest)) blocks[kept++] = blocks[i];
+        if (ranges[i].lowest <= ranges[i].highest &&
+            isSeenBetween(ranges[i].lowest, ranges[i].highest))
+            blocks[kept++] = blocks[i];
     }
     blocks.resize(kept);
     return blocks;

@@ -9,12 +9,15 @@
 
 namespace deltasplat {
 
-/// Tells which blocks may be seen once voxels are divided: mixed values lie between those of a
-/// block and of its neighbours, and may be seen where the voxels themselves are clear.
+/// Tells which blocks may be seen where a voxel's neighbours have a say: once voxels are divided,
+/// mixed values lie between those of a block and of its neighbours, and may be seen where the
+/// voxels themselves are clear; and so it is beside a surface.
 class MixedSight {
   public:
-    /// @param slotMap  [kSlotCount]: 0 for the slots of levels that are clear
-    MixedSight(const ValueMixer& mixer, std::span<const Slot> slotMap);
+    /// @param slotMap    [kSlotCount]: 0 for the slots of levels that are clear
+    /// @param byAllSides  whether neighbours along all axes have a say, though voxels be divided
+    ///                   along none; then places without any active voxel are listed, too
+    MixedSight(const ValueMixer& mixer, std::span<const Slot> slotMap, bool byAllSides);
 
     /// Whether any voxel may be seen that is mixed within a window.
     bool canBeSeen(const MixWindow& window) const;
@@ -33,6 +36,7 @@ class MixedSight {
     std::vector<Slot> seenCodes(std::span<const std::uint64_t> histogram) const;
 
     const ValueMixer& mixer_;
+    bool byAllSides_;
     std::vector<int> before_;  // [kSlotCount]: how many levels before each can be seen
 };
 

@@ -11,8 +11,8 @@
 #include <numeric>
 #include <optional>
 
-#include "delta/block_gradients.h"
 #include "delta/block_kernels.h"
+#include "delta/block_looks.h"
 #include "delta/block_windows.h"
 #include "delta/code_blocks.h"
 #include "delta/hold_slots.h"
@@ -24,6 +24,10 @@
 
 namespace deltasplat {
 namespace {
+
+bool choosesClasses(const PackOptions& options) {
+    return options.painter && options.painter->choosesClasses();
+}
 
 // Classes of a block, `[slice][u][v]`, and of one slice of it.
 using BlockClasses = std::array<ClassIndex, 512>;
@@ -105,8 +109,7 @@ struct PackTools {
     const Holder* holder = nullptr;
     const ValueMixer* mixer = nullptr;
     const MixedSight* sight = nullptr;
-    const CodeTree* codes = nullptr;  // that values are mixed from
-    glm::ivec3 first{0};              // the voxel that slices, u and v of words are counted from
+    const CodeTree* codes = nullptr;  // that values are read from
 };
 
 // What a packer packs: columns of blocks (same u and v), slices in increasing order.
@@ -122,27 +125,6 @@ struct PackedColumns {
     std::vector<OwnLook> looks;  // likewise, if voxels have their own
 };
 
-// Looks that the voxels of a block have of their own.
-struct OwnLooks {
-    using Slice = std::array<OwnLook, 64>;
-    std::array<OwnLook, 512> block{};
-    std::array<Slice, 4> before{};  // [part]: of the slice before it
-    std::array<Slice, 4> held{};    // [part]
-
-    // Adds to changes where what is seen has another look than in the slice before. Not inline, as
-    // what follows: the path without own looks stays as small as it is.
-    [[gnu::noinline]] void compare(std::size_t part, BlockChanges& changes) const {
-        const OwnLook* last = before[part].data();
-        const OwnLook* slice = block.data();
-        for (int s = 0; s < 8; ++s, last = slice, slice += 64) {
-            for (std::uint64_t rest = changes.visible[s]; rest != 0; rest &= rest - 1) {
-                const int n = std::countr_zero(rest);
-                if (!(slice[n] == last[n])) changes.changed[s] |= std::uint64_t{1} << n;
-            }
-        }
-    }
-};
-
 class ColumnPacker {
   public:
     ColumnPacker(const IndexBox& box, const PackOptions& options, const PackTools& tools,
@@ -150,12 +132,13 @@ class ColumnPacker {
         : options_(options),
           tools_(tools),
           slotMap_(slotMap),
+          box_(box),
           planner_(box),
           layout_(planner_.shortest()) {
         if (tools.mixer) parts_ = tools.mixer->parts();
-        if (options.painter) own_ = std::make_unique<OwnLooks>();
         if (!tools.mixer) return;
-        window_.emplace(*tools.codes, options.sliceAxis, parts_.within == 1);
+        window_.emplace(*tools.codes, options.sliceAxis,
+                        parts_.within == 1 && !choosesClasses(options));
         const int blocks = parts_.voxels();
         mixed_.resize(std::size_t(blocks));
     }
@@ -168,19 +151,20 @@ class ColumnPacker {
         for (int half = 0; half < parts_.within; ++half) {
             halves_[std::size_t(half)].words.reserve(most);
             halves_[std::size_t(half)].storage.reserve(64 * most);
-            if (own_) halves_[std::size_t(half)].looks.reserve(64 * most);
+            if (options_.painter) halves_[std::size_t(half)].looks.reserve(64 * most);
         }
-        if (const GradientScale* scale = own_ ? options_.painter->gradientScale() : nullptr)
-            gradientReader_.emplace(*tools_.codes, options_.sliceAxis, parts_, *scale);
+        if (options_.painter) {
+            own_ = std::make_unique<BlockLooks>(*options_.painter, *tools_.codes,
+                                                options_.sliceAxis, parts_, box_);
+        }
         for (const CodeBlock* block = columns.begin; block != columns.end; ++block) {
-            inHand_ = block;
-            blockGradients_ = {};
+            if (own_) own_->beginBlock(*block);
             const bool isFirst = block == columns.begin || !follows(block[-1], *block);
             const bool isLast = block + 1 == columns.end || !follows(*block, block[1]);
             if (isFirst) {
                 before_ = {};
                 held_ = {};
-                if (own_) *own_ = {};
+                if (own_) own_->beginColumn();
             }
             if (tools_.mixer) {
                 addMixed(*block);
@@ -194,7 +178,7 @@ class ColumnPacker {
             classes_.fill(kEmptySlot);
             forParts([&](const glm::ivec2& part) { add(partOf(*block, next, part), part, 1); });
         }
-        gradientReader_.reset();
+        own_.reset();
     }
 
     /// Of the parts of columns along u, one.
@@ -230,7 +214,7 @@ class ColumnPacker {
             } else {
                 readLeafSlices(*block.leaf, options_.sliceAxis, mapped(slotMap_), classes_.data());
             }
-            if (own_) paint(block.position, 0);
+            if (own_) own_->paint(block.position, 0, classes_);
             return;
         }
         if (block.leaf) {
@@ -246,7 +230,7 @@ class ColumnPacker {
     void hold(const BlockSlots& slots, const glm::ivec3& position, const glm::ivec2& part,
               int number) {
         HeldSlots& held = held_[numberOf(part)];
-        if (own_) return holdLooks(slots, position, number, held, own_->held[numberOf(part)]);
+        if (own_) return holdLooks(slots, position, number, held, own_->held(numberOf(part)));
         const Holder& holder = *tools_.holder;
         const auto next = [&](Slot before, Slot slot) { return holder.next(before, slot); };
         holdSlots(slots, held, next,
@@ -255,14 +239,15 @@ class ColumnPacker {
 
     // What is held is slot and look together, each of which has to allow it.
     [[gnu::noinline]] void holdLooks(const BlockSlots& slots, const glm::ivec3& position,
-                                     int number, HeldSlots& before, OwnLooks::Slice& looksBefore) {
+                                     int number, HeldSlots& before,
+                                     BlockLooks::Slice& looksBefore) {
         const Holder& holder = *tools_.holder;
         for (std::size_t i = 0; i < slots.size(); ++i) classes_[i] = holder.classOf(slots[i]);
-        paint(position, number);
+        own_->paint(position, number, classes_);
         for (std::size_t i = 0; i < slots.size(); ++i) {
             Slot& held = before[i & 63];
             OwnLook& heldOwn = looksBefore[i & 63];
-            const VoxelLook look{classes_[i], own_->block[i]};
+            const VoxelLook look{classes_[i], own_->block()[i]};
             const VoxelLook heldLook{holder.classOf(held), heldOwn};
             const bool keeps = !(heldLook == look) && holder.allows(held, slots[i]) &&
                                options_.looksHold(heldLook, look);
@@ -271,36 +256,15 @@ class ColumnPacker {
                 heldOwn = look.own;
             }
             classes_[i] = holder.classOf(held);
-            own_->block[i] = heldOwn;
+            own_->block()[i] = heldOwn;
         }
-    }
-
-    // Gives the classes in hand looks of their own.
-    // @param position  of their block, (slice, u, v)
-    // @param number    of what the block in hand becomes
-    [[gnu::noinline]] void paint(const glm::ivec3& position, int number) {
-        const auto isSeen = [](ClassIndex one) { return one != 0; };
-        if (std::none_of(classes_.begin(), classes_.end(), isSeen)) return;
-        const glm::ivec3 order = sliceOrder(options_.sliceAxis);
-        const glm::dvec3 per(parts_.slices, parts_.within, parts_.within);
-        BlockPlace place{glm::dvec3(0), glm::dmat3(0)};
-        for (int axis = 0; axis < 3; ++axis) {
-            const int thin = 8 * position[axis];
-            place.first[order[axis]] = tools_.first[axis] + (thin + 0.5) / per[axis] - 0.5;
-            place.steps[axis][order[axis]] = 1 / per[axis];
-        }
-        const BlockGradients* gradients = nullptr;
-        if (gradientReader_) {
-            if (blockGradients_.empty()) blockGradients_ = gradientReader_->read(*inHand_);
-            gradients = &blockGradients_[std::size_t(number)];
-        }
-        options_.painter->paint(place, gradients, classes_, own_->block);
     }
 
     void addMixed(const CodeBlock& block) {
         window_->reader.read(block, window_->window);
         const bool isSeen = tools_.sight->canBeSeen(window_->window);
-        if (isSeen) tools_.mixer->mix(window_->window, slotMap_, mixed_);
+        const bool isPainted = choosesClasses(options_);
+        if (isSeen && !isPainted) tools_.mixer->mix(window_->window, slotMap_, mixed_);
         for (int s = 0; s < parts_.slices; ++s) {
             forParts([&](const glm::ivec2& part) {
                 const glm::ivec3 position = partOf(block, firstPart(block).x + s, part);
@@ -312,11 +276,13 @@ class ColumnPacker {
                 if (!isSeen) {
                     classes_.fill(kEmptySlot);
                     held_[numberOf(part)].fill(kEmptySlot);
+                } else if (isPainted) {
+                    own_->paint(position, number, classes_);
                 } else if (tools_.holder) {
                     hold(slots, position, part, number);
                 } else {
                     std::copy(slots.begin(), slots.end(), classes_.begin());
-                    if (own_) paint(position, number);
+                    if (own_) own_->paint(position, number, classes_);
                 }
                 add(position, part, slices);
             });
@@ -346,11 +312,11 @@ class ColumnPacker {
                 {visible, changed, packed.storage.size(), slice, {position.y, position.z}});
             packed.storage.insert(packed.storage.end(), &classes_[64 * s], &classes_[64 * s] + 64);
             if (!own_) continue;
-            const OwnLook* looks = &own_->block[64 * std::size_t(s)];
+            const OwnLook* looks = &own_->block()[64 * std::size_t(s)];
             packed.looks.insert(packed.looks.end(), looks, looks + 64);
         }
         std::copy_n(&classes_[7 * 64], 64, before.begin());
-        if (own_) std::copy_n(&own_->block[7 * 64], 64, own_->before[numberOf(part)].begin());
+        if (own_) own_->endBlock(numberOf(part));
     }
 
     struct Window {
@@ -363,6 +329,7 @@ class ColumnPacker {
     const PackOptions& options_;
     PackTools tools_;
     std::span<const Slot> slotMap_;
+    IndexBox box_;
     SlabPlanner planner_;
     SlabLayout layout_;  // of the shortest slabs that there may be
     Subdivision parts_;
@@ -373,10 +340,7 @@ class ColumnPacker {
     std::optional<Window> window_;
     std::vector<BlockSlots> mixed_;  // [part along u][along slices][along v]
     std::array<PackedColumns, 2> halves_;
-    std::unique_ptr<OwnLooks> own_;  // null: classes say all
-    std::optional<GradientReader> gradientReader_;
-    const CodeBlock* inHand_ = nullptr;
-    std::span<const BlockGradients> blockGradients_;  // of it, once they are asked for
+    std::unique_ptr<BlockLooks> own_;  // null: classes say all
 };
 
 // Cuts the blocks into runs of whole columns, for each of which there is one packer. The cuts
@@ -483,7 +447,7 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     if (options.holds) holder.emplace(mixer ? mixer->levels() : volume, options);
     const std::span<const Slot> slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
     std::optional<MixedSight> sight;
-    if (mixer) sight.emplace(*mixer, slotMap);
+    if (mixer) sight.emplace(*mixer, slotMap, choosesClasses(options));
     const std::vector<CodeBlock> blocks =
         sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
               : BlockReader(*volume.codes, nullptr, options.sliceAxis, slotMap).takeBlocks();
@@ -496,7 +460,7 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     std::vector<ColumnPacker> packers;
     packers.reserve(runs.size());
     const PackTools tools{holder ? &*holder : nullptr, mixer, sight ? &*sight : nullptr,
-                          volume.codes.get(), parts.origin};
+                          volume.codes.get()};
     for (std::size_t i = 0; i < runs.size(); ++i)
         packers.emplace_back(packed.box, options, tools, slotMap);
     parallelFor(packers.size(), [&](std::size_t i) { packers[i].run(runs[i]); });

@@ -66,7 +66,8 @@ struct PackOptions {
     /// Divides voxels into thin ones, which then are what voxels are. Slots are those of its
     /// levels. Null: none.
     const ValueMixer* mixer = nullptr;
-    /// Gives voxels looks of their own. Null: classes say all.
+    /// Gives voxels looks of their own. Null: classes say all. With one that chooses classes there
+    /// has to be a mixer, and nothing is held.
     const VoxelPainter* painter = nullptr;
     /// With a painter, may a voxel go on as the first, for which `holds` has to allow it as well?
     /// Empty: never.

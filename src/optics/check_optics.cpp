@@ -56,6 +56,26 @@ bool isShare(double number) {
     return number >= 0 && number <= 1;
 }
 
+void checkSurface(const Optics& optics) {
+    requireThat(optics.colorBy == ColorBy::kValue, "`surface`",
+                "`colorBy` " + colorByName(optics.colorBy) + " besides", "`colorBy` value");
+    requireThat(optics.gradientOpacity.empty(), "`surface`", "`gradientOpacity` besides",
+                "one of the two");
+    requireThat(std::isfinite(optics.surface->isovalue), "`surface.isovalue`",
+                numberText(optics.surface->isovalue), "a finite number");
+    for (int i = 0; i < 3; ++i) checkLight("`surface.color`", optics.surface->color[i]);
+}
+
+void checkGradientOpacity(const std::vector<glm::dvec2>& points) {
+    if (points.empty()) return;
+    constexpr const char* kOption = "`gradientOpacity`";
+    checkPlaces(kOption, points);
+    for (const glm::dvec2& point : points) {
+        requireThat(point.x >= 0, kOption, "x = " + numberText(point.x), "a number >= 0");
+        requireThat(isShare(point.y), kOption, numberText(point.y), "a number within 0..1");
+    }
+}
+
 void checkTransferFunction(const TransferFunction& function) {
     constexpr const char* kColors = "transfer function's colours";
     checkPlaces(kColors, function.colors);
@@ -77,7 +97,7 @@ void checkTransferFunction(const TransferFunction& function) {
 }  // namespace
 
 void checkOptics(const Optics& optics) {
-    checkTransferFunction(optics.transferFunction);
+    if (!optics.surface) checkTransferFunction(optics.transferFunction);
     if (optics.unitDistance) {
         const double unit = *optics.unitDistance;
         requireThat(std::isfinite(unit) && unit > 0, "`unitDistance`", numberText(unit),
@@ -91,6 +111,8 @@ void checkOptics(const Optics& optics) {
                     "`colorBy` " + colorByName(optics.colorBy) + " besides", "`colorBy` value");
         checkShading(*optics.shading);
     }
+    if (optics.surface) checkSurface(optics);
+    checkGradientOpacity(optics.gradientOpacity);
     const double extinction = optics.extinctionScale;
     requireThat(std::isfinite(extinction) && extinction >= 0, "`extinctionScale`",
                 numberText(extinction), "a number >= 0");

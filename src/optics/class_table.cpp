@@ -54,7 +54,22 @@ struct CodeLook {
     Look look;
 };
 
+// What is inside of a surface.
+std::vector<CodeLook> lookUpSurface(const Volume& volume, const Surface& surface) {
+    const Look inside{std::numeric_limits<double>::infinity(), surface.color};
+    const bool isBelow = isLevelSet(volume);
+    std::vector<CodeLook> codes;
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+        if (volume.histogram[code] == 0) continue;
+        const double value = volume.codeBook.valueOf(Code(code));
+        const bool isInside = isBelow ? value <= surface.isovalue : value >= surface.isovalue;
+        if (isInside) codes.push_back({Code(code), inside});
+    }
+    return codes;
+}
+
 std::vector<CodeLook> lookUp(const Volume& volume, const Optics& optics) {
+    if (optics.surface) return lookUpSurface(volume, *optics.surface);
     const TransferFunction& function = optics.transferFunction;
     const ColorCurve colors(function);
     const glm::dvec2 range =

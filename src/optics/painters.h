@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "optics/voxel_painter.h"
 
@@ -16,5 +18,19 @@ std::unique_ptr<const VoxelPainter> makePositionPainter(const Volume& volume, Co
 /// Returns who knows how voxels lie, so that they reflect lights in the colours of their classes.
 std::unique_ptr<const VoxelPainter> makeShadingPainter(const Volume& volume,
                                                        const Shading& shading);
+
+/// Returns who draws a surface. Voxels are of the class that is seen by the share of them that lies
+/// inside.
+/// @param shading  empty: in one colour from everywhere
+std::unique_ptr<const VoxelPainter> makeSurfacePainter(const Volume& volume, const Surface& surface,
+                                                       const std::optional<Shading>& shading);
+
+/// Returns who makes voxels less opaque by how much values change there.
+/// @param factors  Optics::gradientOpacity, not empty
+/// @param inner    who paints them otherwise, if by gradients those of scaledValues about the
+///                 middle of all values; null: they look as their classes do
+std::unique_ptr<const VoxelPainter> makeFadingPainter(const Volume& volume,
+                                                      const std::vector<glm::dvec2>& factors,
+                                                      std::unique_ptr<const VoxelPainter> inner);
 
 }  // namespace deltasplat

@@ -17,8 +17,9 @@ class OwnColors : public LookLight {
   public:
     explicit OwnColors(const ClassTable& classes) : LookLight(VoxelUnits(classes, glm::dvec3(1))) {}
 
-    void light(const WordPlace&, const std::uint16_t* classes, const OwnLook* looks,
-               WordUnits& colors) const override {
+  protected:
+    void lightVoxels(const WordPlace&, const std::uint16_t* classes, const OwnLook* looks,
+                     WordUnits& colors) const override {
         for (std::size_t n = 0; n < 64; ++n) {
             const glm::vec4 color = units().unitsOf(classes[n], glm::vec3(colorOfLook(looks[n])));
             for (int c = 0; c < 4; ++c) colors[std::size_t(c)][n] = color[c];
@@ -36,8 +37,7 @@ class PositionPainter : public VoxelPainter {
     bool needsColors() const override { return false; }
     bool dependsOnCamera() const override { return false; }
 
-    void paint(const BlockPlace& place, const BlockGradients*,
-               std::span<const std::uint16_t, 512> classes,
+    void paint(const BlockPlace& place, const BlockField*, std::span<std::uint16_t, 512> classes,
                std::span<OwnLook, 512> looks) const override {
         for (std::size_t n = 0; n < looks.size(); ++n) {
             if (classes[n] == 0) continue;

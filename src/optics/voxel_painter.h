@@ -19,13 +19,18 @@
 
 namespace deltasplat {
 
-/// What a voxel looks like beside its class: bits that only its painter understands. What has the
-/// same class and the same bits looks the same from everywhere.
+/// What a voxel looks like beside its class: bits that only its painter understands, and how much
+/// of it there is. What has the same class and the same look is seen alike from everywhere.
 struct OwnLook {
-    std::array<std::uint16_t, 4> bits{};
+    std::array<std::uint16_t, 3> bits{};
+    std::uint8_t missing = 0;  ///< the share of the voxel that is not there, of kAll
+    /// The share of its class' opacity over a unit distance that it has not, of kAll.
+    std::uint8_t faded = 0;
+
+    static constexpr int kAll = 255;
 
     bool operator==(const OwnLook& other) const {
-        return std::bit_cast<std::uint64_t>(bits) == std::bit_cast<std::uint64_t>(other.bits);
+        return std::bit_cast<std::uint64_t>(*this) == std::bit_cast<std::uint64_t>(other);
     }
 };
 
@@ -48,11 +53,16 @@ struct GradientScale {
     std::vector<float> ofCode;  ///< [kCodeCount], finite
     /// Of what is not active; empty: nothing is there.
     std::optional<float> background;
+    double unit = 1;          ///< data units that a number of 1 stands for
+    bool withValues = false;  ///< whether the values are wanted besides
 };
 
-/// Gradients of a block's voxels, each `[slice][u][v]`: how much the scaled value grows from a
-/// voxel of the volume to the next along x, y and z.
-using BlockGradients = std::array<std::array<float, 512>, 3>;
+/// The scaled values of a block's voxels and how they change, each `[slice][u][v]`.
+struct BlockField {
+    /// How much the value grows from a voxel of the volume to the next along x, y and z.
+    std::array<std::array<float, 512>, 3> gradients;
+    std::array<float, 512> values;  ///< if they are wanted; NaN where nothing is
+};
 
 /// Where a word's voxels lie: (slice, u, v) of the first.
 using WordPlace = glm::ivec3;
@@ -66,13 +76,23 @@ class LookLight {
     /// Returns the premultiplied colours of a word's voxels; what those get that cannot be seen is
     /// of no consequence.
     /// @param classes  [64]
-    virtual void light(const WordPlace& place, const std::uint16_t* classes, const OwnLook* looks,
-                       WordUnits& colors) const = 0;
+    void light(const WordPlace& place, const std::uint16_t* classes, const OwnLook* looks,
+               WordUnits& colors) const {
+        lightVoxels(place, classes, looks, colors);
+        fade(classes, looks, colors);
+        leaveMissing(looks, colors);
+    }
 
   protected:
     explicit LookLight(VoxelUnits units) : units_(std::move(units)) {}
+    /// As light(), of voxels that nothing is missing of.
+    virtual void lightVoxels(const WordPlace& place, const std::uint16_t* classes,
+                             const OwnLook* looks, WordUnits& colors) const = 0;
 
   private:
+    void fade(const std::uint16_t* classes, const OwnLook* looks, WordUnits& colors) const;
+    static void leaveMissing(const OwnLook* looks, WordUnits& colors);
+
     VoxelUnits units_;
 };
 
@@ -89,16 +109,23 @@ class VoxelPainter {
     virtual ~VoxelPainter() = default;
     /// Whether classes tell colours apart too, not opacities alone.
     virtual bool needsColors() const = 0;
+    /// Whether it says of which class voxels are. A voxel may then be seen if it or one beside it
+    /// is of a class that is.
+    virtual bool choosesClasses() const { return false; }
     /// What gradients are to be taken of; null: it needs none.
     virtual const GradientScale* gradientScale() const { return nullptr; }
     /// Paints the voxels of a block that can be seen; what others get is of no consequence.
-    /// @param gradients  if it needs them
-    /// @param classes    [slice][u][v]: 0 is what cannot be seen
-    virtual void paint(const BlockPlace& place, const BlockGradients* gradients,
-                       std::span<const std::uint16_t, 512> classes,
+    /// @param field    if it needs gradients
+    /// @param classes  [slice][u][v]: 0 is what cannot be seen; written if it chooses them, else
+    ///                 at most cleared
+    virtual void paint(const BlockPlace& place, const BlockField* field,
+                       std::span<std::uint16_t, 512> classes,
                        std::span<OwnLook, 512> looks) const = 0;
     /// Whether what is painted looks different from different sides.
     virtual bool dependsOnCamera() const = 0;
+    /// Whether voxels may go on as what they were in the slice before (PackOptions::looksHold): not
+    /// if that depends on the camera, nor if opacity is not that of classes.
+    virtual bool mayHold() const { return !dependsOnCamera(); }
     /// Returns what looks are seen as.
     /// @param classes  what those of paint() look like
     /// @param scene    null where nothing depends on it

@@ -3,16 +3,23 @@
 
 #include <algorithm>
 
+#include "portable_math.h"
+
 namespace deltasplat {
 
 VoxelUnits::VoxelUnits(const ClassTable& classes, const glm::dvec3& brightest)
-    : brightest_(brightest) {
+    : unitDistances_(
+          float(classes.stepWorld / classes.unitDistanceWorld * classes.extinctionScale)),
+      brightest_(brightest) {
     const std::vector<double> alphas = classes.alphas();
     const double largest = *std::max_element(alphas.begin(), alphas.end());
     scale_ = glm::dvec4(brightest, 1) * largest / double(ClassTable::kMax);
     // As shares they can be neither too large nor too small to reckon with.
     for (const double alpha : alphas)
         alphas_.push_back(largest > 0 ? float(alpha / largest * ClassTable::kMax) : 0);
+    unitsOfOpaque_ = largest > 0 ? float(ClassTable::kMax / largest) : 0;
+    for (const Look& look : classes.looks)
+        opacities_.push_back(float(-portable::expm1(-look.extinction)));
     for (int c = 0; c < 3; ++c)
         shares_[c] = brightest[c] > 0 && scale_[c] > 0 ? float(1 / brightest[c]) : 0;
 }

@@ -28,6 +28,12 @@ class VoxelUnits {
     const glm::dvec4& scale() const { return scale_; }
     /// Returns the opacity of a class, 0..ClassTable::kMax.
     float alphaOf(std::uint16_t number) const { return alphas_[number]; }
+    /// Returns the opacity of a class over a unit distance, 0..1.
+    float opacityOf(std::uint16_t number) const { return opacities_[number]; }
+    /// How many unit distances a step is, as extinction counts them.
+    float unitDistances() const { return unitDistances_; }
+    /// What alphaOf() an opacity of 1 would be.
+    float unitsOfOpaque() const { return unitsOfOpaque_; }
     /// What a colour's channels are multiplied by to become shares of the brightest.
     const glm::vec3& shares() const { return shares_; }
     /// Returns the premultiplied colour of a voxel.
@@ -36,7 +42,10 @@ class VoxelUnits {
     glm::vec4 unitsOf(std::uint16_t number, const glm::vec3& color) const;
 
   private:
-    std::vector<float> alphas_;  // [classes]
+    std::vector<float> alphas_;     // [classes]
+    std::vector<float> opacities_;  // [classes]
+    float unitDistances_;
+    float unitsOfOpaque_;
     glm::dvec3 brightest_;
     glm::vec3 shares_;
     glm::dvec4 scale_;

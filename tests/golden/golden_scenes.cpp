@@ -182,6 +182,15 @@ void addLooks(Scenes& scenes) {
     camera.projection = Projection::kPerspective;
     camera.fovDegrees = 60;
     scenes.add("shaded-perspective", "engine", camera, colored()).optics.shading = shading;
+    for (const int between : {0, 1}) {
+        RenderOptions& surface =
+            scenes.add("surface-" + std::to_string(between), "engine", turned(33, 21), colored());
+        surface.optics.surface = Surface{90, {0.8, 0.6, 0.5}};
+        surface.optics.shading = shading;
+        surface.between = between;
+    }
+    scenes.add("gradient-opacity", "cloud", turned(10, 50), bent()).optics.gradientOpacity = {
+        {0, 0.1}, {0.02, 0.9}};
 }
 
 }  // namespace

@@ -168,6 +168,26 @@ TEST(Identity, AlsoOfLooksThatVoxelsHaveOfTheirOwn) {
     }
 }
 
+// Of surfaces, whose voxels are seen in part; and where gradients say how opaque they are.
+TEST(Identity, AlsoOfWhatIsSeenInPart) {
+    const Volume volume = test::randomVolume(kBoxes[0], 21, 0.5, {1, 1.5, 0.8});
+    for (const bool isSurface : {false, true}) {
+        for (const glm::dvec3& direction : {kDirections[0], kDirections[1]}) {
+            RenderOptions options = optionsFor(direction);
+            if (isSurface) {
+                options.optics.surface = Surface{120.5, {0.7, 0.6, 0.5}};
+                options.optics.shading.emplace();
+            } else {
+                options.optics.gradientOpacity = {{20, 0.1}, {60, 0.8}};
+            }
+            for (const int between : {0, 1, 3}) {
+                options.between = between;
+                expectSamePixels(volume, options);
+            }
+        }
+    }
+}
+
 // Of solid shapes little changes: slabs are joined, and small footprints are stamped too. They
 // begin and end between blocks, at negative indices; one hides the other, and a few voxels come and
 // go.

@@ -15,6 +15,7 @@
 #include "property/test_scene.h"
 #include "support/error_of.h"
 #include "support/make_volume.h"
+#include "support/mirrored.h"
 
 namespace deltasplat::test {
 namespace {
@@ -261,20 +262,6 @@ TEST(Shading, addsNoNoiseToWhatIsHomogeneous) {
     EXPECT_NEAR(still, 0.8 * (shading.ambient + shading.diffuse / 2), 1e-3);
     const auto [low, high] = spread(render(slab(1), options).image);
     EXPECT_LT(high - low, 0.02);
-}
-
-Image mirrored(const Image& image) {
-    Image result = image;
-    for (int y = 0; y < image.size.y; ++y) {
-        for (int x = 0; x < image.size.x; ++x) {
-            for (int c = 0; c < 4; ++c) {
-                const int from = 4 * (y * image.size.x + image.size.x - 1 - x) + c;
-                const int to = 4 * (y * image.size.x + x) + c;
-                result.rgba[std::size_t(to)] = image.rgba[std::size_t(from)];
-            }
-        }
-    }
-    return result;
 }
 
 // Bit for bit: a world turned inside out, seen by a camera and lit by lights that are so as well.

@@ -39,8 +39,8 @@ TEST(BlockGradients, areExactOfLinearFields) {
             const BlockReader blocks(*volume.codes, nullptr, axis, {});
             int checked = 0;
             for (const CodeBlock& block : blocks.blocks()) {
-                const auto gradients = reader.read(block);
-                ASSERT_EQ(int(gradients.size()), parts.voxels());
+                const auto fields = reader.read(block);
+                ASSERT_EQ(int(fields.size()), parts.voxels());
                 for (int s = 0; s < 8 * parts.slices; ++s) {
                     for (int u = 0; u < 8 * parts.within; ++u) {
                         for (int v = 0; v < 8 * parts.within; ++v) {
@@ -53,9 +53,9 @@ TEST(BlockGradients, areExactOfLinearFields) {
                             const int part = (u / 8 * parts.slices + s / 8) * parts.within + v / 8;
                             const int n = 64 * (s % 8) + 8 * (u % 8) + v % 8;
                             for (int c = 0; c < 3; ++c) {
-                                ASSERT_EQ(
-                                    gradients[std::size_t(part)][std::size_t(c)][std::size_t(n)],
-                                    float(kSlope[c]));
+                                ASSERT_EQ(fields[std::size_t(part)]
+                                              .gradients[std::size_t(c)][std::size_t(n)],
+                                          float(kSlope[c]));
                             }
                             ++checked;
                         }
@@ -77,11 +77,12 @@ TEST(BlockGradients, meetTheBackgroundWhereThereIsOne) {
         GradientReader reader(*one.codes, 2, {}, scale);
         CodeBlock block;
         block.position = toSliceOrder(index, 2) / 8;
-        const auto gradients = reader.read(block);
+        const auto fields = reader.read(block);
         const glm::ivec3 place = toSliceOrder(index, 2) % 8;
         const int n = 64 * place.x + 8 * place.y + place.z;
         glm::vec3 gradient;
-        for (int c = 0; c < 3; ++c) gradient[c] = gradients.front()[std::size_t(c)][std::size_t(n)];
+        for (int c = 0; c < 3; ++c)
+            gradient[c] = fields.front().gradients[std::size_t(c)][std::size_t(n)];
         return gradient;
     };
     EXPECT_EQ(at({8, 8, 8}), glm::vec3(0));

@@ -54,6 +54,7 @@ void addBenchOptions(CLI::App& app, BenchCommand& command) {
                     "tables that needs nothing else; made if it does not exist");
     addCameraOptions(app, command.picture);
     addOpticsOptions(app, command.picture);
+    addSurfaceOptions(app, command.picture.surface, command.picture.render.optics.gradientOpacity);
     addShadingOptions(app, command.picture.shading);
     addSplattingOptions(app, command.picture.render);
     addInputOptions(app, command.picture.read);
@@ -114,6 +115,7 @@ void runBench(const CLI::App& app, BenchCommand command, const Session& session)
     requireArgument(!command.inputs.empty(), "INPUT", "FILE (see 'deltasplat bench --help')");
     applyProjection(app, command.picture.render.camera);
     checkCamera(command.picture.render.camera);
+    applySurface(app, command.picture.render.mode, command.picture.surface, command.picture.read);
     if (!command.report.empty()) checkReport(command);
     Findings found = measureAll(app, command, session);
     if (!found.report.entries.empty()) {

@@ -34,14 +34,12 @@ std::optional<T> toNumber(std::string_view text) {
 
 // Splits at the separator; empty as a whole if any part is no number.
 template <class T>
-std::vector<T> toNumbers(std::string_view text, char separator) {
+std::vector<T> toNumbers(const std::string& text, char separator) {
     std::vector<T> values;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(separator, begin), text.size());
-        const std::optional<T> value = toNumber<T>(text.substr(begin, end - begin));
+    for (const std::string& part : splitText(text, separator)) {
+        const std::optional<T> value = toNumber<T>(part);
         if (!value) return {};
         values.push_back(*value);
-        begin = end + 1;
     }
     return values;
 }
@@ -71,6 +69,15 @@ std::string joinNumbers(const std::vector<double>& values, const std::string& se
     std::string text;
     for (const double value : values) text += (text.empty() ? "" : separator) + numberText(value);
     return text;
+}
+
+std::vector<std::string> splitText(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    std::size_t begin = 0;
+    for (std::size_t end; (end = text.find(separator, begin)) != std::string::npos; begin = end + 1)
+        parts.push_back(text.substr(begin, end - begin));
+    parts.push_back(text.substr(begin));
+    return parts;
 }
 
 std::string joinWords(const std::vector<std::string>& words, const std::string& last) {

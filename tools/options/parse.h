@@ -47,6 +47,8 @@ Parser<glm::i64vec3> dimensions();
 
 /// Returns the numbers' texts, joined by `separator`.
 std::string joinNumbers(const std::vector<double>& values, const std::string& separator);
+/// Returns what is between separators: of none, all.
+std::vector<std::string> splitText(const std::string& text, char separator);
 /// Returns the words as one text: "a, b or c".
 std::string joinWords(const std::vector<std::string>& words, const std::string& last);
 

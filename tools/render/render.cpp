@@ -98,6 +98,7 @@ void finishPicture(const RenderCommand& command, const Volume& volume, RenderRes
 void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
     applyMode(command);
     applyProjection(app, command.picture.render.camera);
+    applySurface(app, command.picture.render.mode, command.picture.surface, command.picture.read);
     validate(command);
     const PictureOptions& picture = command.picture;
     RenderTimes times;

@@ -8,6 +8,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/optics/default_ramp.h"
 #include "number_text.h"
+#include "optics/value_colors.h"
 #include "options/transfer_function_option.h"
 
 namespace deltasplat {
@@ -56,11 +57,23 @@ const Preset* presetOf(const PictureOptions& picture, const Volume& volume) {
 
 // Surfaces are shaded unless something else is wanted: those of level sets and of scanned bodies.
 std::optional<Shading> shadingOf(const PictureOptions& picture, const Volume& volume,
-                                 const Preset* preset) {
+                                 const Preset* preset, bool isSurface) {
     if (picture.render.mode != Mode::kComposite) return {};
     const bool isScan = preset && preset->values == Preset::Values::kHounsfield;
     const bool byValue = picture.render.optics.colorBy == ColorBy::kValue;
-    return picture.shading.of(byValue && (isScan || volume.fromLevelSet));
+    return picture.shading.of(byValue && (isScan || isSurface || volume.fromLevelSet));
+}
+
+// A surface has the colour that values have there, if that is asked for and it has no other.
+void finishSurface(const PictureOptions& picture, const Volume& volume, Optics& optics,
+                   const Listener& listener) {
+    const double isovalue = optics.surface->isovalue;
+    if (!picture.transferFunction.empty() && !picture.surface.color)
+        optics.surface->color = glm::dvec3(ValueColors(volume, optics).colorOf(float(isovalue)));
+    if (volume.empty() || (isovalue >= volume.valueMin && isovalue <= volume.valueMax)) return;
+    listener.warn("--isovalue: got " + numberText(isovalue) + ", which values from " +
+                  numberText(volume.valueMin) + " to " + numberText(volume.valueMax) +
+                  " never pass");
 }
 
 }  // namespace
@@ -90,21 +103,19 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     read.keepInexact = picture.render.mode != Mode::kComposite;
     Volume volume = readVolume(input, read, listener);
     const Preset* preset = presetOf(picture, volume);
-    options.optics.shading = shadingOf(picture, volume, preset);
-    if (picture.transferFunction.empty() && preset) {
-        options.optics.transferFunction = presetFunction(preset->name);
-        return volume;
-    }
-    if (!picture.transferFunction.empty()) {
-        if (!preset) return volume;
+    options.optics.surface = picture.surface.of(volume);
+    options.optics.shading = shadingOf(picture, volume, preset, options.optics.surface.has_value());
+    if (picture.transferFunction.empty()) {
+        const std::optional<glm::dvec2>& range = picture.render.optics.range;
+        options.optics.transferFunction =
+            preset  ? presetFunction(preset->name)
+            : range ? (mip ? wholeRamp(volume, *range) : defaultRamp(volume, *range))
+                    : (mip ? wholeRamp(volume) : defaultRamp(volume));
+    } else if (preset) {
         fitPreset(*preset, volume, options.optics);
-        warnOfOtherData(*preset, volume, listener);
-        return volume;
+        if (!options.optics.surface) warnOfOtherData(*preset, volume, listener);
     }
-    const std::optional<glm::dvec2>& range = picture.render.optics.range;
-    options.optics.transferFunction =
-        range ? (mip ? wholeRamp(volume, *range) : defaultRamp(volume, *range))
-              : (mip ? wholeRamp(volume) : defaultRamp(volume));
+    if (options.optics.surface) finishSurface(picture, volume, options.optics, listener);
     return volume;
 }
 

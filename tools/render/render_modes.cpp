@@ -42,7 +42,8 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
     std::vector<std::string> unused = {
         "--method",     "--tolerance",     "--tolerance-value", "--resolution", "--between",
         "--extinction", "--unit-distance", "--color-by",        "--shade",      "--light",
-        "--ambient",    "--diffuse",       "--specular",        "--shininess"};
+        "--ambient",    "--diffuse",       "--specular",        "--shininess",  "--surface",
+        "--isovalue",   "--surface-color", "--gradient-opacity"};
     if (mode == Mode::kMip) unused.push_back("--sigma");
     if (mode == Mode::kXray || isExr(command.output))
         unused.insert(unused.end(), {"--tf", "--range"});

@@ -283,6 +283,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addModeOption(app, command.picture.render.mode);
     addWindowOption(app, command.window);
     addOpticsOptions(app, command.picture);
+    addSurfaceOptions(app, command.picture.surface, command.picture.render.optics.gradientOpacity);
     addShadingOptions(app, command.picture.shading);
     addMethodOption(app, command.picture.render.method);
     addSplattingOptions(app, command.picture.render);

@@ -12,6 +12,7 @@
 #include "listener.h"
 #include "options/command_line.h"
 #include "options/shading_options.h"
+#include "options/surface_options.h"
 
 namespace deltasplat {
 
@@ -22,6 +23,7 @@ struct PictureOptions {
     ReadOptions read;
     RenderOptions render;
     ShadingChoice shading;
+    SurfaceChoice surface;
 };
 
 /// What `deltasplat render` was asked to do.

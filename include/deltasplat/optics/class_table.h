@@ -12,6 +12,7 @@
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/optics/shading.h"
+#include "deltasplat/optics/surface.h"
 #include "deltasplat/optics/transfer_function.h"
 
 namespace deltasplat {
@@ -113,6 +114,13 @@ struct Optics {
     /// Lights that what is shown reflects; empty: it shines by itself, in the transfer function's
     /// colours. Not with another colorBy than kValue.
     std::optional<Shading> shading;
+    /// Shown instead of what the transfer function shows; empty: none. Not with another colorBy
+    /// than kValue.
+    std::optional<Surface> surface;
+    /// What the transfer function's opacity, over a unit distance, is multiplied by, as a function
+    /// of how much values change: straight lines between points (data units per world unit; factor
+    /// of 0..1), and the first and last factor beyond them. Empty: 1. Not with a surface.
+    std::vector<glm::dvec2> gradientOpacity;
 };
 
 /// Classifies every code that occurs in the volume: extinction per world unit sigma_t = -ln(1 -

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optics/reflected_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+
+namespace deltasplat {
+namespace {
+
+// The most that any voxel reflects.
+glm::dvec3 brightestOf(const Shading& shading, const ClassTable& classes) {
+    glm::dvec3 own(0);
+    for (const Look& look : classes.looks) own = glm::max(own, look.color);
+    glm::dvec3 intensity(0);
+    for (const Light& light : shading.lights) intensity += light.strength * light.color;
+    return own * (shading.ambient + shading.diffuse * intensity) + shading.specular * intensity;
+}
+
+// The way to a light, of length 1.
+glm::dvec3 towards(const Light& light, const Camera& camera) {
+    if (light.frame == LightFrame::kHead) return -camera.direction;
+    // Of any length, so that its square may be no number.
+    const glm::dvec3 size = glm::abs(light.direction);
+    const glm::dvec3 way = -glm::normalize(light.direction / std::max({size.x, size.y, size.z}));
+    if (light.frame == LightFrame::kWorld) return way;
+    return way.x * camera.right + way.y * camera.up - way.z * camera.direction;
+}
+
+// Of length 1; of ways that are opposite there is none.
+glm::vec3 halfWay(const glm::dvec3& a, const glm::dvec3& b) {
+    const double length = glm::length(a + b);
+    return glm::vec3(length > 0 ? (a + b) / length : glm::dvec3(0));
+}
+
+}  // namespace
+
+ReflectedLight::ReflectedLight(const Shading& shading, const ClassTable& classes,
+                               const LitScene& scene)
+    : LookLight(VoxelUnits(classes, brightestOf(shading, classes))) {
+    const Camera& camera = scene.camera;
+    const glm::dvec3 toCamera = -camera.direction;
+    const glm::dvec3 shares(units().shares());
+    reflection_.ambient = float(shading.ambient);
+    reflection_.shininess = float(shading.shininess);
+    reflection_.hasSpecular = shading.specular > 0;
+    reflection_.fromEye = camera.projection != Projection::kOrtho;
+    reflection_.toCamera = glm::vec3(toCamera);
+    for (const Light& light : shading.lights) {
+        const glm::dvec3 intensity = light.strength * light.color;
+        const glm::dvec3 toLight = towards(light, camera);
+        reflection_.rays.push_back({light.frame == LightFrame::kHead, glm::vec3(toLight),
+                                    halfWay(toLight, toCamera),
+                                    glm::vec3(shading.diffuse * intensity),
+                                    glm::vec3(shading.specular * intensity * shares)});
+    }
+    for (std::size_t number = 0; number < classes.looks.size(); ++number) {
+        const auto one = std::uint16_t(number);
+        colors_.push_back(units().unitsOf(one, glm::vec3(classes.looks[number].color)));
+    }
+    if (!reflection_.fromEye) return;
+    eye_ = glm::dvec3(glm::inverse(scene.worldFromVoxel) * glm::dvec4(camera.eyeWorld(), 1));
+    steps_ = glm::dmat3(scene.worldFromVoxel);
+}
+
+void ReflectedLight::lightVoxels(const WordPlace& place, const std::uint16_t* classes,
+                                 const OwnLook* looks, WordUnits& colors) const {
+    WordToLight word{colors_.data(), classes, looks, nullptr};
+    if (!reflection_.fromEye) return reflect(reflection_, word, colors);
+    const WaysToEye ways{glm::vec3(steps_ * (eye_ - glm::dvec3(place))), glm::vec3(-steps_[1]),
+                         glm::vec3(-steps_[2])};
+    word.ways = &ways;
+    reflect(reflection_, word, colors);
+}
+
+glm::mat3 worldFromIndexGradient(const Volume& volume) {
+    const glm::dvec3 size = volume.voxelSize();
+    const glm::dmat3 world = glm::dmat3(volume.worldFromIndex) / std::min({size.x, size.y, size.z});
+    return glm::mat3(glm::transpose(glm::inverse(world)));
+}
+
+}  // namespace deltasplat

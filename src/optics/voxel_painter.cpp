@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optics/voxel_painter.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "optics/opacity_steps.h"
+#include "optics/painters.h"
+
+namespace deltasplat {
+
+// What is faded has less of the opacity over a unit distance, of which each step takes its part.
+void LookLight::fade(const std::uint16_t* classes, const OwnLook* looks, WordUnits& colors) const {
+    unsigned any = 0;
+    for (std::size_t n = 0; n < 64; ++n) any |= looks[n].faded;
+    if (any == 0) return;
+    std::array<float, 64> opacities;
+    for (std::size_t n = 0; n < 64; ++n) {
+        const float left = float(OwnLook::kAll - looks[n].faded) / OwnLook::kAll;
+        opacities[n] = left * units_.opacityOf(classes[n]);
+    }
+    std::array<float, 64 + kStepsSpare> steps;
+    steps.fill(units_.unitDistances());
+    repeatOpacity(opacities.data(), steps.data(), opacities.size());
+    for (std::size_t n = 0; n < 64; ++n) {
+        const float alpha = units_.alphaOf(classes[n]);
+        if (looks[n].faded == 0 || alpha == 0) continue;
+        const float ratio = std::min(opacities[n] * units_.unitsOfOpaque() / alpha, 1.0f);
+        for (auto& channel : colors) channel[n] *= ratio;
+    }
+}
+
+// What is missing is missing of all channels alike.
+void LookLight::leaveMissing(const OwnLook* looks, WordUnits& colors) {
+    unsigned any = 0;
+    for (std::size_t n = 0; n < 64; ++n) any |= looks[n].missing;
+    if (any == 0) return;
+    for (auto& channel : colors) {
+        for (std::size_t n = 0; n < 64; ++n)
+            channel[n] *= float(OwnLook::kAll - looks[n].missing) / OwnLook::kAll;
+    }
+}
+
+std::unique_ptr<const VoxelPainter> makePainter(const Volume& volume, const Optics& optics) {
+    if (volume.empty()) return nullptr;
+    if (optics.surface) return makeSurfacePainter(volume, *optics.surface, optics.shading);
+    std::unique_ptr<const VoxelPainter> painter;
+    if (optics.colorBy != ColorBy::kValue) {
+        painter = makePositionPainter(volume, optics.colorBy);
+    } else if (optics.shading) {
+        painter = makeShadingPainter(volume, *optics.shading);
+    }
+    if (optics.gradientOpacity.empty()) return painter;
+    return makeFadingPainter(volume, optics.gradientOpacity, std::move(painter));
+}
+
+}  // namespace deltasplat
