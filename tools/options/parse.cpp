@@ -67,6 +67,15 @@ Parser<glm::dvec3> threeNumbers(double min, double max, const std::string& expec
 
 }  // namespace
 
+std::vector<std::string> splitAt(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    std::size_t begin = 0;
+    for (std::size_t end; (end = text.find(separator, begin)) != std::string::npos; begin = end + 1)
+        parts.push_back(text.substr(begin, end - begin));
+    parts.push_back(text.substr(begin));
+    return parts;
+}
+
 std::string joinNumbers(const std::vector<double>& values, const std::string& separator) {
     std::string text;
     for (const double value : values) text += (text.empty() ? "" : separator) + numberText(value);

@@ -11,15 +11,6 @@
 namespace deltasplat {
 namespace {
 
-std::vector<std::string> partsOf(const std::string& text) {
-    std::vector<std::string> parts;
-    std::size_t begin = 0;
-    for (std::size_t end; (end = text.find(':', begin)) != std::string::npos; begin = end + 1)
-        parts.push_back(text.substr(begin, end - begin));
-    parts.push_back(text.substr(begin));
-    return parts;
-}
-
 // Where it comes from, then its colour, if any, then its strength, if any.
 Light parseLight(const std::string& option, const std::string& text) {
     const auto refuse = [&] {
@@ -28,7 +19,7 @@ Light parseLight(const std::string& option, const std::string& text) {
                                  "head, X,Y,Z or view:X,Y,Z, not all 0, then, if wanted, :R,G,B "
                                  "and :STRENGTH, as in view:1,-1,-1:1,0.9,0.8:1.5"));
     };
-    const std::vector<std::string> parts = partsOf(text);
+    const std::vector<std::string> parts = splitAt(text, ':');
     std::size_t next = 0;
     Light light;
     try {

@@ -11,6 +11,7 @@
 #include "deltasplat/render.h"
 #include "listener.h"
 #include "options/command_line.h"
+#include "options/cut_options.h"
 #include "options/shading_options.h"
 
 namespace deltasplat {
@@ -22,6 +23,7 @@ struct PictureOptions {
     ReadOptions read;
     RenderOptions render;
     ShadingChoice shading;
+    CutChoice parts;
 };
 
 /// What `deltasplat render` was asked to do.
@@ -36,6 +38,8 @@ struct RenderCommand {
 
 void addCameraOptions(CLI::App& app, PictureOptions& options);
 void addOpticsOptions(CLI::App& app, PictureOptions& options);
+/// Declares the options that say which parts of the volume are shown.
+void addPartOptions(CLI::App& app, PictureOptions& options);
 /// Declares the options of splatting that all methods share.
 void addSplattingOptions(CLI::App& app, RenderOptions& options);
 
