@@ -49,18 +49,16 @@ void expectOpacities(const TransferFunction& function, const std::vector<double>
 
 TEST_F(LabelChangesTest, hideShowAndFade) {
     expectOpacities(change({}), {0.5, 0.5, 0.5, 0, 1});
-    expectOpacities(change({.hidden = {1, -3}}), {0, 0, 0.5, 0, 1});
-    expectOpacities(change({.shown = {2, 900000000}}), {0, 0, 0.5, 0, 1});
-    expectOpacities(change({.opacities = {{1, 0.25}, {4, 0.75}}}), {0.5, 0.25, 0.5, 0.75, 1});
-    expectOpacities(change({.hidden = {2}, .shown = {1, 2}, .opacities = {{1, 1}, {-3, 1}}}),
-                    {0, 1, 0, 0, 0});
+    expectOpacities(change({{1, -3}, {}, {}}), {0, 0, 0.5, 0, 1});
+    expectOpacities(change({{}, {2, 900000000}, {}}), {0, 0, 0.5, 0, 1});
+    expectOpacities(change({{}, {}, {{1, 0.25}, {4, 0.75}}}), {0.5, 0.25, 0.5, 0.75, 1});
+    expectOpacities(change({{2}, {1, 2}, {{1, 1}, {-3, 1}}}), {0, 1, 0, 0, 0});
     EXPECT_EQ(warnings_, "");
 }
 
 TEST_F(LabelChangesTest, ofThePreset) {
     const TransferFunction whole = presetFunction("labels");
-    const TransferFunction function =
-        changeLabels(whole, {.hidden = {1, 65535}, .opacities = {{300, 1}}}, listener());
+    const TransferFunction function = changeLabels(whole, {{1, 65535}, {}, {{300, 1}}}, listener());
     EXPECT_EQ(function.opacityAt(1), 0);
     EXPECT_EQ(function.opacityAt(65535), 0);
     EXPECT_EQ(function.opacityAt(300), 1);
@@ -69,7 +67,7 @@ TEST_F(LabelChangesTest, ofThePreset) {
 }
 
 TEST_F(LabelChangesTest, sayWhatIsNotThere) {
-    const LabelChanges changes{.hidden = {1, 7}, .shown = {1, 2}, .opacities = {{8, 1}, {9, 1}}};
+    const LabelChanges changes{{1, 7}, {1, 2}, {{8, 1}, {9, 1}}};
     change(changes);
     EXPECT_EQ(warnings_,
               "`labels.hidden`: no label 7 in the table\n"
@@ -89,7 +87,7 @@ TEST_F(LabelChangesTest, ofValuesAreRefused) {
         return errorOf([&] { changeLabels(presetFunction("grey"), changes, listener()); });
     };
     EXPECT_EQ(said({}), "no error");
-    EXPECT_EQ(said({.shown = {1}}),
+    EXPECT_EQ(said({{}, {1}, {}}),
               "usage: `labels.shown`: got a transfer function of values; expected a table of "
               "labels");
 }
