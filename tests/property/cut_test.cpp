@@ -63,7 +63,7 @@ void expectSamePictures(const Volume& a, const Volume& b) {
     }
 }
 
-// Other indices move where slabs begin, and by that how layers are rounded, unless by whole blocks.
+// By whole blocks: composited pictures of voxels that are counted otherwise are not the same bits.
 TEST(CutPicture, isThatOfASmallerDenseVolume) {
     Cut cut;
     cut.cropIndex = IndexBox{{8, 0, 8}, {19, 17, 20}};
