@@ -25,6 +25,7 @@ constexpr std::uint64_t kBuckets = 1 << 15;
 ValueMixer::ValueMixer(const Volume& volume, const Subdivision& parts)
     : parts_(parts), levels_(volume), ownLevel_(kCodeCount) {
     levels_.codes = nullptr;
+    levels_.uncut = nullptr;
     levels_.source = nullptr;
     levels_.histogram.assign(kCodeCount, 0);
     const auto occurs = [](std::uint64_t count) { return count != 0; };

@@ -27,4 +27,14 @@ TransferFunction labelFunction(const std::vector<LabelLook>& looks) {
     return function;
 }
 
+std::vector<LabelLook> looksOf(const TransferFunction& function) {
+    std::vector<LabelLook> looks;
+    // Each label has a colour at either end.
+    for (std::size_t i = 0; i + 1 < function.colors.size(); i += 2) {
+        const double label = 0.5 * (function.colors[i].x + function.colors[i + 1].x);
+        looks.push_back({int(label), function.colors[i].rgb, function.opacityAt(label)});
+    }
+    return looks;
+}
+
 }  // namespace deltasplat

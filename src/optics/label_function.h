@@ -21,4 +21,7 @@ struct LabelLook {
 /// @param looks  at least one, labels rising
 TransferFunction labelFunction(const std::vector<LabelLook>& looks);
 
+/// Returns the looks of which labelFunction made a function.
+std::vector<LabelLook> looksOf(const TransferFunction& function);
+
 }  // namespace deltasplat

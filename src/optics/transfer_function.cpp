@@ -11,6 +11,7 @@
 #include "default_floats.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "deltasplat/optics/default_ramp.h"
+#include "ingest/codes/code_statistics.h"
 #include "optics/color_curve.h"
 #include "optics/way_between.h"
 #include "portable_math.h"
@@ -44,9 +45,11 @@ double sharpBlend(double from, double to, double s, double sharpness) {
     return std::clamp(value, std::min(from, to), std::max(from, to));
 }
 
-// How often each code occurs, the one that stands for the background left out.
+// How often each code occurs, the one that stands for the background left out. What is cut off
+// counts as well, so that colours do not change by cutting.
 std::vector<std::uint64_t> countsWithoutBackground(const Volume& volume) {
-    std::vector<std::uint64_t> counts = volume.histogram;
+    std::vector<std::uint64_t> counts =
+        volume.uncut ? histogramOf(volume.uncut->tree) : volume.histogram;
     for (std::size_t code = 0; code < counts.size(); ++code) {
         if (volume.codeBook.standsFor(Code(code), volume.background)) counts[code] = 0;
     }

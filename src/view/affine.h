@@ -6,18 +6,13 @@
 #include <glm/vec3.hpp>
 
 #include "deltasplat/ingest/volume.h"
+#include "deltasplat/view/world_box.h"
 
 namespace deltasplat {
 
 /// Throws unless the transform maps three-dimensional space onto itself one to one.
 /// @throw Error(kInput) if an entry is not finite or the voxels have no volume
 void requireInvertible(const glm::dmat4& worldFromIndex);
-
-/// A box in the world, along its axes.
-struct WorldBox {
-    glm::dvec3 min{0.0};
-    glm::dvec3 max{0.0};
-};
 
 /// Returns the smallest that holds the centres of all voxels of a box, or, of an empty one, of
 /// voxel (0, 0, 0).

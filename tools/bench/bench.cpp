@@ -56,13 +56,17 @@ void addBenchOptions(CLI::App& app, BenchCommand& command) {
     addOpticsOptions(app, command.picture);
     addSurfaceOptions(app, command.picture.surface, command.picture.render.optics.gradientOpacity);
     addShadingOptions(app, command.picture.shading);
+    addPartOptions(app, command.picture);
     addSplattingOptions(app, command.picture.render);
     addInputOptions(app, command.picture.read);
 }
 
 void warnOfUnusedOptions(const CLI::App& app, const BenchCommand& command,
                          ProgressDisplay& display) {
-    warnOfUnusedInputOptions(app, {command.inputs.begin(), command.inputs.end()}, display);
+    Files inputs(command.inputs.begin(), command.inputs.end());
+    const Files mask = filesOfMask(command.picture.parts);
+    inputs.insert(inputs.end(), mask.begin(), mask.end());
+    warnOfUnusedInputOptions(app, inputs, display);
     if (isGiven(app, "--background") && command.report.empty())
         display.warn("--background: has no effect without --report");
 }
@@ -105,6 +109,7 @@ void checkReport(const BenchCommand& command) {
     const std::filesystem::path page = pageIn(command.report);
     std::error_code ignored;
     if (!exists(page, ignored)) return;
+    checkOutput("--report", page, filesRead(filesOfMask(command.picture.parts), {}), "the mask");
     const Files inputs(command.inputs.begin(), command.inputs.end());
     checkOutput("--report", page,
                 filesRead(inputs, parseTransferFunction(command.picture.transferFunction).file),

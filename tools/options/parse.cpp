@@ -36,7 +36,7 @@ std::optional<T> toNumber(std::string_view text) {
 template <class T>
 std::vector<T> toNumbers(const std::string& text, char separator) {
     std::vector<T> values;
-    for (const std::string& part : splitText(text, separator)) {
+    for (const std::string& part : splitAt(text, separator)) {
         const std::optional<T> value = toNumber<T>(part);
         if (!value) return {};
         values.push_back(*value);
@@ -65,19 +65,19 @@ Parser<glm::dvec3> threeNumbers(double min, double max, const std::string& expec
 
 }  // namespace
 
-std::string joinNumbers(const std::vector<double>& values, const std::string& separator) {
-    std::string text;
-    for (const double value : values) text += (text.empty() ? "" : separator) + numberText(value);
-    return text;
-}
-
-std::vector<std::string> splitText(const std::string& text, char separator) {
+std::vector<std::string> splitAt(const std::string& text, char separator) {
     std::vector<std::string> parts;
     std::size_t begin = 0;
     for (std::size_t end; (end = text.find(separator, begin)) != std::string::npos; begin = end + 1)
         parts.push_back(text.substr(begin, end - begin));
     parts.push_back(text.substr(begin));
     return parts;
+}
+
+std::string joinNumbers(const std::vector<double>& values, const std::string& separator) {
+    std::string text;
+    for (const double value : values) text += (text.empty() ? "" : separator) + numberText(value);
+    return text;
 }
 
 std::string joinWords(const std::vector<std::string>& words, const std::string& last) {

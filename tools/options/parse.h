@@ -45,10 +45,10 @@ Parser<glm::ivec2> pixelSize();
 /// `AxBxC`, whole numbers; whether they make a volume is for its reader to say.
 Parser<glm::i64vec3> dimensions();
 
+/// Returns what stands before, between and behind separators; of an empty text one empty part.
+std::vector<std::string> splitAt(const std::string& text, char separator);
 /// Returns the numbers' texts, joined by `separator`.
 std::string joinNumbers(const std::vector<double>& values, const std::string& separator);
-/// Returns what is between separators: of none, all.
-std::vector<std::string> splitText(const std::string& text, char separator);
 /// Returns the words as one text: "a, b or c".
 std::string joinWords(const std::vector<std::string>& words, const std::string& last);
 

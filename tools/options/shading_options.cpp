@@ -19,7 +19,7 @@ Light parseLight(const std::string& option, const std::string& text) {
                                  "head, X,Y,Z or view:X,Y,Z, not all 0, then, if wanted, :R,G,B "
                                  "and :STRENGTH, as in view:1,-1,-1:1,0.9,0.8:1.5"));
     };
-    const std::vector<std::string> parts = splitText(text, ':');
+    const std::vector<std::string> parts = splitAt(text, ':');
     std::size_t next = 0;
     Light light;
     try {

@@ -17,8 +17,8 @@ Parser<std::vector<glm::dvec2>> steps() {
     return [](const std::string& option, const std::string& text) {
         std::vector<glm::dvec2> points;
         try {
-            for (const std::string& part : splitText(text, ',')) {
-                const std::vector<std::string> pair = splitText(part, ':');
+            for (const std::string& part : splitAt(text, ',')) {
+                const std::vector<std::string> pair = splitAt(part, ':');
                 if (pair.size() != 2) throw Error(ErrorCode::kUsage, "");
                 points.emplace_back(number(0)(option, pair[0]), number(0, 1)(option, pair[1]));
             }

@@ -9,15 +9,11 @@
 #include "lower_case.h"
 #include "optics/read_label_table.h"
 #include "optics/small_text.h"
+#include "options/file_and_name.h"
 #include "suggest.h"
 
 namespace deltasplat {
 namespace {
-
-bool isThere(const std::filesystem::path& file) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(file, error);
-}
 
 bool looksLikeFile(const std::string& text) {
     return text.find_first_of("./:") != std::string::npos;
@@ -49,18 +45,11 @@ bool isLabelTable(const std::filesystem::path& file) {
 TransferFunctionOption parseTransferFunction(const std::filesystem::path& given) {
     const std::string text = given.string();
     if (text.empty()) return {};
-    if (isThere(given)) return {given, "", nullptr};
+    const std::optional<FileAndName> found = findFileAndName("--tf", given);
+    // A file comes before all else of its name, and a preset before a part of its name.
+    if (found && found->name.empty()) return {found->file, "", nullptr};
     if (const Preset* preset = findPreset(text)) return {{}, "", preset};
-    // Names have colons, and so may files.
-    for (std::size_t colon = text.rfind(':'); colon != std::string::npos && colon > 0;
-         colon = text.rfind(':', colon - 1)) {
-        const std::filesystem::path file = text.substr(0, colon);
-        if (!isThere(file)) continue;
-        const std::string name = text.substr(colon + 1);
-        if (name.empty())
-            throw Error(ErrorCode::kUsage, gotExpected("--tf", text, "a name behind the colon"));
-        return {file, name, nullptr};
-    }
+    if (found) return {found->file, found->name, nullptr};
     if (!looksLikeFile(text)) refuse(text);
     return {given, "", nullptr};
 }

@@ -70,7 +70,9 @@ void showErrorBound(const RenderStats& stats) {
 
 void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
                          ProgressDisplay& display) {
-    warnOfUnusedInputOptions(app, {command.input}, display);
+    Files inputs = filesOfMask(command.picture.parts);
+    inputs.push_back(command.input);
+    warnOfUnusedInputOptions(app, inputs, display);
     const bool png = lowerCase(command.output.extension().string()) == ".png";
     if (isGiven(app, "--bits") && !png)
         display.warn("--bits: has no effect without a .png picture");

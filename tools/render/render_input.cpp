@@ -8,6 +8,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/optics/default_ramp.h"
 #include "number_text.h"
+#include "optics/label_changes.h"
 #include "optics/value_colors.h"
 #include "options/transfer_function_option.h"
 
@@ -91,32 +92,48 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
         options.optics.transferFunction =
             readTransferFunctionOption(picture.transferFunction, listener);
     }
+    options.optics.transferFunction =
+        changeLabels(options.optics.transferFunction, picture.parts.labels, listener);
     if (options.optics.range && !ramp && !options.optics.transferFunction.normalized)
         listener.warn("--range: has no effect on a transfer function that is not normalized");
     return options;
 }
 
-Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
-                    RenderOptions& options, const Listener& listener) {
-    const bool mip = picture.render.mode == Mode::kMip;
-    ReadOptions read = picture.read;
-    read.keepInexact = picture.render.mode != Mode::kComposite;
-    Volume volume = readVolume(input, read, listener);
+namespace {
+
+// Puts into `options` what depends on the volume: all of it, whatever is cut off.
+void fitOptics(const PictureOptions& picture, const Volume& volume, RenderOptions& options,
+               const Listener& listener) {
     const Preset* preset = presetOf(picture, volume);
+    const std::optional<glm::dvec2>& range = picture.render.optics.range;
     options.optics.surface = picture.surface.of(volume);
     options.optics.shading = shadingOf(picture, volume, preset, options.optics.surface.has_value());
     if (picture.transferFunction.empty()) {
-        const std::optional<glm::dvec2>& range = picture.render.optics.range;
+        const bool mip = picture.render.mode == Mode::kMip;
         options.optics.transferFunction =
             preset  ? presetFunction(preset->name)
             : range ? (mip ? wholeRamp(volume, *range) : defaultRamp(volume, *range))
                     : (mip ? wholeRamp(volume) : defaultRamp(volume));
-    } else if (preset) {
-        fitPreset(*preset, volume, options.optics);
-        if (!options.optics.surface) warnOfOtherData(*preset, volume, listener);
+    } else {
+        if (preset) fitPreset(*preset, volume, options.optics);
+        if (preset && !options.optics.surface) warnOfOtherData(*preset, volume, listener);
+        const bool isOpen = options.optics.transferFunction.normalized && !options.optics.range;
+        if (isOpen && picture.parts.cuts()) options.optics.range = defaultRange(volume);
     }
     if (options.optics.surface) finishSurface(picture, volume, options.optics, listener);
-    return volume;
+}
+
+}  // namespace
+
+Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
+                    RenderOptions& options, const Listener& listener) {
+    ReadOptions read = picture.read;
+    read.keepInexact = picture.render.mode != Mode::kComposite;
+    Volume volume = readVolume(input, read, listener);
+    fitOptics(picture, volume, options, listener);
+    warnOfAbsentLabels(picture.parts.labels, volume, listener);
+    if (!picture.parts.cuts()) return volume;
+    return cutAsChosen(volume, input, picture.parts, picture.read, listener);
 }
 
 }  // namespace deltasplat

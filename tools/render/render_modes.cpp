@@ -46,7 +46,8 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
         "--isovalue",   "--surface-color", "--gradient-opacity"};
     if (mode == Mode::kMip) unused.push_back("--sigma");
     if (mode == Mode::kXray || isExr(command.output))
-        unused.insert(unused.end(), {"--tf", "--range"});
+        unused.insert(unused.end(),
+                      {"--tf", "--range", "--hide-labels", "--show-labels", "--label-opacity"});
     for (const std::string& option : unused) {
         if (isGiven(app, option))
             display.warn(option + ": has no effect with --mode " + modeName(mode));

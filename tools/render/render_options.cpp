@@ -243,6 +243,11 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
                    "Scene-linear colour behind the volume (default: transparent)");
 }
 
+void addPartOptions(CLI::App& app, PictureOptions& options) {
+    addCutOptions(app, options.parts);
+    addLabelOptions(app, options.parts.labels);
+}
+
 void addSplattingOptions(CLI::App& app, RenderOptions& options) {
     OptionGroup group(app, "Splatting");
     group.addValue("--tolerance", "T", options.tolerance.relative, relativeTolerance(),
@@ -285,6 +290,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addOpticsOptions(app, command.picture);
     addSurfaceOptions(app, command.picture.surface, command.picture.render.optics.gradientOpacity);
     addShadingOptions(app, command.picture.shading);
+    addPartOptions(app, command.picture);
     addMethodOption(app, command.picture.render.method);
     addSplattingOptions(app, command.picture.render);
     addInputOptions(app, command.picture.read);
@@ -325,6 +331,9 @@ void warnOfUnusedView(const CLI::App& app, const CameraOptions& options, const V
 void validate(const RenderCommand& command) {
     checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     checkCamera(command.picture.render.camera);
+    const Files mask = filesRead(filesOfMask(command.picture.parts), {});
+    checkOutput("--output", command.output, mask, "the mask");
+    checkOutput("--stats", command.stats, mask, "the mask");
     Files others =
         filesRead({command.input}, parseTransferFunction(command.picture.transferFunction).file);
     checkOutput("--output", command.output, others, "the input and the transfer function");

@@ -11,6 +11,7 @@
 #include "deltasplat/render.h"
 #include "listener.h"
 #include "options/command_line.h"
+#include "options/cut_options.h"
 #include "options/shading_options.h"
 #include "options/surface_options.h"
 
@@ -24,6 +25,7 @@ struct PictureOptions {
     RenderOptions render;
     ShadingChoice shading;
     SurfaceChoice surface;
+    CutChoice parts;
 };
 
 /// What `deltasplat render` was asked to do.
@@ -38,6 +40,8 @@ struct RenderCommand {
 
 void addCameraOptions(CLI::App& app, PictureOptions& options);
 void addOpticsOptions(CLI::App& app, PictureOptions& options);
+/// Declares the options that say which parts of the volume are shown.
+void addPartOptions(CLI::App& app, PictureOptions& options);
 /// Declares the options of splatting that all methods share.
 void addSplattingOptions(CLI::App& app, RenderOptions& options);
 

@@ -61,6 +61,8 @@ struct Volume {
     double background = 0;                  ///< value of inactive voxels
     CodeBook codeBook;                      ///< what the codes mean
     std::shared_ptr<const CodeTree> codes;  ///< active voxels in the source's index space
+    /// Of a volume that was cut: the codes before, for gradients; else null.
+    std::shared_ptr<const CodeTree> uncut;
     IndexBox box;  ///< raw: all voxels; .vdb: bounding box of the active voxels
     glm::dmat4 worldFromIndex{
         1.0};                       ///< affine; maps (i, j, k) to the voxel's centre in world units

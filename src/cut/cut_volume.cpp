@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/cut/cut_volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "cut/cut_region.h"
+#include "cut/cut_source.h"
+#include "cut/keep_voxels.h"
+#include "deltasplat/error.h"
+#include "ingest/codes/code_statistics.h"
+#include "ingest/readers.h"
+#include "number_text.h"
+#include "view/affine.h"
+
+namespace deltasplat {
+namespace {
+
+[[noreturn]] void refuse(const std::string& where, const std::string& got,
+                         const std::string& expected, ErrorCode code = ErrorCode::kUsage) {
+    throw Error(code, gotExpected(where, got, expected));
+}
+
+template <typename Number>
+std::string rangeText(Number low, Number high) {
+    using Limits = std::numeric_limits<Number>;
+    const Number most = Limits::has_infinity ? Limits::infinity() : Limits::max();
+    const Number least = Limits::has_infinity ? -Limits::infinity() : Limits::min();
+    return (low == least ? "" : numberText(double(low))) + ":" +
+           (high == most ? "" : numberText(double(high)));
+}
+
+// "0:255,0:255,:127": what has no end says none.
+template <typename Box>
+std::string boxText(const Box& box) {
+    return rangeText(box.min.x, box.max.x) + "," + rangeText(box.min.y, box.max.y) + "," +
+           rangeText(box.min.z, box.max.z);
+}
+
+void requireNormal(const ClipPlane& plane) {
+    const double sum = plane.normalWorld.x + plane.normalWorld.y + plane.normalWorld.z +
+                       plane.pointWorld.x + plane.pointWorld.y + plane.pointWorld.z;
+    if (std::isfinite(sum) && plane.normalWorld != glm::dvec3(0)) return;
+    refuse("`clipPlanes`",
+           "point " + numberText(plane.pointWorld) + " and normal " + numberText(plane.normalWorld),
+           "finite numbers, and a normal other than 0,0,0");
+}
+
+void requireWorldBox(const WorldBox& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(box.min[axis] <= box.max[axis]))
+            refuse("`cropWorld`", boxText(box), "a box whose ends are not before its beginnings");
+    }
+}
+
+void checkCut(const Cut& cut) {
+    for (const ClipPlane& plane : cut.clipPlanes) requireNormal(plane);
+    if (cut.cropWorld) requireWorldBox(*cut.cropWorld);
+}
+
+// What crops by index leave of a box.
+IndexBox croppedBox(const Cut& cut, const IndexBox& box) {
+    IndexBox left = box;
+    if (cut.cropIndex) {
+        left = sharedBox(left, *cut.cropIndex);
+        if (left.empty()) {
+            refuse("`cropIndex`", boxText(*cut.cropIndex),
+                   "a box that overlaps the volume's, " + boxText(box));
+        }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::optional<glm::ivec2>& slices = cut.slices[std::size_t(axis)];
+        if (!slices) continue;
+        const std::string had = rangeText(left.min[axis], left.max[axis]);
+        left.min[axis] = std::max(left.min[axis], slices->x);
+        left.max[axis] = std::min(left.max[axis], slices->y);
+        if (left.min[axis] <= left.max[axis]) continue;
+        const std::string name(1, "xyz"[axis]);
+        refuse("`slices`", name + ":" + rangeText(slices->x, slices->y),
+               "slices of those that there are, " + name + ":" + had);
+    }
+    return left;
+}
+
+// The sides of a box in the world as planes; what has no end has no side.
+std::vector<IndexPlane> sidesOf(const WorldBox& box, const glm::dmat4& worldFromIndex) {
+    std::vector<IndexPlane> sides;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const bool isFirst : {true, false}) {
+            ClipPlane side{glm::dvec3(0), glm::dvec3(0)};
+            side.pointWorld[axis] = isFirst ? box.min[axis] : box.max[axis];
+            side.normalWorld[axis] = isFirst ? 1 : -1;
+            if (std::isfinite(side.pointWorld[axis]))
+                sides.push_back(indexPlane(side, worldFromIndex));
+        }
+    }
+    return sides;
+}
+
+bool keep(const CutRegion& region, Volume& volume) {
+    volume.codes = keepVoxels(*volume.codes, region);
+    return !volume.codes->tree.empty();
+}
+
+void crop(const Cut& cut, Volume& volume) {
+    const IndexBox all = volume.box;
+    CutRegion region;
+    region.box = volume.box = croppedBox(cut, all);
+    if (cut.cropWorld) region.planes = sidesOf(*cut.cropWorld, volume.worldFromIndex);
+    if (!keep(region, volume)) {
+        const std::string expected = "a box with active voxels of those in ";
+        if (cut.cropWorld) {
+            refuse("`cropWorld`", "the world box " + boxText(*cut.cropWorld),
+                   expected + boxText(worldBox(all, volume.worldFromIndex)));
+        }
+        refuse(cut.cropIndex ? "`cropIndex`" : "`slices`", boxText(region.box),
+               expected + boxText(all));
+    }
+    if (cut.cropWorld || volume.hasBackground) volume.box = activeBox(volume.codes->tree);
+}
+
+void clip(const Cut& cut, Volume& volume) {
+    CutRegion region;
+    for (const ClipPlane& plane : cut.clipPlanes)
+        region.planes.push_back(indexPlane(plane, volume.worldFromIndex));
+    if (keep(region, volume)) return;
+    refuse("`clipPlanes`", "planes that leave nothing",
+           "some voxel beyond all of them, of those in the world box " +
+               boxText(worldBox(volume.box, volume.worldFromIndex)));
+}
+
+void applyMask(const Volume& mask, const Listener& listener, Volume& volume) {
+    const MaskVoxels voxels(mask, volume);
+    if (voxels.resamples()) {
+        listener.warn(
+            "`mask`: its voxels lie elsewhere than the volume's; each of these takes "
+            "the nearest of those");
+    }
+    CutRegion region;
+    region.mask = &voxels;
+    if (keep(region, volume)) return;
+    refuse("`mask`",
+           "a mask in the world box " + boxText(worldBox(mask.box, mask.worldFromIndex)) +
+               " that leaves nothing",
+           "one that keeps some voxel of those in " +
+               boxText(worldBox(volume.box, volume.worldFromIndex)),
+           ErrorCode::kInput);
+}
+
+// Finds out which values are left of a volume.
+void count(const Volume& whole, Volume& left) {
+    left.histogram = histogramOf(left.codes->tree);
+    summarize(left);
+    if (!left.codeBook.isExact()) {
+        // Codes may be a little outside of the values.
+        left.valueMin = std::clamp(left.valueMin, whole.valueMin, whole.valueMax);
+        left.valueMax = std::clamp(left.valueMax, whole.valueMin, whole.valueMax);
+    }
+    if (left.source) cutSource(left);
+}
+
+}  // namespace
+
+Volume cutVolume(const Volume& volume, const Cut& cut, const Listener& listener) {
+    checkCut(cut);
+    if (cut.empty() || volume.empty()) return volume;
+    Volume left = volume;
+    left.uncut = volume.uncut ? volume.uncut : volume.codes;
+    if (cut.crops()) crop(cut, left);
+    if (!cut.clipPlanes.empty()) clip(cut, left);
+    if (cut.mask) applyMask(*cut.mask, listener, left);
+    count(volume, left);
+    return left;
+}
+
+}  // namespace deltasplat
