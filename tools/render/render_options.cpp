@@ -13,6 +13,7 @@
 #include "options/transfer_function_option.h"
 #include "output_files.h"
 #include "program.h"
+#include "render/annotation_options.h"
 #include "render/list_presets.h"
 
 namespace deltasplat {
@@ -286,6 +287,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addShadingOptions(app, command.picture.shading);
     addMethodOption(app, command.picture.render.method);
     addSplattingOptions(app, command.picture.render);
+    addAnnotationOptions(app, command.annotations);
     addInputOptions(app, command.picture.read);
 }
 
@@ -324,6 +326,7 @@ void warnOfUnusedView(const CLI::App& app, const CameraOptions& options, const V
 void validate(const RenderCommand& command) {
     checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     checkCamera(command.picture.render.camera);
+    checkAnnotations(command);
     Files others =
         filesRead({command.input}, parseTransferFunction(command.picture.transferFunction).file);
     checkOutput("--output", command.output, others, "the input and the transfer function");
