@@ -7,11 +7,14 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/optics/default_ramp.h"
+#include "ingest/label_claim.h"
 #include "number_text.h"
 #include "options/transfer_function_option.h"
 
 namespace deltasplat {
 namespace {
+
+constexpr const char* kLabelPreset = "labels";
 
 // Returns a value that is no whole number, if there is one.
 std::optional<double> anyBroken(const Volume& volume) {
@@ -46,12 +49,16 @@ void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener&
     }
 }
 
-// The preset that is named or, where nothing is, that of a CT scan for one; else null.
-const Preset* presetOf(const PictureOptions& picture, const Volume& volume) {
+// The preset that is named or, where nothing is, that of a CT scan for one, and that of labels for
+// what is said to be labels; else null.
+const Preset* presetOf(const std::filesystem::path& input, const PictureOptions& picture,
+                       const Volume& volume) {
     if (!picture.transferFunction.empty())
         return parseTransferFunction(picture.transferFunction).preset;
     const bool isFree = picture.render.mode == Mode::kComposite && !picture.render.optics.range;
-    return isFree && isHounsfield(volume) ? findPreset(kScanPreset) : nullptr;
+    if (!isFree) return nullptr;
+    if (saysLabels(input) && !anyBroken(volume)) return findPreset(kLabelPreset);
+    return isHounsfield(volume) ? findPreset(kScanPreset) : nullptr;
 }
 
 // Surfaces are shaded unless something else is wanted: those of level sets and of scanned bodies.
@@ -89,10 +96,11 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     ReadOptions read = picture.read;
     read.keepInexact = picture.render.mode != Mode::kComposite;
     Volume volume = readVolume(input, read, listener);
-    const Preset* preset = presetOf(picture, volume);
+    const Preset* preset = presetOf(input, picture, volume);
     options.optics.shading = shadingOf(picture, volume, preset);
     if (picture.transferFunction.empty() && preset) {
         options.optics.transferFunction = presetFunction(preset->name);
+        warnOfOtherData(*preset, volume, listener);
         return volume;
     }
     if (!picture.transferFunction.empty()) {

@@ -220,7 +220,8 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
                    ".txt or .label), or a preset:" +
                        presetNames() + "\n(default: " + kScanPreset +
                        " for CT scans, in Hounsfield units of a\n"
-                       "patient; else a ramp over the 1st to 99th percentile of the\n"
+                       "patient, labels for files that say they hold some; else a ramp over the "
+                       "1st to 99th percentile of the\n"
                        "values, white for fog, else from black to white)");
     group.addQuestion("--list-tf", "FILE", listPresets,
                       "Only list the presets, or draw them to FILE (.png or .svg; with\n"
