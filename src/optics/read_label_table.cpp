@@ -102,12 +102,25 @@ void warnOfClear(const std::filesystem::path& file, bool ofSlicer, const Listene
                             : ", for each is hidden or has an alpha of 0"));
 }
 
-}  // namespace
+// A label as a table has it.
+struct LabelLine {
+    LabelLook look;
+    std::string name;
+};
 
-TransferFunction readLabelTable(const std::filesystem::path& file, const Listener& listener) {
-    std::istringstream in(readSmallText(file, "a table of labels"));
-    std::map<int, LabelLook> looks;
+std::string nameOf(const std::vector<std::string>& words) {
+    const std::string& word = words[isOfSnap(words) ? 7 : 1];
+    return word.substr(word.front() == '"' ? 1 : 0);
+}
+
+struct LabelLines {
+    std::map<int, LabelLine> lines;  // by label
     bool ofSlicer = false;
+};
+
+LabelLines readLines(const std::filesystem::path& file) {
+    std::istringstream in(readSmallText(file, "a table of labels"));
+    LabelLines result;
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {
         while (!line.empty() && std::isspace(std::uint8_t(line.back()))) line.pop_back();
@@ -116,15 +129,29 @@ TransferFunction readLabelTable(const std::filesystem::path& file, const Listene
         const std::vector<std::string> words = wordsOf(line);
         const std::optional<LabelLook> look = lookOf(words);
         if (!look) refuse(file, number, line);
-        looks[look->label] = *look;
-        ofSlicer = !isOfSnap(words);
+        result.lines[look->label] = {*look, nameOf(words)};
+        result.ofSlicer = !isOfSnap(words);
     }
-    if (looks.empty())
+    if (result.lines.empty())
         throw Error(ErrorCode::kInput, gotExpected(file.string(), "no labels", "at least one"));
+    return result;
+}
+
+}  // namespace
+
+std::map<int, std::string> readLabelNames(const std::filesystem::path& file) {
+    std::map<int, std::string> names;
+    for (const auto& [label, line] : readLines(file).lines) names[label] = line.name;
+    return names;
+}
+
+TransferFunction readLabelTable(const std::filesystem::path& file, const Listener& listener) {
+    const LabelLines table = readLines(file);
     std::vector<LabelLook> rising;
-    for (const auto& [label, look] : looks) rising.push_back(look);
+    for (const auto& [label, line] : table.lines) rising.push_back(line.look);
     const auto isClear = [](const LabelLook& look) { return look.opacity == 0; };
-    if (std::all_of(rising.begin(), rising.end(), isClear)) warnOfClear(file, ofSlicer, listener);
+    if (std::all_of(rising.begin(), rising.end(), isClear))
+        warnOfClear(file, table.ofSlicer, listener);
     TransferFunction function = labelFunction(rising);
     function.name = file.stem().string();
     return function;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "optics/label_function.h"
 
@@ -14,5 +16,9 @@ namespace deltasplat {
 /// that is listed twice the last line counts.
 /// @throw Error(kInput) naming file and line, if it is missing or malformed
 TransferFunction readLabelTable(const std::filesystem::path& file, const Listener& listener = {});
+
+/// Returns what such a table calls its labels; some may be "".
+/// @throw as readLabelTable
+std::map<int, std::string> readLabelNames(const std::filesystem::path& file);
 
 }  // namespace deltasplat

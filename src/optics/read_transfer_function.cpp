@@ -10,6 +10,7 @@
 #include "deltasplat/optics/transfer_function.h"
 #include "deltasplat/optics/transfer_function_names.h"
 #include "number_text.h"
+#include "optics/color_path.h"
 #include "optics/located_json.h"
 
 namespace deltasplat {
@@ -145,6 +146,24 @@ void makeSteps(std::vector<TransferFunction::ColorPoint>& colors) {
     colors = std::move(steps);
 }
 
+// Puts the stops of the shortest way between two colours, as CIEDE2000 measures it, between them;
+// from stop to stop colours are mixed as L*a*b*.
+void makePaths(std::vector<TransferFunction::ColorPoint>& colors) {
+    ColorPaths paths;
+    std::vector<TransferFunction::ColorPoint> all{colors.front()};
+    for (std::size_t i = 1; i < colors.size(); ++i) {
+        const TransferFunction::ColorPoint& left = colors[i - 1];
+        const TransferFunction::ColorPoint& right = colors[i];
+        if (left.x < right.x) {
+            const auto stops = paths.between(left.rgb, right.rgb);
+            for (std::size_t k = 1; k + 1 < stops.size(); ++k)
+                all.push_back({std::lerp(left.x, right.x, stops[k].share), stops[k].rgb});
+        }
+        all.push_back(right);
+    }
+    colors = std::move(all);
+}
+
 void readColors(const std::filesystem::path& file, const PresetReader& preset,
                 const Listener& listener, TransferFunction& function) {
     function.linearColors = preset.text("ColorSpaceOfPoints", "sRGB") == "linear";
@@ -161,6 +180,15 @@ void readColors(const std::filesystem::path& file, const PresetReader& preset,
             preset.flagOrNumber("HSVWrap") ? ColorSpace::kHsvShortest : ColorSpace::kHsv;
     } else if (space == "Lab" || space == "CIELAB") {
         function.colorSpace = ColorSpace::kLab;
+    } else if (space == "Lab/CIEDE2000") {
+        function.colorSpace = ColorSpace::kLab;
+        // The ways lead through the colours of a screen, and beyond there are more.
+        if (function.linearColors) {
+            listener.warn(file.string() + ": ColorSpace " + space +
+                          " with linear colours is interpolated as Lab");
+        } else {
+            makePaths(function.colors);
+        }
     } else if (space == "Diverging") {
         function.colorSpace = ColorSpace::kDiverging;
     } else if (space != "RGB") {

@@ -325,6 +325,27 @@ deltasplat_cli_test(usage.picture_format EXIT 2 ARGS render ${cube} -o out.jpg
     STDERR "deltasplat: out.jpg: got extension \".jpg\"; expected .exr or .png")
 deltasplat_cli_test(usage.picture_no_format EXIT 2 ARGS render ${cube} -o out
     STDERR "deltasplat: out: got extension \"\"; expected .exr or .png")
+# What is drawn over a picture, and where it would say something wrong.
+foreach(option legend scale-bar axes annotate=text)
+    string(REGEX REPLACE "=.*" "" name ${option})
+    deltasplat_cli_test(usage.${name}_exr EXIT 2 ARGS render ${cube} -o out.exr --${option}
+        STDERR "deltasplat: --${name}: got out.exr, whose pixels are light or values alone; expected a .png (render to both)")
+endforeach()
+deltasplat_cli_test(usage.annotate_nothing EXIT 2 ARGS render ${cube} -o out.png --annotate
+    STDERR "deltasplat: --annotate: got nothing; expected TEXT (see 'deltasplat render --help')")
+deltasplat_cli_test(usage.scale_bar_latlong EXIT 2
+    ARGS render ${cube} -o out.png --scale-bar --projection latlong
+    STDERR "deltasplat: --scale-bar: got --projection latlong; expected ortho or perspective, where it would hold")
+deltasplat_cli_test(usage.legend_xray EXIT 2 ARGS render ${cube} -o out.png --legend --mode xray
+    STDERR "deltasplat: --legend: got --mode xray, which shows sums and no values; expected composite or mip")
+deltasplat_cli_test(usage.legend_color_by EXIT 2
+    ARGS render ${cube} -o out.png --legend --color-by index
+    STDERR "deltasplat: --legend: got --color-by index; expected value")
+deltasplat_cli_test(annotations_without_room CREATES out.png
+    ARGS render ${cube} -o out.png --legend --axes --size 60x40
+    STDERR "deltasplat: warning: --legend: has no room in a picture of 60x40 pixels, and is left out
+deltasplat: warning: --axes: has no room in a picture of 60x40 pixels, and is left out")
+
 deltasplat_cli_test(usage.float_png EXIT 2 ARGS render ${cube} -o out.png --float
     STDERR "deltasplat: --float: got out.png; expected an .exr file")
 deltasplat_refusal(stats_is_picture

@@ -144,6 +144,20 @@ TEST(Raster, TextStandsWhereItsAnchorSays) {
     EXPECT_NEAR(middleOfInk(label).y, 60, 0.1);
 }
 
+TEST(Raster, DrawsOverLightThatIsThere) {
+    // Half covered: half of the light that is there, and half of the shape's, whose alpha is 1.
+    Image image(glm::ivec2(3, 1));
+    const float there[] = {0.25F, 2, 0, 0.5F};
+    for (int x = 0; x < 3; ++x) std::copy(std::begin(there), std::end(there), image.pixel(x, 0));
+    drawOver(image, {Area{{{1, 0}, {2, 0}, {2, 0.5}, {1, 0.5}}, {255, 0, 255}}});
+    const float half[] = {0.625F, 1, 0.5F, 0.75F};
+    for (int c = 0; c < 4; ++c) {
+        EXPECT_EQ(image.pixel(0, 0)[c], there[c]);
+        EXPECT_EQ(image.pixel(1, 0)[c], half[c]);
+        EXPECT_EQ(image.pixel(2, 0)[c], there[c]);
+    }
+}
+
 TEST(Raster, TooLargeIsRefused) {
     try {
         rasterize(drawingOf({}, {1e7, 1e7}), 1);
@@ -153,10 +167,22 @@ TEST(Raster, TooLargeIsRefused) {
     }
 }
 
+// Degree, plus-minus, squared, cubed, micro, times, sharp s, dash, and letters with marks.
+constexpr char32_t kBeyondAscii[] =
+    U"\u00B0\u00B1\u00B2\u00B3\u00B5\u00D7\u00DF\u2013\u00C4\u00CB\u00D6\u00DC\u00E4\u00EB\u00F6"
+    U"\u00FC"
+    U"\u00C1\u00C9\u00D3\u00DA\u00E1\u00E9\u00F3\u00FA\u00C0\u00C8\u00D2\u00D9\u00E0\u00E8\u00F2"
+    U"\u00F9"
+    U"\u00C2\u00CA\u00D4\u00DB\u00E2\u00EA\u00F4\u00FB\u00D1\u00F1";
+
 TEST(StrokeFont, EveryCharacterHasAShapeOfItsOwn) {
     std::set<std::vector<double>> shapes;
-    for (char c = '!'; c <= '~'; ++c) {
-        const TextStrokes text = strokesOf(std::string(1, c));
+    std::vector<std::string> characters;
+    for (char c = '!'; c <= '~'; ++c) characters.emplace_back(1, c);
+    for (const char32_t beyond : std::u32string_view(kBeyondAscii))
+        characters.push_back(utf8(std::u32string(1, beyond)));
+    for (const std::string& c : characters) {
+        const TextStrokes text = strokesOf(c);
         EXPECT_GT(text.width, 0.1) << c;
         EXPECT_LT(text.width, 1.1) << c;
         std::vector<double> shape;
@@ -183,9 +209,25 @@ TEST(StrokeFont, NumbersStandBelowEachOther) {
                 2 * strokesOf("0").width + strokesOf(" ").width + strokesOf("%").width, 1e-12);
 }
 
+TEST(StrokeFont, MarksStandAboveTheirLetters) {
+    for (const auto& [marked, plain] : {std::pair("\xc3\xa4", "a"), std::pair("\xc3\x96", "O")}) {
+        const TextStrokes text = strokesOf(marked);
+        const TextStrokes letter = strokesOf(plain);
+        EXPECT_EQ(text.width, letter.width);
+        ASSERT_EQ(text.strokes.size(), letter.strokes.size() + 2);
+        double top = 0;
+        for (const auto& stroke : letter.strokes)
+            for (const glm::dvec2& p : stroke) top = std::min(top, p.y);
+        const glm::dvec2 left = text.strokes[letter.strokes.size()][0];
+        const glm::dvec2 right = text.strokes.back()[0];
+        EXPECT_LT(std::max(left.y, right.y), top - 0.08) << plain;
+        EXPECT_LT(left.x, right.x);
+    }
+}
+
 TEST(StrokeFont, OtherCharactersAreOneBoxEach) {
-    EXPECT_EQ(strokesOf("\xc3\xbc").strokes.size(), 1u);
-    EXPECT_EQ(strokesOf("\xe2\x82\xac\xc3\xbc").strokes.size(), 2u);
+    EXPECT_EQ(strokesOf("\xc5\x82").strokes.size(), 1u);
+    EXPECT_EQ(strokesOf("\xe2\x82\xac\xc5\x82").strokes.size(), 2u);
     EXPECT_TRUE(strokesOf(" ").strokes.empty());
     EXPECT_EQ(strokesOf("").width, 0);
 }

@@ -1,5 +1,6 @@
 deltasplat_test(unit/transfer_function_test.cpp)
 deltasplat_test(unit/read_transfer_function_test.cpp)
+deltasplat_test(unit/color_path_test.cpp)
 deltasplat_test(unit/presets_test.cpp)
 deltasplat_test(unit/class_table_test.cpp)
 deltasplat_test(unit/label_changes_test.cpp)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -10,6 +11,8 @@
 #include "deltasplat/error.h"
 #include "deltasplat/optics/transfer_function.h"
 #include "number_text.h"
+#include "optics/color_path.h"
+#include "optics/color_space.h"
 
 namespace deltasplat {
 namespace {
@@ -112,6 +115,36 @@ TEST_F(ReadTransferFunction, knowsTheColorSpacesOfParaView) {
     EXPECT_EQ(spaceOf(R"("ColorSpace": "Diverging", "NanColor": [1, 1, 0])"),
               ColorSpace::kDiverging);
     EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(ReadTransferFunction, ciede2000GoesTheShortestWay) {
+    const std::string rest =
+        R"("RGBPoints": [10,0,0,1, 20,1,1,0, 20,1,0,0], "Points": [0,0,0.5,0])";
+    const TransferFunction function = read("{\"ColorSpace\": \"Lab/CIEDE2000\", " + rest + "}");
+    const TransferFunction lab = read("{\"ColorSpace\": \"Lab\", " + rest + "}");
+    EXPECT_TRUE(warnings_.empty());
+    EXPECT_EQ(function.colorSpace, ColorSpace::kLab);
+    // Steps of the same width look the same, which they do not as Lab.
+    const auto unevenness = [](const TransferFunction& f) {
+        double least = 1e9;
+        double most = 0;
+        for (int i = 0; i < 10; ++i) {
+            const double step = colorDifference(labFromLinear(f.colorAt(10 + i)),
+                                                labFromLinear(f.colorAt(11 + i - 1e-9 * i)));
+            least = std::min(least, step);
+            most = std::max(most, step);
+        }
+        return most / least;
+    };
+    EXPECT_LT(unevenness(function), 1.3);
+    EXPECT_GT(unevenness(lab), 1.5);
+    // The points themselves stay, and so do jumps.
+    for (const double x : {5.0, 10.0, 20.0, 30.0})
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(function.colorAt(x)[c], lab.colorAt(x)[c], 1e-12);
+
+    read("{\"ColorSpaceOfPoints\": \"linear\", \"ColorSpace\": \"Lab/CIEDE2000\", " + rest + "}");
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_TRUE(warnings_[0].ends_with("with linear colours is interpolated as Lab"));
 }
 
 // As vtkColorTransferFunction::GetTable: of the nodes around x, the first that is not below x.

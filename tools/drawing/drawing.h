@@ -44,19 +44,25 @@ struct Label {
     bool upwards = false;  ///< runs from the bottom to the top
 };
 
+using Shape = std::variant<Area, Line, Label>;
+
 /// What a picture of lines, areas and text consists of, from back to front, on white. Lengths are
 /// pixels at scale 1; x to the right, y down.
 struct Drawing {
     glm::dvec2 size{0.0};
-    std::vector<std::variant<Area, Line, Label>> items;
+    std::vector<Shape> items;
 };
 
 /// Returns an SVG 1.1 document. The same drawing gives the same bytes.
 std::string svgText(const Drawing& drawing);
 
 /// Returns an opaque picture at `scale` > 0 pixels a unit. Needs no font: text is drawn with
-/// strokes of our own, characters beyond ASCII as boxes. The same drawing gives the same pixels.
+/// strokes of our own, see strokesOf. The same drawing gives the same pixels.
 /// @throw Error(kFailed) if it does not fit into memory
 Image rasterize(const Drawing& drawing, double scale);
+
+/// Lays what a drawing consists of over a picture, whose light is mixed with the shapes' where they
+/// cover a part of a pixel; what reaches beyond the picture is left out.
+void drawOver(Image& image, const std::vector<Shape>& shapes, double scale = 1);
 
 }  // namespace deltasplat

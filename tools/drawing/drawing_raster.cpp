@@ -175,6 +175,7 @@ class Painter {
                 const auto share = float(opacity * std::min(mask.at(x, y), 1.0F));
                 float* const rgba = image_.pixel(x, y);
                 for (int c = 0; c < 3; ++c) rgba[c] += share * (float(linear[c]) - rgba[c]);
+                rgba[3] += share * (1 - rgba[3]);
             }
         }
     }
@@ -190,9 +191,13 @@ Image rasterize(const Drawing& drawing, double scale) {
     requireMemory("plot", 4 * sizeof(float) * size.x * size.y);
     Image image{glm::ivec2(size)};
     std::fill(image.rgba.begin(), image.rgba.end(), 1.0F);
-    Painter painter(image, scale);
-    for (const auto& item : drawing.items) std::visit(painter, item);
+    drawOver(image, drawing.items, scale);
     return image;
+}
+
+void drawOver(Image& image, const std::vector<Shape>& shapes, double scale) {
+    Painter painter(image, scale);
+    for (const Shape& shape : shapes) std::visit(painter, shape);
 }
 
 }  // namespace deltasplat

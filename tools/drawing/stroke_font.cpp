@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <charconv>
 #include <iterator>
+#include <string_view>
+#include <utility>
 
 #include "text/utf8_text.h"
 
@@ -139,6 +141,43 @@ constexpr const char* kGlyphs[] = {
     /* ~ */ "0,5.5 (2,8.5) 4.5,6.5 (7,4.5) 9,7.5",
 };
 static_assert(std::size(kGlyphs) == '~' - '!' + 1);
+
+// Signs and letters beyond ASCII.
+struct Sign {
+    char32_t point;
+    const char* strokes;
+};
+constexpr Sign kSigns[] = {
+    {U'\u00B0', "2.2,14 (0,14) (0,9.6) (4.4,9.6) (4.4,14) 2.2,14"},
+    {U'\u00B1', "4.5,12 4.5,4; 0,8 9,8; 0,1 9,1"},
+    {U'\u00B2', "0.2,12.4 (0.4,14.5) (2.4,14.5) (4.6,14.5) (4.6,12.3) (4.6,11) 2.9,9.6 0,7 4.8,7"},
+    {U'\u00B3',
+     ("0.3,13.2 (0.8,14.5) (2.3,14.5) (4.3,14.5) (4.3,12.8) (4.3,11) 2.3,11 1.6,11; 2.3,11 "
+      "(4.7,11) (4.7,9) (4.7,7) (2.3,7) (0.6,7) 0,8.5")},
+    {U'\u00B5', "0,10 0,-4; 0,4 (0,0) (3.8,0) (7.8,0) 7.8,4; 7.8,10 7.8,0"},
+    {U'\u03BC', "0,10 0,-4; 0,4 (0,0) (3.8,0) (7.8,0) 7.8,4; 7.8,10 7.8,0"},
+    {U'\u00D7', "1,10 8,3; 8,10 1,3"},
+    {U'\u00DF',
+     ("0,0 0,10 (0,14) (3.8,14) (7.4,14) (7.4,11) (7.4,8.4) 4.2,7.6 (8.6,7) (8.6,3.6) (8.6,0) "
+      "(4.8,0) (3.6,0) 2.8,0.6")},
+    {U'\u2013', "0,5.2 8.5,5.2"},
+};
+
+// Letters with a mark above, whose strokes begin in the letter's middle, over a small one.
+struct MarkedLetters {
+    const char* strokes;
+    std::u32string_view letters;
+    std::string_view plain;  // the letters without the mark
+};
+constexpr MarkedLetters kMarked[] = {
+    {"-2,13.6; 2,13.6", U"\u00C4\u00CB\u00D6\u00DC\u00E4\u00EB\u00F6\u00FC", "AEOUaeou"},
+    {"-1,12.4 1.4,14.4", U"\u00C1\u00C9\u00D3\u00DA\u00E1\u00E9\u00F3\u00FA", "AEOUaeou"},
+    {"1,12.4 -1.4,14.4", U"\u00C0\u00C8\u00D2\u00D9\u00E0\u00E8\u00F2\u00F9", "AEOUaeou"},
+    {"-2.2,12.4 0,14.4 2.2,12.4", U"\u00C2\u00CA\u00D4\u00DB\u00E2\u00EA\u00F4\u00FB", "AEOUaeou"},
+    {"-2.4,12.8 (-1.2,14.4) 0,13.4 (1.2,12.4) 2.4,14", U"\u00D1\u00F1", "Nn"},
+};
+constexpr double kCapitalsAbove = 2.6;  // what marks of capitals are higher
+
 constexpr const char* kBox = "0,0 0,14 8,14 8,0 0,0";
 
 constexpr glm::dvec2 kUnit{0.048, 0.0515};  // of a glyph's grid, at size 1
@@ -216,9 +255,30 @@ Glyph parsed(std::string_view text) {
     return glyph;
 }
 
+Glyph withMark(char letter, const char* strokes) {
+    Glyph glyph = parsed(kGlyphs[letter - '!']);
+    const glm::dvec2 from(0.5 * glyph.width, letter < 'a' ? kCapitalsAbove : 0);
+    for (Stroke& stroke : parsed(strokes).strokes) {
+        for (glm::dvec2& p : stroke) p += from;
+        glyph.strokes.push_back(std::move(stroke));
+    }
+    return glyph;
+}
+
+Glyph beyondAscii(char32_t point) {
+    for (const Sign& sign : kSigns) {
+        if (sign.point == point) return parsed(sign.strokes);
+    }
+    for (const MarkedLetters& marked : kMarked) {
+        const std::size_t at = marked.letters.find(point);
+        if (at != std::u32string_view::npos) return withMark(marked.plain[at], marked.strokes);
+    }
+    return parsed(kBox);
+}
+
 Glyph glyphOf(char32_t point) {
     if (point == U' ') return {{}, kSpace - kGap};
-    if (point < U'!' || point > U'~') return parsed(kBox);
+    if (point < U'!' || point > U'~') return beyondAscii(point);
     Glyph glyph = parsed(kGlyphs[point - U'!']);
     if (point >= U'0' && point <= U'9') glyph.width = kDigitWidth;
     return glyph;
@@ -241,6 +301,17 @@ TextStrokes strokesOf(std::string_view text) {
     }
     result.width *= kUnit.x;
     return result;
+}
+
+std::string fittedText(const std::string& text, double width) {
+    const std::u32string points = codePoints(text);
+    std::string shorter = text;
+    for (std::size_t kept = points.size(); kept > 4 && strokesOf(shorter).width > width;) {
+        kept -= 2;
+        shorter =
+            utf8(points.substr(0, kept / 2) + U"..." + points.substr(points.size() - kept / 2));
+    }
+    return shorter;
 }
 
 }  // namespace deltasplat

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,7 +16,12 @@ struct TextStrokes {
     double width = 0;  ///< to the end of the last character
 };
 
-/// Returns the strokes of UTF-8 text; characters beyond ASCII are boxes.
+/// Returns the strokes of UTF-8 text: ASCII, letters of Western Europe with their marks, and signs
+/// of units (degree, micro, squared, cubed, plus-minus, times); other characters are boxes.
 TextStrokes strokesOf(std::string_view text);
+
+/// Shortens text in its middle until its strokes are at most so wide, so that it keeps its ends; no
+/// further than to two characters at each end.
+std::string fittedText(const std::string& text, double width);
 
 }  // namespace deltasplat

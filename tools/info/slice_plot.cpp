@@ -9,7 +9,6 @@
 #include "drawing/nice_step.h"
 #include "drawing/stroke_font.h"
 #include "number_text.h"
-#include "text/utf8_text.h"
 
 namespace deltasplat {
 namespace {
@@ -84,21 +83,15 @@ Label label(glm::dvec2 at, const std::string& text, double size, Label::Anchor a
     return {at, text, size, color, anchor};
 }
 
-// What text takes at most: the fonts that show an .svg are up to a quarter wider than ours.
+// What text takes of its size at most: the fonts that show an .svg are up to a quarter wider.
+constexpr double kWiderFonts = 1.25;
+
 double widthOf(const std::string& text, double size) {
-    return 1.25 * size * strokesOf(text).width;
+    return kWiderFonts * size * strokesOf(text).width;
 }
 
-// Shortens text in its middle until it fits, so that a file name keeps its ends.
 std::string fitted(const std::string& text, double size, double width) {
-    const std::u32string points = codePoints(text);
-    std::string shorter = text;
-    for (std::size_t kept = points.size(); kept > 4 && widthOf(shorter, size) > width;) {
-        kept -= 2;
-        shorter =
-            utf8(points.substr(0, kept / 2) + U"..." + points.substr(points.size() - kept / 2));
-    }
-    return shorter;
+    return fittedText(text, width / (kWiderFonts * size));
 }
 
 // Draws one row, whose top left corner is `corner`.

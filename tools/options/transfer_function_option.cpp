@@ -70,4 +70,10 @@ TransferFunction readTransferFunctionOption(const std::filesystem::path& given,
     return readTransferFunction(option.file, listener);
 }
 
+std::map<int, std::string> labelNames(const std::filesystem::path& given) {
+    const TransferFunctionOption option = parseTransferFunction(given);
+    if (option.file.empty() || !isLabelTable(option.file)) return {};
+    return readLabelNames(option.file);
+}
+
 }  // namespace deltasplat

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "deltasplat/optics/presets.h"
 #include "deltasplat/optics/transfer_function.h"
@@ -27,5 +29,9 @@ TransferFunctionOption parseTransferFunction(const std::filesystem::path& given)
 /// of several in a table of labels is asked for
 TransferFunction readTransferFunctionOption(const std::filesystem::path& given,
                                             const Listener& listener);
+
+/// Returns what a table of labels calls them; of anything else no names.
+/// @throw as readTransferFunctionOption
+std::map<int, std::string> labelNames(const std::filesystem::path& given);
 
 }  // namespace deltasplat

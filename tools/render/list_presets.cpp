@@ -2,12 +2,11 @@
 #include "render/list_presets.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "deltasplat/optics/presets.h"
+#include "drawing/shapes.h"
 #include "number_text.h"
 #include "optics/color_curve.h"
-#include "srgb.h"
 
 namespace deltasplat {
 namespace {
@@ -22,30 +21,6 @@ std::string valuesText(Preset::Values values) {
             break;
     }
     return "a range";
-}
-
-// The part of a preset that a swatch shows.
-glm::dvec2 shownPart(const Preset& preset, const TransferFunction& function) {
-    switch (preset.values) {
-        case Preset::Values::kHounsfield:
-            return {function.opacities.front().x, std::min(function.opacities.back().x, 1500.0)};
-        case Preset::Values::kLabels:
-            return {0, 32};
-        case Preset::Values::kRange:
-            break;
-    }
-    return {0, 1};
-}
-
-Rgb shown(const glm::dvec3& linear) {
-    const auto level = [](double v) {
-        return std::uint8_t(std::lround(255 * std::clamp(srgbFromLinear(v), 0.0, 1.0)));
-    };
-    return {level(linear.r), level(linear.g), level(linear.b)};
-}
-
-Area rectangle(glm::dvec2 min, glm::dvec2 max, Rgb color) {
-    return {{min, {max.x, min.y}, max, {min.x, max.y}}, color, 1};
 }
 
 // Lengths in pixels.
@@ -68,9 +43,8 @@ void drawPreset(const Preset& preset, double top, Drawing& drawing) {
         const double right = kBarLeft + kBarWidth * (i + 1) / kSteps;
         const double x = part.x + (part.y - part.x) * (i + 0.5) / kSteps;
         drawing.items.emplace_back(
-            rectangle({left, top}, {right, top + kBarHeight}, shown(colors.at(x))));
-        // Its root, for what is thin to be seen beside what is dense.
-        const double height = kCurveHeight * std::sqrt(function.opacityAt(x));
+            rectangle({left, top}, {right, top + kBarHeight}, shownColor(colors.at(x))));
+        const double height = kCurveHeight * opacityHeight(function.opacityAt(x));
         under.points.push_back({left, bottom - height});
         under.points.push_back({right, bottom - height});
     }
@@ -93,6 +67,18 @@ void drawPreset(const Preset& preset, double top, Drawing& drawing) {
 }
 
 }  // namespace
+
+glm::dvec2 shownPart(const Preset& preset, const TransferFunction& function) {
+    switch (preset.values) {
+        case Preset::Values::kHounsfield:
+            return {function.opacities.front().x, std::min(function.opacities.back().x, 1500.0)};
+        case Preset::Values::kLabels:
+            return {0, 32};
+        case Preset::Values::kRange:
+            break;
+    }
+    return {0, 1};
+}
 
 std::string presetList() {
     std::string text;

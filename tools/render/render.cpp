@@ -5,12 +5,14 @@
 #include <cstdio>
 #include <memory>
 
+#include "annotate/annotate.h"
 #include "listener.h"
 #include "lower_case.h"
 #include "number_text.h"
 #include "options/input_options.h"
 #include "output_files.h"
 #include "process/interrupt.h"
+#include "render/picture_legend.h"
 #include "render/render_input.h"
 #include "render/render_modes.h"
 #include "render/render_options.h"
@@ -81,20 +83,32 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     warnOfUnusedModeOptions(app, command, display);
 }
 
+// Shows values as greys, and says in `image` of which window.
+glm::dvec2 applyWindow(const RenderCommand& command, const Volume& volume, RenderResult& result,
+                       ImageFileOptions& image) {
+    const bool xray = command.picture.render.mode == Mode::kXray;
+    const glm::dvec2 window =
+        xray ? greyXray(volume, result.camera, command.window, result.image)
+             : greyMip(command.window ? command.window : command.picture.render.optics.range,
+                       result.image);
+    image.metadata.emplace_back("window", numberText(window));
+    if (xray) image.metadata.emplace_back("xrayScale", numberText(window.y));
+    return window;
+}
+
 // Makes the picture what is stored of it, and says in `image` what that took.
-void finishPicture(const RenderCommand& command, const Volume& volume, RenderResult& result,
-                   ImageFileOptions& image) {
+// @param optics  that it was made with
+void finishPicture(const RenderCommand& command, const Volume& volume, const Optics& optics,
+                   RenderResult& result, ImageFileOptions& image, const Listener& listener) {
     if (storesValues(command)) return;
-    if (showsWindow(command)) {
-        const bool xray = command.picture.render.mode == Mode::kXray;
-        const glm::dvec2 window =
-            xray ? greyXray(volume, result.camera, command.window, result.image)
-                 : greyMip(command.window ? command.window : command.picture.render.optics.range,
-                           result.image);
-        image.metadata.emplace_back("window", numberText(window));
-        if (xray) image.metadata.emplace_back("xrayScale", numberText(window.y));
-    }
+    std::optional<glm::dvec2> window;
+    if (showsWindow(command)) window = applyWindow(command, volume, result, image);
     if (command.picture.background) compositeOver(result.image, *command.picture.background);
+    std::optional<Legend> legend;
+    if (command.annotations.legend) legend = pictureLegend(command, volume, optics, window);
+    annotate(layOut(command.annotations, result.camera, volume.space, legend, inkFor(result.image),
+                    listener),
+             result.image);
 }
 
 void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
@@ -122,9 +136,8 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         result = render(volume, options, display.stage(kReadShare, kRenderShare));
         boundOver(picture.background, result.stats);
         ImageFileOptions image = imageOptions(command, volume, result, session);
-        finishPicture(command, volume, result, image);
-
         const Listener writing = display.stage(kRenderShare, 1);
+        finishPicture(command, volume, options.optics, result, image, writing);
         writing.report(0);
         const auto beginWrite = std::chrono::steady_clock::now();
         writeImage(command.output, result.image, image);

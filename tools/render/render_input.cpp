@@ -7,6 +7,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/optics/default_ramp.h"
+#include "ingest/label_claim.h"
 #include "number_text.h"
 #include "optics/label_changes.h"
 #include "optics/value_colors.h"
@@ -14,6 +15,8 @@
 
 namespace deltasplat {
 namespace {
+
+constexpr const char* kLabelPreset = "labels";
 
 // Returns a value that is no whole number, if there is one.
 std::optional<double> anyBroken(const Volume& volume) {
@@ -48,12 +51,16 @@ void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener&
     }
 }
 
-// The preset that is named or, where nothing is, that of a CT scan for one; else null.
-const Preset* presetOf(const PictureOptions& picture, const Volume& volume) {
+// The preset that is named or, where nothing is, that of a CT scan for one, and that of labels for
+// what is said to be labels; else null.
+const Preset* presetOf(const std::filesystem::path& input, const PictureOptions& picture,
+                       const Volume& volume) {
     if (!picture.transferFunction.empty())
         return parseTransferFunction(picture.transferFunction).preset;
     const bool isFree = picture.render.mode == Mode::kComposite && !picture.render.optics.range;
-    return isFree && isHounsfield(volume) ? findPreset(kScanPreset) : nullptr;
+    if (!isFree) return nullptr;
+    if (saysLabels(input) && !anyBroken(volume)) return findPreset(kLabelPreset);
+    return isHounsfield(volume) ? findPreset(kScanPreset) : nullptr;
 }
 
 // Surfaces are shaded unless something else is wanted: those of level sets and of scanned bodies.
@@ -102,12 +109,13 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
 namespace {
 
 // Puts into `options` what depends on the volume: all of it, whatever is cut off.
-void fitOptics(const PictureOptions& picture, const Volume& volume, RenderOptions& options,
-               const Listener& listener) {
-    const Preset* preset = presetOf(picture, volume);
+void fitOptics(const std::filesystem::path& input, const PictureOptions& picture,
+               const Volume& volume, RenderOptions& options, const Listener& listener) {
+    const Preset* preset = presetOf(input, picture, volume);
     const std::optional<glm::dvec2>& range = picture.render.optics.range;
     options.optics.surface = picture.surface.of(volume);
     options.optics.shading = shadingOf(picture, volume, preset, options.optics.surface.has_value());
+    if (preset && !options.optics.surface) warnOfOtherData(*preset, volume, listener);
     if (picture.transferFunction.empty()) {
         const bool mip = picture.render.mode == Mode::kMip;
         options.optics.transferFunction =
@@ -116,7 +124,6 @@ void fitOptics(const PictureOptions& picture, const Volume& volume, RenderOption
                     : (mip ? wholeRamp(volume) : defaultRamp(volume));
     } else {
         if (preset) fitPreset(*preset, volume, options.optics);
-        if (preset && !options.optics.surface) warnOfOtherData(*preset, volume, listener);
         const bool isOpen = options.optics.transferFunction.normalized && !options.optics.range;
         if (isOpen && picture.parts.cuts()) options.optics.range = defaultRange(volume);
     }
@@ -130,7 +137,7 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     ReadOptions read = picture.read;
     read.keepInexact = picture.render.mode != Mode::kComposite;
     Volume volume = readVolume(input, read, listener);
-    fitOptics(picture, volume, options, listener);
+    fitOptics(input, picture, volume, options, listener);
     warnOfAbsentLabels(picture.parts.labels, volume, listener);
     if (!picture.parts.cuts()) return volume;
     return cutAsChosen(volume, input, picture.parts, picture.read, listener);

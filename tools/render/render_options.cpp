@@ -13,6 +13,7 @@
 #include "options/transfer_function_option.h"
 #include "output_files.h"
 #include "program.h"
+#include "render/annotation_options.h"
 #include "render/list_presets.h"
 
 namespace deltasplat {
@@ -219,7 +220,8 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
                    ".txt or .label), or a preset:" +
                        presetNames() + "\n(default: " + kScanPreset +
                        " for CT scans, in Hounsfield units of a\n"
-                       "patient; else a ramp over the 1st to 99th percentile of the\n"
+                       "patient, labels for files that say they hold some; else a ramp over the "
+                       "1st to 99th percentile of the\n"
                        "values, white for fog, else from black to white)");
     group.addQuestion("--list-tf", "FILE", listPresets,
                       "Only list the presets, or draw them to FILE (.png or .svg; with\n"
@@ -293,6 +295,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addPartOptions(app, command.picture);
     addMethodOption(app, command.picture.render.method);
     addSplattingOptions(app, command.picture.render);
+    addAnnotationOptions(app, command.annotations);
     addInputOptions(app, command.picture.read);
 }
 
@@ -331,6 +334,7 @@ void warnOfUnusedView(const CLI::App& app, const CameraOptions& options, const V
 void validate(const RenderCommand& command) {
     checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     checkCamera(command.picture.render.camera);
+    checkAnnotations(command);
     const Files mask = filesRead(filesOfMask(command.picture.parts), {});
     checkOutput("--output", command.output, mask, "the mask");
     checkOutput("--stats", command.stats, mask, "the mask");

@@ -6,6 +6,7 @@
 #include <glm/vec4.hpp>
 #include <optional>
 
+#include "annotate/annotation_choice.h"
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/render.h"
@@ -36,6 +37,7 @@ struct RenderCommand {
     PictureOptions picture;
     std::optional<glm::dvec2> window;  ///< xray, mip: values of black and white; empty: percentiles
     ImageFileOptions image;
+    AnnotationChoice annotations;
 };
 
 void addCameraOptions(CLI::App& app, PictureOptions& options);

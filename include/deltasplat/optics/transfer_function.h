@@ -58,10 +58,10 @@ struct TransferFunction {
 
 /// Reads the first transfer function of a ParaView JSON file (an array of presets, or one object):
 /// `Name`, `RGBPoints`, `Points`, `Normalized`, `ColorSpaceOfPoints`, `ColorSpace`; other members
-/// are passed over. `ColorSpace` is "RGB", "HSV" (with `HSVWrap`), "Lab" or "CIELAB", "Diverging",
-/// or "Step": each interval has the colour of its right end, which belongs to it; its left end has
-/// its own colour. Another colour space is mixed as RGB, with a warning. Linear colours may be
-/// brighter than 1. A file without `Points` gets opacities from 0 at the first colour's x to 1 at
+/// are passed over. `ColorSpace` is "RGB", "HSV" (with `HSVWrap`), "Lab" or "CIELAB",
+/// "Lab/CIEDE2000", "Diverging" or "Step": each interval has the colour of its right end, which
+/// belongs to it; its left end has its own. Others are mixed as RGB, with a warning. Linear colours
+/// may be brighter than 1. Without `Points` opacities rise from 0 at the first colour's x to 1 at
 /// the last one's, with a warning.
 /// @throw Error(kInput) naming file, line and what was expected, if it is missing or malformed
 TransferFunction readTransferFunction(const std::filesystem::path& file,

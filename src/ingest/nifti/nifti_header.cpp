@@ -28,10 +28,10 @@ constexpr std::size_t kBytes2 = 540;
 // Where the fields that matter lie in the header of one version.
 struct Places {
     std::size_t magic, dataType, dims, pixelSizes, dataStart, slope, intercept, qformCode,
-        sformCode, quaternion, sform, units;
+        sformCode, quaternion, sform, units, intentCode;
 };
-constexpr Places kPlaces1{344, 70, 40, 76, 108, 112, 116, 252, 254, 256, 280, 123};
-constexpr Places kPlaces2{4, 12, 16, 104, 168, 176, 184, 344, 348, 352, 400, 500};
+constexpr Places kPlaces1{344, 70, 40, 76, 108, 112, 116, 252, 254, 256, 280, 123, 68};
+constexpr Places kPlaces2{4, 12, 16, 104, 168, 176, 184, 344, 348, 352, 400, 500, 504};
 
 struct TypeInfo {
     int code;
@@ -294,6 +294,8 @@ NiftiHeader readNiftiHeader(const std::filesystem::path& file, const Listener& l
     place(fields, listener, header);
     warnOfUnits(fields, listener);
     readRescale(fields, header);
+    constexpr int kLabelIntent = 1002;
+    header.isLabels = fields.code(fields.places().intentCode) == kLabelIntent;
     return header;
 }
 

@@ -19,7 +19,8 @@ struct NiftiHeader {
     std::string dims;          ///< of all axes, for messages: "64x64x36x120"
     Rescale rescale;
     glm::dmat4 worldFromIndex{1.0};
-    std::string space;  ///< "RAS", or empty if the header places the voxels nowhere
+    bool isLabels = false;  ///< intent NIFTI_INTENT_LABEL: values are numbers of names
+    std::string space;      ///< "RAS", or empty if the header places the voxels nowhere
 };
 
 /// Reads the header of a .nii or .nii.gz file. Warns of what is passed over: a qform that differs

@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# A file that says that its values are labels is shown by their preset, unless something else is
+# asked for; one that does not say so is not.
+# Usage: labels_first.sh PROGRAM OIIOTOOL SCRATCH ITK
+set -euo pipefail
+program=$1 oiiotool=$2 scratch=$3 itk=$4
+rm -rf "$scratch"
+mkdir -p "$scratch"
+cd "$scratch"
+"$program" synth engine engine_16x16x16_uint8.raw --dims 16x16x16 -q
+
+draw() { # PICTURE VOLUME OPTIONS
+    "$program" render -q -q "$2" -o "$1.exr" --float --size 40x40 --view iso "${@:3}"
+}
+same() { "$oiiotool" -q "$1.exr" "$2.exr" --fail 0 --diff >/dev/null 2>&1; }
+check() { # PLAIN SAYING: the same volume, without and with the word
+    draw plain "$1"
+    draw preset "$1" --tf labels
+    draw first "$2"
+    draw ramp "$2" --range 0,200
+    draw plain_ramp "$1" --range 0,200
+    ! same plain preset || { echo "$1: got labels; expected a ramp"; exit 1; }
+    same first preset || { echo "$2: got another picture; expected labels"; exit 1; }
+    same ramp plain_ramp || { echo "$2: got no ramp by --range"; exit 1; }
+}
+
+# The intent's code is 1002, at byte 68.
+"$program" convert engine_16x16x16_uint8.raw plain.nii -q -q
+cp plain.nii labels.nii
+printf '\352\003' | dd of=labels.nii bs=1 seek=68 conv=notrunc status=none
+check plain.nii labels.nii
+gzip -k labels.nii
+draw packed labels.nii.gz
+same packed preset || { echo "labels.nii.gz: expected labels"; exit 1; }
+
+# Another intent is no word for it.
+cp plain.nii other.nii
+printf '\353\003' | dd of=other.nii bs=1 seek=68 conv=notrunc status=none
+draw other other.nii
+same other plain || { echo "other.nii: another intent, and no ramp"; exit 1; }
+
+[[ $itk == 1 ]] || exit 0
+header='NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n'
+printf "$header\n" | cat - engine_16x16x16_uint8.raw >plain.nrrd
+printf "${header}Segment0_ID:=Segment_1\n\n" | cat - engine_16x16x16_uint8.raw >labels.seg.nrrd
+check plain.nrrd labels.seg.nrrd
+# In the data it is no key.
+printf "$header\n" | cat - <(printf '\nSegment0_ID:=') engine_16x16x16_uint8.raw |
+    head -c "$(stat -c %s plain.nrrd)" >data.nrrd
+draw data data.nrrd
+! same data preset || { echo "data.nrrd: got labels"; exit 1; }

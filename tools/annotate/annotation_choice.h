@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace deltasplat {
+
+/// What is to be drawn over a picture.
+struct AnnotationChoice {
+    bool legend = false;
+    bool scaleBar = false;
+    bool axes = false;
+    std::vector<std::string> lines;  ///< of text
+};
+
+}  // namespace deltasplat

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/annotation_options.h"
+
+#include <string>
+
+#include "deltasplat/error.h"
+#include "lower_case.h"
+
+namespace deltasplat {
+namespace {
+
+void refuse(const std::string& option, const std::string& got, const std::string& expected) {
+    throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
+}
+
+// The first option that asks for something, or none.
+std::string anyOf(const AnnotationChoice& choice) {
+    if (choice.legend) return "--legend";
+    if (choice.scaleBar) return "--scale-bar";
+    if (choice.axes) return "--axes";
+    return choice.lines.empty() ? "" : "--annotate";
+}
+
+}  // namespace
+
+void addAnnotationOptions(CLI::App& app, AnnotationChoice& choice) {
+    OptionGroup group(app, "Annotations");
+    group.addFlag("--legend", choice.legend,
+                  "Draw into a .png, upper right, which colours stand for which\n"
+                  "values, and beside them how opaque these are (as its square\n"
+                  "root); of labels their names, if --tf has some");
+    group.addFlag("--scale-bar", choice.scaleBar,
+                  "Draw a bar of a round length in world units, lower right (mm in\n"
+                  "a patient's space; of --projection perspective that at the\n"
+                  "target's distance)");
+    group.addFlag("--axes", choice.axes,
+                  "Draw the world's axes as the camera sees them, lower left: x, y\n"
+                  "and z, or what of a patient they point to (R, L, A, P, S)");
+    group.addEach("--annotate", "TEXT", choice.lines, anyText(),
+                  "Draw a line of text, upper left; may be given several times");
+}
+
+void checkAnnotations(const RenderCommand& command) {
+    const AnnotationChoice& choice = command.annotations;
+    const std::string any = anyOf(choice);
+    if (!any.empty() && lowerCase(command.output.extension().string()) == ".exr") {
+        refuse(any, command.output.string() + ", whose pixels are light or values alone",
+               "a .png (render to both)");
+    }
+    const RenderOptions& render = command.picture.render;
+    if (choice.scaleBar && render.camera.projection == Projection::kLatlong)
+        refuse("--scale-bar", "--projection latlong", "ortho or perspective, where it would hold");
+    if (!choice.legend) return;
+    if (render.mode == Mode::kXray)
+        refuse("--legend", "--mode xray, which shows sums and no values", "composite or mip");
+    if (render.mode == Mode::kComposite && render.optics.colorBy != ColorBy::kValue)
+        refuse("--legend", "--color-by " + colorByName(render.optics.colorBy), "value");
+}
+
+}  // namespace deltasplat
