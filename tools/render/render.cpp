@@ -42,6 +42,14 @@ ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume
         {"codeBook", volume.codeBook.name()},
         {"codeError", codeErrorText(volume.codeError)},
     };
+    const RenderOptions& render = command.picture.render;
+    if (result.stats.mode == Mode::kDrr) {
+        options.metadata.emplace_back("muWater", numberText(render.drr.muWater));
+        if (render.drr.photons)
+            options.metadata.emplace_back("photons", numberText(*render.drr.photons));
+    }
+    if (result.stats.mode == Mode::kMip && render.depthShade > 0)
+        options.metadata.emplace_back("depthShade", numberText(render.depthShade));
     if (result.stats.mode != Mode::kComposite) return options;
     options.metadata.insert(options.metadata.end(),
                             {{"method", methodName(command.picture.render.method)},
@@ -79,24 +87,31 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     warnOfUnusedModeOptions(app, command, display);
 }
 
+// Returns what black and white stand for.
+glm::dvec2 showWindow(const RenderCommand& command, const Volume& volume, RenderResult& result) {
+    const RenderOptions& options = command.picture.render;
+    if (options.mode == Mode::kXray)
+        return greyXray(volume, result.camera, command.window, result.image);
+    if (options.mode == Mode::kDrr)
+        return greyRadiograph(options.drr, command.window, result.image);
+    return greyMip(command.window ? command.window : options.optics.range, result.image);
+}
+
 // Makes the picture what is stored of it, and says in `image` what that took.
 void finishPicture(const RenderCommand& command, const Volume& volume, RenderResult& result,
                    ImageFileOptions& image) {
     if (storesValues(command)) return;
     if (showsWindow(command)) {
-        const bool xray = command.picture.render.mode == Mode::kXray;
-        const glm::dvec2 window =
-            xray ? greyXray(volume, result.camera, command.window, result.image)
-                 : greyMip(command.window ? command.window : command.picture.render.optics.range,
-                           result.image);
+        const glm::dvec2 window = showWindow(command, volume, result);
         image.metadata.emplace_back("window", numberText(window));
-        if (xray) image.metadata.emplace_back("xrayScale", numberText(window.y));
+        if (command.picture.render.mode == Mode::kXray)
+            image.metadata.emplace_back("xrayScale", numberText(window.y));
     }
     if (command.picture.background) compositeOver(result.image, *command.picture.background);
 }
 
 void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
-    applyMode(command);
+    applyMode(app, command);
     applyProjection(app, command.picture.render.camera);
     validate(command);
     const PictureOptions& picture = command.picture;
@@ -112,6 +127,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         RenderOptions options = readOptics(picture, reading);
         const Volume volume = readToRender(command.input, picture, options, reading);
         warnOfUnusedView(app, options.camera, volume, reading);
+        warnOfDetector(options.camera, volume, reading);
         times.read = secondsSince(beginRead);
         codeBook = "code book " + volume.codeBook.name() + ", largest error " +
                    codeErrorText(volume.codeError) + "\n";
