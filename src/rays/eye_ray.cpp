@@ -21,6 +21,7 @@ EyeRay::EyeRay(const glm::dvec3& eyePosition, const glm::dvec3& ray)
     : order(sliceOrder(mostParallelAxis(ray))) {
     const double along = ray[order[0]];
     goesUp = along > 0;
+    slices = {0, goesUp ? -1 : 1};
     eye = {eyePosition[order[0]], eyePosition[order[1]], eyePosition[order[2]]};
     slope = glm::dvec2(ray[order[1]], ray[order[2]]) / std::abs(along);
 }

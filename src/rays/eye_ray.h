@@ -17,9 +17,9 @@ struct EyeRay {
     glm::ivec3 order{0, 1, 2};
     bool goesUp = true;  ///< towards slices of larger numbers
     glm::dvec3 eye{0.0};
-    glm::dvec2 slope{0.0};     ///< voxels along u and v for each slice
-    double nearest = 0;        ///< slices from the eye to what is seen first, >= 0
-    glm::ivec2 slices{0, -1};  ///< first and last that it may meet, as it goes
+    glm::dvec2 slope{0.0};  ///< voxels along u and v for each slice
+    double nearest = 0;     ///< slices from the eye to what is seen first, >= 0
+    glm::ivec2 slices{0};   ///< first and last that it may meet, as it goes; none before clip()
 
     /// @param eye  in positions
     /// @param ray  of any length, in voxels
