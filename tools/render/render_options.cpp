@@ -156,7 +156,7 @@ void addRayOptions(CLI::App& app, RenderCommand& command) {
     group.addValue(
         "--mu-water", "M", options.drr.muWater, positiveLength(),
         withDefault("drr: attenuation of water in 1/mm (of a voxel M (1 + HU / 1000), at\n"
-                    "least 0); the default is that of 50 to 60 keV",
+                    "least 0), of photons of 50 to 60 keV",
                     numberText(options.drr.muWater)));
     group.addValue("--photons", "N", options.drr.photons, positiveLength(),
                    "drr: photons that a pixel of an .exr would get past nothing, > 0:\n"
