@@ -3,14 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
-#include <string>
 
+#include "deltasplat/ingest/slot.h"
+#include "eye_render.h"
 #include "image/warp.h"
-#include "number_text.h"
-#include "optics/value_colors.h"
 #include "parallel.h"
+#include "ray_picture.h"
 #include "rays/blur_plane.h"
+#include "rays/depth_shade.h"
 #include "rays/follow_rays.h"
 #include "stopwatch.h"
 
@@ -28,7 +30,7 @@ Footprint singlePixel() {
 }
 
 Footprint footprintOf(const RenderOptions& options, glm::dvec2 shiftPerSlice) {
-    if (options.mode == Mode::kMip || !options.sigma) return singlePixel();
+    if (!showsSums(options.mode) || !options.sigma) return singlePixel();
     return makeFootprint(*options.sigma, shiftPerSlice, kResolution, options.footprintWidth);
 }
 
@@ -36,7 +38,7 @@ Raster rasterOf(const RayPlane& plane) {
     return {plane.box.min, plane.box.size(), plane.values.data(), 1};
 }
 
-// Splits a plane of largest values into whether anything is met (1 or 0), and the value there.
+// Splits a plane of values into whether anything is met (1 or 0), and the value there.
 RayPlane splitMet(RayPlane& plane) {
     RayPlane met(plane.box);
     parallelForChunks(plane.values.size(), [&](std::size_t begin, std::size_t end) {
@@ -48,95 +50,160 @@ RayPlane splitMet(RayPlane& plane) {
     return met;
 }
 
-// Makes the picture of values and of what is met, both warped: a pixel is met where it is by half
-// or more, and has the mean of the values that are.
-void combineMet(const Image& met, glm::vec2 range, Image& image) {
+// Makes means of sums, and of how much of each pixel's way is in active voxels; where none is,
+// -infinity.
+void divideByCounts(const RayPlane& counts, RayPlane& sums) {
+    parallelForChunks(sums.values.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const float count = counts.values[i];
+            sums.values[i] =
+                count > 0 ? sums.values[i] / count : -std::numeric_limits<float>::infinity();
+        }
+    });
+}
+
+// Makes the picture of values, of what is met and of shades, all warped: a pixel is met where it is
+// by half or more, and has the means of the values and shades that are.
+void combineMet(const Image& met, const Image* shade, const ValuePainter& painter, Image& image) {
     parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
         float* rgba = image.pixel(0, int(y));
         const float* share = met.pixel(0, int(y));
+        const float* shades = shade ? shade->pixel(0, int(y)) : nullptr;
         for (int x = 0; x < image.size.x; ++x, rgba += 4, share += 4) {
-            const bool isMet = share[3] >= 0.5f;
-            const float value = isMet ? std::clamp(rgba[3] / share[3], range.x, range.y) : 0.0f;
-            for (int c = 0; c < 3; ++c) rgba[c] = value;
-            rgba[3] = isMet ? 1.0f : 0.0f;
+            FoundValue found;
+            found.isMet = share[3] >= 0.5f;
+            if (found.isMet) {
+                found.value = rgba[3] / share[3];
+                if (shades) found.shade = std::min(shades[4 * x + 3] / share[3], 1.0f);
+            }
+            painter.paint(found, rgba);
         }
     });
 }
 
-void colorValues(const ValueColors& colors, Image& image) {
-    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
-        float* rgba = image.pixel(0, int(y));
-        for (int x = 0; x < image.size.x; ++x, rgba += 4) {
-            if (rgba[3] == 0) continue;
-            const glm::vec3 color = colors.colorOf(rgba[0]);
-            for (int c = 0; c < 3; ++c) rgba[c] = color[c];
+// A parallel picture on its way: what lies where, and what it is for.
+struct ParallelView {
+    const Volume& volume;
+    const RenderOptions& options;
+    const Camera& camera;
+    const Factorization& factors;
+};
+
+// How deep along the line of sight places in the volume lie, counted from its first voxel; from one
+// to the next.
+glm::dvec3 depthSteps(const ParallelView& view) {
+    const glm::dmat3 linear(view.volume.worldFromIndex);
+    const glm::ivec3 order = sliceOrder(view.factors.sliceAxis);
+    glm::dvec3 steps;
+    for (int i = 0; i < 3; ++i) steps[i] = glm::dot(linear[order[i]], view.camera.direction);
+    return steps;
+}
+
+DepthShade shadeOf(const ParallelView& view, const glm::dvec3& steps, const IndexBox& box) {
+    DepthShade shade{view.options.depthShade, 0, 0};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double way = steps[axis] * (box.dims()[axis] - 1);
+        shade.nearest += std::min(way, 0.0);
+        shade.farthest += std::max(way, 0.0);
+    }
+    return shade;
+}
+
+// Turns the slices that values are from into shades; nothing has none.
+void shadePlaces(const ParallelView& view, const IndexBox& box, const SheetLayout& layout,
+                 const BasePlane& basePlane, const RayPlane& met, RayPlane& places) {
+    const glm::dvec3 steps = depthSteps(view);
+    const DepthShade shade = shadeOf(view, steps, box);
+    const glm::dvec2 first = layout.firstVoxel - glm::ivec2(box.min.z, box.min.y);
+    const glm::ivec2 size = places.box.size();
+    parallelFor(std::size_t(size.y), [&](std::size_t row) {
+        float* out = &places.values[row * std::size_t(size.x)];
+        const float* isMet = &met.values[row * std::size_t(size.x)];
+        for (int x = 0; x < size.x; ++x) {
+            const int slice = int(out[x]);
+            const glm::ivec2 pixel(places.box.min.x + x, places.box.min.y + int(row));
+            const glm::dvec2 at =
+                first + basePlane.positionOf(pixel) + basePlane.placeOf(box.min.x + slice).offset;
+            const double depth = glm::dot(steps, glm::dvec3(slice, at.y, at.x));
+            out[x] = isMet[x] * shade.at(depth);
         }
     });
 }
 
-// Rays reckon in 32-bit floats: says where these are not enough.
-void warnOfFloats(const Volume& volume, const Factorization& view, RayRule rule,
-                  const Listener& listener) {
-    const double largest = std::max(std::abs(volume.valueMin), std::abs(volume.valueMax));
-    // Below, numbers lose digits: 1e5 times that is what 1e-5 of the largest value needs.
-    constexpr double kSmallest = 1e5 * double(std::numeric_limits<float>::min());
-    const std::string values = "values of up to " + numberText(largest);
-    // Values are added up before they are multiplied by the length of a step.
-    const double step = rule == RayRule::kSum ? view.sliceStepWorld : 1;
-    const double sum = largest * volume.box.dims()[view.sliceAxis] * std::max(step, 1.0);
-    if (largest > kLargestRayValue) {
-        listener.warn(values +
-                      ": those beyond +-8.5e+37 are taken for that, as x-rays and largest "
-                      "values are 32-bit floats");
-    } else if (largest > 0 && largest * std::min(step, 1.0) < kSmallest) {
-        listener.warn(values + " lose digits, or become 0, as 32-bit floats");
-    }
-    if (rule == RayRule::kSum && sum > double(std::numeric_limits<float>::max())) {
-        listener.warn(values +
-                      " may add up to more than a 32-bit float holds: pixels are wrong where they "
-                      "do");
-    }
+RayRule parallelRule(Mode mode) {
+    // Means are sums divided by counts.
+    return mode == Mode::kMip || mode == Mode::kMin ? RayRule::kMax : RayRule::kSum;
 }
 
-}  // namespace
-
-void renderRays(const Volume& volume, const Factorization& view, const RenderOptions& options,
-                const Listener& listener, RenderResult& result) {
+void renderParallel(const ParallelView& view, const Listener& listener, RenderResult& result) {
     const Clock::time_point start = Clock::now();
-    const bool mip = options.mode == Mode::kMip;
-    const RayRule rule = mip ? RayRule::kMax : RayRule::kSum;
-    warnOfFloats(volume, view, rule, listener);
-    const RayVolume rays = makeRayVolume(volume, view.sliceAxis, rule);
+    const auto& [volume, options, camera, factors] = view;
+    const RayRule rule = parallelRule(options.mode);
+    const RayVolume rays = makeRayVolume(volume, factors.sliceAxis, rule, valueMapOf(options));
     RenderStats& stats = result.stats;
     stats.prepareSeconds = secondsSince(start);
 
     const Clock::time_point renderStart = Clock::now();
-    const Footprint footprint = footprintOf(options, {view.shiftPerSlice.y, view.shiftPerSlice.x});
+    const Footprint footprint =
+        footprintOf(options, {factors.shiftPerSlice.y, factors.shiftPerSlice.x});
     const SheetLayout layout = layoutSheet(rays.box, footprint, 1);
-    const BasePlane basePlane(view, layout.firstSlice, layout.firstVoxel, layout.resolution,
+    const BasePlane basePlane(factors, layout.firstSlice, layout.firstVoxel, layout.resolution,
                               layout.offsetPixels);
-    RayPlane plane = followRays({rays, rule, layout, basePlane}, listener);
+    const bool shades = options.mode == Mode::kMip && options.depthShade > 0;
+    RayPlanes planes = followRays({rays, rule, layout, basePlane, shades}, listener);
+    RayPlane& plane = planes.values;
+    stats.visible = rays.visible;
+    if (options.mode == Mode::kAverage) {
+        const RayVolume ones =
+            makeRayVolume(volume, factors.sliceAxis, rule, {.scale = 0, .offset = 1});
+        divideByCounts(followRays({ones, rule, layout, basePlane}, listener).values, plane);
+        stats.visible = ones.visible;
+    }
     stats.splatSeconds = secondsSince(renderStart);
 
     const glm::dmat3& map = basePlane.pixelFromPicture();
-    if (mip) {
-        const RayPlane met = splitMet(plane);
-        stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;
-        Image share(result.image.size);
-        warp(rasterOf(met), map, WarpFilter::kLinear, share);
-        warp(rasterOf(plane), map, WarpFilter::kLinear, result.image);
-        combineMet(share, {rays.lowest, rays.highest}, result.image);
-        if (options.mipColors) colorValues(ValueColors(volume, options.optics), result.image);
-    } else {
-        plane = blurPlane(plane, footprint, float(view.sliceStepWorld));
+    if (showsSums(options.mode)) {
+        plane = blurPlane(plane, footprint, float(factors.sliceStepWorld));
         stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;
         warp(rasterOf(plane), map, WarpFilter::kSmooth, result.image);
+    } else {
+        const RayPlane met = splitMet(plane);
+        if (shades) shadePlaces(view, rays.box, layout, basePlane, met, *planes.places);
+        stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;
+        Image share(result.image.size);
+        Image shade(shades ? result.image.size : glm::ivec2(0));
+        warp(rasterOf(met), map, WarpFilter::kLinear, share);
+        if (shades) warp(rasterOf(*planes.places), map, WarpFilter::kLinear, shade);
+        warp(rasterOf(plane), map, WarpFilter::kLinear, result.image);
+        combineMet(share, shades ? &shade : nullptr, ValuePainter(volume, options, rays),
+                   result.image);
     }
-    stats.visible = rays.visible;
     stats.resolution = kResolution;
     stats.footprint = footprint.width;
     stats.renderSeconds = secondsSince(renderStart);
     stats.warpSeconds = stats.renderSeconds - stats.splatSeconds - stats.compositeSeconds;
+}
+
+}  // namespace
+
+void renderRays(const Volume& volume, const RenderOptions& options, const Listener& listener,
+                RenderResult& result) {
+    checkRayOptions(options);
+    const bool parallel = options.camera.projection == Projection::kOrtho;
+    // Of pictures from an eye, where it goes from region to region, the middle's.
+    const Factorization view = factorize(result.camera, volume.worldFromIndex,
+                                         parallel ? options.resolution : std::optional<int>(1));
+    result.stats.sliceAxis = view.sliceAxis;
+    result.stats.slices = volume.box.dims()[view.sliceAxis];
+    if (!volume.empty()) {
+        warnOfValues(volume, options, result.stats.slices, view.sliceStepWorld, listener);
+        if (parallel) {
+            renderParallel({volume, options, result.camera, view}, listener, result);
+        } else {
+            renderFromEye(volume, options, listener, result);
+        }
+    }
+    if (options.mode == Mode::kDrr) showTransmission(options.drr, result.image);
 }
 
 }  // namespace deltasplat

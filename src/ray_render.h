@@ -5,11 +5,10 @@
 
 namespace deltasplat {
 
-/// Renders what lines of sight meet of a volume that is not empty: Mode::kXray and Mode::kMip.
-/// Fills in the picture, which has its size already and is transparent, and the stages' part of the
-/// stats.
+/// Renders what lines of sight meet of a volume: all modes but kComposite. Fills in the picture,
+/// which has its size already and is transparent, and the stages' part of the stats.
 /// @throw as `render`
-void renderRays(const Volume& volume, const Factorization& view, const RenderOptions& options,
-                const Listener& listener, RenderResult& result);
+void renderRays(const Volume& volume, const RenderOptions& options, const Listener& listener,
+                RenderResult& result);
 
 }  // namespace deltasplat

@@ -45,6 +45,12 @@ std::string modeName(Mode mode) {
             return "xray";
         case Mode::kMip:
             return "mip";
+        case Mode::kMin:
+            return "min";
+        case Mode::kAverage:
+            return "average";
+        case Mode::kDrr:
+            return "drr";
     }
     return "composite";
 }
@@ -66,16 +72,7 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
         KeptMemory memory;
         stats = renderComposite(scene, result.camera, memory, result.image, listener);
     } else {
-        if (options.camera.projection != Projection::kOrtho) {
-            throw Error(ErrorCode::kUsage,
-                        gotExpected("`projection`", projectionName(options.camera.projection),
-                                    "ortho for `mode` " + modeName(options.mode)));
-        }
-        const Factorization view =
-            factorize(result.camera, volume.worldFromIndex, options.resolution);
-        stats.sliceAxis = view.sliceAxis;
-        stats.slices = volume.box.dims()[view.sliceAxis];
-        if (!volume.empty()) renderRays(volume, view, options, listener, result);
+        renderRays(volume, options, listener, result);
     }
     listener.report(1);
     return result;

@@ -17,9 +17,11 @@ struct RenderResult {
 /// Renders one picture. The same volume and options give the same pixels, bit for bit, for every
 /// method, thread count and SIMD level. An empty volume gives a transparent picture.
 ///
-/// Under kXray R = G = B = A = the line integral of the value in world units, under kMip
-/// R = G = B = the largest value and A = 1 where an active voxel is met, and all 0 elsewhere:
-/// numbers, not light, that may be negative or larger than 1. Inactive voxels count as 0. Where the
+/// Under kXray R = G = B = A = the line integral of the value in world units, under kMip, kMin and
+/// kAverage R = G = B = the largest or smallest value, or the mean, and A = 1 where an active voxel
+/// is met, and all 0 elsewhere: numbers, not light, that may be negative or larger than 1. Under
+/// kDrr R = G = B = exp(-integral of mu), times the photons, and A = 1, also of an empty volume.
+/// Inactive voxels count as 0, of kAverage not at all, and let all x-rays through. Where the
 /// code book is not exact and Volume::source is filled (ReadOptions::keepInexact), values are the
 /// source's own.
 /// @throw Error(kUsage) for options out of range; Error(kFailed) for a picture that does not fit

@@ -28,10 +28,13 @@ std::string methodName(Method method);
 enum class Mode {
     kComposite,  ///< emission and absorption through the transfer function, by splatting
     kXray,       ///< the integral of the value
-    kMip         ///< the largest value
+    kMip,        ///< the largest value
+    kMin,        ///< the smallest value
+    kAverage,    ///< the mean of the values of active voxels
+    kDrr         ///< what x-rays let through of a CT scan: a digitally reconstructed radiograph
 };
 
-/// Returns "composite", "xray" or "mip".
+/// Returns "composite", "xray", "mip", "min", "average" or "drr".
 std::string modeName(Mode mode);
 
 /// How voxels are splatted.
@@ -52,13 +55,26 @@ struct SplatOptions {
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for
 };
 
-/// What can be asked for. Under kXray and kMip method, tolerance, resolution, extinction, unit
-/// distance and colorBy have no effect, under kMip sigma neither; the transfer function has none
-/// but for the colours of `mipColors`.
+/// How x-rays get through a CT scan of values in Hounsfield units: mu = muWater * (1 + HU / 1000),
+/// at least 0, for each voxel.
+struct Drr {
+    /// Attenuation of water per world unit, > 0: of photons of 50 to 60 keV where that is 1 mm.
+    double muWater = 0.022;
+    std::optional<double> photons;  ///< that a pixel would get past nothing, > 0; empty: 1
+};
+
+/// What can be asked for. Under all modes but kComposite method, tolerance, resolution, extinction,
+/// unit distance and colorBy have no effect, and sigma only under kXray and kDrr in parallel
+/// projection; the transfer function has none but for the colours of `mipColors`.
 struct RenderOptions : SplatOptions {
     Mode mode = Mode::kComposite;
-    /// kMip: the transfer function's colour of the value, opaque, instead of the value itself.
+    /// kMip, kMin, kAverage: the transfer function's colour of the value, opaque, instead of the
+    /// value itself.
     bool mipColors = false;
+    /// kMip: how much darker the farthest place of the volume's box is shown than the nearest,
+    /// 0..1. Values that are darker are nearer to the smallest of all, or 0 where that is less.
+    double depthShade = 0;
+    Drr drr;
     CameraOptions camera;
     Optics optics;
 };
@@ -71,8 +87,8 @@ struct RenderStats {
     Method method = Method::kAuto;
     Mode mode = Mode::kComposite;
     std::uint64_t voxels = 0;   ///< of the bounding box, those that they are divided into
-    std::uint64_t visible = 0;  ///< whose classified colour is not zero; kXray: active ones whose
-                                ///< value is not 0; kMip: active ones
+    std::uint64_t visible = 0;  ///< whose classified colour is not zero; kXray, kDrr: active ones
+                                ///< whose value, or mu, is not 0; kMip, kMin, kAverage: active ones
     std::uint64_t deltas =
         0;  ///< whose classified colour differs from the slice before, key slices included
     std::uint64_t stamps = 0;  ///< footprints added
@@ -85,8 +101,8 @@ struct RenderStats {
     int footprint = 0;            ///< width and height of the footprint in sheet pixels
     double prepareSeconds = 0;    ///< classification and taking differences
     double splatSeconds = 0;      ///< walking and stamping, its share of the wall time of all
-                                  ///< slabs; kXray, kMip: following the lines of sight
-    double compositeSeconds = 0;  ///< compositing and merging, likewise; kXray: the footprint
+                                  ///< slabs; other modes: following the lines of sight
+    double compositeSeconds = 0;  ///< compositing and merging, likewise; kXray, kDrr: the footprint
     double warpSeconds = 0;
     double renderSeconds = 0;  ///< splat, composite, merge and warp
     Tolerance tolerance;

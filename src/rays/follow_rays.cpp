@@ -19,17 +19,18 @@ constexpr int kBandRows = 64;
 
 }  // namespace
 
-RayPlane followRays(const RayInput& input, const Listener& listener) {
+RayPlanes followRays(const RayInput& input, const Listener& listener) {
     const IndexBox& volume = input.volume.box;
     const PlaneBox box = reachOf(input.plane, input.layout, volume.min.x, volume.dims().x);
     const int bands = (box.size().y + kBandRows - 1) / kBandRows;
     const int workers = std::min(threadCount(), bands);
     const double row = double(sizeof(float)) * box.size().x;
-    requireMemory("base plane", 2 * row * box.size().y +
+    requireMemory("base plane", (input.marksPlaces ? 4 : 2) * row * box.size().y +
                                     workers * (RayBand::bytes(input, kBandRows) + kBandRows * row));
 
     const bool sum = input.rule == RayRule::kSum;
-    RayPlane plane(box, sum ? 0 : -std::numeric_limits<float>::infinity());
+    RayPlanes planes{RayPlane(box, sum ? 0 : -std::numeric_limits<float>::infinity()), {}};
+    if (input.marksPlaces) planes.places.emplace(box);
     std::atomic<int> next = 0;
     std::atomic<int> done = 0;
     SharedProgress progress(listener);
@@ -37,11 +38,11 @@ RayPlane followRays(const RayInput& input, const Listener& listener) {
         RayBand band(input, kBandRows);
         for (int i = next++; i < bands; i = next++) {
             const int first = box.min.y + i * kBandRows;
-            band.run(first, std::min(first + kBandRows, box.max.y), plane);
+            band.run(first, std::min(first + kBandRows, box.max.y), planes);
             progress.report(0.1 + 0.8 * ++done / bands);
         }
     });
-    return plane;
+    return planes;
 }
 
 }  // namespace deltasplat

@@ -27,11 +27,12 @@ double RayBand::bytes(const RayInput& input, int rows) {
     return RayStrip::bytes(input.layout.blocks, stripRows(rows));
 }
 
-void RayBand::run(int firstRow, int lastRow, RayPlane& plane) {
+void RayBand::run(int firstRow, int lastRow, RayPlanes& planes) {
     const IndexBox& box = input_.volume.box;
     firstRow_ = firstRow;
     if (input_.rule == RayRule::kSum)
-        rest_.assign(std::size_t(lastRow - firstRow) * std::size_t(plane.box.size().x), 0.0f);
+        rest_.assign(std::size_t(lastRow - firstRow) * std::size_t(planes.values.box.size().x),
+                     0.0f);
     for (int layer = box.min.x >> 3; layer <= box.max.x >> 3; ++layer) {
         findSlices(layer);
         const auto [low, high] = std::minmax(slices_.front().offset.y, slices_.back().offset.y);
@@ -39,7 +40,7 @@ void RayBand::run(int firstRow, int lastRow, RayPlane& plane) {
         const int lastCell = std::min((lastRow - 1 + high) >> 3, blocks_.y - 1);
         if (firstCell > lastCell || !strip_.read(layer, firstCell, lastCell + 1)) continue;
         findRuns(firstCell, lastCell);
-        for (const Slice& slice : slices_) addSlice(slice, firstRow, lastRow, plane);
+        for (const Slice& slice : slices_) addSlice(slice, firstRow, lastRow, planes);
     }
 }
 
@@ -48,8 +49,10 @@ void RayBand::findSlices(int layer) {
     slices_.clear();
     for (int s = std::max(8 * layer, box.min.x); s <= std::min(8 * layer + 7, box.max.x); ++s) {
         const SheetReading shift = readingOf(input_.plane, input_.layout, s);
-        slices_.push_back(
-            {s & 7, shift.offset - input_.layout.marginPixels, glm::vec2(shift.fraction)});
+        slices_.push_back({s & 7,
+                           {float(s - box.min.x), !input_.plane.frontToBack()},
+                           shift.offset - input_.layout.marginPixels,
+                           glm::vec2(shift.fraction)});
     }
 }
 
@@ -87,17 +90,18 @@ RayStrip::Fill RayBand::cellFill(int row, int column, bool both) const {
     return input_.rule == RayRule::kSum ? RayStrip::kAll : RayStrip::kSome;
 }
 
-void RayBand::addSlice(const Slice& slice, int firstRow, int lastRow, RayPlane& plane) {
+void RayBand::addSlice(const Slice& slice, int firstRow, int lastRow, RayPlanes& planes) {
     spans_.clear();
     metBytes_ = 0;
     const int first = std::max(firstRow, 8 * firstCell_ - slice.offset.y);
     const int last = std::min(lastRow, 8 * (lastCell_ + 1) - slice.offset.y);
-    for (int y = first; y < last; ++y) addRow(slice, y, plane);
+    for (int y = first; y < last; ++y) addRow(slice, y, planes);
     input_.rule == RayRule::kSum ? sumSpans(spans_, slice.fraction)
-                                 : maxSpans(spans_, slice.fraction);
+                                 : maxSpans(spans_, slice.fraction, slice.mark);
 }
 
-void RayBand::addRow(const Slice& slice, int y, RayPlane& plane) {
+void RayBand::addRow(const Slice& slice, int y, RayPlanes& planes) {
+    RayPlane& plane = planes.values;
     const int u = y + slice.offset.y;
     const bool both = (u & 7) == 7 && slice.fraction.y != 0;
     for (const CellRun& run : runsOf(u >> 3, both)) {
@@ -108,7 +112,8 @@ void RayBand::addRow(const Slice& slice, int y, RayPlane& plane) {
                           strip_.values(slice.index, u + (slice.fraction.y != 0)) + v,
                           plane.row(y) + x, rest_.empty() ? nullptr : restRow(y, plane) + x,
                           8 * std::size_t(run.last - run.first),
-                          run.fill == RayStrip::kAll ? nullptr : findMet(slice, u, run)});
+                          run.fill == RayStrip::kAll ? nullptr : findMet(slice, u, run),
+                          planes.places ? planes.places->row(y) + x : nullptr});
     }
 }
 

@@ -16,6 +16,7 @@ struct RayInput {
     RayRule rule;
     const SheetLayout& layout;  ///< of one pixel a voxel
     const BasePlane& plane;     ///< with pixels as far apart as voxels
+    bool marksPlaces = false;   ///< kMax: whether it matters where values are from
 };
 
 /// Follows the lines of sight of a few rows of the base plane, slice by slice. What a pixel gets
@@ -28,7 +29,7 @@ class RayBand {
 
     /// Reads all slices, in increasing order, at rows [firstRow, lastRow) of the plane. Under kMax
     /// what is not met stays what it is.
-    void run(int firstRow, int lastRow, RayPlane& plane);
+    void run(int firstRow, int lastRow, RayPlanes& planes);
 
     /// What a band of so many rows takes.
     static double bytes(const RayInput& input, int rows);
@@ -43,6 +44,7 @@ class RayBand {
     /// A slice on the base plane: pixel p reads voxel p + offset + fraction, (v, u).
     struct Slice {
         int index;  // in its layer
+        SliceMark mark;
         glm::ivec2 offset;
         glm::vec2 fraction;
     };
@@ -50,8 +52,8 @@ class RayBand {
     void findSlices(int layer);
     void findRuns(int firstCell, int lastCell);
     RayStrip::Fill cellFill(int row, int column, bool both) const;
-    void addSlice(const Slice& slice, int firstRow, int lastRow, RayPlane& plane);
-    void addRow(const Slice& slice, int y, RayPlane& plane);
+    void addSlice(const Slice& slice, int firstRow, int lastRow, RayPlanes& planes);
+    void addRow(const Slice& slice, int y, RayPlanes& planes);
     float* restRow(int y, const RayPlane& plane);
     const std::uint8_t* findMet(const Slice& slice, int y, const CellRun& run);
     std::vector<CellRun>& runsOf(int cellRow, bool both) {

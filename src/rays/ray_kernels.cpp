@@ -148,8 +148,19 @@ void sumSpansKernel(const std::vector<RaySpan>& spans, glm::vec2 fraction) {
     straight ? sumSpansOf<true>(spans, fraction) : sumSpansOf<false>(spans, fraction);
 }
 
+// Keeps which slice the larger value is from.
+template <class Tag, class V, class M>
+HWY_INLINE void markPlaces(Tag tag, const RaySpan& span, std::size_t i, V had, V read, M met,
+                           const SliceMark& slice) {
+    const auto larger = slice.isNearer ? hn::Ge(read, had) : hn::Gt(read, had);
+    float* place = span.places + i;
+    hn::StoreU(
+        hn::IfThenElse(hn::And(met, larger), hn::Set(tag, slice.number), hn::LoadU(tag, place)),
+        tag, place);
+}
+
 template <bool kStraight>
-HWY_INLINE void maxMet(const RaySpan& span, glm::vec2 fraction) {
+HWY_INLINE void maxMet(const RaySpan& span, glm::vec2 fraction, const SliceMark& slice) {
     const EightTag tag;
     float* HWY_RESTRICT plane = span.plane;
     for (std::size_t i = 0; i < span.pixels; i += hn::Lanes(tag)) {
@@ -158,27 +169,30 @@ HWY_INLINE void maxMet(const RaySpan& span, glm::vec2 fraction) {
         const auto had = hn::LoadU(tag, plane + i);
         const auto read = readSlice<kStraight>(tag, span, i, fraction);
         hn::StoreU(hn::IfThenElse(met, hn::Max(had, read), had), tag, plane + i);
+        if (span.places) markPlaces(tag, span, i, had, read, met, slice);
     }
 }
 
 template <bool kStraight>
-void maxSpansOf(const std::vector<RaySpan>& spans, glm::vec2 fraction) {
+void maxSpansOf(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice) {
     for (const RaySpan& span : spans) {
         if (span.mask) {
-            maxMet<kStraight>(span, fraction);
+            maxMet<kStraight>(span, fraction, slice);
             continue;
         }
         float* HWY_RESTRICT plane = span.plane;
         forVectors(span.pixels, [&](auto tag, std::size_t i) {
             const auto read = readSlice<kStraight>(tag, span, i, fraction);
-            hn::StoreU(hn::Max(hn::LoadU(tag, plane + i), read), tag, plane + i);
+            const auto had = hn::LoadU(tag, plane + i);
+            hn::StoreU(hn::Max(had, read), tag, plane + i);
+            if (span.places) markPlaces(tag, span, i, had, read, hn::Eq(read, read), slice);
         });
     }
 }
 
-void maxSpansKernel(const std::vector<RaySpan>& spans, glm::vec2 fraction) {
+void maxSpansKernel(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice) {
     const bool straight = fraction.x == 0 && fraction.y == 0;
-    straight ? maxSpansOf<true>(spans, fraction) : maxSpansOf<false>(spans, fraction);
+    straight ? maxSpansOf<true>(spans, fraction, slice) : maxSpansOf<false>(spans, fraction, slice);
 }
 
 template <class Tag>
@@ -224,8 +238,8 @@ void sumSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction) {
     HWY_DYNAMIC_DISPATCH(sumSpansKernel)(spans, fraction);
 }
 
-void maxSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction) {
-    HWY_DYNAMIC_DISPATCH(maxSpansKernel)(spans, fraction);
+void maxSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice) {
+    HWY_DYNAMIC_DISPATCH(maxSpansKernel)(spans, fraction, slice);
 }
 
 void weighRow(const float* const* rows, const float* weights, int width, float scale,

@@ -37,6 +37,14 @@ struct RaySpan {
     float* rest;           ///< likewise, how much the plane is too large; only for sums
     std::size_t pixels;
     const std::uint8_t* mask;  ///< bit i: pixel i is met by a voxel; null: all are
+    /// Which slice the base plane's values are from, likewise; null: nobody asks. Only for maxima.
+    float* places = nullptr;
+};
+
+/// A slice that largest values may come from.
+struct SliceMark {
+    float number = 0;
+    bool isNearer = false;  ///< than those before: of equal values its own is the one that is seen
 };
 
 /// Reads a slice bilinearly, `fraction` behind its pixels, and adds what it reads to the base
@@ -48,7 +56,8 @@ void sumSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction);
 
 /// The same, but the base plane keeps the larger of what it has and, where pixels are met, what is
 /// read.
-void maxSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction);
+void maxSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction,
+              const SliceMark& slice = SliceMark());
 
 /// Weighs a row's neighbourhood: out[x] = sum over j, i of weights[j * width + i] * rows[j][x - i],
 /// taps in this order, times `scale`.

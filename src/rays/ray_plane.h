@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "view/base_plane.h"
@@ -18,6 +19,12 @@ struct RayPlane {
     /// @param y  a row of the base plane
     float* row(int y) { return &values[std::size_t(y - box.min.y) * box.size().x]; }
     const float* row(int y) const { return const_cast<RayPlane*>(this)->row(y); }
+};
+
+/// What following the lines of sight gives for each pixel.
+struct RayPlanes {
+    RayPlane values;
+    std::optional<RayPlane> places;  ///< the slice, counted from the first, that a value is from
 };
 
 }  // namespace deltasplat

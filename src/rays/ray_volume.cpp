@@ -18,10 +18,6 @@ float floatOf(double value) {
     return float(std::clamp(value, -kLargestRayValue, kLargestRayValue));
 }
 
-float valueOf(const CodeBook& book, int code) {
-    return floatOf(book.valueOf(Code(code)));
-}
-
 // Code and offset are added as floats: exact as long as their sum is.
 bool isDirect(const CodeBook& book) {
     constexpr double kExactFloats = 1 << 24;
@@ -30,16 +26,17 @@ bool isDirect(const CodeBook& book) {
 }
 
 // Fills in what values the volume has, and returns the slots of those that matter.
-std::vector<Slot> readValues(const Volume& volume, RayRule rule, RayVolume& rays) {
+std::vector<Slot> readValues(const Volume& volume, RayRule rule, const ValueMap& map,
+                             RayVolume& rays) {
     std::vector<Slot> slots(kSlotCount, kEmptySlot);
-    rays.values.direct = isDirect(volume.codeBook);
+    rays.values.direct = isDirect(volume.codeBook) && map == ValueMap();
     rays.values.offset = float(volume.codeBook.offset);
     if (!rays.values.direct) rays.table.assign(kCodeCount, 0);
     bool any = false;
     for (int code = 0; code < kCodeCount; ++code) {
         const std::uint64_t voxels = volume.histogram[std::size_t(code)];
         if (voxels == 0) continue;
-        const float value = valueOf(volume.codeBook, code);
+        const float value = floatOf(map(volume.codeBook.valueOf(Code(code))));
         rays.lowest = any ? std::min(rays.lowest, value) : value;
         rays.highest = any ? std::max(rays.highest, value) : value;
         any = true;
@@ -54,10 +51,10 @@ std::vector<Slot> readValues(const Volume& volume, RayRule rule, RayVolume& rays
 }
 
 template <typename Leaf>
-void placeValues(const Leaf& leaf, int sliceAxis, const BlockPlace& place) {
+void placeValues(const Leaf& leaf, int sliceAxis, const ValueMap& map, const BlockPlace& place) {
     forLeafVoxels(sliceAxis, [&](const glm::ivec3& at, int n) {
         place.first[std::size_t(at.x) * place.sliceStep + std::size_t(at.y) * place.rowStep +
-                    std::size_t(at.z)] = floatOf(double(leaf.getValue(openvdb::Index(n))));
+                    std::size_t(at.z)] = floatOf(map(double(leaf.getValue(openvdb::Index(n)))));
     });
 }
 
@@ -69,33 +66,36 @@ void placeValue(float value, const BlockPlace& place) {
 }
 
 // Lets rays read the source's own values.
-void readSource(const Volume& volume, RayRule rule, std::vector<Slot>& slots, RayVolume& rays) {
-    rays.lowest = floatOf(volume.valueMin);
-    rays.highest = floatOf(volume.valueMax);
+void readSource(const Volume& volume, RayRule rule, const ValueMap& map, std::vector<Slot>& slots,
+                RayVolume& rays) {
+    const auto [low, high] = std::minmax({map(volume.valueMin), map(volume.valueMax)});
+    rays.lowest = floatOf(low);
+    rays.highest = floatOf(high);
     if (rule == RayRule::kMax) rays.empty = std::min(rays.lowest, 0.0f);
     // A code of value 0 may stand for something else as well.
     for (std::size_t code = 0; code < volume.histogram.size(); ++code)
         slots[code + 1] = volume.histogram[code] > 0 ? Slot(code + 1) : kEmptySlot;
     volume.source->grid->apply<ScalarGrids>([&](const auto& grid) {
         const auto& tree = grid.constTree();
-        rays.sourceValues = [&tree, axis = rays.sliceAxis](const CodeBlock& block,
-                                                           const BlockPlace& place) {
+        rays.sourceValues = [&tree, map, axis = rays.sliceAxis](const CodeBlock& block,
+                                                                const BlockPlace& place) {
             const openvdb::Coord origin = blockOrigin(block.position, axis);
             const auto* const leaf = tree.probeConstLeaf(origin);
-            leaf ? placeValues(*leaf, axis, place)
-                 : placeValue(floatOf(double(tree.getValue(origin))), place);
+            leaf ? placeValues(*leaf, axis, map, place)
+                 : placeValue(floatOf(map(double(tree.getValue(origin)))), place);
         };
     });
 }
 
 // Takes out uniform blocks of nothing: of a sum they are no part.
-void dropZeros(const Volume& volume, int sliceAxis, std::vector<CodeBlock>& blocks) {
+void dropZeros(const Volume& volume, int sliceAxis, const ValueMap& map,
+               std::vector<CodeBlock>& blocks) {
     volume.source->grid->apply<ScalarGrids>([&](const auto& grid) {
         const auto& tree = grid.constTree();
         std::erase_if(blocks, [&](const CodeBlock& block) {
             if (block.leaf) return false;
             const openvdb::Coord origin = blockOrigin(block.position, sliceAxis);
-            return !tree.probeConstLeaf(origin) && double(tree.getValue(origin)) == 0;
+            return !tree.probeConstLeaf(origin) && map(double(tree.getValue(origin))) == 0;
         });
     });
 }
@@ -116,15 +116,15 @@ void sortByLayer(const std::vector<CodeBlock>& blocks, RayVolume& rays) {
 
 }  // namespace
 
-RayVolume makeRayVolume(const Volume& volume, int sliceAxis, RayRule rule) {
+RayVolume makeRayVolume(const Volume& volume, int sliceAxis, RayRule rule, const ValueMap& map) {
     RayVolume rays;
     rays.box = permutedBox(volume.box, sliceAxis);
     rays.sliceAxis = sliceAxis;
-    std::vector<Slot> slots = readValues(volume, rule, rays);
+    std::vector<Slot> slots = readValues(volume, rule, map, rays);
     const bool fromSource = volume.source && !volume.codeBook.isExact() && !volume.origin;
-    if (fromSource) readSource(volume, rule, slots, rays);
+    if (fromSource) readSource(volume, rule, map, slots, rays);
     std::vector<CodeBlock> blocks = BlockReader(*volume.codes, nullptr, sliceAxis, slots).blocks();
-    if (fromSource && rule == RayRule::kSum) dropZeros(volume, sliceAxis, blocks);
+    if (fromSource && rule == RayRule::kSum) dropZeros(volume, sliceAxis, map, blocks);
     sortByLayer(blocks, rays);
     return rays;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <span>
@@ -15,7 +16,18 @@ namespace deltasplat {
 /// What is looked for along the lines of sight.
 enum class RayRule {
     kSum,  ///< sums of values; where there is no active voxel there is 0
-    kMax   ///< the largest value that is met
+    kMax,  ///< the largest value that is met
+    kMean  ///< the mean of the active values that are met; only from an eye
+};
+
+/// What rays meet in place of a value.
+struct ValueMap {
+    double scale = 1;
+    double offset = 0;
+    double least = -std::numeric_limits<double>::infinity();
+
+    double operator()(double value) const { return std::max(scale * value + offset, least); }
+    bool operator==(const ValueMap&) const = default;
 };
 
 /// So large that hardly a volume has it, and so small that differences of two are finite floats:
@@ -33,7 +45,7 @@ struct RayVolume {
     /// Where codes are not exact and the source is at hand: reads that. Otherwise empty.
     BlockValues sourceValues;
     /// What voxels hold that are not active: 0, or under kMax the smallest value where that is
-    /// negative, so that nothing never outshines something.
+    /// negative, so that nothing never outshines something. All of them as mapped.
     float empty = 0;
     float lowest = 0;           ///< of the active voxels' values
     float highest = 0;          ///< likewise
@@ -55,6 +67,7 @@ struct RayVolume {
 };
 
 /// Lists what rays meet of a volume that is not empty. The volume must outlive what is returned.
-RayVolume makeRayVolume(const Volume& volume, int sliceAxis, RayRule rule);
+RayVolume makeRayVolume(const Volume& volume, int sliceAxis, RayRule rule,
+                        const ValueMap& map = {});
 
 }  // namespace deltasplat

@@ -116,7 +116,10 @@ void checkProjection(const CameraOptions& options) {
          {std::pair("`fovDegrees`", options.fovDegrees.has_value()),
           std::pair("`focalMm`", options.focalMm.has_value()),
           std::pair("`apertureMm`", options.apertureMm.has_value()),
-          std::pair("`distanceWorld`", options.distanceWorld.has_value())})
+          std::pair("`distanceWorld`", options.distanceWorld.has_value()),
+          std::pair("`sourceToIsocenterWorld`", options.sourceToIsocenterWorld.has_value()),
+          std::pair("`sourceToDetectorWorld`", options.sourceToDetectorWorld.has_value()),
+          std::pair("`detectorWorld`", options.detectorWorld.has_value())})
         requireFor(given, flat, option, "`projection` perspective");
 }
 
@@ -150,6 +153,49 @@ void checkEye(const CameraOptions& options) {
     }
 }
 
+// What else says where a perspective camera is and how much it sees.
+const char* otherThanCArm(const CameraOptions& options) {
+    if (options.fovDegrees) return "`fovDegrees`";
+    if (options.focalMm) return "`focalMm`";
+    if (options.apertureMm) return "`apertureMm`";
+    if (options.eyeWorld) return "`eyeWorld`";
+    return options.distanceWorld ? "`distanceWorld`" : nullptr;
+}
+
+void checkCArm(const CameraOptions& options) {
+    const std::optional<double>& isocenter = options.sourceToIsocenterWorld;
+    const std::optional<double>& detector = options.sourceToDetectorWorld;
+    const std::optional<glm::dvec2>& size = options.detectorWorld;
+    const int given = isocenter.has_value() + detector.has_value() + size.has_value();
+    if (given == 0) return;
+    if (given < 3) {
+        refuse(!isocenter  ? "`sourceToIsocenterWorld`"
+               : !detector ? "`sourceToDetectorWorld`"
+                           : "`detectorWorld`",
+               "none", "`sourceToIsocenterWorld`, `sourceToDetectorWorld` and `detectorWorld`");
+    }
+    if (const char* other = otherThanCArm(options))
+        refuse(other, "it and `sourceToIsocenterWorld`", "the camera one way or the other");
+    checkPositive("`sourceToIsocenterWorld`", isocenter);
+    checkPositive("`sourceToDetectorWorld`", detector);
+    if (*detector < *isocenter) {
+        refuse("`sourceToDetectorWorld`", numberText(*detector),
+               "at least `sourceToIsocenterWorld` " + numberText(*isocenter));
+    }
+    const std::string text = numberText(size->x) + "x" + numberText(size->y);
+    if (!(std::isfinite(size->x + size->y) && size->x > 0 && size->y > 0))
+        refuse("`detectorWorld`", text, "WxH, two finite numbers > 0");
+    const glm::ivec2 pixels = options.sizePixels;
+    const double width = size->x / pixels.x;
+    const double height = size->y / pixels.y;
+    if (!(std::abs(width - height) <= 1e-3 * width)) {
+        refuse(
+            "`detectorWorld`",
+            text + " of " + std::to_string(pixels.x) + "x" + std::to_string(pixels.y) + " pixels",
+            "square pixels, as " + numberText(size->x) + "x" + numberText(width * pixels.y));
+    }
+}
+
 void checkOptions(const CameraOptions& options) {
     checkProjection(options);
     checkLens(options);
@@ -165,6 +211,7 @@ void checkOptions(const CameraOptions& options) {
         refuse("`frameWidthWorld`", numberText(width), "a number > 0");
     }
     checkSize(options);
+    checkCArm(options);
 }
 
 // Turns v about a unit axis by the right-hand rule (O. Rodrigues, 1840). Quarter turns are exact,
@@ -266,6 +313,8 @@ double clearDistance(const Camera& camera, const IndexBox& box, const glm::dmat4
 // Half the width of the picture at distance 1.
 double tangentOf(const CameraOptions& options) {
     constexpr double kRadians = std::numbers::pi / 180;
+    if (options.detectorWorld)
+        return 0.5 * options.detectorWorld->x / *options.sourceToDetectorWorld;
     if (options.focalMm || options.apertureMm) {
         return 0.5 * options.apertureMm.value_or(kDefaultApertureMm) /
                options.focalMm.value_or(kDefaultFocalMm);
@@ -316,8 +365,9 @@ void placeEye(Camera& camera, const CameraOptions& options, const glm::dvec3& ta
         distance = glm::length(glm::dvec3(worldFromIndex[0]));
         camera.targetWorld = target + distance * camera.direction;
     } else {
-        distance = options.distanceWorld ? *options.distanceWorld
-                                         : fittingDistance(camera, tangent, box, worldFromIndex);
+        const std::optional<double>& given =
+            options.detectorWorld ? options.sourceToIsocenterWorld : options.distanceWorld;
+        distance = given ? *given : fittingDistance(camera, tangent, box, worldFromIndex);
     }
     camera.targetDistanceWorld = distance;
     camera.frameWidthWorld = 2 * distance * tangent;

@@ -125,7 +125,21 @@ deltasplat_cli_test(usage.dashes_for_outputs EXIT 2 ARGS convert -- ${cube} --fl
 # Words.
 deltasplat_refusal(method "--method: got fast; expected auto, delta, sparse or traditional"
     --method fast)
-deltasplat_refusal(mode "--mode: got average; expected composite, xray or mip" --mode average)
+deltasplat_refusal(mode "--mode: got depth; expected composite, xray, mip, min, average or drr"
+    --mode depth)
+deltasplat_refusal(drr_and_mode "--drr: got --mode mip besides; expected --mode drr" --drr --mode mip)
+foreach(option mu-water photons)
+    foreach(value 0 -1 nan)
+        deltasplat_refusal(${option}_${value}
+            "--${option}: got ${value}; expected a finite number from 1e-30 to 1e+30"
+            --drr --${option} ${value})
+    endforeach()
+endforeach()
+foreach(value -0.1 1.5 nan)
+    deltasplat_refusal(depth_shade_${value}
+        "--depth-shade: got ${value}; expected a finite number from 0 to 1"
+        --mode mip --depth-shade ${value})
+endforeach()
 deltasplat_refusal(color_by "--color-by: got hue; expected value, x, y, z or index" --color-by hue)
 deltasplat_refusal(shade_and_color_by
     "--shade: got --color-by index besides; expected --color-by value" --shade --color-by index)
@@ -217,8 +231,30 @@ deltasplat_refusal(frame_of_perspective
 deltasplat_refusal(panorama_size
     "--size: got 512x512; expected twice as wide as high for --projection latlong"
     --projection latlong --size 512x512)
-deltasplat_refusal(xray_perspective
-    "--projection: got perspective; expected ortho for --mode xray" --projection perspective --mode xray)
+set(c_arm --sid 100 --sdd 150 --size 64x48)
+deltasplat_refusal(detector_zero
+    "--detector: got 0x30; expected WxH, two numbers from 1e-30 to 1e+30" ${c_arm} --detector 0x30)
+deltasplat_refusal(detector_one_length
+    "--detector: got 30; expected WxH, two numbers from 1e-30 to 1e+30" ${c_arm} --detector 30)
+deltasplat_refusal(detector_not_square
+    "--detector: got 30x30 of 64x48 pixels; expected square pixels, as 30x22.5"
+    ${c_arm} --detector 30x30)
+deltasplat_refusal(detector_missing
+    "--detector: got none; expected --sid, --sdd and --detector" ${c_arm})
+deltasplat_refusal(sid_missing "--sid: got none; expected --sid, --sdd and --detector" --sdd 150)
+deltasplat_refusal(sdd_before_isocenter "--sdd: got 90; expected at least --sid 100"
+    --sid 100 --sdd 90 --detector 20x20)
+deltasplat_refusal(c_arm_of_parallel "--sid: got --projection ortho; expected --projection perspective"
+    ${c_arm} --detector 40x30 --projection ortho)
+deltasplat_refusal(c_arm_and_lens "--fov: got it and --sid; expected the camera one way or the other"
+    ${c_arm} --detector 40x30 --fov 20)
+foreach(mode composite xray mip min average)
+    deltasplat_cli_test(c_arm_${mode} CREATES out.exr
+        ARGS render ${cube} -o out.exr ${c_arm} --detector 40x30 --mode ${mode})
+endforeach()
+deltasplat_cli_test(detector_within CREATES out.exr
+    ARGS render ${cube} -o out.exr --sid 100 --sdd 101 --detector 40x40
+    STDERR "deltasplat: warning: --sdd: the volume reaches 2.5 beyond the detector, and counts there as well")
 deltasplat_cli_test(perspective CREATES out.exr
     ARGS render ${cube} -o out.exr --projection perspective --focal 35 --aperture 24 --distance 40)
 deltasplat_cli_test(perspective_eye CREATES out.exr
@@ -309,6 +345,23 @@ foreach(mode xray mip)
     deltasplat_cli_test(used.${mode}_background CREATES out.png
         ARGS render ${cube} -o out.png --size 8x8 --mode ${mode} --background 1,1,1)
 endforeach()
+foreach(mode min average)
+    deltasplat_unused(${mode}_sigma --sigma "with --mode ${mode}" CREATES out.exr
+        ARGS render ${cube} -o out.exr --size 8x8 --mode ${mode} --sigma 1)
+    deltasplat_cli_test(used.${mode}_tf CREATES out.png
+        ARGS render ${cube} -o out.png --size 8x8 --mode ${mode} --tf tf_good.json)
+endforeach()
+deltasplat_unused(depth_shade --depth-shade "without --mode mip" CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --mode min --depth-shade 0.5)
+deltasplat_unused(mu_water --mu-water "without --mode drr" CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --mode xray --mu-water 0.02)
+deltasplat_unused(xray_sigma_from_eye --sigma "with --mode xray but in --projection ortho"
+    CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --mode xray --sigma 1 --projection perspective)
+# Of a file that names no patient's space, --photons in a .png.
+deltasplat_cli_test(unused.photons CREATES out.png
+    ARGS render ${cube} -o out.png --size 8x8 --drr --photons 1000
+    STDERR_MATCHES "deltasplat: warning: --photons: has no effect without --mode drr and an .exr.*--mode drr: is for Hounsfield units [(]air -1000, water 0[)], which values from 0 to 96 of a file that names no patient's space may not be")
 deltasplat_unused(mip_sigma --sigma "with --mode mip" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --mode mip --sigma 1)
 deltasplat_unused(xray_tf_png --tf "with --mode xray" CREATES out.png
@@ -337,7 +390,7 @@ deltasplat_cli_test(usage.scale_bar_latlong EXIT 2
     ARGS render ${cube} -o out.png --scale-bar --projection latlong
     STDERR "deltasplat: --scale-bar: got --projection latlong; expected ortho or perspective, where it would hold")
 deltasplat_cli_test(usage.legend_xray EXIT 2 ARGS render ${cube} -o out.png --legend --mode xray
-    STDERR "deltasplat: --legend: got --mode xray, which shows sums and no values; expected composite or mip")
+    STDERR "deltasplat: --legend: got --mode xray, which shows sums and no values; expected composite, mip, min or average")
 deltasplat_cli_test(usage.legend_color_by EXIT 2
     ARGS render ${cube} -o out.png --legend --color-by index
     STDERR "deltasplat: --legend: got --color-by index; expected value")

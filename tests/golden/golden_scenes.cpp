@@ -146,6 +146,20 @@ void addRays(Scenes& scenes) {
     scenes.add("mip-axis", "marschner-lobb", cameraOf("right"), Mode::kMip);
     scenes.add("mip-decades", "decades", cameraOf("iso"), Mode::kMip);
     scenes.add("mip-colors", "hydrogen", turned(80, 10), Mode::kMip).mipColors = true;
+    scenes.add("mip-depth", "vessels", turned(33, 21), Mode::kMip).depthShade = 0.7;
+    scenes.add("min", "marschner-lobb", turned(-40, 30), Mode::kMin);
+    scenes.add("average", "engine", turned(-40, 30), Mode::kAverage);
+    scenes.add("drr", "engine", turned(33, 21), Mode::kDrr).drr.muWater = 0.01;
+    CameraOptions camera = turned(33, 21);
+    camera.projection = Projection::kPerspective;
+    camera.fovDegrees = 40;
+    scenes.add("xray-perspective", "engine", camera, Mode::kXray);
+    scenes.add("mip-depth-perspective", "vessels", camera, Mode::kMip).depthShade = 0.7;
+    scenes.add("average-perspective", "cloud", camera, Mode::kAverage);
+    scenes.add("drr-perspective", "hydrogen", camera, Mode::kDrr).drr.photons = 1e4;
+    camera.distanceWorld = 6;
+    camera.fovDegrees = 110;
+    scenes.add("min-inside", "noisy", camera, Mode::kMin);
 }
 
 void addEyes(Scenes& scenes) {

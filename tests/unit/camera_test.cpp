@@ -508,6 +508,60 @@ TEST(Camera, perspectiveMatricesAgreeWithPixels) {
     EXPECT_NEAR(inNdc.y / inNdc.w, pixel.y / 200, 1e-12);
 }
 
+CameraOptions cArm() {
+    CameraOptions options;
+    options.projection = Projection::kPerspective;
+    options.sourceToIsocenterWorld = 1000;
+    options.sourceToDetectorWorld = 1500;
+    options.detectorWorld = glm::dvec2(300, 450);
+    options.sizePixels = {200, 300};
+    return options;
+}
+
+// A place on the detector is seen where it lies there.
+TEST(Camera, aCArmSeesItsDetector) {
+    const Camera camera = cameraOf([](CameraOptions& o) {
+        o = cArm();
+        o.targetWorld = glm::dvec3(3, 4, 8);
+    });
+    expectNear(camera.eyeWorld(), {3, 4, 1008});
+    EXPECT_NEAR(camera.targetDistanceWorld, 1000, 1e-12);
+    // The isocenter is magnified by 1500 / 1000.
+    EXPECT_NEAR(camera.frameWidthWorld, 200, 1e-12);
+    const glm::dvec2 corner = camera.pixelFromWorld({3 - 150, 4 + 225, 1008 - 1500});
+    EXPECT_NEAR(corner.x, 0, 1e-9);
+    EXPECT_NEAR(corner.y, 0, 1e-9);
+}
+
+TEST(Camera, refusesCArmsThatCannotBe) {
+    const auto refused = [](const std::function<void(CameraOptions&)>& set) {
+        return messageOf([&](CameraOptions& o) {
+            o = cArm();
+            set(o);
+        });
+    };
+    EXPECT_EQ(refused([](CameraOptions&) {}), "no error");
+    EXPECT_EQ(refused([](CameraOptions& o) { o.sourceToDetectorWorld = 999; }),
+              "`sourceToDetectorWorld`: got 999; expected at least `sourceToIsocenterWorld` 1000");
+    EXPECT_EQ(refused([](CameraOptions& o) { o.sourceToIsocenterWorld = 0; }),
+              "`sourceToIsocenterWorld`: got 0; expected a finite number > 0");
+    EXPECT_EQ(refused([](CameraOptions& o) { o.detectorWorld.reset(); }),
+              "`detectorWorld`: got none; expected `sourceToIsocenterWorld`, "
+              "`sourceToDetectorWorld` and `detectorWorld`");
+    EXPECT_EQ(refused([](CameraOptions& o) { o.detectorWorld->x = 0; }),
+              "`detectorWorld`: got 0x450; expected WxH, two finite numbers > 0");
+    EXPECT_EQ(refused([](CameraOptions& o) { o.detectorWorld->x = NAN; }),
+              "`detectorWorld`: got nanx450; expected WxH, two finite numbers > 0");
+    EXPECT_EQ(refused([](CameraOptions& o) { o.sizePixels.x = 300; }),
+              "`detectorWorld`: got 300x450 of 300x300 pixels; expected square pixels, as 300x300");
+    EXPECT_EQ(refused([](CameraOptions& o) { o.fovDegrees = 20; }),
+              "`fovDegrees`: got it and `sourceToIsocenterWorld`; expected the camera one way or "
+              "the other");
+    EXPECT_EQ(refused([](CameraOptions& o) { o.projection = Projection::kOrtho; }),
+              "`sourceToIsocenterWorld`: got `projection` ortho; expected `projection` "
+              "perspective");
+}
+
 TEST(Camera, refusesEyesThatCannotBe) {
     const auto perspective = [](const std::function<void(CameraOptions&)>& set) {
         return messageOf([&](CameraOptions& o) {

@@ -14,6 +14,9 @@
 namespace deltasplat {
 namespace {
 
+constexpr double kLeastPositive = 1e-30;
+constexpr double kMostPositive = 1e30;
+
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& expected) {
     throw Error(ErrorCode::kUsage, gotExpected(option, text.empty() ? "nothing" : text, expected));
@@ -143,7 +146,17 @@ Parser<glm::dvec3> vector3(double most) {
 }
 
 Parser<double> positiveLength() {
-    return number(1e-30, 1e30);
+    return number(kLeastPositive, kMostPositive);
+}
+
+Parser<glm::dvec2> lengthPair() {
+    return [](const std::string& option, const std::string& text) {
+        const std::vector<double> v = toNumbers<double>(text, 'x');
+        const auto inRange = [](double x) { return x >= kLeastPositive && x <= kMostPositive; };
+        if (v.size() != 2 || !std::all_of(v.begin(), v.end(), inRange))
+            refuse(option, text, rangeText("WxH, two numbers", kLeastPositive, kMostPositive));
+        return glm::dvec2(v[0], v[1]);
+    };
 }
 
 Parser<double> angleOfView() {

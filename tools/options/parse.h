@@ -40,6 +40,8 @@ Parser<glm::dvec3> voxelSpacing();
 Parser<glm::dvec2> interval();
 /// `R,G,B` or `R,G,B,A`; colours at least 0, A (default 1) within 0..1.
 Parser<glm::vec4> color();
+/// `WxH`, positive lengths.
+Parser<glm::dvec2> lengthPair();
 /// `WxH`, whole numbers of at least 1.
 Parser<glm::ivec2> pixelSize();
 /// `AxBxC`, whole numbers; whether they make a volume is for its reader to say.

@@ -51,8 +51,11 @@ void checkAnnotations(const RenderCommand& command) {
     if (choice.scaleBar && render.camera.projection == Projection::kLatlong)
         refuse("--scale-bar", "--projection latlong", "ortho or perspective, where it would hold");
     if (!choice.legend) return;
-    if (render.mode == Mode::kXray)
-        refuse("--legend", "--mode xray, which shows sums and no values", "composite or mip");
+    if (render.mode == Mode::kXray || render.mode == Mode::kDrr)
+        refuse("--legend", "--mode " + modeName(render.mode) + ", which shows sums and no values",
+               "composite, mip, min or average");
+    if (command.picture.surface.isovalue || command.picture.surface.asked)
+        refuse("--legend", "a surface, which has one colour", "a picture of values");
     if (render.mode == Mode::kComposite && render.optics.colorBy != ColorBy::kValue)
         refuse("--legend", "--color-by " + colorByName(render.optics.colorBy), "value");
 }

@@ -44,6 +44,14 @@ ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume
         {"codeBook", volume.codeBook.name()},
         {"codeError", codeErrorText(volume.codeError)},
     };
+    const RenderOptions& render = command.picture.render;
+    if (result.stats.mode == Mode::kDrr) {
+        options.metadata.emplace_back("muWater", numberText(render.drr.muWater));
+        if (render.drr.photons)
+            options.metadata.emplace_back("photons", numberText(*render.drr.photons));
+    }
+    if (result.stats.mode == Mode::kMip && render.depthShade > 0)
+        options.metadata.emplace_back("depthShade", numberText(render.depthShade));
     if (result.stats.mode != Mode::kComposite) return options;
     options.metadata.insert(options.metadata.end(),
                             {{"method", methodName(command.picture.render.method)},
@@ -83,16 +91,17 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     warnOfUnusedModeOptions(app, command, display);
 }
 
-// Shows values as greys, and says in `image` of which window.
+// Shows values as greys, and says in `image` what black and white stand for.
 glm::dvec2 applyWindow(const RenderCommand& command, const Volume& volume, RenderResult& result,
                        ImageFileOptions& image) {
-    const bool xray = command.picture.render.mode == Mode::kXray;
+    const RenderOptions& options = command.picture.render;
     const glm::dvec2 window =
-        xray ? greyXray(volume, result.camera, command.window, result.image)
-             : greyMip(command.window ? command.window : command.picture.render.optics.range,
-                       result.image);
+        options.mode == Mode::kXray ? greyXray(volume, result.camera, command.window, result.image)
+        : options.mode == Mode::kDrr
+            ? greyRadiograph(options.drr, command.window, result.image)
+            : greyMip(command.window ? command.window : options.optics.range, result.image);
     image.metadata.emplace_back("window", numberText(window));
-    if (xray) image.metadata.emplace_back("xrayScale", numberText(window.y));
+    if (options.mode == Mode::kXray) image.metadata.emplace_back("xrayScale", numberText(window.y));
     return window;
 }
 
@@ -105,14 +114,18 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
     if (showsWindow(command)) window = applyWindow(command, volume, result, image);
     if (command.picture.background) compositeOver(result.image, *command.picture.background);
     std::optional<Legend> legend;
-    if (command.annotations.legend) legend = pictureLegend(command, volume, optics, window);
+    if (optics.surface && command.annotations.legend) {
+        listener.warn("--legend: left out, for what is shown is a surface, of one colour");
+    } else if (command.annotations.legend) {
+        legend = pictureLegend(command, volume, optics, window);
+    }
     annotate(layOut(command.annotations, result.camera, volume.space, legend, inkFor(result.image),
                     listener),
              result.image);
 }
 
 void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
-    applyMode(command);
+    applyMode(app, command);
     applyProjection(app, command.picture.render.camera);
     applySurface(app, command.picture.render.mode, command.picture.surface, command.picture.read);
     validate(command);
@@ -129,6 +142,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         RenderOptions options = readOptics(picture, reading);
         const Volume volume = readToRender(command.input, picture, options, reading);
         warnOfUnusedView(app, options.camera, volume, reading);
+        warnOfDetector(options.camera, volume, reading);
         times.read = secondsSince(beginRead);
         codeBook = "code book " + volume.codeBook.name() + ", largest error " +
                    codeErrorText(volume.codeError) + "\n";

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "deltasplat/error.h"
 #include "lower_case.h"
 #include "options/input_options.h"
 
@@ -15,7 +16,25 @@ bool isExr(const std::filesystem::path& file) {
     return lowerCase(file.extension().string()) == ".exr";
 }
 
+// Options that only one mode has.
+void warnOfOtherModes(const CLI::App& app, const RenderCommand& command, ProgressDisplay& display) {
+    const Mode mode = command.picture.render.mode;
+    const auto warnUnless = [&](const std::string& option, bool used, const std::string& where) {
+        if (isGiven(app, option) && !used)
+            display.warn(option + ": has no effect without " + where);
+    };
+    warnUnless("--depth-shade", mode == Mode::kMip, "--mode mip");
+    warnUnless("--mu-water", mode == Mode::kDrr, "--mode drr");
+    warnUnless("--photons", mode == Mode::kDrr && isExr(command.output),
+               "--mode drr and an .exr: other pictures show the same of any number");
+}
+
 }  // namespace
+
+bool colorsValues(const RenderCommand& command) {
+    const Mode mode = command.picture.render.mode;
+    return mode == Mode::kMip || mode == Mode::kMin || mode == Mode::kAverage;
+}
 
 bool storesValues(const RenderCommand& command) {
     return command.picture.render.mode != Mode::kComposite && isExr(command.output);
@@ -24,10 +43,16 @@ bool storesValues(const RenderCommand& command) {
 bool showsWindow(const RenderCommand& command) {
     const Mode mode = command.picture.render.mode;
     if (mode == Mode::kComposite || isExr(command.output)) return false;
-    return mode == Mode::kXray || command.picture.transferFunction.empty();
+    return !colorsValues(command) || command.picture.transferFunction.empty();
 }
 
-void applyMode(RenderCommand& command) {
+void applyMode(const CLI::App& app, RenderCommand& command) {
+    Mode& mode = command.picture.render.mode;
+    if (command.drr && isGiven(app, "--mode") && mode != Mode::kDrr) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--drr", "--mode " + modeName(mode) + " besides", "--mode drr"));
+    }
+    if (command.drr) mode = Mode::kDrr;
     if (storesValues(command)) command.image.floatExr = true;
     command.picture.render.mipColors =
         !isExr(command.output) && !command.picture.transferFunction.empty();
@@ -37,23 +62,30 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
                              ProgressDisplay& display) {
     const Mode mode = command.picture.render.mode;
     if (isGiven(app, "--window") && !showsWindow(command))
-        display.warn("--window: has no effect without --mode xray or mip, in an .exr or with --tf");
+        display.warn("--window: has no effect without a --mode of values, in an .exr or with --tf");
+    warnOfOtherModes(app, command, display);
     if (mode == Mode::kComposite) return;
     std::vector<std::string> unused = {
         "--method",     "--tolerance",     "--tolerance-value", "--resolution", "--between",
         "--extinction", "--unit-distance", "--color-by",        "--shade",      "--light",
         "--ambient",    "--diffuse",       "--specular",        "--shininess",  "--surface",
         "--isovalue",   "--surface-color", "--gradient-opacity"};
-    if (mode == Mode::kMip) unused.push_back("--sigma");
-    if (mode == Mode::kXray || isExr(command.output))
+    if (colorsValues(command)) unused.push_back("--sigma");
+    if (!colorsValues(command) || isExr(command.output))
         unused.insert(unused.end(),
                       {"--tf", "--range", "--hide-labels", "--show-labels", "--label-opacity"});
     for (const std::string& option : unused) {
         if (isGiven(app, option))
             display.warn(option + ": has no effect with --mode " + modeName(mode));
     }
-    if (isGiven(app, "--background") && storesValues(command))
-        display.warn("--background: has no effect on an .exr with --mode " + modeName(mode));
+    const bool fromEye = command.picture.render.camera.projection != Projection::kOrtho;
+    if (isGiven(app, "--sigma") && !colorsValues(command) && fromEye)
+        display.warn("--sigma: has no effect with --mode " + modeName(mode) +
+                     " but in --projection ortho");
+    if (isGiven(app, "--background") && (storesValues(command) || mode == Mode::kDrr))
+        display.warn("--background: has no effect on " +
+                     std::string(storesValues(command) ? "an .exr" : "a picture") +
+                     " with --mode " + modeName(mode));
 }
 
 }  // namespace deltasplat

@@ -7,15 +7,20 @@
 
 namespace deltasplat {
 
-/// Whether the picture is to hold values instead of light: xray and mip in a format of floats.
+/// Whether the mode shows values of voxels, or of what is between, which have colours.
+bool colorsValues(const RenderCommand& command);
+
+/// Whether the picture is to hold values instead of light: all modes but composite, in a format of
+/// floats.
 bool storesValues(const RenderCommand& command);
 
 /// Whether the picture is to show values as greys.
 bool showsWindow(const RenderCommand& command);
 
 /// Sets what follows from mode and file format: values are stored as 32-bit floats, and formats of
-/// 8 or 16 bits show the transfer function's colours of largest values, if one is given.
-void applyMode(RenderCommand& command);
+/// 8 or 16 bits show the transfer function's colours of values, if one is given.
+/// @throw Error(kUsage) if two modes are asked for
+void applyMode(const CLI::App& app, RenderCommand& command);
 
 /// Warns of options that were given and that have no effect in the mode that was.
 void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/render_options.h"
 
+#include <algorithm>
+#include <glm/geometric.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,7 +41,9 @@ Parser<Method> method() {
 }
 
 Parser<Mode> mode() {
-    return named<Mode>({Mode::kComposite, Mode::kXray, Mode::kMip}, modeName);
+    return named<Mode>(
+        {Mode::kComposite, Mode::kXray, Mode::kMip, Mode::kMin, Mode::kAverage, Mode::kDrr},
+        modeName);
 }
 
 Parser<Projection> projection() {
@@ -126,11 +130,13 @@ void addModeOption(CLI::App& app, Mode& chosen) {
     OptionGroup group(app, "Optics");
     group.addValue("--mode", "NAME", chosen, mode(),
                    withDefault("composite (emission and absorption), xray (integral of the value\n"
-                               "in world units) or mip (largest value along the line of\n"
-                               "sight): the last two, of --projection ortho only, store their\n"
-                               "values as 32-bit floats in an .exr, and are shown as greys in\n"
-                               "a .png (mip in the colours of --tf, if that is\n"
-                               "given)",
+                               "in world units), mip, min or average (largest or smallest value\n"
+                               "along the line of sight, or the mean of active ones) or drr\n"
+                               "(radiograph of a CT scan in Hounsfield units: which share of\n"
+                               "x-rays gets through): all but the first store their values as\n"
+                               "32-bit floats in an .exr, and are shown as greys in a .png (mip,\n"
+                               "min and average in the colours of --tf, if that is given; drr\n"
+                               "white where little gets through)",
                                modeName(chosen)));
 }
 
@@ -138,8 +144,28 @@ void addWindowOption(CLI::App& app, std::optional<glm::dvec2>& window) {
     OptionGroup group(app, "Optics");
     group.addValue("--window", "LO,HI", window, interval(),
                    "Values that black and white stand for in a .png of --mode xray\n"
-                   "(data units times world units) or mip (default: the 0.5th and\n"
-                   "the 99.5th percentile of the picture's; for xray at most 0)");
+                   "(data units times world units), drr (attenuation, -ln of the\n"
+                   "share that gets through), mip, min or average (default: the\n"
+                   "0.5th and the 99.5th percentile of the picture's; for xray and\n"
+                   "drr at most 0)");
+}
+
+void addRayOptions(CLI::App& app, RenderCommand& command) {
+    OptionGroup group(app, "Optics");
+    RenderOptions& options = command.picture.render;
+    group.addFlag("--drr", command.drr, "The same as --mode drr");
+    group.addValue(
+        "--mu-water", "M", options.drr.muWater, positiveLength(),
+        withDefault("drr: attenuation of water in 1/mm (of a voxel M (1 + HU / 1000), at\n"
+                    "least 0), of photons of 50 to 60 keV",
+                    numberText(options.drr.muWater)));
+    group.addValue("--photons", "N", options.drr.photons, positiveLength(),
+                   "drr: photons that a pixel of an .exr would get past nothing, > 0:\n"
+                   "pixels count photons, without noise (default: shares, 0 to 1)");
+    group.addValue("--depth-shade", "S", options.depthShade, number(0, 1),
+                   withDefault("mip: how much darker the farthest place of the volume is shown\n"
+                               "than the nearest, 0 to 1",
+                               numberText(options.depthShade)));
 }
 
 void addMethodOption(CLI::App& app, Method& chosen) {
@@ -203,6 +229,16 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
     group.addValue("--distance", "D", camera.distanceWorld, positiveLength(),
                    "perspective: from the eye to the target, in world units\n"
                    "(default: the volume fits)");
+    group.addValue("--sid", "D", camera.sourceToIsocenterWorld, positiveLength(),
+                   "C-arm: from the source of x-rays (the eye) to the isocenter (the\n"
+                   "target) in mm; with --sdd and --detector, implies --projection\n"
+                   "perspective (plastimatch's --sad)");
+    group.addValue("--sdd", "D", camera.sourceToDetectorWorld, positiveLength(),
+                   "C-arm: from the source to the detector in mm, at least --sid\n"
+                   "(plastimatch's --sid)");
+    group.addValue("--detector", "WxH", camera.detectorWorld, lengthPair(),
+                   "C-arm: width and height of the detector in mm; its pixels, as many\n"
+                   "as --size says, must be square");
     group.addValue("--near", "D", camera.nearWorld, number(0),
                    withDefault("perspective, latlong: what is nearer to the eye is not seen",
                                numberText(camera.nearWorld)));
@@ -288,6 +324,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addOutputOptions(app, command);
     addCameraOptions(app, command.picture);
     addModeOption(app, command.picture.render.mode);
+    addRayOptions(app, command);
     addWindowOption(app, command.window);
     addOpticsOptions(app, command.picture);
     addSurfaceOptions(app, command.picture.surface, command.picture.render.optics.gradientOpacity);
@@ -300,6 +337,9 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
 }
 
 void applyProjection(const CLI::App& app, CameraOptions& camera) {
+    const bool isCArm =
+        isGiven(app, "--sid") || isGiven(app, "--sdd") || isGiven(app, "--detector");
+    if (isCArm && !isGiven(app, "--projection")) camera.projection = Projection::kPerspective;
     if (camera.projection == Projection::kLatlong && !isGiven(app, "--size"))
         camera.sizePixels = {1024, 512};
 }
@@ -329,6 +369,25 @@ void warnOfUnusedView(const CLI::App& app, const CameraOptions& options, const V
         makeCamera(CameraOptions(), volume.box, volume.worldFromIndex, volume.space);
     if (*options.eyeWorld != options.targetWorld.value_or(middle.targetWorld))
         listener.warn("--view: has no effect with --eye");
+}
+
+void warnOfDetector(const CameraOptions& options, const Volume& volume, const Listener& listener) {
+    if (!options.sourceToDetectorWorld || volume.empty()) return;
+    const Camera camera = makeCamera(options, volume.box, volume.worldFromIndex, volume.space);
+    double farthest = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const IndexBox& box = volume.box;
+        const glm::dvec4 index(corner & 1 ? box.max.x : box.min.x,
+                               corner & 2 ? box.max.y : box.min.y,
+                               corner & 4 ? box.max.z : box.min.z, 1);
+        const glm::dvec3 away = glm::dvec3(volume.worldFromIndex * index) - camera.eyeWorld();
+        farthest = std::max(farthest, glm::dot(away, camera.direction));
+    }
+    const double beyond = farthest - *options.sourceToDetectorWorld;
+    if (beyond > 0) {
+        listener.warn("--sdd: the volume reaches " + numberText(beyond) +
+                      " beyond the detector, and counts there as well");
+    }
 }
 
 void validate(const RenderCommand& command) {

@@ -35,7 +35,8 @@ struct RenderCommand {
     std::filesystem::path output;
     std::filesystem::path stats;  ///< empty: none
     PictureOptions picture;
-    std::optional<glm::dvec2> window;  ///< xray, mip: values of black and white; empty: percentiles
+    bool drr = false;                  ///< another way to say mode drr
+    std::optional<glm::dvec2> window;  ///< values of black and white; empty: percentiles
     ImageFileOptions image;
     AnnotationChoice annotations;
 };
@@ -50,7 +51,7 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options);
 /// Declares all options of `deltasplat render`.
 void addRenderOptions(CLI::App& app, RenderCommand& command);
 
-/// Gives a panorama the size that it has if none is asked for.
+/// Gives a panorama the size that it has if none is asked for, and a C-arm its projection.
 void applyProjection(const CLI::App& app, CameraOptions& camera);
 
 /// Checks the camera before there is a volume to look at.
@@ -60,6 +61,9 @@ void checkCamera(const CameraOptions& camera);
 /// Warns of a --view that was given where other options say where a camera on this volume looks.
 void warnOfUnusedView(const CLI::App& app, const CameraOptions& options, const Volume& volume,
                       const Listener& listener);
+
+/// Warns of a detector that stands within the volume.
+void warnOfDetector(const CameraOptions& options, const Volume& volume, const Listener& listener);
 
 /// Checks what can be checked before anything is read.
 /// @throw Error(kUsage) or, for a folder that cannot be written to, Error(kOutput)

@@ -3,21 +3,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 #include <vector>
 
 #include "parallel.h"
+#include "portable_math.h"
 #include "srgb.h"
 
 namespace deltasplat {
 namespace {
 
-// Whether a line meets a box, by the slabs between its faces.
-bool meets(const glm::dvec3& from, const glm::dvec3& along, const glm::dvec3& low,
-           const glm::dvec3& high) {
-    double first = -std::numeric_limits<double>::infinity();
-    double last = -first;
+// A line of sight in voxels; what lies before `nearest` lengths of `along` is not seen.
+struct Sight {
+    glm::dvec3 from;
+    glm::dvec3 along;
+    double nearest;
+};
+
+// Whether a line of sight meets a box, by the slabs between its faces.
+bool meets(const Sight& sight, const glm::dvec3& low, const glm::dvec3& high) {
+    const auto& [from, along, nearest] = sight;
+    double first = nearest;
+    double last = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
         if (along[axis] == 0) {
             if (from[axis] < low[axis] || from[axis] > high[axis]) return false;
@@ -31,17 +40,27 @@ bool meets(const glm::dvec3& from, const glm::dvec3& along, const glm::dvec3& lo
     return first <= last;
 }
 
+Sight sightOf(const Camera& camera, const glm::dmat4& indexFromWorld, glm::dvec2 pixel) {
+    const glm::dvec3 ray = camera.rayThrough(pixel);
+    const glm::dvec3 along = indexFromWorld * glm::dvec4(ray, 0);
+    if (camera.projection == Projection::kOrtho) {
+        return {indexFromWorld * glm::dvec4(camera.worldFromPixel(pixel), 1), along,
+                -std::numeric_limits<double>::infinity()};
+    }
+    const bool flat = camera.projection == Projection::kPerspective;
+    const double depth = flat ? glm::dot(ray, camera.direction) : glm::length(ray);
+    return {indexFromWorld * glm::dvec4(camera.eyeWorld(), 1), along, camera.nearWorld / depth};
+}
+
 // Sets alpha to 1 where the line of sight meets the volume's box, voxels whole, else to 0.
 void coverBox(const Volume& volume, const Camera& camera, Image& image) {
     const glm::dmat4 indexFromWorld = glm::inverse(volume.worldFromIndex);
     const glm::dvec3 low = glm::dvec3(volume.box.min) - 0.5;
     const glm::dvec3 high = glm::dvec3(volume.box.max) + 0.5;
-    const glm::dvec3 along = indexFromWorld * glm::dvec4(camera.direction, 0);
     parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
         for (int x = 0; x < image.size.x; ++x) {
-            const glm::dvec3 world = camera.worldFromPixel({x + 0.5, double(y) + 0.5});
-            const glm::dvec3 from = indexFromWorld * glm::dvec4(world, 1);
-            image.pixel(x, int(y))[3] = meets(from, along, low, high) ? 1.0f : 0.0f;
+            const Sight sight = sightOf(camera, indexFromWorld, {x + 0.5, double(y) + 0.5});
+            image.pixel(x, int(y))[3] = meets(sight, low, high) ? 1.0f : 0.0f;
         }
     });
 }
@@ -84,19 +103,37 @@ void showWindow(glm::dvec2 window, Image& image) {
     });
 }
 
+// Shows values of which 0 is that of nothing, which is black unless there is less.
+glm::dvec2 greySums(const std::optional<glm::dvec2>& window, Image& image) {
+    std::vector<float> values = opaqueValues(image);
+    std::erase(values, 0.0f);
+    glm::dvec2 chosen = middleOf(std::move(values));
+    chosen = window.value_or(widened({std::min(chosen.x, 0.0), chosen.y}));
+    showWindow(chosen, image);
+    return chosen;
+}
+
 }  // namespace
 
 glm::dvec2 greyXray(const Volume& volume, const Camera& camera,
                     const std::optional<glm::dvec2>& window, Image& image) {
     if (volume.empty()) return window.value_or(glm::dvec2(0, 1));
     coverBox(volume, camera, image);
-    std::vector<float> values = opaqueValues(image);
-    std::erase(values, 0.0f);
-    glm::dvec2 chosen = middleOf(std::move(values));
-    // Nothing is black, unless there is less.
-    chosen = window.value_or(widened({std::min(chosen.x, 0.0), chosen.y}));
-    showWindow(chosen, image);
-    return chosen;
+    return greySums(window, image);
+}
+
+glm::dvec2 greyRadiograph(const Drr& drr, const std::optional<glm::dvec2>& window, Image& image) {
+    const double photons = drr.photons.value_or(1);
+    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
+        float* rgba = image.pixel(0, int(y));
+        for (int x = 0; x < image.size.x; ++x, rgba += 4) {
+            // What is nothing in 32 bits attenuates as much as the least that is something.
+            const double share =
+                std::max(rgba[0] / photons, double(std::numeric_limits<float>::denorm_min()));
+            std::fill_n(rgba, 3, float(-portable::log(share) + 0.0));
+        }
+    });
+    return greySums(window, image);
 }
 
 glm::dvec2 greyMip(const std::optional<glm::dvec2>& window, Image& image) {

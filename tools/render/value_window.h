@@ -6,6 +6,7 @@
 
 #include "deltasplat/image/image.h"
 #include "deltasplat/ingest/volume.h"
+#include "deltasplat/render_options.h"
 #include "deltasplat/view/camera.h"
 
 namespace deltasplat {
@@ -19,8 +20,12 @@ namespace deltasplat {
 glm::dvec2 greyXray(const Volume& volume, const Camera& camera,
                     const std::optional<glm::dvec2>& window, Image& image);
 
-/// The same of largest values, which are opaque where a voxel is met. By default the window goes
-/// from the 0.5th to the 99.5th percentile of the pixels' values.
+/// Shows a radiograph as light boxes do, white where little gets through: greys of the attenuation,
+/// -ln of the share that gets through, all opaque. The window is as of `greyXray`.
+glm::dvec2 greyRadiograph(const Drr& drr, const std::optional<glm::dvec2>& window, Image& image);
+
+/// The same of values that are met, which are opaque where a voxel is met. By default the window
+/// goes from the 0.5th to the 99.5th percentile of the pixels' values.
 glm::dvec2 greyMip(const std::optional<glm::dvec2>& window, Image& image);
 
 }  // namespace deltasplat

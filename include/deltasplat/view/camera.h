@@ -59,6 +59,13 @@ struct CameraOptions {
     /// kPerspective without an eye: from the eye to the target, > 0; default: the box of voxel
     /// centres just fits.
     std::optional<double> distanceWorld;
+    /// kPerspective of a C-arm, all three or none, in place of the lens, the eye and the distance:
+    /// from the source of x-rays, which is the eye, to the isocenter, which is the target, > 0; to
+    /// the middle of the detector, at least that; and the detector's width and height, whose pixels
+    /// are square (within a thousandth). What lies beyond the detector counts as well.
+    std::optional<double> sourceToIsocenterWorld;
+    std::optional<double> sourceToDetectorWorld;
+    std::optional<glm::dvec2> detectorWorld;
     /// What is nearer than this is not seen: along the middle line of sight, or, kLatlong, along
     /// each; >= 0.
     double nearWorld = 0;

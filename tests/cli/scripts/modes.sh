@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Checks the values that --mode xray and mip store, and what becomes of them in a .png: of a slab of
-# 10x8x4 voxels of 255 in 12x10x8 voxels of 0.
+# Checks the values that modes other than composite store, and what becomes of them in a .png: of a
+# slab of 10x8x4 voxels of 255 in 12x10x8 voxels of 0.
 # Usage: modes.sh PROGRAM OIIOTOOL SCRATCH
 set -euo pipefail
 program=$1 oiiotool=$2 scratch=$3
@@ -88,3 +88,45 @@ END
 render red.png --mode mip --tf red.json
 expect_pixel red.png 8 8 "1.000000 0.000000 0.000000 1.000000"
 expect_pixel red.png 2 8 "0.000000 0.000000 1.000000 1.000000"
+
+# Means and smallest values.
+render average.exr --mode average
+expect_pixel average.exr 8 8 "127.500000 127.500000 127.500000 1.000000"
+expect_pixel average.exr 0 8 "0.000000 0.000000 0.000000 0.000000"
+render min.exr --mode min
+expect_pixel min.exr 8 8 "0.000000 0.000000 0.000000 1.000000"
+expect_metadata min.exr mode min
+
+# The slab's first slice is the second of seven steps of depth.
+render shaded.exr --mode mip --depth-shade 0.7
+expect_pixel shaded.exr 8 8 "204.000000 204.000000 204.000000 1.000000"
+expect_metadata shaded.exr depthShade 0.7
+
+# From an eye on the axis pixels in the middle go through both faces.
+eye=(--projection perspective --distance 4000 --fov 0.23)
+"$program" render "$slab" -q --view front --size 16x16 "${eye[@]}" -o eye.exr --mode xray
+got=$("$oiiotool" eye.exr --cut 1x1+8+8 --printstats | sed -n 's/^ *Stats Max: \([0-9]*\.[0-9]\).*/\1/p')
+[[ $got == 1020.0 ]] || { echo "eye.exr: got $got; expected 1020.0"; exit 1; }
+"$program" render "$slab" -q --view front --size 16x16 "${eye[@]}" -o eye.png --mode xray
+expect_pixel eye.png 8 8 "1.000000 1.000000 1.000000 1.000000"
+expect_pixel eye.png 0 0 "0.000000 0.000000 0.000000 0.000000"
+
+# A radiograph: 8 slices of -900 HU of 2.5 mm let exp(-0.02 * 0.1 * 20) through, and all of it what
+# passes by. In a .png what lets little through is white.
+thin=(hu_16x16x8_int16.raw -qq --view front --frame-width 32 --size 32x32 --spacing 1,1,2.5)
+air='\x7c\xfc' tissue='\x64\x00'
+for z in {0..7}; do
+    for y in {0..15}; do
+        for x in {0..15}; do
+            (( x >= 4 && x < 12 && y >= 4 && y < 12 )) && printf "$tissue" || printf "$air"
+        done
+    done
+done >hu_16x16x8_int16.raw
+"$program" render "${thin[@]}" -o drr.exr --mode drr --mu-water 0.02 --photons 1e6
+expect_pixel drr.exr 1 1 "1000000.000000 1000000.000000 1000000.000000 1.000000"
+expect_pixel drr.exr 16 16 "644036.437500 644036.437500 644036.437500 1.000000"
+expect_metadata drr.exr muWater 0.02
+expect_metadata drr.exr photons 1e+06
+"$program" render "${thin[@]}" -o drr.png --drr --background 1,0,0
+expect_pixel drr.png 1 1 "0.000000 0.000000 0.000000 1.000000"
+expect_pixel drr.png 16 16 "1.000000 1.000000 1.000000 1.000000"
