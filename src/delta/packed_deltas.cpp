@@ -109,7 +109,8 @@ struct PackTools {
     const Holder* holder = nullptr;
     const ValueMixer* mixer = nullptr;
     const MixedSight* sight = nullptr;
-    const CodeTree* codes = nullptr;  // that values are read from
+    const CodeTree* codes = nullptr;  // that values are mixed from
+    const CodeTree* uncut = nullptr;  // that gradients are taken of
 };
 
 // What a packer packs: columns of blocks (same u and v), slices in increasing order.
@@ -154,7 +155,7 @@ class ColumnPacker {
             if (options_.painter) halves_[std::size_t(half)].looks.reserve(64 * most);
         }
         if (options_.painter) {
-            own_ = std::make_unique<BlockLooks>(*options_.painter, *tools_.codes,
+            own_ = std::make_unique<BlockLooks>(*options_.painter, *tools_.uncut,
                                                 options_.sliceAxis, parts_, box_);
         }
         for (const CodeBlock* block = columns.begin; block != columns.end; ++block) {
@@ -261,6 +262,7 @@ class ColumnPacker {
     }
 
     void addMixed(const CodeBlock& block) {
+        inHand_ = &block;
         window_->reader.read(block, window_->window);
         const bool isSeen = tools_.sight->canBeSeen(window_->window);
         const bool isPainted = choosesClasses(options_);
@@ -278,6 +280,7 @@ class ColumnPacker {
                     held_[numberOf(part)].fill(kEmptySlot);
                 } else if (isPainted) {
                     own_->paint(position, number, classes_);
+                    if (tools_.uncut != tools_.codes) clearCutOff(position);
                 } else if (tools_.holder) {
                     hold(slots, position, part, number);
                 } else {
@@ -286,6 +289,16 @@ class ColumnPacker {
                 }
                 add(position, part, slices);
             });
+        }
+    }
+
+    // Clears what was painted by values that were cut off.
+    void clearCutOff(const glm::ivec3& position) {
+        const glm::ivec3 per(parts_.slices, parts_.within, parts_.within);
+        const glm::ivec3 first = 8 * (position - firstPart(*inHand_));
+        for (int n = 0; n < 512; ++n) {
+            const glm::ivec3 thin = first + glm::ivec3(n / 64, n / 8 % 8, n % 8);
+            if (window_->window.at(thin / per) == kEmptySlot) classes_[std::size_t(n)] = 0;
         }
     }
 
@@ -341,6 +354,7 @@ class ColumnPacker {
     std::vector<BlockSlots> mixed_;  // [part along u][along slices][along v]
     std::array<PackedColumns, 2> halves_;
     std::unique_ptr<BlockLooks> own_;  // null: classes say all
+    const CodeBlock* inHand_ = nullptr;
 };
 
 // Cuts the blocks into runs of whole columns, for each of which there is one packer. The cuts
@@ -460,7 +474,8 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     std::vector<ColumnPacker> packers;
     packers.reserve(runs.size());
     const PackTools tools{holder ? &*holder : nullptr, mixer, sight ? &*sight : nullptr,
-                          volume.codes.get()};
+                          volume.codes.get(),
+                          volume.uncut ? volume.uncut.get() : volume.codes.get()};
     for (std::size_t i = 0; i < runs.size(); ++i)
         packers.emplace_back(packed.box, options, tools, slotMap);
     parallelFor(packers.size(), [&](std::size_t i) { packers[i].run(runs[i]); });

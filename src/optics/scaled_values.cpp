@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "deltasplat/optics/default_ramp.h"
+#include "ingest/codes/code_statistics.h"
 
 namespace deltasplat {
 namespace {
@@ -30,9 +31,10 @@ GradientScale scaledValues(const Volume& volume, double zero) {
     GradientScale scale;
     scale.unit = noise;
     scale.ofCode.resize(kCodeCount);
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] != 0)
-            scale.ofCode[code] = scaled(volume.codeBook.valueOf(Code(code)));
+    const std::vector<std::uint64_t> counts =
+        volume.uncut ? histogramOf(volume.uncut->tree) : volume.histogram;
+    for (std::size_t code = 0; code < counts.size(); ++code) {
+        if (counts[code] != 0) scale.ofCode[code] = scaled(volume.codeBook.valueOf(Code(code)));
     }
     if (volume.hasBackground) scale.background = scaled(volume.background);
     return scale;

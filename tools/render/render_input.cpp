@@ -117,11 +117,11 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
     options.optics.shading = shadingOf(picture, volume, preset, options.optics.surface.has_value());
     if (preset && !options.optics.surface) warnOfOtherData(*preset, volume, listener);
     if (picture.transferFunction.empty()) {
-        const bool mip = picture.render.mode == Mode::kMip;
+        const bool isOfValues = picture.render.mode != Mode::kComposite;
         options.optics.transferFunction =
             preset  ? presetFunction(preset->name)
-            : range ? (mip ? wholeRamp(volume, *range) : defaultRamp(volume, *range))
-                    : (mip ? wholeRamp(volume) : defaultRamp(volume));
+            : range ? (isOfValues ? wholeRamp(volume, *range) : defaultRamp(volume, *range))
+                    : (isOfValues ? wholeRamp(volume) : defaultRamp(volume));
     } else {
         if (preset) fitPreset(*preset, volume, options.optics);
         const bool isOpen = options.optics.transferFunction.normalized && !options.optics.range;
