@@ -11,7 +11,7 @@ namespace deltasplat {
 
 const std::vector<std::string>& analyticNames() {
     static const std::vector<std::string> kNames = {
-        "marschner-lobb", "hydrogen", "shepp-logan", "engine", "cloud", "slab", "vessels"};
+        "marschner-lobb", "hydrogen", "shepp-logan", "engine", "cloud", "slab", "vessels", "body"};
     return kNames;
 }
 
@@ -27,7 +27,8 @@ AnalyticVolume makeAnalytic(const std::string& name, std::uint64_t seed, double 
     if (name == "engine") return {name, makeEngine(seed, noise)};
     if (name == "cloud") return {name, makeCloud(seed)};
     if (name == "slab") return {name, makeSlab()};
-    if (name == "vessels") return {name, makeVessels(seed)};
+    if (name == "vessels") return {name, makeVessels(seed, noise)};
+    if (name == "body") return {name, makeBody()};
 
     std::string names;
     for (const std::string& known : analyticNames()) names += (names.empty() ? "" : ", ") + known;

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: a design of this project, in the manner of the volume library's CT engine; the noise is
-// the transform of G. Box and M. Muller, "A Note on the Generation of Random Normal Deviates",
-// 1958.
+// Based on: a design of this project, in the manner of the volume library's CT engine.
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <numbers>
 
-#include "portable_math.h"
-#include "synth/hash.h"
+#include "synth/noise.h"
 #include "synth/volumes.h"
 
 namespace deltasplat {
@@ -81,22 +76,10 @@ double engineValue(const glm::dvec3& p) {
     return isCasting(p, radius) ? kAluminium : 0;
 }
 
-// A normally distributed number that depends on nothing but the seed and the position.
-double gaussianAt(std::uint64_t seed, const glm::dvec3& p) {
-    const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 is 0
-    const std::uint64_t hash = hash3(seed, bits(p.x), bits(p.y), bits(p.z));
-    const double radius = std::sqrt(-2 * portable::log(1 - unitFromBits(hash)));
-    return radius * portable::cos(2 * std::numbers::pi * unitFromBits(mixBits(hash + 1)));
-}
-
 }  // namespace
 
 ValueAt makeEngine(std::uint64_t seed, double noise) {
-    return [seed, noise](const glm::dvec3& p) {
-        const double value = engineValue(p);
-        if (noise == 0) return value;
-        return std::clamp(value + noise * gaussianAt(seed, p), 0.0, 1.0);
-    };
+    return withNoise(engineValue, seed, noise);
 }
 
 }  // namespace deltasplat

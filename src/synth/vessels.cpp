@@ -12,6 +12,7 @@
 
 #include "portable_math.h"
 #include "synth/hash.h"
+#include "synth/noise.h"
 #include "synth/volumes.h"
 
 namespace deltasplat {
@@ -124,9 +125,9 @@ class TubeMap {
 
 }  // namespace
 
-ValueAt makeVessels(std::uint64_t seed) {
+ValueAt makeVessels(std::uint64_t seed, double noise) {
     const auto map = std::make_shared<const TubeMap>(TreeGrower(seed).grow());
-    return [map](const glm::dvec3& p) { return map->valueAt(p); };
+    return withNoise([map](const glm::dvec3& p) { return map->valueAt(p); }, seed, noise);
 }
 
 }  // namespace deltasplat

@@ -17,6 +17,7 @@ ValueAt makeSheppLogan();
 ValueAt makeEngine(std::uint64_t seed, double noise);
 ValueAt makeCloud(std::uint64_t seed);
 ValueAt makeSlab();
-ValueAt makeVessels(std::uint64_t seed);
+ValueAt makeVessels(std::uint64_t seed, double noise);
+ValueAt makeBody();
 
 }  // namespace deltasplat

@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointDataGrid.h>
+#include <openvdb/tools/LevelSetSphere.h>
 #include <zlib.h>
 
 #include <cmath>
@@ -140,6 +141,10 @@ void writeOtherBalls() {
 
 void writeVdbFiles() {
     writeVdb("ball.vdb", {ball("density")});
+    const auto surface =
+        openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(6, openvdb::Vec3f(0), 0.5);
+    surface->setName("surface");
+    writeVdb("level_set.vdb", {surface});
     writeVdb("two.vdb", {ball("density"), ball("heat")});
     const auto patient = ball("density");
     patient->insertMeta("deltasplat_space", openvdb::StringMetadata("LPS"));

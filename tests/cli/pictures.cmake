@@ -51,6 +51,9 @@ deltasplat_script_test(fog_over_plate fog_over_plate.sh
 deltasplat_script_test(transfer_functions transfer_functions.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/transfer_functions)
 deltasplat_script_test(shading shading.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/shading)
+deltasplat_script_test(surfaces surfaces.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/surfaces ${DELTASPLAT_FIXTURES}/level_set.vdb)
+set_tests_properties(cli.surfaces PROPERTIES FIXTURES_REQUIRED cli_files)
 add_test(NAME cli.first_look
          COMMAND bash ${DELTASPLAT_CLI_SCRIPTS}/if_present.sh
                  ${DELTASPLAT_SHARED_DATA}/dicom_chest_ct

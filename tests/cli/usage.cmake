@@ -128,6 +128,26 @@ deltasplat_refusal(method "--method: got fast; expected auto, delta, sparse or t
 deltasplat_refusal(mode "--mode: got depth; expected composite, xray, mip, min, average or drr"
     --mode depth)
 deltasplat_refusal(drr_and_mode "--drr: got --mode mip besides; expected --mode drr" --drr --mode mip)
+deltasplat_refusal(isovalue "--isovalue: got nan; expected a finite number" --isovalue nan)
+deltasplat_refusal(surface_color
+    "--surface-color: got 1,0; expected R,G,B or R,G,B,A, colours at least 0, A within 0..1"
+    --isovalue 1 --surface-color 1,0)
+deltasplat_refusal(surface_of_values
+    "--surface: got values that are no distances; expected a level set, or --isovalue V" --surface)
+deltasplat_refusal(surface_and_color_by
+    "--isovalue: got --color-by x besides; expected --color-by value" --isovalue 1 --color-by x)
+deltasplat_refusal(surface_and_gradients
+    "--isovalue: got --gradient-opacity besides; expected one of the two"
+    --isovalue 1 --gradient-opacity 0:1)
+foreach(points 1 1:2:3 2:0,1:1 -1:0 1:1.5 x:1)
+    string(MAKE_C_IDENTIFIER ${points} name)
+    deltasplat_refusal(gradient_opacity_${name}
+        "--gradient-opacity: got ${points}; expected GRADIENT:FACTOR,..., gradients of at least 0 in increasing order, factors within 0..1, as in 0:0,200:1"
+        --gradient-opacity=${points})
+endforeach()
+deltasplat_refusal(surface_legend
+    "--legend: got a surface, which has one colour; expected a picture of values"
+    --isovalue 1 --legend -o out.png)
 foreach(option mu-water photons)
     foreach(value 0 -1 nan)
         deltasplat_refusal(${option}_${value}
@@ -327,7 +347,7 @@ deltasplat_unused(bits --bits "without a .png picture"
     ARGS render ${cube} -o out.exr --size 8x8 --bits 16 CREATES out.exr)
 deltasplat_unused(view --view "with --direction" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --view front --direction 1,0,0)
-deltasplat_unused(noise --noise "on a volume other than engine"
+deltasplat_unused(noise --noise "on a volume other than engine and vessels"
     ARGS synth slab out.vdb --noise 0.1 CREATES out.vdb)
 deltasplat_unused(synth_spacing --spacing "without a .vdb output"
     ARGS synth slab out.raw --spacing 1,1,2 CREATES out.raw)
@@ -409,7 +429,7 @@ deltasplat_refusal(stats_is_input
 
 deltasplat_cli_test(synth_names ARGS synth STDOUT_MATCHES "marschner-lobb.*engine.*cloud")
 deltasplat_cli_test(usage.synth_name EXIT 2 ARGS synth ghost out.vdb
-    STDERR "deltasplat: NAME: got \"ghost\"; expected one of marschner-lobb, hydrogen, shepp-logan, engine, cloud, slab, vessels")
+    STDERR "deltasplat: NAME: got \"ghost\"; expected one of marschner-lobb, hydrogen, shepp-logan, engine, cloud, slab, vessels, body")
 deltasplat_cli_test(usage.synth_format EXIT 2 ARGS synth cloud out.txt
     STDERR "deltasplat: out.txt: got extension \".txt\"; expected .raw or .vdb")
 deltasplat_cli_test(usage.synth_dims EXIT 2 ARGS synth cloud out.raw --dims 0x1x1

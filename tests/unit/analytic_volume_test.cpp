@@ -273,5 +273,32 @@ TEST(Vessels, SeedsAreDifferentTrees) {
     expectOtherSeedsDiffer("vessels", 48);
 }
 
+// Labels, of which both sides have the same where organs come in pairs.
+TEST(AnalyticBody, HasOrgansWhereTheyBelong) {
+    const auto labelAt = [valueAt = makeAnalytic("body").valueAt](const glm::dvec3& p) {
+        const double label = valueAt(p) * 255;
+        EXPECT_NEAR(label, std::round(label), 1e-12);
+        return int(std::lround(label));
+    };
+    EXPECT_EQ(labelAt({0, 0.85, 0}), 10);         // brain
+    EXPECT_EQ(labelAt({0, 0, -0.17}), 2);         // spine
+    EXPECT_EQ(labelAt({0.2, 0.2, 0}), 3);         // lungs
+    EXPECT_EQ(labelAt({-0.2, 0.2, 0}), 3);        //
+    EXPECT_EQ(labelAt({0.06, 0.1, 0.07}), 4);     // heart, on the left
+    EXPECT_EQ(labelAt({-0.15, -0.15, 0.05}), 5);  // liver, on the right
+    EXPECT_EQ(labelAt({0.15, -0.3, -0.12}), 7);   // kidneys
+    EXPECT_EQ(labelAt({-0.15, -0.3, -0.12}), 7);  //
+    EXPECT_EQ(labelAt({0, -0.2, 0.16}), 1);       // skin
+    EXPECT_EQ(labelAt({0.9, 0.9, 0.9}), 0);       // nothing
+    int bones = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const glm::dvec3 p(i % 20 / 21.0, i / 20 % 50 / 25.0 - 1, i / 1000 / 20.0 - 0.5);
+        const bool isBone = labelAt(p) == 2;
+        bones += isBone;
+        EXPECT_EQ(labelAt({-p.x, p.y, p.z}) == 2, isBone);
+    }
+    EXPECT_GT(bones, 200);
+}
+
 }  // namespace
 }  // namespace deltasplat

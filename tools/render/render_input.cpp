@@ -72,6 +72,21 @@ std::optional<Shading> shadingOf(const PictureOptions& picture, const Volume& vo
     return picture.shading.of(byValue && (isScan || isSurface || volume.fromLevelSet));
 }
 
+// What is asked for may not be of two kinds.
+void checkSurface(const PictureOptions& picture) {
+    if (!picture.surface.asked) return;
+    const std::string option = picture.surface.isovalue ? "--isovalue" : "--surface";
+    const Optics& optics = picture.render.optics;
+    if (optics.colorBy != ColorBy::kValue) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(option, "--color-by " + colorByName(optics.colorBy) + " besides",
+                                "--color-by value"));
+    }
+    if (optics.gradientOpacity.empty()) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected(option, "--gradient-opacity besides", "one of the two"));
+}
+
 // A surface has the colour that values have there, if that is asked for and it has no other.
 void finishSurface(const PictureOptions& picture, const Volume& volume, Optics& optics,
                    const Listener& listener) {
@@ -94,6 +109,7 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
                     gotExpected("--shade", "--color-by " + colorByName(colorBy) + " besides",
                                 "--color-by value"));
     }
+    checkSurface(picture);
     const bool ramp = picture.transferFunction.empty();
     if (!ramp) {
         options.optics.transferFunction =

@@ -53,11 +53,13 @@ void declareOptions(CLI::App& app, SynthOptions& options) {
         withDefault("Voxels along x, y, z",
                     joinNumbers({double(dims.x), double(dims.y), double(dims.z)}, "x")));
     sample.addValue("--seed", "N", options.seed, wholeNumber(),
-                    withDefault("Chooses the cloud's and the vessels' shape and the engine's noise",
+                    withDefault("Chooses the cloud's and the vessels' shape, and noise",
                                 std::to_string(options.seed)));
-    sample.addValue("--noise", "S", options.noise, number(0, 1),
-                    withDefault("Standard deviation of the engine's noise, 1 = the value range",
-                                numberText(options.noise)));
+    sample.addValue(
+        "--noise", "S", options.noise, number(0, 1),
+        withDefault(
+            "Standard deviation of the engine's and the vessels' noise,\n1 = the value range",
+            numberText(options.noise)));
     sample.addValue("--type", "TYPE", options.file.type, choice({"uint8", "uint16", "float32"}),
                     "Value type of a .raw: uint8, uint16 or float32 (default uint8);\n"
                     "a .vdb always holds floats");
@@ -69,8 +71,8 @@ void declareOptions(CLI::App& app, SynthOptions& options) {
 
 void warnOfUnusedOptions(const CLI::App& app, const SynthOptions& options,
                          ProgressDisplay& display) {
-    if (isGiven(app, "--noise") && options.name != "engine")
-        display.warn("--noise: has no effect on a volume other than engine");
+    if (isGiven(app, "--noise") && options.name != "engine" && options.name != "vessels")
+        display.warn("--noise: has no effect on a volume other than engine and vessels");
     if (isGiven(app, "--spacing") && lowerCase(options.output.extension().string()) != ".vdb")
         display.warn("--spacing: has no effect without a .vdb output");
 }

@@ -29,14 +29,17 @@ struct AnalyticVolume {
 /// - cloud: seeded fractal fog of gradient noise; 0 outside a ball-like region
 /// - slab: 1 where |x| <= 0.8, |y| <= 0.8 and |z| <= 0.5, 0 elsewhere
 /// - vessels: a seeded tree of vessels that fork, as in an angiography; about 1 % of the cube is
-///   not 0, rising from each wall to 1 half a radius below it
+///   not 0, rising from each wall to 1 half a radius below it; optional noise
+/// - body: organs of a body as labels, value = label / 255: 1 skin, 2 bones, 3 lungs, 4 heart,
+///   5 liver, 6 stomach, 7 kidneys, 8 spleen, 9 bowels, 10 brain, 11 aorta; y goes up to the head,
+///   the face looks along +z
 const std::vector<std::string>& analyticNames();
 
 /// Returns the volume called `name`.
-/// @param seed   chooses the cloud's and the vessels' shape and the engine's noise; without effect
-///               on the others
-/// @param noise  standard deviation of the engine's noise in units of the value range, 0 = none;
-///               noisy values are clamped to 0..1; without effect on the others
+/// @param seed   chooses the cloud's and the vessels' shape, and noise; without effect on the
+///               others
+/// @param noise  standard deviation of the engine's and the vessels' noise in units of the value
+///               range, 0 = none; noisy values are clamped to 0..1; without effect on the others
 /// @throw Error(kUsage) if there is no such name (listing those there are), or if the noise is
 /// negative or not finite
 AnalyticVolume makeAnalytic(const std::string& name, std::uint64_t seed = 1, double noise = 0);
