@@ -19,7 +19,7 @@ vessels=$folder/vessels_256x256x256_uint8.raw
 orbital=$folder/hydrogen_128x128x128_float32.raw
 signal=$folder/signal_96x96x96_float32.raw
 make() { [[ -e $2 ]] || "$program" synth "$@" -q; }
-make engine "$engine" --dims 256x256x256
+make engine "$engine" --dims 256x256x256 --samples 3
 make body "$body" --dims 256x256x256
 make vessels "$vessels" --dims 256x256x256 --noise 0.08
 make hydrogen "$orbital" --dims 128x128x128 --type float32

@@ -15,9 +15,10 @@ cmake --build --preset release --target deltasplat_tool
 deltasplat=build/release/bin/deltasplat
 volume=$folder/engine_256x256x256_uint8.raw
 mkdir -p "$folder"
-"$deltasplat" synth engine "$volume" --dims 256x256x256 -q
+"$deltasplat" synth engine "$volume" --dims 256x256x256 --samples 3 -q
 "$deltasplat" info "$volume"
 "$deltasplat" render "$volume" -o "$folder/engine.png" --size 800x800 --view iso \
-    --tf examples/engine.json --sigma 0.6 --resolution 2 --background 0.02,0.02,0.03 -q
+    --tf examples/engine.json --shade --light view:1,-1,-1:1,0.95,0.9:0.9 --light head:0.4 \
+    --background 0.02,0.02,0.03 -q
 
 echo "The picture is $(realpath "$folder/engine.png")"

@@ -66,7 +66,7 @@ struct LayeredPicture::Impl {
             views.push_back(std::make_unique<PictureView>(
                 prepared, camera, view, plan,
                 prepared.axis(view.sliceAxis, plan.partsAlong(view.sliceAxis),
-                              stepsOf(view, volume), listener),
+                              stepsOf(view, volume), view.eye.has_value(), listener),
                 memory));
             seen.push_back(seenSlabs(views.back()->slabs()));
             for (int slab = 0; slab < int(seen.back().size()); ++slab)

@@ -60,7 +60,7 @@ bool shorterMayShowLess(const ClassTable& classes, double times) {
 
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, int sliceAxis,
                                             const Subdivision& parts, double steps,
-                                            const Listener& listener) {
+                                            Encoding encoding, const Listener& listener) {
     const Volume& volume = *scene.scene.volume;
     const Tolerance& tolerance = scene.options.tolerance;
     std::optional<ValueMixer> mixer;
@@ -76,8 +76,8 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
         classes = classify(seen, scene.optics, straight);
     }
     listener.report(0.05);
-    PackOptions pack{sliceAxis, encodingOf(scene.options.method), classes.classOfSlot,
-                     holdRule(seen, classes, tolerance), mixer ? &*mixer : nullptr};
+    PackOptions pack{sliceAxis, encoding, classes.classOfSlot, holdRule(seen, classes, tolerance),
+                     mixer ? &*mixer : nullptr};
     const bool isLit = painter && painter->dependsOnCamera();
     std::unique_ptr<const LookLight> light;
     if (painter) {
@@ -127,12 +127,14 @@ PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne)
 
 std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
                                                               const Subdivision& parts,
-                                                              double steps,
+                                                              double steps, bool fromEye,
                                                               const Listener& listener) const {
+    const bool isWhole = fromEye && painter && painter->dependsOnCamera();
+    const Encoding encoding = isWhole ? Encoding::kWhole : encodingOf(options.method);
     std::shared_ptr<Place> place;
     {
         const std::lock_guard lock(mutex_);
-        std::shared_ptr<Place>& known = places_[{sliceAxis, parts.slices, parts.within}];
+        std::shared_ptr<Place>& known = places_[{sliceAxis, parts.slices, parts.within, isWhole}];
         if (!known) known = std::make_shared<Place>();
         place = known;
     }
@@ -140,7 +142,8 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
     // Work of another picture, taken on while waiting here, might want the same axis.
     if (!place->axis)
         isolated([&] {
-            place->axis = prepare(*this, sliceAxis, parts, isForOne ? steps : 1, listener);
+            place->axis =
+                prepare(*this, sliceAxis, parts, isForOne ? steps : 1, encoding, listener);
         });
     return place->axis;
 }

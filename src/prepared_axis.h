@@ -40,10 +40,12 @@ struct PreparedScene::Impl {
     bool isForOne;
 
     /// Returns an axis, made if it is not there.
-    /// @param steps  what the picture in hand wants classes to be coloured for, for which they are
-    /// if there will be no other
+    /// @param steps    what the picture in hand wants classes to be coloured for, for which they
+    ///                 are if there will be no other
+    /// @param fromEye  whether each voxel has a line of sight of its own: what is lit then looks
+    ///                 different in each slice, and slabs are whole
     std::shared_ptr<const PreparedAxis> axis(int sliceAxis, const Subdivision& parts, double steps,
-                                             const Listener& listener) const;
+                                             bool fromEye, const Listener& listener) const;
     /// Returns how many blocks of 8x8x8 voxels can be seen; counted once for each axis.
     std::size_t blocksSeen(int sliceAxis) const;
 
@@ -54,7 +56,8 @@ struct PreparedScene::Impl {
     };
 
     mutable std::mutex mutex_;
-    mutable std::map<std::array<int, 3>, std::shared_ptr<Place>> places_;  // by axis and parts
+    mutable std::map<std::array<int, 4>, std::shared_ptr<Place>>
+        places_;  // by axis, parts and whole slabs
     mutable std::mutex blocksMutex_;
     mutable std::array<std::optional<std::size_t>, 3> blocksSeen_;  // [slice axis]
 };

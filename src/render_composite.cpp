@@ -47,8 +47,9 @@ class CompositeRender {
   private:
     void runView(const Factorization& view, const Listener& listener) {
         const Clock::time_point start = Clock::now();
-        std::shared_ptr<const PreparedAxis> axis = scene_.axis(
-            view.sliceAxis, plan_->partsAlong(view.sliceAxis), stepsOf(view, volume_), listener);
+        std::shared_ptr<const PreparedAxis> axis =
+            scene_.axis(view.sliceAxis, plan_->partsAlong(view.sliceAxis), stepsOf(view, volume_),
+                        view.eye.has_value(), listener);
         stats_.prepareSeconds += secondsSince(start);
         countIn(*axis);
         listener.report(0.2);

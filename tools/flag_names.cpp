@@ -61,6 +61,7 @@ constexpr FlagName kFlagNames[] = {
     {"range", "--range"},
     {"resolution", "--resolution"},
     {"rollDegrees", "--roll"},
+    {"samples", "--samples"},
     {"series", "--series"},
     {"shading", "--shade"},
     {"shading.ambient", "--ambient"},

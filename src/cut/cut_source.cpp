@@ -9,7 +9,8 @@
 namespace deltasplat {
 namespace {
 
-// Switches off what is not active in the codes, and gives it the background's value.
+// Switches off what is not active in the codes, and gives it the background's value; tiles keep
+// theirs, which nothing reads.
 template <typename Tree>
 void dropVoxels(Tree& tree, const CodeTree::Tree& kept) {
     const openvdb::MaskTree before(tree, false, true, openvdb::TopologyCopy());

@@ -53,7 +53,9 @@ class TileSplitter {
 
   private:
     void addBlock(const openvdb::Coord& origin, Code code) {
-        requireMemory("cut", kBlockBytes);
+        // Asked again whenever there are twice as many.
+        if (blocks_.size() == blocks_.capacity())
+            requireMemory("cut", 2 * kBlockBytes * double(blocks_.size()));
         blocks_.push_back({origin, nullptr, code});
     }
 

@@ -12,6 +12,13 @@ bool MixWindow::isUniform() const {
     return std::all_of(slots.begin(), slots.end(), [&](Slot slot) { return slot == slots[0]; });
 }
 
+bool MixWindow::hasAnyAround(const glm::ivec3& place) const {
+    for (int n = 0; n < 27; ++n) {
+        if (at(place + glm::ivec3(n / 9, n / 3 % 3, n % 3) - 1) != kEmptySlot) return true;
+    }
+    return false;
+}
+
 MixWindowReader::MixWindowReader(const CodeTree& codes, int sliceAxis, bool alongSlicesOnly)
     : finder_(codes, sliceAxis), sliceAxis_(sliceAxis), reach_(alongSlicesOnly ? 0 : 1) {}
 
@@ -29,6 +36,12 @@ void MixWindowReader::read(const CodeBlock& block, MixWindow& window) const {
             }
         }
     }
+}
+
+void MixWindowReader::read(const glm::ivec3& position, MixWindow& window) const {
+    CodeBlock nothing;
+    nothing.position = position;
+    read(finder_.find(position).value_or(nothing), window);
 }
 
 // Reads what the window has of a block on one side of its own (each component -1, 0 or 1).

@@ -24,6 +24,8 @@ struct MixWindow {
     }
     /// Whether all of it is one code.
     bool isUniform() const;
+    /// Whether any voxel beside one of the block's, across edges and corners too, has a slot.
+    bool hasAnyAround(const glm::ivec3& place) const;
 };
 
 /// Reads windows of a code tree. Not for several threads at once.
@@ -34,6 +36,8 @@ class MixWindowReader {
     MixWindowReader(const CodeTree& codes, int sliceAxis, bool alongSlicesOnly);
 
     void read(const CodeBlock& block, MixWindow& window) const;
+    /// The same of whatever block is there.
+    void read(const glm::ivec3& position, MixWindow& window) const;
 
   private:
     void readPart(const CodeBlock* block, const glm::ivec3& side, MixWindow& window) const;

@@ -140,6 +140,8 @@ class ColumnPacker {
         if (!tools.mixer) return;
         window_.emplace(*tools.codes, options.sliceAxis,
                         parts_.within == 1 && !choosesClasses(options));
+        if (choosesClasses(options) && tools.uncut != tools.codes)
+            uncut_.emplace(*tools.uncut, options.sliceAxis, false);
         const int blocks = parts_.voxels();
         mixed_.resize(std::size_t(blocks));
     }
@@ -264,6 +266,7 @@ class ColumnPacker {
     void addMixed(const CodeBlock& block) {
         inHand_ = &block;
         window_->reader.read(block, window_->window);
+        if (uncut_) uncut_->reader.read(block.position, uncut_->window);
         const bool isSeen = tools_.sight->canBeSeen(window_->window);
         const bool isPainted = choosesClasses(options_);
         if (isSeen && !isPainted) tools_.mixer->mix(window_->window, slotMap_, mixed_);
@@ -280,7 +283,7 @@ class ColumnPacker {
                     held_[numberOf(part)].fill(kEmptySlot);
                 } else if (isPainted) {
                     own_->paint(position, number, classes_);
-                    if (tools_.uncut != tools_.codes) clearCutOff(position);
+                    if (uncut_) clearCutOff(position);
                 } else if (tools_.holder) {
                     hold(slots, position, part, number);
                 } else {
@@ -292,13 +295,17 @@ class ColumnPacker {
         }
     }
 
-    // Clears what was painted by values that were cut off.
+    // Clears what was painted by values that were cut off: voxels that are not active any more, or
+    // never were and have nothing left beside them.
     void clearCutOff(const glm::ivec3& position) {
         const glm::ivec3 per(parts_.slices, parts_.within, parts_.within);
         const glm::ivec3 first = 8 * (position - firstPart(*inHand_));
         for (int n = 0; n < 512; ++n) {
-            const glm::ivec3 thin = first + glm::ivec3(n / 64, n / 8 % 8, n % 8);
-            if (window_->window.at(thin / per) == kEmptySlot) classes_[std::size_t(n)] = 0;
+            if (classes_[std::size_t(n)] == 0) continue;
+            const glm::ivec3 place = (first + glm::ivec3(n / 64, n / 8 % 8, n % 8)) / per;
+            if (window_->window.at(place) != kEmptySlot) continue;
+            if (uncut_->window.at(place) != kEmptySlot || !window_->window.hasAnyAround(place))
+                classes_[std::size_t(n)] = 0;
         }
     }
 
@@ -351,6 +358,7 @@ class ColumnPacker {
     std::array<HeldSlots, 4> held_{};       // [part]
     BlockSlots slots_{};
     std::optional<Window> window_;
+    std::optional<Window> uncut_;    // what was there before, if surfaces are cut
     std::vector<BlockSlots> mixed_;  // [part along u][along slices][along v]
     std::array<PackedColumns, 2> halves_;
     std::unique_ptr<BlockLooks> own_;  // null: classes say all

@@ -27,10 +27,14 @@ class SurfacePainter : public VoxelPainter {
           scale_(scaledValues(volume, surface.isovalue)),
           worldFromGradient_(worldFromIndexGradient(volume)) {
         scale_.withValues = true;
-        if (!isLevelSet(volume)) return;
-        for (float& value : scale_.ofCode) value = -value;
-        // What is not active may be far inside as well.
-        scale_.background.reset();
+        if (isLevelSet(volume)) {
+            for (float& value : scale_.ofCode) value = -value;
+            // What is not active may be far inside as well.
+            scale_.background.reset();
+        } else if (scale_.background && *scale_.background >= 0) {
+            // Not all of what is not active can be shown: the surface ends where it begins.
+            scale_.background.reset();
+        }
     }
 
     bool needsColors() const override { return true; }

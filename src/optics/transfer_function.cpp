@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 
 #include "default_floats.h"
 #include "deltasplat/ingest/value_statistics.h"
@@ -45,11 +46,15 @@ double sharpBlend(double from, double to, double s, double sharpness) {
     return std::clamp(value, std::min(from, to), std::max(from, to));
 }
 
-// How often each code occurs, the one that stands for the background left out. What is cut off
-// counts as well, so that colours do not change by cutting.
+// How often each code occurs. What is cut off counts as well, so that colours do not change by
+// cutting.
+std::vector<std::uint64_t> allCounts(const Volume& volume) {
+    return volume.uncut ? histogramOf(volume.uncut->tree) : volume.histogram;
+}
+
+// The same, the code that stands for the background left out.
 std::vector<std::uint64_t> countsWithoutBackground(const Volume& volume) {
-    std::vector<std::uint64_t> counts =
-        volume.uncut ? histogramOf(volume.uncut->tree) : volume.histogram;
+    std::vector<std::uint64_t> counts = allCounts(volume);
     for (std::size_t code = 0; code < counts.size(); ++code) {
         if (volume.codeBook.standsFor(Code(code), volume.background)) counts[code] = 0;
     }
@@ -110,14 +115,16 @@ bool isFog(const Volume& volume) {
 
 bool isHounsfield(const Volume& volume) {
     if (volume.space.empty() || volume.empty()) return false;
+    const std::vector<std::uint64_t> counts = allCounts(volume);
+    const double all = std::accumulate(counts.begin(), counts.end(), 0.0);
     const auto shareWithin = [&](double low, double high) {
         double count = 0;
-        for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-            if (volume.histogram[code] == 0) continue;
+        for (std::size_t code = 0; code < counts.size(); ++code) {
+            if (counts[code] == 0) continue;
             const double value = volume.codeBook.valueOf(Code(code));
-            if (value >= low && value <= high) count += double(volume.histogram[code]);
+            if (value >= low && value <= high) count += double(counts[code]);
         }
-        return count / double(volume.activeCount);
+        return count / all;
     };
     return shareWithin(-1100, -900) >= 0.01 && shareWithin(-200, 300) >= 0.02;
 }

@@ -138,7 +138,7 @@ Label labelAt(const glm::dvec3& p) {
 }  // namespace
 
 ValueAt makeBody() {
-    return [](const glm::dvec3& p) { return labelAt(p) / 255.0; };
+    return [](const glm::dvec3& p) { return double(labelAt(p)) / 255; };
 }
 
 }  // namespace deltasplat

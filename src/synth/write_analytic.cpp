@@ -26,8 +26,19 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-glm::dvec3 positionOf(const glm::ivec3& index, const glm::ivec3& dims) {
-    return (2.0 * glm::dvec3(index) + 1.0) / glm::dvec3(dims) - 1.0;
+constexpr int kMostSamples = 16;
+
+// Returns the mean of a voxel's samples.
+double valueAt(const AnalyticVolume& volume, const glm::ivec3& index,
+               const AnalyticFileOptions& options) {
+    const int each = options.samples;
+    double sum = 0;
+    for (int n = 0; n < each * each * each; ++n) {
+        const glm::dvec3 part(n % each, n / each % each, n / (each * each));
+        const glm::dvec3 at = 2.0 * glm::dvec3(index) + (2.0 * part + 1.0) / double(each);
+        sum += volume.valueAt(at / glm::dvec3(options.dims) - 1.0);
+    }
+    return sum / (each * each * each);
 }
 
 // Stores a value 0..1 as one little-endian sample.
@@ -68,7 +79,7 @@ void writeRaw(const AnalyticVolume& volume, const std::filesystem::path& file,
         parallelFor(std::size_t(dims.y), [&](std::size_t y) {
             std::byte* row = &slice[y * rowBytes];
             for (int x = 0; x < dims.x; ++x, row += type.bytes) {
-                type.store(volume.valueAt(positionOf({x, int(y), z}, dims)), row);
+                type.store(valueAt(volume, {x, int(y), z}, options), row);
             }
         });
         out.write(slice.data(), slice.size());
@@ -79,12 +90,13 @@ void writeRaw(const AnalyticVolume& volume, const std::filesystem::path& file,
 
 // Samples 8^3 voxels; null if all are zero. Voxels beyond the volume's dims stay inactive.
 std::unique_ptr<Leaf> sampleLeaf(const AnalyticVolume& volume, const openvdb::Coord& origin,
-                                 const glm::ivec3& dims) {
+                                 const AnalyticFileOptions& options) {
+    const glm::ivec3& dims = options.dims;
     auto leaf = std::make_unique<Leaf>(origin, 0.0f);
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
         const openvdb::Coord at = leaf->offsetToGlobalCoord(i);
         if (at.x() >= dims.x || at.y() >= dims.y || at.z() >= dims.z) continue;
-        const float value = float(volume.valueAt(positionOf({at.x(), at.y(), at.z()}, dims)));
+        const float value = float(valueAt(volume, {at.x(), at.y(), at.z()}, options));
         if (value != 0) leaf->setValueOn(i, value);
     }
     return leaf->isEmpty() ? nullptr : std::move(leaf);
@@ -117,7 +129,7 @@ openvdb::FloatGrid::Ptr sampleGrid(const AnalyticVolume& volume, const AnalyticF
         requireMemory("`dims`", kLeafBytes * double(layerLeaves));
         parallelFor(layer.size(), [&](std::size_t i) {
             const int y = int(i / std::size_t(leaves.z)), z = int(i % std::size_t(leaves.z));
-            layer[i] = sampleLeaf(volume, {x * kEdge, y * kEdge, z * kEdge}, options.dims);
+            layer[i] = sampleLeaf(volume, {x * kEdge, y * kEdge, z * kEdge}, options);
         });
         for (std::unique_ptr<Leaf>& leaf : layer) addLeaf(grid->tree(), std::move(leaf));
         listener.report(double(x + 1) / leaves.x);
@@ -151,6 +163,11 @@ void checkOptions(const AnalyticFileOptions& options) {
                                 std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
                                     std::to_string(dims.z),
                                 "three numbers of at least 1"));
+    }
+    if (options.samples < 1 || options.samples > kMostSamples) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("`samples`", std::to_string(options.samples),
+                                "a whole number within 1.." + std::to_string(kMostSamples)));
     }
     for (int axis = 0; axis < 3; ++axis) {
         const double spacing = options.spacing[axis];

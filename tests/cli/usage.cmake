@@ -130,12 +130,14 @@ deltasplat_refusal(mode "--mode: got depth; expected composite, xray, mip, min, 
 deltasplat_refusal(drr_and_mode "--drr: got --mode mip besides; expected --mode drr" --drr --mode mip)
 deltasplat_refusal(isovalue "--isovalue: got nan; expected a finite number" --isovalue nan)
 deltasplat_refusal(surface_color
-    "--surface-color: got 1,0; expected R,G,B or R,G,B,A, colours at least 0, A within 0..1"
+    "--surface-color: got 1,0; expected R,G,B, each at least 0"
     --isovalue 1 --surface-color 1,0)
 deltasplat_refusal(surface_of_values
     "--surface: got values that are no distances; expected a level set, or --isovalue V" --surface)
 deltasplat_refusal(surface_and_color_by
     "--isovalue: got --color-by x besides; expected --color-by value" --isovalue 1 --color-by x)
+deltasplat_refusal(surface_and_fog
+    "--surface: got --level-set fog besides; expected --level-set keep" --surface --level-set fog)
 deltasplat_refusal(surface_and_gradients
     "--isovalue: got --gradient-opacity besides; expected one of the two"
     --isovalue 1 --gradient-opacity 0:1)

@@ -188,6 +188,32 @@ TEST(Identity, AlsoOfWhatIsSeenInPart) {
     }
 }
 
+// From an eye what is lit changes from slice to slice, though values do not.
+TEST(Identity, AlsoOfWhatIsLitFromAnEye) {
+    const Volume volume = test::makeVolume({{0, 0, 0}, {24, 22, 26}}, [](int x, int y, int z) {
+        return std::max({std::abs(x - 12), std::abs(y - 11), std::abs(z - 13)}) < 9 ? 200 : 20;
+    });
+    for (const Projection projection : {Projection::kPerspective, Projection::kLatlong}) {
+        for (const bool isSurface : {false, true}) {
+            RenderOptions options = optionsFor(kDirections[0]);
+            options.camera.projection = projection;
+            if (projection == Projection::kLatlong) {
+                options.camera.sizePixels = {64, 32};
+                options.camera.eyeWorld = glm::dvec3(2, 3, 1);
+            } else {
+                options.camera.fovDegrees = 70;
+            }
+            options.camera.frameWidthWorld.reset();
+            options.optics.shading.emplace();
+            if (isSurface) options.optics.surface = Surface{120, {0.7, 0.6, 0.5}};
+            for (const int between : {0, 1}) {
+                options.between = between;
+                expectSamePixels(volume, options);
+            }
+        }
+    }
+}
+
 // Of solid shapes little changes: slabs are joined, and small footprints are stamped too. They
 // begin and end between blocks, at negative indices; one hides the other, and a few voxels come and
 // go.

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "deltasplat/cut/cut_volume.h"
 #include "deltasplat/render.h"
 #include "support/error_of.h"
 #include "support/make_volume.h"
@@ -158,6 +159,43 @@ TEST(Surface, ofSparseValuesIsThatOfDenseOnes) {
         const Image sparse = render(ball(20, spacing, true), options).image;
         EXPECT_EQ(dense.rgba, sparse.rgba);
     }
+}
+
+// What is cut off is not there, and leaves nothing of itself; what is left looks as it did.
+TEST(Surface, isCutAsItsVoxelsAre) {
+    for (const bool isSparse : {false, true}) {
+        const Volume whole = ball(20, glm::dvec3(1), isSparse);
+        for (const int between : {0, 1}) {
+            RenderOptions options = surfaceAt(kSurface);
+            options.camera.view = "right";
+            options.camera.targetWorld = glm::dvec3(0);
+            options.camera.frameWidthWorld = 60;
+            options.between = between;
+            const Image image = render(whole, options).image;
+            const auto cutAt = [&](double y) {
+                Cut cut;
+                cut.clipPlanes = {{{0, y, 0}, {0, -1, 0}}};
+                return render(cutVolume(whole, cut), options).image;
+            };
+            EXPECT_EQ(cutAt(100).rgba, image.rgba);
+            const Image half = cutAt(-3.5);
+            // 3.2 pixels a world unit, y up: two voxels above the cut, and two below.
+            for (int x = 0; x < 192; ++x) {
+                for (int y = 0; y < 102; ++y) ASSERT_EQ(half.pixel(x, y)[3], 0) << x << " " << y;
+                for (int y = 115; y < 192; ++y)
+                    ASSERT_NEAR(half.pixel(x, y)[0], image.pixel(x, y)[0], 1e-5);
+            }
+        }
+    }
+}
+
+// Where all that is not active would be inside, what is active is all that is shown.
+TEST(Surface, endsWhereABackgroundInsideBegins) {
+    Volume volume = ball(12, glm::dvec3(1), true);
+    volume.background = 3000;
+    RenderOptions options = surfaceAt(kSurface);
+    options.between = 0;
+    EXPECT_LE(render(volume, options).stats.visible, volume.activeCount);
 }
 
 // What reaches the end of the volume is closed there.

@@ -252,5 +252,34 @@ TEST(WriteAnalyticFile, ReportsProgressAndCanBeStopped) {
     }
 }
 
+// A voxel is the mean of what is true at even places in it.
+TEST(WriteAnalyticSamples, AreAveraged) {
+    const AnalyticVolume volume = makeAnalytic("marschner-lobb");
+    test::TempFolder folder;
+    AnalyticFileOptions three = options(kDims, "float32");
+    three.samples = 3;
+    writeAnalytic(volume, folder / "out.raw", three);
+    const std::string bytes = readBytes(folder / "out.raw");
+    for (const glm::ivec3& index :
+         {glm::ivec3(0, 0, 0), glm::ivec3(20, 12, 9), glm::ivec3(7, 3, 5)}) {
+        double sum = 0;
+        for (const double x : {1.0, 3.0, 5.0}) {
+            for (const double y : {1.0, 3.0, 5.0}) {
+                for (const double z : {1.0, 3.0, 5.0}) {
+                    const glm::dvec3 sixths = 6.0 * glm::dvec3(index) + glm::dvec3(x, y, z);
+                    sum += volume.valueAt(sixths / (3.0 * glm::dvec3(kDims)) - 1.0);
+                }
+            }
+        }
+        float stored = 0;
+        const int place = (index.z * kDims.y + index.y) * kDims.x + index.x;
+        std::memcpy(&stored, &bytes[4 * std::size_t(place)], 4);
+        EXPECT_NEAR(stored, sum / 27, 1e-6);
+    }
+    three.samples = 17;
+    EXPECT_EQ(errorOf([&] { writeAnalytic(volume, folder / "out.raw", three); }),
+              "usage: `samples`: got 17; expected a whole number within 1..16");
+}
+
 }  // namespace
 }  // namespace deltasplat

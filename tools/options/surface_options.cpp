@@ -37,6 +37,8 @@ Parser<std::vector<glm::dvec2>> steps() {
 
 Parser<glm::dvec3> opaqueColor() {
     return [](const std::string& option, const std::string& text) {
+        if (splitAt(text, ',').size() != 3)
+            throw Error(ErrorCode::kUsage, gotExpected(option, text, "R,G,B, each at least 0"));
         return glm::dvec3(glm::vec3(color()(option, text)));
     };
 }
@@ -65,7 +67,7 @@ void addSurfaceOptions(CLI::App& app, SurfaceChoice& choice,
     group.addFlag("--surface", choice.asked,
                   "Show where a level set is 0 as an opaque surface (default for\n"
                   "level sets, unless --level-set, --tf, --range, --extinction,\n"
-                  "--unit-distance or --color-by is given)");
+                  "--unit-distance, --color-by or --gradient-opacity is given)");
     group.addValue("--isovalue", "V", choice.isovalue, number(),
                    "Show where values pass V, in data units, as an opaque surface");
     group.addValue("--surface-color", "R,G,B", choice.color, opaqueColor(),
@@ -85,7 +87,9 @@ void applySurface(const CLI::App& app, Mode mode, SurfaceChoice& choice, ReadOpt
     choice.ofLevelSets = mode == Mode::kComposite &&
                          !isAnyGiven({"--level-set", "--tf", "--range", "--extinction",
                                       "--unit-distance", "--color-by", "--gradient-opacity"});
-    if (mode != Mode::kComposite) choice = {false, false, {}, {}};
+    choice.isFogGiven = isGiven(app, "--level-set") && read.levelSetToFog;
+    if (mode != Mode::kComposite) choice = SurfaceChoice{false, false, false, {}, {}};
+    if (choice.isFogGiven) return;
     if (choice.asked || choice.ofLevelSets) read.levelSetToFog = false;
 }
 

@@ -16,6 +16,7 @@ namespace deltasplat {
 struct SurfaceChoice {
     bool asked = false;       ///< a surface, whatever the volume is
     bool ofLevelSets = true;  ///< of what turns out to be a level set
+    bool isFogGiven = false;  ///< level sets were asked to be fog
     std::optional<double> isovalue;
     std::optional<glm::dvec3> color;
 

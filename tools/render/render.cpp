@@ -89,6 +89,11 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     if (isGiven(app, "--dither") && (!png || command.image.bits == 16))
         display.warn("--dither: has no effect without a .png of 8 bits");
     warnOfUnusedModeOptions(app, command, display);
+    if (command.picture.render.mode != Mode::kComposite) return;
+    for (const char* option : {"--extinction", "--unit-distance"}) {
+        if (command.picture.surface.asked && isGiven(app, option))
+            display.warn(option + std::string(": has no effect on a surface"));
+    }
 }
 
 // Shows values as greys, and says in `image` what black and white stand for.
@@ -141,6 +146,8 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         const Listener reading = display.stage(0, kReadShare);
         RenderOptions options = readOptics(picture, reading);
         const Volume volume = readToRender(command.input, picture, options, reading);
+        if (picture.surface.color && !options.optics.surface)
+            reading.warn("--surface-color: has no effect without a surface");
         warnOfUnusedView(app, options.camera, volume, reading);
         warnOfDetector(options.camera, volume, reading);
         times.read = secondsSince(beginRead);

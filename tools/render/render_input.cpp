@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/render_input.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -82,6 +83,10 @@ void checkSurface(const PictureOptions& picture) {
                     gotExpected(option, "--color-by " + colorByName(optics.colorBy) + " besides",
                                 "--color-by value"));
     }
+    if (picture.surface.isFogGiven) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(option, "--level-set fog besides", "--level-set keep"));
+    }
     if (optics.gradientOpacity.empty()) return;
     throw Error(ErrorCode::kUsage,
                 gotExpected(option, "--gradient-opacity besides", "one of the two"));
@@ -93,10 +98,16 @@ void finishSurface(const PictureOptions& picture, const Volume& volume, Optics& 
     const double isovalue = optics.surface->isovalue;
     if (!picture.transferFunction.empty() && !picture.surface.color)
         optics.surface->color = glm::dvec3(ValueColors(volume, optics).colorOf(float(isovalue)));
-    if (volume.empty() || (isovalue >= volume.valueMin && isovalue <= volume.valueMax)) return;
+    if (volume.empty()) return;
+    double low = volume.valueMin;
+    double high = volume.valueMax;
+    if (volume.hasBackground) {
+        low = std::min(low, volume.background);
+        high = std::max(high, volume.background);
+    }
+    if (isovalue >= low && isovalue <= high) return;
     listener.warn("--isovalue: got " + numberText(isovalue) + ", which values from " +
-                  numberText(volume.valueMin) + " to " + numberText(volume.valueMax) +
-                  " never pass");
+                  numberText(low) + " to " + numberText(high) + " never pass");
 }
 
 }  // namespace
@@ -115,8 +126,6 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
         options.optics.transferFunction =
             readTransferFunctionOption(picture.transferFunction, listener);
     }
-    options.optics.transferFunction =
-        changeLabels(options.optics.transferFunction, picture.parts.labels, listener);
     if (options.optics.range && !ramp && !options.optics.transferFunction.normalized)
         listener.warn("--range: has no effect on a transfer function that is not normalized");
     return options;
@@ -143,6 +152,8 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
         const bool isOpen = options.optics.transferFunction.normalized && !options.optics.range;
         if (isOpen && picture.parts.cuts()) options.optics.range = defaultRange(volume);
     }
+    options.optics.transferFunction =
+        changeLabels(options.optics.transferFunction, picture.parts.labels, listener);
     if (options.optics.surface) finishSurface(picture, volume, options.optics, listener);
 }
 
@@ -156,6 +167,11 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     fitOptics(input, picture, volume, options, listener);
     warnOfAbsentLabels(picture.parts.labels, volume, listener);
     if (!picture.parts.cuts()) return volume;
+    if (options.optics.surface && isLevelSet(volume)) {
+        listener.warn(
+            "a level set has values near its surface only: cut open, it is hollow, and what is not "
+            "near is not there");
+    }
     return cutAsChosen(volume, input, picture.parts, picture.read, listener);
 }
 

@@ -60,6 +60,10 @@ void declareOptions(CLI::App& app, SynthOptions& options) {
         withDefault(
             "Standard deviation of the engine's and the vessels' noise,\n1 = the value range",
             numberText(options.noise)));
+    sample.addValue("--samples", "N", options.file.samples, wholeNumber(1, 16),
+                    withDefault("Samples along each axis that a voxel is the mean of, 1 to 16, as\n"
+                                "scanners see edges; not for labels",
+                                std::to_string(options.file.samples)));
     sample.addValue("--type", "TYPE", options.file.type, choice({"uint8", "uint16", "float32"}),
                     "Value type of a .raw: uint8, uint16 or float32 (default uint8);\n"
                     "a .vdb always holds floats");

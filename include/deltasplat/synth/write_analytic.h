@@ -14,10 +14,13 @@ struct AnalyticFileOptions {
     glm::ivec3 dims{64};  ///< voxels along x, y, z, each at least 1
     std::string type;  ///< .raw: uint8, uint16 or float32 (empty: uint8); .vdb: always a float grid
     glm::dvec3 spacing{1.0};  ///< world units per voxel
+    /// Samples along each axis that a voxel is the mean of, 1..16: what a scanner sees, where 1 is
+    /// what is true at one point.
+    int samples = 1;
 };
 
-/// Samples a volume at voxel centres, position = (2 * index + 1) / dims - 1 along each axis, and
-/// writes it to
+/// Samples a volume at voxel centres, position = (2 * index + 1) / dims - 1 along each axis, or
+/// evenly within voxels, and writes it to
 /// `.raw` (little endian; 0..1 becomes 0..255 or 0..65535, rounded to nearest) or `.vdb` (a fog
 /// volume named "density" with background 0; zeros are inactive). Needs memory for a few slices
 /// (.raw) or for what is not zero (.vdb).
