@@ -51,7 +51,8 @@ TEST(Prepared, preparesEachAxisOnce) {
     const PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, SplatOptions());
     const Subdivision whole;
     std::vector<std::shared_ptr<const PreparedAxis>> axes;
-    for (int axis = 0; axis < 3; ++axis) axes.push_back(scene.impl().axis(axis, whole, 1, {}));
+    for (int axis = 0; axis < 3; ++axis)
+        axes.push_back(scene.impl().axis(axis, whole, 1, false, {}));
     int told = 0;
     Listener listener;
     listener.progress = [&](double) { ++told; };
@@ -63,7 +64,7 @@ TEST(Prepared, preparesEachAxisOnce) {
         pictureOf(scene, camera);
     }
     for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_EQ(scene.impl().axis(axis, whole, 1, listener), axes[std::size_t(axis)]);
+        EXPECT_EQ(scene.impl().axis(axis, whole, 1, false, listener), axes[std::size_t(axis)]);
         EXPECT_EQ(told, 0);
     }
 }
