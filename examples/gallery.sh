@@ -32,12 +32,12 @@ draw() { # name, volume, options
 dark=(--background 0.01,0.012,0.02)
 
 draw engine "$engine" --tf examples/engine.json --shade --view iso "${dark[@]}"
-draw engine-surface "$engine" --isovalue 90 --view iso --surface-color 0.55,0.56,0.6 \
+draw engine-surface "$engine" --isovalue 57 --view iso --surface-color 0.55,0.56,0.6 \
     --light view:1,-1,-1:1,0.95,0.9:0.9 --light head:0.35 "${dark[@]}"
 draw engine-half "$engine" --tf examples/engine.json --shade --view iso "${dark[@]}" \
     --clip 127,127,127,0,0,-1
-draw engine-radiograph "$engine" --drr --mu-water 0.004 --view right --sid 1000 --sdd 1500 \
-    --detector 420x420
+draw engine-xray "$engine" --mode xray --view right --azimuth 20 --elevation 10 --sid 1000 \
+    --sdd 1500 --detector 560x560 --background 0,0,0
 draw body "$body" --tf examples/body.ctbl --shade --view front --azimuth 25 --elevation 8 \
     "${dark[@]}" --legend --axes
 draw body-bones "$body" --tf examples/body.ctbl --shade --show-labels 2,4,7,10,11 --view front \

@@ -76,9 +76,9 @@ IndexBox croppedBox(const Cut& cut, const IndexBox& box) {
         left.min[axis] = std::max(left.min[axis], slices->x);
         left.max[axis] = std::min(left.max[axis], slices->y);
         if (left.min[axis] <= left.max[axis]) continue;
-        const std::string name(1, "xyz"[axis]);
-        refuse("`slices`", name + ":" + rangeText(slices->x, slices->y),
-               "slices of those that there are, " + name + ":" + had);
+        const std::string name{"xyz"[axis], ':'};
+        refuse("`slices`", name + rangeText(slices->x, slices->y),
+               "slices of those that there are, " + name + had);
     }
     return left;
 }
