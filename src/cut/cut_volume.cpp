@@ -72,13 +72,13 @@ IndexBox croppedBox(const Cut& cut, const IndexBox& box) {
     for (int axis = 0; axis < 3; ++axis) {
         const std::optional<glm::ivec2>& slices = cut.slices[std::size_t(axis)];
         if (!slices) continue;
-        const std::string had = rangeText(left.min[axis], left.max[axis]);
+        const std::string name{"xyz"[axis], ':'};
+        const std::string had = name + rangeText(left.min[axis], left.max[axis]);
         left.min[axis] = std::max(left.min[axis], slices->x);
         left.max[axis] = std::min(left.max[axis], slices->y);
         if (left.min[axis] <= left.max[axis]) continue;
-        const std::string name{"xyz"[axis], ':'};
         refuse("`slices`", name + rangeText(slices->x, slices->y),
-               "slices of those that there are, " + name + had);
+               "slices of those that there are, " + had);
     }
     return left;
 }
