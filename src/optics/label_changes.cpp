@@ -31,7 +31,9 @@ void warnOfMissing(const LabelChanges& changes, const std::function<bool(int)>& 
     for (const NamedLabels& named : namedLabels(changes)) {
         std::string missing;
         for (const int label : named.labels) {
-            if (!isThere(label)) missing += (missing.empty() ? "" : ", ") + std::to_string(label);
+            if (isThere(label)) continue;
+            if (!missing.empty()) missing += ", ";
+            missing += std::to_string(label);
         }
         if (!missing.empty())
             listener.warn(std::string(named.name) + ": no label " + missing + " in " + where);

@@ -136,8 +136,9 @@ deltasplat_refusal(surface_of_values
     "--surface: got values that are no distances; expected a level set, or --isovalue V" --surface)
 deltasplat_refusal(surface_and_color_by
     "--isovalue: got --color-by x besides; expected --color-by value" --isovalue 1 --color-by x)
-deltasplat_refusal(surface_and_fog
-    "--surface: got --level-set fog besides; expected --level-set keep" --surface --level-set fog)
+deltasplat_cli_test(usage.surface_and_fog EXIT 2
+    STDERR "deltasplat: --surface: got --level-set fog besides; expected --level-set keep"
+    ARGS render level_set.vdb -o out.exr --surface --level-set fog)
 deltasplat_refusal(surface_and_gradients
     "--isovalue: got --gradient-opacity besides; expected one of the two"
     --isovalue 1 --gradient-opacity 0:1)
