@@ -35,8 +35,9 @@ void warnOfMissing(const LabelChanges& changes, const std::function<bool(int)>& 
             if (!missing.empty()) missing += ", ";
             missing += std::to_string(label);
         }
-        if (!missing.empty())
-            listener.warn(std::string(named.name) + ": no label " + missing + " in " + where);
+        if (missing.empty()) continue;
+        missing += " in " + where;
+        listener.warn(std::string(named.name) + ": no label " + missing);
     }
 }
 
