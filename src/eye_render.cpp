@@ -14,6 +14,7 @@
 #include "rays/eye_ray.h"
 #include "shared_progress.h"
 #include "stopwatch.h"
+#include "view/affine.h"
 #include "view/picture_rays.h"
 
 namespace deltasplat {
@@ -108,10 +109,7 @@ DepthShade shadeOf(const Volume& volume, const Camera& camera, double darker) {
     const bool panorama = camera.projection == Projection::kLatlong;
     DepthShade shade{darker, std::numeric_limits<double>::infinity(), 0};
     for (int corner = 0; corner < 8; ++corner) {
-        const IndexBox& box = volume.box;
-        const glm::dvec4 index(corner & 1 ? box.max.x : box.min.x,
-                               corner & 2 ? box.max.y : box.min.y,
-                               corner & 4 ? box.max.z : box.min.z, 1);
+        const glm::dvec4 index(cornerOf(volume.box, corner), 1);
         const glm::dvec3 away = glm::dvec3(volume.worldFromIndex * index) - camera.eyeWorld();
         const double depth = panorama ? glm::length(away) : glm::dot(away, camera.direction);
         shade.nearest = std::min(shade.nearest, depth);

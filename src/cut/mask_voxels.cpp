@@ -29,8 +29,7 @@ std::optional<openvdb::Coord> wholeShift(const glm::dmat4& maskFromVolume, const
     const glm::dvec3 first = box.min;
     const glm::dvec3 shift = glm::round(glm::dvec3(maskFromVolume * glm::dvec4(first, 1)) - first);
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 at(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                            corner & 4 ? box.max.z : box.min.z);
+        const glm::dvec3 at = cornerOf(box, corner);
         const glm::dvec3 off =
             glm::abs(glm::dvec3(maskFromVolume * glm::dvec4(at, 1)) - at - shift);
         if (!(std::max({off.x, off.y, off.z}) < kNear)) return {};

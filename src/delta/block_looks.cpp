@@ -10,7 +10,7 @@ namespace deltasplat {
 
 BlockLooks::BlockLooks(const VoxelPainter& painter, const CodeTree& codes, int sliceAxis,
                        const Subdivision& parts, const IndexBox& box)
-    : painter_(painter), sliceAxis_(sliceAxis), parts_(parts), box_(box) {
+    : painter_(painter), indexFromThin_(indexFromThinVoxel(sliceAxis, parts)), box_(box) {
     if (const GradientScale* scale = painter.gradientScale())
         reader_.emplace(codes, sliceAxis, parts, *scale);
 }
@@ -29,9 +29,8 @@ void BlockLooks::beginBlock(const CodeBlock& block) {
 void BlockLooks::paint(const glm::ivec3& position, int number, std::span<ClassIndex, 512> classes) {
     const auto isSeen = [](ClassIndex one) { return one != 0; };
     if (!painter_.choosesClasses() && std::none_of(classes.begin(), classes.end(), isSeen)) return;
-    const glm::dmat4 indexFromThin = indexFromThinVoxel(sliceAxis_, parts_);
-    const BlockPlace place{glm::dvec3(indexFromThin * glm::dvec4(8 * position, 1)),
-                           glm::dmat3(indexFromThin)};
+    const BlockPlace place{glm::dvec3(indexFromThin_ * glm::dvec4(8 * position, 1)),
+                           glm::dmat3(indexFromThin_)};
     const BlockField* field = nullptr;
     if (reader_) {
         if (fields_.empty()) fields_ = reader_->read(*inHand_);

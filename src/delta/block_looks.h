@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -47,8 +48,7 @@ class BlockLooks {
     void keepInBox(const glm::ivec3& position, std::span<ClassIndex, 512> classes) const;
 
     const VoxelPainter& painter_;
-    int sliceAxis_;
-    Subdivision parts_;
+    glm::dmat4 indexFromThin_;
     IndexBox box_;
     std::optional<GradientReader> reader_;
     const CodeBlock* inHand_ = nullptr;

@@ -13,6 +13,7 @@
 #include "diff/compare_trees.h"
 #include "diff/error_sums.h"
 #include "diff/voxel_source.h"
+#include "view/affine.h"
 
 namespace deltasplat {
 namespace {
@@ -54,9 +55,7 @@ double shiftOf(const Volume& a, const Volume& b, const glm::ivec3& offset) {
     const IndexBox box = boxOfBoth(movedBox(a.box, -offset), b.box);
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 index((corner & 1) != 0 ? box.max.x : box.min.x,
-                               (corner & 2) != 0 ? box.max.y : box.min.y,
-                               (corner & 4) != 0 ? box.max.z : box.min.z, 1);
+        const glm::dvec4 index(cornerOf(box, corner), 1);
         farthest = std::max(farthest, glm::length(glm::dvec3(moved * index)));
     }
     const double voxel = std::min(smallest(a.voxelSize()), smallest(b.voxelSize()));

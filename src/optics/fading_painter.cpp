@@ -14,12 +14,8 @@ namespace {
 class ClassLight : public LookLight {
   public:
     explicit ClassLight(const ClassTable& classes)
-        : LookLight(VoxelUnits(classes, brightestOf(classes))) {
-        for (std::size_t number = 0; number < classes.looks.size(); ++number) {
-            const auto one = std::uint16_t(number);
-            colors_.push_back(units().unitsOf(one, glm::vec3(classes.looks[number].color)));
-        }
-    }
+        : LookLight(VoxelUnits(classes, brightestOf(classes))),
+          colors_(units().unitsOfClasses(classes)) {}
 
   protected:
     void lightVoxels(const WordPlace&, const std::uint16_t* classes, const OwnLook*,
@@ -29,12 +25,6 @@ class ClassLight : public LookLight {
     }
 
   private:
-    static glm::dvec3 brightestOf(const ClassTable& classes) {
-        glm::dvec3 brightest(0);
-        for (const Look& look : classes.looks) brightest = glm::max(brightest, look.color);
-        return brightest;
-    }
-
     std::vector<glm::vec4> colors_;  // [classes]: premultiplied
 };
 

@@ -13,11 +13,10 @@ namespace {
 
 // The most that any voxel reflects.
 glm::dvec3 brightestOf(const Shading& shading, const ClassTable& classes) {
-    glm::dvec3 own(0);
-    for (const Look& look : classes.looks) own = glm::max(own, look.color);
     glm::dvec3 intensity(0);
     for (const Light& light : shading.lights) intensity += light.strength * light.color;
-    return own * (shading.ambient + shading.diffuse * intensity) + shading.specular * intensity;
+    return brightestOf(classes) * (shading.ambient + shading.diffuse * intensity) +
+           shading.specular * intensity;
 }
 
 // The way to a light, of length 1.
@@ -40,7 +39,8 @@ glm::vec3 halfWay(const glm::dvec3& a, const glm::dvec3& b) {
 
 ReflectedLight::ReflectedLight(const Shading& shading, const ClassTable& classes,
                                const LitScene& scene)
-    : LookLight(VoxelUnits(classes, brightestOf(shading, classes))) {
+    : LookLight(VoxelUnits(classes, brightestOf(shading, classes))),
+      colors_(units().unitsOfClasses(classes)) {
     const Camera& camera = scene.camera;
     const glm::dvec3 toCamera = -camera.direction;
     const glm::dvec3 shares(units().shares());
@@ -56,10 +56,6 @@ ReflectedLight::ReflectedLight(const Shading& shading, const ClassTable& classes
                                     halfWay(toLight, toCamera),
                                     glm::vec3(shading.diffuse * intensity),
                                     glm::vec3(shading.specular * intensity * shares)});
-    }
-    for (std::size_t number = 0; number < classes.looks.size(); ++number) {
-        const auto one = std::uint16_t(number);
-        colors_.push_back(units().unitsOf(one, glm::vec3(classes.looks[number].color)));
     }
     if (!reflection_.fromEye) return;
     eye_ = glm::dvec3(glm::inverse(scene.worldFromVoxel) * glm::dvec4(camera.eyeWorld(), 1));

@@ -31,8 +31,7 @@ GradientScale scaledValues(const Volume& volume, double zero) {
     GradientScale scale;
     scale.unit = noise;
     scale.ofCode.resize(kCodeCount);
-    const std::vector<std::uint64_t> counts =
-        volume.uncut ? histogramOf(volume.uncut->tree) : volume.histogram;
+    const std::vector<std::uint64_t> counts = uncutHistogram(volume);
     for (std::size_t code = 0; code < counts.size(); ++code) {
         if (counts[code] != 0) scale.ofCode[code] = scaled(volume.codeBook.valueOf(Code(code)));
     }

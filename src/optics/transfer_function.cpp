@@ -46,15 +46,9 @@ double sharpBlend(double from, double to, double s, double sharpness) {
     return std::clamp(value, std::min(from, to), std::max(from, to));
 }
 
-// How often each code occurs. What is cut off counts as well, so that colours do not change by
-// cutting.
-std::vector<std::uint64_t> allCounts(const Volume& volume) {
-    return volume.uncut ? histogramOf(volume.uncut->tree) : volume.histogram;
-}
-
-// The same, the code that stands for the background left out.
+// How often each code occurs, the one that stands for the background left out.
 std::vector<std::uint64_t> countsWithoutBackground(const Volume& volume) {
-    std::vector<std::uint64_t> counts = allCounts(volume);
+    std::vector<std::uint64_t> counts = uncutHistogram(volume);
     for (std::size_t code = 0; code < counts.size(); ++code) {
         if (volume.codeBook.standsFor(Code(code), volume.background)) counts[code] = 0;
     }
@@ -115,7 +109,7 @@ bool isFog(const Volume& volume) {
 
 bool isHounsfield(const Volume& volume) {
     if (volume.space.empty() || volume.empty()) return false;
-    const std::vector<std::uint64_t> counts = allCounts(volume);
+    const std::vector<std::uint64_t> counts = uncutHistogram(volume);
     const double all = std::accumulate(counts.begin(), counts.end(), 0.0);
     const auto shareWithin = [&](double low, double high) {
         double count = 0;

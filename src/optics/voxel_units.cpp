@@ -2,6 +2,7 @@
 #include "optics/voxel_units.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 
 #include "portable_math.h"
 
@@ -29,6 +30,19 @@ glm::vec4 VoxelUnits::unitsOf(std::uint16_t number, const glm::vec3& color) cons
     glm::vec4 units(0, 0, 0, alpha);
     for (int c = 0; c < 3; ++c) units[c] = std::min(color[c] * shares_[c], 1.0f) * alpha;
     return units;
+}
+
+std::vector<glm::vec4> VoxelUnits::unitsOfClasses(const ClassTable& classes) const {
+    std::vector<glm::vec4> colors;
+    for (std::size_t number = 0; number < classes.looks.size(); ++number)
+        colors.push_back(unitsOf(std::uint16_t(number), glm::vec3(classes.looks[number].color)));
+    return colors;
+}
+
+glm::dvec3 brightestOf(const ClassTable& classes) {
+    glm::dvec3 brightest(0);
+    for (const Look& look : classes.looks) brightest = glm::max(brightest, look.color);
+    return brightest;
 }
 
 }  // namespace deltasplat

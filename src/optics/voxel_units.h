@@ -40,6 +40,8 @@ class VoxelUnits {
     /// @param number  of its class
     /// @param color   scene-linear, not multiplied by opacity
     glm::vec4 unitsOf(std::uint16_t number, const glm::vec3& color) const;
+    /// Returns the premultiplied colours of all classes, [classes], in their own colours.
+    std::vector<glm::vec4> unitsOfClasses(const ClassTable& classes) const;
 
   private:
     std::vector<float> alphas_;     // [classes]
@@ -50,5 +52,8 @@ class VoxelUnits {
     glm::vec3 shares_;
     glm::dvec4 scale_;
 };
+
+/// Returns the largest that any class has of each channel, not multiplied by opacity.
+glm::dvec3 brightestOf(const ClassTable& classes);
 
 }  // namespace deltasplat

@@ -30,10 +30,7 @@ WorldBox worldBox(const IndexBox& box, const glm::dmat4& worldFromIndex) {
     const IndexBox full = box.empty() ? IndexBox{glm::ivec3(0), glm::ivec3(0)} : box;
     WorldBox world;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 index(corner & 1 ? full.max.x : full.min.x,
-                               corner & 2 ? full.max.y : full.min.y,
-                               corner & 4 ? full.max.z : full.min.z, 1);
-        const glm::dvec3 place(worldFromIndex * index);
+        const glm::dvec3 place(worldFromIndex * glm::dvec4(cornerOf(full, corner), 1));
         world.min = corner == 0 ? place : glm::min(world.min, place);
         world.max = corner == 0 ? place : glm::max(world.max, place);
     }

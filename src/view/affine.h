@@ -14,6 +14,13 @@ namespace deltasplat {
 /// @throw Error(kInput) if an entry is not finite or the voxels have no volume
 void requireInvertible(const glm::dmat4& worldFromIndex);
 
+/// Returns a corner of a box, the centre of a voxel.
+/// @param number  0..7: bits 0, 1 and 2 choose the largest x, y and z
+inline glm::dvec3 cornerOf(const IndexBox& box, int number) {
+    return {number & 1 ? box.max.x : box.min.x, number & 2 ? box.max.y : box.min.y,
+            number & 4 ? box.max.z : box.min.z};
+}
+
 /// Returns the smallest that holds the centres of all voxels of a box, or, of an empty one, of
 /// voxel (0, 0, 0).
 WorldBox worldBox(const IndexBox& box, const glm::dmat4& worldFromIndex);

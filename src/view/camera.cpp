@@ -331,9 +331,7 @@ double fittingDistance(const Camera& camera, double tangent, const IndexBox& box
     const double aspect = double(camera.sizePixels.x) / camera.sizePixels.y;
     double distance = 0;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 index(corner & 1 ? box.max.x : box.min.x,
-                               corner & 2 ? box.max.y : box.min.y,
-                               corner & 4 ? box.max.z : box.min.z);
+        const glm::dvec3 index = cornerOf(box, corner);
         const glm::dvec3 offset = transformed(worldFromIndex, index) - camera.targetWorld;
         const double across = std::max(std::abs(glm::dot(offset, camera.right)),
                                        std::abs(glm::dot(offset, camera.up)) * aspect);

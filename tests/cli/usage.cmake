@@ -385,6 +385,13 @@ deltasplat_unused(xray_sigma_from_eye --sigma "with --mode xray but in --project
 deltasplat_cli_test(unused.photons CREATES out.png
     ARGS render ${cube} -o out.png --size 8x8 --drr --photons 1000
     STDERR_MATCHES "deltasplat: warning: --photons: has no effect without --mode drr and an .exr.*--mode drr: is for Hounsfield units [(]air -1000, water 0[)], which values from 0 to 96 of a file that names no patient's space may not be")
+foreach(option extinction=2 unit-distance=3 range=1,60)
+    string(REGEX REPLACE "=.*" "" name ${option})
+    deltasplat_unused(surface_${name} --${name} "on a surface" CREATES out.exr
+        ARGS render ${cube} -o out.exr --size 8x8 --isovalue 50 --${option})
+endforeach()
+deltasplat_cli_test(used.surface_range CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --isovalue 50 --range 1,60 --tf viridis)
 deltasplat_unused(mip_sigma --sigma "with --mode mip" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --mode mip --sigma 1)
 deltasplat_unused(xray_tf_png --tf "with --mode xray" CREATES out.png

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "annotate/annotate.h"
 #include "listener.h"
@@ -90,10 +92,12 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
         display.warn("--dither: has no effect without a .png of 8 bits");
     warnOfUnusedModeOptions(app, command, display);
     if (command.picture.render.mode != Mode::kComposite) return;
-    for (const char* option : {"--extinction", "--unit-distance"}) {
-        if (command.picture.surface.asked && isGiven(app, option))
-            display.warn(option + std::string(": has no effect on a surface"));
-    }
+    if (!command.picture.surface.asked) return;
+    std::vector<std::string> unused = {"--extinction", "--unit-distance"};
+    const bool isColored = !command.picture.transferFunction.empty();
+    if (!isColored || command.picture.surface.color) unused.push_back("--range");
+    for (const std::string& option : unused)
+        if (isGiven(app, option)) display.warn(option + ": has no effect on a surface");
 }
 
 // Shows values as greys, and says in `image` what black and white stand for.

@@ -17,6 +17,7 @@
 #include "program.h"
 #include "render/annotation_options.h"
 #include "render/list_presets.h"
+#include "view/affine.h"
 
 namespace deltasplat {
 namespace {
@@ -376,10 +377,7 @@ void warnOfDetector(const CameraOptions& options, const Volume& volume, const Li
     const Camera camera = makeCamera(options, volume.box, volume.worldFromIndex, volume.space);
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
-        const IndexBox& box = volume.box;
-        const glm::dvec4 index(corner & 1 ? box.max.x : box.min.x,
-                               corner & 2 ? box.max.y : box.min.y,
-                               corner & 4 ? box.max.z : box.min.z, 1);
+        const glm::dvec4 index(cornerOf(volume.box, corner), 1);
         const glm::dvec3 away = glm::dvec3(volume.worldFromIndex * index) - camera.eyeWorld();
         farthest = std::max(farthest, glm::dot(away, camera.direction));
     }
