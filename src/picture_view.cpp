@@ -90,8 +90,10 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
         ClassTable classes = steps_ == axis_->steps
                                  ? axis_->classes()
                                  : axis_->classes().atSteps(steps_ / axis_->steps);
-        const LitScene lit{camera, scene.scene.volume->worldFromIndex *
-                                       indexFromThinVoxel(axis_->sliceAxis, axis_->parts)};
+        const LitScene lit{
+            camera,
+            scene.scene.volume->worldFromIndex * indexFromThinVoxel(axis_->sliceAxis, axis_->parts),
+            axis_->sliceAxis};
         std::unique_ptr<const LookLight> light;
         if (painter) light = painter->lightOf(classes, isLit ? &lit : nullptr);
         colors_.emplace(axis_->deltas, std::move(classes), light.get(), memory);

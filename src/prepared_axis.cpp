@@ -129,7 +129,8 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
                                                               const Subdivision& parts,
                                                               double steps, bool fromEye,
                                                               const Listener& listener) const {
-    const bool isWhole = fromEye && painter && painter->dependsOnCamera();
+    const bool isWhole =
+        painter && (painter->isEverywhereOther() || (fromEye && painter->dependsOnCamera()));
     const Encoding encoding = isWhole ? Encoding::kWhole : encodingOf(options.method);
     std::shared_ptr<Place> place;
     {

@@ -32,6 +32,10 @@ void checkBetween(int between) {
                             "at most 2^30 parts of them along each axis (`between` 0: undivided)"));
 }
 
+bool isEverywhereOther(const PreparedScene::Impl& scene) {
+    return scene.painter && scene.painter->isEverywhereOther();
+}
+
 // Whether voxels are divided where the screen asks for it and nobody says otherwise.
 bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
                     const Listener& listener) {
@@ -41,7 +45,7 @@ bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
     // Of the transfer function that was asked for, whatever colours are by.
     const Optics& optics = scene.scene.optics;
     if (!optics.surface && optics.transferFunction.colorsJump()) return false;
-    if (volume.empty() || scene.isThin) return false;
+    if (volume.empty() || scene.isThin || isEverywhereOther(scene)) return false;
     if (!canBeDivided(volume.box, 1)) {
         listener.warn("the volume is too wide for voxels to be divided: drawn as they are");
         return false;
@@ -68,6 +72,11 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view
     if (options.between) {
         between = *options.between;
         checkBetween(between);
+        if (between > 0 && isEverywhereOther(scene)) {
+            throw Error(ErrorCode::kUsage,
+                        gotExpected("`between`", std::to_string(between) + " with `scattering`",
+                                    "0: lit fog is drawn by whole voxels"));
+        }
         if (between > 0 && !canBeDivided(box, between)) throwTooWide(box, between);
     } else if (dividesUnasked(scene, view, listener)) {
         between = 1;

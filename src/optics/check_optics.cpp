@@ -13,7 +13,8 @@
 namespace deltasplat {
 namespace {
 
-void requireThat(bool holds, const char* option, const std::string& got, const char* expected) {
+void requireThat(bool holds, const std::string& option, const std::string& got,
+                 const std::string& expected) {
     if (!holds) throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
 }
 
@@ -29,9 +30,23 @@ void checkPlaces(const char* points, const std::vector<Point>& all) {
     }
 }
 
-void checkLight(const char* option, double number) {
+void checkLight(const std::string& option, double number) {
     requireThat(number >= 0 && number <= kMostLight, option, numberText(number),
                 "a number within 0..1e6");
+}
+
+void checkLights(const std::string& option, const std::vector<Light>& lights) {
+    for (const Light& light : lights) {
+        checkLight(option + " strength", light.strength);
+        for (int i = 0; i < 3; ++i) {
+            checkLight(option + " colour", light.color[i]);
+            requireThat(std::isfinite(light.direction[i]), option + " direction",
+                        numberText(light.direction), "finite numbers");
+        }
+        const glm::dvec3 way = glm::abs(light.direction);
+        requireThat(light.frame == LightFrame::kHead || std::max({way.x, way.y, way.z}) > 0,
+                    option + " direction", numberText(light.direction), "not all 0");
+    }
 }
 
 void checkShading(const Shading& shading) {
@@ -39,17 +54,7 @@ void checkShading(const Shading& shading) {
     checkLight("`shading.diffuse`", shading.diffuse);
     checkLight("`shading.specular`", shading.specular);
     checkLight("`shading.shininess`", shading.shininess);
-    for (const Light& light : shading.lights) {
-        checkLight("`shading.lights` strength", light.strength);
-        for (int i = 0; i < 3; ++i) {
-            checkLight("`shading.lights` colour", light.color[i]);
-            requireThat(std::isfinite(light.direction[i]), "`shading.lights` direction",
-                        numberText(light.direction), "finite numbers");
-        }
-        const glm::dvec3 way = glm::abs(light.direction);
-        requireThat(light.frame == LightFrame::kHead || std::max({way.x, way.y, way.z}) > 0,
-                    "`shading.lights` direction", numberText(light.direction), "not all 0");
-    }
+    checkLights("`shading.lights`", shading.lights);
 }
 
 bool isShare(double number) {
@@ -64,6 +69,36 @@ void checkSurface(const Optics& optics) {
     requireThat(std::isfinite(optics.surface->isovalue), "`surface.isovalue`",
                 numberText(optics.surface->isovalue), "a finite number");
     for (int i = 0; i < 3; ++i) checkLight("`surface.color`", optics.surface->color[i]);
+}
+
+void checkScattering(const Optics& optics) {
+    const char* besides = optics.shading                    ? "`shading` besides"
+                          : optics.surface                  ? "`surface` besides"
+                          : !optics.gradientOpacity.empty() ? "`gradientOpacity` besides"
+                                                            : nullptr;
+    requireThat(!besides, "`scattering`", besides ? besides : "", "one of the two");
+    requireThat(optics.colorBy == ColorBy::kValue, "`scattering`",
+                "`colorBy` " + colorByName(optics.colorBy) + " besides", "`colorBy` value");
+    const Scattering& scattering = *optics.scattering;
+    for (int i = 0; i < 3; ++i) {
+        requireThat(isShare(scattering.albedo[i]), "`scattering.albedo`",
+                    numberText(scattering.albedo), "numbers within 0..1");
+        checkLight("`scattering.ambient`", scattering.ambient[i]);
+    }
+    for (const double g : {scattering.anisotropy, scattering.backAnisotropy}) {
+        requireThat(std::abs(g) <= kMostAnisotropy, "`scattering.anisotropy`", numberText(g),
+                    "a number within -0.99..0.99");
+    }
+    requireThat(isShare(scattering.backShare), "`scattering.backShare`",
+                numberText(scattering.backShare), "a number within 0..1");
+    requireThat(scattering.octaves >= 0 && scattering.octaves <= kMostOctaves,
+                "`scattering.octaves`", std::to_string(scattering.octaves),
+                "a whole number within 0.." + std::to_string(kMostOctaves));
+    checkLights("`scattering.lights`", scattering.lights);
+    for (const Light& light : scattering.lights) {
+        requireThat(light.frame == LightFrame::kWorld, "`scattering.lights`",
+                    "one that moves with the camera", "lights of the world");
+    }
 }
 
 void checkGradientOpacity(const std::vector<glm::dvec2>& points) {
@@ -113,6 +148,7 @@ void checkOptics(const Optics& optics) {
     }
     if (optics.surface) checkSurface(optics);
     checkGradientOpacity(optics.gradientOpacity);
+    if (optics.scattering) checkScattering(optics);
     const double extinction = optics.extinctionScale;
     requireThat(std::isfinite(extinction) && extinction >= 0, "`extinctionScale`",
                 numberText(extinction), "a number >= 0");

@@ -25,6 +25,11 @@ std::unique_ptr<const VoxelPainter> makeShadingPainter(const Volume& volume,
 std::unique_ptr<const VoxelPainter> makeSurfacePainter(const Volume& volume, const Surface& surface,
                                                        const std::optional<Shading>& shading);
 
+/// Returns who lights fog. Sweeps the volume from each light on.
+/// @param optics  with scattering
+/// @throw Error(kFailed) if there is not enough memory
+std::unique_ptr<const VoxelPainter> makeScatterPainter(const Volume& volume, const Optics& optics);
+
 /// Returns who makes voxels less opaque by how much values change there.
 /// @param factors  Optics::gradientOpacity, not empty
 /// @param inner    who paints them otherwise, if by gradients those of scaledValues about the

@@ -57,17 +57,14 @@ ReflectedLight::ReflectedLight(const Shading& shading, const ClassTable& classes
                                     glm::vec3(shading.diffuse * intensity),
                                     glm::vec3(shading.specular * intensity * shares)});
     }
-    if (!reflection_.fromEye) return;
-    eye_ = glm::dvec3(glm::inverse(scene.worldFromVoxel) * glm::dvec4(camera.eyeWorld(), 1));
-    steps_ = glm::dmat3(scene.worldFromVoxel);
+    if (reflection_.fromEye) eye_.emplace(camera.eyeWorld(), scene.worldFromVoxel);
 }
 
 void ReflectedLight::lightVoxels(const WordPlace& place, const std::uint16_t* classes,
                                  const OwnLook* looks, WordUnits& colors) const {
     WordToLight word{colors_.data(), classes, looks, nullptr};
-    if (!reflection_.fromEye) return reflect(reflection_, word, colors);
-    const WaysToEye ways{glm::vec3(steps_ * (eye_ - glm::dvec3(place))), glm::vec3(-steps_[1]),
-                         glm::vec3(-steps_[2])};
+    if (!eye_) return reflect(reflection_, word, colors);
+    const WaysToEye ways = eye_->waysFrom(place);
     word.ways = &ways;
     reflect(reflection_, word, colors);
 }

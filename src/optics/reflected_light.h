@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/mat3x3.hpp>
+#include <optional>
 #include <vector>
 
 #include "optics/reflection_kernels.h"
@@ -21,9 +22,7 @@ class ReflectedLight : public LookLight {
   private:
     Reflection reflection_;
     std::vector<glm::vec4> colors_;  // [classes]: premultiplied
-    // Of an eye, (slice, u, v), and of voxels, steps along these in the world.
-    glm::dvec3 eye_{0.0};
-    glm::dmat3 steps_{1.0};
+    std::optional<EyeOfVoxels> eye_;
 };
 
 /// Returns what makes gradients by index gradients in the world, by the smallest voxel size.

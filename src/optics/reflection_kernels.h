@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "optics/voxel_painter.h"
+#include "optics/ways_to_eye.h"
 
 namespace deltasplat {
 
@@ -29,13 +30,6 @@ struct Reflection {
     std::vector<Ray> rays;
     bool fromEye;        ///< each voxel has its own way to the camera
     glm::vec3 toCamera;  ///< of length 1, unless it has
-};
-
-/// The ways to the camera from a word's voxels, of any length: `first + u * alongU + v * alongV`.
-struct WaysToEye {
-    glm::vec3 first;
-    glm::vec3 alongU;
-    glm::vec3 alongV;
 };
 
 /// What is lit.

@@ -43,6 +43,7 @@ void LookLight::leaveMissing(const OwnLook* looks, WordUnits& colors) {
 
 std::unique_ptr<const VoxelPainter> makePainter(const Volume& volume, const Optics& optics) {
     if (volume.empty()) return nullptr;
+    if (optics.scattering) return makeScatterPainter(volume, optics);
     if (optics.surface) return makeSurfacePainter(volume, *optics.surface, optics.shading);
     std::unique_ptr<const VoxelPainter> painter;
     if (optics.colorBy != ColorBy::kValue) {

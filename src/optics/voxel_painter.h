@@ -100,6 +100,7 @@ class LookLight {
 struct LitScene {
     const Camera& camera;
     glm::dmat4 worldFromVoxel;  ///< of voxels as words count them: (slice, u, v)
+    int sliceAxis;
 };
 
 /// Gives voxels looks of their own. Who packs deltas asks it, and knows nothing of what it knows.
@@ -126,6 +127,9 @@ class VoxelPainter {
     /// Whether voxels may go on as what they were in the slice before (PackOptions::looksHold): not
     /// if that depends on the camera, nor if opacity is not that of classes.
     virtual bool mayHold() const { return !dependsOnCamera(); }
+    /// Whether what has the same class and look is seen as something else in another place, from
+    /// whichever side. Voxels then change from each slice to the next, and are not divided.
+    virtual bool isEverywhereOther() const { return false; }
     /// Returns what looks are seen as.
     /// @param classes  what those of paint() look like
     /// @param scene    null where nothing depends on it

@@ -7,6 +7,12 @@
 #include "portable_math.h"
 
 namespace deltasplat {
+namespace {
+
+// What is dimmed by less than this cannot be told from black.
+constexpr float kMostShare = 1e36f;
+
+}  // namespace
 
 VoxelUnits::VoxelUnits(const ClassTable& classes, const glm::dvec3& brightest)
     : unitDistances_(
@@ -21,14 +27,16 @@ VoxelUnits::VoxelUnits(const ClassTable& classes, const glm::dvec3& brightest)
     unitsOfOpaque_ = largest > 0 ? float(ClassTable::kMax / largest) : 0;
     for (const Look& look : classes.looks)
         opacities_.push_back(float(-portable::expm1(-look.extinction)));
-    for (int c = 0; c < 3; ++c)
-        shares_[c] = brightest[c] > 0 && scale_[c] > 0 ? float(1 / brightest[c]) : 0;
+    for (int c = 0; c < 3; ++c) {
+        const bool isSeen = brightest[c] > 0 && scale_[c] > 0;
+        shares_[c] = isSeen ? float(std::min(1 / brightest[c], double(kMostShare))) : 0;
+    }
 }
 
 glm::vec4 VoxelUnits::unitsOf(std::uint16_t number, const glm::vec3& color) const {
     const float alpha = alphaOf(number);
     glm::vec4 units(0, 0, 0, alpha);
-    for (int c = 0; c < 3; ++c) units[c] = std::min(color[c] * shares_[c], 1.0f) * alpha;
+    for (int c = 0; c < 3; ++c) units[c] = std::min(color[c] * shares_[c], kMostShare) * alpha;
     return units;
 }
 

@@ -38,7 +38,8 @@ class VoxelUnits {
     const glm::vec3& shares() const { return shares_; }
     /// Returns the premultiplied colour of a voxel.
     /// @param number  of its class
-    /// @param color   scene-linear, not multiplied by opacity
+    /// @param color   scene-linear, not multiplied by opacity; may be brighter than the brightest
+    ///                where it is dimmed afterwards
     glm::vec4 unitsOf(std::uint16_t number, const glm::vec3& color) const;
     /// Returns the premultiplied colours of all classes, [classes], in their own colours.
     std::vector<glm::vec4> unitsOfClasses(const ClassTable& classes) const;

@@ -233,6 +233,28 @@ TEST(Shading, ofABallIsTheClosedForm) {
     }
 }
 
+// Half the light, half the picture, however dark.
+TEST(Shading, isAsDarkAsItsLight) {
+    const Volume volume = ball();
+    RenderOptions options = opaqueAbove(2000);
+    const auto middleWith = [&](double share) {
+        Shading shading = someShading();
+        shading.specular = 0;
+        shading.ambient *= share;
+        shading.diffuse *= share;
+        options.optics.shading = shading;
+        const Image image = render(volume, options).image;
+        const float* rgba = image.pixel(80, 80);
+        return glm::dvec3(rgba[0], rgba[1], rgba[2]);
+    };
+    const glm::dvec3 all = middleWith(1);
+    EXPECT_GT(all.x, 0.1);
+    for (const double share : {0.5, 1e-3, 1e-30}) {
+        const glm::dvec3 seen = middleWith(share);
+        for (int i = 0; i < 3; ++i) EXPECT_NEAR(seen[i], share * all[i], 0.01 * share * all[i]);
+    }
+}
+
 // Where values hardly change, nothing sparkles: far inside, all is lit as by all directions.
 TEST(Shading, addsNoNoiseToWhatIsHomogeneous) {
     const auto spread = [](const Image& image) {

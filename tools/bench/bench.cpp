@@ -56,6 +56,7 @@ void addBenchOptions(CLI::App& app, BenchCommand& command) {
     addOpticsOptions(app, command.picture);
     addSurfaceOptions(app, command.picture.surface, command.picture.render.optics.gradientOpacity);
     addShadingOptions(app, command.picture.shading);
+    addScatterOptions(app, command.picture.scatter);
     addPartOptions(app, command.picture);
     addSplattingOptions(app, command.picture.render);
     addInputOptions(app, command.picture.read);

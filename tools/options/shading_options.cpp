@@ -44,7 +44,7 @@ Light parseLight(const std::string& option, const std::string& text) {
 }  // namespace
 
 std::optional<Shading> ShadingChoice::of(bool suits) const {
-    if (!shades.value_or(suits)) return {};
+    if (!shades.value_or(isAnyGiven || suits)) return {};
     Shading result = shading;
     if (!lights.empty()) result.lights = lights;
     return result;
@@ -55,7 +55,8 @@ void addShadingOptions(CLI::App& app, ShadingChoice& choice) {
     Shading& shading = choice.shading;
     const auto turnOn = [&](const auto& parse) {
         return [&choice, parse](const std::string& option, const std::string& text) {
-            if (!choice.shades) choice.shades = true;
+            choice.isAnyGiven = true;
+            if (option == "--ambient") choice.isAmbientGiven = true;
             return parse(option, text);
         };
     };

@@ -67,7 +67,8 @@ void addSurfaceOptions(CLI::App& app, SurfaceChoice& choice,
     group.addFlag("--surface", choice.asked,
                   "Show where a level set is 0 as an opaque surface (default for\n"
                   "level sets, unless --level-set, --tf, --range, --extinction,\n"
-                  "--unit-distance, --color-by or --gradient-opacity is given)");
+                  "--unit-distance, --color-by, --gradient-opacity or light in fog is\n"
+                  "given)");
     group.addValue("--isovalue", "V", choice.isovalue, number(),
                    "Show where values pass V, in data units, as an opaque surface");
     group.addValue("--surface-color", "R,G,B", choice.color, opaqueColor(),
@@ -86,7 +87,9 @@ void applySurface(const CLI::App& app, Mode mode, SurfaceChoice& choice, ReadOpt
     };
     choice.ofLevelSets = mode == Mode::kComposite &&
                          !isAnyGiven({"--level-set", "--tf", "--range", "--extinction",
-                                      "--unit-distance", "--color-by", "--gradient-opacity"});
+                                      "--unit-distance", "--color-by", "--gradient-opacity",
+                                      "--lighting", "--albedo", "--anisotropy",
+                                      "--scatter-octaves"});
     choice.isFogGiven = isGiven(app, "--level-set") && read.levelSetToFog;
     if (mode != Mode::kComposite) choice = SurfaceChoice{false, false, false, {}, {}};
     if (choice.isFogGiven) return;

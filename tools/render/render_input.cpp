@@ -67,7 +67,7 @@ const Preset* presetOf(const std::filesystem::path& input, const PictureOptions&
 // Surfaces are shaded unless something else is wanted: those of level sets and of scanned bodies.
 std::optional<Shading> shadingOf(const PictureOptions& picture, const Volume& volume,
                                  const Preset* preset, bool isSurface) {
-    if (picture.render.mode != Mode::kComposite) return {};
+    if (picture.render.mode != Mode::kComposite || picture.scatter.asked()) return {};
     const bool isScan = preset && preset->values == Preset::Values::kHounsfield;
     const bool byValue = picture.render.optics.colorBy == ColorBy::kValue;
     return picture.shading.of(byValue && (isScan || isSurface || volume.fromLevelSet));
@@ -90,6 +90,32 @@ void checkSurface(const PictureOptions& picture) {
     if (optics.gradientOpacity.empty()) return;
     throw Error(ErrorCode::kUsage,
                 gotExpected(option, "--gradient-opacity besides", "one of the two"));
+}
+
+// The same of fog that scatters light.
+void checkScattering(const PictureOptions& picture) {
+    if (!picture.scatter.asked()) return;
+    const Optics& optics = picture.render.optics;
+    const char* besides = picture.shading.shades.value_or(false) ? "--shade besides"
+                          : picture.surface.isovalue             ? "--isovalue besides"
+                          : picture.surface.asked                ? "--surface besides"
+                          : !optics.gradientOpacity.empty()      ? "--gradient-opacity besides"
+                                                                 : nullptr;
+    if (besides)
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--lighting scatter", besides, "one of the two"));
+    if (optics.colorBy != ColorBy::kValue) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--lighting scatter",
+                                "--color-by " + colorByName(optics.colorBy) + " besides",
+                                "--color-by value"));
+    }
+    for (const Light& light : picture.shading.lights) {
+        if (light.frame == LightFrame::kWorld) continue;
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--light", "head or view:X,Y,Z with --lighting scatter",
+                                "X,Y,Z, the way that light travels in the world"));
+    }
 }
 
 // A surface has the colour that values have there, if that is asked for and it has no other.
@@ -115,12 +141,13 @@ void finishSurface(const PictureOptions& picture, const Volume& volume, Optics& 
 RenderOptions readOptics(const PictureOptions& picture, const Listener& listener) {
     RenderOptions options = picture.render;
     const ColorBy colorBy = options.optics.colorBy;
-    if (picture.shading.shades.value_or(false) && colorBy != ColorBy::kValue) {
+    if (picture.shading.asked() && !picture.scatter.asked() && colorBy != ColorBy::kValue) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--shade", "--color-by " + colorByName(colorBy) + " besides",
                                 "--color-by value"));
     }
     checkSurface(picture);
+    checkScattering(picture);
     const bool ramp = picture.transferFunction.empty();
     if (!ramp) {
         options.optics.transferFunction =
@@ -140,6 +167,8 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
     const std::optional<glm::dvec2>& range = picture.render.optics.range;
     options.optics.surface = picture.surface.of(volume);
     options.optics.shading = shadingOf(picture, volume, preset, options.optics.surface.has_value());
+    if (picture.render.mode == Mode::kComposite)
+        options.optics.scattering = picture.scatter.of(picture.shading);
     if (preset && !options.optics.surface) warnOfOtherData(*preset, volume, listener);
     if (picture.transferFunction.empty()) {
         const bool isOfValues = picture.render.mode != Mode::kComposite;

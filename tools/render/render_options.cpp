@@ -330,6 +330,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addOpticsOptions(app, command.picture);
     addSurfaceOptions(app, command.picture.surface, command.picture.render.optics.gradientOpacity);
     addShadingOptions(app, command.picture.shading);
+    addScatterOptions(app, command.picture.scatter);
     addPartOptions(app, command.picture);
     addMethodOption(app, command.picture.render.method);
     addSplattingOptions(app, command.picture.render);

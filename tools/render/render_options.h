@@ -13,6 +13,7 @@
 #include "listener.h"
 #include "options/command_line.h"
 #include "options/cut_options.h"
+#include "options/scatter_options.h"
 #include "options/shading_options.h"
 #include "options/surface_options.h"
 
@@ -25,6 +26,7 @@ struct PictureOptions {
     ReadOptions read;
     RenderOptions render;
     ShadingChoice shading;
+    ScatterChoice scatter;
     SurfaceChoice surface;
     CutChoice parts;
 };

@@ -11,6 +11,7 @@
 
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/ingest/volume.h"
+#include "deltasplat/optics/scattering.h"
 #include "deltasplat/optics/shading.h"
 #include "deltasplat/optics/surface.h"
 #include "deltasplat/optics/transfer_function.h"
@@ -114,6 +115,9 @@ struct Optics {
     /// Lights that what is shown reflects; empty: it shines by itself, in the transfer function's
     /// colours. Not with another colorBy than kValue.
     std::optional<Shading> shading;
+    /// Light that what is shown scatters; empty: none. Not with shading, a surface, opacity by
+    /// gradients, or another colorBy than kValue.
+    std::optional<Scattering> scattering;
     /// Shown instead of what the transfer function shows; empty: none. Not with another colorBy
     /// than kValue.
     std::optional<Surface> surface;

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "deltasplat/optics/shading.h"
+
+namespace deltasplat {
+
+/// How fog scatters light: what the transfer function shows is met by light on its way from each
+/// lamp, which it dims, and sends some of it to the camera. A voxel shines with
+///
+///     c albedo (ambient + sum over lights, and over i = 0..octaves, of
+///               pi I 2^-i p_i(cos) exp(-depth 2^-i))
+///
+/// where c is the transfer function's colour, I a light's colour times its strength, depth the
+/// extinction that its light has come through (Optics, scaled), and cos that of the angle by which
+/// it is turned towards the camera. i = 0 is what is scattered once. The others stand for what is
+/// scattered more often: less of it, from farther, in more directions (Wrenninge, Kulla, Lundqvist,
+/// Oz: The Great and Volumetric, 2013).
+///
+/// p is Henyey and Greenstein's (1941), of two lobes, and adds up to 1 over all directions:
+///
+///     p_i = (1 - backShare) hg(2^-i anisotropy) + backShare hg(2^-i backAnisotropy)
+///     hg(g) = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^1.5)
+///
+/// A light of strength 1 has irradiance pi, as with Shading, where a white surface facing it has a
+/// radiance of 1. White fog that scatters evenly has a quarter of that.
+struct Scattering {
+    /// The share of what is met that is scattered, not swallowed: 0..1 each.
+    glm::dvec3 albedo{1.0};
+    double anisotropy = 0;      ///< -0.99..0.99: backwards, 0 evenly, forwards
+    double backAnisotropy = 0;  ///< of the second lobe, likewise
+    double backShare = 0;       ///< of what is scattered, how much the second lobe gets: 0..1
+    int octaves = 0;            ///< 0..kMostOctaves
+    glm::dvec3 ambient{0.0};    ///< radiance from everywhere that nothing dims, 0..kMostLight
+    std::vector<Light> lights;  ///< of frame kWorld
+};
+
+inline constexpr int kMostOctaves = 8;
+/// The largest anisotropy, either way.
+inline constexpr double kMostAnisotropy = 0.99;
+
+}  // namespace deltasplat

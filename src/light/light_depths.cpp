@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/light_depths.h"
+
+#include <algorithm>
+#include <span>
+
+#include "deltasplat/threads.h"
+#include "memory.h"
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+// Into how many strips a light's plane is cut: enough for every thread to have some work, but none
+// so narrow that rows at its edges, which belong to two, take much of it.
+int stripCount(int rows, std::size_t lights) {
+    constexpr std::size_t kPiecesPerThread = 4;
+    constexpr int kLeastRows = 16;
+    const auto threads = std::size_t(threadCount());
+    const auto wanted = threads == 1 ? 1 : (kPiecesPerThread * threads + lights - 1) / lights;
+    return std::clamp(int(wanted), 1, std::max(1, rows / kLeastRows));
+}
+
+}  // namespace
+
+LightDepths::LightDepths(const Volume& volume, const ClassTable& classes,
+                         const std::vector<Light>& lights)
+    : blocks_(volume, classes) {
+    const std::size_t voxels = 512 * blocks_.all().size();
+    requireMemory("light on its way to voxels",
+                  double(sizeof(std::uint16_t)) * double(voxels) * double(lights.size()));
+    depths_ =
+        UnclearedArray<std::uint16_t>(voxels * lights.size(), *std::pmr::get_default_resource());
+    if (voxels == 0) return;
+    struct Piece {
+        std::size_t light;
+        int first;
+        int last;
+    };
+    std::vector<LightSweep> sweeps;
+    std::vector<Piece> pieces;
+    for (std::size_t light = 0; light < lights.size(); ++light) {
+        sweeps.emplace_back(blocks_, classes, volume.worldFromIndex, lights[light].direction);
+        const int rows = sweeps.back().rows();
+        const int strips = stripCount(rows, lights.size());
+        const auto edge = [&](int n) { return int(std::int64_t{rows} * n / strips); };
+        for (int i = 0; i < strips; ++i) pieces.push_back({light, edge(i), edge(i + 1)});
+    }
+    parallelFor(pieces.size(), [&](std::size_t i) {
+        const Piece& piece = pieces[i];
+        sweeps[piece.light].run(piece.first, piece.last,
+                                std::span(&depths_[piece.light * voxels], voxels));
+    });
+}
+
+}  // namespace deltasplat

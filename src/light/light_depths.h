@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory_resource>
+#include <vector>
+
+#include "light/light_sweep.h"
+#include "light/lit_blocks.h"
+#include "uncleared_array.h"
+
+namespace deltasplat {
+
+/// What the light of each of several lights comes through on its way to the voxels of a volume.
+class LightDepths {
+  public:
+    /// Sweeps the volume from each light on. Multi-threaded.
+    /// @param classes  must outlive this, as `volume`
+    /// @throw Error(kFailed) if there is not enough memory
+    LightDepths(const Volume& volume, const ClassTable& classes, const std::vector<Light>& lights);
+
+    const LitBlocks& blocks() const { return blocks_; }
+    /// Returns a block's, `[x][y][z]`: the square root of extinction, in 1 / kDepthSteps.
+    /// @param number  of the block (LitBlocks::find)
+    const std::uint16_t* of(std::size_t light, std::int64_t number) const {
+        return &depths_[512 * (light * blocks_.all().size() + std::size_t(number))];
+    }
+
+  private:
+    LitBlocks blocks_;
+    UnclearedArray<std::uint16_t> depths_;  // [light][block][512]
+};
+
+}  // namespace deltasplat

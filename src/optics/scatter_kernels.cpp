@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: L. G. Henyey, J. L. Greenstein, Diffuse Radiation in the Galaxy, 1941, and M.
+// Wrenninge, C. Kulla, V. Lundqvist, Oz: The Great and Volumetric, 2013, for octaves. The lighting
+// of voxels, compiled once for each SIMD level. Every voxel is reckoned by itself, in one order of
+// additions, so that every level gives the same bits.
+#include "optics/scatter_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "light/light_sweep.h"
+#include "simd_targets.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "optics/scatter_kernels.cpp"
+#include "hwy/foreach_target.h"
+// After foreach_target.h, as Highway asks.
+#include "hwy/highway.h"
+#include "optics/lit_vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace deltasplat::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// The share of light that is left, of the octave that is dimmed least.
+HWY_INLINE Vector leftOf(const std::uint16_t* depths, double perStep) {
+    const FullTag tag;
+    const hn::RebindToSigned<FullTag> whole;
+    const hn::Rebind<std::uint16_t, FullTag> narrow;
+    const auto root = hn::ConvertTo(tag, hn::PromoteTo(whole, hn::LoadU(narrow, depths)));
+    const auto log = hn::Mul(hn::Mul(root, root), constant(perStep));
+    return hn::Sub(constant(1), opacityOfLog(log));
+}
+
+HWY_INLINE Vector phaseAt(const ScatterPhase& phase, Vector cosine) {
+    auto sum = constant(0);
+    for (const ScatterPhase::Lobe& lobe : phase.lobes) {
+        const auto rest = hn::Sub(constant(lobe.a), hn::Mul(constant(lobe.b), cosine));
+        const auto root = hn::Sqrt(rest);
+        sum = hn::Add(sum, hn::Div(constant(lobe.k), hn::Mul(rest, root)));
+    }
+    return sum;
+}
+
+template <bool kFromEye>
+void scatterFrom(const ScatterSums& sums, const ScatterWord& word, WordUnits& units) {
+    const FullTag tag;
+    constexpr int kLanes = int(hn::MaxLanes(FullTag()));
+    const int octaves = int(sums.phases.size()) - 1;
+    constexpr double kLog2E = 1.4426950408889634;
+    const double perStep =
+        -kLog2E / (double(kDepthSteps) * double(kDepthSteps)) / double(1 << octaves);
+    for (int n = 0; n < 64; n += kLanes) {
+        Vector3 light = vectorOf(sums.ambient);
+        Vector3 toCamera = light;
+        if (kFromEye) toCamera = waysFrom(*word.ways, n);
+        for (std::size_t i = 0; i < sums.rays.size(); ++i) {
+            const ScatterRay& ray = sums.rays[i];
+            auto left = leftOf(word.depths + 64 * i + n, perStep);
+            auto cosine = constant(0);
+            if (kFromEye) cosine = dot(vectorOf(ray.way), toCamera);
+            // Each octave has twice the extinction of the next.
+            for (int octave = octaves; octave >= 0; --octave, left = hn::Mul(left, left)) {
+                if (kFromEye) {
+                    const auto share = phaseAt(sums.phases[std::size_t(octave)], cosine);
+                    light = sum(light, scaled(vectorOf(ray.color), hn::Mul(share, left)));
+                } else {
+                    light =
+                        sum(light, scaled(vectorOf(ray.towardsCamera[std::size_t(octave)]), left));
+                }
+            }
+        }
+        Vector rgba[4];
+        loadColors(word.colors, word.classes + n, rgba);
+        const auto place = [&](std::size_t channel) { return &units[channel][std::size_t(n)]; };
+        hn::StoreU(hn::Mul(rgba[0], light.x), tag, place(0));
+        hn::StoreU(hn::Mul(rgba[1], light.y), tag, place(1));
+        hn::StoreU(hn::Mul(rgba[2], light.z), tag, place(2));
+        hn::StoreU(rgba[3], tag, place(3));
+    }
+}
+
+void scatterKernel(const ScatterSums& sums, const ScatterWord& word, WordUnits& units) {
+    if (word.ways) {
+        scatterFrom<true>(sums, word, units);
+    } else {
+        scatterFrom<false>(sums, word, units);
+    }
+}
+
+}  // namespace deltasplat::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace deltasplat {
+
+HWY_EXPORT(scatterKernel);
+
+double ScatterPhase::at(double cosine) const {
+    double sum = 0;
+    for (const Lobe& lobe : lobes) {
+        const double rest = lobe.a - lobe.b * cosine;
+        sum += lobe.k / (rest * std::sqrt(rest));
+    }
+    return sum;
+}
+
+// Lobes are largest straight ahead, or straight back.
+double ScatterPhase::largest() const {
+    double sum = 0;
+    for (const Lobe& lobe : lobes) {
+        const double rest = lobe.a - std::abs(lobe.b);
+        sum += lobe.k / (rest * std::sqrt(rest));
+    }
+    return sum;
+}
+
+std::vector<ScatterPhase> phasesOf(const Scattering& scattering) {
+    std::vector<ScatterPhase> phases;
+    double part = 1;
+    for (int octave = 0; octave <= scattering.octaves; ++octave, part /= 2) {
+        // pi / (4 pi)
+        const auto lobeOf = [&](double g, double share) {
+            return ScatterPhase::Lobe{float(0.25 * part * share * (1 - g * g)), float(1 + g * g),
+                                      float(2 * g)};
+        };
+        phases.push_back({{lobeOf(part * scattering.anisotropy, 1 - scattering.backShare),
+                           lobeOf(part * scattering.backAnisotropy, scattering.backShare)}});
+    }
+    return phases;
+}
+
+void scatter(const ScatterSums& sums, const ScatterWord& word, WordUnits& units) {
+    HWY_DYNAMIC_DISPATCH(scatterKernel)(sums, word, units);
+}
+
+}  // namespace deltasplat
+#endif

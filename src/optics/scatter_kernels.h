@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "deltasplat/optics/scattering.h"
+#include "optics/voxel_units.h"
+#include "optics/ways_to_eye.h"
+
+namespace deltasplat {
+
+/// What one octave of fog scatters towards the camera, as a function of the cosine c of the angle
+/// between the way of light before and after: the sum over lobes of k / (a - b c)^1.5, 1 being what
+/// a white surface does that faces a light (Scattering).
+struct ScatterPhase {
+    struct Lobe {
+        float k, a, b;
+    };
+    std::array<Lobe, 2> lobes;
+
+    double at(double cosine) const;
+    /// The most that it is anywhere.
+    double largest() const;
+};
+
+/// Returns the phase of each octave, [octaves + 1], its strength included.
+std::vector<ScatterPhase> phasesOf(const Scattering& scattering);
+
+/// A light, as the kernel takes it.
+struct ScatterRay {
+    glm::vec3 way;  ///< that light travels, of length 1
+    glm::vec3 color;
+    /// [octaves + 1]: colour times what is scattered towards the camera, where all see it from one
+    /// side.
+    std::vector<glm::vec3> towardsCamera;
+};
+
+/// What voxels scatter (Scattering).
+struct ScatterSums {
+    glm::vec3 ambient;
+    std::vector<ScatterPhase> phases;  ///< [octaves + 1]
+    std::vector<ScatterRay> rays;
+};
+
+/// What is lit.
+struct ScatterWord {
+    const glm::vec4* colors;       ///< of classes, premultiplied
+    const std::uint16_t* classes;  ///< [64]
+    const std::uint16_t* depths;   ///< [rays][64]: as LightDepths has them
+    const WaysToEye* ways;         ///< null if all see it from one side
+};
+
+/// Returns the premultiplied colours that voxels scatter. The same bits at every SIMD level.
+void scatter(const ScatterSums& sums, const ScatterWord& word, WordUnits& units);
+
+}  // namespace deltasplat
