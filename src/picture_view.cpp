@@ -96,7 +96,7 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
             axis_->sliceAxis};
         std::unique_ptr<const LookLight> light;
         if (painter) light = painter->lightOf(classes, isLit ? &lit : nullptr);
-        colors_.emplace(axis_->deltas, std::move(classes), light.get(), memory);
+        colors_.emplace(axis_->deltas, std::move(classes), std::move(light));
     }
     const bool stampEmptyVoxels = scene.options.method == Method::kTraditional;
     slabs_.emplace(SlabInput{

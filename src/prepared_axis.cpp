@@ -95,10 +95,14 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
         classes = classes.atSteps(steps);
         if (light) light = painter->lightOf(classes, nullptr);
     }
-    StepColors colors = isLit ? StepColors(std::move(classes))
-                              : StepColors(deltas, std::move(classes), light.get());
-    return std::make_shared<const PreparedAxis>(
-        PreparedAxis{sliceAxis, parts, std::move(deltas), steps, std::move(colors)});
+    // Colours refer to the deltas where these lie at last.
+    const auto axis = std::make_shared<PreparedAxis>(
+        PreparedAxis{sliceAxis, parts, std::move(deltas), steps, StepColors(std::move(classes))});
+    if (!isLit) {
+        classes = axis->colors.classes();
+        axis->colors = StepColors(axis->deltas, std::move(classes), std::move(light));
+    }
+    return axis;
 }
 
 std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {

@@ -46,7 +46,7 @@ double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout) 
     const double stamps = blocks * (64 * shownBytes + 3 * sizeof(BlockStamps));
     // The plane, which is at most half as large as the sheet, and two lists of blocks.
     const double tiles = 0.5 * double(layout.bytes()) + 48 * blocks;
-    const double shown = input.colors.digitVoxels() ? sizeof(std::uint64_t) * blocks : 0;
+    const double shown = input.colors.table().oneDigit() ? 0 : sizeof(std::uint64_t) * blocks;
     return double(layout.bytes()) + stamps + shown +
            (TileSplatter::fits(input.footprint) ? tiles : 0);
 }

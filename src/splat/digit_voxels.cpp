@@ -63,41 +63,24 @@ ClassTable::Digit rangeOf(const ClassTable::Plane& plane, bool low) {
 
 }  // namespace
 
-// Calls fill(digit, begin, end, voxels) for words [begin, end) of every digit that has masks.
-template <typename Fill>
-void DigitVoxels::fillDigits(std::size_t words, const ClassTable& table, const Fill& fill) {
-    for (std::size_t p = 0; p < table.planes.size(); ++p) {
+DigitVoxels::DigitVoxels(const PackedDeltas& deltas, const ClassTable& classes) {
+    const std::vector<DeltaWord>& words = deltas.words;
+    for (std::size_t p = 0; p < classes.planes.size(); ++p) {
+        const ClassTable::Plane& plane = classes.planes[p];
         for (const bool low : {false, true}) {
-            if (low ? table.planes[p].low.colors.empty() : table.planes.size() == 1) continue;
-            requireMemory("digits of colours", double(sizeof(std::uint64_t)) * double(words));
+            if (low ? plane.low.colors.empty() : classes.planes.size() == 1) continue;
+            requireMemory("digits of colours",
+                          double(sizeof(std::uint64_t)) * double(words.size()));
             std::vector<std::uint64_t>& voxels = voxels_[p][low];
-            voxels.resize(words);
-            parallelForChunks(words, [&](std::size_t begin, std::size_t end) {
-                fill(DigitPlace{int(p), low}, begin, end, voxels.data());
+            voxels.resize(words.size());
+            const ClassTable::Digit range = rangeOf(plane, low);
+            parallelForChunks(words.size(), [&](std::size_t begin, std::size_t end) {
+                HWY_DYNAMIC_DISPATCH(findInRangeKernel)
+                (words.data() + begin, end - begin, ClassIndex(range.first),
+                 ClassIndex(range.last - range.first), voxels.data() + begin);
             });
         }
     }
-}
-
-DigitVoxels::DigitVoxels(const PackedDeltas& deltas, const ClassTable& classes) {
-    fillDigits(deltas.words.size(), classes,
-               [&](DigitPlace digit, std::size_t begin, std::size_t end, std::uint64_t* voxels) {
-                   const auto& plane = classes.planes[std::size_t(digit.plane)];
-                   const ClassTable::Digit range = rangeOf(plane, digit.low);
-                   HWY_DYNAMIC_DISPATCH(findInRangeKernel)
-                   (deltas.words.data() + begin, end - begin, ClassIndex(range.first),
-                    ClassIndex(range.last - range.first), voxels + begin);
-               });
-}
-
-DigitVoxels::DigitVoxels(
-    std::size_t words, const ClassTable& table,
-    const std::function<std::uint64_t(DigitPlace digit, std::size_t word)>& voxelsOf) {
-    fillDigits(words, table,
-               [&](DigitPlace digit, std::size_t begin, std::size_t end, std::uint64_t* voxels) {
-                   for (std::size_t word = begin; word < end; ++word)
-                       voxels[word] = voxelsOf(digit, word);
-               });
 }
 
 bool DigitVoxels::fewerThan(std::uint64_t voxels, DigitPlace digit) const {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "delta/packed_deltas.h"
@@ -29,13 +28,6 @@ class DigitVoxels {
     /// @throw Error(kFailed) if there is not enough memory
     DigitVoxels(const PackedDeltas& deltas, const ClassTable& classes);
 
-    /// Asks for every word. Multi-threaded.
-    /// @param table     which planes and digits there are
-    /// @param voxelsOf  returns the mask word of a digit and a word
-    DigitVoxels(std::size_t words, const ClassTable& table,
-                const std::function<std::uint64_t(DigitPlace digit, std::size_t word)>& voxelsOf);
-    DigitVoxels() = default;
-
     /// Returns mask words as DeltaWord has them, one for each of the deltas' words: of the low
     /// digit, voxels that have it; of the high one, those that have anything on the plane. Null if
     /// that is all that are visible.
@@ -48,9 +40,6 @@ class DigitVoxels {
     bool fewerThan(std::uint64_t voxels, DigitPlace digit) const;
 
   private:
-    template <typename Fill>
-    void fillDigits(std::size_t words, const ClassTable& table, const Fill& fill);
-
     std::array<std::array<std::vector<std::uint64_t>, 2>, ClassTable::kMaxPlanes> voxels_;
 };
 

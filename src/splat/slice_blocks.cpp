@@ -23,19 +23,27 @@ glm::ivec2 SliceBlocks::blockOf(const DeltaWord& word) const {
 
 // Own colours lie in the order of voxels.
 SeenWord SliceBlocks::seenOf(const DeltaWord& word) const {
-    if (!own_) return {word.visible, word.changed, word.classes, colors_, false};
+    if (!input_.lit) return {word.visible, word.changed, word.classes, colors_, false};
     static constexpr auto kInOrder = [] {
         std::array<ClassIndex, 64> places{};
         for (std::size_t n = 0; n < places.size(); ++n) places[n] = ClassIndex(n);
         return places;
     }();
-    const auto number = std::size_t(&word - input_.deltas.words.data());
-    return {word.visible, word.changed, kInOrder.data(), own_->of(digit_, number), true};
+    const LitWord& lit = input_.lit->of(numberOf(word), digit_.plane);
+    const auto& colors = digit_.low ? lit.low : lit.high;
+    return {word.visible, word.changed, kInOrder.data(), colors.data(), true};
+}
+
+// Of the low digit, voxels that have it; of the high one, those that have anything on the plane.
+std::uint64_t SliceBlocks::voxelsOfDigit(const DeltaWord& word) const {
+    if (!input_.lit) return voxels_[numberOf(word)];
+    const LitWord& lit = input_.lit->of(numberOf(word), digit_.plane);
+    return digit_.low ? lit.anyLow : lit.any;
 }
 
 // Leaves what a word is of the digit. Of changes, those of voxels that had it or have it.
 void SliceBlocks::takeDigit(const DeltaWord& word, bool whole, SeenWord& seen) {
-    seen.visible = voxels_[&word - input_.deltas.words.data()];
+    seen.visible = voxelsOfDigit(word);
     if (whole) return;
     if (shown_.size() < count()) shown_.resize(count());
     std::uint64_t& shown = shown_[placeOf(blockOf(word))];

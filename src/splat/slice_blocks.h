@@ -11,6 +11,7 @@
 #include "delta/packed_deltas.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/splat/footprint.h"
+#include "splat/lit_slice.h"
 #include "splat/sheet.h"
 #include "splat/step_colors.h"
 
@@ -26,6 +27,9 @@ struct SplatInput {
     bool stampEmptyVoxels;
     /// For sheets and what they are made with.
     std::pmr::memory_resource& memory = *std::pmr::get_default_resource();
+    /// Where voxels have colours of their own: those of the slice in hand, which all that one
+    /// thread splats with share. Splatter makes it.
+    LitSlice* lit = nullptr;
 };
 
 /// Classes of 64 empty voxels.
@@ -48,9 +52,10 @@ class SliceBlocks {
           layout_(layout),
           stampEmptyVoxels_(input.stampEmptyVoxels && digit.plane == 0 && !digit.low),
           digit_(digit),
-          own_(input.colors.own()),
           colors_(digit.of(input.colors.table()).colors.data()) {
         if (const DigitVoxels* voxels = input.colors.digitVoxels()) voxels_ = voxels->of(digit);
+        const bool hasPlanes = input.colors.table().planes.size() > 1;
+        takesDigit_ = voxels_ || (input.lit && (hasPlanes || digit.low));
     }
 
     void setLayout(const SheetLayout& layout) { layout_ = layout; }
@@ -80,7 +85,11 @@ class SliceBlocks {
     // Rows are found by wordsOf().
     bool hasColumn(glm::ivec2 block) const { return block.x >= 0 && block.x < layout_.blocks.x; }
     SeenWord seenOf(const DeltaWord& word) const;
+    std::uint64_t voxelsOfDigit(const DeltaWord& word) const;
     void takeDigit(const DeltaWord& word, bool whole, SeenWord& seen);
+    std::size_t numberOf(const DeltaWord& word) const {
+        return std::size_t(&word - input_.deltas.words.data());
+    }
     std::uint64_t voxelsInBox(glm::ivec2 block) const;
     static void prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words);
 
@@ -89,9 +98,9 @@ class SliceBlocks {
     // Empty voxels are stamped once.
     bool stampEmptyVoxels_;
     DigitPlace digit_;
-    const WordColors* own_;            // null: classes say all
     const ClassTable::Color* colors_;  // of classes
-    // [word]: that have the digit; null: all that are visible
+    bool takesDigit_;                  // not all that is visible has it
+    // [word]: of classes, that have the digit; null: all that are visible
     const std::uint64_t* voxels_ = nullptr;
     std::vector<std::uint64_t> shown_;  // [block]: those that changes left so
 };
@@ -99,13 +108,14 @@ class SliceBlocks {
 template <typename Use>
 void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use) {
     const std::span<const DeltaWord> words = wordsOf(slice, rows);
+    if (input_.lit) input_.lit->begin(slice);
     if (!stampEmptyVoxels_) {
         for (const DeltaWord& word : words) {
-            if (!own_) prefetchClasses(&word, words);
+            if (!input_.lit) prefetchClasses(&word, words);
             const glm::ivec2 block = blockOf(word);
             if (!hasColumn(block)) continue;
             SeenWord seen = seenOf(word);
-            if (voxels_) takeDigit(word, whole, seen);
+            if (takesDigit_) takeDigit(word, whole, seen);
             const std::uint64_t voxels = whole ? seen.visible : seen.changed;
             if (voxels != 0) use(block, voxels, seen);
         }

@@ -44,9 +44,10 @@ double PlaneSplatter::bytes(const SplatInput& input, const SheetLayout& layout, 
     return 2 * one + (TileSplatter::fits(input.footprint) ? 0 : double(layout.bytes()));
 }
 
-Splatter::Splatter(const SplatInput& input, const SheetLayout& largest) {
+Splatter::Splatter(const SplatInput& input, const SheetLayout& largest) : input_(input) {
+    if (const WordColors* own = input.colors.own()) input_.lit = &lit_.emplace(input.deltas, *own);
     for (int plane = 0; plane < int(input.colors.table().planes.size()); ++plane)
-        planes_.push_back(std::make_unique<PlaneSplatter>(input, largest, plane));
+        planes_.push_back(std::make_unique<PlaneSplatter>(input_, largest, plane));
     sheets_.resize(planes_.size());
 }
 
@@ -65,8 +66,11 @@ void Splatter::end() {
 }
 
 double Splatter::bytes(const SplatInput& input, const SheetLayout& layout) {
+    const int planes = int(input.colors.table().planes.size());
     double bytes = 0;
-    for (int plane = 0; plane < int(input.colors.table().planes.size()); ++plane)
+    if (input.colors.own())
+        bytes += LitSlice::bytes(double(layout.blocks.x) * layout.blocks.y, planes);
+    for (int plane = 0; plane < planes; ++plane)
         bytes += PlaneSplatter::bytes(input, layout, plane);
     return bytes;
 }

@@ -45,7 +45,13 @@ class Splatter {
     /// Bytes that a splatter takes.
     static double bytes(const SplatInput& input, const SheetLayout& layout);
 
+    // Planes refer to the input.
+    Splatter(const Splatter&) = delete;
+    Splatter& operator=(const Splatter&) = delete;
+
   private:
+    std::optional<LitSlice> lit_;
+    SplatInput input_;
     std::vector<std::unique_ptr<PlaneSplatter>> planes_;
     std::vector<const Sheet*> sheets_;
 };

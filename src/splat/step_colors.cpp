@@ -5,11 +5,11 @@
 
 namespace deltasplat {
 
-StepColors::StepColors(const PackedDeltas& deltas, ClassTable classes, const LookLight* light,
-                       std::pmr::memory_resource& memory)
+StepColors::StepColors(const PackedDeltas& deltas, ClassTable classes,
+                       std::unique_ptr<const LookLight> light)
     : classes_(std::move(classes)) {
     if (light) {
-        own_.emplace(deltas, *light, memory);
+        own_.emplace(deltas, classes_, std::move(light));
     } else if (!classes_.oneDigit()) {
         digitVoxels_.emplace(deltas, classes_);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory_resource>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -15,12 +15,12 @@ namespace deltasplat {
 /// What the voxels of words are seen as in steps of one length, in digits.
 class StepColors {
   public:
-    /// Looks at every word, if there are several digits or own looks. Multi-threaded.
-    /// @param light  what own looks are seen as; null: they look as their classes do
+    /// Looks at every word, if there are several digits and no own looks. Multi-threaded.
+    /// @param deltas  must outlive the colours
+    /// @param light   what own looks are seen as; null: they look as their classes do
     /// @throw Error(kFailed) if there is not enough memory
-    /// @param memory  for colours; must outlive them
-    StepColors(const PackedDeltas& deltas, ClassTable classes, const LookLight* light,
-               std::pmr::memory_resource& memory = *std::pmr::get_default_resource());
+    StepColors(const PackedDeltas& deltas, ClassTable classes,
+               std::unique_ptr<const LookLight> light);
     /// Of classes alone, whose words are not looked at: of looks that are seen from nowhere yet.
     explicit StepColors(ClassTable classes) : classes_(std::move(classes)) {}
 
@@ -28,11 +28,8 @@ class StepColors {
     /// Which planes and digits there are, in which units, and of which colour, if of one; with own
     /// colours there are no others' to look up in it.
     const ClassTable& table() const { return own_ ? own_->table() : classes_; }
-    /// Which voxels have which digits; null where there is but one digit.
-    const DigitVoxels* digitVoxels() const {
-        if (own_) return own_->digitVoxels();
-        return digitVoxels_ ? &*digitVoxels_ : nullptr;
-    }
+    /// Which voxels have which digits; null where there is but one digit, and with own colours.
+    const DigitVoxels* digitVoxels() const { return digitVoxels_ ? &*digitVoxels_ : nullptr; }
     /// Colours that voxels have of their own; null if they look as their classes do.
     const WordColors* own() const { return own_ ? &*own_ : nullptr; }
 
