@@ -138,7 +138,6 @@ class SummedCells {
     Region region(glm::ivec2 first, glm::ivec2 end) const {
         return {first, end, sum(first, end).spread()};
     }
-    double energy() const { return sums_.back().energy; }
 
     // Cuts a region of more than one cell where the spreads of the parts add up to least.
     std::pair<Region, Region> cut(const Region& region) const {
@@ -171,14 +170,12 @@ class SummedCells {
 
 std::vector<Region> cutIntoRegions(const Cells& cells, int count) {
     const SummedCells sums(cells);
-    // What is less is rounding.
-    const double least = 1e-13 * sums.energy();
     std::vector<Region> whole;
     std::priority_queue<Region> toCut;
     toCut.push(sums.region({0, 0}, cells.size()));
     while (!toCut.empty() && int(whole.size() + toCut.size()) < count) {
         const Region region = toCut.top();
-        if (!(region.spread > least)) break;
+        if (!(region.spread > 0)) break;
         toCut.pop();
         if (region.end - region.first == glm::ivec2(1)) {
             whole.push_back(region);

@@ -8,8 +8,11 @@
 
 namespace deltasplat {
 
-/// A clear sky by day, as on the ground. Colours and strengths are relative to sunlight above the
-/// atmosphere, which is white: a light of strength 1 and 133 klx.
+/// A clear sky by day, as on the ground (Preetham, Shirley and Smits 1999). With the sun near the
+/// horizon it is several times brighter than measured ones, and from a turbidity of 6 on, where the
+/// model is extrapolated, sky and a high sun send down more than arrives above. Colours and
+/// strengths are relative to sunlight above the atmosphere, which is white: a light of strength 1
+/// and 133 klx.
 struct Sky {
     glm::dvec3 towardsSun{0, 1, 0};  ///< in the world, of any length but 0
     glm::dvec3 up{0, 1, 0};          ///< in the world, of any length but 0
@@ -20,7 +23,6 @@ struct Sky {
     glm::dvec3 groundAlbedo{0.2};  ///< share of light that the ground sends back, each 0..1
 };
 
-/// What the model of the sky was made for ends at 6; beyond 10, and below 2, it has no meaning.
 inline constexpr double kLeastTurbidity = 2;
 inline constexpr double kMostTurbidity = 10;
 
