@@ -39,6 +39,10 @@ double shareOf(double lightness) {
 
 }  // namespace
 
+glm::dvec3 linearFromShareOfWhite(const glm::dvec3& share) {
+    return kFromShareOfWhite * share;
+}
+
 glm::dvec3 labFromLinear(const glm::dvec3& rgb) {
     // What is brighter would not come back as finite numbers.
     constexpr double kBrightest = 1e200;
@@ -50,8 +54,7 @@ glm::dvec3 labFromLinear(const glm::dvec3& rgb) {
 
 glm::dvec3 linearFromLab(const glm::dvec3& lab) {
     const double y = (lab.x + 16) / 116;
-    return kFromShareOfWhite *
-           glm::dvec3(shareOf(y + lab.y / 500), shareOf(y), shareOf(y - lab.z / 200));
+    return linearFromShareOfWhite({shareOf(y + lab.y / 500), shareOf(y), shareOf(y - lab.z / 200)});
 }
 
 glm::dvec3 mshFromLab(const glm::dvec3& lab) {

@@ -7,6 +7,10 @@
 
 namespace deltasplat {
 
+/// Returns the scene-linear colour of CIE XYZ in shares of white's, so that (1, 1, 1) is white; it
+/// may lie beyond what the primaries can mix: below 0.
+glm::dvec3 linearFromShareOfWhite(const glm::dvec3& share);
+
 /// CIE L*a*b* of a scene-linear colour of sRGB's primaries; white, (1, 1, 1), is (100, 0, 0).
 glm::dvec3 labFromLinear(const glm::dvec3& rgb);
 /// Returns the scene-linear colour, which may lie beyond what the primaries can mix: below 0.

@@ -53,7 +53,42 @@ std::unique_ptr<ImageInput> openInput(const std::filesystem::path& file,
     return input;
 }
 
+// The most bytes that one byte of a file can unpack to. A header that claims more lies.
+double mostRatio(const std::filesystem::path& file, const ImageSpec& spec) {
+    // OpenImageIO does not name the packing of formats that always pack, such as PNG.
+    const std::string extension = lowerExtension(file);
+    const bool netpbm = extension.size() == 4 && extension[1] == 'p' && extension[3] == 'm';
+    const std::string packing = spec.get_string_attribute("compression", netpbm ? "none" : "");
+    if (packing == "none") return 8;  // single bits become bytes
+    if (packing.rfind("ccitt", 0) == 0) return 0x1p18;
+    return 0x1p13;
+}
+
 }  // namespace
+
+std::string sizeText(const ImageSpec& spec) {
+    return std::to_string(spec.width) + "x" + std::to_string(spec.height) + " " +
+           spec.format.c_str() + ", channels: " + std::to_string(spec.nchannels);
+}
+
+bool hasColors(const ImageSpec& spec) {
+    return spec.nchannels >= 3 && spec.channelnames[0] == "R" && spec.channelnames[1] == "G" &&
+           spec.channelnames[2] == "B";
+}
+
+void requireSane(const std::filesystem::path& file, const ImageSpec& spec) {
+    const bool flat = spec.depth <= 1 && !spec.deep;
+    if (!flat || spec.width < 1 || spec.height < 1 || spec.nchannels < 1) {
+        const std::string got = sizeText(spec) + (spec.deep ? ", deep" : "");
+        throw Error(ErrorCode::kInput, gotExpected(file.string(), got, "a flat image with pixels"));
+    }
+    const double bytes = double(spec.width) * spec.height * spec.nchannels;
+    const double held = double(std::filesystem::file_size(file));
+    if (bytes <= (held + 1024) * mostRatio(file, spec)) return;
+    throw Error(ErrorCode::kInput,
+                gotExpected(file.string(), std::to_string(std::uint64_t(held)) + " bytes",
+                            "enough for " + sizeText(spec)));
+}
 
 /// A TIFF as if it had one page: libtiff looks for each page from the first one on, which takes the
 /// square of their number.

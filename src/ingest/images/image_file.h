@@ -7,10 +7,20 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "ingest/images/tiff_pages.h"
 
 namespace deltasplat {
+
+/// Returns "640x480 uint8, channels: 3".
+std::string sizeText(const OIIO::ImageSpec& spec);
+
+/// Whether the first channels are R, G and B.
+bool hasColors(const OIIO::ImageSpec& spec);
+
+/// @throw Error(kInput) unless it is flat, has pixels, and the file can be long enough to hold them
+void requireSane(const std::filesystem::path& file, const OIIO::ImageSpec& spec);
 
 /// How many pages an image file has, and where those of a TIFF are.
 class ImagePages {
