@@ -121,7 +121,8 @@ void runBench(const CLI::App& app, BenchCommand command, const Session& session)
     requireArgument(!command.inputs.empty(), "INPUT", "FILE (see 'deltasplat bench --help')");
     applyProjection(app, command.picture.render.camera);
     checkCamera(command.picture.render.camera);
-    applySurface(app, command.picture.render.mode, command.picture.surface, command.picture.read);
+    applySurface(app, command.picture.render.mode, command.picture.scatter.asked(),
+                 command.picture.surface, command.picture.read);
     if (!command.report.empty()) checkReport(command);
     Findings found = measureAll(app, command, session);
     if (!found.report.entries.empty()) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "options/scatter_options.h"
 
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/mat4x4.hpp>
 #include <string>
 
 #include "deltasplat/error.h"
@@ -10,6 +14,11 @@
 
 namespace deltasplat {
 namespace {
+
+// With y up. White fog in the sun is then about as bright as white.
+constexpr glm::dvec3 kDefaultSun(1, 2, 1);
+constexpr double kDefaultSunStrength = 4;
+constexpr std::int64_t kMostLights = 4096;
 
 // One share for all colours, or three.
 glm::dvec3 parseAlbedo(const std::string& option, const std::string& text) {
@@ -39,15 +48,73 @@ ScatterChoice::Lobes parseLobes(const std::string& option, const std::string& te
                             "within 0..1, as in 0.8,-0.3,0.2"));
 }
 
+ScatterChoice::SunPlace parseSky(const std::string& option, const std::string& text) {
+    const std::vector<std::string> parts = splitAt(text, ':');
+    ScatterChoice::SunPlace sun;
+    try {
+        sun.towards = vector3()(option, parts[0]);
+        if (parts.size() == 2) sun.strength = number(0, kMostLight)(option, parts[1]);
+        if (parts.size() <= 2 && sun.towards != glm::dvec3(0)) return sun;
+    } catch (const Error&) {
+    }
+    throw Error(
+        ErrorCode::kUsage,
+        gotExpected(option, text,
+                    "X,Y,Z, the way towards the sun, not all 0, then, if wanted, :STRENGTH, "
+                    "as in 1,2,1:4"));
+}
+
+// What turns y up into what is up, by the shortest way.
+glm::dmat3 turnUp(const glm::dvec3& up) {
+    const glm::dvec3 y(0, 1, 0);
+    const glm::dvec3 to = glm::normalize(up);
+    const glm::dvec3 axis = glm::cross(y, to);
+    const double sine = glm::length(axis);
+    const double cosine = glm::dot(y, to);
+    if (sine == 0)
+        return cosine > 0 ? glm::dmat3(1) : glm::dmat3({1, 0, 0}, {0, -1, 0}, {0, 0, -1});
+    return glm::dmat3(glm::rotate(glm::dmat4(1), std::atan2(sine, cosine), axis));
+}
+
+void addTo(std::vector<Light>& lights, const std::vector<Light>& more, double strength) {
+    for (Light light : more) {
+        light.strength *= strength;
+        lights.push_back(light);
+    }
+}
+
 }  // namespace
 
-std::optional<Scattering> ScatterChoice::of(const ShadingChoice& shading) const {
+// Where nothing is said, fog stands under a sky.
+std::vector<Light> ScatterChoice::lights(const ShadingChoice& shading, const glm::dvec3& up,
+                                         const Listener& listener) const {
+    std::vector<Light> all = shading.lights;
+    std::optional<SunPlace> sun = sky;
+    if (!sun && environment.empty() && all.empty())
+        sun = SunPlace{turnUp(up) * kDefaultSun, kDefaultSunStrength};
+    if (sun) {
+        const Sky day{sun->towards, up, turbidity, sun->strength, Sky{}.groundAlbedo};
+        all.push_back(sunLight(day));
+        addTo(all, cutIntoLights(skyEnvironment(day), environmentLights), 1);
+    }
+    if (!environment.empty()) {
+        Environment light = readEnvironment(environment, listener);
+        const glm::dmat3 turned(
+            glm::rotate(glm::dmat4(1), glm::radians(environmentTurnDegrees), glm::normalize(up)));
+        light.worldFromEnvironment = turned * turnUp(up);
+        addTo(all, cutIntoLights(light, environmentLights), environmentStrength);
+    }
+    return all;
+}
+
+std::optional<Scattering> ScatterChoice::of(const ShadingChoice& shading, const glm::dvec3& up,
+                                            const Listener& listener) const {
     if (!asked()) return {};
     Scattering result = scattering;
     result.anisotropy = lobes.first;
     result.backAnisotropy = lobes.second;
     result.backShare = lobes.share;
-    result.lights = shading.lights;
+    result.lights = lights(shading, up, listener);
     if (shading.isAmbientGiven) result.ambient = glm::dvec3(shading.shading.ambient);
     return result;
 }
@@ -67,8 +134,29 @@ void addScatterOptions(CLI::App& app, ScatterChoice& choice) {
             return deltasplat::choice({"emission", "scatter"})(option, text) == "scatter";
         }),
         "emission (what is shown shines by itself, the default) or scatter:\n"
-        "fog is lit by --light, and throws shadows into itself (default where\n"
-        "anything below is given)");
+        "fog is lit by --light X,Y,Z, --sky and --env, and throws shadows into\n"
+        "itself (default where anything below is given)");
+    group.addValue("--sky", "X,Y,Z", choice.sky, Parser<ScatterChoice::SunPlace>(turnOn(parseSky)),
+                   "Sun and clear sky: the way towards the sun in the world; :STRENGTH may\n"
+                   "follow (default: 1,2,1:4 with y up, if there is no other light). Up is\n"
+                   "that of --up, else y, or the head");
+    group.addValue(
+        "--turbidity", "T", choice.turbidity,
+        Parser<double>(turnOn(number(kLeastTurbidity, kMostTurbidity))),
+        withDefault("Haze of the sky, 2 (very clear) to 10", numberText(choice.turbidity)));
+    group.addValue("--env", "FILE", choice.environment, Parser<std::string>(turnOn(anyText())),
+                   "Light from everywhere: a lat-long picture (.exr, .hdr), y up, its\n"
+                   "middle towards -z");
+    group.addValue(
+        "--env-strength", "S", choice.environmentStrength,
+        Parser<double>(turnOn(number(0, kMostLight))),
+        withDefault("What --env is multiplied by", numberText(choice.environmentStrength)));
+    group.addValue("--env-turn", "DEG", choice.environmentTurnDegrees,
+                   Parser<double>(turnOn(angle())), "Turns --env about what is up");
+    group.addValue("--env-lights", "N", choice.environmentLights,
+                   Parser<std::int64_t>(turnOn(wholeNumber(1, kMostLights))),
+                   withDefault("Lights that a sky or --env is cut into",
+                               std::to_string(choice.environmentLights)));
     group.addValue(
         "--albedo", "A", scattering.albedo, Parser<glm::dvec3>(turnOn(parseAlbedo)),
         withDefault("Share of light that fog scatters, not swallows: A or R,G,B, 0..1", "1"));

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "deltasplat/optics/scattering.h"
+#include "deltasplat/optics/sky.h"
 #include "options/shading_options.h"
 
 namespace deltasplat {
@@ -21,10 +24,30 @@ struct ScatterChoice {
         double share = 0;
     } lobes;
 
+    /// The way towards the sun, and how bright it is; empty: no sky.
+    struct SunPlace {
+        glm::dvec3 towards{0.0};
+        double strength = 1;
+    };
+    std::optional<SunPlace> sky;
+    double turbidity = Sky{}.turbidity;
+    std::filesystem::path environment;  ///< empty: none
+    double environmentStrength = 1;
+    double environmentTurnDegrees = 0;  ///< about what is up
+    int environmentLights = 32;         ///< that the sky and the environment are cut into, each
+
     bool asked() const { return scatters.value_or(isAnyGiven); }
     /// Returns how the picture's fog scatters, if it does.
-    /// @param shading  says which lights there are, and how much light comes from everywhere
-    std::optional<Scattering> of(const ShadingChoice& shading) const;
+    /// @param shading  says which lights there are besides, and how much light comes from
+    ///                 everywhere
+    /// @param up       of the world
+    /// @throw Error for an environment that cannot be read
+    std::optional<Scattering> of(const ShadingChoice& shading, const glm::dvec3& up,
+                                 const Listener& listener) const;
+
+  private:
+    std::vector<Light> lights(const ShadingChoice& shading, const glm::dvec3& up,
+                              const Listener& listener) const;
 };
 
 void addScatterOptions(CLI::App& app, ScatterChoice& choice);

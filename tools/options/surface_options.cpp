@@ -79,17 +79,16 @@ void addSurfaceOptions(CLI::App& app, SurfaceChoice& choice,
                    "homogeneous");
 }
 
-void applySurface(const CLI::App& app, Mode mode, SurfaceChoice& choice, ReadOptions& read) {
+void applySurface(const CLI::App& app, Mode mode, bool isFog, SurfaceChoice& choice,
+                  ReadOptions& read) {
     if (choice.isovalue) choice.asked = true;
     const auto isAnyGiven = [&](std::initializer_list<const char*> options) {
         return std::any_of(options.begin(), options.end(),
                            [&](const char* option) { return isGiven(app, option); });
     };
-    choice.ofLevelSets = mode == Mode::kComposite &&
+    choice.ofLevelSets = mode == Mode::kComposite && !isFog &&
                          !isAnyGiven({"--level-set", "--tf", "--range", "--extinction",
-                                      "--unit-distance", "--color-by", "--gradient-opacity",
-                                      "--lighting", "--albedo", "--anisotropy",
-                                      "--scatter-octaves"});
+                                      "--unit-distance", "--color-by", "--gradient-opacity"});
     choice.isFogGiven = isGiven(app, "--level-set") && read.levelSetToFog;
     if (mode != Mode::kComposite) choice = SurfaceChoice{false, false, false, {}, {}};
     if (choice.isFogGiven) return;

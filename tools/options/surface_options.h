@@ -31,6 +31,8 @@ void addSurfaceOptions(CLI::App& app, SurfaceChoice& choice,
 
 /// Finds out what other options say of surfaces: level sets are shown as such, unless what they are
 /// made of is asked for. Has `read` keep them then.
-void applySurface(const CLI::App& app, Mode mode, SurfaceChoice& choice, ReadOptions& read);
+/// @param isFog  whether what is shown is to be lit fog
+void applySurface(const CLI::App& app, Mode mode, bool isFog, SurfaceChoice& choice,
+                  ReadOptions& read);
 
 }  // namespace deltasplat

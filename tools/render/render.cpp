@@ -136,7 +136,8 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
 void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
     applyMode(app, command);
     applyProjection(app, command.picture.render.camera);
-    applySurface(app, command.picture.render.mode, command.picture.surface, command.picture.read);
+    applySurface(app, command.picture.render.mode, command.picture.scatter.asked(),
+                 command.picture.surface, command.picture.read);
     validate(command);
     const PictureOptions& picture = command.picture;
     RenderTimes times;

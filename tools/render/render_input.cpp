@@ -160,6 +160,12 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
 
 namespace {
 
+// Up in the world: the head, if it is a patient's.
+glm::dvec3 upOf(const PictureOptions& picture, const Volume& volume) {
+    const glm::dvec3 up = volume.space.empty() ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+    return picture.render.camera.up.value_or(up);
+}
+
 // Puts into `options` what depends on the volume: all of it, whatever is cut off.
 void fitOptics(const std::filesystem::path& input, const PictureOptions& picture,
                const Volume& volume, RenderOptions& options, const Listener& listener) {
@@ -168,7 +174,8 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
     options.optics.surface = picture.surface.of(volume);
     options.optics.shading = shadingOf(picture, volume, preset, options.optics.surface.has_value());
     if (picture.render.mode == Mode::kComposite)
-        options.optics.scattering = picture.scatter.of(picture.shading);
+        options.optics.scattering =
+            picture.scatter.of(picture.shading, upOf(picture, volume), listener);
     if (preset && !options.optics.surface) warnOfOtherData(*preset, volume, listener);
     if (picture.transferFunction.empty()) {
         const bool isOfValues = picture.render.mode != Mode::kComposite;
