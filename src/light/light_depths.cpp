@@ -2,7 +2,7 @@
 #include "light/light_depths.h"
 
 #include <algorithm>
-#include <span>
+#include <array>
 
 #include "deltasplat/threads.h"
 #include "memory.h"
@@ -38,9 +38,12 @@ LightDepths::LightDepths(const Volume& volume, const ClassTable& classes,
         int last;
     };
     std::vector<LightSweep> sweeps;
+    std::array<UnclearedArray<std::uint16_t>, 3> classesAlong;
     std::vector<Piece> pieces;
     for (std::size_t light = 0; light < lights.size(); ++light) {
         sweeps.emplace_back(blocks_, classes, volume.worldFromIndex, lights[light].direction);
+        auto& along = classesAlong[std::size_t(sweeps.back().sliceAxis())];
+        if (along.empty()) along = blocks_.classesAlong(sweeps.back().sliceAxis());
         const int rows = sweeps.back().rows();
         const int strips = stripCount(rows, lights.size());
         const auto edge = [&](int n) { return int(std::int64_t{rows} * n / strips); };
@@ -48,8 +51,9 @@ LightDepths::LightDepths(const Volume& volume, const ClassTable& classes,
     }
     parallelFor(pieces.size(), [&](std::size_t i) {
         const Piece& piece = pieces[i];
-        sweeps[piece.light].run(piece.first, piece.last,
-                                std::span(&depths_[piece.light * voxels], voxels));
+        const LightSweep& sweep = sweeps[piece.light];
+        sweep.run(piece.first, piece.last, &classesAlong[std::size_t(sweep.sliceAxis())][0],
+                  &depths_[piece.light * voxels]);
     });
 }
 

@@ -10,15 +10,23 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <numeric>
 
 #include "ingest/codes/leaf_slices.h"
+#include "light/sweep_kernels.h"
 #include "portable_math.h"
 
 namespace deltasplat {
 namespace {
 
-using Row = std::array<float, 8>;
+// What a slice of a block adds to the plane.
+struct MetBlock {
+    SweptPlace place;
+    int begin;  // rows of the plane
+    int end;
+    std::array<float, 64> own;
+};
 
 // Beyond it, nothing of the light is left.
 constexpr double kMostDepth = 2000;
@@ -36,23 +44,16 @@ double meanDepth(double depth) {
     return -portable::log(-portable::expm1(-depth) / depth);
 }
 
-std::uint16_t depthCode(float depth) {
-    return std::uint16_t(std::min(std::sqrt(depth) * kDepthSteps + 0.5f, 65535.0f));
-}
-
 }  // namespace
 
 // Rows [first, last] of the plane, one more than are the strip's own: voxels read between two.
 struct LightSweep::Strip {
     int first;
     int last;
-    int pitch;
-    std::vector<float> plane;  // [last - first + 1][pitch]
-    std::vector<Row> ownRows;  // of a slice in hand: what each of its rows adds
-
-    float* at(int row, int column) {
-        return &plane[std::size_t(row - first) * std::size_t(pitch) + std::size_t(column)];
-    }
+    const std::uint16_t* classes;
+    std::uint16_t* depths;
+    std::vector<float> plane;     // [last - first + 1][columns]
+    std::vector<MetBlock> toAdd;  // of the slice in hand
 };
 
 LightSweep::LightSweep(const LitBlocks& blocks, const ClassTable& classes,
@@ -71,7 +72,8 @@ LightSweep::LightSweep(const LitBlocks& blocks, const ClassTable& classes,
         const double depth = unitDistances > 0 && look.extinction > 0
                                  ? std::min(look.extinction * unitDistances, kMostDepth)
                                  : 0;
-        met_.push_back({float(depth), float(meanDepth(depth))});
+        metDepths_.push_back(float(depth));
+        metMeans_.push_back(float(meanDepth(depth)));
     }
     if (blocks.all().empty()) return;
     sortBlocks();
@@ -115,74 +117,56 @@ void LightSweep::findRows() {
     columns_ = most.y - least.y + 2;
 }
 
-void LightSweep::run(int first, int last, std::span<std::uint16_t> depths) const {
-    Strip strip{firstRow_ + first, firstRow_ + last, columns_, {}, {}};
+void LightSweep::run(int first, int last, const std::uint16_t* classes,
+                     std::uint16_t* depths) const {
+    Strip strip{firstRow_ + first, firstRow_ + last, classes, depths, {}, {}};
     strip.plane.resize(std::size_t(last - first + 1) * std::size_t(columns_));
     for (const Group& group : groups_) {
         for (int i = 0; i < 8; ++i)
-            sweepSlice(group, group.firstSlice + (forward_ ? i : 7 - i), strip, depths);
+            sweepSlice(group, group.firstSlice + (forward_ ? i : 7 - i), strip);
     }
 }
 
-void LightSweep::sweepSlice(const Group& group, int slice, Strip& strip,
-                            std::span<std::uint16_t> depths) const {
+// All voxels of the slice read before any adds.
+void LightSweep::sweepSlice(const Group& group, int slice, Strip& strip) const {
     const glm::dvec2 place = placeOf(slice);
     const glm::dvec2 whole = glm::floor(place);
     const glm::ivec2 base(whole);
     const glm::vec2 share(place - whole);
     const glm::ivec3 stride = toSliceOrder(kLeafStride, axis_);
-    // Calls use(number, block, row, column, n) for the rows of voxels that the strip has to do
-    // with: `n` is the place of the first voxel in a leaf.
-    const auto forRows = [&](const auto& use) {
-        for (std::size_t i = group.begin; i < group.end; ++i) {
-            const LitBlocks::Block& block = blocks_.all()[order_[i]];
-            const glm::ivec3 first = 8 * toSliceOrder(block.position, axis_);
-            const int row = first.y + base.x;
-            const int begin = std::max(0, strip.first - 1 - row);
-            const int end = std::min(8, strip.last + 1 - row);
-            for (int u = begin; u < end; ++u) {
-                use(order_[i], block, row + u, first.z + base.y - firstColumn_,
-                    (slice - first.x) * stride.x + u * stride.y);
+    const MetClasses met{metDepths_.data(), metMeans_.data()};
+    std::array<float, 64> means;
+    std::array<std::uint16_t, 64> codes;
+    strip.toAdd.clear();
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+        const std::size_t number = order_[i];
+        const glm::ivec3 first = 8 * toSliceOrder(blocks_.all()[number].position, axis_);
+        // Of the strip, counted from the block's first row.
+        const int begin = strip.first - (first.y + base.x);
+        const int end = strip.last - (first.y + base.x);
+        if (end < 0 || begin > 8) continue;
+        const std::ptrdiff_t row = -begin;
+        const std::ptrdiff_t column = first.z + base.y - firstColumn_;
+        const SweptPlace swept{strip.plane.data() + row * columns_ + column, std::size_t(columns_),
+                               share};
+        const std::size_t inBlock = 64 * std::size_t(slice - first.x);
+        MetBlock block{swept, std::max(0, begin), std::min(9, end + 1), {}};
+        const bool isAny =
+            lookUpMet(met, strip.classes + 512 * number + inBlock, block.own.data(), means.data());
+        const int firstRead = std::max(0, begin);
+        const int lastRead = std::min(8, end);
+        if (firstRead < lastRead) {
+            readSwept(swept, firstRead, lastRead, means.data(), codes.data());
+            std::uint16_t* out = strip.depths + 512 * number + (slice - first.x) * stride.x;
+            for (int u = firstRead; u < lastRead; ++u) {
+                for (int v = 0; v < 8; ++v)
+                    out[u * stride.y + v * stride.z] = codes[std::size_t(8 * u + v)];
             }
         }
-    };
-    strip.ownRows.clear();
-    forRows([&](std::uint32_t number, const LitBlocks::Block& block, int row, int column, int n) {
-        Row own, mean;
-        for (int v = 0; v < 8; ++v) {
-            const Met& met = met_[std::size_t(blocks_.classOf(block, n + v * stride.z))];
-            own[std::size_t(v)] = met.depth;
-            mean[std::size_t(v)] = met.mean;
-        }
-        strip.ownRows.push_back(own);
-        if (row < strip.first || row >= strip.last) return;
-        const float* above = strip.at(row, column);
-        const float* below = strip.at(row + 1, column);
-        std::uint16_t* out = &depths[512 * std::size_t(number) + std::size_t(n)];
-        for (int v = 0; v < 8; ++v) {
-            const float inAbove = above[v] + share.y * (above[v + 1] - above[v]);
-            const float inBelow = below[v] + share.y * (below[v + 1] - below[v]);
-            const float before = inAbove + share.x * (inBelow - inAbove);
-            out[v * stride.z] = depthCode(before + mean[std::size_t(v)]);
-        }
-    });
-    auto own = strip.ownRows.begin();
-    forRows([&](std::uint32_t, const LitBlocks::Block&, int row, int column, int) {
-        const Row& adds = *own++;
-        if (std::all_of(adds.begin(), adds.end(), [](float depth) { return depth == 0; })) return;
-        std::array<float, 9> sums;
-        sums[0] = (1 - share.y) * adds[0];
-        for (std::size_t v = 1; v < 8; ++v)
-            sums[v] = (1 - share.y) * adds[v] + share.y * adds[v - 1];
-        sums[8] = share.y * adds[7];
-        const auto addTo = [&](int target, float weight) {
-            if (target < strip.first || target > strip.last) return;
-            float* out = strip.at(target, column);
-            for (std::size_t v = 0; v < 9; ++v) out[v] += weight * sums[v];
-        };
-        addTo(row, 1 - share.x);
-        addTo(row + 1, share.x);
-    });
+        if (isAny) strip.toAdd.push_back(block);
+    }
+    for (const MetBlock& block : strip.toAdd)
+        addSwept(block.place, block.begin, block.end, block.own.data());
 }
 
 }  // namespace deltasplat

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <span>
 #include <vector>
 
 #include "light/lit_blocks.h"
@@ -26,17 +24,16 @@ class LightSweep {
     /// Rows that the plane has, 0 without blocks. It can be cut into strips of rows that are swept
     /// by themselves, without changing anything.
     int rows() const { return lastRow_ - firstRow_; }
+    /// Along which slices follow each other.
+    int sliceAxis() const { return axis_; }
     /// Sweeps a strip. Voxels that it does not reach are left to others.
     /// @param first,last  rows [first, last) of [0, rows())
-    /// @param depths      of blocks, [x][y][z] each: extinction, as depthCode() has it
-    void run(int first, int last, std::span<std::uint16_t> depths) const;
+    /// @param classes     LitBlocks::classesAlong(sliceAxis())
+    /// @param depths      of blocks, `[x][y][z]` each: square roots of extinction, in 1 /
+    ///                    kDepthSteps
+    void run(int first, int last, const std::uint16_t* classes, std::uint16_t* depths) const;
 
   private:
-    // Of a slice through a class.
-    struct Met {
-        float depth;  // extinction on the way through
-        float mean;   // that dims light as much as it is dimmed on average on the way
-    };
     // Blocks of [begin, end) have their voxels in the same eight slices.
     struct Group {
         int firstSlice;
@@ -48,15 +45,15 @@ class LightSweep {
     void sortBlocks();
     void findRows();
     glm::dvec2 placeOf(int slice) const { return -double(slice - origin_) * shift_; }
-    void sweepSlice(const Group& group, int slice, Strip& strip,
-                    std::span<std::uint16_t> depths) const;
+    void sweepSlice(const Group& group, int slice, Strip& strip) const;
 
     const LitBlocks& blocks_;
     int axis_;
-    bool forward_;          // light travels towards larger slices
-    glm::dvec2 shift_;      // (u, v) by which it moves from a slice to the next larger one
-    int origin_ = 0;        // slice in which the plane lies as voxels do
-    std::vector<Met> met_;  // [classes]
+    bool forward_;                  // light travels towards larger slices
+    glm::dvec2 shift_;              // (u, v) by which it moves from a slice to the next larger one
+    int origin_ = 0;                // slice in which the plane lies as voxels do
+    std::vector<float> metDepths_;  // [classes]: as MetClasses
+    std::vector<float> metMeans_;   // likewise
     std::vector<std::uint32_t> order_;  // of blocks, by slice, u and v
     std::vector<Group> groups_;         // in the order of the light
     int firstRow_ = 0;
@@ -64,9 +61,5 @@ class LightSweep {
     int firstColumn_ = 0;
     int columns_ = 0;
 };
-
-/// Extinctions are stated by the square root, in 1 / kDepthSteps: finely where little is met, and
-/// up to 1023.
-inline constexpr float kDepthSteps = 2048;
 
 }  // namespace deltasplat

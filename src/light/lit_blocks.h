@@ -9,6 +9,7 @@
 
 #include "delta/code_blocks.h"
 #include "deltasplat/optics/class_table.h"
+#include "uncleared_array.h"
 
 namespace deltasplat {
 
@@ -26,13 +27,8 @@ class LitBlocks {
     const std::vector<Block>& all() const { return blocks_; }
     /// Returns a block's number; -1 if nothing of it can be seen.
     std::int64_t find(const glm::ivec3& position) const;
-    /// Returns the class of a voxel of a block.
-    /// @param n  its place in the buffer of a leaf
-    Slot classOf(const Block& block, int n) const {
-        if (!block.leaf) return block.tileClass;
-        if (!block.leaf->isValueOn(openvdb::Index(n))) return kEmptySlot;
-        return classOfSlot_[std::size_t(block.leaf->buffer().data()[n]) + 1];
-    }
+    /// Returns the classes of the blocks' voxels, `[block][slice][u][v]`. Multi-threaded.
+    UnclearedArray<std::uint16_t> classesAlong(int sliceAxis) const;
 
   private:
     struct Hash {

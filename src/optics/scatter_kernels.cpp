@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "light/light_sweep.h"
+#include "light/sweep_kernels.h"
 #include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE

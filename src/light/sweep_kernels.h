@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+
+namespace deltasplat {
+
+/// What light meets in a slice of each class, [classes].
+struct MetClasses {
+    const float* depths;  ///< extinction on the way through
+    const float* means;   ///< what dims light as much as it is dimmed on average on that way
+};
+
+/// Where a block's voxels of a slice lie on the plane of what light has come through: voxel (u, v)
+/// between rows u and u + 1, columns v and v + 1.
+struct SweptPlace {
+    float* first;  ///< row 0, column 0
+    std::size_t pitch;
+    glm::vec2 share;  ///< of the way from a row, or column, to the next: 0..1
+};
+
+/// Extinctions are stated by the square root, in 1 / kDepthSteps: finely where little is met, and
+/// up to 1023.
+inline constexpr float kDepthSteps = 2048;
+
+/// Looks up what light meets in the voxels of a slice of a block. The same bits at every SIMD
+/// level, as those below.
+/// @param classes  [64]
+/// @param own      [64]: extinction on the way through
+/// @param means    [64]: as MetClasses has them
+/// @return whether there is any
+bool lookUpMet(const MetClasses& met, const std::uint16_t* classes, float* own, float* means);
+/// Reads what light has come through before voxels, and adds `means`.
+/// @param begin,end  rows of voxels [begin, end)
+/// @param codes      [64]: square roots, in 1 / kDepthSteps
+void readSwept(const SweptPlace& place, int begin, int end, const float* means,
+               std::uint16_t* codes);
+/// Adds what light comes through in voxels.
+/// @param begin,end  rows of the plane [begin, end) of 0..9
+/// @param own        [64]: those that these rows lie between have to be there
+void addSwept(const SweptPlace& place, int begin, int end, const float* own);
+
+}  // namespace deltasplat
