@@ -142,6 +142,49 @@ deltasplat_cli_test(usage.surface_and_fog EXIT 2
 deltasplat_refusal(surface_and_gradients
     "--isovalue: got --gradient-opacity besides; expected one of the two"
     --isovalue 1 --gradient-opacity 0:1)
+# Light in fog.
+deltasplat_refusal(lighting "--lighting: got sun; expected emission or scatter" --lighting sun)
+foreach(albedo 2 -0.1 1,1 nan 1,1,x)
+    string(MAKE_C_IDENTIFIER albedo_${albedo} name)
+    deltasplat_cli_test(usage.${name} EXIT 2 ARGS render ${cube} -o out.exr --albedo=${albedo}
+        STDERR_MATCHES "deltasplat: --albedo: got ${albedo}; expected .*0[.][.]1.*|deltasplat: --albedo: got ${albedo}; expected a finite number from 0 to 1")
+endforeach()
+foreach(lobes 1 0.8,0.3 0.8,0.3,2)
+    string(MAKE_C_IDENTIFIER anisotropy_${lobes} name)
+    deltasplat_refusal(${name}
+        "--anisotropy: got ${lobes}; expected G within -0.99..0.99, or G,G2,SHARE of two lobes, SHARE of the second within 0..1, as in 0.8,-0.3,0.2"
+        --anisotropy ${lobes})
+endforeach()
+foreach(sky 0,0,0 1,2 1,2,3:x 1,2,3:-1 1,2,3:1:1)
+    string(MAKE_C_IDENTIFIER sky_${sky} name)
+    deltasplat_refusal(${name}
+        "--sky: got ${sky}; expected X,Y,Z, the way towards the sun, not all 0, then, if wanted, :STRENGTH, as in 1,2,1:4"
+        --sky=${sky})
+endforeach()
+deltasplat_cli_test(usage.sun_below EXIT 2 ARGS render ${cube} -o out.exr --sky 1,-1,0
+    STDERR "deltasplat: --sky: got 1,-1,0, below the horizon; expected a sun above it: of twilight nothing is known")
+deltasplat_refusal(scatter_and_shade
+    "--lighting scatter: got --shade besides; expected one of the two" --lighting scatter --shade)
+deltasplat_refusal(scatter_and_surface
+    "--lighting scatter: got --isovalue besides; expected one of the two"
+    --lighting scatter --isovalue 3)
+deltasplat_refusal(scatter_and_gradients
+    "--lighting scatter: got --gradient-opacity besides; expected one of the two"
+    --lighting scatter --gradient-opacity 0:1)
+deltasplat_refusal(scatter_and_color_by
+    "--lighting scatter: got --color-by x besides; expected --color-by value"
+    --lighting scatter --color-by x)
+deltasplat_refusal(scatter_and_head_light
+    "--light: got head or view:X,Y,Z with --lighting scatter; expected X,Y,Z, the way that light travels in the world"
+    --lighting scatter --light head)
+deltasplat_refusal(scatter_and_between
+    "--between: got 1 with --lighting scatter; expected 0: lit fog is drawn by whole voxels"
+    --lighting scatter --between 1)
+deltasplat_cli_test(usage.env_missing EXIT 3 ARGS render ${cube} -o out.exr --env none.exr
+    STDERR "deltasplat: none.exr: got no such file; expected a readable file")
+deltasplat_cli_test(usage.env_shape EXIT 3 ARGS render ${cube} -o out.exr --env stack.1.pgm
+    STDERR_MATCHES "deltasplat: stack.1.pgm: got .*; expected .*")
+
 foreach(points 1 1:2:3 2:0,1:1 -1:0 1:1.5 x:1)
     string(MAKE_C_IDENTIFIER ${points} name)
     deltasplat_refusal(gradient_opacity_${name}

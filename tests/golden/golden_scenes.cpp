@@ -205,6 +205,11 @@ void addLooks(Scenes& scenes) {
     }
     scenes.add("gradient-opacity", "cloud", turned(10, 50), bent()).optics.gradientOpacity = {
         {0, 0.1}, {0.02, 0.9}};
+    Scattering scattering{glm::dvec3(0.9, 0.8, 0.7), 0.6, -0.3, 0.25, 2, glm::dvec3(0.02), {}};
+    scattering.lights = {{LightFrame::kWorld, {1, -2, 0.5}, {1, 0.8, 0.3}, 4},
+                         {LightFrame::kWorld, {-0.3, -0.2, 1}, {0.2, 0.3, 1}, 3}};
+    scenes.add("scattered", "cloud", turned(10, 50), bent()).optics.scattering = scattering;
+    scenes.add("scattered-perspective", "fog", camera, colored()).optics.scattering = scattering;
 }
 
 }  // namespace
