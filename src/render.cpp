@@ -9,6 +9,7 @@
 #include "memory.h"
 #include "prepared_axis.h"
 #include "ray_render.h"
+#include "stopwatch.h"
 
 namespace deltasplat {
 namespace {
@@ -68,9 +69,12 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
     if (options.mode == Mode::kComposite) {
         // The volume outlives the scene.
         const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
+        const Clock::time_point start = Clock::now();
         const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
+        const double sceneSeconds = secondsSince(start);
         KeptMemory memory;
         stats = renderComposite(scene, result.camera, memory, result.image, listener);
+        stats.prepareSeconds += sceneSeconds;
     } else {
         renderRays(volume, options, listener, result);
     }

@@ -13,12 +13,13 @@ namespace {
 
 // Into how many strips a light's plane is cut: enough for every thread to have some work, but none
 // so narrow that rows at its edges, which belong to two, take much of it.
-int stripCount(int rows, std::size_t lights) {
+std::int64_t stripCount(std::int64_t rows, std::size_t lights) {
     constexpr std::size_t kPiecesPerThread = 4;
-    constexpr int kLeastRows = 16;
+    constexpr std::int64_t kLeastRows = 16;
     const auto threads = std::size_t(threadCount());
     const auto wanted = threads == 1 ? 1 : (kPiecesPerThread * threads + lights - 1) / lights;
-    return std::clamp(int(wanted), 1, std::max(1, rows / kLeastRows));
+    return std::clamp<std::int64_t>(std::int64_t(wanted), 1,
+                                    std::max<std::int64_t>(1, rows / kLeastRows));
 }
 
 }  // namespace
@@ -34,8 +35,8 @@ LightDepths::LightDepths(const Volume& volume, const ClassTable& classes,
     if (voxels == 0) return;
     struct Piece {
         std::size_t light;
-        int first;
-        int last;
+        std::int64_t first;
+        std::int64_t last;
     };
     std::vector<LightSweep> sweeps;
     std::array<UnclearedArray<std::uint16_t>, 3> classesAlong;
@@ -44,11 +45,17 @@ LightDepths::LightDepths(const Volume& volume, const ClassTable& classes,
         sweeps.emplace_back(blocks_, classes, volume.worldFromIndex, lights[light].direction);
         auto& along = classesAlong[std::size_t(sweeps.back().sliceAxis())];
         if (along.empty()) along = blocks_.classesAlong(sweeps.back().sliceAxis());
-        const int rows = sweeps.back().rows();
-        const int strips = stripCount(rows, lights.size());
-        const auto edge = [&](int n) { return int(std::int64_t{rows} * n / strips); };
-        for (int i = 0; i < strips; ++i) pieces.push_back({light, edge(i), edge(i + 1)});
+        const std::int64_t rows = sweeps.back().rows();
+        const std::int64_t strips = stripCount(rows, lights.size());
+        const auto edge = [&](std::int64_t n) { return rows * n / strips; };
+        for (std::int64_t i = 0; i < strips; ++i) pieces.push_back({light, edge(i), edge(i + 1)});
     }
+    // Each thread has a piece in hand.
+    double largest = 0;
+    for (const Piece& piece : pieces)
+        largest = std::max(largest, sweeps[piece.light].bytes(piece.first, piece.last));
+    requireMemory("a plane that light is swept through",
+                  largest * std::min<double>(threadCount(), double(pieces.size())));
     parallelFor(pieces.size(), [&](std::size_t i) {
         const Piece& piece = pieces[i];
         const LightSweep& sweep = sweeps[piece.light];

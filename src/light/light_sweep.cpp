@@ -23,8 +23,7 @@ namespace {
 // What a slice of a block adds to the plane.
 struct MetBlock {
     SweptPlace place;
-    int begin;  // rows of the plane
-    int end;
+    int end;  // of rows of the plane
     std::array<float, 64> own;
 };
 
@@ -48,8 +47,8 @@ double meanDepth(double depth) {
 
 // Rows [first, last] of the plane, one more than are the strip's own: voxels read between two.
 struct LightSweep::Strip {
-    int first;
-    int last;
+    std::int64_t first;
+    std::int64_t last;
     const std::uint16_t* classes;
     std::uint16_t* depths;
     std::vector<float> plane;     // [last - first + 1][columns]
@@ -100,24 +99,25 @@ void LightSweep::sortBlocks() {
 
 // Which part of the plane any voxel reads from or adds to.
 void LightSweep::findRows() {
-    glm::ivec2 low(std::numeric_limits<int>::max());
-    glm::ivec2 high(std::numeric_limits<int>::min());
+    glm::i64vec2 low(std::numeric_limits<int>::max());
+    glm::i64vec2 high(std::numeric_limits<int>::min());
     for (const LitBlocks::Block& block : blocks_.all()) {
-        const glm::ivec3 place = 8 * toSliceOrder(block.position, axis_);
-        low = glm::min(low, glm::ivec2(place.y, place.z));
-        high = glm::max(high, glm::ivec2(place.y, place.z) + 7);
+        const glm::ivec3 place = toSliceOrder(block.position, axis_);
+        const glm::i64vec2 first(8 * std::int64_t{place.y}, 8 * std::int64_t{place.z});
+        low = glm::min(low, first);
+        high = glm::max(high, first + std::int64_t{7});
     }
     const auto [first, last] = std::minmax(groups_.front().firstSlice, groups_.back().firstSlice);
     const glm::dvec2 ends[] = {placeOf(first), placeOf(last + 7)};
-    const glm::ivec2 least = low + glm::ivec2(glm::floor(glm::min(ends[0], ends[1])));
-    const glm::ivec2 most = high + glm::ivec2(glm::floor(glm::max(ends[0], ends[1])));
+    const glm::i64vec2 least = low + glm::i64vec2(glm::floor(glm::min(ends[0], ends[1])));
+    const glm::i64vec2 most = high + glm::i64vec2(glm::floor(glm::max(ends[0], ends[1])));
     firstRow_ = least.x;
     lastRow_ = most.x + 1;
     firstColumn_ = least.y;
     columns_ = most.y - least.y + 2;
 }
 
-void LightSweep::run(int first, int last, const std::uint16_t* classes,
+void LightSweep::run(std::int64_t first, std::int64_t last, const std::uint16_t* classes,
                      std::uint16_t* depths) const {
     Strip strip{firstRow_ + first, firstRow_ + last, classes, depths, {}, {}};
     strip.plane.resize(std::size_t(last - first + 1) * std::size_t(columns_));
@@ -131,7 +131,7 @@ void LightSweep::run(int first, int last, const std::uint16_t* classes,
 void LightSweep::sweepSlice(const Group& group, int slice, Strip& strip) const {
     const glm::dvec2 place = placeOf(slice);
     const glm::dvec2 whole = glm::floor(place);
-    const glm::ivec2 base(whole);
+    const glm::i64vec2 base(whole);
     const glm::vec2 share(place - whole);
     const glm::ivec3 stride = toSliceOrder(kLeafStride, axis_);
     const MetClasses met{metDepths_.data(), metMeans_.data()};
@@ -142,31 +142,30 @@ void LightSweep::sweepSlice(const Group& group, int slice, Strip& strip) const {
         const std::size_t number = order_[i];
         const glm::ivec3 first = 8 * toSliceOrder(blocks_.all()[number].position, axis_);
         // Of the strip, counted from the block's first row.
-        const int begin = strip.first - (first.y + base.x);
-        const int end = strip.last - (first.y + base.x);
-        if (end < 0 || begin > 8) continue;
-        const std::ptrdiff_t row = -begin;
-        const std::ptrdiff_t column = first.z + base.y - firstColumn_;
-        const SweptPlace swept{strip.plane.data() + row * columns_ + column, std::size_t(columns_),
-                               share};
+        const std::int64_t firstOfStrip = strip.first - (first.y + base.x);
+        const std::int64_t lastOfStrip = strip.last - (first.y + base.x);
+        if (lastOfStrip < 0 || firstOfStrip > 8) continue;
+        const int begin = int(std::max<std::int64_t>(0, firstOfStrip));
+        const int end = int(std::min<std::int64_t>(8, lastOfStrip));
+        const std::int64_t column = first.z + base.y - firstColumn_;
+        const SweptPlace swept{
+            &strip.plane[std::size_t((begin - firstOfStrip) * columns_ + column)],
+            std::size_t(columns_), begin, share};
         const std::size_t inBlock = 64 * std::size_t(slice - first.x);
-        MetBlock block{swept, std::max(0, begin), std::min(9, end + 1), {}};
+        MetBlock block{swept, int(std::min<std::int64_t>(9, lastOfStrip + 1)), {}};
         const bool isAny =
             lookUpMet(met, strip.classes + 512 * number + inBlock, block.own.data(), means.data());
-        const int firstRead = std::max(0, begin);
-        const int lastRead = std::min(8, end);
-        if (firstRead < lastRead) {
-            readSwept(swept, firstRead, lastRead, means.data(), codes.data());
+        if (begin < end) {
+            readSwept(swept, end, means.data(), codes.data());
             std::uint16_t* out = strip.depths + 512 * number + (slice - first.x) * stride.x;
-            for (int u = firstRead; u < lastRead; ++u) {
+            for (int u = begin; u < end; ++u) {
                 for (int v = 0; v < 8; ++v)
                     out[u * stride.y + v * stride.z] = codes[std::size_t(8 * u + v)];
             }
         }
         if (isAny) strip.toAdd.push_back(block);
     }
-    for (const MetBlock& block : strip.toAdd)
-        addSwept(block.place, block.begin, block.end, block.own.data());
+    for (const MetBlock& block : strip.toAdd) addSwept(block.place, block.end, block.own.data());
 }
 
 }  // namespace deltasplat

@@ -23,7 +23,11 @@ class LightSweep {
 
     /// Rows that the plane has, 0 without blocks. It can be cut into strips of rows that are swept
     /// by themselves, without changing anything.
-    int rows() const { return lastRow_ - firstRow_; }
+    std::int64_t rows() const { return lastRow_ - firstRow_; }
+    /// Bytes that sweeping such a strip takes.
+    double bytes(std::int64_t first, std::int64_t last) const {
+        return double(sizeof(float)) * (double(last) - first + 1) * columns_;
+    }
     /// Along which slices follow each other.
     int sliceAxis() const { return axis_; }
     /// Sweeps a strip. Voxels that it does not reach are left to others.
@@ -31,7 +35,8 @@ class LightSweep {
     /// @param classes     LitBlocks::classesAlong(sliceAxis())
     /// @param depths      of blocks, `[x][y][z]` each: square roots of extinction, in 1 /
     ///                    kDepthSteps
-    void run(int first, int last, const std::uint16_t* classes, std::uint16_t* depths) const;
+    void run(std::int64_t first, std::int64_t last, const std::uint16_t* classes,
+             std::uint16_t* depths) const;
 
   private:
     // Blocks of [begin, end) have their voxels in the same eight slices.
@@ -56,10 +61,10 @@ class LightSweep {
     std::vector<float> metMeans_;   // likewise
     std::vector<std::uint32_t> order_;  // of blocks, by slice, u and v
     std::vector<Group> groups_;         // in the order of the light
-    int firstRow_ = 0;
-    int lastRow_ = 0;
-    int firstColumn_ = 0;
-    int columns_ = 0;
+    std::int64_t firstRow_ = 0;
+    std::int64_t lastRow_ = 0;
+    std::int64_t firstColumn_ = 0;
+    std::int64_t columns_ = 0;
 };
 
 }  // namespace deltasplat

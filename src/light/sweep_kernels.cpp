@@ -38,13 +38,12 @@ bool lookUpMetKernel(const MetClasses& met, const std::uint16_t* classes, float*
     return !hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)));
 }
 
-void readSweptKernel(const SweptPlace& place, int begin, int end, const float* means,
-                     std::uint16_t* codes) {
+void readSweptKernel(const SweptPlace& place, int end, const float* means, std::uint16_t* codes) {
     const RowTag tag;
     const hn::RebindToSigned<RowTag> whole;
     const hn::Rebind<std::uint16_t, RowTag> narrow;
-    for (int u = begin; u < end; ++u) {
-        const float* above = place.first + std::size_t(u) * place.pitch;
+    for (int u = place.begin; u < end; ++u) {
+        const float* above = place.first + std::size_t(u - place.begin) * place.pitch;
         const float* below = above + place.pitch;
         for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
             const auto inAbove =
@@ -62,7 +61,7 @@ void readSweptKernel(const SweptPlace& place, int begin, int end, const float* m
     }
 }
 
-void addSweptKernel(const SweptPlace& place, int begin, int end, const float* own) {
+void addSweptKernel(const SweptPlace& place, int end, const float* own) {
     const RowTag tag;
     // Rows as the columns of the plane see them: nine, what is behind the last is that of nothing.
     HWY_ALIGN float sums[10][16] = {};
@@ -81,8 +80,8 @@ void addSweptKernel(const SweptPlace& place, int begin, int end, const float* ow
     }
     const auto here = hn::Set(tag, 1 - place.share.x);
     const auto before = hn::Set(tag, place.share.x);
-    for (int k = begin; k < end; ++k) {
-        float* out = place.first + std::size_t(k) * place.pitch;
+    for (int k = place.begin; k < end; ++k) {
+        float* out = place.first + std::size_t(k - place.begin) * place.pitch;
         for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
             const auto sum = hn::Add(hn::Mul(here, hn::LoadU(tag, sums[k + 1] + v)),
                                      hn::Mul(before, hn::LoadU(tag, sums[k] + v)));
@@ -106,13 +105,12 @@ bool lookUpMet(const MetClasses& met, const std::uint16_t* classes, float* own, 
     return HWY_DYNAMIC_DISPATCH(lookUpMetKernel)(met, classes, own, means);
 }
 
-void readSwept(const SweptPlace& place, int begin, int end, const float* means,
-               std::uint16_t* codes) {
-    HWY_DYNAMIC_DISPATCH(readSweptKernel)(place, begin, end, means, codes);
+void readSwept(const SweptPlace& place, int end, const float* means, std::uint16_t* codes) {
+    HWY_DYNAMIC_DISPATCH(readSweptKernel)(place, end, means, codes);
 }
 
-void addSwept(const SweptPlace& place, int begin, int end, const float* own) {
-    HWY_DYNAMIC_DISPATCH(addSweptKernel)(place, begin, end, own);
+void addSwept(const SweptPlace& place, int end, const float* own) {
+    HWY_DYNAMIC_DISPATCH(addSweptKernel)(place, end, own);
 }
 
 }  // namespace deltasplat

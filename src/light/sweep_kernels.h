@@ -16,8 +16,9 @@ struct MetClasses {
 /// Where a block's voxels of a slice lie on the plane of what light has come through: voxel (u, v)
 /// between rows u and u + 1, columns v and v + 1.
 struct SweptPlace {
-    float* first;  ///< row 0, column 0
+    float* first;  ///< row `begin`, column 0
     std::size_t pitch;
+    int begin;        ///< rows before it are left out
     glm::vec2 share;  ///< of the way from a row, or column, to the next: 0..1
 };
 
@@ -33,13 +34,12 @@ inline constexpr float kDepthSteps = 2048;
 /// @return whether there is any
 bool lookUpMet(const MetClasses& met, const std::uint16_t* classes, float* own, float* means);
 /// Reads what light has come through before voxels, and adds `means`.
-/// @param begin,end  rows of voxels [begin, end)
-/// @param codes      [64]: square roots, in 1 / kDepthSteps
-void readSwept(const SweptPlace& place, int begin, int end, const float* means,
-               std::uint16_t* codes);
+/// @param end    of rows of voxels, 0..8
+/// @param codes  [64]: square roots, in 1 / kDepthSteps
+void readSwept(const SweptPlace& place, int end, const float* means, std::uint16_t* codes);
 /// Adds what light comes through in voxels.
-/// @param begin,end  rows of the plane [begin, end) of 0..9
-/// @param own        [64]: those that these rows lie between have to be there
-void addSwept(const SweptPlace& place, int begin, int end, const float* own);
+/// @param end  of rows of the plane, 0..9
+/// @param own  [64]: those that these rows lie between have to be there
+void addSwept(const SweptPlace& place, int end, const float* own);
 
 }  // namespace deltasplat

@@ -433,6 +433,26 @@ foreach(option extinction=2 unit-distance=3 range=1,60)
     deltasplat_unused(surface_${name} --${name} "on a surface" CREATES out.exr
         ARGS render ${cube} -o out.exr --size 8x8 --isovalue 50 --${option})
 endforeach()
+foreach(option diffuse=0.3 specular=1 shininess=3)
+    string(REGEX REPLACE "=.*" "" name ${option})
+    deltasplat_unused(fog_${name} --${name} "on fog, which has no surfaces" CREATES out.exr
+        ARGS render ${cube} -o out.exr --size 8x8 --lighting scatter --light 1,0,0 --${option})
+endforeach()
+foreach(option env-strength=2 env-turn=30)
+    string(REGEX REPLACE "=.*" "" name ${option})
+    deltasplat_unused(fog_${name} --${name} "without --env" CREATES out.exr
+        ARGS render ${cube} -o out.exr --size 8x8 --sky 1,1,1 --${option})
+endforeach()
+deltasplat_unused(fog_turbidity --turbidity "without --sky" CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --light 1,0,0 --turbidity 3)
+deltasplat_unused(fog_env_lights --env-lights "without --sky or --env" CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --light 1,0,0 --env-lights 3)
+deltasplat_unused(fog_emission --albedo "with --lighting emission" CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --lighting emission --albedo 0.5)
+deltasplat_unused(fog_mode --sky "with --mode xray" CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --mode xray --sky 1,1,1)
+deltasplat_cli_test(used.fog_default CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --lighting scatter --turbidity 4 --env-lights 8)
 deltasplat_cli_test(used.surface_range CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --isovalue 50 --range 1,60 --tf viridis)
 deltasplat_unused(mip_sigma --sigma "with --mode mip" CREATES out.exr

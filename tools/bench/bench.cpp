@@ -68,6 +68,7 @@ void warnOfUnusedOptions(const CLI::App& app, const BenchCommand& command,
     const Files mask = filesOfMask(command.picture.parts);
     inputs.insert(inputs.end(), mask.begin(), mask.end());
     warnOfUnusedInputOptions(app, inputs, display);
+    warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading, display);
     if (isGiven(app, "--background") && command.report.empty())
         display.warn("--background: has no effect without --report");
 }

@@ -119,6 +119,30 @@ std::optional<Scattering> ScatterChoice::of(const ShadingChoice& shading, const 
     return result;
 }
 
+std::vector<std::string> scatterOptions() {
+    return {"--lighting",  "--albedo", "--anisotropy",   "--scatter-octaves", "--sky",
+            "--turbidity", "--env",    "--env-strength", "--env-turn",        "--env-lights"};
+}
+
+void warnOfUnusedScatterOptions(const CLI::App& app, const ScatterChoice& choice,
+                                const ShadingChoice& shading, ProgressDisplay& display) {
+    const auto warnOf = [&](const std::vector<std::string>& options, const std::string& remark) {
+        for (const std::string& option : options)
+            if (isGiven(app, option)) display.warn(option + ": has no effect " + remark);
+    };
+    if (!choice.asked()) {
+        std::vector<std::string> others = scatterOptions();
+        others.erase(others.begin());
+        return warnOf(others, "with --lighting emission");
+    }
+    warnOf({"--diffuse", "--specular", "--shininess"}, "on fog, which has no surfaces");
+    const bool hasEnvironment = !choice.environment.empty();
+    const bool hasSky = choice.sky || (!hasEnvironment && shading.lights.empty());
+    if (!hasSky) warnOf({"--turbidity"}, "without --sky");
+    if (!hasEnvironment) warnOf({"--env-strength", "--env-turn"}, "without --env");
+    if (!hasSky && !hasEnvironment) warnOf({"--env-lights"}, "without --sky or --env");
+}
+
 void addScatterOptions(CLI::App& app, ScatterChoice& choice) {
     OptionGroup group(app, "Light in fog");
     Scattering& scattering = choice.scattering;

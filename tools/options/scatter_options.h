@@ -4,10 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "deltasplat/optics/scattering.h"
 #include "deltasplat/optics/sky.h"
+#include "listener.h"
 #include "options/shading_options.h"
 
 namespace deltasplat {
@@ -51,5 +53,13 @@ struct ScatterChoice {
 };
 
 void addScatterOptions(CLI::App& app, ScatterChoice& choice);
+
+/// The options that addScatterOptions declares.
+std::vector<std::string> scatterOptions();
+
+/// Warns of options that were given and change nothing, as others say how the picture is lit.
+/// @param shading  says which lights there are besides
+void warnOfUnusedScatterOptions(const CLI::App& app, const ScatterChoice& choice,
+                                const ShadingChoice& shading, ProgressDisplay& display);
 
 }  // namespace deltasplat

@@ -92,6 +92,7 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
         display.warn("--dither: has no effect without a .png of 8 bits");
     warnOfUnusedModeOptions(app, command, display);
     if (command.picture.render.mode != Mode::kComposite) return;
+    warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading, display);
     if (!command.picture.surface.asked) return;
     std::vector<std::string> unused = {"--extinction", "--unit-distance"};
     const bool isColored = !command.picture.transferFunction.empty();

@@ -70,6 +70,8 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
         "--extinction", "--unit-distance", "--color-by",        "--shade",      "--light",
         "--ambient",    "--diffuse",       "--specular",        "--shininess",  "--surface",
         "--isovalue",   "--surface-color", "--gradient-opacity"};
+    const std::vector<std::string> ofFog = scatterOptions();
+    unused.insert(unused.end(), ofFog.begin(), ofFog.end());
     if (colorsValues(command)) unused.push_back("--sigma");
     if (!colorsValues(command) || isExr(command.output))
         unused.insert(unused.end(),
