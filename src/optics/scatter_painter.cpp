@@ -67,7 +67,7 @@ class ScatteredLight : public LookLight {
     }
 
   private:
-    static constexpr std::size_t kMostAtOnce = 32;
+    static constexpr std::size_t kMostAtOnce = 64;
 
     // Of where light goes and where it goes on to.
     static double cosineOf(const Light& light, const Camera& camera) {
