@@ -89,6 +89,7 @@ constexpr FlagName kFlagNames[] = {
     {"targetWorld", "--target"},
     {"tolerance.relative", "--tolerance"},
     {"tolerance.value", "--tolerance-value"},
+    {"transferFunction", "--tf"},
     {"type", "--type"},
     {"unitDistance", "--unit-distance"},
     {"up", "--up"},

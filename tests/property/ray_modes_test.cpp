@@ -508,11 +508,11 @@ TEST(RayModes, NumbersOutOfRangeAreRefused) {
 }
 
 TEST(RayModes, RadiographsOfOtherUnitsAreWarnedOf) {
-    const auto warningsOf = [](const Volume& volume) {
+    const auto warningsOf = [](const Volume& volume, Mode mode = Mode::kDrr) {
         std::string lines;
         Listener listener;
         listener.warning = [&](const std::string& line) { lines += line; };
-        render(volume, optionsOf(Mode::kDrr, viewOf(volume, {0, 0, -1})), listener);
+        render(volume, optionsOf(mode, viewOf(volume, {0, 0, -1})), listener);
         return lines;
     };
     Volume volume =
@@ -520,10 +520,16 @@ TEST(RayModes, RadiographsOfOtherUnitsAreWarnedOf) {
     EXPECT_NE(warningsOf(volume).find("names no patient's space"), std::string::npos);
     volume.space = "RAS";
     EXPECT_NE(warningsOf(volume).find("hardly any air"), std::string::npos);
+    EXPECT_EQ(warningsOf(volume, Mode::kXray), "");
     volume.codeBook = CodeBook::integer(-1000);
     volume.valueMin = -1000;
     volume.valueMax = 30;
     EXPECT_EQ(warningsOf(volume), "");
+    // Sums of Hounsfield units are of no use, the other way round.
+    const std::string xray = warningsOf(volume, Mode::kXray);
+    EXPECT_EQ(xray.find("`mode` xray: adds up Hounsfield units"), 0) << xray;
+    EXPECT_NE(xray.find("`mode` drr makes radiographs"), std::string::npos);
+    EXPECT_EQ(warningsOf(volume, Mode::kMip), "");
 }
 
 }  // namespace
