@@ -28,7 +28,8 @@ constexpr float kNotActive = std::numeric_limits<float>::quiet_NaN();
 
 RayRule eyeRule(Mode mode) {
     if (showsSums(mode)) return RayRule::kSum;
-    return mode == Mode::kAverage ? RayRule::kMean : RayRule::kMax;
+    if (mode == Mode::kAverage) return RayRule::kMean;
+    return mode == Mode::kMin ? RayRule::kMaxActive : RayRule::kMax;
 }
 
 // What a ray finds: a sum in voxels' values times slices, or a value and how many slices away.
@@ -63,25 +64,39 @@ bool isAllActive(const SliceTaps& taps) {
     return !std::isnan(four.first + four.nextV + four.nextU + four.nextBoth);
 }
 
+// The mean of what is active of a reading, by the weights; false if nothing is.
+bool meanOfActive(const SliceTaps& taps, double& mean) {
+    double sum = 0;
+    double weights = 0;
+    forActive(taps, [&](float value, double weight) {
+        sum += weight * double(value);
+        weights += weight;
+    });
+    if (weights > 0) mean = sum / weights;
+    return weights > 0;
+}
+
+// What is not active counts as `empty`, or not at all if that is NaN.
 struct MaxFinder {
     float empty;
     Found found;
 
     void take(const SliceTaps& taps) {
-        if (isAllActive(taps)) return offer(taps.read(), taps.distance);
-        bool isMet = false;
-        forActive(taps, [&](float, double) { isMet = true; });
-        if (!isMet) return;
-        SliceTaps filled = taps;
-        BrickTaps& four = filled.voxels;
+        if (isAllActive(taps)) return offer(double(taps.read()), taps.distance);
+        double mean = 0;
+        if (!meanOfActive(taps, mean)) return;
+        offer(std::isnan(empty) ? mean : double(readFilled(taps)), taps.distance);
+    }
+    float readFilled(SliceTaps taps) const {
+        BrickTaps& four = taps.voxels;
         for (float* value : {&four.first, &four.nextV, &four.nextU, &four.nextBoth}) {
             if (std::isnan(*value)) *value = empty;
         }
-        offer(filled.read(), taps.distance);
+        return taps.read();
     }
     // Of equal values the nearest is what is seen.
-    void offer(float value, double distance) {
-        if (!found.isMet || double(value) > found.value) found = {double(value), distance, true};
+    void offer(double value, double distance) {
+        if (!found.isMet || value > found.value) found = {value, distance, true};
     }
     Found result() const { return found; }
 };

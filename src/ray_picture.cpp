@@ -58,6 +58,15 @@ void warnOfOtherUnits(const Volume& volume, const Listener& listener) {
                        : ", with hardly any air or hardly any soft tissue, seem not to be"));
 }
 
+// Integrals of Hounsfield units mean little: air counts less than what is outside of the scan.
+void warnOfHounsfield(const Volume& volume, const Listener& listener) {
+    if (!isHounsfield(volume)) return;
+    listener.warn(
+        "`mode` xray: adds up Hounsfield units, where air is -1000 and what is outside of the scan "
+        "counts as 0, as water does: the less a line of sight has of the scan, the brighter; "
+        "`mode` drr makes radiographs");
+}
+
 }  // namespace
 
 void checkRayOptions(const RenderOptions& options) {
@@ -85,6 +94,7 @@ bool showsSums(Mode mode) {
 void warnOfValues(const Volume& volume, const RenderOptions& options, int slices, double stepWorld,
                   const Listener& listener) {
     if (options.mode == Mode::kDrr) warnOfOtherUnits(volume, listener);
+    if (options.mode == Mode::kXray) warnOfHounsfield(volume, listener);
     warnOfFloats(volume, options, slices, stepWorld, listener);
 }
 

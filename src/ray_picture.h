@@ -22,7 +22,8 @@ ValueMap valueMapOf(const RenderOptions& options);
 bool showsSums(Mode mode);
 
 /// Warns of what makes the picture another than who asked for it may think: numbers that 32-bit
-/// floats do not hold, and radiographs of what is no CT scan.
+/// floats do not hold, radiographs of what is no CT scan, and
+/// x-rays of what is one.
 /// @param slices     that are added up
 /// @param stepWorld  length of the way through one
 void warnOfValues(const Volume& volume, const RenderOptions& options, int slices, double stepWorld,

@@ -131,8 +131,9 @@ void shadePlaces(const ParallelView& view, const IndexBox& box, const SheetLayou
 }
 
 RayRule parallelRule(Mode mode) {
+    if (mode == Mode::kMip) return RayRule::kMax;
     // Means are sums divided by counts.
-    return mode == Mode::kMip || mode == Mode::kMin ? RayRule::kMax : RayRule::kSum;
+    return mode == Mode::kMin ? RayRule::kMaxActive : RayRule::kSum;
 }
 
 void renderParallel(const ParallelView& view, const Listener& listener, RenderResult& result) {

@@ -76,9 +76,12 @@ class CompositeRender {
             std::any_of(rgba.begin(), middle, isSeen))
             return;
         if (stats_.visible == 0) {
+            const bool isSurface = scene_.scene.optics.surface.has_value();
             listener.warn(
-                "picture: empty, for transfer function and extinction show none of the values " +
-                numberText(volume_.valueMin) + " to " + numberText(volume_.valueMax));
+                std::string("picture: empty, for ") +
+                (isSurface ? "the surface encloses" : "transfer function and extinction show") +
+                " none of the values " + numberText(volume_.valueMin) + " to " +
+                numberText(volume_.valueMax));
         } else {
             const WorldBox world = worldBox(volume_.box, volume_.worldFromIndex);
             listener.warn(

@@ -91,6 +91,7 @@ constexpr FlagName kFlagNames[] = {
     {"tolerance.relative", "--tolerance"},
     {"tolerance.value", "--tolerance-value"},
     {"towardsSun", "--sky"},
+    {"transferFunction", "--tf"},
     {"turbidity", "--turbidity"},
     {"type", "--type"},
     {"unitDistance", "--unit-distance"},

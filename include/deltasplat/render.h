@@ -21,7 +21,8 @@ struct RenderResult {
 /// kAverage R = G = B = the largest or smallest value, or the mean, and A = 1 where an active voxel
 /// is met, and all 0 elsewhere: numbers, not light, that may be negative or larger than 1. Under
 /// kDrr R = G = B = exp(-integral of mu), times the photons, and A = 1, also of an empty volume.
-/// Inactive voxels count as 0, of kAverage not at all, and let all x-rays through. Where the
+/// Inactive voxels count as 0, of kMip as the smallest value if that is negative, of kMin and
+/// kAverage not at all, and let all x-rays through. Where the
 /// code book is not exact and Volume::source is filled (ReadOptions::keepInexact), values are the
 /// source's own.
 /// @throw Error(kUsage) for options out of range; Error(kFailed) for a picture that does not fit

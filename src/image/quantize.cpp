@@ -57,15 +57,31 @@ std::vector<float> finiteValues(const Image& image, bool forFloat) {
     return values;
 }
 
+// Calls use(pixel, threshold) for each pixel's number.
+template <typename Use>
+void forThresholds(const Image& image, bool dither, const Use& use) {
+    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
+        const std::size_t width = std::size_t(image.size.x);
+        for (std::size_t x = 0; x < width; ++x)
+            use(y * width + x, dither ? thresholdAt(x, y) : 0.5);
+    });
+}
+
 template <typename Sample>
 std::vector<Sample> straightSrgb(const Image& image, bool dither) {
     std::vector<Sample> samples(image.rgba.size());
-    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
-        const std::size_t width = std::size_t(image.size.x);
-        for (std::size_t x = 0; x < width; ++x) {
-            const std::size_t i = 4 * (y * width + x);
-            const double threshold = dither ? thresholdAt(x, y) : 0.5;
-            straightSrgbPixel(&image.rgba[i], threshold, &samples[i]);
+    forThresholds(image, dither, [&](std::size_t pixel, double threshold) {
+        straightSrgbPixel(&image.rgba[4 * pixel], threshold, &samples[4 * pixel]);
+    });
+    return samples;
+}
+
+std::vector<std::uint8_t> opaqueSrgb(const Image& image, bool dither) {
+    std::vector<std::uint8_t> samples(image.rgba.size() / 4 * 3);
+    forThresholds(image, dither, [&](std::size_t pixel, double threshold) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double level = srgbFromLinear(clampUnit(image.rgba[4 * pixel + c]));
+            samples[3 * pixel + c] = quantize<std::uint8_t>(level, threshold);
         }
     });
     return samples;

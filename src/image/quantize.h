@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "deltasplat/image/image.h"
@@ -18,5 +19,8 @@ std::vector<float> finiteValues(const Image& image, bool forFloat);
 ///                mean of neighbouring pixels is right; what is a whole number stays so
 template <typename Sample>
 std::vector<Sample> straightSrgb(const Image& image, bool dither = false);
+
+/// The same of the picture over black, without alpha: `[height][width][3]`.
+std::vector<std::uint8_t> opaqueSrgb(const Image& image, bool dither);
 
 }  // namespace deltasplat

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <glm/gtc/type_ptr.hpp>
+#include <limits>
 #include <memory>
 #include <string_view>
 
@@ -22,41 +23,60 @@
 namespace deltasplat {
 namespace {
 
-enum class Format { kExr, kPng };
+// The most bytes of an image description that fit into a segment of a .jpg, besides all else.
+constexpr std::size_t kMaxJpegText = 30000;
+constexpr const char* kJpegCompression = "jpeg:95";
 
-Format formatOf(const std::filesystem::path& file) {
-    const std::string extension = lowerCase(file.extension().string());
-    if (extension == ".exr") return Format::kExr;
-    if (extension == ".png") return Format::kPng;
-    throw Error(ErrorCode::kUsage,
-                gotExpected(file.string(), "extension \"" + file.extension().string() + "\"",
-                            ".exr or .png"));
+int maxSide(ImageFormat format) {
+    if (format == ImageFormat::kExr) return std::numeric_limits<int>::max();
+    return format == ImageFormat::kJpeg ? kMaxJpegSide : kMaxPngSide;
 }
 
 void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
                   const ImageFileOptions& options) {
-    const Format format = formatOf(file);
-    if (options.bits != 8 && options.bits != 16) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`bits`", std::to_string(options.bits), "8 or 16"));
+    const ImageFormat format = imageFormatOf(file);
+    const bool isJpeg = format == ImageFormat::kJpeg;
+    if (options.bits != 8 && (options.bits != 16 || isJpeg)) {
+        throw Error(ErrorCode::kUsage, gotExpected("`bits`", std::to_string(options.bits),
+                                                   isJpeg ? "8 in a .jpg" : "8 or 16"));
     }
-    if (options.floatExr && format != Format::kExr) {
+    if (options.floatExr && format != ImageFormat::kExr) {
         throw Error(ErrorCode::kUsage, gotExpected("`floatExr`", file.string(), "an .exr file"));
     }
-    if (format == Format::kPng && (size.x > kMaxPngSide || size.y > kMaxPngSide)) {
+    const int most = maxSide(format);
+    if (size.x > most || size.y > most) {
         throw Error(
             ErrorCode::kUsage,
             gotExpected("`image.size`", std::to_string(size.x) + "x" + std::to_string(size.y),
-                        "sides of at most " + std::to_string(kMaxPngSide) + " pixels in a .png"));
+                        "sides of at most " + std::to_string(most) + " pixels in a " +
+                            lowerCase(file.extension().string())));
     }
 }
 
-OIIO::ImageSpec makeSpec(const Image& image, OIIO::TypeDesc type, const ImageFileOptions& options) {
+OIIO::ImageSpec rgbaSpec(const Image& image, OIIO::TypeDesc type) {
     OIIO::ImageSpec spec(image.size.x, image.size.y, 4, type);
     spec.channelnames = {"R", "G", "B", "A"};
     spec.alpha_channel = 3;
-    for (const auto& [name, text] : options.metadata) spec.attribute("deltasplat:" + name, text);
     return spec;
+}
+
+void addMetadata(const ImageFileOptions& options, OIIO::ImageSpec& spec) {
+    for (const auto& [name, text] : options.metadata) spec.attribute("deltasplat:" + name, text);
+}
+
+// For formats that have no names of one's own.
+std::string description(const ImageFileOptions& options) {
+    std::string lines;
+    for (const auto& [name, text] : options.metadata) {
+        if (!lines.empty()) lines += '\n';
+        lines.append("deltasplat:").append(name).append(": ").append(text);
+    }
+    return lines;
+}
+
+// OpenImageIO does not live through an empty one.
+void addDescription(const std::string& text, OIIO::ImageSpec& spec) {
+    if (!text.empty()) spec.attribute("ImageDescription", text);
 }
 
 void setMatrix(OIIO::ImageSpec& spec, const char* name, const glm::dmat4& matrix) {
@@ -92,7 +112,8 @@ std::string encode(const std::filesystem::path& file, const char* formatName,
 std::string encodeExr(const std::filesystem::path& file, const Image& image,
                       const ImageFileOptions& options) {
     const OIIO::TypeDesc type = options.floatExr ? OIIO::TypeFloat : OIIO::TypeHalf;
-    OIIO::ImageSpec spec = makeSpec(image, type, options);
+    OIIO::ImageSpec spec = rgbaSpec(image, type);
+    addMetadata(options, spec);
     spec.attribute("compression", "zip");
     spec.attribute("oiio:ColorSpace", "Linear");
     // Without a date OpenImageIO stores the clock time (as capDate).
@@ -104,17 +125,68 @@ std::string encodeExr(const std::filesystem::path& file, const Image& image,
 }
 
 template <typename Sample>
-std::string encodePng(const std::filesystem::path& file, const Image& image, OIIO::TypeDesc type,
-                      const ImageFileOptions& options) {
-    OIIO::ImageSpec spec = makeSpec(image, type, options);
-    spec.attribute("oiio:ColorSpace", "sRGB");
+std::string encodeStraight(const std::filesystem::path& file, const char* formatName,
+                           const Image& image, OIIO::ImageSpec spec,
+                           const ImageFileOptions& options) {
     // The samples are final: OpenImageIO must not divide them by alpha once more.
     spec.attribute("oiio:UnassociatedAlpha", 1);
-    return encode(file, "png", spec, type,
+    return encode(file, formatName, spec, spec.format,
                   straightSrgb<Sample>(image, options.dither && sizeof(Sample) == 1).data());
 }
 
+std::string encodeStraight(const std::filesystem::path& file, const char* formatName,
+                           const Image& image, const OIIO::ImageSpec& spec,
+                           const ImageFileOptions& options) {
+    return options.bits == 16
+               ? encodeStraight<std::uint16_t>(file, formatName, image, spec, options)
+               : encodeStraight<std::uint8_t>(file, formatName, image, spec, options);
+}
+
+OIIO::TypeDesc sampleType(const ImageFileOptions& options) {
+    return options.bits == 16 ? OIIO::TypeUInt16 : OIIO::TypeUInt8;
+}
+
+std::string encodePng(const std::filesystem::path& file, const Image& image,
+                      const ImageFileOptions& options) {
+    OIIO::ImageSpec spec = rgbaSpec(image, sampleType(options));
+    addMetadata(options, spec);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    return encodeStraight(file, "png", image, spec, options);
+}
+
+std::string encodeTiff(const std::filesystem::path& file, const Image& image,
+                       const ImageFileOptions& options) {
+    OIIO::ImageSpec spec = rgbaSpec(image, sampleType(options));
+    spec.attribute("compression", "zip");
+    addDescription(description(options), spec);
+    // Without a date OpenImageIO stores the clock time. A colour space it would put into a second
+    // directory, whose place OpenImageIO 2.4 stores as the first one's: sRGB is what is assumed.
+    spec.attribute("DateTime", "");
+    return encodeStraight(file, "tiff", image, spec, options);
+}
+
+std::string encodeJpeg(const std::filesystem::path& file, const Image& image,
+                       const ImageFileOptions& options) {
+    OIIO::ImageSpec spec(image.size.x, image.size.y, 3, OIIO::TypeUInt8);
+    spec.attribute("compression", kJpegCompression);
+    spec.attribute("jpeg:subsampling", "4:4:4");
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    addDescription(description(options).substr(0, kMaxJpegText), spec);
+    return encode(file, "jpeg", spec, spec.format, opaqueSrgb(image, options.dither).data());
+}
+
 }  // namespace
+
+ImageFormat imageFormatOf(const std::filesystem::path& file) {
+    const std::string extension = lowerCase(file.extension().string());
+    if (extension == ".exr") return ImageFormat::kExr;
+    if (extension == ".png") return ImageFormat::kPng;
+    if (extension == ".tif" || extension == ".tiff") return ImageFormat::kTiff;
+    if (extension == ".jpg" || extension == ".jpeg") return ImageFormat::kJpeg;
+    throw Error(ErrorCode::kUsage,
+                gotExpected(file.string(), "extension \"" + file.extension().string() + "\"",
+                            ".exr, .png, .tif or .jpg"));
+}
 
 void checkImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
                     const ImageFileOptions& options) {
@@ -131,9 +203,17 @@ std::string encodeImage(const std::filesystem::path& file, const Image& image,
             std::to_string(image.size.x) + "x" + std::to_string(image.size.y) + " pixels";
         throw Error(ErrorCode::kUsage, gotExpected(file.string(), got, "at least 1x1"));
     }
-    if (formatOf(file) == Format::kExr) return encodeExr(file, image, options);
-    return options.bits == 16 ? encodePng<std::uint16_t>(file, image, OIIO::TypeUInt16, options)
-                              : encodePng<std::uint8_t>(file, image, OIIO::TypeUInt8, options);
+    switch (imageFormatOf(file)) {
+        case ImageFormat::kExr:
+            return encodeExr(file, image, options);
+        case ImageFormat::kPng:
+            return encodePng(file, image, options);
+        case ImageFormat::kTiff:
+            return encodeTiff(file, image, options);
+        case ImageFormat::kJpeg:
+            break;
+    }
+    return encodeJpeg(file, image, options);
 }
 
 void writeImage(const std::filesystem::path& file, const Image& image,

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/label_changes.h"
 
-#include <functional>
+#include <cmath>
+#include <iterator>
 #include <string>
 #include <vector>
 
 #include "deltasplat/error.h"
+#include "number_text.h"
 #include "optics/label_function.h"
 
 namespace deltasplat {
@@ -26,25 +28,31 @@ std::vector<NamedLabels> namedLabels(const LabelChanges& changes) {
     return all;
 }
 
-void warnOfMissing(const LabelChanges& changes, const std::function<bool(int)>& isThere,
-                   const std::string& where, const Listener& listener) {
-    for (const NamedLabels& named : namedLabels(changes)) {
-        std::string missing;
-        for (const int label : named.labels) {
-            if (isThere(label)) continue;
-            if (!missing.empty()) missing += ", ";
-            missing += std::to_string(label);
-        }
-        if (missing.empty()) continue;
-        missing += " in " + where;
-        listener.warn(std::string(named.name) + ": no label " + missing);
-    }
+std::string listOf(const std::vector<double>& numbers) {
+    std::string text;
+    for (const double number : numbers) text += (text.empty() ? "" : ", ") + numberText(number);
+    return text;
+}
+
+std::set<int> labelsOf(const TransferFunction& table) {
+    std::set<int> labels;
+    for (const LabelLook& look : looksOf(table)) labels.insert(look.label);
+    return labels;
+}
+
+bool isThere(double label, const Volume& volume) {
+    const Code code = volume.codeBook.codeOf(label);
+    return volume.codeBook.valueOf(code) == label && volume.histogram[code] > 0;
+}
+
+bool isClear(int label, const LabelChanges& changes) {
+    const bool isShown = changes.shown.empty() || changes.shown.contains(label);
+    return !isShown || changes.hidden.contains(label);
 }
 
 }  // namespace
 
-TransferFunction changeLabels(const TransferFunction& function, const LabelChanges& changes,
-                              const Listener& listener) {
+TransferFunction changeLabels(const TransferFunction& function, const LabelChanges& changes) {
     if (changes.empty()) return function;
     if (!function.categorical) {
         throw Error(ErrorCode::kUsage,
@@ -52,28 +60,59 @@ TransferFunction changeLabels(const TransferFunction& function, const LabelChang
                                 "a table of labels"));
     }
     std::vector<LabelLook> looks = looksOf(function);
-    std::set<int> known;
     for (LabelLook& look : looks) {
-        known.insert(look.label);
         const auto opacity = changes.opacities.find(look.label);
         if (opacity != changes.opacities.end()) look.opacity = opacity->second;
-        const bool isShown = changes.shown.empty() || changes.shown.contains(look.label);
-        if (!isShown || changes.hidden.contains(look.label)) look.opacity = 0;
+        if (isClear(look.label, changes)) look.opacity = 0;
     }
-    warnOfMissing(
-        changes, [&](int label) { return known.contains(label); }, "the table", listener);
     TransferFunction changed = labelFunction(looks);
     changed.name = function.name;
     return changed;
 }
 
-void warnOfAbsentLabels(const LabelChanges& changes, const Volume& volume,
-                        const Listener& listener) {
-    const auto isThere = [&](int label) {
-        const Code code = volume.codeBook.codeOf(label);
-        return volume.codeBook.valueOf(code) == label && volume.histogram[code] > 0;
-    };
-    warnOfMissing(changes, isThere, "the volume", listener);
+void warnOfAbsentLabels(const LabelChanges& changes, const TransferFunction& table,
+                        const Volume& volume, const Listener& listener) {
+    if (changes.empty()) return;
+    const std::set<int> known = labelsOf(table);
+    for (const NamedLabels& named : namedLabels(changes)) {
+        std::vector<double> absent[3];
+        for (const int label : named.labels) {
+            const bool isKnown = known.contains(label);
+            const bool isUsed = isThere(label, volume);
+            if (!isKnown || !isUsed) absent[isUsed ? 0 : isKnown ? 1 : 2].push_back(label);
+        }
+        const char* places[] = {"the table", "the volume", "the table or the volume"};
+        for (int i = 0; i < 3; ++i) {
+            if (absent[i].empty()) continue;
+            listener.warn(std::string(named.name) + ": no label " + listOf(absent[i]) + " in " +
+                          places[i]);
+        }
+    }
+}
+
+void warnOfUnlistedLabels(const LabelChanges& changes, const TransferFunction& table,
+                          const Volume& volume, const Listener& listener) {
+    const std::set<int> known = labelsOf(table);
+    std::set<double> unlisted;
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+        if (volume.histogram[code] == 0) continue;
+        const double value = volume.codeBook.valueOf(Code(code));
+        // Labels have what is half way to their neighbours, as far as labels go.
+        const bool isFar = std::abs(value) > 1e9;
+        const int label = isFar ? 0 : int(std::floor(value + 0.5));
+        if (value == 0 || known.contains(label)) continue;
+        if (isFar || !isClear(label, changes)) unlisted.insert(value);
+    }
+    if (unlisted.empty()) return;
+    constexpr std::size_t kMost = 5;
+    const bool areMany = unlisted.size() > kMost + 1;
+    auto end = unlisted.begin();
+    std::advance(end, areMany ? kMost : unlisted.size());
+    const bool isOne = unlisted.size() == 1;
+    std::string text = listOf({unlisted.begin(), end});
+    if (areMany) text += " and " + std::to_string(unlisted.size() - kMost) + " more";
+    listener.warn(std::string("`transferFunction`: ") + (isOne ? "label " : "labels ") + text +
+                  " of the volume " + (isOne ? "is" : "are") + " not in the table, and not shown");
 }
 
 }  // namespace deltasplat

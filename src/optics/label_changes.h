@@ -17,13 +17,17 @@ struct LabelChanges {
     bool empty() const { return hidden.empty() && shown.empty() && opacities.empty(); }
 };
 
-/// Returns a table of labels with the changes made. Warns of labels that it does not have.
+/// Returns a table of labels with the changes made; labels that it does not have are passed over.
 /// @throw Error(kUsage) if the function is no table of labels
-TransferFunction changeLabels(const TransferFunction& function, const LabelChanges& changes,
-                              const Listener& listener);
+TransferFunction changeLabels(const TransferFunction& function, const LabelChanges& changes);
 
-/// Warns of labels among the changes that no active voxel has.
-void warnOfAbsentLabels(const LabelChanges& changes, const Volume& volume,
-                        const Listener& listener);
+/// Warns of labels among the changes that the table does not have or no active voxel has.
+void warnOfAbsentLabels(const LabelChanges& changes, const TransferFunction& table,
+                        const Volume& volume, const Listener& listener);
+
+/// Warns of values of active voxels, other than 0, that the table does not have: they are clear.
+/// Not of those that the changes make clear.
+void warnOfUnlistedLabels(const LabelChanges& changes, const TransferFunction& table,
+                          const Volume& volume, const Listener& listener);
 
 }  // namespace deltasplat

@@ -14,6 +14,15 @@ int stripRows(int rows) {
     return (rows + 7) / 8 + 4;
 }
 
+// A voxel that is the only one counts as much as any, so none may that only rounding brings in.
+glm::vec2 snapped(const glm::dvec2& fraction) {
+    constexpr double kRounding = 0x1p-20;
+    const auto snap = [](double share) {
+        return share < kRounding ? 0.0f : share > 1 - kRounding ? 1.0f : float(share);
+    };
+    return {snap(fraction.x), snap(fraction.y)};
+}
+
 }  // namespace
 
 RayBand::RayBand(const RayInput& input, int rows)
@@ -46,13 +55,14 @@ void RayBand::run(int firstRow, int lastRow, RayPlanes& planes) {
 
 void RayBand::findSlices(int layer) {
     const IndexBox& box = input_.volume.box;
+    const bool isMean = input_.rule == RayRule::kMaxActive;
     slices_.clear();
     for (int s = std::max(8 * layer, box.min.x); s <= std::min(8 * layer + 7, box.max.x); ++s) {
         const SheetReading shift = readingOf(input_.plane, input_.layout, s);
         slices_.push_back({s & 7,
                            {float(s - box.min.x), !input_.plane.frontToBack()},
                            shift.offset - input_.layout.marginPixels,
-                           glm::vec2(shift.fraction)});
+                           isMean ? snapped(shift.fraction) : glm::vec2(shift.fraction)});
     }
 }
 
@@ -96,8 +106,9 @@ void RayBand::addSlice(const Slice& slice, int firstRow, int lastRow, RayPlanes&
     const int first = std::max(firstRow, 8 * firstCell_ - slice.offset.y);
     const int last = std::min(lastRow, 8 * (lastCell_ + 1) - slice.offset.y);
     for (int y = first; y < last; ++y) addRow(slice, y, planes);
-    input_.rule == RayRule::kSum ? sumSpans(spans_, slice.fraction)
-                                 : maxSpans(spans_, slice.fraction, slice.mark);
+    input_.rule == RayRule::kSum
+        ? sumSpans(spans_, slice.fraction)
+        : maxSpans(spans_, slice.fraction, slice.mark, input_.rule == RayRule::kMaxActive);
 }
 
 void RayBand::addRow(const Slice& slice, int y, RayPlanes& planes) {

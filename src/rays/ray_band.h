@@ -16,7 +16,7 @@ struct RayInput {
     RayRule rule;
     const SheetLayout& layout;  ///< of one pixel a voxel
     const BasePlane& plane;     ///< with pixels as far apart as voxels
-    bool marksPlaces = false;   ///< kMax: whether it matters where values are from
+    bool marksPlaces = false;   ///< of largest values: whether it matters where values are from
 };
 
 /// Follows the lines of sight of a few rows of the base plane, slice by slice. What a pixel gets
@@ -27,8 +27,8 @@ class RayBand {
     /// @param rows  the most that a band has
     RayBand(const RayInput& input, int rows);
 
-    /// Reads all slices, in increasing order, at rows [firstRow, lastRow) of the plane. Under kMax
-    /// what is not met stays what it is.
+    /// Reads all slices, in increasing order, at rows [firstRow, lastRow) of the plane. Of largest
+    /// values, what is not met stays what it is.
     void run(int firstRow, int lastRow, RayPlanes& planes);
 
     /// What a band of so many rows takes.

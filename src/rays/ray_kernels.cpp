@@ -124,6 +124,66 @@ HWY_INLINE auto readSlice(Tag tag, const RaySpan& span, std::size_t i, glm::vec2
     }
 }
 
+// Values of a vector that may be missing (NaN), and how much each weighs.
+template <class V>
+struct Weighed {
+    V value, weight;
+};
+
+// The mean of two, by their weights; where only one counts, that one. Where both have the weights
+// that the share gives them, it is `between`.
+template <class Tag, class V>
+HWY_INLINE Weighed<V> meanOf(Tag tag, const Weighed<V>& a, const Weighed<V>& b, V share) {
+    const auto zero = hn::Zero(tag);
+    const auto one = hn::Set(tag, 1.0f);
+    const auto isWhole = [&](const Weighed<V>& part, V weight) {
+        return hn::And(hn::Eq(part.weight, weight), hn::Eq(part.value, part.value));
+    };
+    const auto whole = hn::And(isWhole(a, hn::Sub(one, share)), isWhole(b, share));
+    const auto sum = hn::Add(a.weight, b.weight);
+    const auto mixed = between(a.value, b.value, hn::Div(b.weight, sum));
+    const auto first = hn::IfThenElse(hn::Eq(b.weight, zero), a.value, mixed);
+    const auto either = hn::IfThenElse(hn::Eq(a.weight, zero), b.value, first);
+    return {hn::IfThenElse(whole, between(a.value, b.value, share), either),
+            hn::IfThenElse(whole, one, sum)};
+}
+
+// Reads what is there, and takes the mean of it. Where all is, it reads as readSlice does.
+template <bool kStraight, class Tag>
+HWY_INLINE auto readActive(Tag tag, const RaySpan& span, std::size_t i, glm::vec2 fraction) {
+    using V = hn::Vec<Tag>;
+    const auto one = hn::Set(tag, 1.0f);
+    const auto load = [&](const float* at, V weight) {
+        const auto value = hn::LoadU(tag, at + i);
+        return Weighed<V>{value, hn::IfThenElseZero(hn::Eq(value, value), weight)};
+    };
+    if constexpr (kStraight) {
+        return load(span.row, one);
+    } else {
+        const auto down = hn::Set(tag, fraction.y);
+        const auto right = hn::Set(tag, fraction.x);
+        const auto column = [&](int x, V share) {
+            auto mean = meanOf(tag, load(span.row + x, hn::Sub(one, down)),
+                               load(span.nextRow + x, down), down);
+            mean.weight = hn::Mul(mean.weight, share);
+            return mean;
+        };
+        return meanOf(tag, column(0, hn::Sub(one, right)), column(1, right), right);
+    }
+}
+
+// A slice's values, and where they count.
+template <bool kStraight, bool kSkipsNaN, class Tag, class M>
+HWY_INLINE auto readMet(Tag tag, const RaySpan& span, std::size_t i, glm::vec2 fraction, M& met) {
+    if constexpr (kSkipsNaN) {
+        const auto mean = readActive<kStraight>(tag, span, i, fraction);
+        met = hn::And(met, hn::Gt(mean.weight, hn::Zero(tag)));
+        return mean.value;
+    } else {
+        return readSlice<kStraight>(tag, span, i, fraction);
+    }
+}
+
 template <bool kStraight>
 void sumSpansOf(const std::vector<RaySpan>& spans, glm::vec2 fraction) {
     for (const RaySpan& span : spans) {
@@ -159,25 +219,27 @@ HWY_INLINE void markPlaces(Tag tag, const RaySpan& span, std::size_t i, V had, V
         tag, place);
 }
 
-template <bool kStraight>
+template <bool kStraight, bool kSkipsNaN>
 HWY_INLINE void maxMet(const RaySpan& span, glm::vec2 fraction, const SliceMark& slice) {
     const EightTag tag;
     float* HWY_RESTRICT plane = span.plane;
     for (std::size_t i = 0; i < span.pixels; i += hn::Lanes(tag)) {
         const std::uint8_t bits = std::uint8_t(span.mask[i / 8] >> (i % 8));
-        const auto met = hn::LoadMaskBits(tag, &bits);
+        auto met = hn::LoadMaskBits(tag, &bits);
         const auto had = hn::LoadU(tag, plane + i);
-        const auto read = readSlice<kStraight>(tag, span, i, fraction);
+        const auto read = readMet<kStraight, kSkipsNaN>(tag, span, i, fraction, met);
         hn::StoreU(hn::IfThenElse(met, hn::Max(had, read), had), tag, plane + i);
         if (span.places) markPlaces(tag, span, i, had, read, met, slice);
     }
 }
 
 template <bool kStraight>
-void maxSpansOf(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice) {
+void maxSpansOf(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice,
+                bool skipsNaN) {
     for (const RaySpan& span : spans) {
         if (span.mask) {
-            maxMet<kStraight>(span, fraction, slice);
+            skipsNaN ? maxMet<kStraight, true>(span, fraction, slice)
+                     : maxMet<kStraight, false>(span, fraction, slice);
             continue;
         }
         float* HWY_RESTRICT plane = span.plane;
@@ -190,9 +252,11 @@ void maxSpansOf(const std::vector<RaySpan>& spans, glm::vec2 fraction, const Sli
     }
 }
 
-void maxSpansKernel(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice) {
+void maxSpansKernel(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice,
+                    bool skipsNaN) {
     const bool straight = fraction.x == 0 && fraction.y == 0;
-    straight ? maxSpansOf<true>(spans, fraction, slice) : maxSpansOf<false>(spans, fraction, slice);
+    straight ? maxSpansOf<true>(spans, fraction, slice, skipsNaN)
+             : maxSpansOf<false>(spans, fraction, slice, skipsNaN);
 }
 
 template <class Tag>
@@ -238,8 +302,9 @@ void sumSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction) {
     HWY_DYNAMIC_DISPATCH(sumSpansKernel)(spans, fraction);
 }
 
-void maxSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice) {
-    HWY_DYNAMIC_DISPATCH(maxSpansKernel)(spans, fraction, slice);
+void maxSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice,
+              bool skipsNaN) {
+    HWY_DYNAMIC_DISPATCH(maxSpansKernel)(spans, fraction, slice, skipsNaN);
 }
 
 void weighRow(const float* const* rows, const float* weights, int width, float scale,

@@ -56,8 +56,10 @@ void sumSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction);
 
 /// The same, but the base plane keeps the larger of what it has and, where pixels are met, what is
 /// read.
+/// @param skipsNaN  where spans have masks, NaN stands for what is not active: read is the mean of
+///                  the others, by their weights; of equal ones exactly their value
 void maxSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction,
-              const SliceMark& slice = SliceMark());
+              const SliceMark& slice = SliceMark(), bool skipsNaN = false);
 
 /// Weighs a row's neighbourhood: out[x] = sum over j, i of weights[j * width + i] * rows[j][x - i],
 /// taps in this order, times `scale`.

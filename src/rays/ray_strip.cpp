@@ -43,7 +43,7 @@ RayStrip::RayStrip(const RayVolume& volume, RayRule rule, glm::ivec2 firstBlock,
       columns_(std::size_t(blocks.x) + 2),
       rows_(std::size_t(rows)),
       values_(8 * voxelRows() * pitch()),
-      active_(rule == RayRule::kMax ? 8 * voxelRows() * columns_ : 0),
+      active_(keepsLargest(rule) ? 8 * voxelRows() * columns_ : 0),
       fills_(rows_ * columns_),
       empty_(rows_ * columns_) {}
 
@@ -112,7 +112,7 @@ void RayStrip::fillBlock(int row, int column, float value) {
 }
 
 void RayStrip::setActive(int row, int column, const ActiveWords& words) {
-    if (rule_ != RayRule::kMax) return;
+    if (!keepsLargest(rule_)) return;
     for (int slice = 0; slice < 8; ++slice) {
         for (int u = 0; u < 8; ++u) {
             active_[line(slice, 8 * row + u) * columns_ + std::size_t(column + 1)] =

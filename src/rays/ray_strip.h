@@ -40,7 +40,8 @@ class RayStrip {
     const float* values(int slice, int voxelRow) const {
         return &values_[line(slice, voxelRow) * pitch() + 8];
     }
-    /// Which of them are active: a byte for each block, bit i for voxel i. Under kMax only.
+    /// Which of them are active: a byte for each block, bit i for voxel i. Where the largest is
+    /// kept.
     const std::uint8_t* active(int slice, int voxelRow) const {
         return &active_[line(slice, voxelRow) * columns_ + 1];
     }

@@ -25,6 +25,11 @@ bool isDirect(const CodeBook& book) {
            std::abs(book.offset) + kCodeCount <= kExactFloats;
 }
 
+float emptyOf(RayRule rule, float lowest) {
+    if (rule == RayRule::kMaxActive) return std::numeric_limits<float>::quiet_NaN();
+    return rule == RayRule::kMax ? std::min(lowest, 0.0f) : 0.0f;
+}
+
 // Fills in what values the volume has, and returns the slots of those that matter.
 std::vector<Slot> readValues(const Volume& volume, RayRule rule, const ValueMap& map,
                              RayVolume& rays) {
@@ -45,7 +50,7 @@ std::vector<Slot> readValues(const Volume& volume, RayRule rule, const ValueMap&
         slots[std::size_t(code) + 1] = code + 1;
         rays.visible += voxels;
     }
-    rays.empty = rule == RayRule::kMax ? std::min(rays.lowest, 0.0f) : 0.0f;
+    rays.empty = emptyOf(rule, rays.lowest);
     rays.values.table = rays.table.data();
     return slots;
 }
@@ -71,7 +76,7 @@ void readSource(const Volume& volume, RayRule rule, const ValueMap& map, std::ve
     const auto [low, high] = std::minmax({map(volume.valueMin), map(volume.valueMax)});
     rays.lowest = floatOf(low);
     rays.highest = floatOf(high);
-    if (rule == RayRule::kMax) rays.empty = std::min(rays.lowest, 0.0f);
+    rays.empty = emptyOf(rule, rays.lowest);
     // A code of value 0 may stand for something else as well.
     for (std::size_t code = 0; code < volume.histogram.size(); ++code)
         slots[code + 1] = volume.histogram[code] > 0 ? Slot(code + 1) : kEmptySlot;

@@ -15,10 +15,16 @@ namespace deltasplat {
 
 /// What is looked for along the lines of sight.
 enum class RayRule {
-    kSum,  ///< sums of values; where there is no active voxel there is 0
-    kMax,  ///< the largest value that is met
-    kMean  ///< the mean of the active values that are met; only from an eye
+    kSum,        ///< sums of values; where there is no active voxel there is 0
+    kMax,        ///< the largest value that is met
+    kMaxActive,  ///< likewise, but only active voxels take part in what is read
+    kMean        ///< the mean of the active values that are met; only from an eye
 };
+
+/// Whether a rule keeps the largest of what slices give, in place of adding them up.
+constexpr bool keepsLargest(RayRule rule) {
+    return rule == RayRule::kMax || rule == RayRule::kMaxActive;
+}
 
 /// What rays meet in place of a value.
 struct ValueMap {
@@ -45,9 +51,9 @@ struct RayVolume {
     /// Where codes are not exact and the source is at hand: reads that. Otherwise empty.
     BlockValues sourceValues;
     /// What voxels hold that are not active: 0, or under kMax the smallest value where that is
-    /// negative, so that nothing never outshines something. All of them as mapped.
+    /// negative, so that nothing never outshines something; NaN under kMaxActive.
     float empty = 0;
-    float lowest = 0;           ///< of the active voxels' values
+    float lowest = 0;           ///< of the active voxels' values, as mapped
     float highest = 0;          ///< likewise
     std::uint64_t visible = 0;  ///< active voxels, under kSum but for those of value 0
 

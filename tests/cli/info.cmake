@@ -115,3 +115,11 @@ deltasplat_cli_test(info.list_without_plot ARGS info --list ball.vdb --plot plot
     STDERR "deltasplat: warning: --plot: has no effect with --list
 deltasplat: warning: --tf: has no effect with --list"
     STDOUT_MATCHES "^ball.vdb")
+# For people, sizes are as exact as floats; JSON has all digits.
+deltasplat_cli_test(info.size_digits
+    ARGS info cube_8x8x8_uint8.raw --spacing 0.9999999999999981,0.05000000074505806,0.123456789
+    STDOUT_MATCHES "voxel size +1 x 0[.]05 x 0[.]12345679
+")
+deltasplat_cli_test(info.size_digits_json
+    ARGS info cube_8x8x8_uint8.raw --json --spacing 0.9999999999999981,0.05000000074505806,0.123456789
+    STDOUT_MATCHES "\"voxel_size\": [[][ \n]*0[.]9999999999999981,[ \n]*0[.]05000000074505806")

@@ -120,7 +120,8 @@ deltasplat_cli_test(input.tf.labels_by_name EXIT 2
     ARGS render cube_8x8x8_uint8.raw -o out.exr --tf labels.ctbl:bone
     STDERR "deltasplat: --tf: got labels.ctbl:bone; expected labels.ctbl alone, a table of labels, which holds no transfer functions with names")
 deltasplat_cli_test(input.tf.labels ARGS render cube_8x8x8_uint8.raw -o out.exr --tf labels.ctbl
-    CREATES out.exr)
+    CREATES out.exr
+    STDERR "deltasplat: warning: --tf: labels 3, 4, 5, 6, 7 and 89 more of the volume are not in the table, and not shown")
 deltasplat_cli_test(input.tf.preset ARGS render cube_8x8x8_uint8.raw -o out.exr --tf viridis CREATES out.exr)
 deltasplat_cli_test(input.tf.preset_of_info ARGS info ball.vdb --tf mr
     STDOUT_MATCHES "visible: not clear under mr")
@@ -130,7 +131,7 @@ deltasplat_cli_test(input.tf.no_suggestion EXIT 2 ARGS render cube_8x8x8_uint8.r
     STDERR_MATCHES "deltasplat: --tf: got aquarium; expected a file, or one of grey, .*coolwarm")
 deltasplat_cli_test(input.tf.no_hounsfield ARGS render cube_8x8x8_uint8.raw -o out.exr --tf ct-bone
     CREATES out.exr
-    STDERR_MATCHES "deltasplat: warning: --tf: ct-bone is for Hounsfield units [(]air -1000, water 0[)], which values from .* are hardly.*picture: empty.*")
+    STDERR_MATCHES "deltasplat: warning: --tf: ct-bone is for Hounsfield units [(]air -1000, water 0[)]; values from .* to .* seem to be others.*picture: empty.*")
 deltasplat_cli_test(input.tf.labels_of_wholes ARGS render ball.vdb -o out.exr --tf labels CREATES out.exr
     STDERR_MATCHES "deltasplat: warning: --tf: labels is for whole numbers, and values from .* to .* lie between, such as .*")
 deltasplat_cli_test(input.tf.list ARGS render --list-tf STDOUT_MATCHES "grey .*ct-bone +Hounsfield units.*coolwarm")
@@ -152,6 +153,17 @@ deltasplat_cli_test(empty_picture.extinction
     ARGS render cube_8x8x8_uint8.raw -o out.png --extinction 0
     STDERR "deltasplat: warning: picture: empty, for transfer function and extinction show none of the values 0 to 96"
     CREATES out.png)
+
+deltasplat_cli_test(empty_picture.surface
+    ARGS render cube_8x8x8_uint8.raw -o out.png --isovalue 97
+    STDERR "deltasplat: warning: --isovalue: got 97, which values from 0 to 96 never pass: nothing is inside
+deltasplat: warning: picture: empty, for the surface encloses none of the values 0 to 96"
+    CREATES out.png)
+foreach(isovalue 0 -5)
+    deltasplat_cli_test(input.isovalue.below_${isovalue} CREATES out.png
+        ARGS render cube_8x8x8_uint8.raw -o out.png --isovalue=${isovalue}
+        STDERR "deltasplat: warning: --isovalue: got ${isovalue}, which values from 0 to 96 never pass: all is inside, and shown is all of the volume, as a solid")
+endforeach()
 
 foreach(mode xray mip)
     deltasplat_cli_test(input.light.${mode} CREATES out.exr

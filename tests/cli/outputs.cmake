@@ -24,10 +24,21 @@ foreach(file full.raw full.vdb)
 endforeach()
 
 # What is written, and only that.
-foreach(file out.exr out.png OUT.EXR)
+foreach(file out.exr out.png OUT.EXR out.tif)
     deltasplat_cli_test(output.fine.${file} ARGS render ball.vdb -o ${file} CREATES ${file})
 endforeach()
 deltasplat_cli_test(output.fine.bits ARGS render ball.vdb -o out.png --bits 16 CREATES out.png)
+deltasplat_cli_test(output.fine.tif_bits ARGS render ball.vdb -o out.tiff --bits 16 CREATES out.tiff)
+deltasplat_cli_test(output.fine.jpg CREATES out.jpg
+    ARGS render ball.vdb -o out.jpg --background 1,1,1 --axes)
+deltasplat_cli_test(output.fine.jpg_radiograph CREATES out.jpeg
+    ARGS render ball.vdb -o out.jpeg --drr -q -q)
+# What is clear becomes black, which is said, once.
+foreach(background "" "--background=0,0,1,0.5")
+    string(MAKE_C_IDENTIFIER "jpg_clear${background}" test)
+    deltasplat_cli_test(output.${test} CREATES out.jpg ARGS render ball.vdb -o out.jpg ${background}
+        STDERR "deltasplat: warning: out.jpg: a .jpg has no alpha, so what is clear is black; --background gives it another colour")
+endforeach()
 deltasplat_cli_test(output.fine.stats CREATES out.exr stats.json
     ARGS render ball.vdb -o out.exr --float --stats stats.json --background 0.1,0.2,0.3,0.5)
 deltasplat_cli_test(output.fine.fsync ARGS render ball.vdb -o out.exr --fsync CREATES out.exr)

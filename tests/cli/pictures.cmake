@@ -10,7 +10,7 @@ endfunction()
 
 set(tool $<TARGET_FILE:deltasplat_tool>)
 set(scratch ${CMAKE_CURRENT_BINARY_DIR}/cli)
-foreach(extension exr png)
+foreach(extension exr png tif jpg)
     deltasplat_script_test(same_bytes.${extension} same_bytes.sh
         ARGS ${tool} ${scratch}/same_bytes_${extension} ${extension})
 endforeach()
@@ -29,10 +29,10 @@ deltasplat_script_test(few_threads few_threads.sh ARGS ${tool})
 set_tests_properties(cli.few_threads PROPERTIES SKIP_RETURN_CODE 77)
 deltasplat_script_test(inputs_kept inputs_kept.sh
     ARGS ${tool} ${scratch}/inputs_kept $<BOOL:${DELTASPLAT_ITK}>)
-foreach(file full.exr full.png)
+foreach(file full.exr full.png full.tif full.jpg)
     deltasplat_script_test(full_disk.${file} full_disk.sh
         ARGS ${tool} ${scratch}/full_disk_${file} ${file}
-             render input_32x32x32_uint8.raw -o ${file} --size 400x400)
+             render input_32x32x32_uint8.raw -o ${file} --size 400x400 --background 0,0,0)
 endforeach()
 foreach(file full.vdb full_64x64x64_uint8.raw)
     deltasplat_script_test(full_disk.${file} full_disk.sh

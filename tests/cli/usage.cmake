@@ -130,8 +130,14 @@ deltasplat_refusal(mode "--mode: got depth; expected composite, xray, mip, min, 
 deltasplat_refusal(drr_and_mode "--drr: got --mode mip besides; expected --mode drr" --drr --mode mip)
 deltasplat_refusal(isovalue "--isovalue: got nan; expected a finite number" --isovalue nan)
 deltasplat_refusal(surface_color
-    "--surface-color: got 1,0; expected R,G,B, each at least 0"
+    "--surface-color: got 1,0; expected R,G,B, three numbers of at least 0"
     --isovalue 1 --surface-color 1,0)
+deltasplat_refusal(surface_color_negative
+    "--surface-color: got -1,0,0; expected R,G,B, three numbers of at least 0"
+    --isovalue 1 --surface-color=-1,0,0)
+deltasplat_refusal(surface_color_alpha
+    "--surface-color: got 1,0,0,1; expected R,G,B, three numbers of at least 0"
+    --isovalue 1 --surface-color 1,0,0,1)
 deltasplat_refusal(surface_of_values
     "--surface: got values that are no distances; expected a level set, or --isovalue V" --surface)
 deltasplat_refusal(surface_and_color_by
@@ -209,10 +215,10 @@ endforeach()
 deltasplat_refusal(color_by "--color-by: got hue; expected value, x, y, z or index" --color-by hue)
 deltasplat_refusal(shade_and_color_by
     "--shade: got --color-by index besides; expected --color-by value" --shade --color-by index)
-foreach(light up 1,2 0,0,0 view head: head:1:2:3 1,2,3:1,1 1,2,3:1,1,1:-1 world:1,2,3)
+foreach(light up 1,2 0,0,0 view head: head:1:2:3 1,2,3:1,1 1,2,3:1,1,1:-1 world:1,2,3 1e300,1e300,0 1,2,3:1e7)
     string(MAKE_C_IDENTIFIER "light_${light}" test)
     deltasplat_refusal(${test}
-        "--light: got ${light}; expected head, X,Y,Z or view:X,Y,Z, not all 0, then, if wanted, :R,G,B and :STRENGTH, as in view:1,-1,-1:1,0.9,0.8:1.5"
+        "--light: got ${light}; expected head, X,Y,Z or view:X,Y,Z, numbers from -1e+30 to 1e+30 and not all 0, then, if wanted, :R,G,B, each at least 0, and :STRENGTH, 0 to 1e+06, as in view:1,-1,-1:1,0.9,0.8:1.5"
         --light ${light})
 endforeach()
 deltasplat_refusal(shininess "--shininess: got -1; expected a finite number from 0 to 1e+06"
@@ -389,8 +395,21 @@ foreach(option spacing=1,1,2 origin=1,1,1)
 endforeach()
 deltasplat_cli_test(used.both ARGS info ball.vdb ${cube} --grid density --spacing 1,1,2
     STDOUT_MATCHES "voxel size +1 x 1 x 2")
-deltasplat_unused(bits --bits "without a .png picture"
+deltasplat_unused(bits --bits "on an .exr"
     ARGS render ${cube} -o out.exr --size 8x8 --bits 16 CREATES out.exr)
+deltasplat_unused(dither --dither "but in pictures of 8 bits"
+    ARGS render ${cube} -o out.tif --size 8x8 --bits 16 --dither 1 CREATES out.tif)
+foreach(option light=1,0,0 ambient=0.1 diffuse=1 specular=0.4 shininess=3)
+    string(REGEX REPLACE "=.*" "" name ${option})
+    deltasplat_unused(no_shade_${name} --${name} "with --no-shade" CREATES out.exr
+        ARGS render ${cube} -o out.exr --size 8x8 --no-shade --${option})
+endforeach()
+deltasplat_unused(window_composite --window "with --mode composite" CREATES out.png
+    ARGS render ${cube} -o out.png --size 8x8 --window 0,1)
+deltasplat_unused(window_exr --window "on an .exr, which holds the values themselves" CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --mode mip --window 0,1)
+deltasplat_unused(window_tf --window "with --tf, whose colours values get" CREATES out.png
+    ARGS render ${cube} -o out.png --size 8x8 --mode mip --tf grey --window 0,1)
 deltasplat_unused(view --view "with --direction" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --view front --direction 1,0,0)
 deltasplat_unused(noise --noise "on a volume other than engine and vessels"
@@ -467,10 +486,16 @@ deltasplat_cli_test(used.mip_tf CREATES out.png
 # Outputs that cannot be meant.
 deltasplat_cli_test(usage.png_side EXIT 2 ARGS render ${cube} -o out.png --size 1000001x1
     STDERR "deltasplat: --size: got 1000001x1; expected sides of at most 1000000 pixels in a .png")
-deltasplat_cli_test(usage.picture_format EXIT 2 ARGS render ${cube} -o out.jpg
-    STDERR "deltasplat: out.jpg: got extension \".jpg\"; expected .exr or .png")
+deltasplat_cli_test(usage.jpg_side EXIT 2 ARGS render ${cube} -o out.jpg --size 65501x1
+    STDERR "deltasplat: --size: got 65501x1; expected sides of at most 65500 pixels in a .jpg")
+deltasplat_cli_test(usage.jpg_bits EXIT 2 ARGS render ${cube} -o out.jpg --bits 16
+    STDERR "deltasplat: --bits: got 16; expected 8 in a .jpg")
+deltasplat_cli_test(usage.tif_float EXIT 2 ARGS render ${cube} -o out.tif --float
+    STDERR "deltasplat: --float: got out.tif; expected an .exr file")
+deltasplat_cli_test(usage.picture_format EXIT 2 ARGS render ${cube} -o out.gif
+    STDERR "deltasplat: out.gif: got extension \".gif\"; expected .exr, .png, .tif or .jpg")
 deltasplat_cli_test(usage.picture_no_format EXIT 2 ARGS render ${cube} -o out
-    STDERR "deltasplat: out: got extension \"\"; expected .exr or .png")
+    STDERR "deltasplat: out: got extension \"\"; expected .exr, .png, .tif or .jpg")
 # What is drawn over a picture, and where it would say something wrong.
 foreach(option legend scale-bar axes annotate=text)
     string(REGEX REPLACE "=.*" "" name ${option})
@@ -479,6 +504,8 @@ foreach(option legend scale-bar axes annotate=text)
 endforeach()
 deltasplat_cli_test(usage.annotate_nothing EXIT 2 ARGS render ${cube} -o out.png --annotate
     STDERR "deltasplat: --annotate: got nothing; expected TEXT (see 'deltasplat render --help')")
+deltasplat_cli_test(usage.annotate_empty EXIT 2 ARGS render ${cube} -o out.png "--annotate= "
+    STDERR "deltasplat: --annotate: got spaces; expected a line of text")
 deltasplat_cli_test(usage.scale_bar_latlong EXIT 2
     ARGS render ${cube} -o out.png --scale-bar --projection latlong
     STDERR "deltasplat: --scale-bar: got --projection latlong; expected ortho or perspective, where it would hold")

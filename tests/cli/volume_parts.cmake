@@ -39,10 +39,10 @@ foreach(option hide-labels show-labels)
         "--${option}: got 1,; expected L,L,..., whole numbers from -1000000000 to 1000000000"
         --${option} 1,)
 endforeach()
-foreach(opacity 1 1=2 x=0.5 1=0.5,)
+foreach(opacity 1 1=2 x=0.5 1=0.5, 1=0.1,2=1,1=0.3)
     string(MAKE_C_IDENTIFIER "label_opacity_${opacity}" test)
     deltasplat_refusal(${test}
-        "--label-opacity: got ${opacity}; expected L=O,L=O,..., labels and opacities from 0 to 1"
+        "--label-opacity: got ${opacity}; expected L=O,L=O,..., each label once, and opacities from 0 to 1"
         --label-opacity ${opacity})
 endforeach()
 deltasplat_refusal(mask_grid_of_raw
@@ -67,9 +67,20 @@ deltasplat_cli_test(parts.mask_elsewhere CREATES out.exr
     STDERR "deltasplat: warning: --mask: its voxels lie elsewhere than the volume's; each of these takes the nearest of those")
 deltasplat_cli_test(parts.labels_absent CREATES out.exr
     ARGS render cube_8x8x8_uint8.raw -o out.exr --tf labels.ctbl --hide-labels=-4,1,7 --label-opacity 5=1
-    STDERR_MATCHES "deltasplat: warning: --hide-labels: no label -4, 7 in the table
+    STDERR "deltasplat: warning: --hide-labels: no label 7 in the table
+deltasplat: warning: --hide-labels: no label -4 in the table or the volume
 deltasplat: warning: --label-opacity: no label 5 in the table
-deltasplat: warning: --hide-labels: no label -4 in the volume")
+deltasplat: warning: --tf: labels 3, 4, 5, 6, 8 and 88 more of the volume are not in the table, and not shown")
+# What is hidden on purpose is not missed.
+deltasplat_cli_test(parts.labels_shown CREATES out.exr
+    ARGS render cube_8x8x8_uint8.raw -o out.exr --tf labels.ctbl --show-labels 1,2)
+deltasplat_cli_test(parts.labels_unlisted_surface CREATES out.exr
+    ARGS render cube_8x8x8_uint8.raw -o out.exr --tf labels.ctbl --isovalue 50)
+foreach(mode mip min average)
+    deltasplat_cli_test(parts.labels_mixed_${mode} CREATES out.png
+        ARGS render cube_8x8x8_uint8.raw -o out.png --tf labels --mode ${mode}
+        STDERR "deltasplat: warning: --tf: --mode ${mode} mixes values of neighbouring voxels, so that between labels it shows others that are not there; composite keeps them apart")
+endforeach()
 deltasplat_cli_test(parts.labels_of_xray CREATES out.exr
     ARGS render cube_8x8x8_uint8.raw -o out.exr --mode xray --tf labels.ctbl --hide-labels 1
     STDERR "deltasplat: warning: --tf: has no effect with --mode xray

@@ -64,7 +64,6 @@ class PlainEye {
                (camera.targetWorld - camera.targetDistanceWorld * camera.direction -
                 glm::dvec3(volume.worldFromIndex[3]))) {
         least_ = std::min(volume.codeBook.valueOf(Code(volume.valueMin)), 0.0);
-        most_ = std::max(volume.codeBook.valueOf(Code(volume.valueMax)), 0.0);
     }
 
     Seen see(int x, int y) const {
@@ -112,7 +111,7 @@ class PlainEye {
                   double& weights) const {
         const int u = (s + 1) % 3;
         const int v = (s + 2) % 3;
-        double sum = 0, high = 0, low = 0, active = 0;
+        double sum = 0, high = 0, active = 0;
         for (int j = 0; j < 2; ++j) {
             for (int i = 0; i < 2; ++i) {
                 glm::ivec3 voxel;
@@ -127,7 +126,6 @@ class PlainEye {
                 sum += on ? weight * value : 0;
                 active += on ? weight : 0;
                 high += weight * (on ? value : least_);
-                low += weight * (on ? value : most_);
             }
         }
         seen.integral += sum * length;
@@ -135,6 +133,7 @@ class PlainEye {
         weights += active * length;
         if (active == 0) return;
         seen.highest = seen.met ? std::max(seen.highest, high) : high;
+        const double low = sum / active;
         seen.lowest = seen.met ? std::min(seen.lowest, low) : low;
         seen.met = true;
     }
@@ -143,7 +142,7 @@ class PlainEye {
     const Camera& camera_;
     glm::dmat3 linear_;
     glm::dvec3 eye_;
-    double least_, most_;
+    double least_;
 };
 
 std::vector<CameraOptions> eyeCameras(const Volume& volume) {
@@ -302,7 +301,7 @@ TEST(RayModes, MeanAndSmallestOfAConstantAreIt) {
                 for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
                     if (image.rgba[i + 3] == 0) continue;
                     ++met;
-                    // What is not active is more than anything (0 would be less), for the smallest.
+                    // What is not active does not count (0 would be less than the smallest).
                     ASSERT_NEAR(image.rgba[i], 0.7f, 1e-7) << modeName(mode);
                 }
                 EXPECT_GT(met, 500);
@@ -321,29 +320,47 @@ TEST(RayModes, MeanCountsActiveVoxelsAlone) {
     EXPECT_NEAR(image.pixel(2, 2)[0], (8 + 15) * 4 / 12.0, 1e-5);
 }
 
-// The smallest values are the largest of the volume that is below 0 what this is above.
-TEST(RayModes, SmallestValuesMirrorLargest) {
-    Volume volume = randomVolume({{-5, 3, -9}, {12, 20, 6}}, 4, 0.8, {1, 1.25, 0.9});
-    volume.codeBook = CodeBook::integer(-40);
-    Volume mirrored = volume;
-    const auto tree = std::make_shared<CodeTree>(*volume.codes);
-    for (auto voxel = tree->tree.beginValueOn(); voxel; ++voxel) voxel.setValue(Code(255 - *voxel));
-    mirrored.codes = tree;
-    mirrored.codeBook = CodeBook::integer(40 - 255);
-    mirrored.histogram.assign(kCodeCount, 0);
-    for (int code = 0; code < 256; ++code)
-        mirrored.histogram[std::size_t(255 - code)] = volume.histogram[std::size_t(code)];
+// What lies around a volume has no part in its smallest values, however it is looked at.
+TEST(RayModes, SmallestValuesAreNotMadeAtTheRim) {
+    const Volume volume = makeVolume({{0, 0, 0}, {31, 31, 31}}, [](int x, int y, int z) {
+        return x == 16 && y == 16 && z == 16 ? 200 : 1;
+    });
     for (const glm::dvec3& direction : kDirections) {
         for (const bool parallel : {true, false}) {
-            const auto imageOf = [&](const Volume& one, Mode mode) {
-                return render(one, parallel ? optionsOf(mode, viewOf(volume, direction))
-                                            : eyeOptions(mode, eyeCamera(volume, direction)))
+            const Image image =
+                render(volume, parallel ? optionsOf(Mode::kMin, viewOf(volume, direction))
+                                        : eyeOptions(Mode::kMin, eyeCamera(volume, direction)))
                     .image;
-            };
-            const Image lowest = imageOf(volume, Mode::kMin);
-            const Image highest = imageOf(mirrored, Mode::kMip);
-            for (std::size_t i = 0; i < lowest.rgba.size(); ++i)
-                ASSERT_EQ(lowest.rgba[i], i % 4 == 3 ? highest.rgba[i] : -highest.rgba[i]) << i;
+            int met = 0;
+            for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+                ASSERT_EQ(image.rgba[i], image.rgba[i + 3]) << i;
+                met += image.rgba[i + 3] > 0;
+            }
+            EXPECT_GT(met, 500);
+        }
+    }
+}
+
+// Nothing never outshines something, nor is anything darker than the darkest voxel.
+TEST(RayModes, LargestValuesStayBetweenThoseOfTheVolume) {
+    for (const int offset : {-1000, 0}) {
+        Volume volume = makeVolume({{0, 0, 0}, {31, 31, 31}},
+                                   [](int x, int, int) { return x < 16 ? 30 : 100; });
+        volume.codeBook = CodeBook::integer(offset);
+        volume.valueMin = offset + 30;
+        volume.valueMax = offset + 100;
+        for (const glm::dvec3& direction : kDirections) {
+            for (const bool parallel : {true, false}) {
+                const Image image =
+                    render(volume, parallel ? optionsOf(Mode::kMip, viewOf(volume, direction))
+                                            : eyeOptions(Mode::kMip, eyeCamera(volume, direction)))
+                        .image;
+                for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+                    if (image.rgba[i + 3] == 0) continue;
+                    ASSERT_GE(image.rgba[i], offset + 30);
+                    ASSERT_LE(image.rgba[i], offset + 100);
+                }
+            }
         }
     }
 }
@@ -411,6 +428,7 @@ TEST(RayModes, ThreadsAndSimdLevelsGiveTheSamePixels) {
             options.depthShade = 0.5;
             options.drr.muWater = 0.001;
             const Image expected = render(volume, options).image;
+            for (const float value : expected.rgba) ASSERT_EQ(value, value) << "no NaN";
             for (const int threads : {1, 3}) {
                 const ThreadLimit limit(threads);
                 EXPECT_EQ(render(volume, options).image.rgba, expected.rgba) << threads;
@@ -490,11 +508,11 @@ TEST(RayModes, NumbersOutOfRangeAreRefused) {
 }
 
 TEST(RayModes, RadiographsOfOtherUnitsAreWarnedOf) {
-    const auto warningsOf = [](const Volume& volume) {
+    const auto warningsOf = [](const Volume& volume, Mode mode = Mode::kDrr) {
         std::string lines;
         Listener listener;
         listener.warning = [&](const std::string& line) { lines += line; };
-        render(volume, optionsOf(Mode::kDrr, viewOf(volume, {0, 0, -1})), listener);
+        render(volume, optionsOf(mode, viewOf(volume, {0, 0, -1})), listener);
         return lines;
     };
     Volume volume =
@@ -502,10 +520,16 @@ TEST(RayModes, RadiographsOfOtherUnitsAreWarnedOf) {
     EXPECT_NE(warningsOf(volume).find("names no patient's space"), std::string::npos);
     volume.space = "RAS";
     EXPECT_NE(warningsOf(volume).find("hardly any air"), std::string::npos);
+    EXPECT_EQ(warningsOf(volume, Mode::kXray), "");
     volume.codeBook = CodeBook::integer(-1000);
     volume.valueMin = -1000;
     volume.valueMax = 30;
     EXPECT_EQ(warningsOf(volume), "");
+    // Sums of Hounsfield units are of no use, the other way round.
+    const std::string xray = warningsOf(volume, Mode::kXray);
+    EXPECT_EQ(xray.find("`mode` xray: adds up Hounsfield units"), 0) << xray;
+    EXPECT_NE(xray.find("`mode` drr makes radiographs"), std::string::npos);
+    EXPECT_EQ(warningsOf(volume, Mode::kMip), "");
 }
 
 }  // namespace

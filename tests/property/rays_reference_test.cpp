@@ -74,7 +74,10 @@ TEST(RaysReference, LineIntegralsAgreeWithThePlainReference) {
     }
 }
 
-TEST(RaysReference, LargestValuesAgreeWithThePlainReference) {
+// Compares pictures of the largest or the smallest values.
+void expectExtremes(Mode mode,
+                    std::vector<reference::Seen> (*plainPicture)(const reference::ValueVolume&,
+                                                                 const reference::View&)) {
     for (const CodeBook& book : codeBooks()) {
         SCOPED_TRACE(book.name());
         // Thin enough that some pixels see little.
@@ -87,8 +90,8 @@ TEST(RaysReference, LargestValuesAgreeWithThePlainReference) {
         int clear = 0;
         for (const glm::dvec3& direction : kDirections) {
             const TestView view = viewOf(volume, direction);
-            const auto expected = largestValues(plain, view.view());
-            const Image image = render(volume, optionsOf(Mode::kMip, view)).image;
+            const auto expected = plainPicture(plain, view.view());
+            const Image image = render(volume, optionsOf(mode, view)).image;
             const double limit = kWarpSteps * std::max(largestOf(expected), high - low);
             for (std::size_t i = 0; i < expected.size(); ++i) {
                 const float* rgba = &image.rgba[4 * i];
@@ -103,6 +106,14 @@ TEST(RaysReference, LargestValuesAgreeWithThePlainReference) {
         EXPECT_GT(met, 1000);
         EXPECT_GT(clear, 1000);
     }
+}
+
+TEST(RaysReference, LargestValuesAgreeWithThePlainReference) {
+    expectExtremes(Mode::kMip, reference::largestValues);
+}
+
+TEST(RaysReference, SmallestValuesAgreeWithThePlainReference) {
+    expectExtremes(Mode::kMin, reference::smallestValues);
 }
 
 }  // namespace

@@ -65,25 +65,41 @@ class Rays {
         return volume_.active[place];
     }
 
-    // Reads the n-th slice where the ray through (a, b) of the first one meets it.
-    bool read(int n, int a, int b, double empty, double& value) const {
+    // Calls use(weight, value) for the active voxels of the n-th slice around the ray through
+    // (a, b) of the first one, if they have any weight.
+    template <typename Use>
+    void forActive(int n, int a, int b, const Use& use) const {
         const double u = a + n * du_;
         const double v = b + n * dv_;
-        bool met = false;
-        value = 0;
         for (int j = int(std::floor(v)); j <= int(std::floor(v)) + 1; ++j) {
             for (int i = int(std::floor(u)); i <= int(std::floor(u)) + 1; ++i) {
                 const double weight = tent(u - i) * tent(v - j);
-                double one = empty;
-                if (weight > 1e-12 && voxel(n, i, j, one)) {
-                    met = true;
-                } else {
-                    one = empty;
-                }
-                value += weight * one;
+                double value;
+                if (weight > 1e-12 && voxel(n, i, j, value)) use(weight, value);
             }
         }
+    }
+
+    // Reads the n-th slice where the ray through (a, b) of the first one meets it.
+    bool read(int n, int a, int b, double empty, double& value) const {
+        bool met = false;
+        value = empty;
+        forActive(n, a, b, [&](double weight, double one) {
+            met = true;
+            value += weight * (one - empty);
+        });
         return met;
+    }
+
+    bool readActive(int n, int a, int b, double& value) const {
+        double sum = 0;
+        double weights = 0;
+        forActive(n, a, b, [&](double weight, double one) {
+            sum += weight * one;
+            weights += weight;
+        });
+        value = sum / weights;
+        return weights > 0;
     }
 
     Lattice lattice(const std::function<double(int a, int b)>& valueAt) const {
@@ -161,26 +177,30 @@ std::vector<Seen> lineIntegrals(const ValueVolume& volume, const View& view, dou
     return picture;
 }
 
-std::vector<Seen> largestValues(const ValueVolume& volume, const View& view) {
-    const Rays rays(volume, view);
-    const auto largest = [&](int a, int b, double& found) {
+namespace {
+
+// What isMore() than all else of what read(n, a, b, value) gives of slices.
+template <typename Read, typename IsMore>
+std::vector<Seen> extremeValues(const Rays& rays, const View& view, const Read& read,
+                                const IsMore& isMore) {
+    const auto extreme = [&](int a, int b, double& found) {
         bool met = false;
         for (int n = 0; n < rays.slices(); ++n) {
             double value;
-            if (!rays.read(n, a, b, rays.empty(), value)) continue;
-            found = met ? std::max(found, value) : value;
+            if (!read(n, a, b, value)) continue;
+            if (!met || isMore(value, found)) found = value;
             met = true;
         }
         return met;
     };
     const Lattice values = rays.lattice([&](int a, int b) {
         double found = 0;
-        largest(a, b, found);
+        extreme(a, b, found);
         return found;
     });
     const Lattice met = rays.lattice([&](int a, int b) {
         double found;
-        return largest(a, b, found) ? 1.0 : 0.0;
+        return extreme(a, b, found) ? 1.0 : 0.0;
     });
     std::vector<Seen> picture;
     for (int y = 0; y < view.height; ++y) {
@@ -190,6 +210,24 @@ std::vector<Seen> largestValues(const ValueVolume& volume, const View& view) {
         }
     }
     return picture;
+}
+
+}  // namespace
+
+std::vector<Seen> largestValues(const ValueVolume& volume, const View& view) {
+    const Rays rays(volume, view);
+    const auto read = [&](int n, int a, int b, double& value) {
+        return rays.read(n, a, b, rays.empty(), value);
+    };
+    return extremeValues(rays, view, read, std::greater<>());
+}
+
+std::vector<Seen> smallestValues(const ValueVolume& volume, const View& view) {
+    const Rays rays(volume, view);
+    const auto read = [&](int n, int a, int b, double& value) {
+        return rays.readActive(n, a, b, value);
+    };
+    return extremeValues(rays, view, read, std::less<>());
 }
 
 }  // namespace reference

@@ -35,4 +35,7 @@ std::vector<Seen> lineIntegrals(const ValueVolume& volume, const View& view, dou
 /// negative, else as 0; positions at which no active voxel is read do not count at all.
 std::vector<Seen> largestValues(const ValueVolume& volume, const View& view);
 
+/// Takes the smallest. What is read is the mean of the active voxels, by their weights.
+std::vector<Seen> smallestValues(const ValueVolume& volume, const View& view);
+
 }  // namespace reference

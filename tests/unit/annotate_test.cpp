@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <glm/common.hpp>
 #include <random>
 #include <set>
 
@@ -175,6 +177,62 @@ TEST(Axes, PointWhereTheWorldDoes) {
         EXPECT_NEAR(seen.x, axes[axis].along.x, 1e-9);
         EXPECT_NEAR(seen.y, axes[axis].along.y, 1e-9);
     }
+}
+
+// The strokes of each axis' letter, boxed: what there is in its colour besides the arrows.
+std::array<PixelBox, 3> letterBoxes(const std::array<SeenAxis, 3>& axes,
+                                    const AnnotationStyle& style) {
+    std::array<SeenAxis, 3> bare = axes;
+    for (SeenAxis& axis : bare) axis.letter.clear();
+    const auto linesOf = [&](const Annotation& annotation, const Rgb& color) {
+        std::vector<std::vector<glm::dvec2>> lines;
+        for (const Shape& shape : annotation.shapes) {
+            const Line* const line = std::get_if<Line>(&shape);
+            if (line && line->color.r == color.r && line->color.g == color.g)
+                lines.push_back(line->points);
+        }
+        return lines;
+    };
+    std::array<PixelBox, 3> boxes;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto lines = linesOf(drawAxes(axes, style), style.colors.axes[i]);
+        const std::size_t arrow = linesOf(drawAxes(bare, style), style.colors.axes[i]).size();
+        PixelBox box{glm::dvec2(1e9), glm::dvec2(-1e9)};
+        for (std::size_t n = arrow; n < lines.size(); ++n) {
+            for (const glm::dvec2& p : lines[n]) {
+                box.min = glm::min(box.min, p);
+                box.max = glm::max(box.max, p);
+            }
+        }
+        boxes[i] = box;
+    }
+    return boxes;
+}
+
+TEST(Axes, LettersHavePlacesOfTheirOwn) {
+    const AnnotationStyle style({300, 300}, kInkOnDark);
+    int letters = 0;
+    const auto check = [&](const CameraOptions& options, const std::string& space) {
+        const auto boxes = letterBoxes(seenAxes(cameraOf(options, space), space), style);
+        for (int i = 0; i < 3; ++i) {
+            letters += !boxes[i].empty();
+            EXPECT_FALSE(boxes[i].overlaps(boxes[(i + 1) % 3]))
+                << options.azimuthDegrees << ' ' << options.elevationDegrees;
+        }
+    };
+    // P points nearly at the viewer.
+    CameraOptions options;
+    options.azimuthDegrees = 20;
+    check(options, "LPS");
+    EXPECT_EQ(letters, 3);
+    std::mt19937 random(3);
+    for (int i = 0; i < 1000; ++i) {
+        options.azimuthDegrees = int(random() % 360);
+        options.elevationDegrees = int(random() % 180) - 90;
+        options.rollDegrees = int(random() % 360);
+        check(options, "");
+    }
+    EXPECT_GE(letters, 0.99 * 3 * 1001);
 }
 
 TEST(Annotations, LeaveThePictureAroundThemAlone) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <limits>
 #include <map>
 #include <random>
@@ -175,18 +176,47 @@ TEST(WriteImage, OpenImageIoFindsTheMatrices) {
     for (int i = 0; i < 16; ++i) EXPECT_EQ(stored[i], (*options.cameraFromWorld)[i / 4][i % 4]);
 }
 
+int yearOfCentury() {
+    const std::time_t now = std::time(nullptr);
+    return std::gmtime(&now)->tm_year % 100;
+}
+
 TEST(WriteImage, StoresMetadataAndNoClockTime) {
     const test::TempFolder folder;
     ImageFileOptions options;
     options.metadata = {{"method", "delta"}, {"command", "render a.vdb -o \"b c.png\""}};
-    for (const char* name : {"out.exr", "out.png"}) {
+    for (const char* name : {"out.exr", "out.png", "out.tif", "out.jpg"}) {
         writeImage(folder / name, randomImage({4, 4}), options);
+        const bool isNamed = name[4] == 'e' || name[4] == 'p';
+        const std::string bytes = readBytes(folder / name);
+        EXPECT_EQ(bytes.find("20" + std::to_string(yearOfCentury()) + ":"), std::string::npos);
+        if (!isNamed) {
+            const auto input = OIIO::ImageInput::open((folder / name).string());
+            ASSERT_TRUE(input) << OIIO::geterror();
+            EXPECT_EQ(input->spec().get_string_attribute("ImageDescription"),
+                      "deltasplat:method: delta\ndeltasplat:command: render a.vdb -o \"b c.png\"");
+            EXPECT_EQ(input->spec().get_string_attribute("DateTime"), "") << name;
+            continue;
+        }
         const OIIO::ImageSpec spec = readBack<float>(folder / name, OIIO::TypeFloat).spec;
         EXPECT_EQ(spec.get_string_attribute("deltasplat:method"), "delta") << name;
         EXPECT_EQ(spec.get_string_attribute("deltasplat:command"), "render a.vdb -o \"b c.png\"");
         EXPECT_EQ(spec.get_string_attribute("DateTime"), "") << name;
         EXPECT_EQ(spec.find_attribute("Software"), nullptr) << name;
     }
+}
+
+// A segment of a .jpg holds less than 64 KiB.
+TEST(WriteImage, JpegShortensMetadata) {
+    const test::TempFolder folder;
+    ImageFileOptions options;
+    options.metadata = {{"command", std::string(200000, 'x')}};
+    writeImage(folder / "out.jpg", randomImage({4, 4}), options);
+    const auto input = OIIO::ImageInput::open((folder / "out.jpg").string());
+    ASSERT_TRUE(input) << OIIO::geterror();
+    EXPECT_EQ(input->spec().width, 4);
+    EXPECT_EQ(input->spec().get_string_attribute("ImageDescription"),
+              "deltasplat:command: " + std::string(30000 - 20, 'x'));
 }
 
 // The sample that IEC 61966-2-1 asks for.
@@ -199,12 +229,12 @@ Sample expectedSample(double premultiplied, double alpha) {
 }
 
 template <typename Sample>
-void expectPngExact(int bits, OIIO::TypeDesc type) {
+void expectExact(const char* name, int bits, OIIO::TypeDesc type) {
     ImageFileOptions options;
     options.bits = bits;
     options.dither = false;
     const Image image = randomImage({50, 30});
-    const auto stored = writeAndRead<Sample>(image, "out.png", type, options);
+    const auto stored = writeAndRead<Sample>(image, name, type, options);
     for (std::size_t i = 0; i < stored.size(); ++i) {
         const double alpha = image.rgba[i | 3];
         const Sample expected =
@@ -215,11 +245,43 @@ void expectPngExact(int bits, OIIO::TypeDesc type) {
 }
 
 TEST(WriteImage, EightBitPngIsRoundedToNearest) {
-    expectPngExact<std::uint8_t>(8, OIIO::TypeUInt8);
+    expectExact<std::uint8_t>("out.png", 8, OIIO::TypeUInt8);
 }
 
 TEST(WriteImage, SixteenBitPngIsRoundedToNearest) {
-    expectPngExact<std::uint16_t>(16, OIIO::TypeUInt16);
+    expectExact<std::uint16_t>("out.png", 16, OIIO::TypeUInt16);
+}
+
+TEST(WriteImage, TiffIsRoundedToNearest) {
+    expectExact<std::uint8_t>("out.tif", 8, OIIO::TypeUInt8);
+    expectExact<std::uint16_t>("out.TIFF", 16, OIIO::TypeUInt16);
+}
+
+TEST(WriteImage, JpegIsThePictureOverBlack) {
+    const test::TempFolder folder;
+    // Slow enough that little is lost.
+    Image image({64, 48});
+    for (int y = 0; y < 48; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            float* pixel = image.pixel(x, y);
+            pixel[3] = float(x + 1) / 64;
+            pixel[0] = 0.8f * pixel[3];
+            pixel[1] = float(y) / 48 * pixel[3];
+            pixel[2] = 2;  // light beyond what can be shown
+        }
+    }
+    ImageFileOptions options;
+    options.dither = false;
+    writeImage(folder / "out.jpg", image, options);
+    const auto input = OIIO::ImageInput::open((folder / "out.jpg").string());
+    ASSERT_TRUE(input) << OIIO::geterror();
+    ASSERT_EQ(input->spec().nchannels, 3);
+    std::vector<std::uint8_t> stored(3 * 64 * 48);
+    ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeUInt8, stored.data()));
+    for (std::size_t i = 0; i < stored.size(); ++i) {
+        const double linear = std::min(1.0f, image.rgba[i / 3 * 4 + i % 3]);
+        ASSERT_NEAR(stored[i], expectedSample<std::uint8_t>(linear, 1), 5) << i;
+    }
 }
 
 // A ramp so slow that its steps would be 200 pixels wide comes out right on average everywhere.
@@ -291,7 +353,7 @@ TEST(WriteImage, ExrNeverStoresNanOrInfinity) {
 TEST(WriteImage, SamePictureGivesSameBytesOnAnyNumberOfThreads) {
     const test::TempFolder folder;
     const Image image = randomImage({300, 200});
-    for (const std::string extension : {".exr", ".png"}) {
+    for (const std::string extension : {".exr", ".png", ".tif", ".jpg"}) {
         for (const int threads : {1, 2, 8}) {
             const ThreadLimit limit(threads);
             OIIO::attribute("threads", threads);
@@ -307,7 +369,7 @@ TEST(WriteImage, SamePictureGivesSameBytesOnAnyNumberOfThreads) {
 
 TEST(WriteImage, NoticesAFullDisk) {
     const test::TempFolder folder;
-    for (const char* name : {"out.exr", "out.png"}) {
+    for (const char* name : {"out.exr", "out.png", "out.tif", "out.jpg"}) {
         fs::create_symlink("/dev/full", folder / name);
         EXPECT_EQ(
             errorOf([&] {
@@ -316,12 +378,13 @@ TEST(WriteImage, NoticesAFullDisk) {
             "output: " + (folder / name).string() + ": cannot be written: No space left on device");
         EXPECT_TRUE(fs::is_symlink(folder / name));
     }
-    EXPECT_EQ(folder.count(), 2);
+    EXPECT_EQ(folder.count(), 4);
 }
 
 TEST(CheckImageFile, AcceptsWhatCanBeWrittenAndLeavesNothing) {
     const test::TempFolder folder;
-    for (const char* name : {"a.exr", "a.png", "a.PNG"}) checkImageFile(folder / name, {8, 8}, {});
+    for (const char* name : {"a.exr", "a.png", "a.PNG", "a.tif", "a.tiff", "a.JPG", "a.jpeg"})
+        checkImageFile(folder / name, {8, 8}, {});
     EXPECT_EQ(folder.count(), 0);
 }
 
@@ -330,8 +393,16 @@ TEST(CheckImageFile, RefusesWhatCannot) {
         return errorOf([&] { checkImageFile(file, {8, 8}, options); });
     };
     EXPECT_EQ(check("out.gif", {}),
-              "usage: out.gif: got extension \".gif\"; expected .exr or .png");
-    EXPECT_EQ(check("out", {}), "usage: out: got extension \"\"; expected .exr or .png");
+              "usage: out.gif: got extension \".gif\"; expected .exr, .png, .tif or .jpg");
+    EXPECT_EQ(check("out", {}),
+              "usage: out: got extension \"\"; expected .exr, .png, .tif or .jpg");
+    ImageFileOptions sixteen;
+    sixteen.bits = 16;
+    EXPECT_EQ(check("out.jpg", sixteen), "usage: `bits`: got 16; expected 8 in a .jpg");
+    EXPECT_EQ(errorOf([&] {
+                  checkImageFile("out.JPG", {8, 65501}, {});
+              }),
+              "usage: `image.size`: got 8x65501; expected sides of at most 65500 pixels in a .jpg");
     ImageFileOptions twelve;
     twelve.bits = 12;
     EXPECT_EQ(check("out.png", twelve), "usage: `bits`: got 12; expected 8 or 16");

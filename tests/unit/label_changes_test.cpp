@@ -25,7 +25,7 @@ const std::vector<LabelLook> kLooks = {{-3, {1, 0, 0}, 0.5},
 class LabelChangesTest : public testing::Test {
   protected:
     TransferFunction change(const LabelChanges& changes) {
-        return changeLabels(labelFunction(kLooks), changes, listener());
+        return changeLabels(labelFunction(kLooks), changes);
     }
     Listener listener() {
         return {{}, [this](const std::string& line) { warnings_ += line + "\n"; }};
@@ -58,7 +58,7 @@ TEST_F(LabelChangesTest, hideShowAndFade) {
 
 TEST_F(LabelChangesTest, ofThePreset) {
     const TransferFunction whole = presetFunction("labels");
-    const TransferFunction function = changeLabels(whole, {{1, 65535}, {}, {{300, 1}}}, listener());
+    const TransferFunction function = changeLabels(whole, {{1, 65535}, {}, {{300, 1}}});
     EXPECT_EQ(function.opacityAt(1), 0);
     EXPECT_EQ(function.opacityAt(65535), 0);
     EXPECT_EQ(function.opacityAt(300), 1);
@@ -67,24 +67,44 @@ TEST_F(LabelChangesTest, ofThePreset) {
 }
 
 TEST_F(LabelChangesTest, sayWhatIsNotThere) {
-    const LabelChanges changes{{1, 7}, {1, 2}, {{8, 1}, {9, 1}}};
-    change(changes);
-    EXPECT_EQ(warnings_,
-              "`labels.hidden`: no label 7 in the table\n"
-              "`labels.opacities`: no label 8, 9 in the table\n");
-    warnings_.clear();
     const Volume volume =
         test::makeVolume({{0, 0, 0}, {3, 0, 0}}, [](int x, int, int) { return x < 2 ? 1 : 9; });
-    warnOfAbsentLabels(changes, volume, listener());
+    warnOfAbsentLabels({{1, 2, 7}, {1}, {{8, 1}, {9, 1}, {4, 1}}}, labelFunction(kLooks), volume,
+                       listener());
     EXPECT_EQ(warnings_,
-              "`labels.hidden`: no label 7 in the volume\n"
-              "`labels.shown`: no label 2 in the volume\n"
-              "`labels.opacities`: no label 8 in the volume\n");
+              "`labels.hidden`: no label 2 in the volume\n"
+              "`labels.hidden`: no label 7 in the table or the volume\n"
+              "`labels.opacities`: no label 9 in the table\n"
+              "`labels.opacities`: no label 4 in the volume\n"
+              "`labels.opacities`: no label 8 in the table or the volume\n");
+}
+
+TEST_F(LabelChangesTest, sayWhatTheTableLacks) {
+    const auto said = [&](int labels, const LabelChanges& changes) {
+        const Volume volume =
+            test::makeVolume({{0, 0, 0}, {19, 0, 0}}, [&](int x, int, int) { return x % labels; });
+        warnings_.clear();
+        warnOfUnlistedLabels(changes, labelFunction(kLooks), volume, listener());
+        return warnings_;
+    };
+    EXPECT_EQ(said(3, {}), "");
+    EXPECT_EQ(said(5, {}),
+              "`transferFunction`: label 3 of the volume is not in the table, and not shown\n");
+    const std::string six = "3, 5, 6, 7, 8, 9 of the volume are not in the table, and not shown\n";
+    EXPECT_EQ(said(10, {}), "`transferFunction`: labels " + six);
+    EXPECT_EQ(said(20, {}),
+              "`transferFunction`: labels 3, 5, 6, 7, 8 and 11 more of the volume are not in the "
+              "table, and not shown\n");
+    // What is hidden is meant to be.
+    EXPECT_EQ(said(20, {{}, {1, 2}, {}}), "");
+    EXPECT_EQ(said(5, {{3}, {}, {}}), "");
+    EXPECT_EQ(said(5, {{}, {1, 3}, {}}),
+              "`transferFunction`: label 3 of the volume is not in the table, and not shown\n");
 }
 
 TEST_F(LabelChangesTest, ofValuesAreRefused) {
     const auto said = [&](const LabelChanges& changes) {
-        return errorOf([&] { changeLabels(presetFunction("grey"), changes, listener()); });
+        return errorOf([&] { changeLabels(presetFunction("grey"), changes); });
     };
     EXPECT_EQ(said({}), "no error");
     EXPECT_EQ(said({{}, {1}, {}}),

@@ -100,6 +100,58 @@ TEST(RayKernels, SpansReadBilinearly) {
     }
 }
 
+// NaN stands for what is not there: the mean is that of the others, by their weights.
+TEST(RayKernels, MissingNeighboursAreLeftOut) {
+    constexpr std::size_t kPixels = 24;
+    const float missing = std::numeric_limits<float>::quiet_NaN();
+    auto row = randomValues(kPixels + 1, 1), nextRow = randomValues(kPixels + 1, 2);
+    for (std::size_t i = 0; i <= kPixels; ++i) {
+        if (i % 3 == 0) row[i] = missing;
+        if (i % 5 < 2) nextRow[i] = missing;
+    }
+    for (const glm::vec2 fraction :
+         {glm::vec2(0.25f, 0.8f), glm::vec2(0, 0.5f), glm::vec2(0.7f, 1)}) {
+        const float x = fraction.x, y = fraction.y;
+        std::vector<std::uint8_t> mask(kPixels / 8, 0);
+        std::vector<double> expected(kPixels, -10);
+        for (std::size_t i = 0; i < kPixels; ++i) {
+            const float values[] = {row[i], row[i + 1], nextRow[i], nextRow[i + 1]};
+            const double weights[] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
+            double sum = 0, all = 0;
+            for (int j = 0; j < 4; ++j) {
+                if (std::isnan(values[j])) continue;
+                sum += weights[j] * values[j];
+                all += weights[j];
+            }
+            if (all == 0) continue;
+            mask[i / 8] |= std::uint8_t(1 << i % 8);
+            expected[i] = sum / all;
+        }
+        atEveryLevel([&] {
+            std::vector<float> plane(kPixels, -10);
+            maxSpans({{row.data(), nextRow.data(), plane.data(), nullptr, kPixels, mask.data()}},
+                     fraction, {}, true);
+            for (std::size_t i = 0; i < kPixels; ++i) ASSERT_NEAR(plane[i], expected[i], 2e-6) << i;
+        });
+    }
+}
+
+// With masks and without a pixel has the same bits where all is there.
+TEST(RayKernels, WholeNeighboursAreReadAlike) {
+    const auto row = randomValues(65, 1), nextRow = randomValues(65, 2);
+    const std::vector<std::uint8_t> all(8, 0xFF);
+    for (const glm::vec2 fraction :
+         {glm::vec2(0.1f, 0.77f), glm::vec2(0.3f, 0), glm::vec2(0.3f, 1), glm::vec2(1, 0.2f)}) {
+        atEveryLevel([&] {
+            std::vector<float> plain(64, -10), masked(64, -10);
+            maxSpans({{row.data(), nextRow.data(), plain.data(), nullptr, 64, nullptr}}, fraction);
+            maxSpans({{row.data(), nextRow.data(), masked.data(), nullptr, 64, all.data()}},
+                     fraction, {}, true);
+            EXPECT_EQ(masked, plain);
+        });
+    }
+}
+
 TEST(RayKernels, EqualNeighboursAreReadExactly) {
     const std::vector<float> row(17, 0.1f);
     atEveryLevel([&] {

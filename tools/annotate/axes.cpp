@@ -23,6 +23,11 @@ class AxesPainter {
         std::stable_sort(order.begin(), order.end(),
                          [&](int a, int b) { return axes_[a].away > axes_[b].away; });
         for (const int axis : order) isEndOn(axis) ? paintEndOn(axis) : paintArrow(axis);
+        // The longer an arrow, the better its letter's place is its own.
+        std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+            return glm::length(axes_[a].along) > glm::length(axes_[b].along);
+        });
+        for (const int axis : order) placeLetter(axis);
         return ink_;
     }
 
@@ -33,12 +38,11 @@ class AxesPainter {
         const glm::dvec2 along = axes_[axis].along;
         const glm::dvec2 way = glm::normalize(along);
         const glm::dvec2 aside(-way.y, way.x);
-        const glm::dvec2 tip = origin_ + length_ * along;
+        const glm::dvec2 tip = tipOf(axis);
         const double head = std::min(0.5 * font_, 0.5 * length_ * glm::length(along));
         const Rgb& color = ink_.colors().axes[axis];
         ink_.line({origin_, tip}, color);
         ink_.line({tip - head * (way + 0.6 * aside), tip, tip - head * (way - 0.6 * aside)}, color);
-        paintLetter(axis, tip + 0.75 * font_ * way);
     }
 
     void paintEndOn(int axis) {
@@ -57,12 +61,48 @@ class AxesPainter {
                 disc.push_back(origin_ + size * p);
             ink_.area({disc, color, 1});
         }
-        // Between the others' backs.
-        glm::dvec2 others(0.0);
-        for (int other = 0; other < 3; ++other)
-            if (other != axis) others += axes_[other].along;
-        paintLetter(axis, origin_ - 1.1 * font_ * glm::normalize(others));
     }
+
+    // Puts a letter before its arrow's tip or, of an axis that is seen end-on, between the others'
+    // backs; where something is there already, beside the tip; where there is no room, nowhere.
+    void placeLetter(int axis) {
+        glm::dvec2 from = origin_;
+        glm::dvec2 away(0.0);
+        if (isEndOn(axis)) {
+            for (int other = 0; other < 3; ++other)
+                if (other != axis) away -= axes_[other].along;
+            away = 1.1 * font_ * glm::normalize(away);
+        } else {
+            from = tipOf(axis);
+            away = 0.75 * font_ * glm::normalize(axes_[axis].along);
+        }
+        constexpr double kDiagonal = 0.70710678;
+        for (const glm::dvec2 turn :
+             {glm::dvec2(1, 0), glm::dvec2(kDiagonal, kDiagonal), glm::dvec2(kDiagonal, -kDiagonal),
+              glm::dvec2(0, 1), glm::dvec2(0, -1), glm::dvec2(-kDiagonal, kDiagonal),
+              glm::dvec2(-kDiagonal, -kDiagonal), glm::dvec2(-1, 0)}) {
+            const glm::dvec2 middle = from + glm::dvec2(turn.x * away.x - turn.y * away.y,
+                                                        turn.x * away.y + turn.y * away.x);
+            if (!isFree(middle)) continue;
+            letters_.push_back(middle);
+            return paintLetter(axis, middle);
+        }
+    }
+
+    bool isFree(const glm::dvec2& middle) const {
+        for (const glm::dvec2& letter : letters_)
+            if (glm::length(letter - middle) < font_) return false;
+        for (int axis = 0; axis < 3; ++axis) {
+            const glm::dvec2 line = tipOf(axis) - origin_;
+            const double square = glm::dot(line, line);
+            const double share =
+                square > 0 ? std::clamp(glm::dot(middle - origin_, line) / square, 0.0, 1.0) : 0;
+            if (glm::length(middle - origin_ - share * line) < 0.5 * font_) return false;
+        }
+        return true;
+    }
+
+    glm::dvec2 tipOf(int axis) const { return origin_ + length_ * axes_[axis].along; }
 
     void paintLetter(int axis, const glm::dvec2& middle) {
         constexpr double kHalfCapital = 0.36;
@@ -75,6 +115,7 @@ class AxesPainter {
     double length_;
     glm::dvec2 origin_;
     Ink ink_;
+    std::vector<glm::dvec2> letters_;  // middles of those that are painted
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "number_text.h"
 #include "options/parse.h"
 #include "options/volume_choices.h"
+#include "text/short_number.h"
 #include "volume_place.h"
 
 namespace deltasplat {
@@ -16,6 +17,12 @@ namespace {
 template <class Vector>
 std::string toText(const Vector& v, const std::string& separator) {
     return joinNumbers({double(v.x), double(v.y), double(v.z)}, separator);
+}
+
+// Files hold sizes as floats or with few digits, or directions of which they are the lengths.
+std::string sizeText(const glm::dvec3& size) {
+    return shortNumberText(size.x) + " x " + shortNumberText(size.y) + " x " +
+           shortNumberText(size.z);
 }
 
 std::string line(const std::string& label, const std::string& value) {
@@ -176,7 +183,7 @@ std::string gridText(const GridReport& report) {
     text += line("box", v.empty() ? "empty"
                                   : "(" + toText(v.box.min, ", ") + ") to (" +
                                         toText(v.box.max, ", ") + ")");
-    text += line("voxel size", toText(v.voxelSize(), " x ")) + placeText(v);
+    text += line("voxel size", sizeText(v.voxelSize())) + placeText(v);
     text += line("active", std::to_string(v.activeCount) + " (" +
                                percent(double(v.activeCount), double(v.box.voxels())) + ")");
     text += valuesText(v);

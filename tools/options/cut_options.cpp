@@ -136,12 +136,15 @@ std::set<int> parseLabels(const std::string& option, const std::string& text) {
 }
 
 std::map<int, double> parseOpacities(const std::string& option, const std::string& text) {
-    return readOr(option, text, "L=O,L=O,..., labels and opacities from 0 to 1", [&] {
+    const std::string expected = "L=O,L=O,..., each label once, and opacities from 0 to 1";
+    return readOr(option, text, expected, [&] {
         std::map<int, double> opacities;
         for (const std::string& part : splitAt(text, ',')) {
             const std::vector<std::string> pair = splitAt(part, '=');
             if (pair.size() != 2) fail();
-            opacities[parseLabel(pair[0])] = number(0, 1)(option, pair[1]);
+            // Of two for one label neither can be what is meant.
+            const double opacity = number(0, 1)(option, pair[1]);
+            if (!opacities.emplace(parseLabel(pair[0]), opacity).second) fail();
         }
         return opacities;
     });

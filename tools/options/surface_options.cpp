@@ -37,9 +37,13 @@ Parser<std::vector<glm::dvec2>> steps() {
 
 Parser<glm::dvec3> opaqueColor() {
     return [](const std::string& option, const std::string& text) {
-        if (splitAt(text, ',').size() != 3)
-            throw Error(ErrorCode::kUsage, gotExpected(option, text, "R,G,B, each at least 0"));
-        return glm::dvec3(glm::vec3(color()(option, text)));
+        try {
+            if (splitAt(text, ',').size() == 3) return glm::dvec3(glm::vec3(color()(option, text)));
+        } catch (const Error&) {
+            // What is said of it must not offer a fourth number.
+        }
+        throw Error(ErrorCode::kUsage, gotExpected(option, text.empty() ? "nothing" : text,
+                                                   "R,G,B, three numbers of at least 0"));
     };
 }
 

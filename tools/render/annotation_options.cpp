@@ -21,12 +21,20 @@ std::string anyOf(const AnnotationChoice& choice) {
     return choice.lines.empty() ? "" : "--annotate";
 }
 
+Parser<std::string> someText() {
+    return [](const std::string& option, const std::string& text) {
+        if (text.find_first_not_of(" \t") == std::string::npos)
+            refuse(option, text.empty() ? "nothing" : "spaces", "a line of text");
+        return text;
+    };
+}
+
 }  // namespace
 
 void addAnnotationOptions(CLI::App& app, AnnotationChoice& choice) {
     OptionGroup group(app, "Annotations");
     group.addFlag("--legend", choice.legend,
-                  "Draw into a .png, upper right, which colours stand for which\n"
+                  "Draw into the picture (no .exr), upper right, which colours stand for which\n"
                   "values, and beside them how opaque these are (as its square\n"
                   "root); of labels their names, if --tf has some");
     group.addFlag("--scale-bar", choice.scaleBar,
@@ -36,7 +44,7 @@ void addAnnotationOptions(CLI::App& app, AnnotationChoice& choice) {
     group.addFlag("--axes", choice.axes,
                   "Draw the world's axes as the camera sees them, lower left: x, y\n"
                   "and z, or what of a patient they point to (R, L, A, P, S)");
-    group.addEach("--annotate", "TEXT", choice.lines, anyText(),
+    group.addEach("--annotate", "TEXT", choice.lines, someText(),
                   "Draw a line of text, upper left; may be given several times");
 }
 

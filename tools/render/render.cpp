@@ -9,7 +9,6 @@
 
 #include "annotate/annotate.h"
 #include "listener.h"
-#include "lower_case.h"
 #include "number_text.h"
 #include "options/input_options.h"
 #include "output_files.h"
@@ -80,19 +79,28 @@ void showErrorBound(const RenderStats& stats) {
     std::fputs(line.c_str(), stderr);
 }
 
+// Light in fog has lights as well.
+void warnOfUnusedLight(const CLI::App& app, const PictureOptions& picture,
+                       ProgressDisplay& display) {
+    if (picture.shading.shades.value_or(true) || picture.scatter.asked()) return;
+    for (const char* option : {"--light", "--ambient", "--diffuse", "--specular", "--shininess"})
+        if (isGiven(app, option))
+            display.warn(std::string(option) + ": has no effect with --no-shade");
+}
+
 void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
                          ProgressDisplay& display) {
     Files inputs = filesOfMask(command.picture.parts);
     inputs.push_back(command.input);
     warnOfUnusedInputOptions(app, inputs, display);
-    const bool png = lowerCase(command.output.extension().string()) == ".png";
-    if (isGiven(app, "--bits") && !png)
-        display.warn("--bits: has no effect without a .png picture");
-    if (isGiven(app, "--dither") && (!png || command.image.bits == 16))
-        display.warn("--dither: has no effect without a .png of 8 bits");
+    const bool isExr = imageFormatOf(command.output) == ImageFormat::kExr;
+    if (isGiven(app, "--bits") && isExr) display.warn("--bits: has no effect on an .exr");
+    if (isGiven(app, "--dither") && (isExr || command.image.bits == 16))
+        display.warn("--dither: has no effect but in pictures of 8 bits");
     warnOfUnusedModeOptions(app, command, display);
     if (command.picture.render.mode != Mode::kComposite) return;
     warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading, display);
+    warnOfUnusedLight(app, command.picture, display);
     if (!command.picture.surface.asked) return;
     std::vector<std::string> unused = {"--extinction", "--unit-distance"};
     const bool isColored = !command.picture.transferFunction.empty();
@@ -115,6 +123,18 @@ glm::dvec2 applyWindow(const RenderCommand& command, const Volume& volume, Rende
     return window;
 }
 
+// Makes opaque what has no alpha when it is stored.
+void fillForJpeg(const RenderCommand& command, Image& image, const Listener& listener) {
+    if (imageFormatOf(command.output) != ImageFormat::kJpeg) return;
+    bool isOpaque = true;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) isOpaque &= image.rgba[i] >= 1;
+    if (isOpaque) return;
+    listener.warn(command.output.string() +
+                  ": a .jpg has no alpha, so what is clear is black; --background gives it another "
+                  "colour");
+    compositeOver(image, glm::vec4(0, 0, 0, 1));
+}
+
 // Makes the picture what is stored of it, and says in `image` what that took.
 // @param optics  that it was made with
 void finishPicture(const RenderCommand& command, const Volume& volume, const Optics& optics,
@@ -123,6 +143,7 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
     std::optional<glm::dvec2> window;
     if (showsWindow(command)) window = applyWindow(command, volume, result, image);
     if (command.picture.background) compositeOver(result.image, *command.picture.background);
+    fillForJpeg(command, result.image, listener);
     std::optional<Legend> legend;
     if (optics.surface && command.annotations.legend) {
         listener.warn("--legend: left out, for what is shown is a surface, of one colour");

@@ -13,11 +13,21 @@
 #include "optics/label_changes.h"
 #include "optics/value_colors.h"
 #include "options/transfer_function_option.h"
+#include "text/short_number.h"
 
 namespace deltasplat {
 namespace {
 
 constexpr const char* kLabelPreset = "labels";
+
+// How many voxels a surface has to be from the ends of a level set's band, on the inside and on the
+// outside: found by trying (obliquely, a ray goes 1.7 voxels deep between two that it meets).
+constexpr double kInnerEnd = 1.8;
+constexpr double kOuterEnd = 0.5;
+
+std::string shortText(double number) {
+    return shortNumberText(number, 1e-3);
+}
 
 // Returns a value that is no whole number, if there is one.
 std::optional<double> anyBroken(const Volume& volume) {
@@ -36,11 +46,14 @@ void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener&
         "values from " + numberText(volume.valueMin) + " to " + numberText(volume.valueMax);
     // Around whatever is scanned is air, and in it fat.
     if (preset.values == Preset::Values::kHounsfield && volume.valueMin >= 0) {
-        listener.warn("--tf: " + preset.name +
-                      " is for Hounsfield units (air -1000, water 0), which " + values +
-                      " are hardly");
+        listener.warn("--tf: " + preset.name + " is for Hounsfield units (air -1000, water 0); " +
+                      values + " seem to be others");
     }
     if (preset.values != Preset::Values::kLabels) return;
+    if (isHounsfield(volume)) {
+        listener.warn("--tf: " + preset.name + " is for labels; " + values +
+                      " seem to be Hounsfield units, for which there are ct-bone and others");
+    }
     if (const std::optional<double> broken = anyBroken(volume)) {
         listener.warn("--tf: " + preset.name + " is for whole numbers, and " + values +
                       " lie between, such as " + numberText(*broken));
@@ -118,6 +131,48 @@ void checkScattering(const PictureOptions& picture) {
     }
 }
 
+// Where values are all on one side, there is nothing to see but where the volume ends.
+void warnOfNoSurface(const Volume& volume, double isovalue, const Listener& listener) {
+    double low = volume.valueMin;
+    double high = volume.valueMax;
+    if (volume.hasBackground) {
+        low = std::min(low, volume.background);
+        high = std::max(high, volume.background);
+    }
+    const bool isBelow = isLevelSet(volume);  // inside of a surface
+    const bool isAllInside = isBelow ? high <= isovalue : low >= isovalue;
+    const bool isAllOutside = isBelow ? low > isovalue : high < isovalue;
+    if (!isAllInside && !isAllOutside) return;
+    const std::string range = low < high
+                                  ? "values from " + numberText(low) + " to " + numberText(high)
+                                  : "a volume of value " + numberText(low);
+    listener.warn("--isovalue: got " + numberText(isovalue) + ", which " + range +
+                  (low < high ? " never pass: " : " never passes: ") +
+                  (isAllInside ? "all is inside, and shown is all of the volume, as a solid"
+                               : "nothing is inside"));
+}
+
+// A level set stores distances to a few voxels from its surface. What lies beyond is not there to
+// fill the gaps between voxels that are cut.
+void warnOfBandEnds(const PictureOptions& picture, const Volume& volume, double isovalue,
+                    const Listener& listener) {
+    const glm::dvec3 size = volume.voxelSize();
+    const double voxel = std::max({size.x, size.y, size.z});
+    const double width = std::abs(volume.background);
+    // Where values end before the band does, nothing lies deeper.
+    const bool isHollow = volume.valueMin < voxel - width;
+    const double low = isHollow ? kInnerEnd * voxel - width : volume.valueMin;
+    const double high = width - kOuterEnd * voxel;
+    const bool isWithin = isovalue >= volume.valueMin && isovalue <= volume.valueMax;
+    if (!isWithin || (isovalue >= low && isovalue <= high)) return;
+    listener.warn(
+        (picture.surface.isovalue ? "--isovalue: got " : "--surface: at ") + numberText(isovalue) +
+        " near the end of the level set's band, " + shortText(-width) + " to " + shortText(width) +
+        ", where surfaces have pits; expected " +
+        (low <= high ? shortText(low) + " to " + shortText(high)
+                     : "a band of at least " + shortText(kInnerEnd + kOuterEnd) + " voxels"));
+}
+
 // A surface has the colour that values have there, if that is asked for and it has no other.
 void finishSurface(const PictureOptions& picture, const Volume& volume, Optics& optics,
                    const Listener& listener) {
@@ -125,15 +180,8 @@ void finishSurface(const PictureOptions& picture, const Volume& volume, Optics& 
     if (!picture.transferFunction.empty() && !picture.surface.color)
         optics.surface->color = glm::dvec3(ValueColors(volume, optics).colorOf(float(isovalue)));
     if (volume.empty()) return;
-    double low = volume.valueMin;
-    double high = volume.valueMax;
-    if (volume.hasBackground) {
-        low = std::min(low, volume.background);
-        high = std::max(high, volume.background);
-    }
-    if (isovalue >= low && isovalue <= high) return;
-    listener.warn("--isovalue: got " + numberText(isovalue) + ", which values from " +
-                  numberText(low) + " to " + numberText(high) + " never pass");
+    warnOfNoSurface(volume, isovalue, listener);
+    if (isLevelSet(volume)) warnOfBandEnds(picture, volume, isovalue, listener);
 }
 
 }  // namespace
@@ -166,6 +214,26 @@ glm::dvec3 upOf(const PictureOptions& picture, const Volume& volume) {
     return picture.render.camera.up.value_or(up);
 }
 
+// Labels stand apart; what is between two of them looks like a third.
+void warnOfMixedLabels(const PictureOptions& picture, const Listener& listener) {
+    const Mode mode = picture.render.mode;
+    if (mode == Mode::kComposite) return;
+    listener.warn("--tf: --mode " + modeName(mode) +
+                  " mixes values of neighbouring voxels, so that between labels it shows others "
+                  "that are not there; composite keeps them apart");
+}
+
+// What is said of a volume that a table of labels shows.
+void warnOfLabels(const PictureOptions& picture, const Preset* preset, const Volume& volume,
+                  const TransferFunction& table, const Listener& listener) {
+    const bool isShown = picture.render.mode == Mode::kComposite || picture.render.mipColors;
+    if (!isShown) return;
+    warnOfMixedLabels(picture, listener);
+    warnOfAbsentLabels(picture.parts.labels, table, volume, listener);
+    // The preset has all labels that there are.
+    if (!preset) warnOfUnlistedLabels(picture.parts.labels, table, volume, listener);
+}
+
 // Puts into `options` what depends on the volume: all of it, whatever is cut off.
 void fitOptics(const std::filesystem::path& input, const PictureOptions& picture,
                const Volume& volume, RenderOptions& options, const Listener& listener) {
@@ -189,7 +257,9 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
         if (isOpen && picture.parts.cuts()) options.optics.range = defaultRange(volume);
     }
     options.optics.transferFunction =
-        changeLabels(options.optics.transferFunction, picture.parts.labels, listener);
+        changeLabels(options.optics.transferFunction, picture.parts.labels);
+    if (options.optics.transferFunction.categorical && !options.optics.surface)
+        warnOfLabels(picture, preset, volume, options.optics.transferFunction, listener);
     if (options.optics.surface) finishSurface(picture, volume, options.optics, listener);
 }
 
@@ -201,7 +271,6 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     read.keepInexact = picture.render.mode != Mode::kComposite;
     Volume volume = readVolume(input, read, listener);
     fitOptics(input, picture, volume, options, listener);
-    warnOfAbsentLabels(picture.parts.labels, volume, listener);
     if (!picture.parts.cuts()) return volume;
     if (options.optics.surface && isLevelSet(volume)) {
         listener.warn(

@@ -61,8 +61,12 @@ void applyMode(const CLI::App& app, RenderCommand& command) {
 void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
                              ProgressDisplay& display) {
     const Mode mode = command.picture.render.mode;
-    if (isGiven(app, "--window") && !showsWindow(command))
-        display.warn("--window: has no effect without a --mode of values, in an .exr or with --tf");
+    if (isGiven(app, "--window") && !showsWindow(command)) {
+        display.warn(std::string("--window: has no effect ") +
+                     (mode == Mode::kComposite ? "with --mode composite"
+                      : isExr(command.output)  ? "on an .exr, which holds the values themselves"
+                                               : "with --tf, whose colours values get"));
+    }
     warnOfOtherModes(app, command, display);
     if (mode == Mode::kComposite) return;
     std::vector<std::string> unused = {

@@ -113,15 +113,16 @@ void addOutputOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup group(app, "Output");
     group
         .addValue("-o,--output", "FILE", command.output, anyText(),
-                  "Picture to write: .exr (scene-linear, premultiplied) or\n"
-                  ".png (sRGB)")
+                  "Picture to write: .exr (scene-linear, premultiplied) or .png, .tif\n"
+                  "or .jpg (sRGB; a .jpg without alpha: over --background or black)")
         .required();
     group.addFlag("--float", command.image.floatExr, "Store 32-bit floats in an .exr, not halves");
     group.addValue("--bits", "8|16", command.image.bits, bits(),
-                   withDefault("Bits per channel of a .png", std::to_string(command.image.bits)));
+                   withDefault("Bits per channel of a .png or .tif; of a .jpg 8",
+                               std::to_string(command.image.bits)));
     group.addValue("--dither", "0|1", command.image.dither, zeroOrOne(),
-                   withDefault("Round up and down in a fixed pattern in a .png of 8 bits, so that\n"
-                               "slow ramps show no steps",
+                   withDefault("Round up and down in a fixed pattern in pictures of 8 bits, so\n"
+                               "that slow ramps show no steps",
                                command.image.dither ? "1" : "0"));
     group.addValue("--stats", "FILE", command.stats, anyText(),
                    "JSON file to write: what was done, how long it took in seconds");
@@ -135,7 +136,7 @@ void addModeOption(CLI::App& app, Mode& chosen) {
                                "along the line of sight, or the mean of active ones) or drr\n"
                                "(radiograph of a CT scan in Hounsfield units: which share of\n"
                                "x-rays gets through): all but the first store their values as\n"
-                               "32-bit floats in an .exr, and are shown as greys in a .png (mip,\n"
+                               "32-bit floats in an .exr, and are shown as greys elsewhere (mip,\n"
                                "min and average in the colours of --tf, if that is given; drr\n"
                                "white where little gets through)",
                                modeName(chosen)));
@@ -144,11 +145,11 @@ void addModeOption(CLI::App& app, Mode& chosen) {
 void addWindowOption(CLI::App& app, std::optional<glm::dvec2>& window) {
     OptionGroup group(app, "Optics");
     group.addValue("--window", "LO,HI", window, interval(),
-                   "Values that black and white stand for in a .png of --mode xray\n"
-                   "(data units times world units), drr (attenuation, -ln of the\n"
-                   "share that gets through), mip, min or average (default: the\n"
-                   "0.5th and the 99.5th percentile of the picture's; for xray and\n"
-                   "drr at most 0)");
+                   "Values that black and white stand for in pictures, .exr aside, of\n"
+                   "--mode xray (data units times world units), drr (attenuation,\n"
+                   "-ln of the share that gets through), mip, min or average\n"
+                   "(default: the 0.5th and the 99.5th percentile of the picture's;\n"
+                   "for xray and drr black is at most 0)");
 }
 
 void addRayOptions(CLI::App& app, RenderCommand& command) {

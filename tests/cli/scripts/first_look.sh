@@ -20,4 +20,10 @@ draw ramp_plain --range=-900,500 --no-shade
 same first preset || { echo "first look: got another picture; expected ct-soft-tissue"; exit 1; }
 ! same first plain || { echo "--no-shade: got the same picture"; exit 1; }
 ! same first ramp || { echo "--range: got the same picture; expected a ramp"; exit 1; }
+says() { # TEXT OPTIONS...
+    "$program" render "$scan" -o said.png --size 64x64 "${@:2}" 2>&1 | grep -qF -- "$1" ||
+        { echo "${*:2}: expected '$1'"; exit 1; }
+}
+says "--mode xray: adds up Hounsfield units" --mode xray
+says "--tf: labels is for labels; values from" --tf labels
 same ramp ramp_plain || { echo "--range: got a shaded ramp"; exit 1; }

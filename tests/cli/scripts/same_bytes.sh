@@ -9,7 +9,7 @@ for folder in one two; do
     mkdir -p "$scratch/$folder"
     cd "$scratch/$folder"
     "$program" synth cloud cloud.vdb --dims 32x32x32 -q
-    "$program" render cloud.vdb -o "cloud.$extension" --size 100x80 --view iso -q
+    "$program" render cloud.vdb -o "cloud.$extension" --size 100x80 --view iso -q -q
     # File formats keep time in seconds; wait for another one.
     [[ $folder == two ]] || sleep 1.1
 done

@@ -31,6 +31,7 @@ expect_same plain surface
 expect_same plain zero
 expect_different plain grown
 expect_silence plain
+expect_silence grown
 draw fog --level-set fog
 expect_different plain fog
 draw fog_tf --tf grey
@@ -54,6 +55,20 @@ draw xray_surface --mode xray --surface
 expect_same xray xray_surface
 expect_warning xray_surface "--surface: has no effect with --mode xray"
 
+# Near the ends of the band voxels are missing.
+draw inner --isovalue=-0.9
+expect_warning inner "--isovalue: got -0.9 near the end of the level set's band, -1.5 to 1.5, where surfaces have pits; expected -0.6 to 1.25"
+draw outer --isovalue=1.4
+expect_warning outer "near the end of the level set's band"
+draw all --isovalue=3.5
+expect_warning all "all is inside, and shown is all of the volume, as a solid"
+
+# A volume of one value passes none.
+head -c 512 /dev/zero | tr '\0' '\7' >seven_8x8x8_uint8.raw
+input=seven_8x8x8_uint8.raw
+draw seven --isovalue 7
+expect_warning seven "--isovalue: got 7, which a volume of value 7 never passes: all is inside"
+
 # Any volume's values pass some.
 input=engine_32x32x32_uint8.raw
 draw engine --isovalue 90
@@ -66,7 +81,8 @@ expect_different engine engine_tf
 draw thin --isovalue 90 --extinction 0.01
 expect_same engine thin
 draw nowhere --isovalue 300
-expect_warning nowhere "--isovalue: got 300, which values from 0 to 230 never pass"
+expect_warning nowhere "--isovalue: got 300, which values from 0 to 230 never pass: nothing is inside"
+expect_warning nowhere "picture: empty, for the surface encloses none of the values 0 to 230"
 
 # Opacity by gradients: none, all, and something between.
 draw ramp --tf grey
