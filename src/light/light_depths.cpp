@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "deltasplat/threads.h"
 #include "memory.h"
@@ -22,29 +23,49 @@ std::int64_t stripCount(std::int64_t rows, std::size_t lights) {
                                     std::max<std::int64_t>(1, rows / kLeastRows));
 }
 
+// In a world unit, [classes].
+std::vector<float> extinctionsOf(const ClassTable& classes) {
+    constexpr double kMost = 1e30;
+    const double scale = classes.extinctionScale / classes.unitDistanceWorld;
+    std::vector<float> extinctions;
+    for (const Look& look : classes.looks) {
+        // Nothing times infinity is nothing.
+        const bool isAny = scale > 0 && look.extinction > 0;
+        extinctions.push_back(isAny ? float(std::min(look.extinction * scale, kMost)) : 0);
+    }
+    return extinctions;
+}
+
 }  // namespace
 
 LightDepths::LightDepths(const Volume& volume, const ClassTable& classes,
-                         const std::vector<Light>& lights)
+                         const std::vector<Light>& lights, int octaves)
     : blocks_(volume, classes) {
-    const std::size_t voxels = 512 * blocks_.all().size();
+    const std::size_t voxels = 512 * blocks_.size();
     requireMemory("light on its way to voxels",
                   double(sizeof(std::uint16_t)) * double(voxels) * double(lights.size()));
     depths_ =
         UnclearedArray<std::uint16_t>(voxels * lights.size(), *std::pmr::get_default_resource());
     if (voxels == 0) return;
+    // What a voxel of a wall leaves of the octave that is dimmed least. More of it would only make
+    // its shadow wider, as it is shared between points of a plane.
+    constexpr float kMost = 10;
+    const float most = std::min(kMost * float(1 << octaves), 1000.0f);
+    const std::vector<float> extinctions = extinctionsOf(classes);
     struct Piece {
         std::size_t light;
         std::int64_t first;
         std::int64_t last;
     };
+    std::array<std::optional<LitBlocks::Along>, 3> blocksAlong;
     std::vector<LightSweep> sweeps;
-    std::array<UnclearedArray<std::uint16_t>, 3> classesAlong;
     std::vector<Piece> pieces;
     for (std::size_t light = 0; light < lights.size(); ++light) {
-        sweeps.emplace_back(blocks_, classes, volume.worldFromIndex, lights[light].direction);
-        auto& along = classesAlong[std::size_t(sweeps.back().sliceAxis())];
-        if (along.empty()) along = blocks_.classesAlong(sweeps.back().sliceAxis());
+        const LightWay way(volume.worldFromIndex, lights[light].direction);
+        auto& along = blocksAlong[std::size_t(way.sliceAxis)];
+        if (!along) along.emplace(blocks_.along(way.sliceAxis));
+        sweeps.emplace_back(*along, way, volume.box.min[way.sliceAxis],
+                            MetClasses{extinctions.data(), float(way.sliceWorld), most});
         const std::int64_t rows = sweeps.back().rows();
         const std::int64_t strips = stripCount(rows, lights.size());
         const auto edge = [&](std::int64_t n) { return rows * n / strips; };
@@ -58,9 +79,7 @@ LightDepths::LightDepths(const Volume& volume, const ClassTable& classes,
                   largest * std::min<double>(threadCount(), double(pieces.size())));
     parallelFor(pieces.size(), [&](std::size_t i) {
         const Piece& piece = pieces[i];
-        const LightSweep& sweep = sweeps[piece.light];
-        sweep.run(piece.first, piece.last, &classesAlong[std::size_t(sweep.sliceAxis())][0],
-                  &depths_[piece.light * voxels]);
+        sweeps[piece.light].run(piece.first, piece.last, &depths_[piece.light * voxels]);
     });
 }
 

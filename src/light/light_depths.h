@@ -16,14 +16,17 @@ class LightDepths {
   public:
     /// Sweeps the volume from each light on. Multi-threaded.
     /// @param classes  must outlive this, as `volume`
+    /// @param octaves  of light that are to be told from it (Scattering): the more, the less is
+    ///                 taken for nothing
     /// @throw Error(kFailed) if there is not enough memory
-    LightDepths(const Volume& volume, const ClassTable& classes, const std::vector<Light>& lights);
+    LightDepths(const Volume& volume, const ClassTable& classes, const std::vector<Light>& lights,
+                int octaves);
 
     const LitBlocks& blocks() const { return blocks_; }
     /// Returns a block's, `[x][y][z]`: the square root of extinction, in 1 / kDepthSteps.
     /// @param number  of the block (LitBlocks::find)
     const std::uint16_t* of(std::size_t light, std::int64_t number) const {
-        return &depths_[512 * (light * blocks_.all().size() + std::size_t(number))];
+        return &depths_[512 * (light * blocks_.size() + std::size_t(number))];
     }
 
   private:

@@ -2,6 +2,8 @@
 #include "light/lit_blocks.h"
 
 #include <algorithm>
+#include <array>
+#include <glm/common.hpp>
 #include <memory_resource>
 
 #include "ingest/codes/leaf_slices.h"
@@ -14,6 +16,10 @@ LitBlocks::LitBlocks(const Volume& volume, const ClassTable& classes)
     : classOfSlot_(classes.classOfSlot) {
     // Along x, positions are (x, y, z).
     const BlockReader reader(*volume.codes, nullptr, 0, classOfSlot_);
+    // A node of the map, and its place in it.
+    constexpr double kMapBytes = 48;
+    requireMemory("list of lit blocks",
+                  (double(sizeof(Block)) + kMapBytes) * double(reader.blocks().size()));
     blocks_.reserve(reader.blocks().size());
     numbers_.reserve(reader.blocks().size());
     for (const CodeBlock& block : reader.blocks()) {
@@ -27,14 +33,40 @@ std::int64_t LitBlocks::find(const glm::ivec3& position) const {
     return found == numbers_.end() ? -1 : std::int64_t(found->second);
 }
 
-UnclearedArray<std::uint16_t> LitBlocks::classesAlong(int sliceAxis) const {
-    const std::size_t voxels = 512 * blocks_.size();
-    requireMemory("classes that light meets", double(sizeof(std::uint16_t)) * double(voxels));
-    UnclearedArray<std::uint16_t> classes(voxels, *std::pmr::get_default_resource());
-    parallelForChunks(blocks_.size(), [&](std::size_t begin, std::size_t end) {
+LitBlocks::Along LitBlocks::along(int sliceAxis) const {
+    const double bytes = 512 * sizeof(std::uint16_t) + sizeof(Along::Place);
+    requireMemory("blocks as light comes upon them", bytes * double(size()));
+    Along along{sliceAxis, {}, {}, {}, {}, {}};
+    const auto placeOf = [&](std::size_t number) {
+        const glm::ivec3 place = 8 * toSliceOrder(blocks_[number].position, sliceAxis);
+        return std::array{place.x, place.y, place.z};
+    };
+    for (std::size_t number = 0; number < size(); ++number) {
+        const glm::ivec2 first(placeOf(number)[1], placeOf(number)[2]);
+        along.low = number == 0 ? first : glm::min(along.low, first);
+        along.high = number == 0 ? first : glm::max(along.high, first);
+        along.order.push_back({number, first});
+    }
+    std::sort(along.order.begin(), along.order.end(),
+              [&](const Along::Place& a, const Along::Place& b) {
+                  return placeOf(a.number) < placeOf(b.number);
+              });
+    for (std::size_t i = 0; i < size(); ++i) {
+        const int slice = placeOf(along.order[i].number)[0];
+        if (along.groups.empty() || along.groups.back().firstSlice != slice)
+            along.groups.push_back({slice, i, i});
+        along.groups.back().end = i + 1;
+    }
+    along.classes = UnclearedArray<std::uint16_t>(512 * size(), *std::pmr::get_default_resource());
+    if (size() != 0) readClasses(sliceAxis, &along.classes[0]);
+    return along;
+}
+
+void LitBlocks::readClasses(int sliceAxis, std::uint16_t* classes) const {
+    parallelForChunks(size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t number = begin; number < end; ++number) {
             const Block& block = blocks_[number];
-            std::uint16_t* out = &classes[512 * number];
+            std::uint16_t* out = classes + 512 * number;
             if (block.leaf) {
                 readLeafSlices(
                     *block.leaf, sliceAxis,
@@ -44,7 +76,6 @@ UnclearedArray<std::uint16_t> LitBlocks::classesAlong(int sliceAxis) const {
             }
         }
     });
-    return classes;
 }
 
 std::size_t LitBlocks::Hash::operator()(const glm::ivec3& position) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <unordered_map>
@@ -19,21 +20,45 @@ class LitBlocks {
     /// @param classes  must outlive the blocks, as `volume`
     LitBlocks(const Volume& volume, const ClassTable& classes);
 
-    struct Block {
-        glm::ivec3 position;         ///< (x, y, z) of its first voxel, divided by 8
-        const CodeTree::Leaf* leaf;  ///< null for a piece of a tile
-        Slot tileClass;              ///< of all voxels, if there is no leaf
-    };
-    const std::vector<Block>& all() const { return blocks_; }
+    std::size_t size() const { return blocks_.size(); }
     /// Returns a block's number; -1 if nothing of it can be seen.
+    /// @param position  (x, y, z) of its first voxel, divided by 8
     std::int64_t find(const glm::ivec3& position) const;
-    /// Returns the classes of the blocks' voxels, `[block][slice][u][v]`. Multi-threaded.
-    UnclearedArray<std::uint16_t> classesAlong(int sliceAxis) const;
+
+    /// The blocks as light comes upon them along a slice axis.
+    struct Along {
+        /// Those of [begin, end) of `order` have their voxels in the same eight slices.
+        struct Group {
+            int firstSlice;
+            std::size_t begin;
+            std::size_t end;
+        };
+        /// A block.
+        struct Place {
+            std::size_t number;
+            glm::ivec2 first;  ///< (u, v) of its first voxel
+        };
+        int sliceAxis;
+        std::vector<Place> order;               ///< by slice, u and v
+        std::vector<Group> groups;              ///< by slice
+        glm::ivec2 low;                         ///< (u, v): the smallest of any block's first voxel
+        glm::ivec2 high;                        ///< and the largest
+        UnclearedArray<std::uint16_t> classes;  ///< `[block][slice][u][v]`
+    };
+    /// Multi-threaded.
+    /// @throw Error(kFailed) if there is not enough memory
+    Along along(int sliceAxis) const;
 
   private:
+    struct Block {
+        glm::ivec3 position;         // (x, y, z) of its first voxel, divided by 8
+        const CodeTree::Leaf* leaf;  // null for a piece of a tile
+        Slot tileClass;              // of all voxels, if there is no leaf
+    };
     struct Hash {
         std::size_t operator()(const glm::ivec3& position) const;
     };
+    void readClasses(int sliceAxis, std::uint16_t* classes) const;
 
     std::span<const Slot> classOfSlot_;
     std::vector<Block> blocks_;

@@ -18,6 +18,7 @@
 #include "number_text.h"
 #include "parallel.h"
 #include "portable_math.h"
+#include "unit_vector.h"
 #include "view/picture_rays.h"
 
 namespace deltasplat {
@@ -49,7 +50,7 @@ glm::dvec3 unitOf(const std::string& option, const glm::dvec3& way) {
     const double size = std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
     const bool finite = std::isfinite(way.x) && std::isfinite(way.y) && std::isfinite(way.z);
     if (!finite || !(size > 0)) refuse(option, numberText(way), "a direction");
-    return glm::normalize(way / size);
+    return unitVectorOf(way);
 }
 
 Place placeOf(const Sky& sky) {

@@ -73,17 +73,20 @@ glm::dvec3 sunXyz(double mass, double turbidity) {
     return xyz;
 }
 
-const glm::dvec3 kAboveAir = sunXyz(0, 0);
+const glm::dvec3& aboveAir() {
+    static const glm::dvec3 xyz = sunXyz(0, 0);
+    return xyz;
+}
 
 }  // namespace
 
 glm::dvec3 colorUnderSun(const glm::dvec3& xyz) {
-    const glm::dvec3 share = xyz / (kAboveAir / kAboveAir.y);
+    const glm::dvec3 share = xyz / (aboveAir() / aboveAir().y);
     return glm::max(linearFromShareOfWhite(share), glm::dvec3(0));
 }
 
 glm::dvec3 sunColor(double zenithAngle, double turbidity) {
-    return colorUnderSun(sunXyz(airMass(zenithAngle), turbidity) / kAboveAir.y);
+    return colorUnderSun(sunXyz(airMass(zenithAngle), turbidity) / aboveAir().y);
 }
 
 }  // namespace deltasplat

@@ -22,23 +22,23 @@ HWY_INLINE Part between(Part a, Part b, float share) {
     return hn::Add(a, hn::Mul(hn::Set(RowTag(), share), hn::Sub(b, a)));
 }
 
-bool lookUpMetKernel(const MetClasses& met, const std::uint16_t* classes, float* own,
-                     float* means) {
+bool lookUpMetKernel(const MetClasses& met, const std::uint16_t* classes, float* own) {
     const RowTag tag;
     const hn::RebindToSigned<RowTag> whole;
     const hn::Rebind<std::uint16_t, RowTag> narrow;
     auto any = hn::Zero(tag);
     for (std::size_t n = 0; n < 64; n += hn::Lanes(tag)) {
         const auto numbers = hn::PromoteTo(whole, hn::LoadU(narrow, classes + n));
-        const auto depth = hn::GatherIndex(tag, met.depths, numbers);
+        const auto extinction = hn::GatherIndex(tag, met.extinctions, numbers);
+        const auto depth =
+            hn::Min(hn::Mul(extinction, hn::Set(tag, met.step)), hn::Set(tag, met.most));
         hn::StoreU(depth, tag, own + n);
-        hn::StoreU(hn::GatherIndex(tag, met.means, numbers), tag, means + n);
         any = hn::Max(any, depth);
     }
     return !hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)));
 }
 
-void readSweptKernel(const SweptPlace& place, int end, const float* means, std::uint16_t* codes) {
+void readSweptKernel(const SweptPlace& place, int end, std::uint16_t* codes) {
     const RowTag tag;
     const hn::RebindToSigned<RowTag> whole;
     const hn::Rebind<std::uint16_t, RowTag> narrow;
@@ -51,8 +51,7 @@ void readSweptKernel(const SweptPlace& place, int end, const float* means, std::
             const auto inBelow =
                 between(hn::LoadU(tag, below + v), hn::LoadU(tag, below + v + 1), place.share.y);
             const std::size_t n = 8 * std::size_t(u) + v;
-            const auto depth =
-                hn::Add(between(inAbove, inBelow, place.share.x), hn::LoadU(tag, means + n));
+            const auto depth = between(inAbove, inBelow, place.share.x);
             const auto code =
                 hn::Add(hn::Mul(hn::Sqrt(depth), hn::Set(tag, kDepthSteps)), hn::Set(tag, 0.5f));
             const auto bounded = hn::ConvertTo(whole, hn::Min(code, hn::Set(tag, 65535.0f)));
@@ -101,12 +100,12 @@ HWY_EXPORT(lookUpMetKernel);
 HWY_EXPORT(readSweptKernel);
 HWY_EXPORT(addSweptKernel);
 
-bool lookUpMet(const MetClasses& met, const std::uint16_t* classes, float* own, float* means) {
-    return HWY_DYNAMIC_DISPATCH(lookUpMetKernel)(met, classes, own, means);
+bool lookUpMet(const MetClasses& met, const std::uint16_t* classes, float* own) {
+    return HWY_DYNAMIC_DISPATCH(lookUpMetKernel)(met, classes, own);
 }
 
-void readSwept(const SweptPlace& place, int end, const float* means, std::uint16_t* codes) {
-    HWY_DYNAMIC_DISPATCH(readSweptKernel)(place, end, means, codes);
+void readSwept(const SweptPlace& place, int end, std::uint16_t* codes) {
+    HWY_DYNAMIC_DISPATCH(readSweptKernel)(place, end, codes);
 }
 
 void addSwept(const SweptPlace& place, int end, const float* own) {

@@ -7,10 +7,11 @@
 
 namespace deltasplat {
 
-/// What light meets in a slice of each class, [classes].
+/// What light meets in a slice.
 struct MetClasses {
-    const float* depths;  ///< extinction on the way through
-    const float* means;   ///< what dims light as much as it is dimmed on average on that way
+    const float* extinctions;  ///< [classes]: in a world unit, finite
+    float step;                ///< world units that light travels in a slice
+    float most;                ///< beyond which nothing of it is left
 };
 
 /// Where a block's voxels of a slice lie on the plane of what light has come through: voxel (u, v)
@@ -30,13 +31,12 @@ inline constexpr float kDepthSteps = 2048;
 /// level, as those below.
 /// @param classes  [64]
 /// @param own      [64]: extinction on the way through
-/// @param means    [64]: as MetClasses has them
 /// @return whether there is any
-bool lookUpMet(const MetClasses& met, const std::uint16_t* classes, float* own, float* means);
-/// Reads what light has come through before voxels, and adds `means`.
+bool lookUpMet(const MetClasses& met, const std::uint16_t* classes, float* own);
+/// Reads what light has come through before it comes to voxels.
 /// @param end    of rows of voxels, 0..8
 /// @param codes  [64]: square roots, in 1 / kDepthSteps
-void readSwept(const SweptPlace& place, int end, const float* means, std::uint16_t* codes);
+void readSwept(const SweptPlace& place, int end, std::uint16_t* codes);
 /// Adds what light comes through in voxels.
 /// @param end  of rows of the plane, 0..9
 /// @param own  [64]: those that these rows lie between have to be there

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/reflected_light.h"
+#include "unit_vector.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +23,7 @@ glm::dvec3 brightestOf(const Shading& shading, const ClassTable& classes) {
 // The way to a light, of length 1.
 glm::dvec3 towards(const Light& light, const Camera& camera) {
     if (light.frame == LightFrame::kHead) return -camera.direction;
-    // Of any length, so that its square may be no number.
-    const glm::dvec3 size = glm::abs(light.direction);
-    const glm::dvec3 way = -glm::normalize(light.direction / std::max({size.x, size.y, size.z}));
+    const glm::dvec3 way = -unitVectorOf(light.direction);
     if (light.frame == LightFrame::kWorld) return way;
     return way.x * camera.right + way.y * camera.up - way.z * camera.direction;
 }

@@ -5,10 +5,8 @@
 // additions, so that every level gives the same bits.
 #include "optics/scatter_kernels.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "light/sweep_kernels.h"
+#include "portable_math.h"
 #include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -42,6 +40,15 @@ HWY_INLINE Vector phaseAt(const ScatterPhase& phase, Vector cosine) {
     return sum;
 }
 
+// The share of light that is left in voxels where the camera sees them, of the octave that is
+// dimmed least.
+HWY_INLINE Vector ownLeft(const Vector (&own)[4], Vector cosine, int octaves) {
+    const auto end = hn::IfThenElse(hn::Lt(cosine, constant(0)), own[0], own[2]);
+    auto left = hn::Add(own[1], hn::Mul(hn::Abs(cosine), hn::Sub(end, own[1])));
+    for (int i = 0; i < octaves; ++i) left = hn::Sqrt(left);
+    return left;
+}
+
 template <bool kFromEye>
 void scatterFrom(const ScatterSums& sums, const ScatterWord& word, WordUnits& units) {
     const FullTag tag;
@@ -51,14 +58,17 @@ void scatterFrom(const ScatterSums& sums, const ScatterWord& word, WordUnits& un
     const double perStep =
         -kLog2E / (double(kDepthSteps) * double(kDepthSteps)) / double(1 << octaves);
     for (int n = 0; n < 64; n += kLanes) {
+        Vector own[4];
+        loadColors(word.own, word.classes + n, own);
         Vector3 light = vectorOf(sums.ambient);
         Vector3 toCamera = light;
         if (kFromEye) toCamera = waysFrom(*word.ways, n);
         for (std::size_t i = 0; i < sums.rays.size(); ++i) {
             const ScatterRay& ray = sums.rays[i];
             auto left = leftOf(word.depths + 64 * i + n, perStep);
-            auto cosine = constant(0);
+            auto cosine = hn::Set(tag, ray.cosine);
             if (kFromEye) cosine = dot(vectorOf(ray.way), toCamera);
+            left = hn::Mul(left, ownLeft(own, cosine, octaves));
             // Each octave has twice the extinction of the next.
             for (int octave = octaves; octave >= 0; --octave, left = hn::Mul(left, left)) {
                 if (kFromEye) {
@@ -98,21 +108,29 @@ HWY_EXPORT(scatterKernel);
 
 double ScatterPhase::at(double cosine) const {
     double sum = 0;
-    for (const Lobe& lobe : lobes) {
-        const double rest = lobe.a - lobe.b * cosine;
-        sum += lobe.k / (rest * std::sqrt(rest));
-    }
+    for (const Lobe& lobe : lobes) sum += lobe.at(cosine);
     return sum;
 }
 
-// Lobes are largest straight ahead, or straight back.
+// Each lobe is largest straight ahead, or straight back, and smallest the other way.
 double ScatterPhase::largest() const {
     double sum = 0;
-    for (const Lobe& lobe : lobes) {
-        const double rest = lobe.a - std::abs(lobe.b);
-        sum += lobe.k / (rest * std::sqrt(rest));
-    }
+    for (const Lobe& lobe : lobes) sum += lobe.at(lobe.b > 0 ? 1 : -1);
     return sum;
+}
+
+double ScatterPhase::smallest() const {
+    double sum = 0;
+    for (const Lobe& lobe : lobes) sum += lobe.at(lobe.b > 0 ? -1 : 1);
+    return sum;
+}
+
+glm::vec4 ownLight(double depth) {
+    if (depth < 1e-6) return glm::vec4(1);
+    if (depth > 1e6) return {0.5, 0, 0, 0};
+    const double left = portable::exp(-depth);
+    const double taken = -portable::expm1(-depth);
+    return {0.5 * (1 + left), taken / depth, depth * left / taken, 0};
 }
 
 std::vector<ScatterPhase> phasesOf(const Scattering& scattering) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -19,13 +20,24 @@ namespace deltasplat {
 struct ScatterPhase {
     struct Lobe {
         float k, a, b;
+
+        double at(double cosine) const {
+            const double rest = a - b * cosine;
+            return k / (rest * std::sqrt(rest));
+        }
     };
     std::array<Lobe, 2> lobes;
 
     double at(double cosine) const;
-    /// The most that it is anywhere.
+    /// The most that it is anywhere, and the least.
     double largest() const;
+    double smallest() const;
 };
+
+/// Returns the share of light that is left in a voxel where the camera sees it, on average: lit
+/// from the front, from a side, from behind; the last is not used.
+/// @param depth  extinction on the way through it, >= 0, may be infinite
+glm::vec4 ownLight(double depth);
 
 /// Returns the phase of each octave, [octaves + 1], its strength included.
 std::vector<ScatterPhase> phasesOf(const Scattering& scattering);
@@ -34,6 +46,7 @@ std::vector<ScatterPhase> phasesOf(const Scattering& scattering);
 struct ScatterRay {
     glm::vec3 way;  ///< that light travels, of length 1
     glm::vec3 color;
+    float cosine;  ///< between its way and that to the camera, where all see it from one side
     /// [octaves + 1]: colour times what is scattered towards the camera, where all see it from one
     /// side.
     std::vector<glm::vec3> towardsCamera;
@@ -49,6 +62,7 @@ struct ScatterSums {
 /// What is lit.
 struct ScatterWord {
     const glm::vec4* colors;       ///< of classes, premultiplied
+    const glm::vec4* own;          ///< of classes: ownLight()
     const std::uint16_t* classes;  ///< [64]
     const std::uint16_t* depths;   ///< [rays][64]: as LightDepths has them
     const WaysToEye* ways;         ///< null if all see it from one side

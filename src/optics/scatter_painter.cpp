@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <memory>
 #include <optional>
 
@@ -11,6 +10,7 @@
 #include "light/light_depths.h"
 #include "optics/painters.h"
 #include "optics/scatter_kernels.h"
+#include "unit_vector.h"
 
 namespace deltasplat {
 namespace {
@@ -30,7 +30,8 @@ class ScatteredLight : public LookLight {
   public:
     ScatteredLight(const Scattering& scattering, const std::vector<Light>& lights,
                    const LightDepths& depths, const ClassTable& classes, const LitScene& scene)
-        : LookLight(VoxelUnits(classes, brightestOf(scattering, lights, classes, scene.camera))),
+        : LookLight(VoxelUnits(classes, brightestOf(scattering, lights, classes, scene.camera)),
+                    dimmestOf(scattering, scene.camera)),
           depths_(depths),
           sliceAxis_(scene.sliceAxis),
           colors_(units().unitsOfClasses(classes)) {
@@ -39,10 +40,19 @@ class ScatteredLight : public LookLight {
         const Camera& camera = scene.camera;
         for (const Light& light : lights) {
             const glm::dvec3 color = scattering.albedo * light.strength * light.color;
-            ScatterRay ray{glm::vec3(glm::normalize(light.direction)), glm::vec3(color), {}};
+            ScatterRay ray{glm::vec3(unitVectorOf(light.direction)),
+                           glm::vec3(color),
+                           float(cosineOf(light, camera)),
+                           {}};
             for (const ScatterPhase& phase : sums_.phases)
                 ray.towardsCamera.push_back(glm::vec3(color * phase.at(cosineOf(light, camera))));
             sums_.rays.push_back(std::move(ray));
+        }
+        const double unitDistances =
+            classes.extinctionScale * (classes.stepWorld / classes.unitDistanceWorld);
+        for (const Look& look : classes.looks) {
+            const bool isAny = unitDistances > 0 && look.extinction > 0;
+            own_.push_back(ownLight(isAny ? look.extinction * unitDistances : 0));
         }
         if (camera.projection != Projection::kOrtho)
             eye_.emplace(camera.eyeWorld(), scene.worldFromVoxel);
@@ -59,7 +69,7 @@ class ScatteredLight : public LookLight {
             depths = many.data();
         }
         readDepths(place, depths);
-        ScatterWord word{colors_.data(), classes, depths, nullptr};
+        ScatterWord word{colors_.data(), own_.data(), classes, depths, nullptr};
         if (!eye_) return scatter(sums_, word, colors);
         const WaysToEye ways = eye_->waysFrom(place);
         word.ways = &ways;
@@ -71,7 +81,14 @@ class ScatteredLight : public LookLight {
 
     // Of where light goes and where it goes on to.
     static double cosineOf(const Light& light, const Camera& camera) {
-        return glm::dot(glm::normalize(light.direction), -camera.direction);
+        return glm::dot(unitVectorOf(light.direction), -camera.direction);
+    }
+
+    // What a light shows at least, for what it shows at most.
+    static double dimmestOf(const Scattering& scattering, const Camera& camera) {
+        if (camera.projection == Projection::kOrtho) return 1;
+        const ScatterPhase phase = phasesOf(scattering).front();
+        return phase.smallest() / phase.largest();
     }
 
     // The most that any voxel scatters.
@@ -110,6 +127,7 @@ class ScatteredLight : public LookLight {
     const LightDepths& depths_;
     int sliceAxis_;
     std::vector<glm::vec4> colors_;  // [classes]: premultiplied
+    std::vector<glm::vec4> own_;     // [classes]: ownLight()
     ScatterSums sums_;
     std::optional<EyeOfVoxels> eye_;
 };
@@ -119,8 +137,8 @@ class ScatterPainter : public VoxelPainter {
     ScatterPainter(const Volume& volume, const Optics& optics)
         : scattering_(*optics.scattering),
           lights_(shiningOf(scattering_)),
-          classes_(classify(volume, optics, 1)),
-          depths_(volume, classes_, lights_) {}
+          classes_(classify(volume, optics, smallestSize(volume))),
+          depths_(volume, classes_, lights_, scattering_.octaves) {}
 
     bool needsColors() const override { return true; }
     bool dependsOnCamera() const override { return true; }
@@ -137,6 +155,11 @@ class ScatterPainter : public VoxelPainter {
     }
 
   private:
+    static double smallestSize(const Volume& volume) {
+        const glm::dvec3 size = volume.voxelSize();
+        return std::min({size.x, size.y, size.z});
+    }
+
     Scattering scattering_;
     std::vector<Light> lights_;
     ClassTable classes_;

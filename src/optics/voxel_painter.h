@@ -73,6 +73,7 @@ class LookLight {
     virtual ~LookLight() = default;
     /// The units that colours are in.
     const VoxelUnits& units() const { return units_; }
+    double dimmest() const { return dimmest_; }
     /// Returns the premultiplied colours of a word's voxels; what those get that cannot be seen is
     /// of no consequence.
     /// @param classes  [64]
@@ -84,7 +85,10 @@ class LookLight {
     }
 
   protected:
-    explicit LookLight(VoxelUnits units) : units_(std::move(units)) {}
+    /// @param dimmest  share of the brightest that what is lit worst still has, if it is to be seen
+    ///                 as it is
+    explicit LookLight(VoxelUnits units, double dimmest = 1)
+        : units_(std::move(units)), dimmest_(dimmest) {}
     /// As light(), of voxels that nothing is missing of.
     virtual void lightVoxels(const WordPlace& place, const std::uint16_t* classes,
                              const OwnLook* looks, WordUnits& colors) const = 0;
@@ -94,6 +98,7 @@ class LookLight {
     static void leaveMissing(const OwnLook* looks, WordUnits& colors);
 
     VoxelUnits units_;
+    double dimmest_;
 };
 
 /// A camera, and where the voxels lie that it sees.

@@ -26,10 +26,10 @@ void keepOnly(std::uint64_t mask, std::array<ClassTable::Color, 64>& colors) {
     forVoxels(~mask, [&](std::size_t n) { colors[n] = {}; });
 }
 
-// Whether something is so thin, or so dark where it is lit best, that one plane cannot tell it.
-// Where it is lit less, what is lost is lost of next to nothing.
-bool needsTwoPlanes(const ClassTable& classes, const VoxelUnits& units) {
+// Whether something is so thin, or so dark, that one plane cannot tell it.
+bool needsTwoPlanes(const ClassTable& classes, const LookLight& light) {
     constexpr double kLeast = 8 * kLeastOfPlane;
+    const VoxelUnits& units = light.units();
     const glm::dvec3 brightest = brightestOf(classes);
     for (std::size_t number = 0; number < classes.looks.size(); ++number) {
         const double alpha = units.alphaOf(std::uint16_t(number));
@@ -37,7 +37,7 @@ bool needsTwoPlanes(const ClassTable& classes, const VoxelUnits& units) {
         if (alpha < kLeast) return true;
         for (int c = 0; c < 3; ++c) {
             const double color = classes.looks[number].color[c];
-            if (color > 0 && color / brightest[c] * alpha < kLeast) return true;
+            if (color > 0 && color / brightest[c] * alpha * light.dimmest() < kLeast) return true;
         }
     }
     return false;
@@ -52,7 +52,7 @@ WordColors::WordColors(const PackedDeltas& deltas, const ClassTable& classes,
     table_.scale = units.scale();
     table_.looks.resize(1);
     table_.classOfSlot.assign(kSlotCount, kEmptySlot);
-    table_.planes.resize(needsTwoPlanes(classes, units) ? 2 : 1);
+    table_.planes.resize(needsTwoPlanes(classes, *light_) ? 2 : 1);
     for (ClassTable::Plane& plane : table_.planes) plane.low.colors.resize(1);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "deltasplat/threads.h"
 #include "optics/scatter_kernels.h"
 #include "support/error_of.h"
+#include "support/make_volume.h"
 #include "support/mirrored.h"
 #include "support/simd_levels.h"
 
@@ -201,8 +203,18 @@ double slabRadiance(double extinction, double voxel, const Scattering& fog) {
     return middleOf(render(slabOf(extinction, voxel), options).image).r;
 }
 
-// A quarter of the light, dimmed on both ways.
+// A quarter of the light, dimmed on both ways: however dense, up to what is opaque.
 TEST(Scattering, ofASlabIsTheClosedForm) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    for (const double extinction : {1.0, 5.0, 50.0, kInfinity}) {
+        for (const double voxel : {1.0, 0.5}) {
+            Scattering fog;
+            fog.lights = {sunOf({0, 0, -1})};
+            EXPECT_NEAR(slabRadiance(extinction, voxel, fog), 0.125, 1e-3) << extinction;
+            fog.lights = {sunOf({0, 0, 1})};
+            EXPECT_LT(slabRadiance(extinction, voxel, fog), 1e-4) << extinction;
+        }
+    }
     for (const double extinction : {0.002, 0.02, 0.1}) {
         const double depth = 24 * extinction;
         for (const double voxel : {1.0, 0.5}) {
@@ -295,6 +307,9 @@ TEST(Scattering, isNeverBrighterThanTheLight) {
     // What leaves a slab that is lit straight, to both sides, is no more than what came: with
     // octaves as well. Integrated over all directions.
     for (const int octaves : {0, 4, 8}) {
+        Scattering even;
+        even.octaves = octaves;
+        const std::vector<ScatterPhase> phases = phasesOf(even);
         for (const double depth : {0.1, 0.5, 1.0, 3.0, 10.0, 100.0}) {
             double power = 0;  // of pi that come
             for (int i = 0; i < 40; ++i) {
@@ -309,7 +324,8 @@ TEST(Scattering, isNeverBrighterThanTheLight) {
                             ? depth * std::exp(-part * depth)
                             : (std::exp(-part * depth) - std::exp(-depth / cosine)) / away;
                     // Radiance times cosine over the two half-spheres, of light of irradiance pi.
-                    power += 0.25 * part * (back + on) / cosine * cosine * 2 * kPi / 40;
+                    power += phases[std::size_t(octave)].at(0) * (back + on) / cosine * cosine * 2 *
+                             kPi / 40;
                 }
             }
             EXPECT_LE(power, kPi) << octaves << " " << depth;
@@ -439,6 +455,71 @@ TEST(Scattering, ofAPreparedSceneIsThatOfRender) {
     }
 }
 
+// As from far away as it may be, from an eye: what hardly reaches the camera beside what would.
+TEST(Scattering, fromFarAwayIsParallel) {
+    Scattering fog;
+    fog.anisotropy = 0.99;
+    fog.lights = {{LightFrame::kWorld, {1, 0, 0.1}, glm::dvec3(1), 4000}};
+    RenderOptions options;
+    options.optics = fogOptics(fog);
+    options.camera.sizePixels = {32, 32};
+    options.camera.direction = glm::dvec3(0, 0, -1);
+    options.camera.frameWidthWorld = 24;
+    const Volume volume = slabOf(0.001, 1);
+    const glm::dvec4 parallel = middleOf(render(volume, options).image);
+    EXPECT_GT(parallel.r, 1e-3);
+    options.camera.projection = Projection::kPerspective;
+    options.camera.frameWidthWorld.reset();
+    options.camera.eyeWorld = glm::dvec3(11.5, 11.5, 2e5);
+    options.camera.targetWorld = glm::dvec3(11.5, 11.5, 12);
+    options.camera.direction.reset();
+    options.camera.fovDegrees = 360 / kPi * std::atan(12 / 2e5);
+    EXPECT_NEAR(middleOf(render(volume, options).image).r / parallel.r, 1, 0.02);
+}
+
+// Constant blocks that are stored as such, and where a volume's indices begin, are all the same.
+TEST(Scattering, doesNotDependOnHowItIsStored) {
+    const auto pictureOf = [](const glm::ivec3& first, bool asTiles, const glm::dvec3& light) {
+        Volume volume = test::makeVolume({first, first + 31}, [&](int x, int y, int z) {
+            const glm::ivec3 p = (glm::ivec3(x, y, z) - first) / 8;
+            return 20 + 10 * (p.x + p.y * p.z);
+        });
+        if (asTiles) {
+            auto tree = std::make_shared<CodeTree>(*volume.codes);
+            tree->tree.prune();
+            EXPECT_GT(tree->tree.activeTileCount(), 0u);
+            volume.codes = tree;
+        }
+        volume.worldFromIndex[3] = glm::dvec4(-glm::dvec3(first), 1);
+        RenderOptions options = someOptions();
+        options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, 0.2, 0.5, 0}};
+        options.optics.scattering->lights = {sunOf(light)};
+        return render(volume, options).image;
+    };
+    for (const glm::dvec3& light :
+         {glm::dvec3(0, 0, 1), glm::dvec3(-1, 1, 1), glm::dvec3(0.3, -1, 0.2)}) {
+        const Image image = pictureOf({0, 0, 0}, false, light);
+        EXPECT_GT(meanOf(image, 0), 0.01);
+        EXPECT_EQ(pictureOf({0, 0, 0}, true, light).rgba, image.rgba);
+        const Image moved = pictureOf({-100003, 77, 13}, false, light);
+        for (std::size_t i = 0; i < image.rgba.size(); ++i)
+            EXPECT_NEAR(moved.rgba[i], image.rgba[i], 2e-4);
+    }
+}
+
+// Of any length.
+TEST(Scattering, takesWaysOfAnyLength) {
+    const Volume volume = someFogVolume();
+    const auto pictureOf = [&](double length) {
+        RenderOptions options = someOptions();
+        options.optics.scattering->lights = {sunOf({-length, -length, 0})};
+        return render(volume, options).image.rgba;
+    };
+    const std::vector<float> one = pictureOf(1);
+    EXPECT_EQ(pictureOf(1e-200), one);
+    EXPECT_EQ(pictureOf(1e300), one);
+}
+
 TEST(Scattering, refusesWhatCannotBe) {
     const Volume volume = someFogVolume();
     const auto errorWith = [&](const auto& change) {
@@ -462,6 +543,16 @@ TEST(Scattering, refusesWhatCannotBe) {
               "the world");
     EXPECT_EQ(errorWith([](auto& o) { o.optics.shading = Shading{}; }),
               "usage: `scattering`: got `shading` besides; expected one of the two");
+    EXPECT_EQ(errorWith([](auto& o) { o.optics.surface = Surface{}; }),
+              "usage: `scattering`: got `surface` besides; expected one of the two");
+    EXPECT_EQ(errorWith([](auto& o) {
+                  o.optics.gradientOpacity = {{0, 1}};
+              }),
+              "usage: `scattering`: got `gradientOpacity` besides; expected one of the two");
+    EXPECT_EQ(errorWith([](auto& o) { o.optics.colorBy = ColorBy::kX; }),
+              "usage: `scattering`: got `colorBy` x besides; expected `colorBy` value");
+    EXPECT_EQ(errorWith([](auto& o) { o.optics.scattering->ambient.y = -1; }),
+              "usage: `scattering.ambient`: got -1; expected a number within 0..1e6");
     EXPECT_EQ(errorWith([](auto& o) { o.between = 1; }),
               "usage: `between`: got 1 with `scattering`; expected 0: lit fog is drawn by whole "
               "voxels");
