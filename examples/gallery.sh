@@ -48,8 +48,15 @@ draw vessels-mip "$vessels" --mode mip --depth-shade 0.8 --view front --azimuth 
     --background 0,0,0 --scale-bar
 draw hydrogen "$orbital" --tf inferno --range 0,0.25 --shade --view iso "${dark[@]}"
 draw signal "$signal" --isovalue 0.5 --view iso --surface-color 0.7,0.55,0.3 "${dark[@]}"
-draw cloud "$folder/cloud.vdb" --extinction 0.4 --azimuth 30 --elevation 10 \
-    --background 0.1,0.18,0.35
+cloud=(--extinction 3 --azimuth 30 --elevation 10 --scatter-octaves 5)
+draw cloud "$folder/cloud.vdb" "${cloud[@]}" --sky 0.6,0.8,0.9:3 --anisotropy 0.7,-0.2,0.3 \
+    --background 0.1,0.2,0.42
+draw cloud-sunset "$folder/cloud.vdb" "${cloud[@]}" --lighting scatter \
+    --light=-1,-0.15,0.4:1,0.42,0.16:9 --light 0.2,-1,0.1:0.35,0.4,0.75:2.5 \
+    --light 0,1,0:0.5,0.3,0.3:1 --anisotropy 0.6,-0.3,0.4 --background 0.35,0.17,0.14
+draw cloud-backlit "$folder/cloud.vdb" "${cloud[@]}" --lighting scatter \
+    --light 0.35,-0.35,1:1,0.85,0.7:3 --ambient 0.1 --anisotropy 0.75,-0.2,0.3 \
+    --background 0.05,0.09,0.18
 
 [[ -n $data ]] || exit 0
 head=(--direction 0.7,1,0.2 --up 0,0,-1 "${dark[@]}")
