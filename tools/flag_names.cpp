@@ -45,6 +45,7 @@ constexpr FlagName kFlagNames[] = {
     {"frameWidthWorld", "--frame-width"},
     {"gradientOpacity", "--gradient-opacity"},
     {"gridName", "--grid"},
+    {"groundAlbedo", "--sky"},
     {"image.size", "--size"},
     {"labels.hidden", "--hide-labels"},
     {"labels.opacities", "--label-opacity"},
@@ -61,6 +62,7 @@ constexpr FlagName kFlagNames[] = {
     {"projection", "--projection"},
     {"range", "--range"},
     {"resolution", "--resolution"},
+    {"rgb", "--env"},
     {"rollDegrees", "--roll"},
     {"samples", "--samples"},
     {"scattering", "--lighting scatter"},
@@ -84,6 +86,7 @@ constexpr FlagName kFlagNames[] = {
     {"sourceToDetectorWorld", "--sdd"},
     {"sourceToIsocenterWorld", "--sid"},
     {"spacing", "--spacing"},
+    {"strength", "--sky"},
     {"surface", "--surface"},
     {"surface.color", "--surface-color"},
     {"surface.isovalue", "--isovalue"},
@@ -98,6 +101,7 @@ constexpr FlagName kFlagNames[] = {
     {"up", "--up"},
     {"view", "--view"},
     {"volume", "--volume"},
+    {"worldFromEnvironment", "--env"},
 };
 
 }  // namespace

@@ -103,9 +103,9 @@ void LightSweep::sweepSlice(const LitBlocks::Along::Group& group, int slice, Str
             readSwept(swept, end, codes.data());
             std::uint16_t* out =
                 strip.depths + 512 * block.number + sliceInBlock * std::size_t(stride.x);
+            const std::uint16_t* code = codes.data() + std::ptrdiff_t{8} * begin;
             for (int u = begin; u < end; ++u) {
-                for (int v = 0; v < 8; ++v)
-                    out[u * stride.y + v * stride.z] = codes[std::size_t(8 * u + v)];
+                for (int v = 0; v < 8; ++v) out[u * stride.y + v * stride.z] = *code++;
             }
         }
         MetBlock met{swept, int(std::min<std::int64_t>(9, lastOfStrip + 1)), {}};
