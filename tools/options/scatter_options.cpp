@@ -126,9 +126,10 @@ std::vector<std::string> scatterOptions() {
 
 void warnOfUnusedScatterOptions(const CLI::App& app, const ScatterChoice& choice,
                                 const ShadingChoice& shading, ProgressDisplay& display) {
-    const auto warnOf = [&](const std::vector<std::string>& options, const std::string& remark) {
+    const auto warnOf = [&](const std::vector<std::string>& options, const std::string& where) {
+        const std::string remark = ": has no effect " + where;
         for (const std::string& option : options)
-            if (isGiven(app, option)) display.warn(option + ": has no effect " + remark);
+            if (isGiven(app, option)) display.warn(option + remark);
     };
     if (!choice.asked()) {
         std::vector<std::string> others = scatterOptions();
