@@ -97,11 +97,9 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     }
     // Colours refer to the deltas where these lie at last.
     const auto axis = std::make_shared<PreparedAxis>(
-        PreparedAxis{sliceAxis, parts, std::move(deltas), steps, StepColors(std::move(classes))});
-    if (!isLit) {
-        classes = axis->colors.classes();
-        axis->colors = StepColors(axis->deltas, std::move(classes), std::move(light));
-    }
+        PreparedAxis{sliceAxis, parts, std::move(deltas), steps, StepColors(ClassTable{})});
+    axis->colors = isLit ? StepColors(std::move(classes))
+                         : StepColors(axis->deltas, std::move(classes), std::move(light));
     return axis;
 }
 

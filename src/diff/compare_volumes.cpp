@@ -41,10 +41,6 @@ IndexBox movedBox(const IndexBox& box, const glm::ivec3& offset) {
     return box.empty() ? box : IndexBox{box.min + offset, box.max + offset};
 }
 
-double smallest(const glm::dvec3& v) {
-    return std::min({v.x, v.y, v.z});
-}
-
 // Returns how far apart the places of B's voxels are from those of A's that lie `offset` further
 // on. The map between both places is affine, so the corners move farthest.
 double shiftOf(const Volume& a, const Volume& b, const glm::ivec3& offset) {
@@ -58,7 +54,7 @@ double shiftOf(const Volume& a, const Volume& b, const glm::ivec3& offset) {
         const glm::dvec4 index(cornerOf(box, corner), 1);
         farthest = std::max(farthest, glm::length(glm::dvec3(moved * index)));
     }
-    const double voxel = std::min(smallest(a.voxelSize()), smallest(b.voxelSize()));
+    const double voxel = std::min(smallestSize(a), smallestSize(b));
     return std::min(farthest / voxel, std::numeric_limits<double>::max());
 }
 

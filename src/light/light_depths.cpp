@@ -7,6 +7,7 @@
 
 #include "deltasplat/threads.h"
 #include "memory.h"
+#include "optics/voxel_units.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -26,13 +27,9 @@ std::int64_t stripCount(std::int64_t rows, std::size_t lights) {
 // In a world unit, [classes].
 std::vector<float> extinctionsOf(const ClassTable& classes) {
     constexpr double kMost = 1e30;
-    const double scale = classes.extinctionScale / classes.unitDistanceWorld;
     std::vector<float> extinctions;
-    for (const Look& look : classes.looks) {
-        // Nothing times infinity is nothing.
-        const bool isAny = scale > 0 && look.extinction > 0;
-        extinctions.push_back(isAny ? float(std::min(look.extinction * scale, kMost)) : 0);
-    }
+    for (const double depth : depthsOf(classes, 1))
+        extinctions.push_back(float(std::min(depth, kMost)));
     return extinctions;
 }
 

@@ -11,6 +11,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/optics/environment.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/refuse_file.h"
 #include "ingest/images/image_file.h"
 #include "memory.h"
 #include "parallel.h"
@@ -22,18 +23,13 @@ namespace {
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
-}
-
 void requireKnownName(const std::filesystem::path& file) {
     constexpr std::array<const char*, 7> kKnown{".exr", ".hdr", ".tif", ".tiff",
                                                 ".png", ".jpg", ".jpeg"};
     const std::string extension = lowerExtension(file);
     if (std::find(kKnown.begin(), kKnown.end(), extension) != kKnown.end()) return;
-    refuse(file, extension.empty() ? "a name without extension" : "a file named " + extension,
-           "an environment named .exr, .hdr, .tif, .tiff, .png, .jpg or .jpeg");
+    refuseFile(file, extension.empty() ? "a name without extension" : "a file named " + extension,
+               "an environment named .exr, .hdr, .tif, .tiff, .png, .jpg or .jpeg");
 }
 
 bool isGrey(const ImageSpec& spec) {
@@ -43,17 +39,17 @@ bool isGrey(const ImageSpec& spec) {
 void requireLatlong(const std::filesystem::path& file, const ImageSpec& spec) {
     const std::string size = std::to_string(spec.width) + "x" + std::to_string(spec.height);
     if (spec.width != 2 * std::int64_t{spec.height}) {
-        refuse(file, size + " pixels", "a lat-long picture, twice as wide as high");
+        refuseFile(file, size + " pixels", "a lat-long picture, twice as wide as high");
     }
     if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
         spec.height != spec.full_height) {
-        refuse(file,
-               size + " pixels of a picture of " + std::to_string(spec.full_width) + "x" +
-                   std::to_string(spec.full_height),
-               "a whole picture");
+        refuseFile(file,
+                   size + " pixels of a picture of " + std::to_string(spec.full_width) + "x" +
+                       std::to_string(spec.full_height),
+                   "a whole picture");
     }
     if (!isGrey(spec) && !hasColors(spec)) {
-        refuse(file, sizeText(spec), "the channels R, G and B, or one");
+        refuseFile(file, sizeText(spec), "the channels R, G and B, or one");
     }
 }
 
@@ -115,9 +111,9 @@ void mendValues(const std::filesystem::path& file, bool whole, std::vector<float
     });
     const std::string all = " of " + std::to_string(values.size()) + " values";
     if (odd > 0) {
-        refuse(file, std::to_string(odd) + all + " that are not finite", "how bright they are");
+        refuseFile(file, std::to_string(odd) + all + " that are not finite", "how bright they are");
     }
-    if (!anyLight) refuse(file, "a picture without light", "a value above 0");
+    if (!anyLight) refuseFile(file, "a picture without light", "a value above 0");
     if (negative == 0) return;
     listener.warn(file.string() + ": " + std::to_string(negative) + all +
                   " are below 0, and count as 0");

@@ -23,13 +23,10 @@
 #include "optics/largest_alpha.h"
 #include "parallel.h"
 #include "portable_math.h"
+#include "view/affine.h"
 
 namespace deltasplat {
 namespace {
-
-double smallest(const glm::dvec3& v) {
-    return std::min({v.x, v.y, v.z});
-}
 
 double extinctionOf(double opacity) {
     if (opacity <= 0) return 0;
@@ -45,7 +42,7 @@ double alphaOf(double extinction, double unitDistancesPerSlice) {
 }
 
 double unitDistanceOf(const Volume& volume, const Optics& optics) {
-    return optics.unitDistance.value_or(smallest(volume.voxelSize()));
+    return optics.unitDistance.value_or(smallestSize(volume));
 }
 
 // What a code looks like; those of codes that cannot be seen are left out.
@@ -398,7 +395,7 @@ double largestAlpha(const Volume& volume, const Optics& optics) {
         opacity = std::max(opacity, point.opacity);
     return alphaOf(
         extinctionOf(opacity),
-        optics.extinctionScale * (smallest(volume.voxelSize()) / unitDistanceOf(volume, optics)));
+        optics.extinctionScale * (smallestSize(volume) / unitDistanceOf(volume, optics)));
 }
 
 }  // namespace deltasplat

@@ -6,6 +6,7 @@
 #include "optics/painters.h"
 #include "optics/reflected_light.h"
 #include "optics/scaled_values.h"
+#include "view/affine.h"
 
 namespace deltasplat {
 namespace {
@@ -38,8 +39,7 @@ class FadingPainter : public VoxelPainter {
           scale_(scaledValues(volume, 0.5 * volume.valueMin + 0.5 * volume.valueMax)),
           worldFromGradient_(worldFromIndexGradient(volume)),
           factors_(std::move(factors)) {
-        const glm::dvec3 size = volume.voxelSize();
-        unit_ = scale_.unit / std::min({size.x, size.y, size.z});
+        unit_ = scale_.unit / smallestSize(volume);
     }
 
     bool needsColors() const override { return !inner_ || inner_->needsColors(); }

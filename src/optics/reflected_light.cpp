@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/reflected_light.h"
 #include "unit_vector.h"
+#include "view/affine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,8 +70,7 @@ void ReflectedLight::lightVoxels(const WordPlace& place, const std::uint16_t* cl
 }
 
 glm::mat3 worldFromIndexGradient(const Volume& volume) {
-    const glm::dvec3 size = volume.voxelSize();
-    const glm::dmat3 world = glm::dmat3(volume.worldFromIndex) / std::min({size.x, size.y, size.z});
+    const glm::dmat3 world = glm::dmat3(volume.worldFromIndex) / smallestSize(volume);
     return glm::mat3(glm::transpose(glm::inverse(world)));
 }
 

@@ -11,6 +11,7 @@
 #include "optics/painters.h"
 #include "optics/scatter_kernels.h"
 #include "unit_vector.h"
+#include "view/affine.h"
 
 namespace deltasplat {
 namespace {
@@ -48,12 +49,8 @@ class ScatteredLight : public LookLight {
                 ray.towardsCamera.push_back(glm::vec3(color * phase.at(cosineOf(light, camera))));
             sums_.rays.push_back(std::move(ray));
         }
-        const double unitDistances =
-            classes.extinctionScale * (classes.stepWorld / classes.unitDistanceWorld);
-        for (const Look& look : classes.looks) {
-            const bool isAny = unitDistances > 0 && look.extinction > 0;
-            own_.push_back(ownLight(isAny ? look.extinction * unitDistances : 0));
-        }
+        for (const double depth : depthsOf(classes, classes.stepWorld))
+            own_.push_back(ownLight(depth));
         if (camera.projection != Projection::kOrtho)
             eye_.emplace(camera.eyeWorld(), scene.worldFromVoxel);
     }
@@ -155,11 +152,6 @@ class ScatterPainter : public VoxelPainter {
     }
 
   private:
-    static double smallestSize(const Volume& volume) {
-        const glm::dvec3 size = volume.voxelSize();
-        return std::min({size.x, size.y, size.z});
-    }
-
     Scattering scattering_;
     std::vector<Light> lights_;
     ClassTable classes_;

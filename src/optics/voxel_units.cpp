@@ -47,6 +47,17 @@ std::vector<glm::vec4> VoxelUnits::unitsOfClasses(const ClassTable& classes) con
     return colors;
 }
 
+std::vector<double> depthsOf(const ClassTable& classes, double wayWorld) {
+    const double unitDistances = classes.extinctionScale * (wayWorld / classes.unitDistanceWorld);
+    std::vector<double> depths;
+    for (const Look& look : classes.looks) {
+        // Nothing times infinity is nothing.
+        const bool isAny = unitDistances > 0 && look.extinction > 0;
+        depths.push_back(isAny ? look.extinction * unitDistances : 0);
+    }
+    return depths;
+}
+
 glm::dvec3 brightestOf(const ClassTable& classes) {
     glm::dvec3 brightest(0);
     for (const Look& look : classes.looks) brightest = glm::max(brightest, look.color);

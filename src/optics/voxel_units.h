@@ -54,6 +54,10 @@ class VoxelUnits {
     glm::dvec4 scale_;
 };
 
+/// Returns the extinction of each class on a way of so many world units, [classes]: 0 where there
+/// is none, infinite where it is opaque.
+std::vector<double> depthsOf(const ClassTable& classes, double wayWorld);
+
 /// Returns the largest that any class has of each channel, not multiplied by opacity.
 glm::dvec3 brightestOf(const ClassTable& classes);
 

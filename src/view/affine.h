@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -19,6 +20,12 @@ void requireInvertible(const glm::dmat4& worldFromIndex);
 inline glm::dvec3 cornerOf(const IndexBox& box, int number) {
     return {number & 1 ? box.max.x : box.min.x, number & 2 ? box.max.y : box.min.y,
             number & 4 ? box.max.z : box.min.z};
+}
+
+/// Returns the world length of a voxel's shortest side.
+inline double smallestSize(const Volume& volume) {
+    const glm::dvec3 size = volume.voxelSize();
+    return std::min({size.x, size.y, size.z});
 }
 
 /// Returns the smallest that holds the centres of all voxels of a box, or, of an empty one, of

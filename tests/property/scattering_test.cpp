@@ -19,6 +19,7 @@
 #include "support/error_of.h"
 #include "support/make_volume.h"
 #include "support/mirrored.h"
+#include "support/sight_line.h"
 #include "support/simd_levels.h"
 
 namespace deltasplat {
@@ -26,6 +27,7 @@ namespace {
 
 using test::errorOf;
 using test::mirrored;
+using test::sightLineOf;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -170,11 +172,7 @@ TEST(Scattering, ofASmoothBallIsTheClosedForm) {
         for (int y = 0; y < options.camera.sizePixels.y; y += 3) {
             for (int x = 0; x < options.camera.sizePixels.x; x += 3) {
                 const glm::dvec2 pixel(x + 0.5, y + 0.5);
-                const bool ortho = projection == Projection::kOrtho;
-                const glm::dvec3 ray =
-                    ortho ? camera.direction : glm::normalize(camera.rayThrough(pixel));
-                const glm::dvec3 start =
-                    ortho ? camera.worldFromPixel(pixel) - 100.0 * ray : camera.eyeWorld();
+                const auto [start, ray] = sightLineOf(camera, pixel, 100);
                 const double expected = radianceOf(ball, fog, start, ray);
                 const double off = result.image.pixel(x, y)[0] - expected;
                 squares += off * off;

@@ -16,6 +16,7 @@
 #include "support/error_of.h"
 #include "support/make_volume.h"
 #include "support/mirrored.h"
+#include "support/sight_line.h"
 
 namespace deltasplat::test {
 namespace {
@@ -209,11 +210,7 @@ TEST(Shading, ofABallIsTheClosedForm) {
         for (int y = 0; y < 160; ++y) {
             for (int x = 0; x < 160; ++x) {
                 const glm::dvec2 pixel(x + 0.5, y + 0.5);
-                const bool ortho = projection == Projection::kOrtho;
-                const glm::dvec3 ray =
-                    ortho ? camera.direction : glm::normalize(camera.rayThrough(pixel));
-                const glm::dvec3 start =
-                    ortho ? camera.worldFromPixel(pixel) - 200.0 * ray : camera.eyeWorld();
+                const auto [start, ray] = sightLineOf(camera, pixel, 200);
                 const double b = glm::dot(start, ray);
                 const double beyond = b * b - glm::dot(start, start) + kRadius * kRadius;
                 // The last few pixels before the outline are seen through its own blur.

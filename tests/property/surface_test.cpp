@@ -13,6 +13,7 @@
 #include "support/error_of.h"
 #include "support/make_volume.h"
 #include "support/mirrored.h"
+#include "support/sight_line.h"
 
 namespace deltasplat::test {
 namespace {
@@ -60,7 +61,6 @@ glm::dvec3 seenOfBall(const glm::dvec3& start, const glm::dvec3& ray, double rad
 // form at 8x8 places within it.
 double agreement(const RenderResult& result, double radius, const Optics& optics) {
     const Camera& camera = result.camera;
-    const bool ortho = camera.projection == Projection::kOrtho;
     const glm::ivec2 size = camera.sizePixels;
     double squares = 0;
     for (int y = 0; y < size.y; ++y) {
@@ -68,10 +68,7 @@ double agreement(const RenderResult& result, double radius, const Optics& optics
             glm::dvec3 expected(0);
             for (int n = 0; n < 64; ++n) {
                 const glm::dvec2 pixel(x + (n % 8 + 0.5) / 8, y + (n / 8 + 0.5) / 8);
-                const glm::dvec3 ray =
-                    ortho ? camera.direction : glm::normalize(camera.rayThrough(pixel));
-                const glm::dvec3 start =
-                    ortho ? camera.worldFromPixel(pixel) - 500.0 * ray : camera.eyeWorld();
+                const auto [start, ray] = sightLineOf(camera, pixel, 500);
                 expected += seenOfBall(start, ray, radius, optics) / 64.0;
             }
             const float* rgba = result.image.pixel(x, y);

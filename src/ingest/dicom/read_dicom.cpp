@@ -16,6 +16,7 @@
 #include "ingest/dicom/dicom_slices.h"
 #include "ingest/dicom/dicom_walk.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/refuse_file.h"
 #include "ingest/placement.h"
 #include "memory.h"
 #include "printable.h"
@@ -46,11 +47,6 @@ constexpr std::uint32_t kSlope = 0x00281053;
 
 constexpr bool kBigEndian = std::endian::native == std::endian::big;
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
-}
-
 // The numbers of an attribute that is text, "1\0\0"; none if one of them is no usable number.
 std::vector<double> numbersOf(const DicomElements& elements, std::uint32_t tag) {
     std::vector<double> numbers;
@@ -72,8 +68,8 @@ std::vector<double> placeOf(const std::filesystem::path& path, const DicomElemen
                             std::uint32_t tag, const char* name, std::size_t count) {
     std::vector<double> numbers = numbersOf(elements, tag);
     if (numbers.size() == count) return numbers;
-    refuse(path, std::string("no usable ") + name,
-           std::to_string(count) + " numbers that say where the slice lies");
+    refuseFile(path, std::string("no usable ") + name,
+               std::to_string(count) + " numbers that say where the slice lies");
 }
 
 void setPlace(const DicomElements& elements, DicomSlice& slice) {
@@ -86,8 +82,8 @@ void setPlace(const DicomElements& elements, DicomSlice& slice) {
                         std::abs(glm::length(column) - 1) < 1e-2 &&
                         std::abs(glm::dot(row, column)) < 1e-2;
     if (!square || !(pixel[0] > 0) || !(pixel[1] > 0)) {
-        refuse(slice.file, "directions or spacing that are impossible",
-               "unit vectors at a right angle and spacing above 0");
+        refuseFile(slice.file, "directions or spacing that are impossible",
+                   "unit vectors at a right angle and spacing above 0");
     }
     slice.position = {at[0], at[1], at[2]};
     // The spacing's first number is from row to row.
@@ -105,16 +101,16 @@ void setSize(const DicomElements& elements, DicomSlice& slice) {
     slice.columns = elements.number(kColumns, 0);
     slice.rows = elements.number(kRows, 0);
     if (slice.columns < 1 || slice.rows < 1) {
-        refuse(slice.file, "no image", "a DICOM slice with rows and columns");
+        refuseFile(slice.file, "no image", "a DICOM slice with rows and columns");
     }
     const std::string colors = elements.text(kPhotometric);
     if (elements.number(kSamples, 1) != 1 || (colors != "MONOCHROME1" && colors != "MONOCHROME2")) {
-        refuse(slice.file, "pixels of kind " + (colors.empty() ? "unknown" : printable(colors)),
-               "one grey value a pixel");
+        refuseFile(slice.file, "pixels of kind " + (colors.empty() ? "unknown" : printable(colors)),
+                   "one grey value a pixel");
     }
     const std::string frames = elements.text(kFrames);
     if (!frames.empty() && frames != "1") {
-        refuse(slice.file, printable(frames) + " frames in one file", "one slice in each file");
+        refuseFile(slice.file, printable(frames) + " frames in one file", "one slice in each file");
     }
 }
 
@@ -132,10 +128,10 @@ void setPixels(const DicomElements& elements, DicomSlice& slice) {
     const int bits = pixels.bitsAllocated;
     if ((bits != 8 && bits != 16 && bits != 32) || pixels.bitsStored < 1 ||
         pixels.bitsStored > bits || high != pixels.bitsStored - 1 || sign > 1) {
-        refuse(slice.file,
-               "pixels of " + std::to_string(pixels.bitsStored) + " bits up to bit " +
-                   std::to_string(high) + " in " + std::to_string(bits),
-               "whole numbers of 8, 16 or 32 bits");
+        refuseFile(slice.file,
+                   "pixels of " + std::to_string(pixels.bitsStored) + " bits up to bit " +
+                       std::to_string(high) + " in " + std::to_string(bits),
+                   "whole numbers of 8, 16 or 32 bits");
     }
     pixels.isSigned = sign == 1;
 }
@@ -146,7 +142,7 @@ void setRescale(const DicomElements& elements, DicomSlice& slice) {
         if (elements.text(tag).empty()) return missing;
         const std::vector<double> numbers = numbersOf(elements, tag);
         if (numbers.size() == 1) return numbers[0];
-        refuse(slice.file, "rescale " + printable(elements.text(tag)), "a number");
+        refuseFile(slice.file, "rescale " + printable(elements.text(tag)), "a number");
     };
     slice.pixels.rescale = {valueOf(kSlope, 1), valueOf(kIntercept, 0)};
     if (slice.pixels.rescale.slope == 0) slice.pixels.rescale.slope = 1;
@@ -158,8 +154,8 @@ void requirePixels(const DicomElements& elements, const DicomSlice& slice) {
     // Lossless JPEG 2000 of one grey packs best; this much is beyond anything an image is.
     const double most = double(elements.pixelBytes()) * (elements.packed ? 65536 : 1);
     if (bytes <= most) return;
-    refuse(slice.file, std::to_string(elements.pixelBytes()) + " bytes of pixels",
-           "enough for " + std::to_string(slice.columns) + "x" + std::to_string(slice.rows));
+    refuseFile(slice.file, std::to_string(elements.pixelBytes()) + " bytes of pixels",
+               "enough for " + std::to_string(slice.columns) + "x" + std::to_string(slice.rows));
 }
 
 // The slices, in values of one type.
@@ -245,11 +241,11 @@ std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
                                     const std::vector<std::filesystem::path>& files) {
     std::map<std::string, DicomSeries> byUid;
     for (const std::filesystem::path& file : files) addFile(file, byUid);
-    if (byUid.empty()) refuse(input, "no image", "DICOM slices");
+    if (byUid.empty()) refuseFile(input, "no image", "DICOM slices");
     // It may be a slice of any of them that has been cut.
     if (byUid.size() > 1 && byUid.begin()->first.empty()) {
-        refuse(byUid.begin()->second.firstFile, "a file that does not say its series",
-               "a SeriesInstanceUID, as others in the folder have it (the file may be cut)");
+        refuseFile(byUid.begin()->second.firstFile, "a file that does not say its series",
+                   "a SeriesInstanceUID, as others in the folder have it (the file may be cut)");
     }
     std::vector<DicomSeries> all;
     for (auto& [uid, series] : byUid) all.push_back(std::move(series));

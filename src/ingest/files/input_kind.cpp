@@ -11,6 +11,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/refuse_file.h"
 #include "ingest/images/image_stack.h"
 #include "printable.h"
 
@@ -37,11 +38,6 @@ constexpr const char* kReadable =
     ".bmp, "
     ".pgm or .exr";
 
-[[noreturn]] void refuse(const std::filesystem::path& input, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(input.string(), got, expected));
-}
-
 bool isImage(const std::filesystem::path& file) {
     const auto found = formats().find(lowerExtension(file));
     return found != formats().end() && found->second == Format::kImages;
@@ -51,7 +47,7 @@ bool isImage(const std::filesystem::path& file) {
 bool isDicom(const std::filesystem::path& file) {
     std::array<char, 132> bytes{};
     std::ifstream in(file, std::ios::binary);
-    if (!in) refuse(file, "a file that cannot be opened", "a readable file");
+    if (!in) refuseFile(file, "a file that cannot be opened", "a readable file");
     return in.read(bytes.data(), bytes.size()) && std::memcmp(&bytes[128], "DICM", 4) == 0;
 }
 
@@ -67,7 +63,7 @@ Files filesIn(const std::filesystem::path& folder) {
         requireRegularFile(entry.path());
         files.push_back(entry.path());
     }
-    if (error) refuse(folder, "a folder that cannot be read", "a readable folder");
+    if (error) refuseFile(folder, "a folder that cannot be read", "a readable folder");
     sortByNumbers(files);
     return files;
 }
@@ -114,10 +110,10 @@ void requireNoCutSlice(const std::filesystem::path& folder, const Files& all, co
         const bool alike = names.contains(withoutNumbers(file.filename().string())) ||
                            extensions.contains(kindExtension(file));
         if (!alike || file.filename() == "DICOMDIR") continue;
-        refuse(folder,
-               printable(file.filename().string()) +
-                   ", which is named as its slices are but is no DICOM",
-               "whole slices");
+        refuseFile(folder,
+                   printable(file.filename().string()) +
+                       ", which is named as its slices are but is no DICOM",
+                   "whole slices");
     }
 }
 
@@ -133,14 +129,15 @@ InputKind findInFolder(const std::filesystem::path& folder, const Listener& list
     }
     const Files images = filesThat(all, isImage);
     if (images.empty()) {
-        refuse(folder, "a folder without DICOM files and images",
-               "a DICOM folder, a folder of images, or a file");
+        refuseFile(folder, "a folder without DICOM files and images",
+                   "a DICOM folder, a folder of images, or a file");
     }
     const std::string extension = lowerExtension(images.front());
     for (const std::filesystem::path& image : images) {
         if (lowerExtension(image) == extension) continue;
-        refuse(folder, "images of several kinds (" + extension + ", " + lowerExtension(image) + ")",
-               "a folder with the images of one stack");
+        refuseFile(folder,
+                   "images of several kinds (" + extension + ", " + lowerExtension(image) + ")",
+                   "a folder with the images of one stack");
     }
     requireNoHole(folder, images);
     warnOfOthers(folder, all, images, "images", listener);
@@ -164,7 +161,7 @@ InputKind findInput(const std::filesystem::path& input, const Listener& listener
     requireRegularFile(input);
     const std::string extension = lowerExtension(input);
     const auto found = formats().find(extension);
-    if (found == formats().end()) refuse(input, "extension \"" + extension + "\"", kReadable);
+    if (found == formats().end()) refuseFile(input, "extension \"" + extension + "\"", kReadable);
     return {found->second, nameWithoutExtensions(input), {input}};
 }
 

@@ -13,6 +13,7 @@
 #include "deltasplat/error.h"
 #include "ingest/dense/dense_source.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/refuse_file.h"
 #include "ingest/images/image_file.h"
 #include "ingest/readers.h"
 #include "memory.h"
@@ -23,11 +24,6 @@ namespace {
 
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
-
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
-}
 
 struct ImageType {
     RawType raw;
@@ -81,7 +77,7 @@ void requireAlike(const Stack& stack, const std::filesystem::path& file, int pag
         return;
     }
     const std::string where = stack.files.size() == 1 ? " on page " + std::to_string(page + 1) : "";
-    refuse(file, sizeText(spec) + where, sizeText(first) + ", as in the first slice");
+    refuseFile(file, sizeText(spec) + where, sizeText(first) + ", as in the first slice");
 }
 
 void warnOfLosses(const std::filesystem::path& file, const ImageSpec& spec,
@@ -152,7 +148,7 @@ class SliceReader {
         const ImageSpec& spec = image.spec();
         if (spec.width != stack_.width || spec.height != stack_.height ||
             spec.format != stack_.stored || spec.nchannels < stack_.channels) {
-            refuse(file, "an image that changes while it is read", "one that stays as it is");
+            refuseFile(file, "an image that changes while it is read", "one that stays as it is");
         }
         image.read(stack_.channels, stack_.type.oiio, colors_ ? colors_.get() : to);
         if (colors_) mixColors(stack_, colors_.get(), to);
@@ -187,7 +183,8 @@ Stack surveyStack(const std::vector<std::filesystem::path>& files, const Listene
     for (const std::filesystem::path& file : files) {
         ImagePages pages(file);
         if (files.size() > 1 && pages.count() != 1) {
-            refuse(file, std::to_string(pages.count()) + " pages", "one in each file of a stack");
+            refuseFile(file, std::to_string(pages.count()) + " pages",
+                       "one in each file of a stack");
         }
         for (int page = 0; page < pages.count(); ++page) {
             const ImageSpec spec = ImageFile(file, pages, page).spec();
@@ -202,7 +199,7 @@ Stack surveyStack(const std::vector<std::filesystem::path>& files, const Listene
         stack.pages = std::move(pages);
     }
     const std::optional<ImageType> type = imageType(first.format);
-    if (!type) refuse(files.front(), sizeText(first), "whole or real numbers");
+    if (!type) refuseFile(files.front(), sizeText(first), "whole or real numbers");
     stack.type = *type;
     stack.stored = first.format;
     stack.channels = hasColors(first) ? 3 : 1;

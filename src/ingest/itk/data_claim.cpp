@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "deltasplat/error.h"
+#include "ingest/files/refuse_file.h"
 #include "ingest/itk/text_header.h"
 #include "lower_case.h"
 #include "printable.h"
@@ -20,23 +21,18 @@ bool isOrientation(const std::string& text) {
     return text.size() == 3 && text.find_first_not_of("RLAPSI") == std::string::npos;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
-}
-
 // Data in a list or a numbered series of files, or on standard input, is not read. Names that begin
 // with "c:", and for MetaIO "~", are not looked up beside the header.
 void setDetached(const std::filesystem::path& file, const std::string& name, DataClaim& claim) {
     const bool elsewhere = name.starts_with('~') || (name.size() > 1 && name[1] == ':');
     if (name.empty() || name == "-" || lowerCase(name).rfind("list", 0) == 0 || elsewhere ||
         name.find('%') != std::string::npos) {
-        refuse(file, "data in \"" + printable(name) + "\"", "the name of one data file");
+        refuseFile(file, "data in \"" + printable(name) + "\"", "the name of one data file");
     }
     claim.dataFile = file.parent_path() / name;
     std::error_code error;
     if (!std::filesystem::is_regular_file(claim.dataFile, error)) {
-        refuse(file, "no data file \"" + printable(name) + "\"", "a readable file");
+        refuseFile(file, "no data file \"" + printable(name) + "\"", "a readable file");
     }
     claim.dataBytes = std::filesystem::file_size(claim.dataFile);
 }
@@ -50,7 +46,7 @@ void setAttached(const std::filesystem::path& file, const TextHeader& header, Da
 const std::string& require(const std::filesystem::path& file, const TextHeader& header,
                            const std::string& field) {
     const std::string* value = header.find(field);
-    if (value == nullptr) refuse(file, "a header without " + field, "a whole one");
+    if (value == nullptr) refuseFile(file, "a header without " + field, "a whole one");
     return *value;
 }
 
@@ -71,7 +67,7 @@ std::int64_t numberOf(const std::filesystem::path& file, const TextHeader& heade
     const char* const end = value->data() + value->size();
     const auto result = std::from_chars(value->data(), end, number);
     if (result.ec != std::errc{} || result.ptr != end) {
-        refuse(file, field + " " + printable(*value), "a whole number");
+        refuseFile(file, field + " " + printable(*value), "a whole number");
     }
     return number;
 }
@@ -82,10 +78,10 @@ void setGzip(const std::filesystem::path& file, const TextHeader& header, DataCl
     const std::int64_t bytes = numberOf(file, header, "byteskip", 0);
     const std::int64_t lines = numberOf(file, header, "lineskip", 0);
     if (bytes < 0 || lines < 0) {
-        refuse(file,
-               "line skip " + std::to_string(lines) + " and byte skip " + std::to_string(bytes) +
-                   " of packed data",
-               "whole numbers from 0 on");
+        refuseFile(file,
+                   "line skip " + std::to_string(lines) + " and byte skip " +
+                       std::to_string(bytes) + " of packed data",
+                   "whole numbers from 0 on");
     }
     claim.skippedBytes = std::uint64_t(bytes);
     std::ifstream in(claim.dataFile, std::ios::binary);
@@ -94,8 +90,8 @@ void setGzip(const std::filesystem::path& file, const TextHeader& header, DataCl
     for (std::int64_t line = 0; line < lines; ++passed) {
         const int c = in.get();
         if (c < 0)
-            refuse(claim.dataFile, "fewer than " + std::to_string(lines) + " lines",
-                   "those that are to be skipped");
+            refuseFile(claim.dataFile, "fewer than " + std::to_string(lines) + " lines",
+                       "those that are to be skipped");
         if (c == '\n') ++line;
     }
     claim.dataStart += passed;
@@ -138,13 +134,14 @@ void checkMetaData(const std::filesystem::path& file, const TextHeader& header, 
     const auto held = std::int64_t(claim.dataBytes);
     if (skipped < -1 || skipped > held || packed < 0 ||
         packed > held - std::max<std::int64_t>(skipped, 0)) {
-        refuse(file,
-               "HeaderSize " + std::to_string(skipped) + " and CompressedDataSize " +
-                   std::to_string(packed),
-               "at most the " + std::to_string(held) + " bytes of data");
+        refuseFile(file,
+                   "HeaderSize " + std::to_string(skipped) + " and CompressedDataSize " +
+                       std::to_string(packed),
+                   "at most the " + std::to_string(held) + " bytes of data");
     }
     if (skipped > 0 && claim.dataFile == file) {
-        refuse(file, "HeaderSize " + std::to_string(skipped) + " for data in the same file", "0");
+        refuseFile(file, "HeaderSize " + std::to_string(skipped) + " for data in the same file",
+                   "0");
     }
     if (skipped <= 0) return;
     claim.dataStart += std::uint64_t(skipped);
@@ -157,10 +154,11 @@ bool isLocal(const std::filesystem::path& file, const std::string& name) {
     if (name == "LOCAL" || name == "Local" || name == "local") return true;
     const bool cut = !name.empty() && static_cast<signed char>(name.back()) < 0;
     if (lowerCase(name) == "local" || cut) {
-        refuse(file, "data in \"" + printable(name) + "\"", "LOCAL or the name of one data file");
+        refuseFile(file, "data in \"" + printable(name) + "\"",
+                   "LOCAL or the name of one data file");
     }
     if (file.filename().string().find('\\') != std::string::npos) {
-        refuse(file, "a backslash in the header's name", "a name without");
+        refuseFile(file, "a backslash in the header's name", "a name without");
     }
     return false;
 }
@@ -186,13 +184,13 @@ DataClaim claimOfMeta(const std::filesystem::path& file) {
     // MetaIO counts up to NDims before it looks at anything else.
     const std::int64_t axes = numberOf(file, header, "ndims", 0);
     if (axes != std::int64_t(claim.sizes.size())) {
-        refuse(file, "NDims = " + std::to_string(axes),
-               std::to_string(claim.sizes.size()) + ", as many as there are sizes");
+        refuseFile(file, "NDims = " + std::to_string(axes),
+                   std::to_string(claim.sizes.size()) + ", as many as there are sizes");
     }
     // It has room for so many.
     constexpr std::int64_t kMostAxes = 10;
     if (axes > kMostAxes) {
-        refuse(file, "NDims = " + std::to_string(axes), "at most " + std::to_string(kMostAxes));
+        refuseFile(file, "NDims = " + std::to_string(axes), "at most " + std::to_string(kMostAxes));
     }
     checkMetaData(file, header, claim);
     const std::string* binary = header.find("binarydata");

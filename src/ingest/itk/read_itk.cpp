@@ -16,6 +16,7 @@
 #include "ingest/dense/dense_source.h"
 #include "ingest/files/byte_source.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/refuse_file.h"
 #include "ingest/itk/data_claim.h"
 #include "ingest/itk/itk_calls.h"
 #include "ingest/itk/itk_types.h"
@@ -27,11 +28,6 @@
 
 namespace deltasplat {
 namespace {
-
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
-}
 
 std::string sizesText(const std::vector<std::int64_t>& sizes) {
     std::string text;
@@ -58,10 +54,10 @@ struct ItkFile {
 
 void requireOneScalar(const ItkFile& file) {
     if (file.io->GetNumberOfComponents() == 1) return;
-    refuse(file.path,
-           std::to_string(file.io->GetNumberOfComponents()) + " values a voxel (" +
-               itk::ImageIOBase::GetPixelTypeAsString(file.io->GetPixelType()) + ")",
-           "one");
+    refuseFile(file.path,
+               std::to_string(file.io->GetNumberOfComponents()) + " values a voxel (" +
+                   itk::ImageIOBase::GetPixelTypeAsString(file.io->GetPixelType()) + ")",
+               "one");
 }
 
 // Axes of one voxel give way, the last first, until three are left.
@@ -74,7 +70,8 @@ void chooseAxes(ItkFile& file) {
             return file.io->GetDimensions(axis) == 1;
         });
         if (single == file.axes.rend()) {
-            refuse(file.path, "sizes " + sizesText(file.claim.sizes), "one volume of three axes");
+            refuseFile(file.path, "sizes " + sizesText(file.claim.sizes),
+                       "one volume of three axes");
         }
         file.axes.erase(std::next(single).base());
     }
@@ -91,7 +88,7 @@ void requireSameSizes(const ItkFile& file) {
     std::erase(claimed, 1);
     std::erase(got, 1);
     if (got == claimed) return;
-    refuse(file.path, "sizes " + sizesText(file.claim.sizes), "sizes that ITK reads alike");
+    refuseFile(file.path, "sizes " + sizesText(file.claim.sizes), "sizes that ITK reads alike");
 }
 
 // So has the file that MetaIO is going to open.
@@ -102,8 +99,8 @@ void requireSameDataFile(const ItkFile& file) {
     const bool local = file.claim.dataFile == file.path;
     if (local ? lowerCase(name) == "local" : file.path.parent_path() / name == file.claim.dataFile)
         return;
-    refuse(file.path, "data in \"" + printable(name) + "\" as ITK reads it",
-           "data in \"" + printable(file.claim.dataFile.string()) + "\"");
+    refuseFile(file.path, "data in \"" + printable(name) + "\" as ITK reads it",
+               "data in \"" + printable(file.claim.dataFile.string()) + "\"");
 }
 
 void requireData(const ItkFile& file) {
@@ -116,9 +113,9 @@ void requireData(const ItkFile& file) {
         : gzip ? (held + 1) * kMostGzipRatio >= file.bytes() + double(file.claim.skippedBytes)
                : held >= file.bytes();
     if (holds) return;
-    refuse(file.claim.dataFile, std::to_string(file.claim.dataBytes) + " bytes of data",
-           (gzip ? "enough gzip for " : "enough for ") + sizesText(file.claim.sizes) + " " +
-               rawTypeName(file.type));
+    refuseFile(file.claim.dataFile, std::to_string(file.claim.dataBytes) + " bytes of data",
+               (gzip ? "enough gzip for " : "enough for ") + sizesText(file.claim.sizes) + " " +
+                   rawTypeName(file.type));
 }
 
 // Neither MetaIO nor NrrdIO looks at the end of packed data, where count and checksum are; NrrdIO
@@ -128,11 +125,11 @@ void requireUnpackedSize(const ItkFile& file, Packing packing) {
     ByteSource source(file.claim.dataFile, packing, file.claim.dataStart);
     const std::uint64_t got = source.skip(wanted + 1, [] {});
     if (got == wanted) return;
-    refuse(file.claim.dataFile,
-           (got > wanted ? "more than " : "") + std::to_string(std::min(got, wanted)) +
-               " bytes unpacked",
-           std::to_string(wanted) + " (" + sizesText(file.claim.sizes) + " " +
-               rawTypeName(file.type) + ")");
+    refuseFile(file.claim.dataFile,
+               (got > wanted ? "more than " : "") + std::to_string(std::min(got, wanted)) +
+                   " bytes unpacked",
+               std::to_string(wanted) + " (" + sizesText(file.claim.sizes) + " " +
+                   rawTypeName(file.type) + ")");
 }
 
 glm::dmat4 worldOf(const ItkFile& file) {
@@ -212,7 +209,7 @@ void openFile(ItkFile& file) {
     requireSameSizes(file);
     chooseAxes(file);
     const std::optional<RawType> type = rawTypeOfItk(file.io->GetComponentType());
-    if (!type) refuse(file.path, "values of an unknown type", "whole or real numbers");
+    if (!type) refuseFile(file.path, "values of an unknown type", "whole or real numbers");
     file.type = *type;
     file.sliceBytes =
         std::size_t(file.size(0)) * std::size_t(file.size(1)) * std::size_t(rawTypeBytes(*type));

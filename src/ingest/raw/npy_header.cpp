@@ -11,6 +11,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/files/file_bytes.h"
+#include "ingest/files/refuse_file.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -92,11 +93,6 @@ class Parser {
     std::size_t at_ = 0;
 };
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
-}
-
 // Returns the text of the header, and where the values begin.
 std::pair<std::string, std::uint64_t> readText(const std::filesystem::path& file) {
     constexpr std::size_t kMost = std::size_t{1} << 20;
@@ -105,7 +101,7 @@ std::pair<std::string, std::uint64_t> readText(const std::filesystem::path& file
     const std::size_t got = bytes.read(0, head, sizeof head);
     const int version = head[6];
     if (got < 10 || std::memcmp(head, "\x93NUMPY", 6) != 0 || version < 1 || version > 3) {
-        refuse(file, "no NumPy header", "a .npy file of version 1 to 3");
+        refuseFile(file, "no NumPy header", "a .npy file of version 1 to 3");
     }
     const bool first = version == 1;
     const std::size_t start = first ? 10 : 12;
@@ -113,7 +109,7 @@ std::pair<std::string, std::uint64_t> readText(const std::filesystem::path& file
     if (!first) length |= std::size_t(head[10]) << 16 | std::size_t(head[11]) << 24;
     std::string text(std::min(length, kMost), '\0');
     if (length > kMost || bytes.read(start, text.data(), length) != length) {
-        refuse(file, "a header that is cut short", "a whole one");
+        refuseFile(file, "a header that is cut short", "a whole one");
     }
     return {text, start + length};
 }
@@ -133,7 +129,7 @@ void setType(const std::filesystem::path& file, const std::string& name, NpyHead
     const auto* const found = std::find_if(std::begin(kKnown), std::end(kKnown),
                                            [&](const Known& known) { return kind == known.name; });
     if (found == std::end(kKnown)) {
-        refuse(file, "values of type " + printable(name), "whole or real numbers");
+        refuseFile(file, "values of type " + printable(name), "whole or real numbers");
     }
     header.layout.type = found->type;
     header.layout.bigEndian = name[0] == '>';
@@ -151,9 +147,9 @@ void setShape(const std::filesystem::path& file, const Fields& fields, NpyHeader
     header.shape += header.shape.empty() ? "()" : ")";
     const bool sound = std::all_of(axes.begin(), axes.end(),
                                    [](std::int64_t size) { return size >= 1 && size <= kMost; });
-    if (!sound) refuse(file, "shape " + header.shape, "each 1.." + std::to_string(kMost));
+    if (!sound) refuseFile(file, "shape " + header.shape, "each 1.." + std::to_string(kMost));
     if (bytes > 0x1p62) {
-        refuse(file, "shape " + header.shape, "at most 4611686018427387904 bytes");
+        refuseFile(file, "shape " + header.shape, "at most 4611686018427387904 bytes");
     }
     // From the axis that counts fastest, x, on.
     if (!*fields.fortranOrder) std::reverse(axes.begin(), axes.end());
@@ -172,8 +168,8 @@ NpyHeader readNpyHeader(const std::filesystem::path& file) {
     const auto [text, start] = readText(file);
     const std::optional<Fields> fields = Parser(text).run();
     if (!fields) {
-        refuse(file, "the header " + printable(text.substr(0, 60)),
-               "a dictionary of descr, fortran_order and shape");
+        refuseFile(file, "the header " + printable(text.substr(0, 60)),
+                   "a dictionary of descr, fortran_order and shape");
     }
     NpyHeader header;
     setType(file, *fields->type, header);
