@@ -59,23 +59,29 @@ std::string modeName(Mode mode) {
 RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {
     const DefaultFloats floats;
     RenderResult result;
-    result.camera = makeCamera(options.camera, volume.box, volume.worldFromIndex, volume.space);
-    requireImageMemory(result.camera.sizePixels);
-    result.image = Image(result.camera.sizePixels);
+    const auto makePicture = [&](const Volume& seen) {
+        result.camera = makeCamera(options.camera, seen.box, seen.worldFromIndex, seen.space);
+        requireImageMemory(result.camera.sizePixels);
+        result.image = Image(result.camera.sizePixels);
+    };
     RenderStats& stats = result.stats;
     stats.voxels = std::uint64_t(volume.box.voxels());
     stats.mode = options.mode;
     stats.method = options.method;
     if (options.mode == Mode::kComposite) {
+        // A camera that cannot be is refused before there is work.
+        if (options.optics.parts.empty()) makePicture(volume);
         // The volume outlives the scene.
         const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
         const Clock::time_point start = Clock::now();
         const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
         const double sceneSeconds = secondsSince(start);
+        if (!options.optics.parts.empty()) makePicture(*scene.scene.volume);
         KeptMemory memory;
         stats = renderComposite(scene, result.camera, memory, result.image, listener);
         stats.prepareSeconds += sceneSeconds;
     } else {
+        makePicture(volume);
         renderRays(volume, options, listener, result);
     }
     listener.report(1);

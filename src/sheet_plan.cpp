@@ -32,8 +32,8 @@ void checkBetween(int between) {
                             "at most 2^30 parts of them along each axis (`between` 0: undivided)"));
 }
 
-bool isEverywhereOther(const PreparedScene::Impl& scene) {
-    return scene.painter && scene.painter->isEverywhereOther();
+bool dividesVoxels(const PreparedScene::Impl& scene) {
+    return !scene.painter || scene.painter->dividesVoxels();
 }
 
 // Whether voxels are divided where the screen asks for it and nobody says otherwise.
@@ -45,7 +45,7 @@ bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
     // Of the transfer function that was asked for, whatever colours are by.
     const Optics& optics = scene.scene.optics;
     if (!optics.surface && optics.transferFunction.colorsJump()) return false;
-    if (volume.empty() || scene.isThin || isEverywhereOther(scene)) return false;
+    if (volume.empty() || scene.isThin || !dividesVoxels(scene)) return false;
     if (!canBeDivided(volume.box, 1)) {
         listener.warn("the volume is too wide for voxels to be divided: drawn as they are");
         return false;
@@ -72,10 +72,14 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view
     if (options.between) {
         between = *options.between;
         checkBetween(between);
-        if (between > 0 && isEverywhereOther(scene)) {
+        if (between > 0 && !dividesVoxels(scene)) {
+            const bool isLit = scene.scene.optics.scattering.has_value();
             throw Error(ErrorCode::kUsage,
-                        gotExpected("`between`", std::to_string(between) + " with `scattering`",
-                                    "0: lit fog is drawn by whole voxels"));
+                        gotExpected("`between`",
+                                    std::to_string(between) + " with " +
+                                        (isLit ? "`scattering`" : "`parts` or `colorGrids`"),
+                                    "0: lit fog and media of several grids are drawn by whole "
+                                    "voxels"));
         }
         if (between > 0 && !canBeDivided(box, between)) throwTooWide(box, between);
     } else if (dividesUnasked(scene, view, listener)) {

@@ -28,7 +28,8 @@ void BlockLooks::beginBlock(const CodeBlock& block) {
 
 void BlockLooks::paint(const glm::ivec3& position, int number, std::span<ClassIndex, 512> classes) {
     const auto isSeen = [](ClassIndex one) { return one != 0; };
-    if (!painter_.choosesClasses() && std::none_of(classes.begin(), classes.end(), isSeen)) return;
+    const bool addsVoxels = painter_.choosesClasses() || painter_.more();
+    if (!addsVoxels && std::none_of(classes.begin(), classes.end(), isSeen)) return;
     const BlockPlace place{glm::dvec3(indexFromThin_ * glm::dvec4(8 * position, 1)),
                            glm::dmat3(indexFromThin_)};
     const BlockField* field = nullptr;
@@ -37,7 +38,7 @@ void BlockLooks::paint(const glm::ivec3& position, int number, std::span<ClassIn
         field = &fields_[std::size_t(number)];
     }
     painter_.paint(place, field, classes, block_);
-    if (painter_.choosesClasses()) keepInBox(position, classes);
+    if (addsVoxels) keepInBox(position, classes);
 }
 
 void BlockLooks::compare(std::size_t part, BlockChanges& changes) const {

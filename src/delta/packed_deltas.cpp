@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <iterator>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <tuple>
 
 #include "delta/block_kernels.h"
 #include "delta/block_looks.h"
@@ -27,6 +29,22 @@ namespace {
 
 bool choosesClasses(const PackOptions& options) {
     return options.painter && options.painter->choosesClasses();
+}
+
+// Adds blocks in which nothing is seen but what the painter adds, in the order in which they are.
+void addBlocks(const BlockSet& more, int sliceAxis, std::vector<CodeBlock>& blocks) {
+    const auto isBefore = [](const CodeBlock& a, const CodeBlock& b) {
+        const auto key = [](const glm::ivec3& p) { return std::tuple(p.y, p.z, p.x); };
+        return key(a.position) < key(b.position);
+    };
+    std::vector<CodeBlock> added;
+    for (const glm::ivec3& position : more.positions)
+        added.push_back({toSliceOrder(position, sliceAxis)});
+    std::sort(added.begin(), added.end(), isBefore);
+    std::vector<CodeBlock> all;
+    std::set_union(blocks.begin(), blocks.end(), added.begin(), added.end(),
+                   std::back_inserter(all), isBefore);
+    blocks = std::move(all);
 }
 
 // Classes of a block, `[slice][u][v]`, and of one slice of it.
@@ -470,9 +488,11 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     const std::span<const Slot> slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
     std::optional<MixedSight> sight;
     if (mixer) sight.emplace(*mixer, slotMap, choosesClasses(options));
-    const std::vector<CodeBlock> blocks =
+    std::vector<CodeBlock> blocks =
         sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
               : BlockReader(*volume.codes, nullptr, options.sliceAxis, slotMap).takeBlocks();
+    if (options.painter && options.painter->more())
+        addBlocks(*options.painter->more(), options.sliceAxis, blocks);
     const double blockBytes = kBytesPerBlock + (options.painter ? kLookBytesPerBlock : 0);
     requireMemory(
         parts.divides() ? "delta grid of divided voxels (`between` 0: undivided)" : "delta grid",

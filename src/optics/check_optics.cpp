@@ -71,14 +71,19 @@ void checkSurface(const Optics& optics) {
     for (int i = 0; i < 3; ++i) checkLight("`surface.color`", optics.surface->color[i]);
 }
 
-void checkScattering(const Optics& optics) {
+// What fog cannot be beside its light, other parts or colours of grids.
+void requireFog(const Optics& optics, const std::string& option) {
     const char* besides = optics.shading                    ? "`shading` besides"
                           : optics.surface                  ? "`surface` besides"
                           : !optics.gradientOpacity.empty() ? "`gradientOpacity` besides"
                                                             : nullptr;
-    requireThat(!besides, "`scattering`", besides ? besides : "", "one of the two");
-    requireThat(optics.colorBy == ColorBy::kValue, "`scattering`",
+    requireThat(!besides, option, besides ? besides : "", "one of the two");
+    requireThat(optics.colorBy == ColorBy::kValue, option,
                 "`colorBy` " + colorByName(optics.colorBy) + " besides", "`colorBy` value");
+}
+
+void checkScattering(const Optics& optics) {
+    requireFog(optics, "`scattering`");
     const Scattering& scattering = *optics.scattering;
     for (int i = 0; i < 3; ++i) {
         requireThat(isShare(scattering.albedo[i]), "`scattering.albedo`",
@@ -101,16 +106,6 @@ void checkScattering(const Optics& optics) {
     }
 }
 
-void checkGradientOpacity(const std::vector<glm::dvec2>& points) {
-    if (points.empty()) return;
-    constexpr const char* kOption = "`gradientOpacity`";
-    checkPlaces(kOption, points);
-    for (const glm::dvec2& point : points) {
-        requireThat(point.x >= 0, kOption, "x = " + numberText(point.x), "a number >= 0");
-        requireThat(isShare(point.y), kOption, numberText(point.y), "a number within 0..1");
-    }
-}
-
 void checkTransferFunction(const TransferFunction& function) {
     constexpr const char* kColors = "transfer function's colours";
     checkPlaces(kColors, function.colors);
@@ -126,6 +121,46 @@ void checkTransferFunction(const TransferFunction& function) {
     for (const TransferFunction::OpacityPoint& point : function.opacities) {
         for (const double number : {point.opacity, point.midpoint, point.sharpness})
             requireThat(isShare(number), kOpacities, numberText(number), "a number within 0..1");
+    }
+}
+
+void checkPart(const MediumPart& part, bool isLit) {
+    constexpr const char* kOption = "`parts`";
+    requireThat(part.volume != nullptr, kOption, "one without a volume", "volumes");
+    checkLight("`parts` strength", part.strength);
+    const bool absorbs = part.kind == MediumPart::Kind::kAbsorption;
+    requireThat(!absorbs || !isLit, kOption, "one that swallows light, with `scattering` besides",
+                "one of the two");
+    for (const double number : {part.kelvinScale, part.kelvinOffset}) {
+        requireThat(std::isfinite(number), "`parts` kelvin", numberText(number), "a finite number");
+    }
+    if (part.kind != MediumPart::Kind::kBlackbody) checkTransferFunction(part.transferFunction);
+}
+
+void checkMedium(const Optics& optics) {
+    const std::size_t most =
+        optics.colorGrids ? std::size_t(kMostPartsWithColors) : std::size_t(kMostParts);
+    requireThat(
+        optics.parts.size() <= most, "`parts`", std::to_string(optics.parts.size()),
+        "at most " + std::to_string(most) + (optics.colorGrids ? " with `colorGrids`" : ""));
+    if (!optics.parts.empty()) requireFog(optics, "`parts`");
+    for (const MediumPart& part : optics.parts) checkPart(part, optics.scattering.has_value());
+    if (!optics.colorGrids) return;
+    requireFog(optics, "`colorGrids`");
+    for (const auto& grid : *optics.colorGrids) {
+        requireThat(grid != nullptr, "`colorGrids`", "one without a volume", "three volumes");
+        requireThat(grid->empty() || grid->valueMin >= 0, "`colorGrids`",
+                    "a colour of " + numberText(grid->valueMin), "colours >= 0");
+    }
+}
+
+void checkGradientOpacity(const std::vector<glm::dvec2>& points) {
+    if (points.empty()) return;
+    constexpr const char* kOption = "`gradientOpacity`";
+    checkPlaces(kOption, points);
+    for (const glm::dvec2& point : points) {
+        requireThat(point.x >= 0, kOption, "x = " + numberText(point.x), "a number >= 0");
+        requireThat(isShare(point.y), kOption, numberText(point.y), "a number within 0..1");
     }
 }
 
@@ -149,9 +184,16 @@ void checkOptics(const Optics& optics) {
     if (optics.surface) checkSurface(optics);
     checkGradientOpacity(optics.gradientOpacity);
     if (optics.scattering) checkScattering(optics);
+    checkMedium(optics);
     const double extinction = optics.extinctionScale;
     requireThat(std::isfinite(extinction) && extinction >= 0, "`extinctionScale`",
                 numberText(extinction), "a number >= 0");
+    if (optics.densityScale) {
+        const double scale = *optics.densityScale;
+        requireThat(std::isfinite(scale) && scale >= 0, "`densityScale`", numberText(scale),
+                    "a number >= 0");
+        requireThat(!optics.surface, "`densityScale`", "`surface` besides", "one of the two");
+    }
     if (optics.range) {
         const glm::dvec2 range = *optics.range;
         requireThat(std::isfinite(range.x) && std::isfinite(range.y) && range.x < range.y,

@@ -20,6 +20,7 @@
 #include "optics/check_optics.h"
 #include "optics/color_curve.h"
 #include "optics/color_digits.h"
+#include "optics/function_place.h"
 #include "optics/largest_alpha.h"
 #include "parallel.h"
 #include "portable_math.h"
@@ -69,8 +70,8 @@ std::vector<CodeLook> lookUp(const Volume& volume, const Optics& optics) {
     if (optics.surface) return lookUpSurface(volume, *optics.surface);
     const TransferFunction& function = optics.transferFunction;
     const ColorCurve colors(function);
-    const glm::dvec2 range =
-        function.normalized ? optics.range.value_or(defaultRange(volume)) : glm::dvec2(0, 1);
+    const FunctionPlace placeOf(function, volume, optics.range);
+    const double unitDistance = unitDistanceOf(volume, optics);
     std::vector<CodeLook> codes;
     for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
         if (volume.histogram[code] != 0) codes.push_back({Code(code), {}});
@@ -81,10 +82,11 @@ std::vector<CodeLook> lookUp(const Volume& volume, const Optics& optics) {
         const std::size_t end = std::min((run + 1) * kRun, codes.size());
         for (std::size_t i = run * kRun; i < end; ++i) {
             const double value = volume.codeBook.valueOf(codes[i].code);
-            const double x = function.normalized
-                                 ? (0.5 * value - 0.5 * range.x) / (0.5 * range.y - 0.5 * range.x)
-                                 : value;
-            codes[i].look = {extinctionOf(function.opacityAt(x)), colors.at(x)};
+            const double x = placeOf(value);
+            const double extinction =
+                optics.densityScale ? std::max(value, 0.0) * *optics.densityScale * unitDistance
+                                    : extinctionOf(function.opacityAt(x));
+            codes[i].look = {extinction, colors.at(x)};
         }
     });
     std::erase_if(codes, [](const CodeLook& one) { return !(one.look.extinction > 0); });
@@ -179,8 +181,10 @@ bool areInOrder(const std::vector<CodeLook>& codes) {
 // an open hash table at most half full: several times as fast as sorting.
 class LookNumbers {
   public:
-    explicit LookNumbers(const std::vector<CodeLook>& codes) : inOrder_(areInOrder(codes)) {
-        looks_.reserve(codes.size() + 1);
+    // @param hasClear  whether kClearClass is among them
+    LookNumbers(const std::vector<CodeLook>& codes, bool hasClear)
+        : inOrder_(areInOrder(codes)), looks_(hasClear ? 2 : 1) {
+        looks_.reserve(codes.size() + looks_.size());
         if (inOrder_) return;
         placeBits_ = std::bit_width(2 * codes.size());
         numberAt_.resize(std::size_t{1} << placeBits_);
@@ -217,7 +221,7 @@ class LookNumbers {
     bool inOrder_;
     int placeBits_ = 0;
     std::vector<Slot> numberAt_;  // 0 where nothing is
-    std::vector<Look> looks_{Look{}};
+    std::vector<Look> looks_;
 };
 
 // Orders classes so that those with the same digits lie together: by the first that is not zero,
@@ -289,12 +293,13 @@ void takeDigits(const std::vector<ColorDigits>& colors, ClassTable& table) {
     }
 }
 
-// @param digits  of the visible codes
+// @param digits    of the visible codes
+// @param hasClear  whether kClearClass is among the classes
 void numberByLook(const std::vector<CodeLook>& visible, const std::vector<ColorDigits>& digits,
-                  ClassTable& table) {
-    LookNumbers numbers(visible);
-    std::vector<ColorDigits> colors{ColorDigits{}};
-    colors.reserve(visible.size() + 1);
+                  bool hasClear, ClassTable& table) {
+    LookNumbers numbers(visible, hasClear);
+    std::vector<ColorDigits> colors(hasClear ? 2 : 1);
+    colors.reserve(visible.size() + colors.size());
     for (std::size_t i = 0; i < visible.size(); ++i) {
         // What lets all light through shows nothing.
         if (usedDigits(digits[i]) == 0) continue;
@@ -383,19 +388,21 @@ ClassTable classify(const Volume& volume, const Optics& optics, double sliceStep
     table.classOfSlot.assign(kSlotCount, kEmptySlot);
     const unsigned used = digitsInUse(digits);
     table.planes.resize(used < 4 ? 1 : 2);
-    numberByLook(visible, digits, table);
+    numberByLook(visible, digits, !optics.parts.empty(), table);
     return table;
 }
 
 double largestAlpha(const Volume& volume, const Optics& optics) {
     const DefaultFloats floats;
     checkOptics(optics);
+    const double unitDistance = unitDistanceOf(volume, optics);
     double opacity = 0;
     for (const TransferFunction::OpacityPoint& point : optics.transferFunction.opacities)
         opacity = std::max(opacity, point.opacity);
-    return alphaOf(
-        extinctionOf(opacity),
-        optics.extinctionScale * (smallestSize(volume) / unitDistanceOf(volume, optics)));
+    const double extinction = optics.densityScale
+                                  ? volume.valueMax * *optics.densityScale * unitDistance
+                                  : extinctionOf(opacity);
+    return alphaOf(extinction, optics.extinctionScale * (smallestSize(volume) / unitDistance));
 }
 
 }  // namespace deltasplat

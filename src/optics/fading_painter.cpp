@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "optics/class_light.h"
 #include "optics/painters.h"
 #include "optics/reflected_light.h"
 #include "optics/scaled_values.h"
@@ -10,24 +11,6 @@
 
 namespace deltasplat {
 namespace {
-
-// Voxels shine in the colours of their classes.
-class ClassLight : public LookLight {
-  public:
-    explicit ClassLight(const ClassTable& classes)
-        : LookLight(VoxelUnits(classes, brightestOf(classes))),
-          colors_(units().unitsOfClasses(classes)) {}
-
-  protected:
-    void lightVoxels(const WordPlace&, const std::uint16_t* classes, const OwnLook*,
-                     WordUnits& colors) const override {
-        for (std::size_t n = 0; n < 64; ++n)
-            for (int c = 0; c < 4; ++c) colors[std::size_t(c)][n] = colors_[classes[n]][c];
-    }
-
-  private:
-    std::vector<glm::vec4> colors_;  // [classes]: premultiplied
-};
 
 // Adds to looks how much of their opacity voxels have.
 class FadingPainter : public VoxelPainter {

@@ -74,6 +74,8 @@ class LookLight {
     /// The units that colours are in.
     const VoxelUnits& units() const { return units_; }
     double dimmest() const { return dimmest_; }
+    /// Whether there may be something next to what is brightest that one plane cannot tell.
+    bool isFine() const { return isFine_; }
     /// Returns the premultiplied colours of a word's voxels; what those get that cannot be seen is
     /// of no consequence.
     /// @param classes  [64]
@@ -92,6 +94,7 @@ class LookLight {
     /// As light(), of voxels that nothing is missing of.
     virtual void lightVoxels(const WordPlace& place, const std::uint16_t* classes,
                              const OwnLook* looks, WordUnits& colors) const = 0;
+    void setFine() { isFine_ = true; }
 
   private:
     void fade(const std::uint16_t* classes, const OwnLook* looks, WordUnits& colors) const;
@@ -99,6 +102,13 @@ class LookLight {
 
     VoxelUnits units_;
     double dimmest_;
+    bool isFine_ = false;
+};
+
+/// Blocks of 8x8x8 voxels.
+struct BlockSet {
+    std::vector<glm::ivec3> positions;  ///< (x, y, z) of first voxels divided by 8, each once
+    IndexBox box;                       ///< all that is seen of them
 };
 
 /// A camera, and where the voxels lie that it sees.
@@ -123,7 +133,7 @@ class VoxelPainter {
     /// Paints the voxels of a block that can be seen; what others get is of no consequence.
     /// @param field    if it needs gradients
     /// @param classes  [slice][u][v]: 0 is what cannot be seen; written if it chooses them, else
-    ///                 at most cleared
+    ///                 at most cleared, or made kClearClass where they are 0 if there is more()
     virtual void paint(const BlockPlace& place, const BlockField* field,
                        std::span<std::uint16_t, 512> classes,
                        std::span<OwnLook, 512> looks) const = 0;
@@ -135,6 +145,10 @@ class VoxelPainter {
     /// Whether what has the same class and look is seen as something else in another place, from
     /// whichever side. Voxels then change from each slice to the next, and are not divided.
     virtual bool isEverywhereOther() const { return false; }
+    /// Whether it can paint what voxels are divided into.
+    virtual bool dividesVoxels() const { return !isEverywhereOther(); }
+    /// What it may paint besides voxels that can be seen; null: nothing.
+    virtual const BlockSet* more() const { return nullptr; }
     /// Returns what looks are seen as.
     /// @param classes  what those of paint() look like
     /// @param scene    null where nothing depends on it

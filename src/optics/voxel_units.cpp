@@ -33,6 +33,19 @@ VoxelUnits::VoxelUnits(const ClassTable& classes, const glm::dvec3& brightest)
     }
 }
 
+void VoxelUnits::raise(const glm::dvec4& most) {
+    glm::dvec4 shrunk(0);
+    for (int c = 0; c < 4; ++c) {
+        const double scale = std::max(scale_[c], most[c] / double(ClassTable::kMax));
+        shrunk[c] = scale > 0 ? scale_[c] / scale : 1;
+        scale_[c] = scale;
+    }
+    for (float& alpha : alphas_) alpha = float(alpha * shrunk.a);
+    unitsOfOpaque_ = scale_.a > 0 ? float(1 / scale_.a) : 0;
+    for (int c = 0; c < 3; ++c)
+        shares_[c] = shrunk.a > 0 ? float(shares_[c] * shrunk[c] / shrunk.a) : 0;
+}
+
 glm::vec4 VoxelUnits::unitsOf(std::uint16_t number, const glm::vec3& color) const {
     const float alpha = alphaOf(number);
     glm::vec4 units(0, 0, 0, alpha);

@@ -23,6 +23,10 @@ class VoxelUnits {
     ///                   least 0
     VoxelUnits(const ClassTable& classes, const glm::dvec3& brightest);
 
+    /// Makes units large enough for what has other colours than its class, or another opacity.
+    /// @param most  the largest premultiplied colour
+    void raise(const glm::dvec4& most);
+
     const glm::dvec3& brightest() const { return brightest_; }
     /// Value of one unit of each channel on the first plane; 0 for one that is always 0.
     const glm::dvec4& scale() const { return scale_; }

@@ -28,6 +28,7 @@ void keepOnly(std::uint64_t mask, std::array<ClassTable::Color, 64>& colors) {
 
 // Whether something is so thin, or so dark, that one plane cannot tell it.
 bool needsTwoPlanes(const ClassTable& classes, const LookLight& light) {
+    if (light.isFine()) return true;
     constexpr double kLeast = 8 * kLeastOfPlane;
     const VoxelUnits& units = light.units();
     const glm::dvec3 brightest = brightestOf(classes);

@@ -240,6 +240,33 @@ void writeTable1Files() {
     std::filesystem::create_directory_symlink(".", "table1_some/again");
 }
 
+// A ball of one value, of voxels of another size or elsewhere.
+template <typename Grid = openvdb::FloatGrid>
+typename Grid::Ptr ballOf(const std::string& name, typename Grid::ValueType value, double voxel = 1,
+                          double away = 0) {
+    const auto grid = emptyFog<Grid>(name);
+    for (auto place = ball("any")->cbeginValueOn(); place; ++place)
+        grid->getAccessor().setValueOn(place.getCoord(), value);
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
+    grid->transform().postTranslate({away, 0, 0});
+    return grid;
+}
+
+// Smoke, and what may burn in it or colour it.
+void writeFire() {
+    using openvdb::Vec3SGrid;
+    const openvdb::GridBase::Ptr smoke = ball("density");
+    writeVdb("fire.vdb",
+             {smoke, ballOf("Flame", 0.75f), ballOf("temperature", 1500.0f),
+              ballOf("celsius", 900.0f), ballOf("cold", 0.1f), ballOf("coarse", 1500.0f, 2),
+              ballOf("fine", 1500.0f, 0.25), ballOf("far", 1500.0f, 1, 100),
+              ballOf<Vec3SGrid>("Cd", {0.25f, 0.5f, 2.0f}), ballOf<Vec3SGrid>("v", {-1, 0, 2}),
+              ballOf("r", 0.25f), ballOf("g", 0.5f), ballOf("b", 2.0f)});
+    const auto celsius = ballOf("temperature", 900.0f);
+    celsius->getAccessor().setValueOn({0, 0, 0}, -20.0f);
+    writeVdb("celsius.vdb", {smoke, celsius});
+}
+
 // Whatever is written to these is refused as by a full disk.
 void linkToFullDevice() {
     for (const char* const name : {"full.exr", "full.png", "full.json", "full.raw", "full.svg",
@@ -276,4 +303,5 @@ int main(int count, char** words) {
     writeRawFiles();
     writeTable1Files();
     writeSeveral();
+    writeFire();
 }

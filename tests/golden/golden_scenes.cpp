@@ -63,7 +63,7 @@ class Scenes {
   public:
     RenderOptions& add(const std::string& name, const std::string& volume,
                        const CameraOptions& camera, const TransferFunction& function) {
-        scenes_.push_back({name, volume, {}});
+        scenes_.push_back({name, volume, {}, {}});
         scenes_.back().options.camera = camera;
         scenes_.back().options.optics.transferFunction = function;
         return scenes_.back().options;
@@ -73,6 +73,14 @@ class Scenes {
         RenderOptions& options = add(name, volume, camera, colored());
         options.mode = mode;
         return options;
+    }
+    // Of media of several grids, of which the other is given besides.
+    RenderOptions& addMedium(const std::string& name, const std::string& volume,
+                             const std::string& part, const CameraOptions& camera) {
+        add(name, volume, camera, bent());
+        scenes_.back().part = part;
+        scenes_.back().options.optics.parts.resize(1);
+        return scenes_.back().options;
     }
     std::vector<GoldenScene> take() { return std::move(scenes_); }
 
@@ -210,6 +218,12 @@ void addLooks(Scenes& scenes) {
                          {LightFrame::kWorld, {-0.3, -0.2, 1}, {0.2, 0.3, 1}, 3}};
     scenes.add("scattered", "cloud", turned(10, 50), bent()).optics.scattering = scattering;
     scenes.add("scattered-perspective", "fog", camera, colored()).optics.scattering = scattering;
+    RenderOptions& fire = scenes.addMedium("fire", "cloud", "vessels", turned(10, 50));
+    fire.optics.scattering = scattering;
+    fire.optics.parts[0].kelvinScale = 20;
+    MediumPart& veil = scenes.addMedium("veiled", "engine", "cloud", camera).optics.parts[0];
+    veil.kind = MediumPart::Kind::kAbsorption;
+    veil.transferFunction = oneColor(0.2);
 }
 
 }  // namespace

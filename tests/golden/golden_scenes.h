@@ -13,6 +13,7 @@ struct GoldenScene {
     std::string name;
     std::string volume;
     RenderOptions options;
+    std::string part;  ///< the volume of what else there is (Optics::parts)
 };
 
 /// Returns all scenes: every mode, slice axis and kind of transfer function, and the options that

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <sstream>
 
 #include "deltasplat/simd.h"
@@ -44,7 +45,10 @@ Hashes ofScenes() {
     const std::map<std::string, Volume> volumes = goldenVolumes();
     Hashes hashes;
     for (const GoldenScene& scene : goldenScenes()) {
-        const RenderResult result = render(volumes.at(scene.volume), scene.options);
+        RenderOptions options = scene.options;
+        for (MediumPart& part : options.optics.parts)
+            part.volume = std::make_shared<const Volume>(volumes.at(scene.part));
+        const RenderResult result = render(volumes.at(scene.volume), options);
         Hash hash;
         for (const glm::dvec3& axis : {result.camera.right, result.camera.up}) {
             for (int i = 0; i < 3; ++i) hash.add(axis[i]);

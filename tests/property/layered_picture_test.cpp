@@ -39,8 +39,8 @@ std::vector<SlabLayer> layersOf(const LayeredPicture& picture) {
 }
 
 TEST(LayeredPicture, givesThePixelsOfThePictureAtOnce) {
-    for (const Colors colors :
-         {Colors::kOne, Colors::kSeveral, Colors::kOwn, Colors::kLit, Colors::kFog}) {
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral, Colors::kOwn, Colors::kLit,
+                                Colors::kFog, Colors::kFire}) {
         for (const double tolerance : {0.0, 0.1}) {
             const PreparedScene scene = sceneOf(colors, tolerance);
             // As another process would.

@@ -28,8 +28,8 @@ using test::someOptics;
 using test::someVolume;
 
 TEST(Prepared, givesThePixelsOfRender) {
-    for (const Colors colors :
-         {Colors::kOne, Colors::kSeveral, Colors::kOwn, Colors::kLit, Colors::kFog}) {
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral, Colors::kOwn, Colors::kLit,
+                                Colors::kFog, Colors::kFire}) {
         for (const double tolerance : {0.0, 0.1}) {
             RenderOptions options;
             options.optics = someOptics(colors);
@@ -72,7 +72,8 @@ TEST(Prepared, preparesEachAxisOnce) {
 
 // Also while none of the axes is there yet.
 TEST(Prepared, anyNumberOfThreadsMayRenderOneScene) {
-    for (const Colors colors : {Colors::kOne, Colors::kOwn, Colors::kLit, Colors::kFog}) {
+    for (const Colors colors :
+         {Colors::kOne, Colors::kOwn, Colors::kLit, Colors::kFog, Colors::kFire}) {
         const PreparedScene scene({someVolume(), someOptics(colors)}, SplatOptions());
         const std::vector<CameraOptions> cameras = someCameras();
         std::vector<Image> pictures(2 * cameras.size());
@@ -111,8 +112,8 @@ TEST(Prepared, showsAsMuchAsRenderOfWhatIsHardlyThere) {
 TEST(Prepared, renderersKeepMemoryAndNothingElse) {
     Renderer renderer;
     for (int round = 0; round < 2; ++round) {
-        for (const Colors colors :
-             {Colors::kSeveral, Colors::kOwn, Colors::kFog, Colors::kLit, Colors::kOne}) {
+        for (const Colors colors : {Colors::kSeveral, Colors::kOwn, Colors::kFog, Colors::kFire,
+                                    Colors::kLit, Colors::kOne}) {
             const PreparedScene scene({someVolume(), someOptics(colors)}, SplatOptions());
             const std::vector<CameraOptions> cameras = someCameras();
             std::vector<Image> pictures(cameras.size());

@@ -15,8 +15,9 @@ inline std::shared_ptr<const Volume> someVolume() {
         randomVolume({{0, 0, 0}, {33, 26, 28}}, 11, 0.5, {1, 1.2, 0.8}));
 }
 
-/// Of one colour, of several, of voxels' own, lit as surfaces, or as fog.
-enum class Colors { kOne, kSeveral, kOwn, kLit, kFog };
+/// Of one colour, of several, of voxels' own, lit as surfaces, as fog, or fog that burns beside
+/// itself.
+enum class Colors { kOne, kSeveral, kOwn, kLit, kFog, kFire };
 
 inline Optics someOptics(Colors colors) {
     Optics optics;
@@ -26,11 +27,19 @@ inline Optics someOptics(Colors colors) {
     if (colors == Colors::kLit)
         optics.shading = Shading{
             0.1, 0.6, 0.3, 7, {Light{}, {LightFrame::kWorld, {1, -2, 0.5}, {1, 0.8, 0.3}, 0.7}}};
-    if (colors == Colors::kFog) {
+    if (colors == Colors::kFog || colors == Colors::kFire) {
         optics.scattering.emplace();
         optics.scattering->anisotropy = 0.4;
         optics.scattering->octaves = 1;
         optics.scattering->lights = {{LightFrame::kWorld, {1, -2, 0.5}, {1, 0.8, 0.3}, 3}};
+    }
+    if (colors == Colors::kFire) {
+        MediumPart fire;
+        Volume heat = randomVolume({{-5, 4, 7}, {20, 33, 22}}, 3, 0.6, {1.1, 1.2, 0.8});
+        heat.worldFromIndex[3] = {0.3, 0, 0, 1};
+        fire.volume = std::make_shared<const Volume>(std::move(heat));
+        fire.kelvinScale = 8;
+        optics.parts = {fire};
     }
     optics.transferFunction.opacities = {{60, 0, 0.5, 0}, {200, 0.3, 0.5, 0}, {255, 1, 0.5, 0}};
     return optics;

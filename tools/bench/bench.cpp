@@ -11,6 +11,7 @@
 #include "options/transfer_function_option.h"
 #include "output_files.h"
 #include "process/interrupt.h"
+#include "render/read_medium.h"
 #include "render/render_input.h"
 #include "render/render_options.h"
 #include "subcommands.h"
@@ -57,6 +58,7 @@ void addBenchOptions(CLI::App& app, BenchCommand& command) {
     addSurfaceOptions(app, command.picture.surface, command.picture.render.optics.gradientOpacity);
     addShadingOptions(app, command.picture.shading);
     addScatterOptions(app, command.picture.scatter);
+    addMediumOptions(app, command.picture.medium);
     addPartOptions(app, command.picture);
     addSplattingOptions(app, command.picture.render);
     addInputOptions(app, command.picture.read);
@@ -122,7 +124,8 @@ void runBench(const CLI::App& app, BenchCommand command, const Session& session)
     requireArgument(!command.inputs.empty(), "INPUT", "FILE (see 'deltasplat bench --help')");
     applyProjection(app, command.picture.render.camera);
     checkCamera(command.picture.render.camera);
-    applySurface(app, command.picture.render.mode, command.picture.scatter.asked(),
+    applyLayers(app, command.picture);
+    applySurface(app, command.picture.render.mode, isFog(command.picture),
                  command.picture.surface, command.picture.read);
     if (!command.report.empty()) checkReport(command);
     Findings found = measureAll(app, command, session);

@@ -4,12 +4,14 @@
 #include <set>
 
 #include "deltasplat/error.h"
+#include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "drawing/plot_file.h"
 #include "info/describe_volume.h"
 #include "info/info_list.h"
 #include "info/info_report.h"
 #include "info/slice_plot.h"
+#include "ingest/files/input_kind.h"
 #include "listener.h"
 #include "options/input_options.h"
 #include "options/transfer_function_option.h"
@@ -98,6 +100,8 @@ void addFile(const std::string& file, const InfoOptions& options, const Describe
     std::vector<VolumeChoice> choices;
     try {
         choices = choicesIn(file, options.read);
+        if (findInput(file, {}).format == InputKind::Format::kVdb)
+            report.medium = mediumGrids(listVolumes(file, options.read));
     } catch (const Error& error) {
         found.failures.push_back(error);
     }

@@ -107,7 +107,13 @@ std::string jsonText(const std::vector<FileReport>& reports, const std::string& 
             grids.push_back(toJson(grid, usedFunction));
             grids.back().update(placeJson(grid.volume));
         }
-        files.push_back({{"file", report.file}, {"grids", grids}});
+        const auto nameOf = [](const std::string& name) {
+            return name.empty() ? Json() : Json(name);
+        };
+        files.push_back({{"file", report.file},
+                         {"emission_grid", nameOf(report.medium.emission)},
+                         {"color_grid", nameOf(report.medium.color)},
+                         {"grids", grids}});
     }
     return dumpJson({{"files", files}});
 }

@@ -31,6 +31,7 @@ struct FileReport {
     std::string file;
     std::vector<GridReport> grids;
     std::vector<std::string> others;  ///< grids that are not scalar, as "velocity (vec3s)"
+    MediumGrids medium;               ///< of a .vdb, what `auto` means among its grids
 };
 
 /// Returns how alike consecutive slices are, 1 - deltas / voxels; 1 for an empty grid.

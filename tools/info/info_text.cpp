@@ -202,6 +202,10 @@ std::string plainText(const std::vector<FileReport>& reports) {
         for (std::size_t i = 0; i < report.grids.size(); ++i)
             text += (i > 0 ? "\n" : "") + gridText(report.grids[i]);
         for (const std::string& grid : report.others) text += line("not read", grid);
+        if (!report.medium.emission.empty())
+            text += line("fire", report.medium.emission + " (--emission-grid auto)");
+        if (!report.medium.color.empty())
+            text += line("colours", report.medium.color + " (--color-grid auto)");
     }
     return text;
 }

@@ -14,6 +14,7 @@
 #include "output_files.h"
 #include "process/interrupt.h"
 #include "render/picture_legend.h"
+#include "render/read_medium.h"
 #include "render/render_input.h"
 #include "render/render_modes.h"
 #include "render/render_options.h"
@@ -101,8 +102,9 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     if (command.picture.render.mode != Mode::kComposite) return;
     warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading, display);
     warnOfUnusedLight(app, command.picture, display);
+    warnOfUnusedMediumOptions(app, command.picture.medium, display);
     if (!command.picture.surface.asked) return;
-    std::vector<std::string> unused = {"--extinction", "--unit-distance"};
+    std::vector<std::string> unused = {"--extinction", "--unit-distance", "--density-scale"};
     const bool isColored = !command.picture.transferFunction.empty();
     if (!isColored || command.picture.surface.color) unused.push_back("--range");
     for (const std::string& option : unused)
@@ -158,8 +160,9 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
 void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
     applyMode(app, command);
     applyProjection(app, command.picture.render.camera);
-    applySurface(app, command.picture.render.mode, command.picture.scatter.asked(),
-                 command.picture.surface, command.picture.read);
+    applyLayers(app, command.picture);
+    applySurface(app, command.picture.render.mode, isFog(command.picture), command.picture.surface,
+                 command.picture.read);
     validate(command);
     const PictureOptions& picture = command.picture;
     RenderTimes times;

@@ -13,6 +13,7 @@
 #include "optics/label_changes.h"
 #include "optics/value_colors.h"
 #include "options/transfer_function_option.h"
+#include "render/read_medium.h"
 #include "text/short_number.h"
 
 namespace deltasplat {
@@ -80,7 +81,7 @@ const Preset* presetOf(const std::filesystem::path& input, const PictureOptions&
 // Surfaces are shaded unless something else is wanted: those of level sets and of scanned bodies.
 std::optional<Shading> shadingOf(const PictureOptions& picture, const Volume& volume,
                                  const Preset* preset, bool isSurface) {
-    if (picture.render.mode != Mode::kComposite || picture.scatter.asked()) return {};
+    if (picture.render.mode != Mode::kComposite || isFog(picture)) return {};
     const bool isScan = preset && preset->values == Preset::Values::kHounsfield;
     const bool byValue = picture.render.optics.colorBy == ColorBy::kValue;
     return picture.shading.of(byValue && (isScan || isSurface || volume.fromLevelSet));
@@ -105,24 +106,27 @@ void checkSurface(const PictureOptions& picture) {
                 gotExpected(option, "--gradient-opacity besides", "one of the two"));
 }
 
-// The same of fog that scatters light.
-void checkScattering(const PictureOptions& picture) {
-    if (!picture.scatter.asked()) return;
+// The same of fog.
+void checkFog(const PictureOptions& picture) {
+    if (!isFog(picture)) return;
+    const MediumChoice& medium = picture.medium;
+    const std::string option = picture.scatter.asked() ? "--lighting scatter"
+                               : medium.emissionGrid   ? "--emission-grid"
+                               : medium.colorGrid      ? "--color-grid"
+                                                       : "--layer";
     const Optics& optics = picture.render.optics;
     const char* besides = picture.shading.shades.value_or(false) ? "--shade besides"
                           : picture.surface.isovalue             ? "--isovalue besides"
                           : picture.surface.asked                ? "--surface besides"
                           : !optics.gradientOpacity.empty()      ? "--gradient-opacity besides"
                                                                  : nullptr;
-    if (besides)
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--lighting scatter", besides, "one of the two"));
+    if (besides) throw Error(ErrorCode::kUsage, gotExpected(option, besides, "one of the two"));
     if (optics.colorBy != ColorBy::kValue) {
         throw Error(ErrorCode::kUsage,
-                    gotExpected("--lighting scatter",
-                                "--color-by " + colorByName(optics.colorBy) + " besides",
+                    gotExpected(option, "--color-by " + colorByName(optics.colorBy) + " besides",
                                 "--color-by value"));
     }
+    if (!picture.scatter.asked()) return;
     for (const Light& light : picture.shading.lights) {
         if (light.frame == LightFrame::kWorld) continue;
         throw Error(ErrorCode::kUsage,
@@ -189,13 +193,13 @@ void finishSurface(const PictureOptions& picture, const Volume& volume, Optics& 
 RenderOptions readOptics(const PictureOptions& picture, const Listener& listener) {
     RenderOptions options = picture.render;
     const ColorBy colorBy = options.optics.colorBy;
-    if (picture.shading.asked() && !picture.scatter.asked() && colorBy != ColorBy::kValue) {
+    if (picture.shading.asked() && !isFog(picture) && colorBy != ColorBy::kValue) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--shade", "--color-by " + colorByName(colorBy) + " besides",
                                 "--color-by value"));
     }
     checkSurface(picture);
-    checkScattering(picture);
+    checkFog(picture);
     const bool ramp = picture.transferFunction.empty();
     if (!ramp) {
         options.optics.transferFunction =
@@ -271,6 +275,9 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     read.keepInexact = picture.render.mode != Mode::kComposite;
     Volume volume = readVolume(input, read, listener);
     fitOptics(input, picture, volume, options, listener);
+    if (options.optics.surface) options.optics.densityScale.reset();
+    if (picture.render.mode == Mode::kComposite)
+        readMedium(input, picture, volume, options.optics, listener);
     if (!picture.parts.cuts()) return volume;
     if (options.optics.surface && isLevelSet(volume)) {
         listener.warn(

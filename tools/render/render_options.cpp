@@ -274,6 +274,9 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
                    "opacity (default: the smallest voxel size)");
     group.addValue("--extinction", "S", optics.extinctionScale, number(0, 1e30),
                    withDefault("Scales the extinction", numberText(optics.extinctionScale)));
+    group.addValue("--density-scale", "S", optics.densityScale, number(0, 1e30),
+                   "Extinction of a world unit of what has the value 1, to which it is\n"
+                   "proportional, in place of the transfer function's opacity");
     group.addValue("--color-by", "WHAT", optics.colorBy, colorBy(),
                    withDefault("Where colours come from: value, the transfer function, or to find\n"
                                "one's way by x, y, z, from blue to red along the world's axis, or\n"
@@ -332,6 +335,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addSurfaceOptions(app, command.picture.surface, command.picture.render.optics.gradientOpacity);
     addShadingOptions(app, command.picture.shading);
     addScatterOptions(app, command.picture.scatter);
+    addMediumOptions(app, command.picture.medium);
     addPartOptions(app, command.picture);
     addMethodOption(app, command.picture.render.method);
     addSplattingOptions(app, command.picture.render);

@@ -13,6 +13,7 @@
 #include "listener.h"
 #include "options/command_line.h"
 #include "options/cut_options.h"
+#include "options/medium_options.h"
 #include "options/scatter_options.h"
 #include "options/shading_options.h"
 #include "options/surface_options.h"
@@ -27,9 +28,16 @@ struct PictureOptions {
     RenderOptions render;
     ShadingChoice shading;
     ScatterChoice scatter;
+    MediumChoice medium;
+    bool isClear = false;  ///< whether the volume itself is not shown, but what is besides
     SurfaceChoice surface;
     CutChoice parts;
 };
+
+/// Whether what is shown is fog by what was asked for, which has no surfaces.
+inline bool isFog(const PictureOptions& picture) {
+    return picture.scatter.asked() || picture.medium.asked();
+}
 
 /// What `deltasplat render` was asked to do.
 struct RenderCommand {

@@ -53,4 +53,17 @@ std::vector<VolumeEntry> listVolumes(const std::filesystem::path& file,
                                      const ReadOptions& options = {},
                                      const Listener& listener = {});
 
+/// The grids of a .vdb that are fire and colour by their names; empty where there are none.
+struct MediumGrids {
+    std::string emission;
+    std::string color;
+};
+
+/// Returns which grids their names, whatever their case, tell: of flame, flames, fire, burn, heat,
+/// temperature the first that is scalar, and of Cd, color, colour, albedo the first of colours.
+MediumGrids mediumGrids(const std::vector<VolumeEntry>& entries);
+
+/// Whether values of a type are vectors of real numbers, as colours are.
+bool isColorType(const std::string& type);
+
 }  // namespace deltasplat

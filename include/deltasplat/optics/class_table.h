@@ -11,6 +11,7 @@
 
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/ingest/volume.h"
+#include "deltasplat/optics/medium.h"
 #include "deltasplat/optics/scattering.h"
 #include "deltasplat/optics/shading.h"
 #include "deltasplat/optics/surface.h"
@@ -43,6 +44,8 @@ struct ClassTable {
     /// Classes are numbered with 16 bits. Where all 65536 codes look different, the last two share
     /// a class.
     static constexpr int kMaxClasses = 65536;
+    /// Of a medium of several parts, the class of voxels that are clear but for other parts.
+    static constexpr Slot kClearClass = 1;
 
     /// A digit of each channel of every class.
     struct Digit {
@@ -112,6 +115,9 @@ struct Optics {
     std::optional<double>
         unitDistance;  ///< world units of one opacity step, > 0; empty: the smallest voxel size
     double extinctionScale = 1;  ///< >= 0; multiplies the extinction
+    /// In place of the transfer function's opacity: extinction in a world unit of what has the
+    /// value 1, to which it is proportional, >= 0; below 0 there is none. Not with a surface.
+    std::optional<double> densityScale;
     /// Lights that what is shown reflects; empty: it shines by itself, in the transfer function's
     /// colours. Not with another colorBy than kValue.
     std::optional<Shading> shading;
@@ -125,6 +131,10 @@ struct Optics {
     /// of how much values change: straight lines between points (data units per world unit; factor
     /// of 0..1), and the first and last factor beyond them. Empty: 1. Not with a surface.
     std::vector<glm::dvec2> gradientOpacity;
+    /// What else the medium has in it: at most kMostParts. Neither these nor colour grids with
+    /// shading, a surface, opacity by gradients, or another colorBy than kValue.
+    std::vector<MediumPart> parts;
+    std::optional<ColorGrids> colorGrids;  ///< of the volume alone; empty: the function's colours
 };
 
 /// Classifies every code that occurs in the volume: extinction per world unit sigma_t = -ln(1 -

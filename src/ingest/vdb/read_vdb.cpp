@@ -15,11 +15,22 @@
 #include "ingest/readers.h"
 #include "ingest/vdb/default_grid.h"
 #include "ingest/vdb/vdb_file.h"
+#include "ingest/vdb/vector_part.h"
 
 namespace deltasplat {
 namespace {
 
 constexpr const char* kScalarGrid = "a scalar grid (float, double, int32, int64, bool or mask)";
+
+// A grid, or one part of a vector grid.
+struct ChosenGrid {
+    const VdbGrid* grid;
+    std::optional<int> part = {};
+
+    std::string name() const {
+        return part ? grid->name + "." + std::string(1, char('x' + *part)) : grid->name;
+    }
+};
 
 // Reading and unpacking the file is by far the longer part of the work on a grid.
 constexpr double kReadShare = 0.8;
@@ -35,45 +46,62 @@ std::string listOf(const std::vector<VdbGrid>& grids) {
     return list;
 }
 
-// Finds "density[1]" by its unique name, and "density" as the first of that name.
-const VdbGrid& findGrid(const std::string& file, const std::vector<VdbGrid>& grids,
-                        const std::string& name) {
+const VdbGrid* findByName(const std::vector<VdbGrid>& grids, const std::string& name) {
     const VdbGrid* found = nullptr;
     for (const VdbGrid& grid : grids) {
         if (grid.name == name || (found == nullptr && grid.plainName() == name)) found = &grid;
         if (grid.name == name) break;
+    }
+    return found;
+}
+
+// Finds "density[1]" by its unique name, "density" as the first of that name, and "Cd.x" as a part
+// of a vector grid.
+ChosenGrid findGrid(const std::string& file, const std::vector<VdbGrid>& grids,
+                    const std::string& name) {
+    const VdbGrid* found = findByName(grids, name);
+    if (found == nullptr) {
+        if (const std::optional<VectorPart> part = vectorPartOf(name)) {
+            const VdbGrid* whole = findByName(grids, part->grid);
+            if (whole && isVector(*whole)) return {whole, part->axis};
+        }
     }
     if (found == nullptr) {
         fail(file, "no grid \"" + name + "\"",
              grids.empty() ? "a file with grids" : "one of " + listOf(grids));
     }
     if (!found->isScalar()) {
-        fail(file, "grid \"" + name + "\" of type " + found->type, kScalarGrid);
+        fail(file, "grid \"" + name + "\" of type " + found->type,
+             isVector(*found)
+                 ? kScalarGrid + std::string(", or a part of it such as ") + name + ".x"
+                 : kScalarGrid);
     }
-    return *found;
+    return {found};
 }
 
-std::vector<const VdbGrid*> chooseGrids(const std::string& where, const VdbFile& file,
-                                        const std::string& name, bool all) {
+std::vector<ChosenGrid> chooseGrids(const std::string& where, const VdbFile& file,
+                                    const std::string& name, bool all) {
     const std::vector<VdbGrid>& grids = file.grids();
-    if (!name.empty()) return {&findGrid(where, grids, name)};
+    if (!name.empty()) return {findGrid(where, grids, name)};
     const VdbGrid* const preferred = defaultGrid(file);
     if (preferred == nullptr) {
         fail(where, grids.empty() ? "no grids" : "only " + listOf(grids), kScalarGrid);
     }
-    if (!all) return {preferred};
-    std::vector<const VdbGrid*> chosen;
+    if (!all) return {{preferred}};
+    std::vector<ChosenGrid> chosen;
     for (const VdbGrid& grid : grids) {
-        if (grid.isScalar()) chosen.push_back(&grid);
+        if (grid.isScalar()) chosen.push_back({&grid});
     }
     return chosen;
 }
 
-Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& where,
+Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string& where,
                 const ReadOptions& options, const Listener& listener) {
+    const VdbGrid& grid = *chosen.grid;
     Listener reading;
     reading.progress = [&](double share) { listener.report(kReadShare * share); };
-    const openvdb::GridBase::Ptr loaded = file.read(grid, reading);
+    openvdb::GridBase::Ptr loaded = file.read(grid, reading);
+    if (chosen.part) loaded = gridOfPart(*loaded, *chosen.part);
     const GridCodesOptions coding{listener, where, grid.valueType(), options};
     Volume volume;
     if (isDeltaGrid(*loaded)) {
@@ -89,7 +117,7 @@ Volume readGrid(const VdbFile& file, const VdbGrid& grid, const std::string& whe
     } else {
         volume = volumeOfGrid(loaded, coding, file.metadata());
     }
-    volume.name = grid.name;
+    volume.name = chosen.name();
     return volume;
 }
 
@@ -105,7 +133,7 @@ class GridReader {
         : file_(file), options_(options), visitor_(visitor) {}
 
     // @param amongOthers  whether it is one of several that nobody asked for by name
-    void read(const VdbGrid& grid, const std::string& where, bool amongOthers,
+    void read(const ChosenGrid& grid, const std::string& where, bool amongOthers,
               const Listener& listener) {
         std::optional<Volume> volume = tryRead(grid, where, amongOthers, listener);
         if (!volume) return;
@@ -119,17 +147,17 @@ class GridReader {
     }
 
   private:
-    std::optional<Volume> tryRead(const VdbGrid& grid, const std::string& where, bool amongOthers,
-                                  const Listener& listener) {
+    std::optional<Volume> tryRead(const ChosenGrid& grid, const std::string& where,
+                                  bool amongOthers, const Listener& listener) {
         try {
             return readGrid(file_, grid, where, options_, listener);
         } catch (const NotFinite& error) {
             // Solvers leave undefined distances in caches, which are of use to nobody else.
-            if (!amongOthers || !visitor_.other || !isLevelSet(file_, grid)) {
+            if (!amongOthers || !visitor_.other || !isLevelSet(file_, *grid.grid)) {
                 refuse(error);
             } else {
                 passedOver_ = error;
-                visitor_.other(grid.name, "level set with NaN or infinite values");
+                visitor_.other(grid.name(), "level set with NaN or infinite values");
             }
         } catch (const Error& error) {
             if (error.code() != ErrorCode::kInput) throw;
@@ -162,7 +190,7 @@ void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool
         const auto scalars = std::count_if(file.grids().begin(), file.grids().end(),
                                            [](const VdbGrid& grid) { return grid.isScalar(); });
         if (scalars > 1) {
-            listener.warn(path.string() + ": reading grid \"" + chosen[0]->name + "\" of " +
+            listener.warn(path.string() + ": reading grid \"" + chosen[0].name() + "\" of " +
                           std::to_string(scalars) + " scalar grids (`gridName` chooses another)");
         }
     }
@@ -172,8 +200,8 @@ void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool
         part.progress = [&, i](double share) {
             listener.report((double(i) + share) / double(chosen.size()));
         };
-        const std::string where = path.string() + ": grid \"" + chosen[i]->name + "\"";
-        reader.read(*chosen[i], where, chosen.size() > 1, part);
+        const std::string where = path.string() + ": grid \"" + chosen[i].name() + "\"";
+        reader.read(chosen[i], where, chosen.size() > 1, part);
     }
     reader.finish();
     if (!all || !options.gridName.empty() || !visitor.other) return;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <string_view>
+
+#include "deltasplat/ingest/list_grids.h"
+#include "lower_case.h"
+
+namespace deltasplat {
+namespace {
+
+// As caches of Houdini, Mantaflow, EmberGen and others call them, those first that say most of
+// where it burns.
+constexpr std::array<std::string_view, 6> kFires{"flame", "flames", "fire",
+                                                 "burn",  "heat",   "temperature"};
+constexpr std::array<std::string_view, 4> kColors{"cd", "color", "colour", "albedo"};
+
+}  // namespace
+
+bool isColorType(const std::string& type) {
+    return type == "vec3s" || type == "vec3d";
+}
+
+MediumGrids mediumGrids(const std::vector<VolumeEntry>& entries) {
+    const auto firstOf = [&](const auto& names, const auto& suits) -> std::string {
+        for (const std::string_view name : names) {
+            for (const VolumeEntry& entry : entries)
+                if (suits(entry) && lowerCase(entry.name) == name) return entry.name;
+        }
+        return "";
+    };
+    return {firstOf(kFires, [](const VolumeEntry& entry) { return entry.scalar; }),
+            firstOf(kColors, [](const VolumeEntry& entry) { return isColorType(entry.type); })};
+}
+
+}  // namespace deltasplat

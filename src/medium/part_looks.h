@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "deltasplat/optics/medium.h"
+
+namespace deltasplat {
+
+/// What a part of a medium adds to a ray on a unit distance.
+struct PartLook {
+    double extinction = 0;  ///< may be infinite
+    glm::dvec3 color{0.0};  ///< of what swallows light, not multiplied by opacity
+    glm::dvec3 glow{0.0};   ///< radiance
+
+    bool operator==(const PartLook&) const = default;
+};
+
+/// The different looks that a part's values have.
+struct PartLooks {
+    std::vector<PartLook> looks;        ///< the first is that of nothing
+    std::vector<std::uint16_t> ofSlot;  ///< [kSlotCount]: which look a slot has
+
+    /// Returns the largest that any has of each member.
+    PartLook largest() const;
+};
+
+/// Looks up what the values of a part look like.
+/// @param levels         the part as it is read (PartSampler)
+/// @param unitDistances  that the longest way through the volume has: what glows too little to be
+///                       seen on it is nothing
+PartLooks lookUpPart(const MediumPart& part, const Volume& levels, double unitDistances);
+
+}  // namespace deltasplat
