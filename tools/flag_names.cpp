@@ -39,6 +39,7 @@ constexpr FlagName kFlagNames[] = {
     {"drr.muWater", "--mu-water"},
     {"drr.photons", "--photons"},
     {"elevationDegrees", "--elevation"},
+    {"exposureStops", "--exposure"},
     {"extinctionScale", "--extinction"},
     {"eyeWorld", "--eye"},
     {"floatExr", "--float"},

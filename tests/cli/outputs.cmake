@@ -39,6 +39,22 @@ foreach(background "" "--background=0,0,1,0.5")
     deltasplat_cli_test(output.${test} CREATES out.jpg ARGS render ball.vdb -o out.jpg ${background}
         STDERR "deltasplat: warning: out.jpg: a .jpg has no alpha, so what is clear is black; --background gives it another colour")
 endforeach()
+# Light that is clipped is told of, with what helps; as it is, none is.
+set(clipped "--exposure darkens all, --tone filmic rolls highlights off, an .exr keeps them")
+deltasplat_cli_test(output.clipped CREATES out.jpg
+    ARGS render ball.vdb -o out.jpg --background 0.25,0.5,0.3 --exposure 2
+    STDERR "deltasplat: warning: out.jpg: 100 % of the pixels are brighter than white, and clipped: ${clipped}")
+deltasplat_cli_test(output.clipped_alpha CREATES out.png
+    ARGS render ball.vdb -o out.png --exposure 1
+    STDERR_MATCHES "^deltasplat: warning: out.png: [0-9.]+ % of the pixels that are not clear are brighter than their alpha, and clipped: ${clipped}\n?$")
+deltasplat_cli_test(output.not_clipped CREATES out.png
+    ARGS render ball.vdb -o out.png --background 1,1,1 --exposure 0)
+deltasplat_cli_test(output.not_clipped_darker CREATES out.png
+    ARGS render ball.vdb -o out.png --background 8,8,8 --exposure=-3)
+deltasplat_cli_test(output.not_clipped_filmic CREATES out.png
+    ARGS render ball.vdb -o out.png --exposure 5 --tone filmic)
+deltasplat_cli_test(output.not_clipped_exr CREATES out.exr
+    ARGS render ball.vdb -o out.exr --background 8,8,8)
 deltasplat_cli_test(output.fine.stats CREATES out.exr stats.json
     ARGS render ball.vdb -o out.exr --float --stats stats.json --background 0.1,0.2,0.3,0.5)
 deltasplat_cli_test(output.fine.fsync ARGS render ball.vdb -o out.exr --fsync CREATES out.exr)

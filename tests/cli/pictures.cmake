@@ -61,6 +61,7 @@ add_test(NAME cli.first_look
                  ${scratch}/first_look ${DELTASPLAT_SHARED_DATA}/dicom_chest_ct)
 set_tests_properties(cli.first_look PROPERTIES LABELS "cli;data" TIMEOUT 600 SKIP_RETURN_CODE 77)
 deltasplat_script_test(modes modes.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/modes)
+deltasplat_script_test(tone tone.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/tone)
 deltasplat_script_test(labels_first labels_first.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/labels_first $<BOOL:${DELTASPLAT_ITK}>)
 deltasplat_script_test(annotations annotations.sh

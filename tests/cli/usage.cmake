@@ -228,6 +228,14 @@ deltasplat_refusal(projection "--projection: got fisheye; expected ortho, perspe
 deltasplat_refusal(level_set "--level-set: got maybe; expected fog or keep" --level-set maybe)
 deltasplat_refusal(endian "--endian: got middle; expected little or big" --endian middle)
 deltasplat_refusal(bits "--bits: got 12; expected 8 or 16" --bits 12)
+foreach(stops nan inf 1e3 -100.1 1,2 bright)
+    deltasplat_refusal(exposure_${stops}
+        "--exposure: got ${stops}; expected a finite number from -100 to 100" --exposure=${stops})
+endforeach()
+foreach(tone foo Filmic 1)
+    deltasplat_refusal(tone_${tone} "--tone: got ${tone}; expected standard or filmic"
+        --tone ${tone})
+endforeach()
 deltasplat_refusal(view
     "--view: got side; expected one of front, back, left, right, top, bottom, iso" --view side)
 
@@ -399,6 +407,17 @@ deltasplat_unused(bits --bits "on an .exr"
     ARGS render ${cube} -o out.exr --size 8x8 --bits 16 CREATES out.exr)
 deltasplat_unused(dither --dither "but in pictures of 8 bits"
     ARGS render ${cube} -o out.tif --size 8x8 --bits 16 --dither 1 CREATES out.tif)
+foreach(option exposure=1 tone=filmic)
+    string(REGEX REPLACE "=.*" "" name ${option})
+    deltasplat_unused(${name}_exr --${name} "on an .exr, which holds light as it is" CREATES out.exr
+        ARGS render ${cube} -o out.exr --size 8x8 --${option})
+    foreach(mode xray mip)
+        deltasplat_unused(${name}_${mode} --${name} "with --mode ${mode}" CREATES out.png
+            ARGS render ${cube} -o out.png --size 8x8 --mode ${mode} --${option})
+    endforeach()
+    deltasplat_unused(${name}_exr_mip --${name} "with --mode mip" CREATES out.exr
+        ARGS render ${cube} -o out.exr --size 8x8 --mode mip --${option})
+endforeach()
 foreach(option light=1,0,0 ambient=0.1 diffuse=1 specular=0.4 shininess=3)
     string(REGEX REPLACE "=.*" "" name ${option})
     deltasplat_unused(no_shade_${name} --${name} "with --no-shade" CREATES out.exr

@@ -19,6 +19,7 @@
 #include "render/render_modes.h"
 #include "render/render_options.h"
 #include "render/render_stats.h"
+#include "render/tone_options.h"
 #include "render/value_window.h"
 #include "stopwatch.h"
 #include "subcommands.h"
@@ -98,6 +99,7 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     if (isGiven(app, "--bits") && isExr) display.warn("--bits: has no effect on an .exr");
     if (isGiven(app, "--dither") && (isExr || command.image.bits == 16))
         display.warn("--dither: has no effect but in pictures of 8 bits");
+    warnOfUnusedTone(app, command, display);
     warnOfUnusedModeOptions(app, command, display);
     if (command.picture.render.mode != Mode::kComposite) return;
     warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading, display);
@@ -146,6 +148,7 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
     if (showsWindow(command)) window = applyWindow(command, volume, result, image);
     if (command.picture.background) compositeOver(result.image, *command.picture.background);
     fillForJpeg(command, result.image, listener);
+    applyTone(command, result.image, image, listener);
     std::optional<Legend> legend;
     if (optics.surface && command.annotations.legend) {
         listener.warn("--legend: left out, for what is shown is a surface, of one colour");

@@ -17,6 +17,7 @@
 #include "program.h"
 #include "render/annotation_options.h"
 #include "render/list_presets.h"
+#include "render/tone_options.h"
 #include "view/affine.h"
 
 namespace deltasplat {
@@ -327,6 +328,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
                   std::string("Volume to render: ") + kInputFormats)
         .required();
     addOutputOptions(app, command);
+    addToneOptions(app, command.tone);
     addCameraOptions(app, command.picture);
     addModeOption(app, command.picture.render.mode);
     addRayOptions(app, command);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "annotate/annotation_choice.h"
+#include "deltasplat/image/tone.h"
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/render.h"
@@ -38,6 +39,11 @@ struct PictureOptions {
 inline bool isFog(const PictureOptions& picture) {
     return picture.scatter.asked() || picture.medium.asked();
 }
+/// What files of 8 and 16 bits show of light.
+struct ToneChoice {
+    double exposureStops = 0;
+    Tone tone = Tone::kStandard;
+};
 
 /// What `deltasplat render` was asked to do.
 struct RenderCommand {
@@ -48,6 +54,7 @@ struct RenderCommand {
     bool drr = false;                  ///< another way to say mode drr
     std::optional<glm::dvec2> window;  ///< values of black and white; empty: percentiles
     ImageFileOptions image;
+    ToneChoice tone;
     AnnotationChoice annotations;
 };
 

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: Stephen Hill's fit of the Academy Color Encoding System's reference rendering and sRGB
+// output transforms, in M. Pettineo and D. Neubelt, "Baking Lab", ACES.hlsl, 2016. Light is scaled
+// beforehand, so that middle grey stays where it is, and the last digit of one weight is another,
+// so that each row of the matrices adds up to 1.
+#include "deltasplat/image/tone.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+#include "default_floats.h"
+#include "deltasplat/error.h"
+#include "number_text.h"
+#include "parallel.h"
+#include "portable_math.h"
+
+namespace deltasplat {
+namespace {
+
+// Keeps 0.18 at 0.18001.
+constexpr double kScale = 1.462;
+// What is brighter comes out white, and squares of this are still finite.
+constexpr double kBrightest = 1e6;
+// Half a level of 8 bits at white.
+constexpr float kSeen = 1.0f / 256;
+
+struct Rgb {
+    double r, g, b;
+};
+
+// What rows have beside the diagonal, each adding up to 1 with it.
+struct Mixing {
+    double rg, rb, gr, gb, br, bg;
+};
+
+// From sRGB's primaries to those that the film sees, less saturated, and from them back.
+constexpr Mixing kToFilm = {0.35458, 0.04823, 0.07600, 0.01566, 0.02840, 0.13383};
+constexpr Mixing kFromFilm = {-0.53108, -0.07367, -0.10208, -0.00605, -0.00327, -0.07276};
+
+// Written as differences, of which greys have none: they stay greys to the last bit.
+Rgb mixed(const Mixing& m, const Rgb& c) {
+    return {c.r + m.rg * (c.g - c.r) + m.rb * (c.b - c.r),
+            c.g + m.gr * (c.r - c.g) + m.gb * (c.b - c.g),
+            c.b + m.br * (c.r - c.b) + m.bg * (c.g - c.b)};
+}
+
+double filmCurve(double light) {
+    const double v = kScale * light;
+    return (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
+}
+
+Rgb filmic(const Rgb& light) {
+    const Rgb film = mixed(kToFilm, light);
+    return mixed(kFromFilm, {filmCurve(film.r), filmCurve(film.g), filmCurve(film.b)});
+}
+
+// NaN compares false and becomes 0.
+double lightOf(float channel) {
+    return channel > 0 ? std::min(double(channel), kBrightest) : 0.0;
+}
+
+void tonePixel(float* rgba) {
+    const Rgb shown = filmic({lightOf(rgba[0]), lightOf(rgba[1]), lightOf(rgba[2])});
+    rgba[0] = float(std::clamp(shown.r, 0.0, 1.0));
+    rgba[1] = float(std::clamp(shown.g, 0.0, 1.0));
+    rgba[2] = float(std::clamp(shown.b, 0.0, 1.0));
+    rgba[3] = std::max({rgba[3], rgba[0], rgba[1], rgba[2]});
+}
+
+// Exact where `exponent` is whole.
+double powerOfTwo(double exponent) {
+    const double whole = std::floor(exponent);
+    return std::ldexp(portable::exp((exponent - whole) * std::numbers::ln2), int(whole));
+}
+
+template <typename Use>
+void forPixels(Image& image, const Use& use) {
+    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
+        for (int x = 0; x < image.size.x; ++x) use(image.pixel(x, int(y)));
+    });
+}
+
+bool isClear(const float* rgba) {
+    return !(rgba[0] > 0 || rgba[1] > 0 || rgba[2] > 0 || rgba[3] > 0);
+}
+
+bool isClipped(const float* rgba) {
+    const float most = std::max(rgba[3], 0.0f) + kSeen;
+    return rgba[0] > most || rgba[1] > most || rgba[2] > most;
+}
+
+}  // namespace
+
+std::string toneName(Tone tone) {
+    return tone == Tone::kFilmic ? "filmic" : "standard";
+}
+
+void expose(Image& image, double exposureStops) {
+    const DefaultFloats floats;
+    if (!(std::abs(exposureStops) <= kMaxExposureStops)) {
+        const std::string most = numberText(kMaxExposureStops);
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("`exposureStops`", numberText(exposureStops),
+                                "a finite number from -" + most + " to " + most));
+    }
+    constexpr double kMost = std::numeric_limits<float>::max();
+    const double scale = powerOfTwo(exposureStops);
+    forPixels(image, [&](float* rgba) {
+        for (int channel = 0; channel < 3; ++channel)
+            rgba[channel] = float(std::clamp(scale * rgba[channel], -kMost, kMost));
+    });
+}
+
+void toneFilmic(Image& image) {
+    const DefaultFloats floats;
+    forPixels(image, tonePixel);
+}
+
+double clippedShare(const Image& image) {
+    const DefaultFloats floats;
+    std::atomic<std::size_t> seen = 0, clipped = 0;
+    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
+        std::size_t seenHere = 0, clippedHere = 0;
+        for (int x = 0; x < image.size.x; ++x) {
+            const float* const rgba = image.pixel(x, int(y));
+            seenHere += !isClear(rgba);
+            clippedHere += isClipped(rgba);
+        }
+        seen += seenHere;
+        clipped += clippedHere;
+    });
+    return seen > 0 ? double(clipped) / double(seen) : 0.0;
+}
+
+}  // namespace deltasplat
