@@ -25,6 +25,8 @@ make vessels "$vessels" --dims 256x256x256 --noise 0.08
 make hydrogen "$orbital" --dims 128x128x128 --type float32
 make marschner-lobb "$signal" --dims 96x96x96 --type float32
 make cloud "$folder/cloud.vdb" --dims 192x192x192
+make fire "$folder/fire.vdb" --dims 192x192x192 --seed 3
+make explosion "$folder/explosion.vdb" --dims 192x192x192
 
 draw() { # name, volume, options
     "$program" render "$2" -o "$folder/$1.png" --size "${size}x$size" --dither 0 -q "${@:3}"
@@ -57,6 +59,10 @@ draw cloud-sunset "$folder/cloud.vdb" "${cloud[@]}" --lighting scatter \
 draw cloud-backlit "$folder/cloud.vdb" "${cloud[@]}" --lighting scatter \
     --light 0.35,-0.35,1:1,0.85,0.7:3 --ambient 0.1 --anisotropy 0.75,-0.2,0.3 \
     --background 0.05,0.09,0.18
+draw fire "$folder/fire.vdb" --grid flame --tf fire "${dark[@]}"
+sunny=(--grid density --sky 0.6,0.8,0.9:3 --background 0.1,0.2,0.42)
+draw fire-smoke "$folder/fire.vdb" --extinction 2 "${sunny[@]}"
+draw explosion "$folder/explosion.vdb" --extinction 8 "${sunny[@]}"
 
 [[ -n $data ]] || exit 0
 head=(--direction 0.7,1,0.2 --up 0,0,-1 "${dark[@]}")

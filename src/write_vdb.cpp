@@ -162,12 +162,15 @@ void makeTagReproducible(AtomicFile& file, const std::string& randomTag) {
     file.write(tag.data(), tag.size());
 }
 
+// What this program writes: volumes and, of samples, colours.
+using WrittenGrids = ScalarGrids::Append<openvdb::Vec3SGrid>;
+
 // Grids of the types that this program writes, as grids that are packed on all threads.
 openvdb::GridCPtrVec parallelGrids(const openvdb::GridCPtrVec& grids) {
     openvdb::GridCPtrVec parallel;
     for (const openvdb::GridBase::ConstPtr& grid : grids) {
         parallel.push_back(grid);
-        grid->apply<ScalarGrids>([&](const auto& typed) {
+        grid->apply<WrittenGrids>([&](const auto& typed) {
             using Grid = std::decay_t<decltype(typed)>;
             parallel.back() = std::make_shared<const ParallelGrid<Grid>>(typed);
         });

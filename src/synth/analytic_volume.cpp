@@ -11,7 +11,8 @@ namespace deltasplat {
 
 const std::vector<std::string>& analyticNames() {
     static const std::vector<std::string> kNames = {
-        "marschner-lobb", "hydrogen", "shepp-logan", "engine", "cloud", "slab", "vessels", "body"};
+        "marschner-lobb", "hydrogen", "shepp-logan", "engine", "cloud",
+        "slab",           "vessels",  "body",        "fire",   "explosion"};
     return kNames;
 }
 
@@ -29,6 +30,8 @@ AnalyticVolume makeAnalytic(const std::string& name, std::uint64_t seed, double 
     if (name == "slab") return {name, makeSlab()};
     if (name == "vessels") return {name, makeVessels(seed, noise)};
     if (name == "body") return {name, makeBody()};
+    if (name == "fire") return makeFire(seed);
+    if (name == "explosion") return makeExplosion(seed);
 
     std::string names;
     for (const std::string& known : analyticNames()) names += (names.empty() ? "" : ", ") + known;

@@ -29,4 +29,18 @@ constexpr double unitFromBits(std::uint64_t hash) {
     return double(hash >> 11) * 0x1p-53;
 }
 
+/// Numbers from 0 (inclusive) to 1 (exclusive), one after the other, that follow from a seed.
+class UnitSequence {
+  public:
+    explicit UnitSequence(std::uint64_t seed) : hash_(mixBits(seed)) {}
+
+    double next() {
+        hash_ = mixBits(hash_ + 1);
+        return unitFromBits(hash_);
+    }
+
+  private:
+    std::uint64_t hash_;
+};
+
 }  // namespace deltasplat

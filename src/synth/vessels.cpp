@@ -32,7 +32,7 @@ double distanceToAxis(const Tube& tube, const glm::dvec3& p) {
 
 class TreeGrower {
   public:
-    explicit TreeGrower(std::uint64_t seed) : hash_(mixBits(seed)) {}
+    explicit TreeGrower(std::uint64_t seed) : random_(seed) {}
 
     std::vector<Tube> grow() {
         add({0, -0.98, 0}, {0, 1, 0}, 0.45, 0.072, 11);
@@ -40,11 +40,6 @@ class TreeGrower {
     }
 
   private:
-    double random() {
-        hash_ = mixBits(hash_ + 1);
-        return unitFromBits(hash_);
-    }
-
     // Grows a vessel and, `forks` times over, the two that it forks into.
     void add(const glm::dvec3& begin, const glm::dvec3& direction, double length, double radius,
              int forks) {
@@ -58,20 +53,20 @@ class TreeGrower {
             std::abs(direction.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 0, 1);
         const glm::dvec3 u = glm::normalize(glm::cross(direction, helper));
         const glm::dvec3 v = glm::cross(direction, u);
-        const double turn = 2 * std::numbers::pi * random();
+        const double turn = 2 * std::numbers::pi * random_.next();
         const glm::dvec3 side = u * portable::cos(turn) + v * portable::sin(turn);
-        const double share = 0.35 + 0.3 * random();  // of the cube of the radius
-        const double angle = 0.45 + 0.4 * random();  // radians between the two
+        const double share = 0.35 + 0.3 * random_.next();  // of the cube of the radius
+        const double angle = 0.45 + 0.4 * random_.next();  // radians between the two
         for (const bool first : {true, false}) {
             const double part = first ? share : 1 - share;
             const double bend = first ? angle * (1 - share) * 2 : -angle * share * 2;
             const glm::dvec3 on = direction * portable::cos(bend) + side * portable::sin(bend);
-            add(end, on, length * (0.72 + 0.16 * random()), radius * portable::pow(part, 1 / 3.0),
-                forks - 1);
+            add(end, on, length * (0.72 + 0.16 * random_.next()),
+                radius * portable::pow(part, 1 / 3.0), forks - 1);
         }
     }
 
-    std::uint64_t hash_;
+    UnitSequence random_;
     std::vector<Tube> tubes_;
 };
 

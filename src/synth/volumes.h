@@ -5,6 +5,8 @@
 #include <functional>
 #include <glm/vec3.hpp>
 
+#include "deltasplat/synth/analytic_volume.h"
+
 namespace deltasplat {
 
 /// A volume's value 0..1 at a position in [-1, 1]^3.
@@ -19,5 +21,7 @@ ValueAt makeCloud(std::uint64_t seed);
 ValueAt makeSlab();
 ValueAt makeVessels(std::uint64_t seed, double noise);
 ValueAt makeBody();
+AnalyticVolume makeFire(std::uint64_t seed);
+AnalyticVolume makeExplosion(std::uint64_t seed);
 
 }  // namespace deltasplat

@@ -50,6 +50,8 @@ deltasplat_script_test(fog_over_plate fog_over_plate.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/fog_over_plate)
 deltasplat_script_test(transfer_functions transfer_functions.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/transfer_functions)
+deltasplat_script_test(sample_grids sample_grids.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/sample_grids)
 deltasplat_script_test(shading shading.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/shading)
 deltasplat_script_test(surfaces surfaces.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/surfaces ${DELTASPLAT_FIXTURES}/level_set.vdb)

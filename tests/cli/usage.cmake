@@ -546,11 +546,17 @@ deltasplat_refusal(stats_is_picture
 deltasplat_refusal(stats_is_input
     "--stats: got ${cube}; expected another file than the input, the transfer function and the picture" --stats ${cube})
 
-deltasplat_cli_test(synth_names ARGS synth STDOUT_MATCHES "marschner-lobb.*engine.*cloud")
+deltasplat_cli_test(synth_names ARGS synth STDOUT_MATCHES "marschner-lobb.*engine.*cloud.*fire.*explosion")
 deltasplat_cli_test(usage.synth_name EXIT 2 ARGS synth ghost out.vdb
-    STDERR "deltasplat: NAME: got \"ghost\"; expected one of marschner-lobb, hydrogen, shepp-logan, engine, cloud, slab, vessels, body")
+    STDERR "deltasplat: NAME: got \"ghost\"; expected one of marschner-lobb, hydrogen, shepp-logan, engine, cloud, slab, vessels, body, fire, explosion")
 deltasplat_cli_test(usage.synth_format EXIT 2 ARGS synth cloud out.txt
     STDERR "deltasplat: out.txt: got extension \".txt\"; expected .raw or .vdb")
+# A .raw holds one grid.
+deltasplat_cli_test(synth_fire_raw ARGS synth fire out.raw --dims 8x8x8 CREATES out.raw
+    STDERR "deltasplat: warning: out.raw: holds density alone; left out temperature, flame, which a .vdb holds")
+deltasplat_cli_test(synth_explosion_raw ARGS synth explosion out.raw --dims 8x8x8 -q CREATES out.raw
+    STDERR "deltasplat: warning: out.raw: holds density alone; left out temperature, Cd, which a .vdb holds")
+deltasplat_cli_test(synth_fire_vdb ARGS synth fire out.vdb --dims 8x8x8 CREATES out.vdb)
 deltasplat_cli_test(usage.synth_dims EXIT 2 ARGS synth cloud out.raw --dims 0x1x1
     STDERR "deltasplat: --dims: got 0x1x1; expected AxBxC, three whole numbers from 1 to 2147483647")
 deltasplat_cli_test(usage.synth_absurd EXIT 1

@@ -68,7 +68,11 @@ Hashes ofSamples() {
             const auto part = [&](int axis) {
                 return 2 * unitFromBits(mixBits(std::uint64_t(3 * i + axis))) - 1;
             };
-            hash.add(volume.valueAt({part(0), part(1), part(2)}));
+            const glm::dvec3 p(part(0), part(1), part(2));
+            hash.add(volume.valueAt(p));
+            for (const AnalyticGrid& other : volume.others) hash.add(other.valueAt(p));
+            const glm::dvec3 color = volume.colorAt ? volume.colorAt(p) : glm::dvec3(0);
+            for (int axis = 0; volume.colorAt && axis < 3; ++axis) hash.add(color[axis]);
         }
         hashes["sample " + name] = hash.text();
     }

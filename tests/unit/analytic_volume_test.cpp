@@ -39,7 +39,7 @@ void expectOtherSeedsDiffer(const std::string& name, int n) {
 }
 
 TEST(AnalyticVolume, EveryNameMakesAVolumeOfValuesFromZeroToOne) {
-    EXPECT_EQ(analyticNames().size(), 8u);
+    EXPECT_EQ(analyticNames().size(), 10u);
     for (const std::string& name : analyticNames()) {
         const AnalyticVolume volume = makeAnalytic(name, 3, 0.2);
         EXPECT_EQ(volume.name, name);
@@ -61,7 +61,7 @@ TEST(AnalyticVolume, RefusesUnknownNamesAndBadNoise) {
     EXPECT_EQ(
         errorOf([] { makeAnalytic("Engine"); }),
         "usage: `name`: got \"Engine\"; expected one of marschner-lobb, hydrogen, shepp-logan, "
-        "engine, cloud, slab, vessels, body");
+        "engine, cloud, slab, vessels, body, fire, explosion");
     EXPECT_EQ(errorOf([] { makeAnalytic("engine", 1, -0.5); }),
               "usage: `noise`: got -0.500000; expected a number of at least 0");
     const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include "deltasplat/threads.h"
 #include "support/error_of.h"
@@ -30,9 +31,12 @@ AnalyticFileOptions options(glm::ivec3 dims, std::string type = "") {
     return result;
 }
 
+glm::dvec3 placeOf(int i, int j, int k) {
+    return {(2.0 * i + 1) / kDims.x - 1, (2.0 * j + 1) / kDims.y - 1, (2.0 * k + 1) / kDims.z - 1};
+}
+
 double expectedAt(const AnalyticVolume& volume, int i, int j, int k) {
-    return volume.valueAt(
-        {(2.0 * i + 1) / kDims.x - 1, (2.0 * j + 1) / kDims.y - 1, (2.0 * k + 1) / kDims.z - 1});
+    return volume.valueAt(placeOf(i, j, k));
 }
 
 // Calls visit(expected value) in the order of a raw file: x fastest, then y, then z.
@@ -96,42 +100,76 @@ TEST_P(WriteAnalytic, FloatRawIsTheValueRoundedToFloat) {
     });
 }
 
-openvdb::FloatGrid::Ptr readGrid(const fs::path& name) {
+std::vector<std::string> gridNames(const fs::path& name) {
+    openvdb::initialize();
+    openvdb::io::File file(name.string());
+    file.open();
+    std::vector<std::string> names;
+    for (auto grid = file.beginName(); grid != file.endName(); ++grid) names.push_back(*grid);
+    return names;
+}
+
+template <typename Grid = openvdb::FloatGrid>
+typename Grid::Ptr readGrid(const fs::path& name, const std::string& gridName = "density") {
     openvdb::initialize();
     openvdb::io::File file(name.string());
     file.open(/*delayLoad=*/false);
-    EXPECT_TRUE(file.hasGrid("density"));
-    EXPECT_EQ(file.getGrids()->size(), 1u);
-    const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("density"));
+    const auto grid = openvdb::gridPtrCast<Grid>(file.readGrid(gridName));
+    EXPECT_TRUE(grid) << gridName;
     file.close();
     return grid;
 }
 
-TEST_P(WriteAnalytic, VdbHoldsTheFunctionAtEveryVoxelAndNothingElse) {
-    AnalyticFileOptions grids = options(kDims);
-    grids.spacing = {1, 0.5, 2};
-    writeAnalytic(volume_, folder_ / "out.vdb", grids);
-    EXPECT_EQ(folder_.count(), 1);
-    const auto grid = readGrid(folder_ / "out.vdb");
-    EXPECT_EQ(grid->background(), 0.0f);
-    EXPECT_EQ(grid->getGridClass(), openvdb::GRID_FOG_VOLUME);
-    EXPECT_FALSE(grid->saveFloatAsHalf());
-    EXPECT_EQ(grid->indexToWorld(openvdb::Vec3d(3, 4, 5)), openvdb::Vec3d(3, 2, 10));
-
-    const auto accessor = grid->getConstAccessor();
+// Every voxel of the grid is what `valueAt` says of its place, if `isThere` says that it counts.
+template <typename Grid, typename ValueAt, typename IsThere>
+void expectHolds(const Grid& grid, const ValueAt& valueAt, const IsThere& isThere) {
+    using Value = typename Grid::ValueType;
+    EXPECT_EQ(grid.background(), Value(0.0f));
+    EXPECT_FALSE(grid.saveFloatAsHalf());
+    EXPECT_EQ(grid.indexToWorld(openvdb::Vec3d(3, 4, 5)), openvdb::Vec3d(3, 2, 10));
+    const auto accessor = grid.getConstAccessor();
     std::uint64_t active = 0;
     for (int k = 0; k < kDims.z; ++k) {
         for (int j = 0; j < kDims.y; ++j) {
             for (int i = 0; i < kDims.x; ++i) {
-                const float expected = float(expectedAt(volume_, i, j, k));
                 const openvdb::Coord at(i, j, k);
-                ASSERT_EQ(accessor.getValue(at), expected) << at;
-                ASSERT_EQ(accessor.isValueOn(at), expected != 0) << at;
-                active += expected != 0;
+                const Value value = valueAt(placeOf(i, j, k));
+                const bool there = isThere(placeOf(i, j, k), value);
+                ASSERT_EQ(accessor.getValue(at), there ? value : Value(0.0f)) << at;
+                ASSERT_EQ(accessor.isValueOn(at), there) << at;
+                active += there;
             }
         }
     }
-    EXPECT_EQ(grid->activeVoxelCount(), active);
+    EXPECT_EQ(grid.activeVoxelCount(), active);
+}
+
+TEST_P(WriteAnalytic, VdbHoldsTheFunctionsAtEveryVoxelAndNothingElse) {
+    AnalyticFileOptions grids = options(kDims);
+    grids.spacing = {1, 0.5, 2};
+    const fs::path file = folder_ / "out.vdb";
+    writeAnalytic(volume_, file, grids);
+    EXPECT_EQ(folder_.count(), 1);
+    EXPECT_EQ(gridNames(file).size(), 1 + volume_.others.size() + (volume_.colorAt ? 1 : 0));
+    const auto scalar = [&](const std::string& name, const auto& valueAt, double threshold) {
+        const auto grid = readGrid(file, name);
+        ASSERT_TRUE(grid);
+        EXPECT_EQ(grid->getGridClass(), openvdb::GRID_FOG_VOLUME);
+        expectHolds(
+            *grid, [&](const glm::dvec3& p) { return float(valueAt(p)); },
+            [&](const glm::dvec3&, float value) { return value > threshold; });
+    };
+    scalar("density", volume_.valueAt, 0);
+    for (const AnalyticGrid& other : volume_.others)
+        scalar(other.name, other.valueAt, other.threshold);
+    if (!volume_.colorAt) return;
+    expectHolds(
+        *readGrid<openvdb::Vec3SGrid>(file, "Cd"),
+        [&](const glm::dvec3& p) {
+            const glm::vec3 color(volume_.colorAt(p));
+            return openvdb::Vec3s(color.r, color.g, color.b);
+        },
+        [&](const glm::dvec3& p, const openvdb::Vec3s&) { return float(volume_.valueAt(p)) != 0; });
 }
 
 TEST_P(WriteAnalytic, SameBytesOnAnyNumberOfThreads) {
@@ -169,6 +207,47 @@ TEST(WriteAnalyticVdb, KeepsConstantBlocksAsTiles) {
     EXPECT_EQ(grid->activeVoxelCount(), 64u * 64 * 40);
     EXPECT_GT(grid->tree().activeTileCount(), 0u);
     EXPECT_LT(grid->tree().leafCount(), 8u * 8 * 6);
+}
+
+// Where smoke is equally thick throughout, its colour is not.
+TEST(WriteAnalyticVdb, ColoursAreWhereTheDensityIs) {
+    const test::TempFolder folder;
+    const AnalyticVolume volume = makeAnalytic("explosion");
+    writeAnalytic(volume, folder / "out.vdb", options(glm::ivec3(64)));
+    const auto density = readGrid(folder / "out.vdb");
+    const auto colors = readGrid<openvdb::Vec3SGrid>(folder / "out.vdb", "Cd");
+    ASSERT_TRUE(density && colors);
+    EXPECT_GT(density->tree().activeTileCount(), 0u);
+    EXPECT_EQ(colors->activeVoxelCount(), density->activeVoxelCount());
+    for (auto tile = density->tree().cbeginValueOn(); tile; ++tile) {
+        if (tile.isVoxelValue()) continue;
+        for (const int far : {0, 7}) {
+            const openvdb::Coord at = tile.getBoundingBox().min().offsetBy(far, 0, 7 - far);
+            const glm::dvec3 p = (2.0 * glm::dvec3(at.x(), at.y(), at.z()) + 1.0) / 64.0 - 1.0;
+            const glm::vec3 color(volume.colorAt(p));
+            EXPECT_EQ(colors->tree().getValue(at), openvdb::Vec3s(color.r, color.g, color.b));
+            EXPECT_TRUE(colors->tree().isValueOn(at));
+        }
+    }
+}
+
+TEST(WriteAnalyticRaw, SaysWhatItLeavesOut) {
+    const test::TempFolder folder;
+    std::vector<std::string> warnings;
+    Listener listener;
+    listener.warning = [&](const std::string& line) { warnings.push_back(line); };
+    const auto write = [&](const char* name, const fs::path& file) {
+        warnings.clear();
+        writeAnalytic(makeAnalytic(name), file, options(kDims), listener);
+        return warnings;
+    };
+    using Lines = std::vector<std::string>;
+    const fs::path raw = folder / "out.raw";
+    const std::string begin = raw.string() + ": holds density alone; left out ";
+    EXPECT_EQ(write("fire", raw), Lines{begin + "temperature, flame, which a .vdb holds"});
+    EXPECT_EQ(write("explosion", raw), Lines{begin + "temperature, Cd, which a .vdb holds"});
+    EXPECT_EQ(write("cloud", raw), Lines());
+    EXPECT_EQ(write("fire", folder / "out.vdb"), Lines());
 }
 
 TEST(WriteAnalyticFile, NoticesAFullDevice) {
@@ -236,6 +315,9 @@ TEST(WriteAnalyticFile, ReportsProgressAndCanBeStopped) {
             EXPECT_GE(now, share);
             share = now;
         };
+        writeAnalytic(makeAnalytic("explosion"), folder / name, options({32, 32, 32}), listener);
+        EXPECT_EQ(share, 1);
+        share = 0;
         writeAnalytic(makeAnalytic("slab"), folder / name, options({32, 32, 32}), listener);
         EXPECT_EQ(share, 1);
         fs::remove(folder / name);
@@ -279,6 +361,25 @@ TEST(WriteAnalyticSamples, AreAveraged) {
     three.samples = 17;
     EXPECT_EQ(errorOf([&] { writeAnalytic(volume, folder / "out.raw", three); }),
               "usage: `samples`: got 17; expected a whole number within 1..16");
+}
+
+// Averages count, not single samples: what is cold is not nothing.
+TEST(WriteAnalyticSamples, AreAveragedBeforeTheThreshold) {
+    const test::TempFolder folder;
+    AnalyticVolume volume{"steps", [](const glm::dvec3&) { return 1.0; }};
+    // Samples of a voxel of 1 are -0.5 and 0.5 along each axis.
+    const auto valueAt = [](const glm::dvec3& p) { return p.x < 0 ? 300.0 : 900.0; };
+    volume.others = {{"warm", valueAt, 590}, {"hot", valueAt, 600}};
+    volume.colorAt = [](const glm::dvec3& p) { return glm::dvec3(p.x < 0 ? 0 : 1, 0.5, 0.25); };
+    AnalyticFileOptions two = options(glm::ivec3(1));
+    two.samples = 2;
+    const fs::path file = folder / "out.vdb";
+    writeAnalytic(volume, file, two);
+    const openvdb::Coord at(0, 0, 0);
+    EXPECT_EQ(readGrid(file, "warm")->tree().getValue(at), 600);
+    EXPECT_EQ(readGrid(file, "hot")->activeVoxelCount(), 0u);
+    EXPECT_EQ(readGrid<openvdb::Vec3SGrid>(file, "Cd")->tree().getValue(at),
+              openvdb::Vec3s(0.5f, 0.5f, 0.25f));
 }
 
 }  // namespace

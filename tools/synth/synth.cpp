@@ -44,7 +44,9 @@ void declareOptions(CLI::App& app, SynthOptions& options) {
                        joinWords(analyticNames(), "or") + "; without it, lists them");
     arguments.addValue("OUTPUT", "FILE", options.output, anyText(),
                        "File to write, .raw (give the dims and the type in its name\n"
-                       "and it can be read without options) or .vdb");
+                       "and it can be read without options) or .vdb, which alone holds\n"
+                       "the several grids of fire (density, temperature in kelvin, flame)\n"
+                       "and explosion (density, temperature, colours Cd)");
 
     OptionGroup sample(app, "Sample");
     const glm::ivec3 dims = options.file.dims;
@@ -52,9 +54,10 @@ void declareOptions(CLI::App& app, SynthOptions& options) {
         "--dims", "AxBxC", options.file.dims, sampleDimensions(),
         withDefault("Voxels along x, y, z",
                     joinNumbers({double(dims.x), double(dims.y), double(dims.z)}, "x")));
-    sample.addValue("--seed", "N", options.seed, wholeNumber(),
-                    withDefault("Chooses the cloud's and the vessels' shape, and noise",
-                                std::to_string(options.seed)));
+    sample.addValue(
+        "--seed", "N", options.seed, wholeNumber(),
+        withDefault("Chooses the shape of cloud, vessels, fire and explosion,\nand noise",
+                    std::to_string(options.seed)));
     sample.addValue(
         "--noise", "S", options.noise, number(0, 1),
         withDefault(

@@ -21,9 +21,12 @@ struct AnalyticFileOptions {
 
 /// Samples a volume at voxel centres, position = (2 * index + 1) / dims - 1 along each axis, or
 /// evenly within voxels, and writes it to
-/// `.raw` (little endian; 0..1 becomes 0..255 or 0..65535, rounded to nearest) or `.vdb` (a fog
-/// volume named "density" with background 0; zeros are inactive). Needs memory for a few slices
-/// (.raw) or for what is not zero (.vdb).
+/// - `.raw`: little endian; 0..1 becomes 0..255 or 0..65535, rounded to nearest. Others and colours
+///   are left out, with a warning
+/// - `.vdb`: fog volumes with background 0, "density", whose zeros are inactive, and then the
+///   others, inactive where they are not above their threshold; last colours, a grid "Cd" of
+///   `vec3s`, active where the density is
+/// Needs memory for a few slices (.raw) or for what is active (.vdb).
 /// @throw Error(kUsage) for another extension, type or dims; Error(kFailed) for more than
 /// memory holds; Error(kOutput) if the file cannot be written
 void writeAnalytic(const AnalyticVolume& volume, const std::filesystem::path& file,

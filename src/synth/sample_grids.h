@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Grid.h>
+
+#include "deltasplat/synth/write_analytic.h"
+
+namespace deltasplat {
+
+/// Samples a volume as writeAnalytic writes it to a `.vdb`.
+/// @throw Error(kFailed) for more than memory holds; whatever `listener.progress` throws
+openvdb::GridCPtrVec sampleGrids(const AnalyticVolume& volume, const AnalyticFileOptions& options,
+                                 const Listener& listener);
+
+}  // namespace deltasplat
