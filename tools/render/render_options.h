@@ -10,6 +10,7 @@
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/render.h"
+#include "deltasplat/render_deep.h"
 #include "listener.h"
 #include "options/command_line.h"
 #include "options/cut_options.h"
@@ -40,6 +41,8 @@ struct RenderCommand {
     bool drr = false;                  ///< another way to say mode drr
     std::optional<glm::dvec2> window;  ///< values of black and white; empty: percentiles
     ImageFileOptions image;
+    bool deep = false;  ///< samples with depths instead of a flat picture
+    DeepOptions deepOptions;
     AnnotationChoice annotations;
 };
 
