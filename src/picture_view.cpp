@@ -106,6 +106,10 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
         memory});
 }
 
+glm::dmat4 PictureView::worldFromSlices() const {
+    return scene_.scene.volume->worldFromIndex * indexFromThinVoxel(axis_->sliceAxis, {});
+}
+
 Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
     const int within = axis_->parts.within;
     const double pixels = view_.pixelsPerVoxel / within;
@@ -144,7 +148,7 @@ double PictureView::show(Layer& layer, Image& image) const {
         warp(raster, map, WarpFilter::kSharp, image);
         return warpGain(map);
     }
-    if (slabs_->splat.colors.table().oneColor) lengthenSteps(layer);
+    if (showChangesLayer()) lengthenSteps(layer);
     return warpRegion(raster, camera_, view_, thinView_, *plane_, image);
 }
 

@@ -39,9 +39,14 @@ class PictureView {
     const SlabInput& slabs() const { return *slabs_; }
     const Footprint& footprint() const { return footprint_; }
     const PreparedAxis& axis() const { return *axis_; }
+    const Camera& camera() const { return camera_; }
+    /// From (slice, u, v) of the volume's own voxels to the world.
+    glm::dmat4 worldFromSlices() const;
     /// Writes what is seen of the base plane into the picture. Changes the layer on the way.
     /// @return the most that this can enlarge a difference of layers
     double show(Layer& layer, Image& image) const;
+    /// Whether show() changes the layer.
+    bool showChangesLayer() const { return view_.eye && slabs_->splat.colors.table().oneColor; }
     /// Most that a layer may differ from the exact one.
     ErrorBound errorBound() const;
 

@@ -62,9 +62,19 @@ struct PreparedScene::Impl {
     mutable std::array<std::optional<std::size_t>, 3> blocksSeen_;  // [slice axis]
 };
 
+class DeepBuilder;
+
+/// What a picture is cut into in depth.
+struct DeepRequest {
+    int slicesPerSample;
+    DeepBuilder& builder;
+};
+
 /// As the public one, of a scene's insides, into a picture of the camera's size that is clear.
 /// @param memory  for sheets and layers
+/// @param deep    if the picture's samples are wanted as well
 RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& camera,
-                            KeptMemory& memory, Image& image, const Listener& listener);
+                            KeptMemory& memory, Image& image, const Listener& listener,
+                            const DeepRequest* deep = nullptr);
 
 }  // namespace deltasplat

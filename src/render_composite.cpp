@@ -4,9 +4,11 @@
 #include <optional>
 #include <vector>
 
+#include "deep_view.h"
 #include "default_floats.h"
 #include "deltasplat/prepared_scene.h"
 #include "kept_memory.h"
+#include "listener_part.h"
 #include "number_text.h"
 #include "picture_view.h"
 #include "stopwatch.h"
@@ -15,23 +17,19 @@
 namespace deltasplat {
 namespace {
 
-Listener partOf(const Listener& listener, double from, double to) {
-    return {[&listener, from, to](double share) { listener.report(from + (to - from) * share); },
-            listener.warning};
-}
-
 // Renders one picture, or the regions of one.
 class CompositeRender {
   public:
     CompositeRender(const PreparedScene::Impl& scene, const Camera& camera, KeptMemory& memory,
-                    Image& image, RenderStats& stats)
+                    Image& image, RenderStats& stats, const DeepRequest* deep)
         : scene_(scene),
           volume_(*scene.scene.volume),
           options_(scene.options),
           camera_(camera),
           memory_(memory),
           image_(image),
-          stats_(stats) {}
+          stats_(stats),
+          deep_(deep) {}
 
     // @param views  of the volume's own voxels
     void run(const std::vector<Factorization>& views, const Listener& listener) {
@@ -57,13 +55,28 @@ class CompositeRender {
         const Clock::time_point renderStart = Clock::now();
         const PictureView picture(scene_, camera_, view, *plan_, std::move(axis), memory_);
         countIn(picture);
+        const double gain = deep_ ? showDeep(picture, listener) : showFlat(picture, listener);
+        if (!options_.tolerance.isExact()) countIn(picture.errorBound(), gain);
+        stats_.renderSeconds += secondsSince(renderStart);
+    }
+
+    double showFlat(const PictureView& picture, const Listener& listener) {
         Layer merged = renderSlabs(picture.slabs(), partOf(listener, 0.2, 0.9));
         listener.report(0.95);
         const Clock::time_point warpStart = Clock::now();
         const double gain = picture.show(merged, image_);
         stats_.warpSeconds += secondsSince(warpStart);
-        if (!options_.tolerance.isExact()) countIn(picture.errorBound(), gain);
-        stats_.renderSeconds += secondsSince(renderStart);
+        return gain;
+    }
+
+    double showDeep(const PictureView& picture, const Listener& listener) {
+        const DeepViewResult result =
+            renderDeepView(picture, deep_->slicesPerSample, memory_, deep_->builder, image_,
+                           partOf(listener, 0.2, 0.95));
+        stats_.compositeSeconds += result.slabSeconds * result.compositeShare;
+        stats_.splatSeconds += result.slabSeconds * (1 - result.compositeShare);
+        stats_.warpSeconds += result.warpSeconds;
+        return result.gain;
     }
 
     // Who reads an empty volume has been told so.
@@ -132,6 +145,7 @@ class CompositeRender {
     KeptMemory& memory_;
     Image& image_;
     RenderStats& stats_;
+    const DeepRequest* deep_;
     std::optional<SheetPlan> plan_;
 };
 
@@ -161,7 +175,8 @@ RenderStats renderComposite(const PreparedScene& scene, const Camera& camera, Im
 }
 
 RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& camera,
-                            KeptMemory& memory, Image& image, const Listener& listener) {
+                            KeptMemory& memory, Image& image, const Listener& listener,
+                            const DeepRequest* deep) {
     const DefaultFloats floats;
     const std::vector<Factorization> views = viewsOf(camera, *scene.scene.volume, scene.options);
     RenderStats stats;
@@ -169,7 +184,7 @@ RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& came
     stats.method = scene.options.method;
     stats.tolerance = scene.options.tolerance;
     stats.sliceAxis = views.front().sliceAxis;
-    CompositeRender(scene, camera, memory, image, stats).run(views, listener);
+    CompositeRender(scene, camera, memory, image, stats, deep).run(views, listener);
     return stats;
 }
 

@@ -87,6 +87,7 @@ constexpr FlagName kFlagNames[] = {
     {"sizePixels", "--size"},
     {"skipBytes", "--skip-bytes"},
     {"slices", "--slices"},
+    {"slicesPerSample", "--deep-slices"},
     {"sourceToDetectorWorld", "--sdd"},
     {"sourceToIsocenterWorld", "--sid"},
     {"spacing", "--spacing"},

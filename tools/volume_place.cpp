@@ -98,7 +98,8 @@ std::string cameraOptionsText(const Camera& camera) {
     if (camera.projection == Projection::kOrtho) {
         text += vectorOption("direction", camera.direction) + vectorOption("up", camera.up) +
                 vectorOption("target", camera.targetWorld) + " --frame-width " +
-                numberText(camera.frameWidthWorld);
+                numberText(camera.frameWidthWorld) +
+                " --distance=" + numberText(camera.targetDistanceWorld);
     } else {
         text += vectorOption("eye", camera.eyeWorld()) +
                 vectorOption("direction", camera.direction) + vectorOption("up", camera.up);

@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/image/write_image.h"
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <glm/gtc/type_ptr.hpp>
 #include <limits>
-#include <memory>
-#include <string_view>
 
 #include "default_floats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
-#include "deltasplat/threads.h"
-#include "exr_threads.h"
+#include "image/encode_image.h"
 #include "image/quantize.h"
 #include "lower_case.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {
@@ -60,10 +54,6 @@ OIIO::ImageSpec rgbaSpec(const Image& image, OIIO::TypeDesc type) {
     return spec;
 }
 
-void addMetadata(const ImageFileOptions& options, OIIO::ImageSpec& spec) {
-    for (const auto& [name, text] : options.metadata) spec.attribute("deltasplat:" + name, text);
-}
-
 // For formats that have no names of one's own.
 std::string description(const ImageFileOptions& options) {
     std::string lines;
@@ -79,47 +69,19 @@ void addDescription(const std::string& text, OIIO::ImageSpec& spec) {
     if (!text.empty()) spec.attribute("ImageDescription", text);
 }
 
-void setMatrix(OIIO::ImageSpec& spec, const char* name, const glm::dmat4& matrix) {
-    // OpenEXR multiplies row vectors and stores rows, GLM multiplies columns and stores columns:
-    // the transposed matrix stored the other way round is the same sixteen numbers.
-    const glm::mat4 rounded(matrix);
-    spec.attribute(name, OIIO::TypeMatrix, glm::value_ptr(rounded));
-}
-
-// Encodes in memory, so that what can go wrong with the disk goes wrong in one place.
 std::string encode(const std::filesystem::path& file, const char* formatName,
                    const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
-    OIIO::Filesystem::IOVecOutput memory;
-    limitExrThreads();
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(formatName);
-    if (!output) {
-        const std::string why = printable(OIIO::geterror());
-        throw Error(ErrorCode::kFailed,
-                    file.string() + ": cannot be encoded: " +
-                        (why.empty() ? "OpenImageIO's writer cannot be started" : why));
-    }
-    output->threads(threadCount());
-    const bool written = output->set_ioproxy(&memory) && output->open(file.string(), spec) &&
-                         output->write_image(type, pixels) && output->close();
-    if (!written) {
-        throw Error(ErrorCode::kOutput,
-                    file.string() + ": cannot be encoded: " + printable(output->geterror()));
-    }
-    const std::vector<unsigned char>& bytes = memory.buffer();
-    return {bytes.begin(), bytes.end()};
+    return encodeInMemory(file, formatName, spec, [&](OIIO::ImageOutput& output) {
+        return output.write_image(type, pixels);
+    });
 }
 
 std::string encodeExr(const std::filesystem::path& file, const Image& image,
                       const ImageFileOptions& options) {
     const OIIO::TypeDesc type = options.floatExr ? OIIO::TypeFloat : OIIO::TypeHalf;
     OIIO::ImageSpec spec = rgbaSpec(image, type);
-    addMetadata(options, spec);
     spec.attribute("compression", "zip");
-    spec.attribute("oiio:ColorSpace", "Linear");
-    // Without a date OpenImageIO stores the clock time (as capDate).
-    spec.attribute("DateTime", "");
-    if (options.cameraFromWorld) setMatrix(spec, "worldToCamera", *options.cameraFromWorld);
-    if (options.ndcFromWorld) setMatrix(spec, "worldToNDC", *options.ndcFromWorld);
+    addExrAttributes(options, spec);
     return encode(file, "openexr", spec, OIIO::TypeFloat,
                   finiteValues(image, options.floatExr).data());
 }

@@ -112,11 +112,12 @@ void checkProjection(const CameraOptions& options) {
                "`projection` perspective or latlong");
     requireFor(options.nearWorld != 0, !parallel, "`nearWorld`",
                "`projection` perspective or latlong");
+    requireFor(options.distanceWorld.has_value(), parallel || flat, "`distanceWorld`",
+               "`projection` ortho or perspective");
     for (const auto& [option, given] :
          {std::pair("`fovDegrees`", options.fovDegrees.has_value()),
           std::pair("`focalMm`", options.focalMm.has_value()),
           std::pair("`apertureMm`", options.apertureMm.has_value()),
-          std::pair("`distanceWorld`", options.distanceWorld.has_value()),
           std::pair("`sourceToIsocenterWorld`", options.sourceToIsocenterWorld.has_value()),
           std::pair("`sourceToDetectorWorld`", options.sourceToDetectorWorld.has_value()),
           std::pair("`detectorWorld`", options.detectorWorld.has_value())})
@@ -138,7 +139,11 @@ void checkLens(const CameraOptions& options) {
 }
 
 void checkEye(const CameraOptions& options) {
-    checkPositive("`distanceWorld`", options.distanceWorld);
+    if (options.projection != Projection::kOrtho) {
+        checkPositive("`distanceWorld`", options.distanceWorld);
+    } else if (options.distanceWorld) {
+        checkNumber("`distanceWorld`", *options.distanceWorld);
+    }
     const double nearest = options.nearWorld;
     if (!(std::isfinite(nearest) && nearest >= 0))
         refuse("`nearWorld`", numberText(nearest), "a finite number of at least 0");
@@ -478,7 +483,8 @@ Camera makeCamera(const CameraOptions& options, const IndexBox& box,
     }
     camera.frameWidthWorld =
         options.frameWidthWorld.value_or(fittingFrame(camera, framed, worldFromIndex));
-    camera.targetDistanceWorld = clearDistance(camera, framed, worldFromIndex);
+    camera.targetDistanceWorld =
+        options.distanceWorld.value_or(clearDistance(camera, framed, worldFromIndex));
     return camera;
 }
 

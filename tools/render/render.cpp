@@ -8,11 +8,14 @@
 #include <vector>
 
 #include "annotate/annotate.h"
+#include "deltasplat/image/write_deep_image.h"
+#include "deltasplat/render_deep.h"
 #include "listener.h"
 #include "number_text.h"
 #include "options/input_options.h"
 #include "output_files.h"
 #include "process/interrupt.h"
+#include "render/deep_options.h"
 #include "render/picture_legend.h"
 #include "render/read_medium.h"
 #include "render/render_input.h"
@@ -55,6 +58,9 @@ ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume
     }
     if (result.stats.mode == Mode::kMip && render.depthShade > 0)
         options.metadata.emplace_back("depthShade", numberText(render.depthShade));
+    if (command.deep)
+        options.metadata.emplace_back("deepSlices",
+                                      std::to_string(command.deepOptions.slicesPerSample));
     if (result.stats.mode != Mode::kComposite) return options;
     options.metadata.insert(options.metadata.end(),
                             {{"method", methodName(command.picture.render.method)},
@@ -100,6 +106,7 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     if (isGiven(app, "--dither") && (isExr || command.image.bits == 16))
         display.warn("--dither: has no effect but in pictures of 8 bits");
     warnOfUnusedTone(app, command, display);
+    warnOfUnusedDeepOptions(app, command, display);
     warnOfUnusedModeOptions(app, command, display);
     if (command.picture.render.mode != Mode::kComposite) return;
     warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading, display);
@@ -160,6 +167,13 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
              result.image);
 }
 
+// Writes what the picture is asked for as: all of it, or what is seen of it.
+void writePicture(const RenderCommand& command, const DeepImage& deep, const Image& flat,
+                  const ImageFileOptions& options) {
+    if (command.deep) return writeDeepImage(command.output, deep, options);
+    writeImage(command.output, flat, options);
+}
+
 void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
     applyMode(app, command);
     applyProjection(app, command.picture.render.camera);
@@ -170,6 +184,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
     const PictureOptions& picture = command.picture;
     RenderTimes times;
     RenderResult result;
+    DeepStats deepStats;
     std::string codeBook;  // what there is to say of it
     {
         ProgressDisplay display(session.common);
@@ -187,22 +202,29 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         codeBook = "code book " + volume.codeBook.name() + ", largest error " +
                    codeErrorText(volume.codeError) + "\n";
 
-        result = render(volume, options, display.stage(kReadShare, kRenderShare));
+        const Listener rendering = display.stage(kReadShare, kRenderShare);
+        DeepImage deep;
+        if (command.deep) {
+            result = renderDeep(volume, options, command.deepOptions, deep, rendering);
+            deepStats = deepStatsOf(deep, command.deepOptions.slicesPerSample);
+        } else {
+            result = render(volume, options, rendering);
+        }
         boundOver(picture.background, result.stats);
         ImageFileOptions image = imageOptions(command, volume, result, session);
         const Listener writing = display.stage(kRenderShare, 1);
         finishPicture(command, volume, options.optics, result, image, writing);
         writing.report(0);
         const auto beginWrite = std::chrono::steady_clock::now();
-        writeImage(command.output, result.image, image);
+        writePicture(command, deep, result.image, image);
         times.write = secondsSince(beginWrite);
         times.total = secondsSince(session.begin);
-        writeStats(command.stats, statsJson(result, volume, times));
+        writeStats(command.stats, statsJson(result, volume, times, deepStats));
         writing.report(1);
     }
     if (!result.stats.tolerance.isExact() && !session.common.quiet) showErrorBound(result.stats);
     if (session.common.verbose)
-        std::fputs((codeBook + statsSummary(result, times)).c_str(), stderr);
+        std::fputs((codeBook + statsSummary(result, times, deepStats)).c_str(), stderr);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "output_files.h"
 #include "program.h"
 #include "render/annotation_options.h"
+#include "render/deep_options.h"
 #include "render/list_presets.h"
 #include "render/tone_options.h"
 #include "view/affine.h"
@@ -229,9 +230,10 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
                    "perspective, latlong: world position of the eye, which looks at\n"
                    "the target, or in --direction (default: --distance from the\n"
                    "target; latlong: the target)");
-    group.addValue("--distance", "D", camera.distanceWorld, positiveLength(),
+    group.addValue("--distance", "D", camera.distanceWorld, number(-1e30, 1e30),
                    "perspective: from the eye to the target, in world units\n"
-                   "(default: the volume fits)");
+                   "(default: the volume fits); ortho: from where depths begin, which\n"
+                   "moves no pixel (default: before the volume)");
     group.addValue("--sid", "D", camera.sourceToIsocenterWorld, positiveLength(),
                    "C-arm: from the source of x-rays (the eye) to the isocenter (the\n"
                    "target) in mm; with --sdd and --detector, implies --projection\n"
@@ -329,6 +331,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
         .required();
     addOutputOptions(app, command);
     addToneOptions(app, command.tone);
+    addDeepOptions(app, command);
     addCameraOptions(app, command.picture);
     addModeOption(app, command.picture.render.mode);
     addRayOptions(app, command);
@@ -397,6 +400,7 @@ void warnOfDetector(const CameraOptions& options, const Volume& volume, const Li
 }
 
 void validate(const RenderCommand& command) {
+    checkDeep(command);
     checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     checkCamera(command.picture.render.camera);
     checkAnnotations(command);

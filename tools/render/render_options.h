@@ -11,6 +11,7 @@
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/render.h"
+#include "deltasplat/render_deep.h"
 #include "listener.h"
 #include "options/command_line.h"
 #include "options/cut_options.h"
@@ -55,6 +56,8 @@ struct RenderCommand {
     std::optional<glm::dvec2> window;  ///< values of black and white; empty: percentiles
     ImageFileOptions image;
     ToneChoice tone;
+    bool deep = false;  ///< samples with depths instead of a flat picture
+    DeepOptions deepOptions;
     AnnotationChoice annotations;
 };
 

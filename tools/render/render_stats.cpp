@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/render_stats.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -25,6 +26,12 @@ std::string partsText(int parts) {
     return parts > 1 ? "; of voxels divided into " + std::to_string(parts) : "";
 }
 
+std::string deepSummary(const DeepStats& deep) {
+    if (deep.slicesPerSample == 0) return "";
+    return std::to_string(deep.samples) + " samples, at most " + std::to_string(deep.mostSamples) +
+           " in a pixel\n";
+}
+
 std::string workSummary(const RenderStats& stats) {
     char text[256];
     const auto visible = (unsigned long long)stats.visible;
@@ -43,7 +50,16 @@ std::string workSummary(const RenderStats& stats) {
 
 }  // namespace
 
-std::string statsJson(const RenderResult& result, const Volume& volume, const RenderTimes& times) {
+DeepStats deepStatsOf(const DeepImage& image, int slicesPerSample) {
+    DeepStats stats{slicesPerSample, image.samples(), 0};
+    for (const DeepRow& row : image.rows)
+        for (std::size_t x = 0; x + 1 < row.begins.size(); ++x)
+            stats.mostSamples = std::max(stats.mostSamples, row.begins[x + 1] - row.begins[x]);
+    return stats;
+}
+
+std::string statsJson(const RenderResult& result, const Volume& volume, const RenderTimes& times,
+                      const DeepStats& deep) {
     const RenderStats& stats = result.stats;
     const nlohmann::ordered_json seconds = {
         {"read", times.read},
@@ -79,6 +95,11 @@ std::string statsJson(const RenderResult& result, const Volume& volume, const Re
          {{"color", boundJson(stats.errorBoundColor)},
           {"alpha", boundJson(stats.errorBoundAlpha)}}},
     };
+    if (deep.slicesPerSample > 0) {
+        json["deep"] = {{"slices", deep.slicesPerSample},
+                        {"samples", deep.samples},
+                        {"most_samples", deep.mostSamples}};
+    }
     json.update(placeJson(volume));
     // Not those of a front view, but the picture's own.
     json["target"] = vectorJson(result.camera.targetWorld);
@@ -107,7 +128,8 @@ std::string errorBoundText(const RenderStats& stats) {
            numberText(stats.errorBoundAlpha);
 }
 
-std::string statsSummary(const RenderResult& result, const RenderTimes& times) {
+std::string statsSummary(const RenderResult& result, const RenderTimes& times,
+                         const DeepStats& deep) {
     const RenderStats& stats = result.stats;
     char text[512];
     std::snprintf(text, sizeof text,
@@ -119,7 +141,7 @@ std::string statsSummary(const RenderResult& result, const RenderTimes& times) {
                   stats.footprint, times.read, stats.prepareSeconds, stats.renderSeconds,
                   stats.splatSeconds, stats.compositeSeconds, stats.warpSeconds, times.write,
                   times.total);
-    return text + ("camera: " + cameraOptionsText(result.camera)) + "\n";
+    return text + deepSummary(deep) + "camera: " + cameraOptionsText(result.camera) + "\n";
 }
 
 }  // namespace deltasplat

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 
+#include "deltasplat/image/deep_image.h"
 #include "deltasplat/render.h"
 
 namespace deltasplat {
@@ -14,8 +16,18 @@ struct RenderTimes {
     double total = 0;
 };
 
+/// What a deep picture holds.
+struct DeepStats {
+    int slicesPerSample = 0;  ///< 0: the picture is flat
+    std::size_t samples = 0;
+    std::size_t mostSamples = 0;  ///< of any pixel
+};
+
+DeepStats deepStatsOf(const DeepImage& image, int slicesPerSample);
+
 /// Returns the JSON object of `render --stats`.
-std::string statsJson(const RenderResult& result, const Volume& volume, const RenderTimes& times);
+std::string statsJson(const RenderResult& result, const Volume& volume, const RenderTimes& times,
+                      const DeepStats& deep);
 
 /// Returns "0.02 of the colour and 2 data units", or "0" where nothing is tolerated.
 std::string toleranceText(const Tolerance& tolerance);
@@ -28,6 +40,7 @@ std::string errorBoundText(const RenderStats& stats);
 std::string codeErrorText(const CodeError& error);
 
 /// Returns a few lines for people.
-std::string statsSummary(const RenderResult& result, const RenderTimes& times);
+std::string statsSummary(const RenderResult& result, const RenderTimes& times,
+                         const DeepStats& deep);
 
 }  // namespace deltasplat

@@ -57,7 +57,8 @@ struct CameraOptions {
     std::optional<double> focalMm;     ///< default: kDefaultFocalMm
     std::optional<double> apertureMm;  ///< width of the film back; default: kDefaultApertureMm
     /// kPerspective without an eye: from the eye to the target, > 0; default: the box of voxel
-    /// centres just fits.
+    /// centres just fits. kOrtho: from the camera to the plane through the target, where depths
+    /// begin; moves no pixel; default: all of the volume lies beyond the camera.
     std::optional<double> distanceWorld;
     /// kPerspective of a C-arm, all three or none, in place of the lens, the eye and the distance:
     /// from the source of x-rays, which is the eye, to the isocenter, which is the target, > 0; to
@@ -88,8 +89,7 @@ struct Camera {
     /// Width of what the picture shows of the plane through the target; of kLatlong, 2 pi times
     /// the target's distance: the picture's width on a cylinder around the eye.
     double frameWidthWorld = 1;
-    /// From the camera to the plane through the target. kOrtho: all of the volume lies beyond the
-    /// camera; it moves no pixel.
+    /// From the camera to the plane through the target. kOrtho: it moves no pixel.
     double targetDistanceWorld = 0;
     double nearWorld = 0;  ///< as CameraOptions::nearWorld
     glm::ivec2 sizePixels{512, 512};

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <vector>
+
+#include "deltasplat/image/deep_image.h"
+#include "deltasplat/image/image.h"
+#include "view/slice_depths.h"
+
+namespace deltasplat {
+
+/// Makes samples of what a picture looks like as more and more is put behind what is there: each
+/// sample is what turns one of these pictures into the next.
+class DeepBuilder {
+  public:
+    /// @param slicesPerSample  for messages
+    DeepBuilder(glm::ivec2 size, int slicesPerSample);
+
+    /// Says where the slices of samples that follow lie.
+    void begin(std::shared_ptr<const SliceDepths> depths) { depths_ = std::move(depths); }
+    /// Takes the picture as it is now that what lies between two positions of slices has been put
+    /// behind the rest. Multi-threaded.
+    /// @param front,back  positions; lines of sight meet `front` first
+    /// @throw Error(kFailed) if the samples do not fit into memory
+    void add(const Image& picture, double front, double back);
+    /// Returns the samples of all. Call it once. Multi-threaded.
+    /// @throw Error(kFailed) as add
+    DeepImage finish();
+
+  private:
+    struct Stage {
+        std::shared_ptr<const SliceDepths> depths;
+        double front;
+        double back;
+    };
+    // Pixels of a row as they are from a stage on.
+    struct Run {
+        std::size_t stage;
+        int first;
+        std::vector<glm::vec4> colors;
+    };
+    struct Columns {
+        int first;
+        int last;
+    };
+    // A pixel as it is from a stage on.
+    struct State {
+        std::size_t stage;
+        glm::vec4 color;
+    };
+    struct Row {
+        std::vector<Run> runs;         // by stage
+        std::vector<Columns> changed;  // in the stage that is being added
+    };
+
+    std::size_t findChanges(const Image& picture, int y);
+    void keepChanges(const Image& picture, int y);
+    DeepRow makeRow(int y);
+    void addSamples(glm::ivec2 pixel, std::vector<State>& states, DeepRow& row) const;
+    DeepSample sampleOf(const DepthLine& line, const Stage& stage, const glm::dvec4& color) const;
+    void require(double bytes) const;
+
+    Image shown_;  // the picture of the last stage
+    int slicesPerSample_;
+    std::shared_ptr<const SliceDepths> depths_;
+    std::vector<Stage> stages_;
+    std::vector<Row> rows_;
+    std::size_t kept_ = 0;  // pixels of all runs
+};
+
+}  // namespace deltasplat

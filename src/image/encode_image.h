@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "deltasplat/image/write_image.h"
+
+namespace deltasplat {
+
+/// Adds what is said about how the picture was made, each thing by its name.
+void addMetadata(const ImageFileOptions& options, OIIO::ImageSpec& spec);
+
+/// Adds what every .exr has: metadata, matrices, light's colour space, and no clock time.
+void addExrAttributes(const ImageFileOptions& options, OIIO::ImageSpec& spec);
+
+/// Encodes in memory, so that what can go wrong with the disk goes wrong in one place.
+/// @param file         for messages
+/// @param writePixels  false if the output's error says why not
+std::string encodeInMemory(const std::filesystem::path& file, const char* formatName,
+                           const OIIO::ImageSpec& spec,
+                           const std::function<bool(OIIO::ImageOutput&)>& writePixels);
+
+}  // namespace deltasplat

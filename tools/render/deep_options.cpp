@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/deep_options.h"
+
+#include <string>
+
+#include "deltasplat/error.h"
+#include "options/parse.h"
+
+namespace deltasplat {
+namespace {
+
+void refuse(const std::string& got, const std::string& expected) {
+    throw Error(ErrorCode::kUsage, gotExpected("--deep", got, expected));
+}
+
+}  // namespace
+
+void addDeepOptions(CLI::App& app, RenderCommand& command) {
+    OptionGroup group(app, "Output");
+    group.addFlag("--deep", command.deep,
+                  "Write a deep .exr: samples of every pixel, each with the depths\n"
+                  "between which it lies (Z, ZBack: along the camera's line of sight;\n"
+                  "latlong from the eye), to be merged with others' by depth");
+    group.addValue("--deep-slices", "N", command.deepOptions.slicesPerSample,
+                   wholeNumber(1, kMostSlicesPerSample),
+                   withDefault("--deep: slices of the volume that a sample holds at most",
+                               std::to_string(command.deepOptions.slicesPerSample)));
+}
+
+void checkDeep(const RenderCommand& command) {
+    if (!command.deep) return;
+    if (imageFormatOf(command.output) != ImageFormat::kExr)
+        refuse(command.output.string(), "an .exr file");
+    const Mode mode = command.picture.render.mode;
+    if (mode != Mode::kComposite) refuse("--mode " + modeName(mode), "--mode composite");
+    if (command.picture.background)
+        refuse("--background besides", "none: what lies behind is put there by depth");
+}
+
+void warnOfUnusedDeepOptions(const CLI::App& app, const RenderCommand& command,
+                             ProgressDisplay& display) {
+    if (isGiven(app, "--deep-slices") && !command.deep)
+        display.warn("--deep-slices: has no effect without --deep");
+}
+
+}  // namespace deltasplat
