@@ -90,17 +90,22 @@ RenderResult renderDeep(const Volume& volume, const RenderOptions& options,
                     gotExpected("`mode`", modeName(options.mode), "composite for a deep picture"));
     }
     RenderResult result;
-    result.camera = makeCamera(options.camera, volume.box, volume.worldFromIndex, volume.space);
-    requireBefore(result.camera, volume);
-    const glm::ivec2 size = result.camera.sizePixels;
-    requireMemory("`sizePixels` " + std::to_string(size.x) + "x" + std::to_string(size.y),
-                  kBytesPerPixel * size.x * size.y);
-    result.image = Image(size);
+    const auto makePicture = [&](const Volume& seen) {
+        result.camera = makeCamera(options.camera, seen.box, seen.worldFromIndex, seen.space);
+        requireBefore(result.camera, seen);
+        const glm::ivec2 size = result.camera.sizePixels;
+        requireMemory("`sizePixels` " + std::to_string(size.x) + "x" + std::to_string(size.y),
+                      kBytesPerPixel * size.x * size.y);
+        result.image = Image(size);
+    };
+    // A camera that cannot be is refused before there is work.
+    if (options.optics.parts.empty()) makePicture(volume);
     // The volume outlives the scene.
     const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
     const Clock::time_point start = Clock::now();
     const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
     const double sceneSeconds = secondsSince(start);
+    if (!options.optics.parts.empty()) makePicture(*scene.scene.volume);
     result.stats = renderSamples(scene, result.camera, deepOptions, deep, result.image, listener);
     result.stats.prepareSeconds += sceneSeconds;
     listener.report(1);

@@ -15,6 +15,7 @@ struct FlagName {
 
 // A field of a nested struct stands without it, unless another one has the same name.
 constexpr FlagName kFlagNames[] = {
+    {"aovs", "--aov"},
     {"apertureMm", "--aperture"},
     {"azimuthDegrees", "--azimuth"},
     {"background", "--background"},
@@ -22,6 +23,7 @@ constexpr FlagName kFlagNames[] = {
     {"bigEndian=false", "--endian little"},
     {"bigEndian=true", "--endian big"},
     {"bits", "--bits"},
+    {"channels", "--aov"},
     {"clipPlanes", "--clip"},
     {"colorBy", "--color-by"},
     {"colorGrids", "--color-grid"},

@@ -48,6 +48,11 @@ void straightSrgbPixel(const float* rgba, double threshold, Sample* result) {
 
 }  // namespace
 
+float finiteFloat(float value) {
+    constexpr float kLargest = std::numeric_limits<float>::max();
+    return std::isnan(value) ? 0.0f : std::clamp(value, -kLargest, kLargest);
+}
+
 std::vector<float> finiteValues(const Image& image, bool forFloat) {
     const float largest = forFloat ? std::numeric_limits<float>::max() : 65504.0f;
     std::vector<float> values = image.rgba;

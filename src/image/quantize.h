@@ -8,6 +8,9 @@
 
 namespace deltasplat {
 
+/// Returns a number that files of floats hold: NaN as 0, and what is infinite as the largest.
+float finiteFloat(float value);
+
 /// Returns the picture's values with NaN as 0 and the rest clamped to the finite numbers of float
 /// (`forFloat`) or half.
 std::vector<float> finiteValues(const Image& image, bool forFloat);

@@ -34,6 +34,17 @@ void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
         throw Error(ErrorCode::kUsage, gotExpected("`bits`", std::to_string(options.bits),
                                                    isJpeg ? "8 in a .jpg" : "8 or 16"));
     }
+    if (!options.channels.empty() && format != ImageFormat::kExr) {
+        throw Error(ErrorCode::kUsage, gotExpected("`channels`", file.string(), "an .exr file"));
+    }
+    for (const ImageChannel& channel : options.channels) {
+        const std::size_t pixels = std::size_t(size.x) * std::size_t(size.y);
+        if (channel.values.size() == pixels) continue;
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("`channels` " + channel.name,
+                                std::to_string(channel.values.size()) + " values",
+                                std::to_string(pixels) + ", one for each pixel"));
+    }
     if (options.floatExr && format != ImageFormat::kExr) {
         throw Error(ErrorCode::kUsage, gotExpected("`floatExr`", file.string(), "an .exr file"));
     }
@@ -76,14 +87,42 @@ std::string encode(const std::filesystem::path& file, const char* formatName,
     });
 }
 
+void addChannels(const std::vector<ImageChannel>& channels, OIIO::TypeDesc type,
+                 OIIO::ImageSpec& spec) {
+    spec.channelformats.assign(4, type);
+    for (const ImageChannel& channel : channels) {
+        spec.channelnames.push_back(channel.name);
+        spec.channelformats.push_back(OIIO::TypeFloat);
+        if (channel.name == "Z") spec.z_channel = spec.nchannels;
+        ++spec.nchannels;
+    }
+}
+
+// Returns all channels of each pixel after the other.
+std::vector<float> besideChannels(const std::vector<float>& rgba,
+                                  const std::vector<ImageChannel>& channels) {
+    const std::size_t pixels = rgba.size() / 4;
+    std::vector<float> all;
+    all.reserve(pixels * (4 + channels.size()));
+    for (std::size_t i = 0; i < pixels; ++i) {
+        all.insert(all.end(), &rgba[4 * i], &rgba[4 * i] + 4);
+        for (const ImageChannel& channel : channels) all.push_back(finiteFloat(channel.values[i]));
+    }
+    return all;
+}
+
 std::string encodeExr(const std::filesystem::path& file, const Image& image,
                       const ImageFileOptions& options) {
     const OIIO::TypeDesc type = options.floatExr ? OIIO::TypeFloat : OIIO::TypeHalf;
     OIIO::ImageSpec spec = rgbaSpec(image, type);
     spec.attribute("compression", "zip");
     addExrAttributes(options, spec);
-    return encode(file, "openexr", spec, OIIO::TypeFloat,
-                  finiteValues(image, options.floatExr).data());
+    std::vector<float> values = finiteValues(image, options.floatExr);
+    if (!options.channels.empty()) {
+        addChannels(options.channels, type, spec);
+        values = besideChannels(values, options.channels);
+    }
+    return encode(file, "openexr", spec, OIIO::TypeFloat, values.data());
 }
 
 template <typename Sample>

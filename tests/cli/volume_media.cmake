@@ -89,3 +89,23 @@ deltasplat_unused(surface_density_scale --density-scale "on a surface" CREATES o
 deltasplat_script_test(medium medium.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/medium ${DELTASPLAT_FIXTURES}/fire.vdb)
 set_tests_properties(cli.medium PROPERTIES FIXTURES_REQUIRED cli_files)
+
+# Channels beside the picture.
+deltasplat_refusal(aov_unknown
+    "--aov: got depth,height; expected some of depth, position, emission, ambient, direct and transmittance, with commas between"
+    --aov depth,height)
+deltasplat_cli_test(usage.aov_png EXIT 2 ARGS render ${cube} -o out.png --aov depth
+    STDERR "deltasplat: --aov: got out.png; expected an .exr file")
+deltasplat_refusal(aov_mode "--aov: got --mode mip; expected --mode composite" --aov depth --mode mip)
+deltasplat_refusal(aov_deep "--aov: got --deep besides; expected a flat picture, or --deep alone"
+    --aov depth --deep)
+deltasplat_refusal(aov_direct
+    "--aov direct: got what shines by itself; expected --lighting scatter, light in fog"
+    --size 8x8 --aov direct)
+deltasplat_refusal(holdout_mode "--holdout-depth: got --mode mip besides; expected --mode composite"
+    --holdout-depth z.exr --mode mip)
+deltasplat_refusal(holdout_deep "--holdout-depth: got --deep besides; expected one of the two"
+    --holdout-depth z.exr --deep)
+deltasplat_cli_test(usage.holdout_missing EXIT 3
+    ARGS render ${cube} -o out.exr --size 8x8 --holdout-depth none.exr
+    STDERR "deltasplat: none.exr: got no such file; expected a readable file")

@@ -1,3 +1,4 @@
+deltasplat_test(unit/hold_out_test.cpp)
 deltasplat_test(unit/image_test.cpp)
 deltasplat_test(unit/tone_test.cpp)
 deltasplat_test(unit/deep_builder_test.cpp)

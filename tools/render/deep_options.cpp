@@ -13,6 +13,18 @@ void refuse(const std::string& got, const std::string& expected) {
     throw Error(ErrorCode::kUsage, gotExpected("--deep", got, expected));
 }
 
+void checkHoldout(const RenderCommand& command) {
+    const Mode mode = command.picture.render.mode;
+    const std::string got = mode != Mode::kComposite ? "--mode " + modeName(mode)
+                            : command.deep           ? "--deep"
+                            : !command.aovs.empty()  ? "--aov"
+                                                     : "";
+    if (got.empty()) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("--holdout-depth", got + " besides",
+                            mode != Mode::kComposite ? "--mode composite" : "one of the two"));
+}
+
 }  // namespace
 
 void addDeepOptions(CLI::App& app, RenderCommand& command) {
@@ -25,9 +37,14 @@ void addDeepOptions(CLI::App& app, RenderCommand& command) {
                    wholeNumber(1, kMostSlicesPerSample),
                    withDefault("--deep: slices of the volume that a sample holds at most",
                                std::to_string(command.deepOptions.slicesPerSample)));
+    group.addValue("--holdout-depth", "FILE", command.holdoutDepth, anyText(),
+                   "Picture with a channel Z, of the same size and camera: depths of\n"
+                   "solid things, as --aov depth and --deep count them, behind which the\n"
+                   "volume is not seen (0 and 1e10: nothing there)");
 }
 
 void checkDeep(const RenderCommand& command) {
+    if (!command.holdoutDepth.empty()) checkHoldout(command);
     if (!command.deep) return;
     if (imageFormatOf(command.output) != ImageFormat::kExr)
         refuse(command.output.string(), "an .exr file");

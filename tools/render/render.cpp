@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "annotate/annotate.h"
+#include "deltasplat/hold_out.h"
 #include "deltasplat/image/write_deep_image.h"
 #include "deltasplat/render_deep.h"
 #include "listener.h"
@@ -167,6 +168,26 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
              result.image);
 }
 
+// Cut finely, for what solid things cut is shared by the length that is left of it.
+RenderResult renderHeldOut(const std::filesystem::path& depths, const Volume& volume,
+                           const RenderOptions& options, const Listener& listener) {
+    constexpr DeepOptions kFine{2};
+    const DepthImage solid = readDepthImage(depths, listener);
+    const glm::ivec2 size = options.camera.sizePixels;
+    if (solid.size != size) {
+        const auto text = [](const glm::ivec2& pixels) {
+            return std::to_string(pixels.x) + "x" + std::to_string(pixels.y);
+        };
+        throw Error(ErrorCode::kInput,
+                    gotExpected(depths.string(), text(solid.size) + " pixels",
+                                text(size) + ", those of --size"));
+    }
+    DeepImage deep;
+    RenderResult result = renderDeep(volume, options, kFine, deep, listener);
+    result.image = holdOut(deep, solid);
+    return result;
+}
+
 // Writes what the picture is asked for as: all of it, or what is seen of it.
 void writePicture(const RenderCommand& command, const DeepImage& deep, const Image& flat,
                   const ImageFileOptions& options) {
@@ -207,12 +228,15 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         if (command.deep) {
             result = renderDeep(volume, options, command.deepOptions, deep, rendering);
             deepStats = deepStatsOf(deep, command.deepOptions.slicesPerSample);
+        } else if (!command.holdoutDepth.empty()) {
+            result = renderHeldOut(command.holdoutDepth, volume, options, rendering);
         } else {
             result = render(volume, options, rendering);
         }
         boundOver(picture.background, result.stats);
         ImageFileOptions image = imageOptions(command, volume, result, session);
         const Listener writing = display.stage(kRenderShare, 1);
+        image.channels = renderAovs(volume, options, result.camera, command.aovs);
         finishPicture(command, volume, options.optics, result, image, writing);
         writing.report(0);
         const auto beginWrite = std::chrono::steady_clock::now();

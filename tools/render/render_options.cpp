@@ -16,6 +16,7 @@
 #include "output_files.h"
 #include "program.h"
 #include "render/annotation_options.h"
+#include "render/aov_options.h"
 #include "render/deep_options.h"
 #include "render/list_presets.h"
 #include "render/tone_options.h"
@@ -332,6 +333,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addOutputOptions(app, command);
     addToneOptions(app, command.tone);
     addDeepOptions(app, command);
+    addAovOption(app, command.aovs);
     addCameraOptions(app, command.picture);
     addModeOption(app, command.picture.render.mode);
     addRayOptions(app, command);
@@ -401,6 +403,7 @@ void warnOfDetector(const CameraOptions& options, const Volume& volume, const Li
 
 void validate(const RenderCommand& command) {
     checkDeep(command);
+    checkAovs(command);
     checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     checkCamera(command.picture.render.camera);
     checkAnnotations(command);

@@ -11,6 +11,7 @@
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/render.h"
+#include "deltasplat/render_aovs.h"
 #include "deltasplat/render_deep.h"
 #include "listener.h"
 #include "options/command_line.h"
@@ -56,7 +57,9 @@ struct RenderCommand {
     std::optional<glm::dvec2> window;  ///< values of black and white; empty: percentiles
     ImageFileOptions image;
     ToneChoice tone;
-    bool deep = false;  ///< samples with depths instead of a flat picture
+    std::vector<Aov> aovs;  ///< channels beside the picture's own
+    std::filesystem::path holdoutDepth;  ///< of solid things before what is left out; empty: none
+    bool deep = false;      ///< samples with depths instead of a flat picture
     DeepOptions deepOptions;
     AnnotationChoice annotations;
 };

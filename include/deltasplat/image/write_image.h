@@ -13,6 +13,12 @@
 
 namespace deltasplat {
 
+/// A channel beside a picture's own.
+struct ImageChannel {
+    std::string name;
+    std::vector<float> values;  ///< [height][width], from the top
+};
+
 /// How a picture is stored. No clock time goes into a file: the same picture gives the same bytes.
 struct ImageFileOptions {
     bool floatExr = false;  ///< .exr: 32-bit float instead of half; not for others
@@ -26,6 +32,8 @@ struct ImageFileOptions {
     /// .tif and .jpg, which have no such names, all are lines `deltasplat:<name>: <text>` of the
     /// image description, of which a .jpg keeps the first 30000 bytes.
     std::vector<std::pair<std::string, std::string>> metadata;
+    /// .exr: stored beside R, G, B and A, always as floats, finite as these.
+    std::vector<ImageChannel> channels;
 };
 
 enum class ImageFormat { kExr, kPng, kTiff, kJpeg };

@@ -50,4 +50,33 @@ expect_same part float
 draw scaled --grid density --density-scale 0.6 --range 0,1 --unit-distance 3
 draw scaled_half --grid density --density-scale 0.3 --extinction 2 --range 0,1
 expect_same scaled scaled_half 1e-6
+
+# Channels beside the picture, by their names and in floats.
+draw aovs --grid density --tf grey --range 0,1 --emission-grid temperature --light 1,-1,0 --light 0,-1,1 \
+    --aov depth,position,emission,ambient,direct,transmittance
+names=$("$oiiotool" --info -v aovs.exr | sed -n 's/^ *channel list: //p')
+for channel in Z P.X P.Y P.Z emission.R ambient.G direct.B direct_1.R direct_2.B transmittance; do
+    [[ $names == *"$channel"* ]] || fail "channels: got $names; expected $channel"
+done
+"$oiiotool" -q aovs.exr --ch emission.R,emission.G,emission.B aovs.exr --ch direct.R,direct.G,direct.B \
+    --add aovs.exr --ch ambient.R,ambient.G,ambient.B --add aovs.exr --ch R,G,B --fail 1e-4 --diff \
+    >/dev/null || fail "channels of light: got another sum than the picture"
+
+# Solid things: behind all, before all, and where half of it is.
+solid() { "$oiiotool" -q --pattern "constant:color=$2" 24x24 1 --chnames Z -d float -o "$1.exr"; }
+solid far 1e9
+solid near 1e-3
+draw plain --grid density --tf grey --range 0,1 --between 0
+draw before_far --grid density --tf grey --range 0,1 --between 0 --holdout-depth far.exr
+draw before_near --grid density --tf grey --range 0,1 --between 0 --holdout-depth near.exr
+expect_same plain before_far 1e-4
+"$oiiotool" -q before_near.exr --stats 2>&1 | grep -q "Stats Max: 0.000000 0.000000 0.000000 0.000000" ||
+    fail "before_near: got something; expected nothing"
+draw depth --grid density --tf grey --range 0,1 --between 0 --aov depth
+"$oiiotool" -q depth.exr --ch Z -d float -o middle.exr
+draw before_middle --grid density --tf grey --range 0,1 --between 0 --holdout-depth middle.exr
+sum() { "$oiiotool" "$1.exr" --stats 2>&1 | sed -n 's/.*Stats Avg: //p' | cut -d' ' -f4; }
+awk -v whole="$(sum plain)" -v part="$(sum before_middle)" \
+    'BEGIN { exit !(part > 0.4 * whole && part < 0.8 * whole) }' ||
+    fail "before_middle: got $(sum before_middle) of $(sum plain)"
 exit "$failed"

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "deltasplat/render.h"
+
+namespace deltasplat {
+
+/// What a picture can be told of beside its colours. Each is a picture of its own of the same scene
+/// and camera, and takes as long.
+enum class Aov {
+    kDepth,          ///< `Z`: mean depth of what is seen, in world units
+    kPosition,       ///< `P.X`, `P.Y`, `P.Z`: its mean place in the world
+    kEmission,       ///< `emission.R`, `.G`, `.B`: what shines by itself
+    kAmbient,        ///< `ambient.R`, ...: what fog scatters of light from everywhere
+    kDirect,         ///< `direct.R`, ...: of all lights, and `direct_1.R`, ... of each, if several
+    kTransmittance,  ///< `transmittance`: the share of light from behind that gets through
+};
+
+/// Returns "depth", "position", "emission", "ambient", "direct" or "transmittance".
+std::string aovName(Aov aov);
+/// Returns all of them, in order.
+std::span<const Aov> allAovs();
+
+/// Lights that get channels of their own, beside their sum.
+inline constexpr int kMostLightChannels = 8;
+/// What depth is where nothing is seen, as in Cycles.
+inline constexpr float kNoDepth = 1e10f;
+
+/// Renders channels beside a picture of Mode::kComposite. Premultiplied: `emission` + `ambient` +
+/// `direct` is the picture, to within the rounding of floats. Depths and places are means over what
+/// is seen of a pixel, by how much it hides; depth counts along the camera's line of sight from its
+/// eye, or of a panorama from the eye to the mean place. Where nothing is seen, places are 0.
+/// @param camera  of the picture
+/// @throw Error(kUsage) for what the scene does not have: depth or position of surfaces or of media
+///        whose parts swallow light, ambient and direct light without scattering; as render
+std::vector<ImageChannel> renderAovs(const Volume& volume, const RenderOptions& options,
+                                     const Camera& camera, std::span<const Aov> aovs,
+                                     const Listener& listener = {});
+
+}  // namespace deltasplat

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: P. Hillman, The Theory of OpenEXR Deep Samples, 2013 (how a volume sample is cut).
+#include "deltasplat/hold_out.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <string>
+
+#include "default_floats.h"
+#include "deltasplat/error.h"
+#include "ingest/files/refuse_file.h"
+#include "ingest/images/image_file.h"
+#include "lower_case.h"
+#include "memory.h"
+#include "parallel.h"
+#include "portable_math.h"
+
+namespace deltasplat {
+namespace {
+
+// What renderers write where there is nothing, and more.
+constexpr float kNothing = 1e10f;
+
+int depthChannel(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
+    int found = -1;
+    for (int i = spec.nchannels - 1; i >= 0; --i) {
+        const std::string name = lowerCase(spec.channelnames[std::size_t(i)]);
+        if (name == "z" || name == "depth") return i;
+        if (name.ends_with(".z") && !name.ends_with("p.z") && !name.ends_with("n.z")) found = i;
+    }
+    if (found < 0 && spec.nchannels == 1) found = 0;
+    if (found >= 0) return found;
+    refuseFile(file, sizeText(spec), "a channel Z");
+}
+
+// What is left of a sample before a depth.
+glm::vec4 cutAt(const DeepSample& sample, float depth) {
+    if (depth >= sample.zBack) return sample.rgba;
+    if (depth <= sample.z) return glm::vec4(0);
+    const double share = (double(depth) - sample.z) / (double(sample.zBack) - sample.z);
+    const double alpha = sample.rgba.a;
+    if (alpha >= 1) return sample.rgba;
+    if (alpha <= 0) return sample.rgba * float(share);
+    const double left = -portable::expm1(share * portable::log1p(-alpha));
+    return sample.rgba * float(left / alpha);
+}
+
+}  // namespace
+
+DepthImage readDepthImage(const std::filesystem::path& file, const Listener& listener) {
+    const DefaultFloats floats;
+    const ImagePages pages(file);
+    ImageFile image(file, pages, 0);
+    const OIIO::ImageSpec& spec = image.spec();
+    requireSane(file, spec);
+    const int channel = depthChannel(file, spec);
+    DepthImage result{{spec.width, spec.height}, {}};
+    const std::size_t pixels = std::size_t(spec.width) * std::size_t(spec.height);
+    const auto channels = std::size_t(channel) + 1;
+    requireClaimedMemory(file.string(), 4.0 * double(pixels) * double(channels + 1));
+    std::vector<float> values(pixels * channels);
+    image.read(int(channels), OIIO::TypeDesc::FLOAT, values.data());
+    result.depths.resize(pixels);
+    std::size_t odd = 0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        float& depth = result.depths[i];
+        depth = values[i * channels + channels - 1];
+        if (!(depth > 0)) ++odd;
+        if (!(depth > 0) || depth >= kNothing) depth = std::numeric_limits<float>::infinity();
+    }
+    if (odd > 0) {
+        listener.warn(file.string() + ": " + std::to_string(odd) +
+                      " pixels whose depth is not above 0 stand for nothing there");
+    }
+    return result;
+}
+
+Image holdOut(const DeepImage& deep, const DepthImage& solid) {
+    const DefaultFloats floats;
+    if (deep.size != solid.size) {
+        const auto text = [](const glm::ivec2& size) {
+            return std::to_string(size.x) + "x" + std::to_string(size.y);
+        };
+        throw Error(ErrorCode::kUsage, gotExpected("depths of solid things",
+                                                   text(solid.size) + " pixels",
+                                                   text(deep.size) + ", those of the picture"));
+    }
+    Image image(deep.size);
+    parallelFor(std::size_t(deep.size.y), [&](std::size_t y) {
+        for (int x = 0; x < deep.size.x; ++x) {
+            float* rgba = image.pixel(x, int(y));
+            const float depth = solid.depths[y * std::size_t(deep.size.x) + std::size_t(x)];
+            for (const DeepSample& sample : deep.pixel(x, int(y))) {
+                if (sample.z >= depth) break;
+                const glm::vec4 seen = cutAt(sample, depth);
+                const float clear = 1 - rgba[3];
+                for (int c = 0; c < 4; ++c) rgba[c] += clear * seen[c];
+            }
+        }
+    });
+    return image;
+}
+
+}  // namespace deltasplat

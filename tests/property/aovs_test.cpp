@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Channels beside a picture: parts of its light add up to it, depths and places are where things
+// are.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "deltasplat/render_aovs.h"
+#include "support/error_of.h"
+#include "support/some_scene.h"
+
+namespace deltasplat {
+namespace {
+
+using test::Colors;
+using test::errorOf;
+
+using Channels = std::map<std::string, std::vector<float>>;
+
+Channels channelsOf(const Volume& volume, const RenderOptions& options, const Camera& camera,
+                    const std::vector<Aov>& aovs) {
+    Channels channels;
+    for (ImageChannel& channel : renderAovs(volume, options, camera, aovs))
+        channels[channel.name] = std::move(channel.values);
+    return channels;
+}
+
+RenderOptions optionsOf(Colors colors, const CameraOptions& camera) {
+    RenderOptions options;
+    options.optics = test::someOptics(colors);
+    options.camera = camera;
+    return options;
+}
+
+TEST(Aovs, ofLightAddUpToThePicture) {
+    const auto volume = test::someVolume();
+    for (const CameraOptions& camera : test::someCameras()) {
+        RenderOptions options = optionsOf(Colors::kFire, camera);
+        options.optics.scattering->ambient = glm::dvec3(0.1, 0.2, 0.3);
+        options.optics.scattering->lights.push_back(
+            {LightFrame::kWorld, {-1, -1, -1}, {0.2, 0.5, 1}, 2});
+        const RenderResult beauty = render(*volume, options);
+        const Channels channels =
+            channelsOf(*volume, options, beauty.camera,
+                       {Aov::kDirect, Aov::kEmission, Aov::kAmbient, Aov::kTransmittance});
+        EXPECT_EQ(channels.size(), 3u * 5 + 1);
+        double brightest = 0;
+        for (const float value : beauty.image.rgba) brightest = std::max<double>(brightest, value);
+        std::map<std::string, double> sums;
+        for (std::size_t i = 0; i < beauty.image.rgba.size() / 4; ++i) {
+            for (int c = 0; c < 3; ++c) {
+                const std::string part = std::string(".") + "RGB"[c];
+                const auto at = [&](const std::string& name) {
+                    const float value = channels.at(name + part)[i];
+                    sums[name] += value;
+                    return double(value);
+                };
+                const double direct = at("direct");
+                const double sum = direct + at("emission") + at("ambient");
+                EXPECT_NEAR(sum, beauty.image.rgba[4 * i + std::size_t(c)], 1e-4 * brightest);
+                EXPECT_NEAR(at("direct_1") + at("direct_2"), direct, 1e-4 * brightest);
+            }
+            EXPECT_NEAR(channels.at("transmittance")[i], 1 - beauty.image.rgba[4 * i + 3], 1e-6);
+        }
+        for (const char* name : {"direct", "direct_1", "direct_2", "emission", "ambient"})
+            EXPECT_GT(sums[name], 1) << name;
+    }
+}
+
+// Without lights all that is shown shines.
+TEST(Aovs, emissionOfWhatShinesIsThePicture) {
+    const auto volume = test::someVolume();
+    const RenderOptions options = optionsOf(Colors::kSeveral, test::someCameras()[1]);
+    const RenderResult beauty = render(*volume, options);
+    const Channels channels = channelsOf(*volume, options, beauty.camera, {Aov::kEmission});
+    for (std::size_t i = 0; i < beauty.image.rgba.size() / 4; ++i)
+        EXPECT_EQ(channels.at("emission.G")[i], beauty.image.rgba[4 * i + 1]);
+}
+
+// Of a plate that is one voxel thick, where lines of sight meet it.
+TEST(Aovs, depthAndPlaceAreThoseOfAPlate) {
+    Volume volume = test::makeVolume({{0, 0, 0}, {40, 40, 12}},
+                                     [](int, int, int z) { return z == 7 ? 200 : 0; });
+    volume.worldFromIndex = glm::dmat4(0.5);
+    volume.worldFromIndex[3] = {-10, 3, 20, 1};
+    const double plate = 20 + 7 * 0.5;
+    for (const Projection projection :
+         {Projection::kOrtho, Projection::kPerspective, Projection::kLatlong}) {
+        RenderOptions options;
+        options.optics = test::someOptics(Colors::kOne);
+        options.camera.projection = projection;
+        options.camera.sizePixels = {40, 40};
+        options.camera.direction = glm::dvec3(0.1, -0.2, -1);
+        if (projection == Projection::kPerspective) options.camera.distanceWorld = 25;
+        if (projection == Projection::kLatlong) {
+            options.camera.sizePixels = {128, 64};
+            options.camera.eyeWorld = glm::dvec3(1, 12, 29);
+        }
+        const RenderResult beauty = render(volume, options);
+        const Channels channels =
+            channelsOf(volume, options, beauty.camera, {Aov::kDepth, Aov::kPosition});
+        const Camera& camera = beauty.camera;
+        int seen = 0;
+        int unseen = 0;
+        for (int y = 0; y < options.camera.sizePixels.y; ++y) {
+            for (int x = 0; x < options.camera.sizePixels.x; ++x) {
+                const auto i = std::size_t(y * options.camera.sizePixels.x + x);
+                const glm::dvec3 place(channels.at("P.X")[i], channels.at("P.Y")[i],
+                                       channels.at("P.Z")[i]);
+                if (beauty.image.rgba[4 * i + 3] == 0) {
+                    EXPECT_EQ(channels.at("Z")[i], kNoDepth);
+                    EXPECT_EQ(place, glm::dvec3(0));
+                    ++unseen;
+                    continue;
+                }
+                EXPECT_NEAR(place.z, plate, 1e-3);
+                const glm::dvec3 away = place - camera.eyeWorld();
+                const double depth = projection == Projection::kLatlong
+                                         ? glm::length(away)
+                                         : glm::dot(away, camera.direction);
+                EXPECT_NEAR(channels.at("Z")[i], depth, 1e-3);
+                // Away from the plate's rim, the line of sight goes through it.
+                const glm::dvec2 index((place.x + 10) / 0.5, (place.y - 3) / 0.5);
+                if (std::min({index.x, index.y, 40 - index.x, 40 - index.y}) < 4) continue;
+                const glm::dvec2 pixel(x + 0.5, y + 0.5);
+                const glm::dvec3 start = projection == Projection::kOrtho
+                                             ? camera.worldFromPixel(pixel)
+                                             : camera.eyeWorld();
+                const glm::dvec3 ray =
+                    projection == Projection::kOrtho ? camera.direction : camera.rayThrough(pixel);
+                const glm::dvec3 met = start + (plate - start.z) / ray.z * ray;
+                EXPECT_LT(glm::distance(met, place), 0.05) << projectionName(projection);
+                ++seen;
+            }
+        }
+        EXPECT_GT(seen, 100);
+        EXPECT_GT(unseen, 10);
+    }
+}
+
+TEST(Aovs, areRefusedWhereThereAreNone) {
+    const auto volume = test::someVolume();
+    const auto errorWith = [&](Colors colors, Aov aov, const auto& change) {
+        RenderOptions options = optionsOf(colors, {});
+        change(options);
+        const Camera camera = test::cameraOf(*volume, options.camera);
+        return errorOf([&] { renderAovs(*volume, options, camera, std::vector{aov}); });
+    };
+    const auto none = [](RenderOptions&) {};
+    EXPECT_EQ(errorWith(Colors::kOne, Aov::kDirect, none),
+              "usage: `aovs` direct: got what shines by itself; expected `scattering`, light in "
+              "fog");
+    EXPECT_EQ(errorWith(Colors::kLit, Aov::kEmission, none),
+              "usage: `aovs` emission: got what reflects lights; expected what shines by itself, "
+              "or fog");
+    EXPECT_EQ(errorWith(Colors::kOne, Aov::kDepth,
+                        [](RenderOptions& options) { options.optics.surface = Surface{90}; }),
+              "usage: `aovs` depth: got a surface; expected what a transfer function shows");
+    EXPECT_EQ(errorWith(Colors::kOne, Aov::kDepth,
+                        [](RenderOptions& options) { options.mode = Mode::kXray; }),
+              "usage: `aovs` depth: got `mode` xray; expected composite");
+}
+
+}  // namespace
+}  // namespace deltasplat
