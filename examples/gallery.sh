@@ -59,10 +59,13 @@ draw cloud-sunset "$folder/cloud.vdb" "${cloud[@]}" --lighting scatter \
 draw cloud-backlit "$folder/cloud.vdb" "${cloud[@]}" --lighting scatter \
     --light 0.35,-0.35,1:1,0.85,0.7:3 --ambient 0.1 --anisotropy 0.75,-0.2,0.3 \
     --background 0.05,0.09,0.18
-draw fire "$folder/fire.vdb" --grid flame --tf fire "${dark[@]}"
-sunny=(--grid density --sky 0.6,0.8,0.9:3 --background 0.1,0.2,0.42)
-draw fire-smoke "$folder/fire.vdb" --extinction 2 "${sunny[@]}"
-draw explosion "$folder/explosion.vdb" --extinction 8 "${sunny[@]}"
+flame=(--temperature-scale 1500,600 --emission-strength 0.25 --tone filmic)
+draw fire "$folder/fire.vdb" --layer flame:fire "${flame[@]}" --background 0.01,0.012,0.02
+draw fire-smoke "$folder/fire.vdb" --emission-grid flame "${flame[@]}" --extinction 2 \
+    --sky 0.6,0.8,0.9:1.2 --background 0.02,0.04,0.09
+draw explosion "$folder/explosion.vdb" --emission-grid temperature --color-grid Cd \
+    --density-scale 15 --sky 0.6,0.8,0.9:3 --scatter-octaves 4 --background 0.1,0.2,0.42 \
+    --tone filmic
 
 [[ -n $data ]] || exit 0
 head=(--direction 0.7,1,0.2 --up 0,0,-1 "${dark[@]}")

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "deltasplat/image/write_image.h"
 #include "deltasplat/render.h"
 
 namespace deltasplat {

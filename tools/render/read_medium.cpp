@@ -98,7 +98,7 @@ class MediumReader {
         } else if (most < kLeastKelvin) {
             part.kelvinScale = kKelvinOfOne;
             listener_.warn(option + ": " + values + "seem to be no kelvin; 1 is taken for " +
-                           numberText(kKelvinOfOne) + " (--temperature-scale)");
+                           numberText(kKelvinOfOne) + " K (--temperature-scale)");
         } else if (part.volume->valueMin < 0) {
             listener_.warn(option + ": " + values +
                            "are taken for kelvin, of which there are none below 0; "
