@@ -3,9 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <glm/common.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <optional>
+#include <variant>
 
 #include "deltasplat/threads.h"
+#include "deltasplat/view/factorization.h"
+#include "light/light_sweep.h"
+#include "light/point_sweep.h"
 #include "memory.h"
 #include "optics/voxel_units.h"
 #include "parallel.h"
@@ -13,15 +20,118 @@
 namespace deltasplat {
 namespace {
 
-// Into how many strips a light's plane is cut: enough for every thread to have some work, but none
-// so narrow that rows at its edges, which belong to two, take much of it.
-std::int64_t stripCount(std::int64_t rows, std::size_t lights) {
+// What is to be done for several lights, in pieces for threads.
+class Sweeps {
+  public:
+    // @param most  beyond which nothing of light is left
+    Sweeps(const LitBlocks& blocks, const Volume& volume, const std::vector<float>& extinctions,
+           float most)
+        : blocks_(blocks), volume_(volume), extinctions_(extinctions), most_(most) {}
+
+    void add(const Light& light, const glm::dvec3& placeIndex);
+    // @param depths  of the lights in the order in which they came, [lights][voxels]
+    void run(std::uint16_t* depths) const;
+
+  private:
+    using Sweep = std::variant<LightSweep, PointSweep>;
+    struct Piece {
+        std::size_t sweep;
+        std::int64_t first;
+        std::int64_t last;
+    };
+
+    const LitBlocks::Along& along(int sliceAxis);
+    void addPoint(const glm::dvec3& placeIndex);
+    std::vector<Piece> pieces() const;
+
+    const LitBlocks& blocks_;
+    const Volume& volume_;
+    const std::vector<float>& extinctions_;
+    float most_;
+    std::array<std::optional<LitBlocks::Along>, 3> along_;
+    std::vector<Sweep> sweeps_;
+    std::vector<std::size_t> lights_;  // of sweeps
+    std::size_t lightCount_ = 0;
+};
+
+const LitBlocks::Along& Sweeps::along(int sliceAxis) {
+    auto& along = along_[std::size_t(sliceAxis)];
+    if (!along) along.emplace(blocks_.along(sliceAxis));
+    return *along;
+}
+
+void Sweeps::add(const Light& light, const glm::dvec3& placeIndex) {
+    if (light.positionWorld) {
+        addPoint(placeIndex);
+    } else {
+        const LightWay way(volume_.worldFromIndex, light.direction);
+        sweeps_.emplace_back(
+            LightSweep(along(way.sliceAxis), way, volume_.box.min[way.sliceAxis],
+                       MetClasses{extinctions_.data(), float(way.sliceWorld), most_}));
+    }
+    lights_.resize(sweeps_.size(), lightCount_++);
+}
+
+// From very far away, light travels one way wherever exactly it starts, and places would be too
+// large to tell voxels apart.
+void Sweeps::addPoint(const glm::dvec3& placeIndex) {
+    constexpr double kFarthest = 1e9;
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(volume_.box.min) + glm::dvec3(volume_.box.max));
+    const glm::dvec3 away = placeIndex - middle;
+    const glm::dvec3 parts = glm::abs(away);
+    const double farthest = std::max({parts.x, parts.y, parts.z});
+    const glm::dvec3 place =
+        farthest > kFarthest ? middle + kFarthest / farthest * away : placeIndex;
+    const glm::dmat3 world(volume_.worldFromIndex);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double slice = planeDistance(volume_.worldFromIndex, axis);
+        const glm::ivec3 order = sliceOrder(axis);
+        const PointPlace light{
+            {place[order.x], place[order.y], place[order.z]},
+            glm::dmat3(world[order.x] / slice, world[order.y] / slice, world[order.z] / slice)};
+        for (const bool forward : {true, false})
+            sweeps_.emplace_back(PointSweep(along(axis), light, forward,
+                                            MetClasses{extinctions_.data(), float(slice), most_}));
+    }
+}
+
+// Enough pieces for every thread to have some work, but none so narrow that rows at its edges,
+// which belong to two, take much of it.
+std::vector<Sweeps::Piece> Sweeps::pieces() const {
     constexpr std::size_t kPiecesPerThread = 4;
     constexpr std::int64_t kLeastRows = 16;
     const auto threads = std::size_t(threadCount());
-    const auto wanted = threads == 1 ? 1 : (kPiecesPerThread * threads + lights - 1) / lights;
-    return std::clamp<std::int64_t>(std::int64_t(wanted), 1,
-                                    std::max<std::int64_t>(1, rows / kLeastRows));
+    const auto wanted =
+        threads == 1 ? 1 : (kPiecesPerThread * threads + lightCount_ - 1) / lightCount_;
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i < sweeps_.size(); ++i) {
+        const auto rows = std::visit([](const auto& sweep) { return sweep.rows(); }, sweeps_[i]);
+        const auto strips = std::clamp<std::int64_t>(std::int64_t(wanted), 1,
+                                                     std::max<std::int64_t>(1, rows / kLeastRows));
+        const auto edge = [&](std::int64_t n) { return rows * n / strips; };
+        if (rows == 0) continue;
+        for (std::int64_t n = 0; n < strips; ++n) pieces.push_back({i, edge(n), edge(n + 1)});
+    }
+    return pieces;
+}
+
+void Sweeps::run(std::uint16_t* depths) const {
+    const std::vector<Piece> all = pieces();
+    // Each thread has a piece in hand.
+    double largest = 0;
+    for (const Piece& piece : all) {
+        largest = std::max(
+            largest, std::visit([&](const auto& s) { return s.bytes(piece.first, piece.last); },
+                                sweeps_[piece.sweep]));
+    }
+    requireMemory("a plane that light is swept through",
+                  largest * std::min<double>(threadCount(), double(all.size())));
+    parallelFor(all.size(), [&](std::size_t i) {
+        const Piece& piece = all[i];
+        std::uint16_t* out = depths + 512 * blocks_.size() * lights_[piece.sweep];
+        std::visit([&](const auto& s) { s.run(piece.first, piece.last, out); },
+                   sweeps_[piece.sweep]);
+    });
 }
 
 // In a world unit, [classes].
@@ -43,41 +153,24 @@ LightDepths::LightDepths(const Volume& volume, const ClassTable& classes,
                   double(sizeof(std::uint16_t)) * double(voxels) * double(lights.size()));
     depths_ =
         UnclearedArray<std::uint16_t>(voxels * lights.size(), *std::pmr::get_default_resource());
-    if (voxels == 0) return;
+    reaches_.resize(lights.size());
+    if (voxels == 0 || lights.empty()) return;
     // What a voxel of a wall leaves of the octave that is dimmed least. More of it would only make
     // its shadow wider, as it is shared between points of a plane.
     constexpr float kMost = 10;
     const float most = std::min(kMost * float(1 << octaves), 1000.0f);
     const std::vector<float> extinctions = extinctionsOf(classes);
-    struct Piece {
-        std::size_t light;
-        std::int64_t first;
-        std::int64_t last;
-    };
-    std::array<std::optional<LitBlocks::Along>, 3> blocksAlong;
-    std::vector<LightSweep> sweeps;
-    std::vector<Piece> pieces;
-    for (std::size_t light = 0; light < lights.size(); ++light) {
-        const LightWay way(volume.worldFromIndex, lights[light].direction);
-        auto& along = blocksAlong[std::size_t(way.sliceAxis)];
-        if (!along) along.emplace(blocks_.along(way.sliceAxis));
-        sweeps.emplace_back(*along, way, volume.box.min[way.sliceAxis],
-                            MetClasses{extinctions.data(), float(way.sliceWorld), most});
-        const std::int64_t rows = sweeps.back().rows();
-        const std::int64_t strips = stripCount(rows, lights.size());
-        const auto edge = [&](std::int64_t n) { return rows * n / strips; };
-        for (std::int64_t i = 0; i < strips; ++i) pieces.push_back({light, edge(i), edge(i + 1)});
+    Sweeps sweeps(blocks_, volume, extinctions, most);
+    const glm::dmat3 world(volume.worldFromIndex);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const Light& light = lights[i];
+        const glm::dvec3 placeIndex =
+            glm::inverse(world) *
+            (light.positionWorld.value_or(glm::dvec3(0)) - glm::dvec3(volume.worldFromIndex[3]));
+        if (light.positionWorld) reaches_[i] = blocks_.reachFrom(placeIndex, world);
+        sweeps.add(light, placeIndex);
     }
-    // Each thread has a piece in hand.
-    double largest = 0;
-    for (const Piece& piece : pieces)
-        largest = std::max(largest, sweeps[piece.light].bytes(piece.first, piece.last));
-    requireMemory("a plane that light is swept through",
-                  largest * std::min<double>(threadCount(), double(pieces.size())));
-    parallelFor(pieces.size(), [&](std::size_t i) {
-        const Piece& piece = pieces[i];
-        sweeps[piece.light].run(piece.first, piece.last, &depths_[piece.light * voxels]);
-    });
+    sweeps.run(&depths_[0]);
 }
 
 }  // namespace deltasplat

@@ -5,7 +5,7 @@
 #include <memory_resource>
 #include <vector>
 
-#include "light/light_sweep.h"
+#include "deltasplat/optics/shading.h"
 #include "light/lit_blocks.h"
 #include "uncleared_array.h"
 
@@ -23,6 +23,8 @@ class LightDepths {
                 int octaves);
 
     const LitBlocks& blocks() const { return blocks_; }
+    /// Returns how far voxels are from a point light; of light from far away nothing is known.
+    const LitBlocks::Reach& reach(std::size_t light) const { return reaches_[light]; }
     /// Returns a block's, `[x][y][z]`: the square root of extinction, in 1 / kDepthSteps.
     /// @param number  of the block (LitBlocks::find)
     const std::uint16_t* of(std::size_t light, std::int64_t number) const {
@@ -31,7 +33,8 @@ class LightDepths {
 
   private:
     LitBlocks blocks_;
-    UnclearedArray<std::uint16_t> depths_;  // [light][block][512]
+    std::vector<LitBlocks::Reach> reaches_;  // [lights]
+    UnclearedArray<std::uint16_t> depths_;   // [light][block][512]
 };
 
 }  // namespace deltasplat

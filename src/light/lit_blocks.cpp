@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
 #include <memory_resource>
+#include <utility>
 
 #include "ingest/codes/leaf_slices.h"
 #include "memory.h"
@@ -64,18 +67,50 @@ LitBlocks::Along LitBlocks::along(int sliceAxis) const {
 
 void LitBlocks::readClasses(int sliceAxis, std::uint16_t* classes) const {
     parallelForChunks(size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t number = begin; number < end; ++number) {
-            const Block& block = blocks_[number];
-            std::uint16_t* out = classes + 512 * number;
-            if (block.leaf) {
-                readLeafSlices(
-                    *block.leaf, sliceAxis,
-                    [&](Code code) { return classOfSlot_[std::size_t(code) + 1]; }, out);
-            } else {
-                std::fill_n(out, 512, std::uint16_t(block.tileClass));
-            }
-        }
+        for (std::size_t number = begin; number < end; ++number)
+            readClasses(blocks_[number], sliceAxis, classes + 512 * number);
     });
+}
+
+void LitBlocks::readClasses(const Block& block, int sliceAxis, std::uint16_t* out) const {
+    if (!block.leaf) {
+        std::fill_n(out, 512, std::uint16_t(block.tileClass));
+        return;
+    }
+    readLeafSlices(
+        *block.leaf, sliceAxis, [&](Code code) { return classOfSlot_[std::size_t(code) + 1]; },
+        out);
+}
+
+// Blocks from the nearest on, until no voxel of the next can be nearer.
+LitBlocks::Reach LitBlocks::reachFrom(const glm::dvec3& placeIndex,
+                                      const glm::dmat3& worldFromIndex) const {
+    constexpr double kMiddle = 3.5;
+    double radius = 0;  // of a block's voxels about its middle
+    for (const glm::dvec3 corner :
+         {glm::dvec3(1, 1, 1), glm::dvec3(-1, 1, 1), glm::dvec3(1, -1, 1), glm::dvec3(1, 1, -1)})
+        radius = std::max(radius, glm::length(worldFromIndex * (kMiddle * corner)));
+    std::vector<std::pair<double, std::size_t>> middles;
+    Reach reach{std::numeric_limits<double>::infinity(), 0};
+    for (std::size_t number = 0; number < size(); ++number) {
+        const glm::dvec3 middle = 8.0 * glm::dvec3(blocks_[number].position) + kMiddle;
+        const double distance = glm::length(worldFromIndex * (middle - placeIndex));
+        middles.emplace_back(distance, number);
+        reach.farthest = std::max(reach.farthest, distance + radius);
+    }
+    std::sort(middles.begin(), middles.end());
+    std::array<std::uint16_t, 512> classes;
+    for (const auto& [distance, number] : middles) {
+        if (distance - radius > reach.nearest) break;
+        const Block& block = blocks_[number];
+        readClasses(block, 0, classes.data());
+        forLeafVoxels(0, [&](const glm::ivec3& place, int n) {
+            if (classes[std::size_t(n)] == 0) return;
+            const glm::dvec3 way(glm::dvec3(8 * block.position + place) - placeIndex);
+            reach.nearest = std::min(reach.nearest, glm::length(worldFromIndex * way));
+        });
+    }
+    return reach;
 }
 
 std::size_t LitBlocks::Hash::operator()(const glm::ivec3& position) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
@@ -24,6 +25,15 @@ class LitBlocks {
     /// Returns a block's number; -1 if nothing of it can be seen.
     /// @param position  (x, y, z) of its first voxel, divided by 8
     std::int64_t find(const glm::ivec3& position) const;
+
+    /// How far voxels are from a place, in the world, centre to centre.
+    struct Reach {
+        double nearest = 0;   ///< of those that can be seen
+        double farthest = 0;  ///< at least that of any
+    };
+    /// Returns it; infinite and 0 if nothing can be seen.
+    /// @param placeIndex  (x, y, z)
+    Reach reachFrom(const glm::dvec3& placeIndex, const glm::dmat3& worldFromIndex) const;
 
     /// The blocks as light comes upon them along a slice axis.
     struct Along {
@@ -59,6 +69,7 @@ class LitBlocks {
         std::size_t operator()(const glm::ivec3& position) const;
     };
     void readClasses(int sliceAxis, std::uint16_t* classes) const;
+    void readClasses(const Block& block, int sliceAxis, std::uint16_t* out) const;
 
     std::span<const Slot> classOfSlot_;
     std::vector<Block> blocks_;

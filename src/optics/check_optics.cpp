@@ -35,6 +35,15 @@ void checkLight(const std::string& option, double number) {
                 "a number within 0..1e6");
 }
 
+void checkPointLight(const std::string& option, const Light& light) {
+    for (int i = 0; i < 3; ++i) {
+        requireThat(std::abs((*light.positionWorld)[i]) <= kFarthestLight, option + " position",
+                    numberText(*light.positionWorld), "numbers from -1e30 to 1e30");
+    }
+    requireThat(light.radiusWorld >= 0 && light.radiusWorld <= kFarthestLight, option + " radius",
+                numberText(light.radiusWorld), "a number within 0..1e30");
+}
+
 void checkLights(const std::string& option, const std::vector<Light>& lights) {
     for (const Light& light : lights) {
         checkLight(option + " strength", light.strength);
@@ -43,9 +52,11 @@ void checkLights(const std::string& option, const std::vector<Light>& lights) {
             requireThat(std::isfinite(light.direction[i]), option + " direction",
                         numberText(light.direction), "finite numbers");
         }
+        if (light.positionWorld) checkPointLight(option, light);
         const glm::dvec3 way = glm::abs(light.direction);
-        requireThat(light.frame == LightFrame::kHead || std::max({way.x, way.y, way.z}) > 0,
-                    option + " direction", numberText(light.direction), "not all 0");
+        const bool hasWay = light.frame != LightFrame::kHead && !light.positionWorld;
+        requireThat(!hasWay || std::max({way.x, way.y, way.z}) > 0, option + " direction",
+                    numberText(light.direction), "not all 0");
     }
 }
 
@@ -55,6 +66,10 @@ void checkShading(const Shading& shading) {
     checkLight("`shading.specular`", shading.specular);
     checkLight("`shading.shininess`", shading.shininess);
     checkLights("`shading.lights`", shading.lights);
+    for (const Light& light : shading.lights) {
+        requireThat(!light.positionWorld, "`shading.lights`", "a point light",
+                    "lights from far away, as without `scattering`");
+    }
 }
 
 bool isShare(double number) {

@@ -42,15 +42,20 @@ HWY_INLINE Vector3 normalized(const Vector3& a) {
     return scaled(a, hn::Div(constant(1), hn::Max(length, constant(1e-30))));
 }
 
-// The ways of a vector of voxels, from voxel n on.
-HWY_INLINE Vector3 waysFrom(const WaysToEye& ways, int n) {
+// The ways of a vector of voxels, from voxel n on, as long as they are.
+HWY_INLINE Vector3 wholeWaysFrom(const WaysToEye& ways, int n) {
     const FullTag tag;
     const hn::RebindToSigned<FullTag> whole;
     const auto number = hn::Add(hn::Iota(whole, 0), hn::Set(whole, n));
     const auto u = hn::ConvertTo(tag, hn::ShiftRight<3>(number));
     const auto v = hn::ConvertTo(tag, hn::And(number, hn::Set(whole, 7)));
-    return normalized(sum(vectorOf(ways.first),
-                          sum(scaled(vectorOf(ways.alongU), u), scaled(vectorOf(ways.alongV), v))));
+    return sum(vectorOf(ways.first),
+               sum(scaled(vectorOf(ways.alongU), u), scaled(vectorOf(ways.alongV), v)));
+}
+
+// The same of length 1.
+HWY_INLINE Vector3 waysFrom(const WaysToEye& ways, int n) {
+    return normalized(wholeWaysFrom(ways, n));
 }
 
 // The premultiplied colours of a vector of voxels: those of their classes.

@@ -49,6 +49,38 @@ HWY_INLINE Vector ownLeft(const Vector (&own)[4], Vector cosine, int octaves) {
     return left;
 }
 
+// How a vector of voxels is lit from a point.
+struct LitFromPoint {
+    Vector share;    // of the light's colour
+    Vector cosine;   // between the way of light and that to the camera
+    Vector oneSide;  // the share of it that comes from one side, not from all
+};
+
+HWY_INLINE LitFromPoint litFrom(const WaysToEye& toLight, int n, const Vector3& toCamera) {
+    const auto way = wholeWaysFrom(toLight, n);
+    const auto length = hn::Sqrt(dot(way, way));
+    const auto reach = hn::Max(length, constant(1));
+    const auto back = hn::Div(dot(way, toCamera), hn::Max(length, constant(1e-30)));
+    return {hn::Div(constant(1), hn::Mul(reach, reach)), hn::Neg(back),
+            hn::Min(length, constant(1))};
+}
+
+// What voxels scatter that a point lights.
+HWY_INLINE Vector3 scatteredFromPoint(const ScatterSums& sums, const ScatterRay& ray,
+                                      const LitFromPoint& lit, const Vector (&own)[4],
+                                      Vector left) {
+    const int octaves = int(sums.phases.size()) - 1;
+    left = hn::Mul(left, ownLeft(own, hn::Mul(lit.oneSide, lit.cosine), octaves));
+    auto all = constant(0);
+    for (int octave = octaves; octave >= 0; --octave, left = hn::Mul(left, left)) {
+        const auto even = constant(0.25 / double(1 << octave));
+        const auto straight = phaseAt(sums.phases[std::size_t(octave)], lit.cosine);
+        const auto share = hn::Add(even, hn::Mul(lit.oneSide, hn::Sub(straight, even)));
+        all = hn::Add(all, hn::Mul(share, left));
+    }
+    return scaled(vectorOf(ray.color), hn::Mul(lit.share, all));
+}
+
 template <bool kFromEye>
 void scatterFrom(const ScatterSums& sums, const ScatterWord& word, WordUnits& units) {
     const FullTag tag;
@@ -61,11 +93,17 @@ void scatterFrom(const ScatterSums& sums, const ScatterWord& word, WordUnits& un
         Vector own[4];
         loadColors(word.own, word.classes + n, own);
         Vector3 light = vectorOf(sums.ambient);
-        Vector3 toCamera = light;
+        Vector3 toCamera = vectorOf(sums.toCamera);
         if (kFromEye) toCamera = waysFrom(*word.ways, n);
+        const WaysToEye* toLight = word.toLights;
         for (std::size_t i = 0; i < sums.rays.size(); ++i) {
             const ScatterRay& ray = sums.rays[i];
             auto left = leftOf(word.depths + 64 * i + n, perStep);
+            if (ray.isPoint) {
+                const LitFromPoint lit = litFrom(*toLight++, n, toCamera);
+                light = sum(light, scatteredFromPoint(sums, ray, lit, own, left));
+                continue;
+            }
             auto cosine = hn::Set(tag, ray.cosine);
             if (kFromEye) cosine = dot(vectorOf(ray.way), toCamera);
             left = hn::Mul(left, ownLeft(own, cosine, octaves));

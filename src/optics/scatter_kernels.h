@@ -50,6 +50,9 @@ struct ScatterRay {
     /// [octaves + 1]: colour times what is scattered towards the camera, where all see it from one
     /// side.
     std::vector<glm::vec3> towardsCamera;
+    /// It shines from a point, towards each voxel another way: the others are of no effect, but for
+    /// its colour, which it has where ways to it are of length 1 or less.
+    bool isPoint = false;
 };
 
 /// What voxels scatter (Scattering).
@@ -57,6 +60,7 @@ struct ScatterSums {
     glm::vec3 ambient;
     std::vector<ScatterPhase> phases;  ///< [octaves + 1]
     std::vector<ScatterRay> rays;
+    glm::vec3 toCamera;  ///< of length 1, where all see it from one side
 };
 
 /// What is lit.
@@ -66,6 +70,7 @@ struct ScatterWord {
     const std::uint16_t* classes;  ///< [64]
     const std::uint16_t* depths;   ///< [rays][64]: as LightDepths has them
     const WaysToEye* ways;         ///< null if all see it from one side
+    const WaysToEye* toLights;     ///< to those that shine from a point, one after the other
 };
 
 /// Returns the premultiplied colours that voxels scatter. The same bits at every SIMD level.

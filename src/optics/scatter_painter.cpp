@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/common.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <memory>
 #include <optional>
 
@@ -26,28 +29,51 @@ std::vector<Light> shiningOf(const Scattering& scattering) {
     return shining;
 }
 
+// A light, as it shines on voxels.
+struct Shine {
+    Light light;            // of a point light the strength that it has at `unitWorld` from it
+    double unitWorld = 1;   // nearer than that nothing is lit, or nothing more brightly
+    double leastShare = 1;  // of the strength, at any voxel
+
+    bool isPoint() const { return light.positionWorld.has_value(); }
+};
+
+Shine shineOf(const Light& light, const LitBlocks::Reach& reach, const Volume& volume) {
+    // 1 / R^2 is the mean of 1 / r^2 over a ball of a voxel's volume, of side 1: R is sqrt(1/3) of
+    // its radius.
+    constexpr double kOwnVoxel = 0.35816;
+    constexpr double kMost = 1e30;
+    Shine shine{light};
+    if (!light.positionWorld) return shine;
+    const double voxel = std::cbrt(std::abs(glm::determinant(glm::dmat3(volume.worldFromIndex))));
+    const double least = std::max(light.radiusWorld, kOwnVoxel * voxel);
+    shine.unitWorld = std::max(least, reach.nearest);
+    const double share = shine.unitWorld / std::max(shine.unitWorld, reach.farthest);
+    shine.leastShare = share * share;
+    shine.light.strength =
+        std::min(light.strength / shine.unitWorld / shine.unitWorld, kMost / kMostLight);
+    return shine;
+}
+
 // What fog scatters towards a camera. Where its voxels lie says all: looks are of no use.
 class ScatteredLight : public LookLight {
   public:
-    ScatteredLight(const Scattering& scattering, const std::vector<Light>& lights,
+    ScatteredLight(const Scattering& scattering, const std::vector<Shine>& shines,
                    const LightDepths& depths, const ClassTable& classes, const LitScene& scene)
-        : LookLight(VoxelUnits(classes, brightestOf(scattering, lights, classes, scene.camera)),
-                    dimmestOf(scattering, scene.camera)),
+        : LookLight(VoxelUnits(classes, brightestOf(scattering, shines, classes, scene.camera)),
+                    dimmestOf(scattering, shines, scene.camera)),
           depths_(depths),
           sliceAxis_(scene.sliceAxis),
           colors_(units().unitsOfClasses(classes)) {
+        const Camera& camera = scene.camera;
         sums_.ambient = glm::vec3(scattering.albedo * scattering.ambient);
         sums_.phases = phasesOf(scattering);
-        const Camera& camera = scene.camera;
-        for (const Light& light : lights) {
-            const glm::dvec3 color = scattering.albedo * light.strength * light.color;
-            ScatterRay ray{glm::vec3(unitVectorOf(light.direction)),
-                           glm::vec3(color),
-                           float(cosineOf(light, camera)),
-                           {}};
-            for (const ScatterPhase& phase : sums_.phases)
-                ray.towardsCamera.push_back(glm::vec3(color * phase.at(cosineOf(light, camera))));
-            sums_.rays.push_back(std::move(ray));
+        sums_.toCamera = glm::vec3(-camera.direction);
+        for (const Shine& shine : shines) {
+            sums_.rays.push_back(rayOf(shine, scattering, camera));
+            if (shine.isPoint())
+                points_.emplace_back(*shine.light.positionWorld, scene.worldFromVoxel,
+                                     shine.unitWorld);
         }
         for (const double depth : depthsOf(classes, classes.stepWorld))
             own_.push_back(ownLight(depth));
@@ -58,15 +84,13 @@ class ScatteredLight : public LookLight {
   protected:
     void lightVoxels(const WordPlace& place, const std::uint16_t* classes, const OwnLook*,
                      WordUnits& colors) const override {
-        std::array<std::uint16_t, 64 * kMostAtOnce> few;
-        std::vector<std::uint16_t> many;
-        std::uint16_t* depths = few.data();
-        if (sums_.rays.size() > kMostAtOnce) {
-            many.resize(64 * sums_.rays.size());
-            depths = many.data();
-        }
-        readDepths(place, depths);
-        ScatterWord word{colors_.data(), own_.data(), classes, depths, nullptr};
+        FewOrMany<std::uint16_t, 64 * kMostAtOnce> depths(64 * sums_.rays.size());
+        readDepths(place, depths.data());
+        FewOrMany<WaysToEye, kMostAtOnce> toLights(points_.size());
+        for (std::size_t i = 0; i < points_.size(); ++i)
+            toLights.data()[i] = points_[i].waysFrom(place);
+        ScatterWord word{colors_.data(), own_.data(), classes,
+                         depths.data(),  nullptr,     toLights.data()};
         if (!eye_) return scatter(sums_, word, colors);
         const WaysToEye ways = eye_->waysFrom(place);
         word.ways = &ways;
@@ -76,28 +100,70 @@ class ScatteredLight : public LookLight {
   private:
     static constexpr std::size_t kMostAtOnce = 64;
 
+    // Room for some things, on the stack if they are few.
+    template <typename T, std::size_t kFew>
+    class FewOrMany {
+      public:
+        explicit FewOrMany(std::size_t size) {
+            if (size > kFew) many_.resize(size);
+        }
+        T* data() { return many_.empty() ? few_.data() : many_.data(); }
+
+      private:
+        std::array<T, kFew> few_;
+        std::vector<T> many_;
+    };
+
     // Of where light goes and where it goes on to.
     static double cosineOf(const Light& light, const Camera& camera) {
         return glm::dot(unitVectorOf(light.direction), -camera.direction);
     }
 
-    // What a light shows at least, for what it shows at most.
-    static double dimmestOf(const Scattering& scattering, const Camera& camera) {
-        if (camera.projection == Projection::kOrtho) return 1;
+    ScatterRay rayOf(const Shine& shine, const Scattering& scattering, const Camera& camera) const {
+        const Light& light = shine.light;
+        const glm::dvec3 color = scattering.albedo * light.strength * light.color;
+        ScatterRay ray{{}, glm::vec3(color), 0, {}, shine.isPoint()};
+        if (shine.isPoint()) return ray;
+        ray.way = glm::vec3(unitVectorOf(light.direction));
+        ray.cosine = float(cosineOf(light, camera));
+        for (const ScatterPhase& phase : sums_.phases)
+            ray.towardsCamera.push_back(glm::vec3(color * phase.at(cosineOf(light, camera))));
+        return ray;
+    }
+
+    // What lights show at least, for what they show at most.
+    static double dimmestOf(const Scattering& scattering, const std::vector<Shine>& shines,
+                            const Camera& camera) {
+        const bool isAnyPoint = std::any_of(shines.begin(), shines.end(),
+                                            [](const Shine& shine) { return shine.isPoint(); });
+        if (!isAnyPoint && camera.projection == Projection::kOrtho) return 1;
         const ScatterPhase phase = phasesOf(scattering).front();
-        return phase.smallest() / phase.largest();
+        const double turned = phase.smallest() / phase.largest();
+        if (!isAnyPoint) return turned;
+        glm::dvec3 least = scattering.ambient;
+        glm::dvec3 most = scattering.ambient;
+        for (const Shine& shine : shines) {
+            const glm::dvec3 color = phase.largest() * shine.light.strength * shine.light.color;
+            least += turned * shine.leastShare * color;
+            most += color;
+        }
+        double dimmest = 1;
+        for (int c = 0; c < 3; ++c)
+            if (most[c] > 0) dimmest = std::min(dimmest, least[c] / most[c]);
+        return dimmest;
     }
 
     // The most that any voxel scatters.
-    static glm::dvec3 brightestOf(const Scattering& scattering, const std::vector<Light>& lights,
+    static glm::dvec3 brightestOf(const Scattering& scattering, const std::vector<Shine>& shines,
                                   const ClassTable& classes, const Camera& camera) {
         const bool isParallel = camera.projection == Projection::kOrtho;
         glm::dvec3 brightest = scattering.ambient;
         for (const ScatterPhase& phase : phasesOf(scattering)) {
-            for (const Light& light : lights) {
+            for (const Shine& shine : shines) {
+                const bool isOneWay = isParallel && !shine.isPoint();
                 const double share =
-                    isParallel ? phase.at(cosineOf(light, camera)) : phase.largest();
-                brightest += share * light.strength * light.color;
+                    isOneWay ? phase.at(cosineOf(shine.light, camera)) : phase.largest();
+                brightest += share * shine.light.strength * shine.light.color;
             }
         }
         return scattering.albedo * brightest * deltasplat::brightestOf(classes);
@@ -127,15 +193,19 @@ class ScatteredLight : public LookLight {
     std::vector<glm::vec4> own_;     // [classes]: ownLight()
     ScatterSums sums_;
     std::optional<EyeOfVoxels> eye_;
+    std::vector<EyeOfVoxels> points_;  // lights that shine from a point
 };
 
 class ScatterPainter : public VoxelPainter {
   public:
     ScatterPainter(const Volume& volume, const Optics& optics)
         : scattering_(*optics.scattering),
-          lights_(shiningOf(scattering_)),
           classes_(classify(volume, optics, smallestSize(volume))),
-          depths_(volume, classes_, lights_, scattering_.octaves) {}
+          depths_(volume, classes_, shiningOf(scattering_), scattering_.octaves) {
+        const std::vector<Light> lights = shiningOf(scattering_);
+        for (std::size_t i = 0; i < lights.size(); ++i)
+            shines_.push_back(shineOf(lights[i], depths_.reach(i), volume));
+    }
 
     bool needsColors() const override { return true; }
     bool dependsOnCamera() const override { return true; }
@@ -148,14 +218,14 @@ class ScatterPainter : public VoxelPainter {
 
     std::unique_ptr<const LookLight> lightOf(const ClassTable& classes,
                                              const LitScene* scene) const override {
-        return std::make_unique<ScatteredLight>(scattering_, lights_, depths_, classes, *scene);
+        return std::make_unique<ScatteredLight>(scattering_, shines_, depths_, classes, *scene);
     }
 
   private:
     Scattering scattering_;
-    std::vector<Light> lights_;
     ClassTable classes_;
     LightDepths depths_;
+    std::vector<Shine> shines_;  // as `depths_` has them
 };
 
 }  // namespace

@@ -8,7 +8,8 @@
 
 namespace deltasplat {
 
-/// The ways to the camera from a word's voxels, of any length: `first + u * alongU + v * alongV`.
+/// The ways to an eye, or a light, from a word's voxels, of any length: `first + u * alongU + v *
+/// alongV`.
 struct WaysToEye {
     glm::vec3 first;
     glm::vec3 alongU;
@@ -19,8 +20,10 @@ struct WaysToEye {
 class EyeOfVoxels {
   public:
     /// @param worldFromVoxel  of (slice, u, v)
-    EyeOfVoxels(const glm::dvec3& eyeWorld, const glm::dmat4& worldFromVoxel)
-        : eye_(glm::inverse(worldFromVoxel) * glm::dvec4(eyeWorld, 1)), steps_(worldFromVoxel) {}
+    /// @param unitWorld       that ways are stated in
+    EyeOfVoxels(const glm::dvec3& eyeWorld, const glm::dmat4& worldFromVoxel, double unitWorld = 1)
+        : eye_(glm::inverse(worldFromVoxel) * glm::dvec4(eyeWorld, 1)),
+          steps_(glm::dmat3(worldFromVoxel) / unitWorld) {}
 
     /// @param place  of the word's first voxel
     WaysToEye waysFrom(const glm::ivec3& place) const {
@@ -30,7 +33,7 @@ class EyeOfVoxels {
 
   private:
     glm::dvec3 eye_;    // (slice, u, v)
-    glm::dmat3 steps_;  // in the world, along these
+    glm::dmat3 steps_;  // in units of the world, along these
 };
 
 }  // namespace deltasplat

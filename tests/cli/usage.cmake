@@ -181,8 +181,11 @@ deltasplat_refusal(scatter_and_color_by
     "--lighting scatter: got --color-by x besides; expected --color-by value"
     --lighting scatter --color-by x)
 deltasplat_refusal(scatter_and_head_light
-    "--light: got head or view:X,Y,Z with --lighting scatter; expected X,Y,Z, the way that light travels in the world"
+    "--light: got head or view:X,Y,Z with --lighting scatter; expected X,Y,Z, the way that light travels in the world, or point:X,Y,Z"
     --lighting scatter --light head)
+deltasplat_refusal(point_light_on_surfaces
+    "--light: got point:X,Y,Z without --lighting scatter; expected head, X,Y,Z or view:X,Y,Z"
+    --light point:1,2,3)
 deltasplat_refusal(scatter_and_between
     "--between: got 1 with --lighting scatter; expected 0: lit fog is drawn by whole voxels"
     --lighting scatter --between 1)
@@ -215,10 +218,12 @@ endforeach()
 deltasplat_refusal(color_by "--color-by: got hue; expected value, x, y, z or index" --color-by hue)
 deltasplat_refusal(shade_and_color_by
     "--shade: got --color-by index besides; expected --color-by value" --shade --color-by index)
-foreach(light up 1,2 0,0,0 view head: head:1:2:3 1,2,3:1,1 1,2,3:1,1,1:-1 world:1,2,3 1e300,1e300,0 1,2,3:1e7)
+foreach(light up 1,2 0,0,0 view head: head:1:2:3 1,2,3:1,1 1,2,3:1,1,1:-1 world:1,2,3 1e300,1e300,0 1,2,3:1e7
+        point point: point:1,2 point:1,2,3,-1 point:1,2,3,4,5 point:1,2,3,nan point:1,2,nan
+        point:1e31,0,0 point:1,2,3:1e7 point:1,2,3:1,1 point:1,2,3,4:1,1,1:2:3 1,2,3,4)
     string(MAKE_C_IDENTIFIER "light_${light}" test)
     deltasplat_refusal(${test}
-        "--light: got ${light}; expected head, X,Y,Z or view:X,Y,Z, numbers from -1e+30 to 1e+30 and not all 0, then, if wanted, :R,G,B, each at least 0, and :STRENGTH, 0 to 1e+06, as in view:1,-1,-1:1,0.9,0.8:1.5"
+        "--light: got ${light}; expected head, X,Y,Z or view:X,Y,Z, numbers from -1e+30 to 1e+30 and not all 0, or point:X,Y,Z or point:X,Y,Z,RADIUS, then, if wanted, :R,G,B, each at least 0, and :STRENGTH, 0 to 1e+06, as in view:1,-1,-1:1,0.9,0.8:1.5"
         --light ${light})
 endforeach()
 deltasplat_refusal(shininess "--shininess: got -1; expected a finite number from 0 to 1e+06"

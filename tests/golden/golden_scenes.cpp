@@ -224,6 +224,15 @@ void addLooks(Scenes& scenes) {
     MediumPart& veil = scenes.addMedium("veiled", "engine", "cloud", camera).optics.parts[0];
     veil.kind = MediumPart::Kind::kAbsorption;
     veil.transferFunction = oneColor(0.2);
+    Light inside{LightFrame::kWorld};
+    inside.color = {1, 0.7, 0.4};
+    inside.strength = 200;
+    inside.positionWorld = glm::dvec3(9, 13, 11);
+    inside.radiusWorld = 1;
+    scattering.lights.push_back(inside);
+    scenes.add("scattered-point", "cloud", turned(10, 50), bent()).optics.scattering = scattering;
+    scenes.add("scattered-point-perspective", "fog", camera, colored()).optics.scattering =
+        scattering;
 }
 
 }  // namespace

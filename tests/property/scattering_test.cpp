@@ -4,19 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <vector>
 
-#include "deltasplat/ingest/make_volume.h"
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
 #include "deltasplat/threads.h"
 #include "optics/scatter_kernels.h"
 #include "support/error_of.h"
+#include "support/lit_fog.h"
 #include "support/make_volume.h"
 #include "support/mirrored.h"
 #include "support/sight_line.h"
@@ -25,39 +23,15 @@
 namespace deltasplat {
 namespace {
 
+using test::Ball;
 using test::errorOf;
+using test::fogOf;
+using test::fogOptics;
+using test::henyeyGreenstein;
+using test::kPi;
 using test::mirrored;
+using test::phaseOf;
 using test::sightLineOf;
-
-constexpr double kPi = std::numbers::pi;
-
-// A volume of opacities over a unit of the world.
-Volume fogOf(const glm::ivec3& dims, const glm::dmat4& worldFromIndex,
-             const std::function<double(const glm::dvec3& world)>& extinctionAt) {
-    std::vector<float> values;
-    for (int z = 0; z < dims.z; ++z) {
-        for (int y = 0; y < dims.y; ++y) {
-            for (int x = 0; x < dims.x; ++x) {
-                const glm::dvec3 world(worldFromIndex * glm::dvec4(x, y, z, 1));
-                values.push_back(float(-std::expm1(-extinctionAt(world))));
-            }
-        }
-    }
-    MemoryLayout layout;
-    layout.dims = dims;
-    layout.worldFromIndex = worldFromIndex;
-    return makeVolume<float>(values, layout);
-}
-
-// Values are opacities over a unit of the world, of white fog.
-Optics fogOptics(const Scattering& scattering) {
-    Optics optics;
-    optics.transferFunction.colors = {{0, glm::dvec3(1)}};
-    optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {1, 1, 0.5, 0}};
-    optics.unitDistance = 1;
-    optics.scattering = scattering;
-    return optics;
-}
 
 Light sunOf(const glm::dvec3& direction, const glm::dvec3& color = glm::dvec3(1)) {
     return {LightFrame::kWorld, direction, color, 1};
@@ -76,33 +50,6 @@ double meanOf(const Image& image, int channel) {
     double sum = 0;
     for (std::size_t i = std::size_t(channel); i < image.rgba.size(); i += 4) sum += image.rgba[i];
     return 4 * sum / double(image.rgba.size());
-}
-
-// Of density, lit: exp(-r^2 / 2 w^2) times its middle.
-struct Ball {
-    double middle;
-    double width;
-
-    double extinctionAt(const glm::dvec3& p) const {
-        return middle * std::exp(-glm::dot(p, p) / (2 * width * width));
-    }
-    // On the way from infinity to p.
-    double depthAt(const glm::dvec3& p, const glm::dvec3& way) const {
-        const double t = glm::dot(p, way);
-        const double beside = glm::dot(p, p) - t * t;
-        return middle * std::exp(-beside / (2 * width * width)) * width * std::sqrt(kPi / 2) *
-               (1 + std::erf(t / (width * std::sqrt(2.0))));
-    }
-};
-
-double henyeyGreenstein(double g, double cosine) {
-    return (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
-}
-
-double phaseOf(const Scattering& fog, int octave, double cosine) {
-    const double part = std::pow(0.5, octave);
-    return (1 - fog.backShare) * henyeyGreenstein(part * fog.anisotropy, cosine) +
-           fog.backShare * henyeyGreenstein(part * fog.backAnisotropy, cosine);
 }
 
 // Red, of light that comes along a line of sight: by the formulas of the documentation.

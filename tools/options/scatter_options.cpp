@@ -159,8 +159,8 @@ void addScatterOptions(CLI::App& app, ScatterChoice& choice) {
             return deltasplat::choice({"emission", "scatter"})(option, text) == "scatter";
         }),
         "emission (what is shown shines by itself, the default) or scatter:\n"
-        "fog is lit by --light X,Y,Z, --sky and --env, and throws shadows into\n"
-        "itself (default where anything below is given)");
+        "fog is lit by --light X,Y,Z and point:X,Y,Z, --sky and --env, and throws\n"
+        "shadows into itself (default where anything below is given)");
     group.addValue("--sky", "X,Y,Z", choice.sky, Parser<ScatterChoice::SunPlace>(turnOn(parseSky)),
                    "Sun and clear sky: the way towards the sun in the world; :STRENGTH may\n"
                    "follow (default: 1,2,1:4 with y up, if there is no other light). Up is\n"

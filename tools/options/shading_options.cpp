@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "options/shading_options.h"
 
+#include <algorithm>
 #include <string>
 
 #include "deltasplat/error.h"
@@ -11,14 +12,23 @@
 namespace deltasplat {
 namespace {
 
+// X,Y,Z and, if wanted, a radius.
+void parsePlace(const std::string& option, const std::string& text, Light& light) {
+    const std::size_t comma = text.find(',', text.find(',', text.find(',') + 1) + 1);
+    const bool hasRadius = std::count(text.begin(), text.end(), ',') == 3;
+    light.positionWorld = vector3()(option, hasRadius ? text.substr(0, comma) : text);
+    if (hasRadius) light.radiusWorld = number(0, kFarthestLight)(option, text.substr(comma + 1));
+}
+
 // Where it comes from, then its colour, if any, then its strength, if any.
 Light parseLight(const std::string& option, const std::string& text) {
     const auto refuse = [&] {
         return Error(ErrorCode::kUsage,
                      gotExpected(option, text,
                                  "head, X,Y,Z or view:X,Y,Z, numbers from -1e+30 to 1e+30 and not "
-                                 "all 0, then, if wanted, :R,G,B, each at least 0, and :STRENGTH, "
-                                 "0 to 1e+06, as in view:1,-1,-1:1,0.9,0.8:1.5"));
+                                 "all 0, or point:X,Y,Z or point:X,Y,Z,RADIUS, then, if wanted, "
+                                 ":R,G,B, each at least 0, and :STRENGTH, 0 to 1e+06, as in "
+                                 "view:1,-1,-1:1,0.9,0.8:1.5"));
     };
     const std::vector<std::string> parts = splitAt(text, ':');
     std::size_t next = 0;
@@ -27,9 +37,15 @@ Light parseLight(const std::string& option, const std::string& text) {
         if (parts[0] == "head") {
             next = 1;
         } else {
+            const bool isPoint = parts[0] == "point";
             light.frame = parts[0] == "view" ? LightFrame::kView : LightFrame::kWorld;
-            if (light.frame == LightFrame::kView) next = 1;
-            light.direction = vector3()(option, next < parts.size() ? parts[next] : "");
+            if (isPoint || light.frame == LightFrame::kView) next = 1;
+            const std::string place = next < parts.size() ? parts[next] : "";
+            if (isPoint) {
+                parsePlace(option, place, light);
+            } else {
+                light.direction = vector3()(option, place);
+            }
             ++next;
         }
         if (next < parts.size() && parts[next].find(',') != std::string::npos)
@@ -68,8 +84,10 @@ void addShadingOptions(CLI::App& app, ShadingChoice& choice) {
     group.addEach("--light", "LIGHT", choice.lights, Parser<Light>(turnOn(parseLight)),
                   "head (from the camera, the default) or X,Y,Z, the way that light\n"
                   "travels in the world, or view:X,Y,Z in the picture (right, up,\n"
-                  "towards the camera); then :R,G,B and :STRENGTH, if wanted. Can be\n"
-                  "given several times");
+                  "towards the camera); then :R,G,B and :STRENGTH, if wanted. In fog\n"
+                  "also point:X,Y,Z, a place in the world; STRENGTH is that at a\n"
+                  "distance of 1, falls with its square and, of point:X,Y,Z,RADIUS,\n"
+                  "grows no more within RADIUS. Can be given several times");
     const auto addShare = [&](const std::string& name, double& target, const std::string& help) {
         group.addValue(name, "K", target, Parser<double>(turnOn(number(0, kMostLight))),
                        withDefault(help, numberText(target)));

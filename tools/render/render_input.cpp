@@ -106,8 +106,19 @@ void checkSurface(const PictureOptions& picture) {
                 gotExpected(option, "--gradient-opacity besides", "one of the two"));
 }
 
+// Surfaces know no other lights.
+void checkDistant(const std::vector<Light>& lights) {
+    for (const Light& light : lights) {
+        if (!light.positionWorld) continue;
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--light", "point:X,Y,Z without --lighting scatter",
+                                "head, X,Y,Z or view:X,Y,Z"));
+    }
+}
+
 // The same of fog.
 void checkFog(const PictureOptions& picture) {
+    if (!picture.scatter.asked()) checkDistant(picture.shading.lights);
     if (!isFog(picture)) return;
     const MediumChoice& medium = picture.medium;
     const std::string option = picture.scatter.asked() ? "--lighting scatter"
@@ -131,7 +142,7 @@ void checkFog(const PictureOptions& picture) {
         if (light.frame == LightFrame::kWorld) continue;
         throw Error(ErrorCode::kUsage,
                     gotExpected("--light", "head or view:X,Y,Z with --lighting scatter",
-                                "X,Y,Z, the way that light travels in the world"));
+                                "X,Y,Z, the way that light travels in the world, or point:X,Y,Z"));
     }
 }
 

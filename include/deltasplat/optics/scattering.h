@@ -27,6 +27,11 @@ namespace deltasplat {
 ///
 /// A light of strength 1 has irradiance pi, as with Shading, where a white surface facing it has a
 /// radiance of 1. White fog that scatters evenly has a quarter of that.
+///
+/// Of a point light I is divided by R^2, in world units. R is how far the voxel's centre is from
+/// the light, but at least the light's radius, and at least 0.358 d, d^3 being the volume of a
+/// voxel: 1 / R^2 is then the mean over a ball of that volume around the light. Nearer than that,
+/// light comes from more and more sides: p_i goes over to 1 / (4 pi) in the middle.
 struct Scattering {
     /// The share of what is met that is scattered, not swallowed: 0..1 each.
     glm::dvec3 albedo{1.0};

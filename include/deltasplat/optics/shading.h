@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 namespace deltasplat {
@@ -13,17 +14,26 @@ enum class LightFrame {
     kWorld,  ///< the world
 };
 
-/// A light from so far away that it shines in one direction everywhere.
+/// A light from so far away that it shines in one direction everywhere, or a point light.
 struct Light {
     LightFrame frame = LightFrame::kHead;
-    glm::dvec3 direction{0, 0,
-                         -1};  ///< the way it travels, of any length but 0; kHead: of no effect
-    glm::dvec3 color{1.0};     ///< scene-linear, each 0..kMostLight
-    double strength = 1;       ///< 0..kMostLight; multiplies the colour
+    /// The way it travels, of any length but 0; of no effect: of kHead and of point lights.
+    glm::dvec3 direction{0, 0, -1};
+    glm::dvec3 color{1.0};  ///< scene-linear, each 0..kMostLight
+    double strength = 1;    ///< 0..kMostLight; multiplies the colour
+    /// Where a point light stands, which shines evenly to all sides: r world units away it is as
+    /// strong as light from far away of strength / r^2. Each number within
+    /// -kFarthestLight..kFarthestLight; kWorld, and for fog alone (Scattering). Empty: it comes
+    /// from far away.
+    std::optional<glm::dvec3> positionWorld = std::nullopt;
+    /// Of a point light, 0..kFarthestLight: nearer than that it grows no stronger.
+    double radiusWorld = 0;
 };
 
 /// The largest number that a light's colour or strength, or a share of it, may be.
 inline constexpr double kMostLight = 1e6;
+/// The largest number that says where a light stands.
+inline constexpr double kFarthestLight = 1e30;
 
 /// How surfaces reflect light (Blinn 1977): a voxel of colour c, whose value changes in direction n
 /// of length 1, shines with
