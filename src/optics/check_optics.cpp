@@ -139,6 +139,11 @@ void checkTransferFunction(const TransferFunction& function) {
     }
 }
 
+void checkRange(const std::string& option, const glm::dvec2& range) {
+    requireThat(std::isfinite(range.x) && std::isfinite(range.y) && range.x < range.y, option,
+                numberText(range), "LO,HI with LO < HI");
+}
+
 void checkPart(const MediumPart& part, bool isLit) {
     constexpr const char* kOption = "`parts`";
     requireThat(part.volume != nullptr, kOption, "one without a volume", "volumes");
@@ -149,6 +154,7 @@ void checkPart(const MediumPart& part, bool isLit) {
     for (const double number : {part.kelvinScale, part.kelvinOffset}) {
         requireThat(std::isfinite(number), "`parts` kelvin", numberText(number), "a finite number");
     }
+    if (part.range) checkRange("`parts` range", *part.range);
     if (part.kind != MediumPart::Kind::kBlackbody) checkTransferFunction(part.transferFunction);
 }
 
@@ -209,11 +215,7 @@ void checkOptics(const Optics& optics) {
                     "a number >= 0");
         requireThat(!optics.surface, "`densityScale`", "`surface` besides", "one of the two");
     }
-    if (optics.range) {
-        const glm::dvec2 range = *optics.range;
-        requireThat(std::isfinite(range.x) && std::isfinite(range.y) && range.x < range.y,
-                    "`range`", numberText(range), "LO,HI with LO < HI");
-    }
+    if (optics.range) checkRange("`range`", *optics.range);
 }
 
 }  // namespace deltasplat

@@ -428,6 +428,8 @@ TEST(Medium, isRefusedWhereItCannotBe) {
                   o.parts[0].kind = MediumPart::Kind::kAbsorption;
               }).find("swallows light"),
               std::string::npos);
+    EXPECT_NE(errorWith([](Optics& o) { o.parts[0].range = glm::dvec2(2, 2); }).find("LO < HI"),
+              std::string::npos);
     EXPECT_NE(errorWith([](Optics& o) {
                   o.parts[0].kind = MediumPart::Kind::kBlackbody;
                   o.parts[0].kelvinScale = std::nan("");
