@@ -17,7 +17,9 @@ inline constexpr int kLeastNodes = 32;
 /// Nodes that lie on a block, of a row or a column: before[n] is the voxel before node n, 0 being
 /// the one before the block and 8 its last, and share[n] how far it is on the way to the next.
 struct NodesOnBlock {
+    /// All nodes of a plane that is doubled for nothing yet; later two for each voxel.
     static constexpr std::size_t kMost = 2 * kLeastNodes + 4;
+    static_assert(kMost > 2 * 9 + 2);
     std::int64_t first = 0;  ///< node
     std::size_t count = 0;
     std::array<std::uint32_t, kMost> before;

@@ -13,6 +13,7 @@
 #include "light/light_depths.h"
 #include "optics/painters.h"
 #include "optics/scatter_kernels.h"
+#include "portable_math.h"
 #include "unit_vector.h"
 #include "view/affine.h"
 
@@ -45,7 +46,8 @@ Shine shineOf(const Light& light, const LitBlocks::Reach& reach, const Volume& v
     constexpr double kMost = 1e30;
     Shine shine{light};
     if (!light.positionWorld) return shine;
-    const double voxel = std::cbrt(std::abs(glm::determinant(glm::dmat3(volume.worldFromIndex))));
+    const double size = std::abs(glm::determinant(glm::dmat3(volume.worldFromIndex)));
+    const double voxel = portable::pow(size, 1.0 / 3);
     const double least = std::max(light.radiusWorld, kOwnVoxel * voxel);
     shine.unitWorld = std::max(least, reach.nearest);
     const double share = shine.unitWorld / std::max(shine.unitWorld, reach.farthest);

@@ -494,6 +494,9 @@ deltasplat_unused(fog_emission --albedo "with --lighting emission" CREATES out.e
     ARGS render ${cube} -o out.exr --size 8x8 --lighting emission --albedo 0.5)
 deltasplat_unused(fog_mode --sky "with --mode xray" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --mode xray --sky 1,1,1)
+deltasplat_cli_test(used.point_light CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --lighting scatter
+         --light point:1,2,3,0.5:1,0.8,0.5:40 --light point:-9,2,3)
 deltasplat_cli_test(used.fog_default CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --lighting scatter --turbidity 4 --env-lights 8)
 deltasplat_cli_test(used.surface_range CREATES out.exr

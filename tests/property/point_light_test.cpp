@@ -160,7 +160,9 @@ TEST(PointLight, inASmoothBallIsWhatWaysShow) {
             RenderOptions options = seenFrom(projection);
             options.optics = fogOptics(someFog());
             options.optics.scattering->lights = some;
-            EXPECT_GT(agreementOf(volume, options, ball, 0.5), 45) << projectionName(projection);
+            const bool isAlone = some.size() == 1;
+            EXPECT_GT(agreementOf(volume, options, ball, 0.5), isAlone ? 55 : 45)
+                << projectionName(projection);
         }
     }
 }
@@ -194,22 +196,24 @@ TEST(PointLight, onASlabIsTheSumOverItsDepth) {
     }
 }
 
-// By the square of the distance, also where that leaves a millionth of what is brightest.
+// By the square of the distance, also where that leaves a hundred-millionth of what is brightest:
+// in the light's own voxel.
 TEST(PointLight, growsWeakerWithTheSquareOfTheDistance) {
+    constexpr int kFar = 4000;
     glm::dmat4 world(1.0);
-    world[3] = {0, -4, 0, 1};
-    const Volume volume = fogOf({1201, 9, 1}, world, [](const auto&) { return 1e-7; });
+    world[3] = {0, -2, 0, 1};
+    const Volume volume = fogOf({kFar + 1, 5, 1}, world, [](const auto&) { return 1e-7; });
     Scattering fog;
     fog.lights = {pointAt({0, 0, 0}, 1e6)};
     RenderOptions options;
     options.optics = fogOptics(fog);
-    options.camera.sizePixels = {1200, 9};
-    options.camera.frameWidthWorld = 1200;
-    options.camera.targetWorld = glm::dvec3(600, 0, 0);
+    options.camera.sizePixels = {kFar, 5};
+    options.camera.frameWidthWorld = kFar;
+    options.camera.targetWorld = glm::dvec3(0.5 * kFar, 0, 0);
     const Image image = render(volume, options).image;
-    for (const int x : {20, 50, 200, 500, 1000, 1190}) {
+    for (int x = 20; x < kFar - 10; x += 30) {
         const double expected = 1e-7 * 1e6 / 4 / std::pow(x + 0.5, 2);
-        EXPECT_NEAR(redOf(image, x, 4) / expected, 1, 0.015) << x;
+        EXPECT_NEAR(redOf(image, x, 2) / expected, 1, 0.015) << x;
     }
 }
 

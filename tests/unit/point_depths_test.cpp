@@ -155,8 +155,8 @@ TEST(PointDepths, ofSharpThingsAreThoseOfSingleWays) {
     constexpr int n = 64;
     const glm::dmat4 world = aroundMiddle(n, 1);
     const auto extinctionAt = [](const glm::dvec3& p) {
-        const glm::ivec3 cell = glm::ivec3(glm::floor(p + 100.0)) / 4;
-        const int number = (cell.x * 73856093) ^ (cell.y * 19349663) ^ (cell.z * 83492791);
+        const glm::uvec3 cell = glm::uvec3(glm::floor(p + 100.0)) / 4u;
+        const unsigned number = (cell.x * 73856093) ^ (cell.y * 19349663) ^ (cell.z * 83492791);
         return number % 7 == 0 ? 0.25 : 0.0;
     };
     const Volume volume = fogOf(glm::ivec3(n), world, extinctionAt);

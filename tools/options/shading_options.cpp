@@ -85,9 +85,10 @@ void addShadingOptions(CLI::App& app, ShadingChoice& choice) {
                   "head (from the camera, the default) or X,Y,Z, the way that light\n"
                   "travels in the world, or view:X,Y,Z in the picture (right, up,\n"
                   "towards the camera); then :R,G,B and :STRENGTH, if wanted. In fog\n"
-                  "also point:X,Y,Z, a place in the world; STRENGTH is that at a\n"
-                  "distance of 1, falls with its square and, of point:X,Y,Z,RADIUS,\n"
-                  "grows no more within RADIUS. Can be given several times");
+                  "also point:X,Y,Z, a place in the world: STRENGTH is that 1 world unit\n"
+                  "away, and falls with the square of the distance; of\n"
+                  "point:X,Y,Z,RADIUS it is the same within RADIUS. Can be given several\n"
+                  "times");
     const auto addShare = [&](const std::string& name, double& target, const std::string& help) {
         group.addValue(name, "K", target, Parser<double>(turnOn(number(0, kMostLight))),
                        withDefault(help, numberText(target)));
