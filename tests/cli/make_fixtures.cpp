@@ -245,7 +245,8 @@ template <typename Grid = openvdb::FloatGrid>
 typename Grid::Ptr ballOf(const std::string& name, typename Grid::ValueType value, double voxel = 1,
                           double away = 0) {
     const auto grid = emptyFog<Grid>(name);
-    for (auto place = ball("any")->cbeginValueOn(); place; ++place)
+    const auto shape = ball("any");
+    for (auto place = shape->cbeginValueOn(); place; ++place)
         grid->getAccessor().setValueOn(place.getCoord(), value);
     grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
     grid->transform().postTranslate({away, 0, 0});
