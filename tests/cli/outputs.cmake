@@ -27,6 +27,14 @@ endforeach()
 foreach(file out.exr out.png OUT.EXR out.tif)
     deltasplat_cli_test(output.fine.${file} ARGS render ball.vdb -o ${file} CREATES ${file})
 endforeach()
+deltasplat_cli_test(output.fine.deep CREATES out.exr stats.json
+    ARGS render ball.vdb -o out.exr --deep --deep-slices 3 --float --stats stats.json)
+deltasplat_cli_test(output.deep_verbose CREATES out.exr ARGS render ball.vdb -o out.exr --deep -v
+    STDERR_MATCHES "code book .*method auto: .*[0-9]+ samples, at most 2 in a pixel.*--distance=7 .*")
+deltasplat_cli_test(output.deep_no_folder EXIT 4 ARGS render ball.vdb -o nowhere/out.exr --deep
+    STDERR "deltasplat: nowhere/out.exr: cannot be written: No such file or directory")
+deltasplat_cli_test(output.deep_full EXIT 4 ARGS render ${cube} -o full.exr --deep
+    STDERR "deltasplat: full.exr: cannot be written: No space left on device")
 deltasplat_cli_test(output.fine.bits ARGS render ball.vdb -o out.png --bits 16 CREATES out.png)
 deltasplat_cli_test(output.fine.tif_bits ARGS render ball.vdb -o out.tiff --bits 16 CREATES out.tiff)
 deltasplat_cli_test(output.fine.jpg CREATES out.jpg

@@ -29,6 +29,9 @@ deltasplat_script_test(few_threads few_threads.sh ARGS ${tool})
 set_tests_properties(cli.few_threads PROPERTIES SKIP_RETURN_CODE 77)
 deltasplat_script_test(inputs_kept inputs_kept.sh
     ARGS ${tool} ${scratch}/inputs_kept $<BOOL:${DELTASPLAT_ITK}>)
+deltasplat_script_test(full_disk.deep full_disk.sh
+    ARGS ${tool} ${scratch}/full_disk_deep full.exr
+         render input_32x32x32_uint8.raw -o full.exr --size 400x400 --deep)
 foreach(file full.exr full.png full.tif full.jpg)
     deltasplat_script_test(full_disk.${file} full_disk.sh
         ARGS ${tool} ${scratch}/full_disk_${file} ${file}
@@ -62,6 +65,7 @@ add_test(NAME cli.first_look
                  bash ${DELTASPLAT_CLI_SCRIPTS}/first_look.sh ${tool} ${DELTASPLAT_OIIOTOOL}
                  ${scratch}/first_look ${DELTASPLAT_SHARED_DATA}/dicom_chest_ct)
 set_tests_properties(cli.first_look PROPERTIES LABELS "cli;data" TIMEOUT 600 SKIP_RETURN_CODE 77)
+deltasplat_script_test(deep deep.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/deep)
 deltasplat_script_test(modes modes.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/modes)
 deltasplat_script_test(tone tone.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/tone)
 deltasplat_script_test(labels_first labels_first.sh

@@ -200,6 +200,36 @@ foreach(points 1 1:2:3 2:0,1:1 -1:0 1:1.5 x:1)
         "--gradient-opacity: got ${points}; expected GRADIENT:FACTOR,..., gradients of at least 0 in increasing order, factors within 0..1, as in 0:0,200:1"
         --gradient-opacity=${points})
 endforeach()
+foreach(file out.png out.tif out.jpg)
+    deltasplat_cli_test(usage.deep_${file} EXIT 2 ARGS render ${cube} -o ${file} --deep
+        STDERR "deltasplat: --deep: got ${file}; expected an .exr file")
+endforeach()
+foreach(mode xray mip min average drr)
+    deltasplat_refusal(deep_${mode} "--deep: got --mode ${mode}; expected --mode composite"
+        --deep --mode ${mode})
+endforeach()
+deltasplat_refusal(deep_background
+    "--deep: got --background besides; expected none: what lies behind is put there by depth"
+    --deep --background 0,0,0)
+deltasplat_refusal(deep_axes
+    "--axes: got out.exr, whose pixels are light or values alone; expected a .png (render to both)"
+    --deep --axes)
+foreach(slices 0 -1 1.5 1048577)
+    deltasplat_refusal(deep_slices_${slices}
+        "--deep-slices: got ${slices}; expected a whole number from 1 to 1048576"
+        --deep --deep-slices ${slices})
+endforeach()
+deltasplat_refusal(deep_distance
+    "--distance: got 2; expected at least 4 for a deep picture, all of whose depths are beyond the camera"
+    --deep --distance 2)
+deltasplat_refusal(distance_of_panorama
+    "--distance: got --projection latlong; expected --projection ortho or perspective"
+    --projection latlong --size 64x32 --distance 4)
+deltasplat_refusal(distance_of_eye "--distance: got -2; expected a finite number > 0"
+    --projection perspective --distance -2)
+deltasplat_cli_test(usage.deep_memory EXIT 1
+    ARGS render ${cube} -o out.exr --deep --size 2147483647x2147483647
+    STDERR_MATCHES "deltasplat: --size 2147483647x2147483647: needs [0-9.]+ EiB of memory; expected at most [0-9.]+ .iB, which is available")
 deltasplat_refusal(surface_legend
     "--legend: got a surface, which has one colour; expected a picture of values"
     --isovalue 1 --legend -o out.png)
@@ -342,6 +372,8 @@ deltasplat_cli_test(detector_within CREATES out.exr
     STDERR "deltasplat: warning: --sdd: the volume reaches 2.5 beyond the detector, and counts there as well")
 deltasplat_cli_test(perspective CREATES out.exr
     ARGS render ${cube} -o out.exr --projection perspective --focal 35 --aperture 24 --distance 40)
+deltasplat_cli_test(distance_of_parallel CREATES out.exr
+    ARGS render ${cube} -o out.exr --deep --distance 40)
 deltasplat_cli_test(perspective_eye CREATES out.exr
     ARGS render ${cube} -o out.exr --projection perspective --eye 3,4,30 --target 4,4,4 --near 1)
 deltasplat_cli_test(latlong CREATES out.exr
@@ -410,6 +442,8 @@ deltasplat_cli_test(used.both ARGS info ball.vdb ${cube} --grid density --spacin
     STDOUT_MATCHES "voxel size +1 x 1 x 2")
 deltasplat_unused(bits --bits "on an .exr"
     ARGS render ${cube} -o out.exr --size 8x8 --bits 16 CREATES out.exr)
+deltasplat_unused(deep_slices --deep-slices "without --deep"
+    ARGS render ${cube} -o out.exr --size 8x8 --deep-slices 3 CREATES out.exr)
 deltasplat_unused(dither --dither "but in pictures of 8 bits"
     ARGS render ${cube} -o out.tif --size 8x8 --bits 16 --dither 1 CREATES out.tif)
 foreach(option exposure=1 tone=filmic)

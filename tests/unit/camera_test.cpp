@@ -596,6 +596,31 @@ TEST(Camera, refusesEyesThatCannotBe) {
               "`sizePixels`: got 512x512; expected twice as wide as high for `projection` latlong");
 }
 
+// Depths begin where it is said; nothing that is seen moves.
+TEST(Camera, aParallelCameraMayStandAnywhere) {
+    const IndexBox box{{0, 0, 0}, {9, 9, 9}};
+    CameraOptions options;
+    options.view = "iso";
+    const Camera before = makeCamera(options, box, glm::dmat4(1));
+    for (const double distance : {40.0, 3.0, 0.0, -7.5}) {
+        options.distanceWorld = distance;
+        const Camera camera = makeCamera(options, box, glm::dmat4(1));
+        EXPECT_EQ(camera.targetDistanceWorld, distance);
+        EXPECT_NEAR((camera.cameraFromWorld() * glm::dvec4(camera.targetWorld, 1)).z, distance,
+                    1e-12);
+        EXPECT_EQ(camera.frameWidthWorld, before.frameWidthWorld);
+        EXPECT_EQ(camera.pixelFromWorld({1, 2, 3}), before.pixelFromWorld({1, 2, 3}));
+    }
+    EXPECT_EQ(messageOf([](CameraOptions& o) { o.distanceWorld = NAN; }),
+              "`distanceWorld`: got nan; expected a finite number");
+    EXPECT_EQ(messageOf([](CameraOptions& o) {
+                  o.projection = Projection::kLatlong;
+                  o.distanceWorld = 3;
+              }),
+              "`distanceWorld`: got `projection` latlong; expected `projection` ortho or "
+              "perspective");
+}
+
 TEST(Camera, refusesWhatCannotBeMeant) {
     EXPECT_EQ(messageOf([](CameraOptions& o) { o.view = "frnt"; }),
               "`view`: got frnt; expected one of front, back, left, right, top, bottom, iso");

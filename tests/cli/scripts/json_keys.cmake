@@ -42,6 +42,13 @@ expect_value("${stats}" z slice_axis)
 expect_value("${stats}" 1 threads)
 expect_value("${stats}" 0.0 tolerance)
 
+run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --deep --deep-slices 2 -q)
+file(READ ${SCRATCH}/stats.json stats)
+expect_keys("${stats}" deep "slices;samples;most_samples")
+expect_value("${stats}" 2 deep slices)
+# Four slices are full.
+expect_value("${stats}" 2 deep most_samples)
+
 foreach(mode xray mip)
     run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --mode ${mode} -q)
     file(READ ${SCRATCH}/stats.json stats)
