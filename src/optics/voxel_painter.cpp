@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "optics/check_optics.h"
 #include "optics/opacity_steps.h"
 #include "optics/painters.h"
 
@@ -42,6 +43,7 @@ void LookLight::leaveMissing(const OwnLook* looks, WordUnits& colors) {
 }
 
 std::unique_ptr<const VoxelPainter> makePainter(const Volume& volume, const Optics& optics) {
+    checkOptics(optics);
     const bool isMedium = !optics.parts.empty() || optics.colorGrids;
     if (volume.empty()) return isMedium ? makeMediumPainter(volume, optics, nullptr) : nullptr;
     if (isMedium) {

@@ -187,7 +187,7 @@ deltasplat_refusal(point_light_on_surfaces
     "--light: got point:X,Y,Z without --lighting scatter; expected head, X,Y,Z or view:X,Y,Z"
     --light point:1,2,3)
 deltasplat_refusal(scatter_and_between
-    "--between: got 1 with --lighting scatter; expected 0: lit fog is drawn by whole voxels"
+    "--between: got 1 with --lighting scatter; expected 0: lit fog and media of several grids are drawn by whole voxels"
     --lighting scatter --between 1)
 deltasplat_cli_test(usage.env_missing EXIT 3 ARGS render ${cube} -o out.exr --env none.exr
     STDERR "deltasplat: none.exr: got no such file; expected a readable file")
