@@ -32,9 +32,10 @@ inline constexpr int kMostLightChannels = 8;
 inline constexpr float kNoDepth = 1e10f;
 
 /// Renders channels beside a picture of Mode::kComposite. Premultiplied: `emission` + `ambient` +
-/// `direct` is the picture, as far as each is told of a voxel (ClassTable: to 2^-8). Depths and places are means over what
-/// is seen of a pixel, by how much it hides; depth counts along the camera's line of sight from its
-/// eye, or of a panorama from the eye to the mean place. Where nothing is seen, places are 0.
+/// `direct` is the picture, as far as each is told of a voxel (ClassTable: to 2^-8). Depths and
+/// places are means over what is seen of a pixel, by how much it hides; depth counts along the
+/// camera's line of sight from its eye, or of a panorama from the eye to the mean place. Where
+/// nothing is seen, places are 0.
 /// @param camera  of the picture
 /// @throw Error(kUsage) for what the scene does not have: depth or position of surfaces or of media
 ///        whose parts swallow light, ambient and direct light without scattering; as render
