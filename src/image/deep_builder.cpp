@@ -22,9 +22,9 @@ namespace {
 
 // Columns so far apart that a run of their own each takes less memory.
 constexpr int kFarApart = 4;
-// Where less than that is seen of what lies behind, half floats may have no room for more alpha,
+// Where less than that is seen of what lies behind, half floats have hardly room for more alpha,
 // and filters overshoot by more.
-constexpr double kLeastSeen = 0x1p-12;
+constexpr double kLeastSeen = 0x1p-10;
 
 glm::vec4 colorAt(const Image& image, int x, int y) {
     const float* rgba = image.pixel(x, y);
