@@ -20,7 +20,7 @@ inline constexpr int kMostSlicesPerSample = 1 << 20;
 /// Renders one picture in depth: what lines of sight meet of Mode::kComposite, cut into samples
 /// between slices of the volume. Depths are those of Camera::cameraFromWorld, along the camera's
 /// line of sight; kLatlong, which sees all sides, has distances from the eye. What lies behind
-/// where less than 2^-12 gets through belongs to the last sample before.
+/// where less than 2^-10 gets through belongs to the last sample before.
 /// @param deep  is replaced
 /// @return the flat picture, which samples put over each other give (as `render`, to a few units
 ///         of the last place of floats); stats as those of `render`

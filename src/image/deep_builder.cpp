@@ -10,6 +10,7 @@
 #include <atomic>
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -21,9 +22,9 @@ namespace {
 
 // Columns so far apart that a run of their own each takes less memory.
 constexpr int kFarApart = 4;
-// Where less than that is seen of what lies behind, half floats may have no room for more alpha,
+// Where less than that is seen of what lies behind, half floats have hardly room for more alpha,
 // and filters overshoot by more.
-constexpr double kLeastSeen = 0x1p-12;
+constexpr double kLeastSeen = 0x1p-10;
 
 glm::vec4 colorAt(const Image& image, int x, int y) {
     const float* rgba = image.pixel(x, y);
@@ -120,9 +121,8 @@ void DeepBuilder::addSamples(glm::ivec2 pixel, std::vector<State>& states, DeepR
     // light away: what is too much is left out of those in front.
     for (std::size_t i = states.size() - 1; i > 0; --i)
         states[i - 1].color = glm::min(states[i - 1].color, states[i].color);
-    // Of pixels between those of another region's slices, states may be those.
-    const SliceDepths* depths = nullptr;
-    DepthLine line;
+    // All samples are of one region; states that change nothing may be another's.
+    std::optional<DepthLine> line;
     glm::dvec4 before(0);
     for (const State& state : states) {
         // The last sample that lets hardly anything through shows all that does get through.
@@ -130,9 +130,8 @@ void DeepBuilder::addSamples(glm::ivec2 pixel, std::vector<State>& states, DeepR
         const glm::dvec4 color(isLast ? states.back().color : state.color);
         if (color == before) continue;
         const Stage& stage = stages_[state.stage];
-        if (depths != stage.depths.get()) line = stage.depths->lineAt(pixel.x, pixel.y);
-        depths = stage.depths.get();
-        row.samples.push_back(sampleOf(line, stage, (color - before) / (1 - before.a)));
+        if (!line) line = stage.depths->lineAt(pixel.x, pixel.y);
+        row.samples.push_back(sampleOf(*line, stage, (color - before) / (1 - before.a)));
         if (isLast) break;
         before = color;
     }

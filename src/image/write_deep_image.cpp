@@ -5,8 +5,6 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +12,7 @@
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "image/encode_image.h"
+#include "image/stored_samples.h"
 #include "memory.h"
 #include "parallel.h"
 
@@ -45,85 +44,54 @@ OIIO::ImageSpec deepSpec(glm::ivec2 size, const ImageFileOptions& options) {
     return spec;
 }
 
-// How values are stored.
-class Stored {
-  public:
-    explicit Stored(bool asFloat)
-        : largest_(asFloat ? std::numeric_limits<float>::max() : 65504.0f),
-          nothing_(asFloat ? 0.0f : 0x1p-25f) {}
-
-    float of(float value) const {
-        return std::isnan(value) ? 0.0f : std::clamp(value, -largest_, largest_);
-    }
-    // Whether no channel of the sample becomes anything but 0.
-    bool isNothing(const DeepSample& sample) const {
-        const auto isNone = [&](float value) { return !(std::abs(value) > nothing_); };
-        return isNone(sample.rgba.r) && isNone(sample.rgba.g) && isNone(sample.rgba.b) &&
-               isNone(sample.rgba.a);
-    }
-
-  private:
-    float largest_;
-    float nothing_;  // what is rounded to 0
-};
-
 // Rows [first, last) as OpenImageIO has them.
 class Band {
   public:
-    Band(const DeepImage& image, int first, int last, const OIIO::ImageSpec& spec,
-         const Stored& stored)
-        : image_(image), first_(first), width_(image.size.x), stored_(stored) {
-        const auto rows = std::size_t(last - first);
+    Band(const DeepImage& image, int first, int last, const OIIO::ImageSpec& spec, bool asFloat)
+        : width_(image.size.x), rows_(std::size_t(last - first)) {
         data_.init(std::int64_t{width_} * (last - first), kChannels, spec.channelformats,
                    spec.channelnames);
-        std::vector<unsigned> counts(rows * std::size_t(width_));
-        parallelFor(counts.size() / std::size_t(width_), [&](std::size_t row) {
-            for (int x = 0; x < width_; ++x)
-                counts[row * std::size_t(width_) + std::size_t(x)] = countOf({x, int(row)});
+        std::vector<unsigned> counts(rows_.size() * std::size_t(width_));
+        parallelFor(rows_.size(), [&](std::size_t y) {
+            unsigned* count = &counts[y * std::size_t(width_)];
+            for (int x = 0; x < width_; ++x) {
+                const std::size_t before = rows_[y].size();
+                addStored(image.pixel(x, first + int(y)), asFloat, rows_[y]);
+                *count++ = unsigned(rows_[y].size() - before);
+            }
         });
         data_.set_all_samples(counts);
         // Makes room for all at once, before threads ask for some.
         data_.all_data();
-        parallelFor(rows, [&](std::size_t row) {
-            for (int x = 0; x < width_; ++x) fill({x, int(row)});
-        });
+        parallelFor(rows_.size(), [&](std::size_t y) { fillRow(y); });
     }
 
     const OIIO::DeepData& data() const { return data_; }
 
   private:
-    unsigned countOf(glm::ivec2 pixel) const {
-        const auto samples = image_.pixel(pixel.x, first_ + pixel.y);
-        return unsigned(
-            std::count_if(samples.begin(), samples.end(),
-                          [&](const DeepSample& sample) { return !stored_.isNothing(sample); }));
-    }
-
-    void fill(glm::ivec2 pixel) {
-        const std::int64_t number = std::int64_t{width_} * pixel.y + pixel.x;
-        int next = 0;
-        for (const DeepSample& sample : image_.pixel(pixel.x, first_ + pixel.y)) {
-            if (stored_.isNothing(sample)) continue;
-            for (int c = 0; c < 4; ++c)
-                data_.set_deep_value(number, c, next, stored_.of(sample.rgba[c]));
-            data_.set_deep_value(number, 4, next, sample.z);
-            data_.set_deep_value(number, 5, next, sample.zBack);
-            ++next;
+    void fillRow(std::size_t y) {
+        const DeepSample* sample = rows_[y].data();
+        for (int x = 0; x < width_; ++x) {
+            const std::int64_t pixel = std::int64_t(y) * width_ + x;
+            const int count = data_.samples(pixel);
+            for (int s = 0; s < count; ++s, ++sample) {
+                for (int c = 0; c < 4; ++c) data_.set_deep_value(pixel, c, s, sample->rgba[c]);
+                data_.set_deep_value(pixel, 4, s, sample->z);
+                data_.set_deep_value(pixel, 5, s, sample->zBack);
+            }
         }
     }
 
-    const DeepImage& image_;
-    int first_;
     int width_;
-    const Stored& stored_;
+    std::vector<std::vector<DeepSample>> rows_;
     OIIO::DeepData data_;
 };
 
 bool writeBands(OIIO::ImageOutput& output, const DeepImage& image, const OIIO::ImageSpec& spec,
-                const Stored& stored) {
+                bool asFloat) {
     for (int first = 0; first < image.size.y; first += kBand) {
         const int last = std::min(first + kBand, image.size.y);
-        const Band band(image, first, last, spec, stored);
+        const Band band(image, first, last, spec, asFloat);
         if (!output.write_deep_scanlines(first, last, 0, band.data())) return false;
     }
     return true;
@@ -151,9 +119,8 @@ std::string encodeDeepImage(const std::filesystem::path& file, const DeepImage& 
     requireMemory(file.string() + ", " + std::to_string(image.samples()) + " samples",
                   kEncodedCopies * sampleBytes * double(image.samples()));
     const OIIO::ImageSpec spec = deepSpec(image.size, options);
-    const Stored stored(options.floatExr);
     return encodeInMemory(file, "openexr", spec, [&](OIIO::ImageOutput& output) {
-        return writeBands(output, image, spec, stored);
+        return writeBands(output, image, spec, options.floatExr);
     });
 }
 

@@ -76,7 +76,7 @@ TEST(DeepBuilder, nothingIsSeenBehindWhatIsOpaque) {
         EXPECT_EQ(samples[1].rgba, glm::vec4(1, 0.5f, 1, 1));
         EXPECT_EQ(samples[1].zBack, 14.0f);
     }
-    EXPECT_EQ(samplesOf({{1, 1, 1, 0.9997f}, {1, 1, 1, 1}}).size(), 2u);
+    EXPECT_EQ(samplesOf({{1, 1, 1, 0.998f}, {1, 1, 1, 1}}).size(), 2u);
 }
 
 // A filter that overshoots may take away what it has shown before.

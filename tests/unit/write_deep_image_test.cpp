@@ -127,6 +127,54 @@ TEST(WriteDeepImage, halvesAreWithinHalfAStepAndDepthsExact) {
     EXPECT_EQ(stored.data.deep_value(0, 5, 0), 1234.568f);
 }
 
+// What samples give over each other, with depths alone left out.
+glm::dvec4 flattened(const std::vector<DeepSample>& samples) {
+    glm::dvec4 sum(0);
+    for (const DeepSample& sample : samples) sum += (1 - sum.a) * glm::dvec4(sample.rgba);
+    return sum;
+}
+
+TEST(WriteDeepImage, roundedSamplesOverEachOtherStayThePixel) {
+    std::mt19937 random(9);
+    const auto unit = [&] { return float(random() >> 8) / 16777216.0f; };
+    // From a few dense ones to many thin ones, and what is bright behind what lets little through.
+    for (int count = 1; count < 300; count += 1 + count / 8) {
+        for (int i = 0; i < 20; ++i) {
+            std::vector<DeepSample> samples;
+            double left = 1;
+            while (int(samples.size()) < count && left > 1e-3) {
+                const float alpha = std::min(1.0f, 3 * unit() / float(count));
+                const float bright = left < 0.01 ? 30.0f : 1.0f;
+                samples.push_back({{alpha * unit() * bright, alpha, 0, alpha}, 1, 2});
+                left *= 1 - alpha;
+            }
+            const Stored stored = writeAndRead(onePixel(samples), {});
+            std::vector<DeepSample> halves;
+            for (int s = 0; s < stored.data.samples(0); ++s) {
+                DeepSample& half = halves.emplace_back();
+                for (int c = 0; c < 4; ++c) half.rgba[c] = stored.data.deep_value(0, c, s);
+                EXPECT_EQ(half.rgba.b, 0);
+                EXPECT_LE(half.rgba.a, 1);
+            }
+            const glm::dvec4 wanted = flattened(samples);
+            const glm::dvec4 got = flattened(halves);
+            for (int c = 0; c < 4; ++c)
+                ASSERT_NEAR(got[c], wanted[c], 0x1p-12 * std::max(1.0, wanted[c])) << count;
+        }
+    }
+}
+
+// A half has no room for 0.9999; behind it something is seen all the same.
+TEST(WriteDeepImage, whatIsNotOpaqueHidesNothing) {
+    const std::vector<DeepSample> samples = {{{0, 0, 0, 0.9999f}, 1, 2}, {{1, 1, 1, 1}, 2, 3}};
+    const Stored stored = writeAndRead(onePixel(samples), {});
+    ASSERT_EQ(stored.data.samples(0), 2);
+    EXPECT_EQ(stored.data.deep_value(0, 3, 0), 1 - 0x1p-11f);
+    EXPECT_NEAR(stored.data.deep_value(0, 0, 1) * 0x1p-11f, 1e-4f, 1e-7f);
+    // Alone it is what it is rounded to.
+    EXPECT_EQ(writeAndRead(onePixel({samples[0]}), {}).data.deep_value(0, 3, 0), 1);
+}
+
 TEST(WriteDeepImage, leavesOutSamplesOfWhichNothingIsStored) {
     const std::vector<DeepSample> samples = {
         {{0, 0, 0, 0}, 1, 2},           // nothing at all

@@ -21,7 +21,8 @@ void checkDeepImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels
 /// threads.
 ///
 /// NaN is never stored: it becomes 0. Values beyond the largest finite number of the channel's type
-/// become that number. A sample whose colour and alpha would all be stored as 0 is left out.
+/// become that number. A sample whose colour and alpha would all be stored as 0 is left out. Halves
+/// are rounded so that samples over each other stay what they were, within 2^-12 of 1.
 /// @throw Error(kUsage) as checkDeepImageFile, or if the picture has no pixels; Error(kFailed) if
 /// it does not fit this machine's memory; Error(kOutput) if it cannot be written
 void writeDeepImage(const std::filesystem::path& file, const DeepImage& image,
