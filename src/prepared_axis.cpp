@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "prepared_axis.h"
 
-#include <glm/common.hpp>
 #include <utility>
 
 #include "default_floats.h"
 #include "delta/code_blocks.h"
 #include "deltasplat/error.h"
-#include "ingest/codes/code_tree.h"
+#include "medium/room.h"
 #include "optics/hold_rule.h"
 #include "optics/largest_alpha.h"
 #include "parallel.h"
@@ -32,21 +31,6 @@ Optics opticsOf(const Volume& volume, Optics optics, const VoxelPainter* painter
     if (!optics.range) optics.range = defaultRange(volume);
     if (painter && !painter->needsColors()) optics.transferFunction.colors = {{0, glm::dvec3(1)}};
     return optics;
-}
-
-// The volume with room for what is seen besides. What is seen where nothing else is makes it one
-// that is not empty.
-std::shared_ptr<const Volume> withRoom(const std::shared_ptr<const Volume>& volume,
-                                       const VoxelPainter* painter) {
-    const BlockSet* more = painter ? painter->more() : nullptr;
-    if (!more || more->positions.empty()) return volume;
-    const auto wide = std::make_shared<Volume>(*volume);
-    if (!wide->codes) wide->codes = std::make_shared<const CodeTree>();
-    if (volume->empty()) wide->activeCount = 1;
-    wide->box = volume->empty() ? more->box
-                                : IndexBox{glm::min(volume->box.min, more->box.min),
-                                           glm::max(volume->box.max, more->box.max)};
-    return wide;
 }
 
 Scene requireVolume(Scene scene) {
@@ -143,7 +127,9 @@ PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne)
       options(withOptions),
       isThin(showsThin(*scene.volume, scene.optics)),
       isForOne(forOne) {
-    scene.volume = withRoom(scene.volume, painter.get());
+    const BlockSet* more = painter ? painter->more() : nullptr;
+    if (more && !more->positions.empty())
+        scene.volume = std::make_shared<const Volume>(withRoom(*scene.volume, *more));
 }
 
 std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,

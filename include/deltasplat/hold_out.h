@@ -18,8 +18,8 @@ struct DepthImage {
     std::vector<float> depths;
 };
 
-/// Reads the channel Z of an .exr, or depth, or the first that ends in .Z (in any case), or the
-/// only one there is. Depths of 0 and below, NaN and those from 1e10 on stand for nothing, the
+/// Reads the channel Z of an .exr, else depth, else the .Z of a layer called depth (as
+/// ViewLayer.Depth.Z; all in any case), else the only one there is. Depths of 0 and below, NaN and those from 1e10 on stand for nothing, the
 /// first two with a warning.
 /// @throw Error(kInput) if the file is none, or has no such channel
 DepthImage readDepthImage(const std::filesystem::path& file, const Listener& listener = {});

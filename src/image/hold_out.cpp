@@ -10,6 +10,7 @@
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
+#include "ingest/files/file_name.h"
 #include "ingest/files/refuse_file.h"
 #include "ingest/images/image_file.h"
 #include "lower_case.h"
@@ -23,12 +24,24 @@ namespace {
 // What renderers write where there is nothing, and more.
 constexpr float kNothing = 1e10f;
 
+// The last part of a layer's name: "depth" of "ViewLayer.Depth.Z".
+std::string layerOf(const std::string& channel) {
+    const std::string layer = channel.substr(0, channel.rfind('.'));
+    return layer.substr(layer.rfind('.') + 1);
+}
+
 int depthChannel(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
-    int found = -1;
-    for (int i = spec.nchannels - 1; i >= 0; --i) {
-        const std::string name = lowerCase(spec.channelnames[std::size_t(i)]);
-        if (name == "z" || name == "depth") return i;
-        if (name.ends_with(".z") && !name.ends_with("p.z") && !name.ends_with("n.z")) found = i;
+    const auto find = [&](const auto& suits) {
+        for (int i = 0; i < spec.nchannels; ++i)
+            if (suits(lowerCase(spec.channelnames[std::size_t(i)]))) return i;
+        return -1;
+    };
+    int found = find([](const std::string& name) { return name == "z"; });
+    if (found < 0) found = find([](const std::string& name) { return name == "depth"; });
+    if (found < 0) {
+        found = find([](const std::string& name) {
+            return name.ends_with(".z") && layerOf(name).find("depth") != std::string::npos;
+        });
     }
     if (found < 0 && spec.nchannels == 1) found = 0;
     if (found >= 0) return found;
@@ -51,6 +64,8 @@ glm::vec4 cutAt(const DeepSample& sample, float depth) {
 
 DepthImage readDepthImage(const std::filesystem::path& file, const Listener& listener) {
     const DefaultFloats floats;
+    if (lowerExtension(file) != ".exr")
+        refuseFile(file, "another format", "an .exr with a channel Z");
     const ImagePages pages(file);
     ImageFile image(file, pages, 0);
     const OIIO::ImageSpec& spec = image.spec();
@@ -83,9 +98,9 @@ Image holdOut(const DeepImage& deep, const DepthImage& solid) {
         const auto text = [](const glm::ivec2& size) {
             return std::to_string(size.x) + "x" + std::to_string(size.y);
         };
-        throw Error(ErrorCode::kUsage, gotExpected("depths of solid things",
-                                                   text(solid.size) + " pixels",
-                                                   text(deep.size) + ", those of the picture"));
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("depths of solid things", text(solid.size) + " pixels",
+                                text(deep.size) + ", those of the picture"));
     }
     Image image(deep.size);
     parallelFor(std::size_t(deep.size.y), [&](std::size_t y) {

@@ -71,7 +71,8 @@ VoxelUnits unitsFor(const LookLight& inner, const std::vector<PartLooks>& parts,
 
 glm::dvec3 ColorFactor::largestOf(const ColorGrids& grids) {
     glm::dvec3 largest(1);
-    for (int c = 0; c < 3; ++c) largest[c] = std::max({1.0, grids[std::size_t(c)]->valueMax});
+    for (int c = 0; c < 3; ++c)
+        largest[c] = std::clamp(grids[std::size_t(c)]->valueMax, 1.0, kBrightestColor);
     return largest;
 }
 

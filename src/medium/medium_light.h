@@ -11,6 +11,9 @@
 
 namespace deltasplat {
 
+/// Colours of grids beyond this are taken for it, so that an outlier spoils no others.
+inline constexpr double kBrightestColor = 16;
+
 /// A colour that a volume's own is multiplied by, as looks keep it: square roots of shares of the
 /// largest, 11 bits of red and green and 10 of blue.
 struct ColorFactor {

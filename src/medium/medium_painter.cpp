@@ -11,6 +11,7 @@
 #include "medium/medium_light.h"
 #include "medium/part_looks.h"
 #include "medium/part_sampler.h"
+#include "medium/room.h"
 #include "optics/class_light.h"
 #include "optics/painters.h"
 #include "view/affine.h"
@@ -82,10 +83,7 @@ class ColorReader {
 // Reads the other parts of a medium at a volume's voxels.
 class MediumPainter : public VoxelPainter {
   public:
-    // @param inner  who paints the volume's own; null: they look as their classes do
-    MediumPainter(const Volume& volume, const Optics& optics,
-                  std::unique_ptr<const VoxelPainter> inner)
-        : inner_(std::move(inner)), parts_(optics.parts) {
+    MediumPainter(const Volume& volume, const Optics& optics) : parts_(optics.parts) {
         const double unitDistances = longestWay(volume, optics);
         for (const MediumPart& part : parts_) {
             const PartSampler& sampler = samplers_.emplace_back(*part.volume, volume.worldFromIndex,
@@ -94,6 +92,9 @@ class MediumPainter : public VoxelPainter {
         }
         if (optics.colorGrids) colors_.emplace(*optics.colorGrids, volume.worldFromIndex);
         findMore();
+        // Light is swept through all there is, whichever parts of it shine.
+        if (optics.scattering && !volume.empty())
+            inner_ = makeScatterPainter(withRoom(volume, more_), optics);
     }
 
     bool needsColors() const override { return true; }
@@ -147,7 +148,7 @@ class MediumPainter : public VoxelPainter {
         }
     }
 
-    std::unique_ptr<const VoxelPainter> inner_;
+    std::unique_ptr<const VoxelPainter> inner_;  // null: voxels look as their classes do
     std::vector<MediumPart> parts_;
     std::vector<PartSampler> samplers_;  // [parts]
     std::vector<PartLooks> looks_;       // [parts]
@@ -157,9 +158,8 @@ class MediumPainter : public VoxelPainter {
 
 }  // namespace
 
-std::unique_ptr<const VoxelPainter> makeMediumPainter(const Volume& volume, const Optics& optics,
-                                                      std::unique_ptr<const VoxelPainter> inner) {
-    return std::make_unique<MediumPainter>(volume, optics, std::move(inner));
+std::unique_ptr<const VoxelPainter> makeMediumPainter(const Volume& volume, const Optics& optics) {
+    return std::make_unique<MediumPainter>(volume, optics);
 }
 
 }  // namespace deltasplat

@@ -72,8 +72,8 @@ PartLooks lookUpPart(const MediumPart& part, const Volume& levels, double unitDi
     };
     if (part.kind == MediumPart::Kind::kBlackbody) {
         return numbered(levels, [&](double value) {
-            return seen(part.strength *
-                        blackbodyGlow(part.kelvinScale * value + part.kelvinOffset));
+            const double kelvin = part.kelvinScale * value + part.kelvinOffset;
+            return seen(part.strength * blackbodyGlow(std::min(kelvin, kHottestKelvin)));
         });
     }
     const TransferFunction& function = part.transferFunction;

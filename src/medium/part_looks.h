@@ -9,6 +9,9 @@
 
 namespace deltasplat {
 
+/// Black bodies that are hotter are taken for this hot.
+inline constexpr double kHottestKelvin = 1e5;
+
 /// What a part of a medium adds to a ray on a unit distance.
 struct PartLook {
     double extinction = 0;  ///< may be infinite

@@ -90,6 +90,7 @@ class PartSampler::Reader {
 
 PartSampler::PartSampler(const Volume& part, const glm::dmat4& worldFromIndex, Around around)
     : part_(part),
+      codes_(part.codes ? part.codes : std::make_shared<const CodeTree>()),
       around_(around),
       partFromIndex_(glm::inverse(part.worldFromIndex) * worldFromIndex),
       background_(part.hasBackground ? part.background : 0) {
@@ -190,7 +191,7 @@ double PartSampler::meanOf(const Reader& reader, const glm::dvec3& at) const {
 }
 
 void PartSampler::read(const BlockPlace& place, std::span<Slot, 512> slots) const {
-    const Reader reader(*part_.codes);
+    const Reader reader(*codes_);
     const glm::dvec3 first(partFromIndex_ * glm::dvec4(place.first, 1));
     const glm::dmat3 steps = glm::dmat3(partFromIndex_) * place.steps;
     for (int n = 0; n < 512; ++n) {
@@ -260,7 +261,7 @@ std::vector<glm::ivec3> PartSampler::blocksSeen(std::span<const Slot> slotMap,
                                                 IndexBox& box) const {
     const std::vector<Slot> seen = seenCodes(slotMap);
     std::set<glm::ivec3, PlaceLess> places;
-    const BlockReader reader(*part_.codes, nullptr, 0, seen);
+    const BlockReader reader(*codes_, nullptr, 0, seen);
     constexpr double kBytesPerPlace = 96;
     for (const CodeBlock& block : reader.blocks()) {
         const IndexBox reach = reachOf(boxOfSeen(block, seen));

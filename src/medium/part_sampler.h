@@ -4,6 +4,7 @@
 #include <array>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -57,6 +58,7 @@ class PartSampler {
     IndexBox reachOf(const IndexBox& box) const;
 
     const Volume& part_;
+    std::shared_ptr<const CodeTree> codes_;
     Around around_;
     glm::dmat4 partFromIndex_;
     PartFit fit_ = PartFit::kSame;

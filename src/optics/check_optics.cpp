@@ -147,8 +147,10 @@ void checkRange(const std::string& option, const glm::dvec2& range) {
 void checkPart(const MediumPart& part, bool isLit) {
     constexpr const char* kOption = "`parts`";
     requireThat(part.volume != nullptr, kOption, "one without a volume", "volumes");
-    checkLight("`parts` strength", part.strength);
     const bool absorbs = part.kind == MediumPart::Kind::kAbsorption;
+    if (!absorbs) checkLight("`parts` strength", part.strength);
+    requireThat(std::isfinite(part.strength) && part.strength >= 0, "`parts` strength",
+                numberText(part.strength), "a number >= 0");
     requireThat(!absorbs || !isLit, kOption, "one that swallows light, with `scattering` besides",
                 "one of the two");
     for (const double number : {part.kelvinScale, part.kelvinOffset}) {

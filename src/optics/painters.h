@@ -38,9 +38,8 @@ std::unique_ptr<const VoxelPainter> makeFadingPainter(const Volume& volume,
                                                       const std::vector<glm::dvec2>& factors,
                                                       std::unique_ptr<const VoxelPainter> inner);
 
-/// Returns who adds the other parts of a medium, and colours of grids.
-/// @param inner  who paints the volume's own voxels, not by looks; null: they look as their classes
-std::unique_ptr<const VoxelPainter> makeMediumPainter(const Volume& volume, const Optics& optics,
-                                                      std::unique_ptr<const VoxelPainter> inner);
+/// Returns who adds the other parts of a medium, and colours of grids, to a volume, which may be
+/// empty, and lights it as makeScatterPainter does, if that is asked for.
+std::unique_ptr<const VoxelPainter> makeMediumPainter(const Volume& volume, const Optics& optics);
 
 }  // namespace deltasplat

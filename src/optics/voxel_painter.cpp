@@ -45,11 +45,8 @@ void LookLight::leaveMissing(const OwnLook* looks, WordUnits& colors) {
 std::unique_ptr<const VoxelPainter> makePainter(const Volume& volume, const Optics& optics) {
     checkOptics(optics);
     const bool isMedium = !optics.parts.empty() || optics.colorGrids;
-    if (volume.empty()) return isMedium ? makeMediumPainter(volume, optics, nullptr) : nullptr;
-    if (isMedium) {
-        return makeMediumPainter(volume, optics,
-                                 optics.scattering ? makeScatterPainter(volume, optics) : nullptr);
-    }
+    if (isMedium) return makeMediumPainter(volume, optics);
+    if (volume.empty()) return nullptr;
     if (optics.scattering) return makeScatterPainter(volume, optics);
     if (optics.surface) return makeSurfacePainter(volume, *optics.surface, optics.shading);
     std::unique_ptr<const VoxelPainter> painter;

@@ -59,7 +59,7 @@ deltasplat_bad_input(grid_name
     "two.vdb: got no grid \"smoke\"; expected one of density (float), heat (float)"
     two.vdb --grid smoke)
 deltasplat_bad_input(grid_type
-    "mixed.vdb: got grid \"velocity\" of type vec3s; expected ${scalar}"
+    "mixed.vdb: got grid \"velocity\" of type vec3s; expected ${scalar}, or a part of it such as velocity.x"
     mixed.vdb --grid velocity)
 
 foreach(file nan.vdb nan_4x4x4_float32.raw)

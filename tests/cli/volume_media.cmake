@@ -62,14 +62,30 @@ foreach(layer Flame Flame: :fire)
 endforeach()
 deltasplat_cli_test(medium.lit_layers EXIT 2
     ARGS render fire.vdb -o out.exr --layer density:grey --layer Flame:grey --light 1,0,0
-    STDERR "deltasplat: --emission-grid: got one that swallows light, with --lighting scatter besides; expected one of the two")
+    STDERR "deltasplat: --layer: got several that swallow light with --lighting scatter; expected one, and fire")
+deltasplat_cli_test(medium.many_layers EXIT 2
+    ARGS render fire.vdb -o out.exr --layer r:grey --layer g:grey --layer b:grey --layer cold:grey --layer density:grey
+    STDERR "deltasplat: --layer: got 5 of them; expected at most 4")
+deltasplat_cli_test(medium.layer_not_vdb EXIT 2
+    ARGS render ${cube} -o out.exr --size 8x8 --layer nosuch:grey
+    STDERR "deltasplat: --layer: got it with ${cube}; expected it with a .vdb input")
+deltasplat_medium(outlier ARGS --emission-grid temperature --temperature-scale 1000
+    WARNS "--emission-grid: values of temperature, 1500 to 1500, reach 1500000 K; what is hotter than 100000 K is taken for that")
+deltasplat_cli_test(medium.clear_density CREATES out.exr
+    ARGS render fire.vdb -o out.exr --size 8x8 --layer temperature:fire --density-scale 1
+    STDERR "deltasplat: warning: --density-scale: has no effect without a --layer that swallows light")
+deltasplat_cli_test(medium.cut_coarse EXIT 2
+    ARGS ${fire} --emission-grid coarse --clip 0,0,0,1,0,0 -qq
+    STDERR "deltasplat: --emission-grid: got grid coarse, whose voxels are others than those of density, which is cut; expected grids of the same voxels, or nothing cut")
+deltasplat_unused(medium_light --light "on a medium of several grids without --lighting scatter"
+    CREATES out.exr ARGS ${fire} --emission-grid temperature --light 1,0,0)
 foreach(scale x 1,2,3 1,)
     string(MAKE_C_IDENTIFIER scale_${scale} name)
     deltasplat_cli_test(medium.${name} EXIT 2 ARGS ${fire} --temperature-scale ${scale}
         STDERR "deltasplat: --temperature-scale: got ${scale}; expected SCALE or SCALE,OFFSET, as in 1,273.15")
 endforeach()
 deltasplat_cli_test(medium.strength EXIT 2 ARGS ${fire} --emission-strength=-1
-    STDERR "deltasplat: --emission-strength: got -1; expected a number within 0..1e6")
+    STDERR "deltasplat: --emission-strength: got -1; expected a finite number from 0 to 1e+06")
 
 foreach(option emission-tf=grey emission-range=1,2 emission-strength=2 temperature-scale=2)
     string(REGEX REPLACE "=.*" "" name ${option})

@@ -218,7 +218,7 @@ void addLooks(Scenes& scenes) {
                          {LightFrame::kWorld, {-0.3, -0.2, 1}, {0.2, 0.3, 1}, 3}};
     scenes.add("scattered", "cloud", turned(10, 50), bent()).optics.scattering = scattering;
     scenes.add("scattered-perspective", "fog", camera, colored()).optics.scattering = scattering;
-    RenderOptions& fire = scenes.addMedium("fire", "cloud", "vessels", turned(10, 50));
+    RenderOptions& fire = scenes.addMedium("fire", "cloud", "engine", turned(10, 50));
     fire.optics.scattering = scattering;
     fire.optics.parts[0].kelvinScale = 20;
     MediumPart& veil = scenes.addMedium("veiled", "engine", "cloud", camera).optics.parts[0];

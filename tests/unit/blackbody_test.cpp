@@ -14,10 +14,10 @@ TEST(Blackbody, hasThePublishedColors) {
     struct Known {
         double kelvin, x, y;
     };
-    for (const Known& known : {Known{1000, 0.6528, 0.3444}, Known{1500, 0.5857, 0.3931},
-                               Known{2000, 0.5267, 0.4133}, Known{2500, 0.4770, 0.4137},
-                               Known{2856, 0.4476, 0.4074}, Known{4000, 0.3805, 0.3768},
-                               Known{6500, 0.3135, 0.3237}, Known{10000, 0.2807, 0.2884}}) {
+    for (const Known& known :
+         {Known{1000, 0.6528, 0.3444}, Known{1500, 0.5857, 0.3931}, Known{2000, 0.5267, 0.4133},
+          Known{2500, 0.4770, 0.4137}, Known{2856, 0.4476, 0.4074}, Known{4000, 0.3805, 0.3768},
+          Known{6500, 0.3135, 0.3237}, Known{10000, 0.2807, 0.2884}}) {
         const glm::dvec2 xy = blackbodyChromaticity(known.kelvin);
         EXPECT_NEAR(xy.x, known.x, 7e-4) << known.kelvin;
         EXPECT_NEAR(xy.y, known.y, 7e-4) << known.kelvin;

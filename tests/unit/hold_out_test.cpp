@@ -20,9 +20,8 @@ DeepImage someDeep() {
     DeepImage deep;
     deep.size = {2, 1};
     deep.rows.resize(1);
-    deep.rows[0].samples = {{{0.5f, 0.25f, 0, 0.5f}, 2, 4},
-                            {{0, 0.25f, 0.5f, 0.5f}, 4, 8},
-                            {{4, 2, 0, 0}, 1, 3}};
+    deep.rows[0].samples = {
+        {{0.5f, 0.25f, 0, 0.5f}, 2, 4}, {{0, 0.25f, 0.5f, 0.5f}, 4, 8}, {{4, 2, 0, 0}, 1, 3}};
     deep.rows[0].begins = {0, 2, 3};
     return deep;
 }
@@ -53,7 +52,9 @@ TEST(HoldOut, cutsWhatIsInTheWay) {
 }
 
 TEST(HoldOut, refusesAnotherSize) {
-    EXPECT_EQ(errorOf([] { holdOut(someDeep(), {{1, 2}, {1, 1}}); }),
+    EXPECT_EQ(errorOf([] {
+                  holdOut(someDeep(), {{1, 2}, {1, 1}});
+              }),
               "usage: depths of solid things: got 1x2 pixels; expected 2x1, those of the picture");
 }
 
@@ -71,7 +72,11 @@ TEST(HoldOut, readsChannelsOfDepth) {
     const float nothing = std::numeric_limits<float>::infinity();
     EXPECT_EQ(read.depths, (std::vector<float>{1.5f, nothing, nothing}));
     EXPECT_NE(warned.find("1 pixels whose depth is not above 0"), std::string::npos);
+    options.channels.push_back({"depth", {7, 8, 9}});
+    writeImage(file, image, options);
+    EXPECT_EQ(readDepthImage(file).depths, (std::vector<float>{7, 8, 9}));
     options.channels.push_back({"Z", {4, 5, 6}});
+    options.channels.push_back({"Vector.Z", {1, 1, 1}});
     writeImage(file, image, options);
     EXPECT_EQ(readDepthImage(file).depths, (std::vector<float>{4, 5, 6}));
     options.channels.resize(1);

@@ -77,8 +77,9 @@ TEST(ReadVdbError, NoSuchGrid) {
     expectInput("a.vdb: got no grid \"density\"; expected one of h (half), v (vec3s)", "a.vdb",
                 options);
     options.gridName = "v";
-    expectInput(std::string("a.vdb: got grid \"v\" of type vec3s; expected ") + kScalar, "a.vdb",
-                options);
+    expectInput(std::string("a.vdb: got grid \"v\" of type vec3s; expected ") + kScalar +
+                    ", or a part of it such as v.x",
+                "a.vdb", options);
 }
 
 // A program's own grid type that OpenVDB has never heard of does not make the rest unreadable.

@@ -100,8 +100,6 @@ void addFile(const std::string& file, const InfoOptions& options, const Describe
     std::vector<VolumeChoice> choices;
     try {
         choices = choicesIn(file, options.read);
-        if (findInput(file, {}).format == InputKind::Format::kVdb)
-            report.medium = mediumGrids(listVolumes(file, options.read));
     } catch (const Error& error) {
         found.failures.push_back(error);
     }
@@ -122,6 +120,9 @@ void addFile(const std::string& file, const InfoOptions& options, const Describe
         }
         ++done;
     }
+    const bool anyGrid = !report.grids.empty();
+    if (anyGrid && findInput(file, {}).format == InputKind::Format::kVdb)
+        report.medium = mediumGrids(listVolumes(file, options.read));
     if (!report.grids.empty() || !report.others.empty()) found.reports.push_back(std::move(report));
 }
 

@@ -37,7 +37,8 @@ struct FileReport {
 /// Returns how alike consecutive slices are, 1 - deltas / voxels; 1 for an empty grid.
 double comparability(const GridReport& report, int axis);
 
-/// Returns one JSON object, `{"files":[{"file":...,"grids":[...]}]}`, with a line end.
+/// Returns one JSON object, `{"files":[{"file":...,"emission_grid":...,"color_grid":...,
+/// "grids":[...]}]}`, with a line end.
 /// @param transferFunction  its file, or empty
 std::string jsonText(const std::vector<FileReport>& reports, const std::string& transferFunction);
 

@@ -32,7 +32,9 @@ struct MediumChoice {
     /// above.
     std::vector<LayerChoice> layers;
 
-    bool asked() const { return emissionGrid || colorGrid || !layers.empty(); }
+    bool isLayered = false;  ///< layers were given, of which the volume was taken out
+
+    bool asked() const { return emissionGrid || colorGrid || isLayered || !layers.empty(); }
     /// Whether anything is shown as fire.
     bool burns() const;
 };

@@ -8,7 +8,10 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
+#include "deltasplat/optics/presets.h"
 #include "ingest/files/input_kind.h"
+#include "medium/medium_light.h"
+#include "medium/part_looks.h"
 #include "medium/part_sampler.h"
 #include "number_text.h"
 #include "options/parse.h"
@@ -21,7 +24,8 @@ namespace {
 
 // Nothing that is hot enough to glow has fewer kelvin.
 constexpr double kLeastKelvin = 500;
-// What 1 stands for where values are no kelvin.
+// What reaches no more is no kelvin; what 1 stands for then.
+constexpr double kMostShare = 20;
 constexpr double kKelvinOfOne = 2000;
 
 std::string namesOf(const std::vector<VolumeEntry>& entries) {
@@ -52,42 +56,94 @@ class MediumReader {
                  const Volume& volume, const Listener& listener)
         : input_(input), picture_(picture), volume_(volume), listener_(listener) {}
 
+    // Reads a whole grid; null if nothing of it is active.
     std::shared_ptr<const Volume> read(const std::string& option, const std::string& grid) {
         ReadOptions read = picture_.read;
         read.gridName = grid;
         read.keepInexact = false;
-        Volume volume = readVolume(input_, read, listener_);
-        if (volume.empty()) return {};
-        warnOfPlace(option, volume);
-        return cut(option, std::move(volume));
+        auto volume = std::make_shared<const Volume>(readVolume(input_, read, listener_));
+        if (volume->empty()) return {};
+        fit_ = PartSampler(*volume, volume_.worldFromIndex, PartSampler::Around::kBackground).fit();
+        warnOfPlace(option, *volume);
+        return volume;
     }
 
     MediumPart fire(const std::string& option, const std::string& grid) {
         const MediumChoice& choice = picture_.medium;
         MediumPart part;
         part.volume = read(option, grid);
+        if (!part.volume) return part;
         part.strength = choice.emissionStrength;
-        if (!choice.emissionFunction.empty()) {
-            part.kind = MediumPart::Kind::kEmission;
-            part.transferFunction = readTransferFunctionOption(choice.emissionFunction, listener_);
-            part.range = choice.emissionRange;
-        } else if (part.volume) {
+        if (choice.emissionFunction.empty()) {
             setKelvin(option, grid, part);
+        } else {
+            part.kind = MediumPart::Kind::kEmission;
+            setFunction(option, choice.emissionFunction, choice.emissionRange, part);
         }
+        part.volume = cut(option, part.volume);
         return part;
     }
 
     MediumPart fog(const std::string& option, const LayerChoice& layer) {
         MediumPart part;
         part.volume = read(option, layer.grid);
+        if (!part.volume) return part;
         part.kind = MediumPart::Kind::kAbsorption;
-        part.transferFunction = readTransferFunctionOption(layer.transferFunction, listener_);
         part.strength = picture_.render.optics.extinctionScale;
+        setFunction(option, layer.transferFunction, picture_.render.optics.range, part);
+        part.volume = cut(option, part.volume);
         return part;
     }
 
+    // Cut as the volume was.
+    std::shared_ptr<const Volume> cut(const std::string& option,
+                                      const std::shared_ptr<const Volume>& part) {
+        const CutChoice& parts = picture_.parts;
+        if (!parts.cuts()) return part;
+        if (fit_ != PartFit::kSame || part->worldFromIndex != volume_.worldFromIndex) {
+            throw Error(ErrorCode::kUsage, gotExpected(option,
+                                                       "grid " + part->name +
+                                                           ", whose voxels are others than those "
+                                                           "of " +
+                                                           volume_.name + ", which is cut",
+                                                       "grids of the same voxels, or nothing cut"));
+        }
+        try {
+            return std::make_shared<const Volume>(
+                cutAsChosen(*part, input_, parts, picture_.read, listener_));
+        } catch (const Error& error) {
+            // Nothing of it is left; whatever else is wrong is said when the volume is cut.
+            if (error.code() != ErrorCode::kUsage && error.code() != ErrorCode::kInput) throw;
+            return {};
+        }
+    }
+
   private:
-    // Says how kelvin were made of values that are none.
+    // As the volume alone would be shown: by all of its values, whatever is cut off.
+    void setFunction(const std::string& option, const std::filesystem::path& given,
+                     const std::optional<glm::dvec2>& range, MediumPart& part) {
+        Optics optics;
+        optics.transferFunction = readTransferFunctionOption(given, listener_);
+        optics.range = range;
+        if (optics.transferFunction.categorical && fit_ != PartFit::kSame) {
+            throw Error(ErrorCode::kUsage,
+                        gotExpected(option,
+                                    "labels of grid " + part.volume->name +
+                                        ", whose voxels are "
+                                        "others than those of " +
+                                        volume_.name,
+                                    "labels of the same voxels, for between two is a third"));
+        }
+        if (const Preset* preset = parseTransferFunction(given).preset)
+            fitPreset(*preset, *part.volume, optics);
+        if (optics.transferFunction.normalized && !optics.range)
+            optics.range = defaultRange(*part.volume);
+        part.transferFunction = optics.transferFunction;
+        part.range = optics.range;
+    }
+
+    // Says how kelvin were made of values that are none. A sequence must not change its mind with
+    // its hottest voxel: only values that can hardly be kelvin of anything are scaled.
     void setKelvin(const std::string& option, const std::string& grid, MediumPart& part) {
         const double most = part.volume->valueMax;
         const std::string values = "values of " + grid + ", " + numberText(part.volume->valueMin) +
@@ -95,7 +151,7 @@ class MediumReader {
         if (const auto& kelvin = picture_.medium.kelvin) {
             part.kelvinScale = kelvin->x;
             part.kelvinOffset = kelvin->y;
-        } else if (most < kLeastKelvin) {
+        } else if (most <= kMostShare) {
             part.kelvinScale = kKelvinOfOne;
             listener_.warn(option + ": " + values + "seem to be no kelvin; 1 is taken for " +
                            numberText(kKelvinOfOne) + " K (--temperature-scale)");
@@ -105,9 +161,14 @@ class MediumReader {
                            "--temperature-scale 1,273.15 takes degrees Celsius");
         }
         const double hottest = part.kelvinScale * most + part.kelvinOffset;
-        if (hottest > kLeastKelvin) return;
-        listener_.warn(option + ": nothing of " + grid + " glows, for the hottest has " +
-                       shortNumberText(hottest, 1e-3) + " K, and nothing below 500 K is seen to");
+        if (!(hottest > kLeastKelvin)) {
+            listener_.warn(option + ": nothing of " + grid + " glows, for the hottest has " +
+                           shortNumberText(hottest, 1e-3) +
+                           " K, and nothing below 500 K is seen to");
+        } else if (hottest > kHottestKelvin) {
+            listener_.warn(option + ": " + values + "reach " + shortNumberText(hottest, 1e-3) +
+                           " K; what is hotter than 100000 K is taken for that");
+        }
     }
 
     // One line where voxels are not the volume's.
@@ -122,47 +183,23 @@ class MediumReader {
                            ", which lies from " + numberText(other.min) + " to " +
                            numberText(other.max));
         }
-        const PartFit fit =
-            PartSampler(part, volume_.worldFromIndex, PartSampler::Around::kBackground).fit();
-        if (fit == PartFit::kSame) return;
+        if (fit_ == PartFit::kSame) return;
         listener_.warn(
             option + ": grid " + part.name + " has voxels of " + numberText(part.voxelSize()) +
             ", " + volume_.name + " of " + numberText(volume_.voxelSize()) +
-            (fit == PartFit::kFiner ? ": the mean of those that fall into one of these is shown"
-                                    : ", or lies between these: read between them"));
-    }
-
-    // As the volume was.
-    std::shared_ptr<const Volume> cut(const std::string& option, Volume part) {
-        const CutChoice& parts = picture_.parts;
-        if (!parts.cuts()) return std::make_shared<const Volume>(std::move(part));
-        const bool byIndex = parts.cut.cropIndex || !parts.slices.empty();
-        if (byIndex && part.worldFromIndex != volume_.worldFromIndex) {
-            throw Error(ErrorCode::kUsage,
-                        gotExpected(option,
-                                    "grid " + part.name +
-                                        ", whose voxels are others than "
-                                        "those that are cropped by their indices",
-                                    "--crop-world or --clip-plane"));
-        }
-        try {
-            return std::make_shared<const Volume>(
-                cutAsChosen(part, input_, parts, picture_.read, listener_));
-        } catch (const Error& error) {
-            // Nothing of it is left.
-            if (error.code() != ErrorCode::kUsage) throw;
-            return {};
-        }
+            (fit_ == PartFit::kFiner ? ": the mean of those that fall into one of these is shown"
+                                     : ", or lies between these: read between them"));
     }
 
     const std::filesystem::path& input_;
     const PictureOptions& picture_;
     const Volume& volume_;
     const Listener& listener_;
+    PartFit fit_ = PartFit::kSame;  // of the grid in hand
 };
 
 void readColors(const std::string& name, const std::vector<VolumeEntry>& entries,
-                MediumReader& reader, Optics& optics) {
+                MediumReader& reader, Optics& optics, const Listener& listener) {
     constexpr const char* kOption = "--color-grid";
     std::vector<std::string> names = splitAt(name, ',');
     if (names.size() == 1) {
@@ -186,19 +223,50 @@ void readColors(const std::string& name, const std::vector<VolumeEntry>& entries
     for (std::size_t c = 0; c < 3; ++c) {
         grids[c] = reader.read(kOption, names[c]);
         if (!grids[c]) return;
+        if (grids[c]->valueMax > kBrightestColor) {
+            listener.warn(std::string(kOption) + ": colours of " + names[c] + " reach " +
+                          numberText(grids[c]->valueMax) +
+                          "; what is more than 16 is taken for it");
+        }
         if (grids[c]->valueMin >= 0) continue;
         throw Error(ErrorCode::kInput,
                     gotExpected(kOption, names[c] + " of " + numberText(grids[c]->valueMin),
                                 "colours of at least 0"));
+    }
+    for (auto& grid : grids) {
+        grid = reader.cut(kOption, grid);
+        if (!grid) return;
     }
     optics.colorGrids = grids;
 }
 
 }  // namespace
 
+namespace {
+
+bool isFogLayer(const LayerChoice& layer) {
+    return !layer.transferFunction.empty();
+}
+
+}  // namespace
+
 void applyLayers(const CLI::App& app, PictureOptions& picture) {
     MediumChoice& medium = picture.medium;
-    if (medium.layers.empty()) return;
+    if (medium.layers.empty() || picture.render.mode != Mode::kComposite) return;
+    const std::size_t most = medium.colorGrid ? kMostPartsWithColors : kMostParts;
+    if (medium.layers.size() > most + 1) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--layer", std::to_string(medium.layers.size()) + " of them",
+                                "at most " + std::to_string(most + 1) +
+                                    (medium.colorGrid ? " with --color-grid" : "")));
+    }
+    const auto fogs = std::count_if(medium.layers.begin(), medium.layers.end(), isFogLayer);
+    if (fogs > 1 && picture.scatter.asked()) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--layer", "several that swallow light with --lighting scatter",
+                                "one, and fire"));
+    }
+    medium.isLayered = true;
     for (const char* option : {"--grid", "--tf", "--emission-grid", "--surface", "--isovalue"}) {
         if (!isGiven(app, option)) continue;
         throw Error(ErrorCode::kUsage,
@@ -224,6 +292,16 @@ void readMedium(const std::filesystem::path& input, const PictureOptions& pictur
         optics.transferFunction = TransferFunction();
         optics.transferFunction.colors = {{0, glm::dvec3(1)}};
         optics.transferFunction.opacities = {{0, 0, 0.5, 0}};
+        if (optics.densityScale || choice.colorGrid) {
+            listener.warn(std::string(optics.densityScale ? "--density-scale" : "--color-grid") +
+                          ": has no effect without a --layer that swallows light");
+        }
+        optics.densityScale.reset();
+    }
+    if (optics.densityScale &&
+        std::any_of(choice.layers.begin(), choice.layers.end(), isFogLayer)) {
+        listener.warn(
+            "--density-scale: is that of the first --layer that swallows light, not of others");
     }
     if (!choice.asked()) return;
     requireVdb(input, choice.emissionGrid ? "--emission-grid"
@@ -245,7 +323,7 @@ void readMedium(const std::filesystem::path& input, const PictureOptions& pictur
     }
     if (choice.colorGrid) {
         readColors(chosen("--color-grid", *choice.colorGrid, found.color, entries), entries, reader,
-                   optics);
+                   optics, listener);
     }
 }
 

@@ -91,10 +91,14 @@ void showErrorBound(const RenderStats& stats) {
 // Light in fog has lights as well.
 void warnOfUnusedLight(const CLI::App& app, const PictureOptions& picture,
                        ProgressDisplay& display) {
-    if (picture.shading.shades.value_or(true) || picture.scatter.asked()) return;
-    for (const char* option : {"--light", "--ambient", "--diffuse", "--specular", "--shininess"})
+    const bool isUnlit = !picture.shading.shades.value_or(true);
+    if ((!isUnlit && !picture.medium.asked()) || picture.scatter.asked()) return;
+    for (const char* option : {"--light", "--ambient", "--diffuse", "--specular", "--shininess"}) {
         if (isGiven(app, option))
-            display.warn(std::string(option) + ": has no effect with --no-shade");
+            display.warn(std::string(option) + ": has no effect " +
+                         (isUnlit ? "with --no-shade"
+                                  : "on a medium of several grids without --lighting scatter"));
+    }
 }
 
 void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
@@ -178,14 +182,23 @@ RenderResult renderHeldOut(const std::filesystem::path& depths, const Volume& vo
         const auto text = [](const glm::ivec2& pixels) {
             return std::to_string(pixels.x) + "x" + std::to_string(pixels.y);
         };
-        throw Error(ErrorCode::kInput,
-                    gotExpected(depths.string(), text(solid.size) + " pixels",
-                                text(size) + ", those of --size"));
+        throw Error(ErrorCode::kInput, gotExpected(depths.string(), text(solid.size) + " pixels",
+                                                   text(size) + ", those of --size"));
     }
     DeepImage deep;
     RenderResult result = renderDeep(volume, options, kFine, deep, listener);
     result.image = holdOut(deep, solid);
     return result;
+}
+
+// Depths are by what hides, and fire hides nothing.
+void warnOfDepths(const std::vector<Aov>& aovs, const Optics& optics, const Listener& listener) {
+    for (const Aov aov : aovs) {
+        if ((aov != Aov::kDepth && aov != Aov::kPosition) || optics.parts.empty()) continue;
+        listener.warn("--aov " + aovName(aov) +
+                      ": is of what hides something; light of fire alone has none");
+        return;
+    }
 }
 
 // Writes what the picture is asked for as: all of it, or what is seen of it.
@@ -236,6 +249,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         boundOver(picture.background, result.stats);
         ImageFileOptions image = imageOptions(command, volume, result, session);
         const Listener writing = display.stage(kRenderShare, 1);
+        warnOfDepths(command.aovs, options.optics, writing);
         image.channels = renderAovs(volume, options, result.camera, command.aovs);
         finishPicture(command, volume, options.optics, result, image, writing);
         writing.report(0);
