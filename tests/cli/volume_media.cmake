@@ -61,7 +61,7 @@ foreach(layer Flame Flame: :fire)
         STDERR "deltasplat: --layer: got ${layer}; expected GRID:TF, TF being a file, a preset or fire, as in heat:fire")
 endforeach()
 deltasplat_cli_test(medium.lit_layers EXIT 2
-    ARGS render fire.vdb -o out.exr --layer density:grey --layer Flame:grey --light 1,0,0
+    ARGS render fire.vdb -o out.exr --layer density:grey --layer Flame:grey --lighting scatter
     STDERR "deltasplat: --layer: got several that swallow light with --lighting scatter; expected one, and fire")
 deltasplat_cli_test(medium.many_layers EXIT 2
     ARGS render fire.vdb -o out.exr --layer r:grey --layer g:grey --layer b:grey --layer cold:grey --layer density:grey

@@ -72,11 +72,10 @@ void addMediumOptions(CLI::App& app, MediumChoice& choice) {
     OptionGroup group(app, "Fire and colour, .vdb");
     group.addValue("--emission-grid", "NAME", choice.emissionGrid, anyText(),
                    "Grid that shines beside the volume, such as flame or temperature, or\n"
-                   "auto: the first of flame, flames, fire, burn, heat, temperature.\n"
-                   "Values of 500 and more are kelvin, others thousands of times less");
+                   "auto: the first of flame, flames, fire, burn, heat, temperature");
     group.addValue("--temperature-scale", "S[,K]", choice.kelvin, Parser<glm::dvec2>(parseKelvin),
-                   "Kelvin of values: S times the value, plus K (default: 1 where values\n"
-                   "reach 500, else 2000)");
+                   "Kelvin of values: S times the value, plus K (default: 1, or 2000 where\n"
+                   "values reach no more than 20)");
     group.addValue("--emission-tf", "FILE|PRESET", choice.emissionFunction, anyText(),
                    "Colours that values shine in, and as opacities their strength, in\n"
                    "place of those of black bodies");
