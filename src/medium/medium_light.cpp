@@ -94,7 +94,7 @@ MediumLight::MediumLight(std::unique_ptr<const LookLight> inner,
     : MediumLight(unitsFor(*inner, parts, factor, classes), std::move(inner), parts, factor,
                   classes) {}
 
-MediumLight::MediumLight(VoxelUnits common, std::unique_ptr<const LookLight>&& inner,
+MediumLight::MediumLight(const VoxelUnits& common, std::unique_ptr<const LookLight>&& inner,
                          const std::vector<PartLooks>& parts, const glm::dvec3* factor,
                          const ClassTable& classes)
     : LookLight(common, inner->dimmest() * smallestShare(inner->units(), common)),

@@ -57,7 +57,7 @@ class MediumLight : public LookLight {
     };
 
     // Moves nothing before the base class is made.
-    MediumLight(VoxelUnits units, std::unique_ptr<const LookLight>&& inner,
+    MediumLight(const VoxelUnits& units, std::unique_ptr<const LookLight>&& inner,
                 const std::vector<PartLooks>& parts, const glm::dvec3* factor,
                 const ClassTable& classes);
     void findLooks(const std::vector<PartLooks>& parts, const ClassTable& classes);
