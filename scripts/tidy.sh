@@ -13,11 +13,13 @@ find "$cache" -type f -mtime +30 -delete
 
 # Of a file, a hash of all that clang-tidy has to say depends on: its text and that of the project's
 # headers, for macros and what only clang compiles, and of other headers what the preprocessor makes
-# of them. Nothing of a file that is not compiled here: clang-tidy then guesses how it would be.
+# of them. Nothing of a file that is not compiled here: clang-tidy then guesses how it would be. A
+# file that tests compile as well is taken as the program does, or whoever comes first.
 key_of() {
     local command texts
     command=$(grep -B 1 -F "\"file\": \"$PWD/$1\"" build/release/compile_commands.json |
-        sed -n 's/^ *"command": "\(.*\)",$/\1/p' | sed 's/\\\(["\\]\)/\1/g; s/ -o [^ ]* -c / -E -P /')
+        sed -n 's/^ *"command": "\(.*\)",$/\1/p' |
+        sed -n '1{s/\\\(["\\]\)/\1/g; s/ -o [^ ]* -c / -E -P /; p}')
     [[ -n $command ]] || return 0
     texts=$(eval "${command/ -E -P / -MM }" | sed 's/^[^ ]*: / /; s/\\$//')
     {

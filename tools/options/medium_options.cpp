@@ -53,8 +53,9 @@ std::vector<std::string> mediumOptions() {
 void warnOfUnusedMediumOptions(const CLI::App& app, const MediumChoice& choice,
                                ProgressDisplay& display) {
     const auto warnOf = [&](const std::vector<std::string>& options, const std::string& remark) {
+        const std::string effect = ": has no effect " + remark;
         for (const std::string& option : options)
-            if (isGiven(app, option)) display.warn(option + ": has no effect " + remark);
+            if (isGiven(app, option)) display.warn(option + effect);
     };
     if (!choice.burns()) {
         warnOf({"--emission-tf", "--emission-range", "--emission-strength", "--temperature-scale"},
