@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "dims_text.h"
 #include "image/warp.h"
 #include "image/warp_region.h"
 #include "optics/opacity_steps.h"
@@ -53,18 +54,15 @@ void requireSize(const Camera& camera, const Image& image) {
     const glm::ivec2 size = camera.sizePixels;
     const std::size_t values = std::size_t{4} * std::size_t(size.x) * std::size_t(size.y);
     if (size.x < 1 || size.y < 1) {
-        throw Error(
-            ErrorCode::kUsage,
-            gotExpected("camera", std::to_string(size.x) + "x" + std::to_string(size.y) + " pixels",
-                        "at least one each way"));
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("camera", dimsText(size) + " pixels", "at least one each way"));
     }
     if (image.size == size && image.rgba.size() == values) return;
     throw Error(ErrorCode::kUsage,
                 gotExpected("image",
-                            std::to_string(image.size.x) + "x" + std::to_string(image.size.y) +
-                                " pixels, " + std::to_string(image.rgba.size()) + " values",
-                            "the camera's " + std::to_string(size.x) + "x" +
-                                std::to_string(size.y) + ", four values each"));
+                            dimsText(image.size) + " pixels, " + std::to_string(image.rgba.size()) +
+                                " values",
+                            "the camera's " + dimsText(size) + ", four values each"));
 }
 
 PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,

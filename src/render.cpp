@@ -6,6 +6,7 @@
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
+#include "dims_text.h"
 #include "memory.h"
 #include "prepared_axis.h"
 #include "ray_render.h"
@@ -18,8 +19,7 @@ namespace {
 constexpr double kBytesPerPixel = 48;
 
 void requireImageMemory(glm::ivec2 size) {
-    requireMemory("`sizePixels` " + std::to_string(size.x) + "x" + std::to_string(size.y),
-                  kBytesPerPixel * size.x * size.y);
+    requireMemory("`sizePixels` " + dimsText(size), kBytesPerPixel * size.x * size.y);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
+#include "dims_text.h"
 #include "image/deep_builder.h"
 #include "kept_memory.h"
 #include "memory.h"
@@ -94,8 +95,7 @@ RenderResult renderDeep(const Volume& volume, const RenderOptions& options,
         result.camera = makeCamera(options.camera, seen.box, seen.worldFromIndex, seen.space);
         requireBefore(result.camera, seen);
         const glm::ivec2 size = result.camera.sizePixels;
-        requireMemory("`sizePixels` " + std::to_string(size.x) + "x" + std::to_string(size.y),
-                      kBytesPerPixel * size.x * size.y);
+        requireMemory("`sizePixels` " + dimsText(size), kBytesPerPixel * size.x * size.y);
         result.image = Image(size);
     };
     // A camera that cannot be is refused before there is work.
@@ -120,8 +120,7 @@ RenderStats renderDeep(const PreparedScene& scene, const Camera& camera,
     requireSize(camera, flat);
     requireBefore(camera, *scene.scene().volume);
     const glm::ivec2 size = camera.sizePixels;
-    requireMemory("`sizePixels` " + std::to_string(size.x) + "x" + std::to_string(size.y),
-                  0.5 * kBytesPerPixel * size.x * size.y);
+    requireMemory("`sizePixels` " + dimsText(size), 0.5 * kBytesPerPixel * size.x * size.y);
     std::fill(flat.rgba.begin(), flat.rgba.end(), 0.0f);
     return renderSamples(scene.impl(), camera, deepOptions, deep, flat, listener);
 }

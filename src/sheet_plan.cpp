@@ -5,6 +5,7 @@
 #include <string>
 
 #include "deltasplat/error.h"
+#include "dims_text.h"
 
 namespace deltasplat {
 namespace {
@@ -26,9 +27,7 @@ void checkBetween(int between) {
 [[noreturn]] void throwTooWide(const IndexBox& box, int between) {
     const glm::ivec3 dims = box.dims();
     throw Error(ErrorCode::kFailed,
-                gotExpected("`between` " + std::to_string(between),
-                            std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
-                                std::to_string(dims.z) + " voxels",
+                gotExpected("`between` " + std::to_string(between), dimsText(dims) + " voxels",
                             "at most 2^30 parts of them along each axis (`between` 0: undivided)"));
 }
 

@@ -22,6 +22,7 @@
 #include "ingest/grids/source_grid.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "number_text.h"
+#include "view/affine.h"
 #include "write_vdb.h"
 
 namespace deltasplat {
@@ -102,10 +103,8 @@ int codeCountOf(const Volume& volume) {
 IndexBox united(IndexBox box, const InactiveValues& inactive) {
     openvdb::CoordBBox more;
     if (!inactive.numbers || !inactive.numbers->tree.evalActiveVoxelBoundingBox(more)) return box;
-    const glm::ivec3 low(more.min().x(), more.min().y(), more.min().z());
-    const glm::ivec3 high(more.max().x(), more.max().y(), more.max().z());
-    if (box.empty()) return {low, high};
-    return {glm::min(box.min, low), glm::max(box.max, high)};
+    return boxOfBoth(box, {{more.min().x(), more.min().y(), more.min().z()},
+                           {more.max().x(), more.max().y(), more.max().z()}});
 }
 
 // Copies what the source says of itself, under names of its own.

@@ -59,10 +59,6 @@ void DenseLayout::turnTo(const std::string& otherSpace) {
     space = otherSpace;
 }
 
-std::string DenseLayout::dimsText() const {
-    return std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" + std::to_string(dims.z);
-}
-
 const DenseFormat* findDenseFormat(const std::string& extension) {
     for (const DenseFormat& format : kFormats) {
         if (extension == format.extension) return &format;

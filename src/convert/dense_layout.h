@@ -30,7 +30,6 @@ struct DenseLayout {
     /// numbers.
     void turnTo(const std::string& otherSpace);
     /// Returns "256x256x128".
-    std::string dimsText() const;
 };
 
 /// How files of one extension are written.

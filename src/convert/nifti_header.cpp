@@ -10,6 +10,7 @@
 
 #include "convert/dense_layout.h"
 #include "deltasplat/error.h"
+#include "dims_text.h"
 #include "ingest/placement.h"
 #include "little_endian.h"
 
@@ -101,7 +102,7 @@ void settleNifti(DenseLayout& layout, const std::string& file, Notes& notes) {
     const int most = std::max({layout.dims.x, layout.dims.y, layout.dims.z});
     if (most > kMostVoxels) {
         throw Error(ErrorCode::kFailed,
-                    gotExpected(file, layout.dimsText() + " voxels",
+                    gotExpected(file, dimsText(layout.dims) + " voxels",
                                 "at most " + std::to_string(kMostVoxels) +
                                     " along each axis in NIfTI (.nrrd has no such limit)"));
     }

@@ -3,6 +3,7 @@
 
 #include "convert/dense_layout.h"
 #include "deltasplat/error.h"
+#include "dims_text.h"
 #include "number_text.h"
 
 namespace deltasplat {
@@ -44,7 +45,7 @@ void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
     const bool ordered = rawTypeBytes(layout.type) > 1;
     layout.bigEndian = ordered && namesBigEndian(file, layout);
     if (!saysLayout(file, {layout.dims, layout.type, layout.bigEndian, 0})) {
-        options += " `dims` " + layout.dimsText() + " `type` " + rawTypeName(layout.type);
+        options += " `dims` " + dimsText(layout.dims) + " `type` " + rawTypeName(layout.type);
         if (ordered) options += layout.bigEndian ? " `bigEndian=true`" : " `bigEndian=false`";
     }
     notePlace(layout, "no header", options, notes);

@@ -29,14 +29,6 @@ glm::dmat4 inSpaceOf(const Volume& other, const Volume& volume) {
     return turn * volume.worldFromIndex;
 }
 
-IndexBox boxOfBoth(const IndexBox& a, const IndexBox& b) {
-    // Without any voxels, a transform is where its first ones would be.
-    if (a.empty() && b.empty()) return {glm::ivec3(0), glm::ivec3(1)};
-    if (a.empty()) return b;
-    if (b.empty()) return a;
-    return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
-}
-
 IndexBox movedBox(const IndexBox& box, const glm::ivec3& offset) {
     return box.empty() ? box : IndexBox{box.min + offset, box.max + offset};
 }
@@ -48,7 +40,9 @@ double shiftOf(const Volume& a, const Volume& b, const glm::ivec3& offset) {
     const glm::dmat4 placeB = inSpaceOf(a, b);
     if (placeA == placeB) return 0;
     const glm::dmat4 moved = placeB - placeA;
-    const IndexBox box = boxOfBoth(movedBox(a.box, -offset), b.box);
+    IndexBox box = boxOfBoth(movedBox(a.box, -offset), b.box);
+    // Without any voxels, a transform is where its first ones would be.
+    if (box.empty()) box = {glm::ivec3(0), glm::ivec3(1)};
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 index(cornerOf(box, corner), 1);

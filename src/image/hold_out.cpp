@@ -10,6 +10,7 @@
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
+#include "dims_text.h"
 #include "ingest/files/file_name.h"
 #include "ingest/files/refuse_file.h"
 #include "ingest/images/image_file.h"
@@ -95,12 +96,9 @@ DepthImage readDepthImage(const std::filesystem::path& file, const Listener& lis
 Image holdOut(const DeepImage& deep, const DepthImage& solid) {
     const DefaultFloats floats;
     if (deep.size != solid.size) {
-        const auto text = [](const glm::ivec2& size) {
-            return std::to_string(size.x) + "x" + std::to_string(size.y);
-        };
         throw Error(ErrorCode::kUsage,
-                    gotExpected("depths of solid things", text(solid.size) + " pixels",
-                                text(deep.size) + ", those of the picture"));
+                    gotExpected("depths of solid things", dimsText(solid.size) + " pixels",
+                                dimsText(deep.size) + ", those of the picture"));
     }
     Image image(deep.size);
     parallelFor(std::size_t(deep.size.y), [&](std::size_t y) {

@@ -11,6 +11,7 @@
 #include "default_floats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
+#include "dims_text.h"
 #include "image/encode_image.h"
 #include "image/stored_samples.h"
 #include "memory.h"
@@ -110,10 +111,8 @@ std::string encodeDeepImage(const std::filesystem::path& file, const DeepImage& 
     const DefaultFloats floats;
     requireExr(file);
     if (image.size.x < 1 || image.size.y < 1) {
-        throw Error(ErrorCode::kUsage, gotExpected(file.string(),
-                                                   std::to_string(image.size.x) + "x" +
-                                                       std::to_string(image.size.y) + " pixels",
-                                                   "at least 1x1"));
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(file.string(), dimsText(image.size) + " pixels", "at least 1x1"));
     }
     const double sampleBytes = options.floatExr ? 24 : 16;
     requireMemory(file.string() + ", " + std::to_string(image.samples()) + " samples",

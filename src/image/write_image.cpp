@@ -10,6 +10,7 @@
 #include "default_floats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
+#include "dims_text.h"
 #include "image/encode_image.h"
 #include "image/quantize.h"
 #include "lower_case.h"
@@ -50,11 +51,10 @@ void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
     }
     const int most = maxSide(format);
     if (size.x > most || size.y > most) {
-        throw Error(
-            ErrorCode::kUsage,
-            gotExpected("`image.size`", std::to_string(size.x) + "x" + std::to_string(size.y),
-                        "sides of at most " + std::to_string(most) + " pixels in a " +
-                            lowerCase(file.extension().string())));
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("`image.size`", dimsText(size),
+                                "sides of at most " + std::to_string(most) + " pixels in a " +
+                                    lowerCase(file.extension().string())));
     }
 }
 
@@ -200,8 +200,7 @@ std::string encodeImage(const std::filesystem::path& file, const Image& image,
     const DefaultFloats floats;
     checkOptions(file, image.size, options);
     if (image.size.x < 1 || image.size.y < 1) {
-        const std::string got =
-            std::to_string(image.size.x) + "x" + std::to_string(image.size.y) + " pixels";
+        const std::string got = dimsText(image.size) + " pixels";
         throw Error(ErrorCode::kUsage, gotExpected(file.string(), got, "at least 1x1"));
     }
     switch (imageFormatOf(file)) {

@@ -14,20 +14,11 @@
 #include "medium/room.h"
 #include "optics/class_light.h"
 #include "optics/painters.h"
+#include "optics/unit_distance.h"
 #include "view/affine.h"
 
 namespace deltasplat {
 namespace {
-
-struct PlaceLess {
-    bool operator()(const glm::ivec3& a, const glm::ivec3& b) const {
-        return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
-    }
-};
-
-double unitDistanceOf(const Volume& volume, const Optics& optics) {
-    return optics.unitDistance.value_or(smallestSize(volume));
-}
 
 // Unit distances of the way from one corner to the other of all that there is.
 double longestWay(const Volume& volume, const Optics& optics) {
@@ -94,7 +85,7 @@ class MediumPainter : public VoxelPainter {
         findMore();
         // Light is swept through all there is, whichever parts of it shine.
         if (optics.scattering && !volume.empty())
-            inner_ = makeScatterPainter(withRoom(volume, more_), optics);
+            inner_ = makeScatterPainter(room_.emplace(withRoom(volume, more_)), optics);
     }
 
     bool needsColors() const override { return true; }
@@ -138,16 +129,15 @@ class MediumPainter : public VoxelPainter {
 
   private:
     void findMore() {
+        PlaceSet places;
         for (std::size_t part = 0; part < parts_.size(); ++part) {
-            std::vector<Slot> map(looks_[part].ofSlot.begin(), looks_[part].ofSlot.end());
-            const auto places = samplers_[part].blocksSeen(map, more_.box);
-            std::vector<glm::ivec3> all;
-            std::set_union(places.begin(), places.end(), more_.positions.begin(),
-                           more_.positions.end(), std::back_inserter(all), PlaceLess());
-            more_.positions = std::move(all);
+            const std::vector<Slot> map(looks_[part].ofSlot.begin(), looks_[part].ofSlot.end());
+            samplers_[part].addBlocksSeen(map, places, more_.box);
         }
+        more_.positions.assign(places.begin(), places.end());
     }
 
+    std::optional<Volume> room_;                 // what light is swept through
     std::unique_ptr<const VoxelPainter> inner_;  // null: voxels look as their classes do
     std::vector<MediumPart> parts_;
     std::vector<PartSampler> samplers_;  // [parts]

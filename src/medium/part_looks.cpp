@@ -46,8 +46,7 @@ PartLooks lookUpAbsorption(const MediumPart& part, const Volume& levels) {
     PartLooks result;
     result.ofSlot.assign(classes.classOfSlot.begin(), classes.classOfSlot.end());
     for (const Look& look : classes.looks)
-        result.looks.push_back(
-            {look.extinction * (look.extinction > 0 ? part.strength : 0), look.color, {}});
+        result.looks.push_back({look.extinction * part.strength, look.color, {}});
     return result;
 }
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 #include <limits>
-#include <set>
 
 #include "delta/code_blocks.h"
 #include "ingest/codes/code_tree.h"
@@ -64,14 +64,40 @@ IndexBox boxOfSeen(const CodeBlock& block, std::span<const Slot> slotMap) {
     return box;
 }
 
-struct PlaceLess {
-    bool operator()(const glm::ivec3& a, const glm::ivec3& b) const {
-        if (a.x != b.x) return a.x < b.x;
-        return a.y != b.y ? a.y < b.y : a.z < b.z;
+// How many voxels of a part fall into one of the volume's, along each axis of the volume.
+glm::dvec3 voxelsPerStep(const glm::dmat4& partFromIndex) {
+    glm::dvec3 voxels;
+    for (int axis = 0; axis < 3; ++axis)
+        voxels[axis] = glm::length(glm::dvec3(partFromIndex[axis]));
+    return voxels;
+}
+
+// From this on they are averaged.
+constexpr double kFinerFrom = 1.5;
+
+// Of how many voxels the mean is taken along each axis.
+glm::ivec3 samplesOf(const glm::dmat4& partFromIndex) {
+    const glm::dvec3 voxels = voxelsPerStep(partFromIndex);
+    glm::ivec3 samples(1);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (voxels[axis] >= kFinerFrom)
+            samples[axis] = std::min(kMostSamples, int(std::ceil(voxels[axis])));
     }
-};
+    return samples;
+}
 
 }  // namespace
+
+PartFit fitOf(const Volume& part, const glm::dmat4& worldFromIndex) {
+    const glm::dmat4 partFromIndex = glm::inverse(part.worldFromIndex) * worldFromIndex;
+    // Voxels of the volume that the part may be read at.
+    const glm::dmat4 indexFromPart = glm::inverse(partFromIndex);
+    const glm::dvec3 away = glm::round(glm::dvec3(indexFromPart[3]));
+    if (isNear(away) && moveWithin(indexFromPart, part.box) < kSameWithin) return PartFit::kSame;
+    const bool isFiner =
+        glm::any(glm::greaterThanEqual(voxelsPerStep(partFromIndex), glm::dvec3(kFinerFrom)));
+    return isFiner ? PartFit::kFiner : PartFit::kBetween;
+}
 
 // Reads single voxels. Not for several threads at once.
 class PartSampler::Reader {
@@ -93,39 +119,18 @@ PartSampler::PartSampler(const Volume& part, const glm::dmat4& worldFromIndex, A
       codes_(part.codes ? part.codes : std::make_shared<const CodeTree>()),
       around_(around),
       partFromIndex_(glm::inverse(part.worldFromIndex) * worldFromIndex),
+      fit_(fitOf(part, worldFromIndex)),
+      samples_(samplesOf(partFromIndex_)),
       background_(part.hasBackground ? part.background : 0) {
-    findFit();
     makeLevels();
 }
 
-void PartSampler::findFit() {
-    // Voxels of the volume that the grid may be read at.
-    const glm::dmat4 indexFromPart = glm::inverse(partFromIndex_);
-    const glm::dvec3 away = glm::round(glm::dvec3(indexFromPart[3]));
-    if (isNear(away) && moveWithin(indexFromPart, part_.box) < kSameWithin) return;
-    fit_ = PartFit::kBetween;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double voxels = glm::length(glm::dvec3(partFromIndex_[axis]));
-        if (voxels < 1.5) continue;
-        fit_ = PartFit::kFiner;
-        samples_[axis] = std::min(kMostSamples, int(std::ceil(voxels)));
-    }
-}
-
 void PartSampler::makeLevels() {
-    levels_.hasBackground = part_.hasBackground;
-    levels_.background = part_.background;
-    levels_.worldFromIndex = part_.worldFromIndex;
-    levels_.box = part_.box;
-    levels_.activeCount = part_.activeCount;
-    levels_.valueMin = part_.valueMin;
-    levels_.valueMax = part_.valueMax;
-    levels_.mostFrequent = part_.mostFrequent;
-    if (fit_ == PartFit::kSame) {
-        levels_.codeBook = part_.codeBook;
-        levels_.histogram = part_.histogram;
-        return;
-    }
+    levels_ = part_;
+    levels_.codes = nullptr;
+    levels_.uncut = nullptr;
+    levels_.source = nullptr;
+    if (fit_ == PartFit::kSame) return;
     CodeBook::Range range{std::min(part_.valueMin, background_),
                           std::max(part_.valueMax, background_), 0, CodeBook::Values::kDouble};
     const double most = std::max({std::abs(range.low), std::abs(range.high), 1e-300});
@@ -257,17 +262,15 @@ std::vector<Slot> PartSampler::seenCodes(std::span<const Slot> slotMap) const {
     return bothSides && fit_ != PartFit::kSame ? all : seen;
 }
 
-std::vector<glm::ivec3> PartSampler::blocksSeen(std::span<const Slot> slotMap,
-                                                IndexBox& box) const {
+void PartSampler::addBlocksSeen(std::span<const Slot> slotMap, PlaceSet& places,
+                                IndexBox& box) const {
     const std::vector<Slot> seen = seenCodes(slotMap);
-    std::set<glm::ivec3, PlaceLess> places;
     const BlockReader reader(*codes_, nullptr, 0, seen);
     constexpr double kBytesPerPlace = 96;
     for (const CodeBlock& block : reader.blocks()) {
         const IndexBox reach = reachOf(boxOfSeen(block, seen));
         if (reach.empty()) continue;
-        box = box.empty() ? reach
-                          : IndexBox{glm::min(box.min, reach.min), glm::max(box.max, reach.max)};
+        box = boxOfBoth(box, reach);
         const glm::ivec3 low = reach.min >> 3;
         const glm::ivec3 high = reach.max >> 3;
         const glm::dvec3 count(high - low + 1);
@@ -279,7 +282,6 @@ std::vector<glm::ivec3> PartSampler::blocksSeen(std::span<const Slot> slotMap,
             }
         }
     }
-    return {places.begin(), places.end()};
 }
 
 }  // namespace deltasplat

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "medium/room.h"
 
-#include <glm/common.hpp>
 #include <memory>
 
 #include "ingest/codes/code_tree.h"
+#include "view/affine.h"
 
 namespace deltasplat {
 
@@ -13,9 +13,7 @@ Volume withRoom(const Volume& volume, const BlockSet& more) {
     if (more.positions.empty()) return wide;
     if (!wide.codes) wide.codes = std::make_shared<const CodeTree>();
     if (volume.empty()) wide.activeCount = 1;
-    wide.box = volume.empty() ? more.box
-                              : IndexBox{glm::min(volume.box.min, more.box.min),
-                                         glm::max(volume.box.max, more.box.max)};
+    wide.box = volume.empty() ? more.box : boxOfBoth(volume.box, more.box);
     return wide;
 }
 

@@ -17,7 +17,6 @@ constexpr double kHighest = 15000;
 
 // Below Draper's point nothing is seen to glow, however it radiates; it fades out from there on.
 constexpr double kDraperPoint = 798;
-constexpr double kDark = 500;
 
 // Of linear sRGB (IEC 61966-2-1).
 constexpr glm::dvec3 kLuminance(0.2126, 0.7152, 0.0722);
@@ -50,7 +49,8 @@ glm::dvec3 blackbodyColor(double kelvin) {
 glm::dvec3 blackbodyGlow(double kelvin) {
     if (!(kelvin > 0)) return glm::dvec3(0);
     constexpr double kStefanBoltzmann = 5.670374e-8;  // watts a square metre and kelvin^4
-    const double share = std::clamp((kelvin - kDark) / (kDraperPoint - kDark), 0.0, 1.0);
+    const double share =
+        std::clamp((kelvin - kDarkKelvin) / (kDraperPoint - kDarkKelvin), 0.0, 1.0);
     const double square = kelvin * kelvin * share;
     const double radiance = 1e-6 * kStefanBoltzmann / std::numbers::pi * square * square;
     return radiance * blackbodyColor(kelvin);

@@ -15,9 +15,12 @@ glm::dvec2 blackbodyChromaticity(double kelvin);
 /// off, as deep reds are.
 glm::dvec3 blackbodyColor(double kelvin);
 
+/// Nothing colder is seen to glow.
+inline constexpr double kDarkKelvin = 500;
+
 /// Returns what a black body adds to a ray on a unit distance: sigma T^4 / pi, in megawatts a
-/// square metre and steradian, times its colour. From Draper's point, 798 K, down to 500 K it fades
-/// out, for it is not seen.
+/// square metre and steradian, times its colour. From Draper's point, 798 K, down to kDarkKelvin it
+/// fades out, for it is not seen.
 glm::dvec3 blackbodyGlow(double kelvin);
 
 }  // namespace deltasplat

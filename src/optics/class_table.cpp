@@ -22,6 +22,7 @@
 #include "optics/color_digits.h"
 #include "optics/function_place.h"
 #include "optics/largest_alpha.h"
+#include "optics/unit_distance.h"
 #include "parallel.h"
 #include "portable_math.h"
 #include "view/affine.h"
@@ -40,10 +41,6 @@ double alphaOf(double extinction, double unitDistancesPerSlice) {
     if (extinction <= 0 || unitDistancesPerSlice <= 0) return 0;
     if (std::isinf(extinction)) return 1;
     return -portable::expm1(-extinction * unitDistancesPerSlice);
-}
-
-double unitDistanceOf(const Volume& volume, const Optics& optics) {
-    return optics.unitDistance.value_or(smallestSize(volume));
 }
 
 // What a code looks like; those of codes that cannot be seen are left out.

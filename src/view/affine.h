@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -20,6 +21,13 @@ void requireInvertible(const glm::dmat4& worldFromIndex);
 inline glm::dvec3 cornerOf(const IndexBox& box, int number) {
     return {number & 1 ? box.max.x : box.min.x, number & 2 ? box.max.y : box.min.y,
             number & 4 ? box.max.z : box.min.z};
+}
+
+/// Returns the smallest box that holds two, either of which may be empty.
+inline IndexBox boxOfBoth(const IndexBox& a, const IndexBox& b) {
+    if (a.empty()) return b;
+    if (b.empty()) return a;
+    return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
 }
 
 /// Returns the world length of a voxel's shortest side.

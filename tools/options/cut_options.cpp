@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "deltasplat/error.h"
+#include "dims_text.h"
 #include "ingest/files/input_kind.h"
 #include "ingest/raw/raw_format.h"
 #include "options/command_line.h"
@@ -157,11 +158,6 @@ bool saysNoPlace(const std::filesystem::path& input) {
     return format == Format::kRaw || format == Format::kNpy || format == Format::kImages;
 }
 
-std::string dimsText(const Volume& volume) {
-    const glm::ivec3 dims = volume.box.dims();
-    return joinNumbers({double(dims.x), double(dims.y), double(dims.z)}, "x");
-}
-
 FileAndName fileAndGrid(const std::filesystem::path& mask) {
     return findFileAndName("--mask", mask).value_or(FileAndName{mask, ""});
 }
@@ -190,10 +186,12 @@ void placeMask(const std::filesystem::path& input, const Volume& volume,
     const bool isDense = !volume.hasBackground && !mask.hasBackground;
     if (!isDense || !(saysNoPlace(input) || saysNoPlace(file))) return;
     if (mask.box != volume.box) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected("--mask", file.string() + " of " + dimsText(mask) + " voxels",
-                                dimsText(volume) + ", as the volume has, for the files do not say "
-                                                   "where both lie"));
+        throw Error(
+            ErrorCode::kInput,
+            gotExpected("--mask", file.string() + " of " + dimsText(mask.box.dims()) + " voxels",
+                        dimsText(volume.box.dims()) +
+                            ", as the volume has, for the files do not say "
+                            "where both lie"));
     }
     mask.worldFromIndex = volume.worldFromIndex;
 }

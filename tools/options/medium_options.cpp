@@ -40,9 +40,7 @@ glm::dvec2 parseKelvin(const std::string& option, const std::string& text) {
 }  // namespace
 
 bool MediumChoice::burns() const {
-    return emissionGrid || std::any_of(layers.begin(), layers.end(), [](const LayerChoice& one) {
-               return one.transferFunction.empty();
-           });
+    return emissionGrid || std::ranges::any_of(layers, &LayerChoice::isFire);
 }
 
 std::vector<std::string> mediumOptions() {

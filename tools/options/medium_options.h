@@ -17,6 +17,9 @@ namespace deltasplat {
 struct LayerChoice {
     std::string grid;
     std::filesystem::path transferFunction;  ///< FILE or PRESET; empty: as fire
+
+    bool isFire() const { return transferFunction.empty(); }
+    bool isFog() const { return !isFire(); }
 };
 
 /// Which grids are shown besides the volume, and how, as far as that was said.

@@ -6,6 +6,7 @@
 
 #include "deltasplat/error.h"
 #include "options/parse.h"
+#include "render/render_modes.h"
 
 namespace deltasplat {
 namespace {
@@ -45,8 +46,7 @@ void addAovOption(CLI::App& app, std::vector<Aov>& aovs) {
 
 void checkAovs(const RenderCommand& command) {
     if (command.aovs.empty()) return;
-    if (imageFormatOf(command.output) != ImageFormat::kExr)
-        refuse(command.output.string(), "an .exr file");
+    if (!isExr(command)) refuse(command.output.string(), "an .exr file");
     const Mode mode = command.picture.render.mode;
     if (mode != Mode::kComposite) refuse("--mode " + modeName(mode), "--mode composite");
     if (command.deep) refuse("--deep besides", "a flat picture, or --deep alone");

@@ -5,6 +5,7 @@
 
 #include "deltasplat/error.h"
 #include "options/parse.h"
+#include "render/render_modes.h"
 
 namespace deltasplat {
 namespace {
@@ -46,8 +47,7 @@ void addDeepOptions(CLI::App& app, RenderCommand& command) {
 void checkDeep(const RenderCommand& command) {
     if (!command.holdoutDepth.empty()) checkHoldout(command);
     if (!command.deep) return;
-    if (imageFormatOf(command.output) != ImageFormat::kExr)
-        refuse(command.output.string(), "an .exr file");
+    if (!isExr(command)) refuse(command.output.string(), "an .exr file");
     const Mode mode = command.picture.render.mode;
     if (mode != Mode::kComposite) refuse("--mode " + modeName(mode), "--mode composite");
     if (command.picture.background)

@@ -14,6 +14,7 @@
 #include "medium/part_looks.h"
 #include "medium/part_sampler.h"
 #include "number_text.h"
+#include "optics/blackbody.h"
 #include "options/parse.h"
 #include "options/transfer_function_option.h"
 #include "text/short_number.h"
@@ -22,8 +23,6 @@
 namespace deltasplat {
 namespace {
 
-// Nothing that is hot enough to glow has fewer kelvin.
-constexpr double kLeastKelvin = 500;
 // What reaches no more is no kelvin; what 1 stands for then.
 constexpr double kMostShare = 20;
 constexpr double kKelvinOfOne = 2000;
@@ -63,7 +62,7 @@ class MediumReader {
         read.keepInexact = false;
         auto volume = std::make_shared<const Volume>(readVolume(input_, read, listener_));
         if (volume->empty()) return {};
-        fit_ = PartSampler(*volume, volume_.worldFromIndex, PartSampler::Around::kBackground).fit();
+        fit_ = fitOf(*volume, volume_.worldFromIndex);
         warnOfPlace(option, *volume);
         return volume;
     }
@@ -161,10 +160,10 @@ class MediumReader {
                            "--temperature-scale 1,273.15 takes degrees Celsius");
         }
         const double hottest = part.kelvinScale * most + part.kelvinOffset;
-        if (!(hottest > kLeastKelvin)) {
+        if (!(hottest > kDarkKelvin)) {
             listener_.warn(option + ": nothing of " + grid + " glows, for the hottest has " +
-                           shortNumberText(hottest, 1e-3) +
-                           " K, and nothing below 500 K is seen to");
+                           shortNumberText(hottest, 1e-3) + " K, and nothing below " +
+                           numberText(kDarkKelvin) + " K is seen to");
         } else if (hottest > kHottestKelvin) {
             listener_.warn(option + ": " + values + "reach " + shortNumberText(hottest, 1e-3) +
                            " K; what is hotter than 100000 K is taken for that");
@@ -240,12 +239,9 @@ void readColors(const std::string& name, const std::vector<VolumeEntry>& entries
     optics.colorGrids = grids;
 }
 
-}  // namespace
-
-namespace {
-
-bool isFogLayer(const LayerChoice& layer) {
-    return !layer.transferFunction.empty();
+// Whether the volume itself is not shown, but what is besides.
+bool isClear(const PictureOptions& picture) {
+    return picture.medium.isLayered && picture.transferFunction.empty();
 }
 
 }  // namespace
@@ -260,7 +256,7 @@ void applyLayers(const CLI::App& app, PictureOptions& picture) {
                                 "at most " + std::to_string(most + 1) +
                                     (medium.colorGrid ? " with --color-grid" : "")));
     }
-    const auto fogs = std::count_if(medium.layers.begin(), medium.layers.end(), isFogLayer);
+    const auto fogs = std::ranges::count_if(medium.layers, &LayerChoice::isFog);
     if (fogs > 1 && picture.scatter.asked()) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--layer", "several that swallow light with --lighting scatter",
@@ -273,11 +269,9 @@ void applyLayers(const CLI::App& app, PictureOptions& picture) {
                     gotExpected("--layer", std::string(option) + " besides", "one of the two"));
     }
     // What swallows light comes first; where nothing does, there is but fire in nothing.
-    const auto fog = std::find_if(medium.layers.begin(), medium.layers.end(),
-                                  [](const auto& one) { return !one.transferFunction.empty(); });
+    const auto fog = std::ranges::find_if(medium.layers, &LayerChoice::isFog);
     if (fog == medium.layers.end()) {
         picture.read.gridName = medium.layers.front().grid;
-        picture.isClear = true;
         return;
     }
     picture.read.gridName = fog->grid;
@@ -288,7 +282,7 @@ void applyLayers(const CLI::App& app, PictureOptions& picture) {
 void readMedium(const std::filesystem::path& input, const PictureOptions& picture,
                 const Volume& volume, Optics& optics, const Listener& listener) {
     const MediumChoice& choice = picture.medium;
-    if (picture.isClear) {
+    if (isClear(picture)) {
         optics.transferFunction = TransferFunction();
         optics.transferFunction.colors = {{0, glm::dvec3(1)}};
         optics.transferFunction.opacities = {{0, 0, 0.5, 0}};
@@ -298,8 +292,7 @@ void readMedium(const std::filesystem::path& input, const PictureOptions& pictur
         }
         optics.densityScale.reset();
     }
-    if (optics.densityScale &&
-        std::any_of(choice.layers.begin(), choice.layers.end(), isFogLayer)) {
+    if (optics.densityScale && std::ranges::any_of(choice.layers, &LayerChoice::isFog)) {
         listener.warn(
             "--density-scale: is that of the first --layer that swallows light, not of others");
     }
@@ -318,8 +311,7 @@ void readMedium(const std::filesystem::path& input, const PictureOptions& pictur
         add(reader.fire(kOption, chosen(kOption, *choice.emissionGrid, found.emission, entries)));
     }
     for (const LayerChoice& layer : choice.layers) {
-        add(layer.transferFunction.empty() ? reader.fire("--layer", layer.grid)
-                                           : reader.fog("--layer", layer));
+        add(layer.isFire() ? reader.fire("--layer", layer.grid) : reader.fog("--layer", layer));
     }
     if (choice.colorGrid) {
         readColors(chosen("--color-grid", *choice.colorGrid, found.color, entries), entries, reader,

@@ -11,6 +11,7 @@
 #include "deltasplat/hold_out.h"
 #include "deltasplat/image/write_deep_image.h"
 #include "deltasplat/render_deep.h"
+#include "dims_text.h"
 #include "listener.h"
 #include "number_text.h"
 #include "options/input_options.h"
@@ -106,9 +107,8 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     Files inputs = filesOfMask(command.picture.parts);
     inputs.push_back(command.input);
     warnOfUnusedInputOptions(app, inputs, display);
-    const bool isExr = imageFormatOf(command.output) == ImageFormat::kExr;
-    if (isGiven(app, "--bits") && isExr) display.warn("--bits: has no effect on an .exr");
-    if (isGiven(app, "--dither") && (isExr || command.image.bits == 16))
+    if (isGiven(app, "--bits") && isExr(command)) display.warn("--bits: has no effect on an .exr");
+    if (isGiven(app, "--dither") && (isExr(command) || command.image.bits == 16))
         display.warn("--dither: has no effect but in pictures of 8 bits");
     warnOfUnusedTone(app, command, display);
     warnOfUnusedDeepOptions(app, command, display);
@@ -142,9 +142,7 @@ glm::dvec2 applyWindow(const RenderCommand& command, const Volume& volume, Rende
 // Makes opaque what has no alpha when it is stored.
 void fillForJpeg(const RenderCommand& command, Image& image, const Listener& listener) {
     if (imageFormatOf(command.output) != ImageFormat::kJpeg) return;
-    bool isOpaque = true;
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4) isOpaque &= image.rgba[i] >= 1;
-    if (isOpaque) return;
+    if (isOpaque(image)) return;
     listener.warn(command.output.string() +
                   ": a .jpg has no alpha, so what is clear is black; --background gives it another "
                   "colour");
@@ -179,11 +177,9 @@ RenderResult renderHeldOut(const std::filesystem::path& depths, const Volume& vo
     const DepthImage solid = readDepthImage(depths, listener);
     const glm::ivec2 size = options.camera.sizePixels;
     if (solid.size != size) {
-        const auto text = [](const glm::ivec2& pixels) {
-            return std::to_string(pixels.x) + "x" + std::to_string(pixels.y);
-        };
-        throw Error(ErrorCode::kInput, gotExpected(depths.string(), text(solid.size) + " pixels",
-                                                   text(size) + ", those of --size"));
+        throw Error(ErrorCode::kInput,
+                    gotExpected(depths.string(), dimsText(solid.size) + " pixels",
+                                dimsText(size) + ", those of --size"));
     }
     DeepImage deep;
     RenderResult result = renderDeep(volume, options, kFine, deep, listener);

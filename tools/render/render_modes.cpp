@@ -12,10 +12,6 @@
 namespace deltasplat {
 namespace {
 
-bool isExr(const std::filesystem::path& file) {
-    return lowerCase(file.extension().string()) == ".exr";
-}
-
 // Options that only one mode has.
 void warnOfOtherModes(const CLI::App& app, const RenderCommand& command, ProgressDisplay& display) {
     const Mode mode = command.picture.render.mode;
@@ -25,11 +21,15 @@ void warnOfOtherModes(const CLI::App& app, const RenderCommand& command, Progres
     };
     warnUnless("--depth-shade", mode == Mode::kMip, "--mode mip");
     warnUnless("--mu-water", mode == Mode::kDrr, "--mode drr");
-    warnUnless("--photons", mode == Mode::kDrr && isExr(command.output),
+    warnUnless("--photons", mode == Mode::kDrr && isExr(command),
                "--mode drr and an .exr: other pictures show the same of any number");
 }
 
 }  // namespace
+
+bool isExr(const RenderCommand& command) {
+    return lowerCase(command.output.extension().string()) == ".exr";
+}
 
 bool colorsValues(const RenderCommand& command) {
     const Mode mode = command.picture.render.mode;
@@ -37,12 +37,12 @@ bool colorsValues(const RenderCommand& command) {
 }
 
 bool storesValues(const RenderCommand& command) {
-    return command.picture.render.mode != Mode::kComposite && isExr(command.output);
+    return command.picture.render.mode != Mode::kComposite && isExr(command);
 }
 
 bool showsWindow(const RenderCommand& command) {
     const Mode mode = command.picture.render.mode;
-    if (mode == Mode::kComposite || isExr(command.output)) return false;
+    if (mode == Mode::kComposite || isExr(command)) return false;
     return !colorsValues(command) || command.picture.transferFunction.empty();
 }
 
@@ -54,8 +54,7 @@ void applyMode(const CLI::App& app, RenderCommand& command) {
     }
     if (command.drr) mode = Mode::kDrr;
     if (storesValues(command)) command.image.floatExr = true;
-    command.picture.render.mipColors =
-        !isExr(command.output) && !command.picture.transferFunction.empty();
+    command.picture.render.mipColors = !isExr(command) && !command.picture.transferFunction.empty();
 }
 
 void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
@@ -64,7 +63,7 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
     if (isGiven(app, "--window") && !showsWindow(command)) {
         display.warn(std::string("--window: has no effect ") +
                      (mode == Mode::kComposite ? "with --mode composite"
-                      : isExr(command.output)  ? "on an .exr, which holds the values themselves"
+                      : isExr(command)         ? "on an .exr, which holds the values themselves"
                                                : "with --tf, whose colours values get"));
     }
     warnOfOtherModes(app, command, display);
@@ -77,7 +76,7 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
     for (const std::vector<std::string>& ofFog : {scatterOptions(), mediumOptions()})
         unused.insert(unused.end(), ofFog.begin(), ofFog.end());
     if (colorsValues(command)) unused.push_back("--sigma");
-    if (!colorsValues(command) || isExr(command.output))
+    if (!colorsValues(command) || isExr(command))
         unused.insert(unused.end(),
                       {"--tf", "--range", "--hide-labels", "--show-labels", "--label-opacity"});
     for (const std::string& option : unused) {

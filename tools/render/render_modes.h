@@ -7,6 +7,9 @@
 
 namespace deltasplat {
 
+/// Whether the picture is written as an .exr.
+bool isExr(const RenderCommand& command);
+
 /// Whether the mode shows values of voxels, or of what is between, which have colours.
 bool colorsValues(const RenderCommand& command);
 

@@ -32,7 +32,6 @@ struct PictureOptions {
     ShadingChoice shading;
     ScatterChoice scatter;
     MediumChoice medium;
-    bool isClear = false;  ///< whether the volume itself is not shown, but what is besides
     SurfaceChoice surface;
     CutChoice parts;
 };
@@ -41,6 +40,7 @@ struct PictureOptions {
 inline bool isFog(const PictureOptions& picture) {
     return picture.scatter.asked() || picture.medium.asked();
 }
+
 /// What files of 8 and 16 bits show of light.
 struct ToneChoice {
     double exposureStops = 0;

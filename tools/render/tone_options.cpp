@@ -7,16 +7,13 @@
 
 #include "deltasplat/image/tone.h"
 #include "number_text.h"
+#include "render/render_modes.h"
 
 namespace deltasplat {
 namespace {
 
 // Of the pixels that are not clear: single highlights are no reason to say something.
 constexpr double kNoticedShare = 0.01;
-
-bool isExr(const RenderCommand& command) {
-    return imageFormatOf(command.output) == ImageFormat::kExr;
-}
 
 Parser<Tone> tone() {
     return [](const std::string& option, const std::string& text) {
@@ -31,12 +28,6 @@ std::string percentText(double share) {
     return numberText(std::round(1000 * share) / 10) + " %";
 }
 
-bool isOpaque(const Image& image) {
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4)
-        if (image.rgba[i] < 1) return false;
-    return true;
-}
-
 void warnOfClipping(const RenderCommand& command, const Image& image, const Listener& listener) {
     const double share = clippedShare(image);
     if (!(share > kNoticedShare)) return;
@@ -48,6 +39,12 @@ void warnOfClipping(const RenderCommand& command, const Image& image, const List
 }
 
 }  // namespace
+
+bool isOpaque(const Image& image) {
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+        if (image.rgba[i] < 1) return false;
+    return true;
+}
 
 void addToneOptions(CLI::App& app, ToneChoice& choice) {
     OptionGroup group(app, "Output");

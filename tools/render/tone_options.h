@@ -8,6 +8,9 @@
 
 namespace deltasplat {
 
+/// Whether no pixel lets through what lies behind.
+bool isOpaque(const Image& image);
+
 /// Declares --exposure and --tone.
 void addToneOptions(CLI::App& app, ToneChoice& choice);
 

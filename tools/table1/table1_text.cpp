@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "bench/bench_words.h"
+#include "dims_text.h"
 #include "table1/table1.h"
 
 namespace deltasplat {
@@ -35,10 +36,6 @@ const Table1Row* rowOf(const Table1Report& report, const Table1DataSet& dataSet)
 
 std::string nameOf(const Table1DataSet& dataSet) {
     return dataSet.name + std::string(dataSet.standIn ? " *" : "");
-}
-
-std::string dimsText(const glm::ivec3& dims) {
-    return std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" + std::to_string(dims.z);
 }
 
 double ratio(std::uint64_t a, std::uint64_t b) {

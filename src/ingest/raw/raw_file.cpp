@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "deltasplat/error.h"
+#include "dims_text.h"
 #include "ingest/files/byte_source.h"
 #include "ingest/files/file_name.h"
 #include "memory.h"
@@ -18,8 +19,7 @@ std::string expectedSize(const RawFile& file) {
     if (file.volumes == 1) return layout.expectedSize();
     return std::to_string(layout.skipBytes + file.dataBytes()) + " (" +
            std::to_string(layout.skipBytes) + " skipped + " + std::to_string(file.volumes) +
-           " volumes of " + std::to_string(layout.dims.x) + "x" + std::to_string(layout.dims.y) +
-           "x" + std::to_string(layout.dims.z) + " " + rawTypeName(layout.type) + ")";
+           " volumes of " + dimsText(layout.dims) + " " + rawTypeName(layout.type) + ")";
 }
 
 [[noreturn]] void throwSize(const RawFile& file, const std::string& got) {

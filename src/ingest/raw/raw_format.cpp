@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "deltasplat/error.h"
+#include "dims_text.h"
 #include "ingest/files/file_name.h"
 #include "ingest/placement.h"
 #include "number_text.h"
@@ -104,10 +105,6 @@ NameParts parseName(const std::filesystem::path& file) {
         parts.bigEndian = order == "be";
     }
     return parts;
-}
-
-std::string dimsText(const glm::i64vec3& dims) {
-    return std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" + std::to_string(dims.z);
 }
 
 glm::i64vec3 dimsFromName(const std::string& file, const NameParts& parts) {
