@@ -19,6 +19,7 @@
 #include "delta/code_blocks.h"
 #include "delta/hold_slots.h"
 #include "delta/mixed_sight.h"
+#include "delta/slot_holder.h"
 #include "ingest/codes/leaf_slices.h"
 #include "memory.h"
 #include "parallel.h"
@@ -56,57 +57,6 @@ inline auto mapped(std::span<const Slot> slotMap) {
     return [map = slotMap.data()](Code code) { return map[code + 1]; };
 }
 
-// Holds voxels along the slice axis. Slots that are seen are numbered, 0 for all others; what a
-// voxel goes on as is looked up if there are few of them, and asked for otherwise.
-class Holder {
-  public:
-    Holder(const Volume& volume, const PackOptions& options) : options_(options) {
-        std::vector<Slot> slots{kEmptySlot};
-        for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-            const Slot slot = Slot(code + 1);
-            if (volume.histogram[code] != 0 && options.classOfSlot[slot] != kEmptySlot)
-                slots.push_back(slot);
-        }
-        numberOf_.resize(kSlotCount);
-        for (std::size_t i = 0; i < slots.size(); ++i) numberOf_[slots[i]] = Slot(i);
-        for (const Slot slot : slots) classOf_.push_back(ClassIndex(options.classOfSlot[slot]));
-        slots_ = std::move(slots);
-        if (slots_.size() > kMostInTable) return;
-        next_.resize(slots_.size() * slots_.size());
-        for (std::size_t held = 0; held < slots_.size(); ++held) {
-            for (std::size_t slot = 0; slot < slots_.size(); ++slot)
-                next_[held * slots_.size() + slot] = std::uint16_t(ask(Slot(held), Slot(slot)));
-        }
-    }
-
-    // [kSlotCount]: the number of each slot.
-    std::span<const Slot> numberOfSlot() const { return numberOf_; }
-    ClassIndex classOf(Slot number) const { return classOf_[number]; }
-    // Whether a voxel may go on as another slot, of the same class or not.
-    bool allows(Slot held, Slot slot) const {
-        return held != 0 && slot != 0 && options_.holds(slots_[held], slots_[slot]);
-    }
-    // Returns what a voxel goes on as.
-    Slot next(Slot held, Slot slot) const {
-        return next_.empty() ? ask(held, slot)
-                             : next_[std::size_t(held) * slots_.size() + std::size_t(slot)];
-    }
-
-  private:
-    static constexpr std::size_t kMostInTable = 512;
-
-    // Slots of one class need no tolerance: the later one goes on.
-    Slot ask(Slot held, Slot slot) const {
-        return classOf_[held] != classOf_[slot] && allows(held, slot) ? held : slot;
-    }
-
-    const PackOptions& options_;
-    std::vector<Slot> numberOf_;
-    std::vector<Slot> slots_;          // by number
-    std::vector<ClassIndex> classOf_;  // likewise
-    std::vector<std::uint16_t> next_;  // [held][slot], or empty
-};
-
 // A word before all words are in one place.
 struct PendingWord {
     std::uint64_t visible;
@@ -124,7 +74,7 @@ constexpr double kLookBytesPerBlock = kMostWords * 64 * sizeof(OwnLook);
 
 // How voxels become classes. Null: as they are.
 struct PackTools {
-    const Holder* holder = nullptr;
+    const SlotHolder* holder = nullptr;
     const ValueMixer* mixer = nullptr;
     const MixedSight* sight = nullptr;
     const CodeTree* codes = nullptr;  // that values are mixed from
@@ -252,7 +202,7 @@ class ColumnPacker {
               int number) {
         HeldSlots& held = held_[numberOf(part)];
         if (own_) return holdLooks(slots, position, number, held, own_->held(numberOf(part)));
-        const Holder& holder = *tools_.holder;
+        const SlotHolder& holder = *tools_.holder;
         const auto next = [&](Slot before, Slot slot) { return holder.next(before, slot); };
         holdSlots(slots, held, next,
                   [&](std::size_t i, Slot slot) { classes_[i] = holder.classOf(slot); });
@@ -262,7 +212,7 @@ class ColumnPacker {
     [[gnu::noinline]] void holdLooks(const BlockSlots& slots, const glm::ivec3& position,
                                      int number, HeldSlots& before,
                                      BlockLooks::Slice& looksBefore) {
-        const Holder& holder = *tools_.holder;
+        const SlotHolder& holder = *tools_.holder;
         for (std::size_t i = 0; i < slots.size(); ++i) classes_[i] = holder.classOf(slots[i]);
         own_->paint(position, number, classes_);
         for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -483,7 +433,7 @@ PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
     const Subdivision parts = mixer ? mixer->parts() : Subdivision{};
     packed.box = boxOfSlices(volume.box, options.sliceAxis, parts);
     if (volume.empty()) return packed;
-    std::optional<Holder> holder;
+    std::optional<SlotHolder> holder;
     if (options.holds) holder.emplace(mixer ? mixer->levels() : volume, options);
     const std::span<const Slot> slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
     std::optional<MixedSight> sight;

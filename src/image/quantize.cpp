@@ -48,17 +48,14 @@ void straightSrgbPixel(const float* rgba, double threshold, Sample* result) {
 
 }  // namespace
 
-float finiteFloat(float value) {
-    constexpr float kLargest = std::numeric_limits<float>::max();
-    return std::isnan(value) ? 0.0f : std::clamp(value, -kLargest, kLargest);
+float finiteValue(float value, float largest) {
+    return std::isnan(value) ? 0.0f : std::clamp(value, -largest, largest);
 }
 
 std::vector<float> finiteValues(const Image& image, bool forFloat) {
-    const float largest = forFloat ? std::numeric_limits<float>::max() : 65504.0f;
+    const float largest = forFloat ? std::numeric_limits<float>::max() : kLargestHalf;
     std::vector<float> values = image.rgba;
-    for (float& value : values) {
-        value = std::isnan(value) ? 0.0f : std::clamp(value, -largest, largest);
-    }
+    for (float& value : values) value = finiteValue(value, largest);
     return values;
 }
 

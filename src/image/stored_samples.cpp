@@ -5,16 +5,16 @@
 #include <cmath>
 #include <limits>
 
+#include "image/quantize.h"
+
 namespace deltasplat {
 namespace {
 
-constexpr float kLargestHalf = 65504;
 constexpr float kBelowOne = 1 - 0x1p-11f;  // the next half
 
 glm::vec4 finite(const glm::vec4& color, float largest) {
     glm::vec4 result;
-    for (int c = 0; c < 4; ++c)
-        result[c] = std::isnan(color[c]) ? 0.0f : std::clamp(color[c], -largest, largest);
+    for (int c = 0; c < 4; ++c) result[c] = finiteValue(color[c], largest);
     return result;
 }
 

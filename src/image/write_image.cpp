@@ -106,7 +106,7 @@ std::vector<float> besideChannels(const std::vector<float>& rgba,
     all.reserve(pixels * (4 + channels.size()));
     for (std::size_t i = 0; i < pixels; ++i) {
         all.insert(all.end(), &rgba[4 * i], &rgba[4 * i] + 4);
-        for (const ImageChannel& channel : channels) all.push_back(finiteFloat(channel.values[i]));
+        for (const ImageChannel& channel : channels) all.push_back(finiteValue(channel.values[i]));
     }
     return all;
 }

@@ -10,16 +10,14 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "deltasplat/ingest/make_volume.h"
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
-#include "deltasplat/threads.h"
 #include "support/error_of.h"
+#include "support/same_picture.h"
 #include "support/sight_line.h"
-#include "support/simd_levels.h"
 #include "support/some_scene.h"
 
 namespace deltasplat {
@@ -387,21 +385,7 @@ TEST(Medium, isTheSameHoweverItIsMade) {
         }
         for (const CameraOptions& camera : test::someCameras()) {
             options.camera = camera;
-            options.method = Method::kAuto;
-            std::optional<ThreadLimit> threads(std::in_place, 1);
-            const Image image = render(*volume, options).image;
-            for (const Method method : {Method::kTraditional, Method::kSparse, Method::kDelta}) {
-                options.method = method;
-                EXPECT_EQ(render(*volume, options).image.rgba, image.rgba) << methodName(method);
-            }
-            threads.reset();
-            threads.emplace(7);
-            EXPECT_EQ(render(*volume, options).image.rgba, image.rgba);
-            for (const std::string& level : test::testedSimdLevels()) {
-                setSimdLevel(level);
-                EXPECT_EQ(render(*volume, options).image.rgba, image.rgba) << level;
-            }
-            setSimdLevel("auto");
+            test::expectTheSameHoweverItIsMade(*volume, options);
         }
     }
 }

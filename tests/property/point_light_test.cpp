@@ -8,18 +8,16 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
-#include "deltasplat/threads.h"
 #include "support/error_of.h"
 #include "support/lit_fog.h"
 #include "support/make_volume.h"
 #include "support/mirrored.h"
+#include "support/same_picture.h"
 #include "support/sight_line.h"
-#include "support/simd_levels.h"
 
 namespace deltasplat {
 namespace {
@@ -344,44 +342,16 @@ TEST(PointLight, mirrorsWithTheScene) {
     EXPECT_EQ(test::mirrored(render(volume, options).image).rgba, image.rgba);
 }
 
-// Bit for bit: whatever the method, on however many threads, at every SIMD level.
 TEST(PointLight, isTheSameHoweverItIsMade) {
-    const Volume volume = someFogVolume();
+    RenderOptions options = someOptions();
     for (const Projection projection : {Projection::kOrtho, Projection::kPerspective}) {
-        RenderOptions options = someOptions();
         options.camera.projection = projection;
-        std::optional<ThreadLimit> threads(std::in_place, 1);
-        const Image image = render(volume, options).image;
-        for (const Method method : {Method::kTraditional, Method::kSparse, Method::kDelta}) {
-            options.method = method;
-            EXPECT_EQ(render(volume, options).image.rgba, image.rgba) << methodName(method);
-        }
-        for (const int count : {7, 2}) {
-            threads.reset();
-            threads.emplace(count);
-            EXPECT_EQ(render(volume, options).image.rgba, image.rgba) << count;
-        }
-        for (const std::string& level : test::testedSimdLevels()) {
-            setSimdLevel(level);
-            EXPECT_EQ(render(volume, options).image.rgba, image.rgba) << level;
-        }
-        setSimdLevel("auto");
+        test::expectTheSameHoweverItIsMade(someFogVolume(), options);
     }
 }
 
 TEST(PointLight, ofAPreparedSceneIsThatOfRender) {
-    const auto volume = std::make_shared<const Volume>(someFogVolume());
-    const RenderOptions options = someOptions();
-    const PreparedScene scene({volume, options.optics}, options);
-    for (const char* view : {"front", "left", "iso"}) {
-        RenderOptions one = options;
-        one.camera.direction.reset();
-        one.camera.view = view;
-        const RenderResult expected = render(*volume, one);
-        Image image(expected.camera.sizePixels);
-        renderComposite(scene, expected.camera, image);
-        EXPECT_EQ(image.rgba, expected.image.rgba);
-    }
+    test::expectPreparedIsTheSame(std::make_shared<const Volume>(someFogVolume()), someOptions());
 }
 
 // Constant blocks that are stored as such, and where a volume's indices begin, are all the same.

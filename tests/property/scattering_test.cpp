@@ -6,19 +6,17 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
-#include "deltasplat/threads.h"
 #include "optics/scatter_kernels.h"
 #include "support/error_of.h"
 #include "support/lit_fog.h"
 #include "support/make_volume.h"
 #include "support/mirrored.h"
+#include "support/same_picture.h"
 #include "support/sight_line.h"
-#include "support/simd_levels.h"
 
 namespace deltasplat {
 namespace {
@@ -361,44 +359,16 @@ TEST(Scattering, mirrorsWithTheScene) {
     EXPECT_EQ(mirrored(render(volume, options).image).rgba, image.rgba);
 }
 
-// Bit for bit: whatever the method, on however many threads, at every SIMD level.
 TEST(Scattering, isTheSameHoweverItIsMade) {
-    const Volume volume = someFogVolume();
+    RenderOptions options = someOptions();
     for (const Projection projection : {Projection::kOrtho, Projection::kPerspective}) {
-        RenderOptions options = someOptions();
         options.camera.projection = projection;
-        std::optional<ThreadLimit> threads(std::in_place, 1);
-        const Image image = render(volume, options).image;
-        for (const Method method : {Method::kTraditional, Method::kSparse, Method::kDelta}) {
-            options.method = method;
-            EXPECT_EQ(render(volume, options).image.rgba, image.rgba) << methodName(method);
-        }
-        for (const int count : {7, 2}) {
-            threads.reset();
-            threads.emplace(count);
-            EXPECT_EQ(render(volume, options).image.rgba, image.rgba) << count;
-        }
-        for (const std::string& level : test::testedSimdLevels()) {
-            setSimdLevel(level);
-            EXPECT_EQ(render(volume, options).image.rgba, image.rgba) << level;
-        }
-        setSimdLevel("auto");
+        test::expectTheSameHoweverItIsMade(someFogVolume(), options);
     }
 }
 
 TEST(Scattering, ofAPreparedSceneIsThatOfRender) {
-    const auto volume = std::make_shared<const Volume>(someFogVolume());
-    const RenderOptions options = someOptions();
-    const PreparedScene scene({volume, options.optics}, options);
-    for (const char* view : {"front", "left", "iso"}) {
-        RenderOptions one = options;
-        one.camera.direction.reset();
-        one.camera.view = view;
-        const RenderResult expected = render(*volume, one);
-        Image image(expected.camera.sizePixels);
-        renderComposite(scene, expected.camera, image);
-        EXPECT_EQ(image.rgba, expected.image.rgba);
-    }
+    test::expectPreparedIsTheSame(std::make_shared<const Volume>(someFogVolume()), someOptions());
 }
 
 // As from far away as it may be, from an eye: what hardly reaches the camera beside what would.

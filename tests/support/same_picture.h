@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "deltasplat/prepared_scene.h"
+#include "deltasplat/render.h"
+#include "deltasplat/threads.h"
+#include "support/simd_levels.h"
+
+namespace deltasplat::test {
+
+/// Expects the same picture bit for bit, whatever the method, on however many threads, at every
+/// SIMD level.
+inline void expectTheSameHoweverItIsMade(const Volume& volume, RenderOptions options) {
+    std::optional<ThreadLimit> threads(std::in_place, 1);
+    const Image image = render(volume, options).image;
+    for (const Method method : {Method::kTraditional, Method::kSparse, Method::kDelta}) {
+        options.method = method;
+        EXPECT_EQ(render(volume, options).image.rgba, image.rgba) << methodName(method);
+    }
+    for (const int count : {7, 2}) {
+        threads.reset();
+        threads.emplace(count);
+        EXPECT_EQ(render(volume, options).image.rgba, image.rgba) << count << " threads";
+    }
+    for (const std::string& level : testedSimdLevels()) {
+        setSimdLevel(level);
+        EXPECT_EQ(render(volume, options).image.rgba, image.rgba) << level;
+    }
+    setSimdLevel("auto");
+}
+
+/// Expects of a scene prepared once what render() makes, from several sides.
+inline void expectPreparedIsTheSame(const std::shared_ptr<const Volume>& volume,
+                                    const RenderOptions& options) {
+    const PreparedScene scene({volume, options.optics}, options);
+    for (const char* view : {"front", "left", "iso"}) {
+        RenderOptions one = options;
+        one.camera.direction.reset();
+        one.camera.view = view;
+        const RenderResult expected = render(*volume, one);
+        Image image(expected.camera.sizePixels);
+        renderComposite(scene, expected.camera, image);
+        EXPECT_EQ(image.rgba, expected.image.rgba) << view;
+    }
+}
+
+}  // namespace deltasplat::test
