@@ -22,6 +22,7 @@ enum State : int {
 };
 std::atomic<int> state{kWorking};
 std::atomic<int> firstSignal{0};
+std::atomic<bool> filesStand{false};
 
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers cannot wait");
 
@@ -71,6 +72,7 @@ void handleUnlessIgnored(int signal) {
 
 // From here on the outcome is decided: a file with its final name, or an interrupt.
 void passCommitGate() {
+    if (filesStand) return throwIfInterrupted();
     int before = kWorking;
     if (!state.compare_exchange_strong(before, kCommitting) && before == kInterrupted)
         throwIfInterrupted();
@@ -94,7 +96,12 @@ void handleSignals() {
     setCommitGate(passCommitGate);
 }
 
+void interruptBetweenFiles() {
+    filesStand = true;
+}
+
 void allIsWritten() {
+    if (filesStand) return;
     int before = kCommitting;
     state.compare_exchange_strong(before, kWritten);
 }

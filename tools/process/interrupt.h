@@ -13,6 +13,9 @@ namespace deltasplat {
 /// Lets writing to a closed pipe or beyond a file size limit fail instead of ending the program.
 void handleSignals();
 
+/// Says that each file is an output of its own, as frames are: an interrupt is heard between them.
+void interruptBetweenFiles();
+
 /// Says that all outputs have been written: whatever comes, the program has done what it was to.
 void allIsWritten();
 

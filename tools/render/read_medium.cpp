@@ -52,16 +52,19 @@ std::string chosen(const std::string& option, const std::string& asked, const st
 class MediumReader {
   public:
     MediumReader(const std::filesystem::path& input, const PictureOptions& picture,
-                 const Volume& volume, const Listener& listener)
-        : input_(input), picture_(picture), volume_(volume), listener_(listener) {}
+                 const Volume& volume, const FrameLook* look, const Listener& listener)
+        : input_(input), picture_(picture), volume_(volume), look_(look), listener_(listener) {}
 
     // Reads a whole grid; null if nothing of it is active.
     std::shared_ptr<const Volume> read(const std::string& option, const std::string& grid) {
         ReadOptions read = picture_.read;
         read.gridName = grid;
         read.keepInexact = false;
-        auto volume = std::make_shared<const Volume>(readVolume(input_, read, listener_));
+        auto volume =
+            std::make_shared<const Volume>(look_ ? look_->sequence.read(input_, read, listener_)
+                                                 : readVolume(input_, read, listener_));
         if (volume->empty()) return {};
+        whole_ = look_ ? &look_->standIn(grid, *volume) : volume.get();
         fit_ = fitOf(*volume, volume_.worldFromIndex);
         warnOfPlace(option, *volume);
         return volume;
@@ -134,9 +137,9 @@ class MediumReader {
                                     "labels of the same voxels, for between two is a third"));
         }
         if (const Preset* preset = parseTransferFunction(given).preset)
-            fitPreset(*preset, *part.volume, optics);
+            fitPreset(*preset, *whole_, optics);
         if (optics.transferFunction.normalized && !optics.range)
-            optics.range = defaultRange(*part.volume);
+            optics.range = defaultRange(*whole_);
         part.transferFunction = optics.transferFunction;
         part.range = optics.range;
     }
@@ -144,8 +147,8 @@ class MediumReader {
     // Says how kelvin were made of values that are none. A sequence must not change its mind with
     // its hottest voxel: only values that can hardly be kelvin of anything are scaled.
     void setKelvin(const std::string& option, const std::string& grid, MediumPart& part) {
-        const double most = part.volume->valueMax;
-        const std::string values = "values of " + grid + ", " + numberText(part.volume->valueMin) +
+        const double most = whole_->valueMax;
+        const std::string values = "values of " + grid + ", " + numberText(whole_->valueMin) +
                                    " to " + numberText(most) + ", ";
         if (const auto& kelvin = picture_.medium.kelvin) {
             part.kelvinScale = kelvin->x;
@@ -154,7 +157,7 @@ class MediumReader {
             part.kelvinScale = kKelvinOfOne;
             listener_.warn(option + ": " + values + "seem to be no kelvin; 1 is taken for " +
                            numberText(kKelvinOfOne) + " K (--temperature-scale)");
-        } else if (part.volume->valueMin < 0) {
+        } else if (whole_->valueMin < 0) {
             listener_.warn(option + ": " + values +
                            "are taken for kelvin, of which there are none below 0; "
                            "--temperature-scale 1,273.15 takes degrees Celsius");
@@ -193,8 +196,10 @@ class MediumReader {
     const std::filesystem::path& input_;
     const PictureOptions& picture_;
     const Volume& volume_;
+    const FrameLook* look_;
     const Listener& listener_;
-    PartFit fit_ = PartFit::kSame;  // of the grid in hand
+    const Volume* whole_ = nullptr;  // stands for the grid in hand, of all frames
+    PartFit fit_ = PartFit::kSame;   // of the grid in hand
 };
 
 void readColors(const std::string& name, const std::vector<VolumeEntry>& entries,
@@ -280,7 +285,8 @@ void applyLayers(const CLI::App& app, PictureOptions& picture) {
 }
 
 void readMedium(const std::filesystem::path& input, const PictureOptions& picture,
-                const Volume& volume, Optics& optics, const Listener& listener) {
+                const Volume& volume, Optics& optics, const Listener& listener,
+                const FrameLook* look) {
     const MediumChoice& choice = picture.medium;
     if (isClear(picture)) {
         optics.transferFunction = TransferFunction();
@@ -302,7 +308,7 @@ void readMedium(const std::filesystem::path& input, const PictureOptions& pictur
                                           : "--layer");
     const std::vector<VolumeEntry> entries = listVolumes(input);
     const MediumGrids found = mediumGrids(entries);
-    MediumReader reader(input, picture, volume, listener);
+    MediumReader reader(input, picture, volume, look, listener);
     const auto add = [&](MediumPart part) {
         if (part.volume) optics.parts.push_back(std::move(part));
     };

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "annotate/annotate.h"
@@ -13,6 +15,7 @@
 #include "deltasplat/render_deep.h"
 #include "dims_text.h"
 #include "listener.h"
+#include "listener_part.h"
 #include "number_text.h"
 #include "options/input_options.h"
 #include "output_files.h"
@@ -23,6 +26,7 @@
 #include "render/render_input.h"
 #include "render/render_modes.h"
 #include "render/render_options.h"
+#include "render/render_sequence.h"
 #include "render/render_stats.h"
 #include "render/tone_options.h"
 #include "render/value_window.h"
@@ -204,61 +208,132 @@ void writePicture(const RenderCommand& command, const DeepImage& deep, const Ima
     writeImage(command.output, flat, options);
 }
 
+// A scene, ready to be made into a picture.
+struct ReadScene {
+    RenderOptions options;
+    std::shared_ptr<const Volume> volume;
+};
+
+ReadScene readScene(const RenderCommand& command, const SequencePart& part,
+                    const Listener& listener) {
+    if (part.prepared) {
+        const Scene& scene = part.prepared->scene();
+        ReadScene read{command.picture.render, scene.volume};
+        read.options.optics = scene.optics;
+        return read;
+    }
+    RenderOptions options = readOptics(command.picture, listener);
+    Volume volume = readToRender(command.input, command.picture, options, listener, part.look);
+    if (command.picture.surface.color && !options.optics.surface)
+        listener.warn("--surface-color: has no effect without a surface");
+    return {options, std::make_shared<const Volume>(std::move(volume))};
+}
+
+RenderResult renderPrepared(const PreparedScene& scene, const RenderOptions& options,
+                            const Listener& listener) {
+    const Volume& seen = *scene.scene().volume;
+    RenderResult result;
+    result.camera = makeCamera(options.camera, seen.box, seen.worldFromIndex, seen.space);
+    result.image = Image(result.camera.sizePixels);
+    result.stats = renderComposite(scene, result.camera, result.image, listener);
+    return result;
+}
+
+// A picture and what there is to say of it.
+struct MadePicture {
+    RenderResult result;
+    RenderTimes times;
+    DeepStats deep;
+    std::string codeBook;
+};
+
+// Reads, renders and writes one picture.
+MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const Session& session,
+                        const SequencePart& part, const Listener& listener) {
+    const PictureOptions& picture = command.picture;
+    MadePicture made;
+    const auto beginRead = std::chrono::steady_clock::now();
+    // Everything from here on is reading; what can be refused without it has been.
+    const Listener reading = partOf(listener, 0, kReadShare);
+    const ReadScene scene = readScene(command, part, reading);
+    const RenderOptions& options = scene.options;
+    const Volume& volume = *scene.volume;
+    if (!part.look) warnOfUnusedView(app, options.camera, volume, reading);
+    warnOfDetector(options.camera, volume, reading);
+    made.times.read = secondsSince(beginRead);
+    made.codeBook = "code book " + volume.codeBook.name() + ", largest error " +
+                    codeErrorText(volume.codeError) + "\n";
+
+    const Listener rendering = partOf(listener, kReadShare, kRenderShare);
+    RenderResult& result = made.result;
+    DeepImage deep;
+    if (command.deep) {
+        result = renderDeep(volume, options, command.deepOptions, deep, rendering);
+        made.deep = deepStatsOf(deep, command.deepOptions.slicesPerSample);
+    } else if (!command.holdoutDepth.empty()) {
+        result = renderHeldOut(command.holdoutDepth, volume, options, rendering);
+    } else if (part.prepared) {
+        result = renderPrepared(*part.prepared, options, rendering);
+    } else {
+        result = render(volume, options, rendering);
+    }
+    boundOver(picture.background, result.stats);
+    ImageFileOptions image = imageOptions(command, volume, result, session);
+    const Listener writing = partOf(listener, kRenderShare, 1);
+    warnOfDepths(command.aovs, options.optics, writing);
+    image.channels = renderAovs(volume, options, result.camera, command.aovs);
+    finishPicture(command, volume, options.optics, result, image, writing);
+    writing.report(0);
+    const auto beginWrite = std::chrono::steady_clock::now();
+    writePicture(command, deep, result.image, image);
+    made.times.write = secondsSince(beginWrite);
+    made.times.total = secondsSince(session.begin);
+    writeStats(command.stats, statsJson(result, volume, made.times, made.deep));
+    writing.report(1);
+    return made;
+}
+
+// Of a sequence, the largest bound is said.
+void runSequence(const CLI::App& app, const RenderCommand& command, const Session& session) {
+    RenderStats worst;
+    std::mutex mutex;
+    {
+        ProgressDisplay display(session.common);
+        warnOfUnusedOptions(app, command, display);
+        renderSequence(
+            command, display.stage(0, 1),
+            [&](const RenderCommand& frame, const SequencePart& part, const Listener& listener) {
+                validate(frame);
+                const MadePicture made = makePicture(app, frame, session, part, listener);
+                const std::lock_guard lock(mutex);
+                if (!made.result.stats.tolerance.isExact() &&
+                    !(made.result.stats.errorBoundColor <= worst.errorBoundColor))
+                    worst = made.result.stats;
+            });
+    }
+    if (!worst.tolerance.isExact() && !session.common.quiet) showErrorBound(worst);
+}
+
 void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
+    applySequence(app, command);
     applyMode(app, command);
     applyProjection(app, command.picture.render.camera);
     applyLayers(app, command.picture);
     applySurface(app, command.picture.render.mode, isFog(command.picture), command.picture.surface,
                  command.picture.read);
+    if (command.frames.asked()) return runSequence(app, command, session);
     validate(command);
-    const PictureOptions& picture = command.picture;
-    RenderTimes times;
-    RenderResult result;
-    DeepStats deepStats;
-    std::string codeBook;  // what there is to say of it
+    MadePicture made;
     {
         ProgressDisplay display(session.common);
         warnOfUnusedOptions(app, command, display);
-        const auto beginRead = std::chrono::steady_clock::now();
-        // Everything from here on is reading; what can be refused without it has been.
-        const Listener reading = display.stage(0, kReadShare);
-        RenderOptions options = readOptics(picture, reading);
-        const Volume volume = readToRender(command.input, picture, options, reading);
-        if (picture.surface.color && !options.optics.surface)
-            reading.warn("--surface-color: has no effect without a surface");
-        warnOfUnusedView(app, options.camera, volume, reading);
-        warnOfDetector(options.camera, volume, reading);
-        times.read = secondsSince(beginRead);
-        codeBook = "code book " + volume.codeBook.name() + ", largest error " +
-                   codeErrorText(volume.codeError) + "\n";
-
-        const Listener rendering = display.stage(kReadShare, kRenderShare);
-        DeepImage deep;
-        if (command.deep) {
-            result = renderDeep(volume, options, command.deepOptions, deep, rendering);
-            deepStats = deepStatsOf(deep, command.deepOptions.slicesPerSample);
-        } else if (!command.holdoutDepth.empty()) {
-            result = renderHeldOut(command.holdoutDepth, volume, options, rendering);
-        } else {
-            result = render(volume, options, rendering);
-        }
-        boundOver(picture.background, result.stats);
-        ImageFileOptions image = imageOptions(command, volume, result, session);
-        const Listener writing = display.stage(kRenderShare, 1);
-        warnOfDepths(command.aovs, options.optics, writing);
-        image.channels = renderAovs(volume, options, result.camera, command.aovs);
-        finishPicture(command, volume, options.optics, result, image, writing);
-        writing.report(0);
-        const auto beginWrite = std::chrono::steady_clock::now();
-        writePicture(command, deep, result.image, image);
-        times.write = secondsSince(beginWrite);
-        times.total = secondsSince(session.begin);
-        writeStats(command.stats, statsJson(result, volume, times, deepStats));
-        writing.report(1);
+        made = makePicture(app, command, session, {}, display.stage(0, 1));
     }
-    if (!result.stats.tolerance.isExact() && !session.common.quiet) showErrorBound(result.stats);
+    const RenderStats& stats = made.result.stats;
+    if (!stats.tolerance.isExact() && !session.common.quiet) showErrorBound(stats);
     if (session.common.verbose)
-        std::fputs((codeBook + statsSummary(result, times, deepStats)).c_str(), stderr);
+        std::fputs((made.codeBook + statsSummary(made.result, made.times, made.deep)).c_str(),
+                   stderr);
 }
 
 }  // namespace

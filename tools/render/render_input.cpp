@@ -250,8 +250,10 @@ void warnOfLabels(const PictureOptions& picture, const Preset* preset, const Vol
 }
 
 // Puts into `options` what depends on the volume: all of it, whatever is cut off.
+// @param isWhole  what will be seen is that volume
 void fitOptics(const std::filesystem::path& input, const PictureOptions& picture,
-               const Volume& volume, RenderOptions& options, const Listener& listener) {
+               const Volume& volume, bool isWhole, RenderOptions& options,
+               const Listener& listener) {
     const Preset* preset = presetOf(input, picture, volume);
     const std::optional<glm::dvec2>& range = picture.render.optics.range;
     options.optics.surface = picture.surface.of(volume);
@@ -269,7 +271,7 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
     } else {
         if (preset) fitPreset(*preset, volume, options.optics);
         const bool isOpen = options.optics.transferFunction.normalized && !options.optics.range;
-        if (isOpen && picture.parts.cuts()) options.optics.range = defaultRange(volume);
+        if (isOpen && !isWhole) options.optics.range = defaultRange(volume);
     }
     options.optics.transferFunction =
         changeLabels(options.optics.transferFunction, picture.parts.labels);
@@ -278,24 +280,35 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
     if (options.optics.surface) finishSurface(picture, volume, options.optics, listener);
 }
 
+// Notes what of a frame is in the picture.
+Volume seenIn(Volume volume, const Optics& optics, const FrameLook* look) {
+    if (!look) return volume;
+    look->sequence.addSeen(look->frame, volume);
+    for (const MediumPart& part : optics.parts) look->sequence.addSeen(look->frame, *part.volume);
+    return volume;
+}
+
 }  // namespace
 
 Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
-                    RenderOptions& options, const Listener& listener) {
+                    RenderOptions& options, const Listener& listener, const FrameLook* look) {
     ReadOptions read = picture.read;
     read.keepInexact = picture.render.mode != Mode::kComposite;
-    Volume volume = readVolume(input, read, listener);
-    fitOptics(input, picture, volume, options, listener);
+    Volume volume =
+        look ? look->sequence.read(input, read, listener) : readVolume(input, read, listener);
+    fitOptics(input, picture, look ? look->standIn(kMainGrid, volume) : volume,
+              !look && !picture.parts.cuts(), options, listener);
     if (options.optics.surface) options.optics.densityScale.reset();
     if (picture.render.mode == Mode::kComposite)
-        readMedium(input, picture, volume, options.optics, listener);
-    if (!picture.parts.cuts()) return volume;
+        readMedium(input, picture, volume, options.optics, listener, look);
+    if (!picture.parts.cuts()) return seenIn(std::move(volume), options.optics, look);
     if (options.optics.surface && isLevelSet(volume)) {
         listener.warn(
             "a level set has values near its surface only: cut open, it is hollow, and what is not "
             "near is not there");
     }
-    return cutAsChosen(volume, input, picture.parts, picture.read, listener);
+    return seenIn(cutAsChosen(volume, input, picture.parts, picture.read, listener), options.optics,
+                  look);
 }
 
 }  // namespace deltasplat

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "render/render_options.h"
+#include "sequence/sequence_look.h"
 
 namespace deltasplat {
 
@@ -13,8 +14,10 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
 
 /// Reads a volume and puts into `options` what depends on it: without a transfer function the grey
 /// ramp over its values.
+/// @param look  of the sequence that it is a frame of; null: it is none
 /// @throw Error(kInput), Error(kUsage) as readVolume
 Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
-                    RenderOptions& options, const Listener& listener);
+                    RenderOptions& options, const Listener& listener,
+                    const FrameLook* look = nullptr);
 
 }  // namespace deltasplat

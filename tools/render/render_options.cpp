@@ -19,6 +19,7 @@
 #include "render/aov_options.h"
 #include "render/deep_options.h"
 #include "render/list_presets.h"
+#include "render/render_sequence.h"
 #include "render/tone_options.h"
 #include "view/affine.h"
 
@@ -331,6 +332,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
                   std::string("Volume to render: ") + kInputFormats)
         .required();
     addOutputOptions(app, command);
+    addSequenceOptions(app, command);
     addToneOptions(app, command.tone);
     addDeepOptions(app, command);
     addAovOption(app, command.aovs);

@@ -20,6 +20,7 @@
 #include "options/scatter_options.h"
 #include "options/shading_options.h"
 #include "options/surface_options.h"
+#include "sequence/frame_options.h"
 
 namespace deltasplat {
 
@@ -62,6 +63,9 @@ struct RenderCommand {
     bool deep = false;                   ///< samples with depths instead of a flat picture
     DeepOptions deepOptions;
     AnnotationChoice annotations;
+    FrameChoice frames;
+    std::filesystem::path firstPass;  ///< of a sequence; empty: none
+    std::optional<int> turntable;     ///< frames of a turn of the camera
 };
 
 void addCameraOptions(CLI::App& app, PictureOptions& options);

@@ -38,11 +38,6 @@ constexpr const char* kReadable =
     ".bmp, "
     ".pgm or .exr";
 
-bool isImage(const std::filesystem::path& file) {
-    const auto found = formats().find(lowerExtension(file));
-    return found != formats().end() && found->second == Format::kImages;
-}
-
 // DICOM files have names of all kinds, but four letters behind 128 bytes that mean nothing.
 bool isDicom(const std::filesystem::path& file) {
     std::array<char, 132> bytes{};
@@ -127,7 +122,7 @@ InputKind findInFolder(const std::filesystem::path& folder, const Listener& list
         warnOfOthers(folder, all, dicom, "DICOM", listener);
         return {Format::kDicom, folderName(folder), dicom};
     }
-    const Files images = filesThat(all, isImage);
+    const Files images = filesThat(all, isImageName);
     if (images.empty()) {
         refuseFile(folder, "a folder without DICOM files and images",
                    "a DICOM folder, a folder of images, or a file");
@@ -151,11 +146,16 @@ std::string nameOfPattern(const StackPattern& pattern) {
 
 }  // namespace
 
+bool isImageName(const std::filesystem::path& file) {
+    const auto found = formats().find(lowerExtension(file));
+    return found != formats().end() && found->second == Format::kImages;
+}
+
 InputKind findInput(const std::filesystem::path& input, const Listener& listener) {
     std::error_code error;
     if (std::filesystem::is_directory(input, error)) return findInFolder(input, listener);
     const std::optional<StackPattern> pattern = stackPattern(input);
-    if (pattern && isImage(input) && !std::filesystem::exists(input, error)) {
+    if (pattern && isImageName(input) && !std::filesystem::exists(input, error)) {
         return {Format::kImages, nameOfPattern(*pattern), stackFiles(input, *pattern)};
     }
     requireRegularFile(input);

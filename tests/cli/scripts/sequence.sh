@@ -1,0 +1,156 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Sequences: frames are shown alike, the same in one go, in parts and on any number of threads; what
+# becomes of frames that are not there, cannot be read or are made already.
+# Usage: sequence.sh PROGRAM OIIOTOOL SCRATCH
+set -euo pipefail
+program=$1 oiiotool=$2 scratch=$3
+rm -rf "$scratch"
+mkdir -p "$scratch"
+cd "$scratch"
+fail() { echo "$*"; exit 1; }
+expect_code() { # CODE COMMAND...
+    local code=0
+    "${@:2}" 2>stderr.txt || code=$?
+    [[ $code == "$1" ]] || { cat stderr.txt; fail "got exit code $code from ${*:2}; expected $1"; }
+}
+expect_files() { # NAMES PATTERN
+    local got
+    got=$(compgen -G "$2" | sort | tr '\n' ' ' | sed 's/ $//' || true)
+    [[ $got == "$1" ]] || fail "got files $got; expected $1"
+}
+same() { "$oiiotool" -q "$1" "$2" --fail 0 --diff >/dev/null; }
+expect_said() { grep -qxF -- "$1" stderr.txt || { cat stderr.txt; fail "expected to be told: $1"; }; }
+
+# A cube of 8x8x8 voxels of value 100, from frame to frame in a larger volume with a brighter voxel
+# farther away.
+make_frame() { # NUMBER SIDE VALUE
+    local file=f_$2x$2x$2_uint8.raw y z
+    local row='\144\144\144\144\144\144\144\144'
+    head -c $(($2 * $2 * $2)) /dev/zero >"$file"
+    for z in 0 1 2 3 4 5 6 7; do
+        for y in 0 1 2 3 4 5 6 7; do
+            printf "$row" | dd of="$file" bs=1 seek=$(((z * $2 + y) * $2)) conv=notrunc status=none
+        done
+    done
+    printf "\\$(printf %o "$3")" |
+        dd of="$file" bs=1 seek=$(($2 * $2 * $2 - 1)) conv=notrunc status=none
+    "$program" convert "$file" "in.$1.vdb" --background 0 -qq
+}
+make_frame 0008 10 110
+make_frame 0009 14 160
+make_frame 0010 20 255
+frames=(render in.####.vdb --frames 8-10 --size 48x48 -qq)
+ran() { # LIKE: frames made with other options are the same, byte for byte
+    for number in 0008 0009 0010; do
+        same "all.$number.exr" "$1.$number.exr" ||
+            fail "$1.$number.exr is not all.$number.exr"
+    done
+}
+
+# Nothing changes but what changes in the data: the cube is where it was, and as bright.
+"$program" "${frames[@]}" -o all.####.exr
+expect_files "all.0008.exr all.0009.exr all.0010.exr" 'all.*'
+cube=10x10+4+34
+for number in 0008 0009; do
+    "$oiiotool" -q "all.$number.exr" --cut $cube all.0010.exr --cut $cube --fail 0 --diff \
+        >/dev/null || fail "frame $number shows the cube otherwise than frame 0010"
+done
+[[ $("$oiiotool" all.0010.exr --cut $cube --printstats | grep -c "Stats Max: 0.000000") == 0 ]] ||
+    fail "the cube is not where it is looked for"
+"$program" render in.0008.vdb --size 48x48 -qq -o alone.exr
+! same alone.exr all.0008.exr ||
+    fail "got a frame as it is by itself; expected what it is in the sequence"
+
+# Whatever the threads, the order, the names, and which task of a farm has which.
+"$program" "${frames[@]}" -o two.%04d.exr --threads 2
+ran two
+"$program" "${frames[@]}" -o one.@@@@.exr --threads 1
+ran one
+"$program" "${frames[@]}" --frames 10-8 -o 'turned.$F4.exr'
+ran turned
+"$program" "${frames[@]}" --first-pass first.json --frames 8-10 -o part.####.exr
+rm part.*
+for number in 8 9 10; do
+    "$program" "${frames[@]}" --first-pass first.json --frames $number -o part.####.exr
+done
+ran part
+echo '{}' >other.json
+expect_code 3 "$program" "${frames[@]}" --first-pass other.json -o part.####.exr
+expect_said "deltasplat: other.json: got something else; expected what --first-pass has written"
+
+# Frames without a file.
+gaps=(render in.####.vdb --frames 7-12 --size 8x8)
+expect_code 3 "$program" "${gaps[@]}" -o a.####.png --keep-going
+expect_files "a.0008.png a.0009.png a.0010.png" 'a.*'
+expect_said "deltasplat: 3 of 6 frames failed: 7, 11, 12"
+expect_said "deltasplat: frame 7: in.0007.vdb: got no such file; expected a readable file"
+expect_code 0 "$program" "${gaps[@]}" -o b.####.png --missing skip
+expect_files "b.0008.png b.0009.png b.0010.png" 'b.*'
+expect_said "deltasplat: warning: --missing: 3 of 6 frames have no file and are left out"
+expect_code 0 "$program" "${gaps[@]}" -o c.####.png --missing hold
+same c.0007.png c.0008.png || fail "frame 7 does not show the next"
+same c.0012.png c.0010.png || fail "frame 12 does not show the one before"
+expect_code 3 "$program" render none.####.vdb --frames 1-3 -o d.####.png --missing skip
+expect_code 3 "$program" render none.####.vdb --frames 1-3 -o d.####.png
+
+# A frame that cannot be read.
+cp in.0009.vdb whole.vdb
+head -c 200 whole.vdb >in.0009.vdb
+expect_code 3 "$program" "${frames[@]}" -o e.####.png --threads 1
+expect_files "e.0008.png" 'e.*'
+expect_code 3 "$program" "${frames[@]}" -o e.####.png --keep-going
+expect_files "e.0008.png e.0010.png" 'e.*'
+mv whole.vdb in.0009.vdb
+
+# What is there stays, if it is whole.
+cp e.0008.png kept.png
+cp e.0010.png e.0009.png
+cp e.0009.png other.png
+head -c 300 e.0010.png >short && mv short e.0010.png
+"$program" "${frames[@]}" -o e.####.png --skip-existing
+cmp e.0008.png kept.png
+cmp e.0009.png other.png
+[[ $("$oiiotool" --info e.0010.png) ]] || fail "e.0010.png was not made anew"
+# What is older than its input is made anew.
+cp kept.png e.0009.png
+touch -d '2001-01-01' e.0008.png e.0009.png e.0010.png
+touch -d '2000-01-01' in.0008.vdb
+"$program" "${frames[@]}" -o e.####.png --update
+[[ e.0008.png -ot in.0010.vdb ]] || fail "e.0008.png was made anew"
+! cmp -s e.0009.png kept.png || fail "e.0009.png was not made anew"
+
+# A turn: every frame is as wide, and one of it is the one of all.
+turn=(render in.0010.vdb --size 48x48 -qq --turntable 8)
+"$program" "${turn[@]}" -o turn.#.exr
+expect_files "turn.1.exr turn.2.exr turn.3.exr turn.4.exr turn.5.exr turn.6.exr turn.7.exr turn.8.exr" 'turn.*'
+"$program" "${turn[@]}" --frames 3 -o quarter.#.exr
+same quarter.3.exr turn.3.exr || fail "frame 3 is another one by itself"
+widths=$(for i in 1 2 3 4 5 6 7 8; do
+    "$oiiotool" --info -v turn.$i.exr | grep -o 'frame-width [0-9.e+-]*'; done | sort -u | wc -l)
+[[ $widths == 1 ]] || fail "got frames of $widths widths; expected one"
+
+# What cannot be meant.
+usage() { # MESSAGE ARGUMENTS...
+    expect_code 2 "$program" render "${@:2}"
+    expect_said "deltasplat: $1"
+}
+usage "--frames: got 1-; expected frames such as 1-100, 1-100x2, 100-1, -5--1 or 1,4,10-20" \
+    in.####.vdb -o g.####.png --frames 1-
+usage "--frames: got 1-5x0; expected frames such as 1-100, 1-100x2, 100-1, -5--1 or 1,4,10-20" \
+    in.####.vdb -o g.####.png --frames 1-5x0
+usage "--frames: got 1-9999999; expected at most 1000000 frames" \
+    in.####.vdb -o g.####.png --frames 1-9999999
+usage "INPUT: got in.0008.vdb with --frames; expected a name with ####, %04d, @ or \$F4 for the number" \
+    in.0008.vdb -o g.####.png --frames 8-9
+usage "--output: got g.png with --frames; expected a name with ####, %04d, @ or \$F4 for the number" \
+    in.####.vdb -o g.png --frames 8-9
+usage "INPUT: got in.####.vdb without --frames; expected --frames with it, as in --frames 1-100" \
+    in.####.vdb -o g.png
+usage "--keep-going: got it without --frames; expected the frames of a sequence" \
+    in.0008.vdb -o g.png --keep-going
+usage "--first-pass: got it without --frames; expected the frames of a sequence" \
+    in.0008.vdb -o g.png --first-pass g.json
+usage "--stats: got s.json with --frames; expected a name with ####, %04d, @ or \$F4 for the number" \
+    in.####.vdb -o g.####.png --frames 8-9 --stats s.json
+expect_files "" 'g.*'

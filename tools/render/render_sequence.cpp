@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/render_sequence.h"
+
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "deltasplat/atomic_file.h"
+#include "deltasplat/error.h"
+#include "deltasplat/threads.h"
+#include "listener_part.h"
+#include "memory.h"
+#include "process/interrupt.h"
+#include "render/render_input.h"
+#include "render/render_modes.h"
+#include "sequence/frame_name.h"
+#include "sequence/frames_to_make.h"
+#include "sequence/run_frames.h"
+
+namespace deltasplat {
+namespace {
+
+// Share of the progress that surveying takes.
+constexpr double kSurveyShare = 0.4;
+// Of the memory there is, what volumes of the survey may take that are kept, and what pictures that
+// are made at the same time may.
+constexpr double kKeptShare = 0.3;
+constexpr double kWorkShare = 0.5;
+// What rendering takes of a volume's memory, itself included, and of a pixel.
+constexpr double kTimesVolume = 4;
+constexpr double kBytesPerPixel = 200;
+
+// How far a turntable has turned, in degrees: whatever frames a command line has, a frame is the
+// same.
+double turnOf(int frame, std::optional<int> turntable) {
+    return turntable ? 360 * (double(frame - 1) / *turntable) : 0;
+}
+
+// The command that makes one frame.
+RenderCommand commandOf(const RenderCommand& command, const FrameFiles& files) {
+    RenderCommand frame = command;
+    frame.input = files.input;
+    frame.output = files.output;
+    if (!command.stats.empty()) frame.stats = FrameName::find(command.stats)->at(files.frame);
+    frame.picture.render.camera.azimuthDegrees += turnOf(files.frame, command.turntable);
+    return frame;
+}
+
+class Survey {
+  public:
+    Survey(const RenderCommand& command, const std::vector<FrameFiles>& frames)
+        : command_(command), frames_(frames) {}
+
+    // Reads all frames and notes what is in them. What is wrong with one is said when it is shown.
+    void run(SequenceLook& look, const Listener& listener) {
+        std::vector<FrameFiles> files;
+        std::set<std::filesystem::path> known;
+        for (const FrameFiles& one : frames_)
+            if (known.insert(one.input).second) files.push_back(one);
+        runFrames(
+            files, false, threadCount(),
+            [&](std::size_t i, const Listener& part) { add(i, files[i], look, part); }, listener);
+        if (!anyIsRead_) throw *failure_;
+        look.finish();
+    }
+
+  private:
+    void add(std::size_t i, const FrameFiles& files, SequenceLook& look, const Listener& part) {
+        Listener silent;
+        silent.progress = part.progress;
+        const FrameLook frame{look, i};
+        try {
+            RenderOptions options = readOptics(command_.picture, silent);
+            readToRender(files.input, command_.picture, options, silent, &frame);
+            anyIsRead_ = true;
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::kInterrupted) throw;
+            const std::lock_guard lock(mutex_);
+            if (!failure_ || i < failedFrame_) {
+                failure_ = error;
+                failedFrame_ = i;
+            }
+        }
+    }
+
+    const RenderCommand& command_;
+    const std::vector<FrameFiles>& frames_;
+    std::mutex mutex_;
+    std::atomic<bool> anyIsRead_{false};
+    std::optional<Error> failure_;
+    std::size_t failedFrame_ = 0;
+};
+
+constexpr const char* kFirstPass = "deltasplat_first_pass";
+
+bool readFirstPass(const std::filesystem::path& file, SequenceLook& look) {
+    std::ifstream in(file);
+    if (!in) return false;
+    try {
+        const auto json = nlohmann::ordered_json::parse(in);
+        look.takeJson(json.at(kFirstPass));
+    } catch (const std::exception&) {
+        throw Error(ErrorCode::kInput,
+                    gotExpected(file.string(), "something else", "what --first-pass has written"));
+    }
+    return true;
+}
+
+void writeFirstPass(const std::filesystem::path& file, const SequenceLook& look) {
+    const nlohmann::ordered_json json{{kFirstPass, look.toJson()}};
+    writeFileAtomically(file, json.dump(1) + "\n");
+}
+
+// Whether all frames show the same, which then is made ready once.
+bool seesOneThing(const RenderCommand& command) {
+    return !FrameName::findInput(command.input) &&
+           command.picture.render.mode == Mode::kComposite && !command.deep &&
+           command.holdoutDepth.empty() && command.aovs.empty();
+}
+
+PreparedScene prepareOnce(const RenderCommand& command, SequenceLook& look,
+                          const Listener& listener) {
+    Listener warnings;
+    warnings.warning = listener.warning;
+    const FrameLook frame{look, 0};
+    RenderOptions options = readOptics(command.picture, warnings);
+    Volume volume = readToRender(command.input, command.picture, options, warnings, &frame);
+    return PreparedScene({std::make_shared<const Volume>(std::move(volume)), options.optics},
+                         options);
+}
+
+// Makes a camera, as far as it is not said where it is, hold all of a turn.
+void fixCamera(const Volume& seen, std::optional<int> turntable, CameraOptions& choice) {
+    CameraOptions turned = choice;
+    double width = 0;
+    double distance = 0;
+    for (int frame = 0; frame < turntable.value_or(1); ++frame) {
+        turned.azimuthDegrees = choice.azimuthDegrees + turnOf(frame + 1, turntable);
+        const Camera camera = makeCamera(turned, seen.box, seen.worldFromIndex, seen.space);
+        width = std::max(width, camera.frameWidthWorld);
+        distance = std::max(distance, camera.targetDistanceWorld);
+        if (!choice.targetWorld) choice.targetWorld = camera.targetWorld;
+    }
+    const bool isPlaced = choice.eyeWorld || choice.sourceToDetectorWorld;
+    if (choice.projection == Projection::kOrtho && !choice.frameWidthWorld)
+        choice.frameWidthWorld = width;
+    if (choice.projection == Projection::kPerspective && !isPlaced && !choice.distanceWorld)
+        choice.distanceWorld = distance;
+}
+
+// Puts what all frames have into what they are rendered by.
+RenderCommand fixedTo(const SequenceLook& look, RenderCommand command) {
+    RenderOptions& options = command.picture.render;
+    if (!options.optics.unitDistance && look.smallestVoxelWorld() > 0)
+        options.optics.unitDistance = look.smallestVoxelWorld();
+    fixCamera(look.seen(), command.turntable, options.camera);
+    return command;
+}
+
+// How many pictures may be made at once.
+int workersFor(const RenderCommand& command, const SequenceLook& look) {
+    const glm::dvec2 pixels(command.picture.render.camera.sizePixels);
+    const double bytes = kTimesVolume * look.largestBytes() + kBytesPerPixel * pixels.x * pixels.y;
+    return std::max(
+        1, int(std::min(double(threadCount()), kWorkShare * double(availableMemory()) / bytes)));
+}
+
+// Greys that are chosen for each picture change from one to the next.
+void warnOfWindows(const RenderCommand& command, const Listener& listener) {
+    const bool isOfValues =
+        command.picture.render.mode != Mode::kXray && command.picture.render.mode != Mode::kDrr;
+    const bool isGiven = command.window || (isOfValues && command.picture.render.optics.range);
+    if (showsWindow(command) && !isGiven)
+        listener.warn("--frames: each has greys for its own values; --window LO,HI gives all one");
+}
+
+}  // namespace
+
+void addSequenceOptions(CLI::App& app, RenderCommand& command) {
+    addFrameOptions(app, command.frames);
+    OptionGroup group(app, "Sequence");
+    group.addValue("--first-pass", "FILE", command.firstPass, anyText(),
+                   "JSON file of what all frames are shown by alike: the values and the\n"
+                   "place of all of them. Made from --frames if it is not there; tasks\n"
+                   "of a farm that have some of the frames each share one");
+    group.addValue("--turntable", "N", command.turntable, wholeNumber(1, 1'000'000),
+                   "Turns the camera once around in N frames, 1 to N if --frames names\n"
+                   "no others; INPUT may be one volume");
+}
+
+void applySequence(const CLI::App& app, RenderCommand& command) {
+    if (command.turntable && !command.frames.asked()) {
+        command.frames.frames.resize(std::size_t(*command.turntable));
+        std::iota(command.frames.frames.begin(), command.frames.frames.end(), 1);
+    }
+    requireFramesOf(app, command.frames, command.input);
+    if (!command.frames.asked()) {
+        if (command.firstPass.empty()) return;
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--first-pass", "it without --frames", "the frames of a sequence"));
+    }
+    if (!command.stats.empty() && !FrameName::find(command.stats)) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--stats", command.stats.string() + " with --frames",
+                                "a name with ####, %04d, @ or $F4 for the number"));
+    }
+}
+
+void renderSequence(const RenderCommand& command, const Listener& listener,
+                    const MakePicture& makePicture) {
+    interruptBetweenFiles();
+    warnOfWindows(command, listener);
+    const std::vector<FrameFiles> all = filesOfFrames(
+        command.frames, command.input, command.turntable.has_value(), "--output", command.output);
+    SequenceLook look(kKeptShare * double(availableMemory()));
+    const std::vector<FrameFiles> present = withInputs(all, command.frames.missing, listener);
+    const bool isKnown = !command.firstPass.empty() && readFirstPass(command.firstPass, look);
+    if (!isKnown) {
+        Survey(command, present).run(look, partOf(listener, 0, kSurveyShare));
+        if (!command.firstPass.empty()) writeFirstPass(command.firstPass, look);
+    }
+    const Listener making = partOf(listener, kSurveyShare, 1);
+    const std::vector<FrameFiles> frames = framesToMake(present, command.frames);
+    const RenderCommand fixed = fixedTo(look, command);
+    std::optional<PreparedScene> prepared;
+    if (!frames.empty() && seesOneThing(command)) prepared = prepareOnce(fixed, look, making);
+    runFrames(
+        frames, command.frames.keepGoing, workersFor(command, look),
+        [&](std::size_t i, const Listener& part) {
+            const FrameLook frame{look, i};
+            makePicture(commandOf(fixed, frames[i]), {&frame, prepared ? &*prepared : nullptr},
+                        part);
+        },
+        making);
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+
+#include "deltasplat/prepared_scene.h"
+#include "render/render_options.h"
+#include "sequence/sequence_look.h"
+
+namespace deltasplat {
+
+/// What a picture of a sequence takes from the sequence; of a single one both are null.
+struct SequencePart {
+    const FrameLook* look = nullptr;
+    /// What is seen, made ready once for all frames, in place of what would be read.
+    const PreparedScene* prepared = nullptr;
+};
+
+/// Makes and writes one picture.
+using MakePicture = std::function<void(const RenderCommand& command, const SequencePart& part,
+                                       const Listener& listener)>;
+
+/// Declares the options of sequences that only `render` has, and those that all have.
+void addSequenceOptions(CLI::App& app, RenderCommand& command);
+
+/// Gives a turntable its frames, and refuses what frames cannot be made of.
+/// @throw Error(kUsage)
+void applySequence(const CLI::App& app, RenderCommand& command);
+
+/// Makes the pictures of all frames, several at once, shown alike: by the values of all.
+/// @throw as runFrames; Error(kInput) for a --first-pass file of something else
+void renderSequence(const RenderCommand& command, const Listener& listener,
+                    const MakePicture& makePicture);
+
+}  // namespace deltasplat

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/frame_options.h"
+
+#include <map>
+#include <optional>
+
+#include "deltasplat/error.h"
+#include "options/command_line.h"
+#include "sequence/frame_list.h"
+#include "sequence/frame_name.h"
+
+namespace deltasplat {
+namespace {
+
+Parser<MissingFrames> missingFrames() {
+    return [](const std::string& option, const std::string& text) {
+        const std::string word = choice({"error", "skip", "hold"})(option, text);
+        return word == "skip"   ? MissingFrames::kSkip
+               : word == "hold" ? MissingFrames::kHold
+                                : MissingFrames::kError;
+    };
+}
+
+[[noreturn]] void refuseName(const std::string& option, const std::filesystem::path& name) {
+    throw Error(ErrorCode::kUsage, gotExpected(option, name.string() + " with --frames",
+                                               "a name with ####, %04d, @ or $F4 for the number"));
+}
+
+}  // namespace
+
+void addFrameOptions(CLI::App& app, FrameChoice& choice) {
+    OptionGroup group(app, "Sequence");
+    group.addValue("--frames", "LIST", choice.frames, frameList(),
+                   "Frames to work on: 1-100, 1-100x2 (every second), 100-1, -5--1,\n"
+                   "1,4,10-20. INPUT and output have ####, %04d, @@@@ or $F4 where the\n"
+                   "number stands (in the name of an image stack $F4 or @@@@)");
+    group.addValue("--missing", "error|skip|hold", choice.missing, missingFrames(),
+                   "Of frames without a file: they have failed, nothing is made of them,\n"
+                   "or they repeat the one before; of the first ones, the next there is\n"
+                   "(default error)");
+    group.addFlag("--keep-going", choice.keepGoing,
+                  "Work on the other frames if one has failed; the exit code is that of\n"
+                  "the first that has");
+    group.addFlag("--skip-existing", choice.skipExisting,
+                  "Leave out frames whose output is there; one that cannot be read is\n"
+                  "made anew");
+    group.addFlag("--update", choice.update,
+                  "Leave out frames whose output is there and no older than the input");
+}
+
+std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::filesystem::path& input,
+                                      bool mayStand, const std::string& outputOption,
+                                      const std::filesystem::path& output) {
+    const std::optional<FrameName> inputName = FrameName::findInput(input);
+    const std::optional<FrameName> outputName = FrameName::find(output);
+    if (!inputName && !mayStand) refuseName("INPUT", input);
+    if (!outputName) refuseName(outputOption, output);
+    std::vector<FrameFiles> files;
+    std::map<std::filesystem::path, int> outputs;
+    for (const int frame : choice.frames) {
+        files.push_back({frame, inputName ? inputName->at(frame) : input, outputName->at(frame)});
+        const auto [known, isNew] = outputs.emplace(files.back().output, frame);
+        if (isNew) continue;
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(outputOption,
+                                known->first.string() + " for frames " +
+                                    std::to_string(known->second) + " and " + std::to_string(frame),
+                                "a file for each"));
+    }
+    return files;
+}
+
+void requireFramesOf(const CLI::App& app, const FrameChoice& choice,
+                     const std::filesystem::path& input) {
+    if (choice.asked()) return;
+    for (const char* option : {"--missing", "--keep-going", "--skip-existing", "--update"}) {
+        if (!isGiven(app, option)) continue;
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(option, "it without --frames", "the frames of a sequence"));
+    }
+    std::error_code ignored;
+    if (!FrameName::findInput(input) || std::filesystem::exists(input, ignored)) return;
+    throw Error(ErrorCode::kUsage, gotExpected("INPUT", input.string() + " without --frames",
+                                               "--frames with it, as in --frames 1-100"));
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace deltasplat {
+
+/// What becomes of frames that have no input.
+enum class MissingFrames {
+    kError,  ///< they have failed
+    kSkip,   ///< nothing is made of them
+    kHold    ///< they show the frame before, or of the first ones the next that there is
+};
+
+/// Which frames of a sequence are worked on, and what becomes of those that cannot be.
+struct FrameChoice {
+    std::vector<int> frames;  ///< empty: no sequence
+    MissingFrames missing = MissingFrames::kError;
+    bool keepGoing = false;     ///< whether the others are made if some have failed
+    bool skipExisting = false;  ///< leave alone what is there and whole
+    bool update = false;        ///< the same of what is no older than its input
+
+    bool asked() const { return !frames.empty(); }
+};
+
+void addFrameOptions(CLI::App& app, FrameChoice& choice);
+
+/// A file of each frame.
+struct FrameFiles {
+    int frame;
+    std::filesystem::path input;
+    std::filesystem::path output;
+};
+
+/// Returns the files of all frames that are asked for, in their order.
+/// @param outputOption  what names the output, for messages
+/// @throw Error(kUsage) unless input and output both have a place for the frame's number, which
+///        `mayStand` lets the input do without; or if two frames have the same output
+std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::filesystem::path& input,
+                                      bool mayStand, const std::string& outputOption,
+                                      const std::filesystem::path& output);
+
+/// Refuses names with a place for a frame's number if there is no such file and no frames are asked
+/// for; warns of options that frames alone have.
+/// @throw Error(kUsage)
+void requireFramesOf(const CLI::App& app, const FrameChoice& choice,
+                     const std::filesystem::path& input);
+
+}  // namespace deltasplat

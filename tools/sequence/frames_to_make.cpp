@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/frames_to_make.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include "deltasplat/error.h"
+#include "image/whole_image.h"
+#include "ingest/files/input_files.h"
+#include "ingest/files/input_kind.h"
+
+namespace deltasplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isThere(const fs::path& input) {
+    std::error_code ignored;
+    if (fs::exists(input, ignored)) return true;
+    if (!isImageName(input)) return false;
+    try {
+        return !findInput(input, {}).files.empty();  // a stack
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+bool isReadable(const fs::path& output) {
+    std::error_code error;
+    if (!fs::is_regular_file(output, error) || fs::file_size(output, error) == 0) return false;
+    return !isImageName(output) || isWholeImage(output);
+}
+
+// Whether an output is no older than any file of its input.
+bool isNew(const FrameFiles& frame) {
+    std::error_code error;
+    const auto made = fs::last_write_time(frame.output, error);
+    if (error) return false;
+    try {
+        for (const fs::path& file : filesOf(frame.input)) {
+            const auto changed = fs::last_write_time(file, error);
+            if (error || changed > made) return false;
+        }
+    } catch (const Error&) {
+        return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, MissingFrames missing,
+                                   const Listener& listener) {
+    if (missing == MissingFrames::kError) return frames;
+    std::vector<FrameFiles> result;
+    std::optional<fs::path> before;
+    std::size_t absent = 0;
+    for (const FrameFiles& frame : frames) {
+        const bool isPresent = isThere(frame.input);
+        if (!isPresent) ++absent;
+        if (isPresent) {
+            // Those before the first one show it.
+            if (!before)
+                for (FrameFiles& early : result) early.input = frame.input;
+            before = frame.input;
+        }
+        if (isPresent || missing == MissingFrames::kHold)
+            result.push_back(
+                {frame.frame, isPresent || !before ? frame.input : *before, frame.output});
+    }
+    if (!before) {
+        throw Error(ErrorCode::kInput, gotExpected(frames.front().input.string(),
+                                                   "no file of any frame", "at least one"));
+    }
+    if (absent > 0) {
+        listener.warn("--missing: " + std::to_string(absent) + " of " +
+                      std::to_string(frames.size()) + " frames have no file and " +
+                      (missing == MissingFrames::kHold ? "show another" : "are left out"));
+    }
+    return result;
+}
+
+std::vector<FrameFiles> framesToMake(const std::vector<FrameFiles>& frames,
+                                     const FrameChoice& choice) {
+    std::vector<FrameFiles> result;
+    for (const FrameFiles& frame : frames) {
+        const bool isDone = (choice.skipExisting && isReadable(frame.output)) ||
+                            (choice.update && isReadable(frame.output) && isNew(frame));
+        if (!isDone) result.push_back(frame);
+    }
+    return result;
+}
+
+}  // namespace deltasplat

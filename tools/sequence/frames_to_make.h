@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "deltasplat/progress.h"
+#include "sequence/frame_options.h"
+
+namespace deltasplat {
+
+/// Returns the frames that something can be made of: those without an input stay, and will fail;
+/// are left out, with a remark; or get another frame's input.
+/// @throw Error(kInput) if no frame has an input
+std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, MissingFrames missing,
+                                   const Listener& listener);
+
+/// Returns the frames whose output is not there already, as far as the choice asks for that.
+std::vector<FrameFiles> framesToMake(const std::vector<FrameFiles>& frames,
+                                     const FrameChoice& choice);
+
+}  // namespace deltasplat

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/run_frames.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+
+#include "deltasplat/error.h"
+#include "deltasplat/threads.h"
+#include "process/terminate.h"
+
+namespace deltasplat {
+namespace {
+
+class FrameRun {
+  public:
+    FrameRun(const std::vector<FrameFiles>& frames, bool keepGoing,
+             const std::function<void(std::size_t, const Listener&)>& work,
+             const Listener& listener)
+        : frames_(frames), keepGoing_(keepGoing), work_(work), listener_(listener) {}
+
+    void run(int workers) {
+        workers = int(std::clamp<std::size_t>(std::size_t(workers), 1, frames_.size()));
+        const int threadsEach = std::max(1, threadCount() / workers);
+        std::vector<std::thread> threads;
+        for (int i = 1; i < workers; ++i)
+            threads.emplace_back([this, threadsEach] { takeFrames(threadsEach); });
+        takeFrames(threadsEach);
+        for (std::thread& thread : threads) thread.join();
+        finish();
+    }
+
+  private:
+    void takeFrames(int threads) {
+        const ThreadLimit limit(threads);
+        while (!stops_) {
+            const std::size_t i = next_++;
+            if (i >= frames_.size()) return;
+            take(i);
+        }
+    }
+
+    void take(std::size_t i) {
+        try {
+            work_(i, listenerOf(i));
+            report(i, 1);
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::kInterrupted) stops_ = true;
+            fail(i, error);
+        } catch (const std::exception& problem) {
+            fail(i, Error(ErrorCode::kFailed, describe(problem)));
+        }
+    }
+
+    Listener listenerOf(std::size_t i) {
+        Listener listener;
+        listener.progress = [this, i](double share) { report(i, share); };
+        listener.warning = [this, i](const std::string& text) { warn(i, text); };
+        return listener;
+    }
+
+    void report(std::size_t i, double share) {
+        const std::lock_guard lock(mutex_);
+        double& known = shares_[i];
+        done_ += share - known;
+        known = share;
+        if (share >= 1) shares_.erase(i);
+        // Asks about interrupts as well.
+        listener_.report(done_ / double(frames_.size()));
+    }
+
+    void warn(std::size_t i, const std::string& text) {
+        const FrameFiles& files = frames_[i];
+        std::string about = text;
+        for (const auto& file : {files.input.string(), files.output.string()}) {
+            const std::size_t at = about.find(file);
+            if (at != std::string::npos) about.replace(at, file.size(), "");
+        }
+        const std::lock_guard lock(mutex_);
+        if (warned_.insert(about).second)
+            listener_.warn("frame " + std::to_string(files.frame) + ": " + text);
+    }
+
+    void fail(std::size_t i, const Error& error) {
+        const std::lock_guard lock(mutex_);
+        failures_.emplace(i, error);
+        if (!keepGoing_) stops_ = true;
+        if (error.code() != ErrorCode::kInterrupted)
+            showError("frame " + std::to_string(frames_[i].frame) + ": " + error.what());
+    }
+
+    void finish() const {
+        if (failures_.empty()) return;
+        std::string names;
+        constexpr std::size_t kMostNamed = 20;
+        std::size_t named = 0;
+        for (const auto& [i, error] : failures_) {
+            if (error.code() == ErrorCode::kInterrupted) throw error;
+            if (named++ < kMostNamed)
+                names += (names.empty() ? "" : ", ") + std::to_string(frames_[i].frame);
+        }
+        if (named > kMostNamed) names += ", ...";
+        throw Error(failures_.begin()->second.code(), std::to_string(failures_.size()) + " of " +
+                                                          std::to_string(frames_.size()) +
+                                                          " frames failed: " + names);
+    }
+
+    const std::vector<FrameFiles>& frames_;
+    const bool keepGoing_;
+    const std::function<void(std::size_t, const Listener&)>& work_;
+    const Listener& listener_;
+    std::atomic<std::size_t> next_{0};
+    std::atomic<bool> stops_{false};
+    std::mutex mutex_;
+    std::map<std::size_t, double> shares_;  // of frames in work
+    double done_ = 0;
+    std::set<std::string> warned_;
+    std::map<std::size_t, Error> failures_;
+};
+
+}  // namespace
+
+void runFrames(const std::vector<FrameFiles>& frames, bool keepGoing, int workers,
+               const std::function<void(std::size_t i, const Listener&)>& work,
+               const Listener& listener) {
+    if (frames.empty()) return;
+    FrameRun(frames, keepGoing, work, listener).run(workers);
+}
+
+}  // namespace deltasplat
