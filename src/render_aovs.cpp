@@ -125,15 +125,14 @@ class AovRender {
     void addChannel(const std::string& name, const Image& image, const ValueOf& valueOf) {
         ImageChannel channel{name, std::vector<float>(image.rgba.size() / 4)};
         for (std::size_t i = 0; i < channel.values.size(); ++i)
-            channel.values[i] = float(valueOf(i, &image.rgba[4 * i]));
+            channel.values[i] = float(valueOf(&image.rgba[4 * i]));
         channels_.push_back(std::move(channel));
     }
 
     void addColors(const std::string& name, Optics optics, const Listener& listener) {
         const Image image = picture(std::move(optics), listener);
         for (int c = 0; c < 3; ++c) {
-            addChannel(name + "." + "RGB"[c], image,
-                       [&](std::size_t, const float* rgba) { return rgba[c]; });
+            addChannel(name + "." + "RGB"[c], image, [&](const float* rgba) { return rgba[c]; });
         }
     }
 
@@ -148,8 +147,7 @@ class AovRender {
 
     void addTransmittance(const Listener& listener) {
         const Image image = picture(withoutGlow(options_.optics), listener);
-        addChannel("transmittance", image,
-                   [](std::size_t, const float* rgba) { return 1 - rgba[3]; });
+        addChannel("transmittance", image, [](const float* rgba) { return 1 - rgba[3]; });
     }
 
     // World position of the mean place of a pixel; none where nothing is seen.
@@ -173,13 +171,13 @@ class AovRender {
     void addPlaces(bool withDepth, bool withPosition, const Listener& listener) {
         const Image image = picture(places(options_.optics), listener);
         if (withDepth) {
-            addChannel("Z", image, [&](std::size_t, const float* rgba) {
+            addChannel("Z", image, [&](const float* rgba) {
                 const auto place = meanPlace(rgba);
                 return place ? depthOf(*place) : double(kNoDepth);
             });
         }
         for (int axis = 0; withPosition && axis < 3; ++axis) {
-            addChannel(std::string("P.") + "XYZ"[axis], image, [&](std::size_t, const float* rgba) {
+            addChannel(std::string("P.") + "XYZ"[axis], image, [&](const float* rgba) {
                 const auto place = meanPlace(rgba);
                 return place ? (*place)[axis] : 0.0;
             });

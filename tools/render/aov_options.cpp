@@ -52,4 +52,13 @@ void checkAovs(const RenderCommand& command) {
     if (command.deep) refuse("--deep besides", "a flat picture, or --deep alone");
 }
 
+void warnOfDepths(const std::vector<Aov>& aovs, const Optics& optics, const Listener& listener) {
+    for (const Aov aov : aovs) {
+        if ((aov != Aov::kDepth && aov != Aov::kPosition) || optics.parts.empty()) continue;
+        listener.warn("--aov " + aovName(aov) +
+                      ": is of what hides something; light of fire alone has none");
+        return;
+    }
+}
+
 }  // namespace deltasplat

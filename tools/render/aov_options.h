@@ -15,4 +15,7 @@ void addAovOption(CLI::App& app, std::vector<Aov>& aovs);
 /// @throw Error(kUsage)
 void checkAovs(const RenderCommand& command);
 
+/// Says that depths are by what hides something, and fire hides nothing.
+void warnOfDepths(const std::vector<Aov>& aovs, const Optics& optics, const Listener& listener);
+
 }  // namespace deltasplat

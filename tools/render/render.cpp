@@ -20,6 +20,7 @@
 #include "options/input_options.h"
 #include "output_files.h"
 #include "process/interrupt.h"
+#include "render/aov_options.h"
 #include "render/deep_options.h"
 #include "render/picture_legend.h"
 #include "render/read_medium.h"
@@ -189,16 +190,6 @@ RenderResult renderHeldOut(const std::filesystem::path& depths, const Volume& vo
     RenderResult result = renderDeep(volume, options, kFine, deep, listener);
     result.image = holdOut(deep, solid);
     return result;
-}
-
-// Depths are by what hides, and fire hides nothing.
-void warnOfDepths(const std::vector<Aov>& aovs, const Optics& optics, const Listener& listener) {
-    for (const Aov aov : aovs) {
-        if ((aov != Aov::kDepth && aov != Aov::kPosition) || optics.parts.empty()) continue;
-        listener.warn("--aov " + aovName(aov) +
-                      ": is of what hides something; light of fire alone has none");
-        return;
-    }
 }
 
 // Writes what the picture is asked for as: all of it, or what is seen of it.
