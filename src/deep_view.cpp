@@ -19,7 +19,7 @@ class SampleNumbers {
   public:
     SampleNumbers(const Subdivision& parts, int slicesPerSample)
         : origin_(std::int64_t{parts.origin.x} * parts.slices),
-          length_(std::int64_t{slicesPerSample} * parts.slices) {}
+          length_(std::max<std::int64_t>(std::int64_t{slicesPerSample} * parts.slices, 1)) {}
 
     std::int64_t of(int slice) const {
         const std::int64_t place = slice + origin_;
@@ -77,7 +77,7 @@ std::vector<DeepCut> cutInDepth(const std::vector<SeenSlab>& seen, bool frontToB
 }
 
 DeepViewResult renderDeepView(const PictureView& picture, int slicesPerSample, KeptMemory& memory,
-                              DeepBuilder& builder, Image& flat, const Listener& listener) {
+                              DeepStages& stages, Image& flat, const Listener& listener) {
     const SlabInput& input = picture.slabs();
     const Subdivision& parts = picture.axis().parts;
     const bool frontToBack = input.plane.frontToBack();
@@ -88,7 +88,7 @@ DeepViewResult renderDeepView(const PictureView& picture, int slicesPerSample, K
     const double layers = picture.showChangesLayer() ? 2 : 1;
     requireMemory("layers of a deep picture", layers * layerBytes(reach, input.layout.channels));
     Layer merged(reach, input.layout.channels, memory);
-    builder.begin(std::make_shared<const SliceDepths>(picture.camera(), picture.worldFromSlices()));
+    stages.begin(std::make_shared<const SliceDepths>(picture.camera(), picture.worldFromSlices()));
     DeepViewResult result{1, 0, 0, 0};
     double compositeSeconds = 0;
     for (std::size_t i = 0; i < cuts.size(); ++i) {
@@ -112,7 +112,7 @@ DeepViewResult renderDeepView(const PictureView& picture, int slicesPerSample, K
         }
         const double first = faceBefore(cut.firstSlice, parts);
         const double last = faceBefore(cut.lastSlice + 1, parts);
-        builder.add(flat, frontToBack ? first : last, frontToBack ? last : first);
+        stages.add(flat, frontToBack ? first : last, frontToBack ? last : first);
         result.warpSeconds += secondsSince(warpStart);
     }
     if (result.slabSeconds > 0) result.compositeShare = compositeSeconds / result.slabSeconds;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "deltasplat/progress.h"
-#include "image/deep_builder.h"
+#include "image/deep_stages.h"
 #include "picture_view.h"
 
 namespace deltasplat {
@@ -16,8 +16,8 @@ struct DeepCut {
     std::vector<SeenSlab> slabs;  ///< from the front on
 };
 
-/// Cuts what is seen of slabs at multiples of `slicesPerSample` undivided slices, from the front
-/// on.
+/// Cuts what is seen of slabs at multiples of `slicesPerSample` undivided slices, or, if that is 0,
+/// at every slice, from the front on.
 /// @param seen  from the front on
 std::vector<DeepCut> cutInDepth(const std::vector<SeenSlab>& seen, bool frontToBack,
                                 const Subdivision& parts, int slicesPerSample);
@@ -33,6 +33,6 @@ struct DeepViewResult {
 /// Renders a view cut by cut, and shows each time what there is so far.
 /// @param flat  becomes the flat picture
 DeepViewResult renderDeepView(const PictureView& picture, int slicesPerSample, KeptMemory& memory,
-                              DeepBuilder& builder, Image& flat, const Listener& listener);
+                              DeepStages& stages, Image& flat, const Listener& listener);
 
 }  // namespace deltasplat

@@ -62,17 +62,17 @@ struct PreparedScene::Impl {
     mutable std::array<std::optional<std::size_t>, 3> blocksSeen_;  // [slice axis]
 };
 
-class DeepBuilder;
+class DeepStages;
 
 /// What a picture is cut into in depth.
 struct DeepRequest {
-    int slicesPerSample;
-    DeepBuilder& builder;
+    int slicesPerSample;  ///< 0: one of those that slices are divided into
+    DeepStages& stages;
 };
 
 /// As the public one, of a scene's insides, into a picture of the camera's size that is clear.
 /// @param memory  for sheets and layers
-/// @param deep    if the picture's samples are wanted as well
+/// @param deep    if the picture is wanted stage by stage as well
 RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& camera,
                             KeptMemory& memory, Image& image, const Listener& listener,
                             const DeepRequest* deep = nullptr);

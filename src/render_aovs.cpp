@@ -11,14 +11,18 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/prepared_scene.h"
+#include "image/depth_builder.h"
+#include "kept_memory.h"
 #include "listener_part.h"
 #include "memory.h"
+#include "number_text.h"
+#include "prepared_axis.h"
 
 namespace deltasplat {
 namespace {
 
-constexpr std::array kAll{Aov::kDepth,   Aov::kPosition, Aov::kEmission,
-                          Aov::kAmbient, Aov::kDirect,   Aov::kTransmittance};
+constexpr std::array kAll{Aov::kDepth,    Aov::kFront,   Aov::kBack,   Aov::kPosition,
+                          Aov::kEmission, Aov::kAmbient, Aov::kDirect, Aov::kTransmittance};
 
 bool absorbs(const MediumPart& part) {
     return part.kind == MediumPart::Kind::kAbsorption;
@@ -34,10 +38,12 @@ void check(Aov aov, const Optics& optics) {
         refuse(aov, "what shines by itself", "`scattering`, light in fog");
     if (aov == Aov::kEmission && optics.shading)
         refuse(aov, "what reflects lights", "what shines by itself, or fog");
-    if (aov != Aov::kDepth && aov != Aov::kPosition) return;
-    if (optics.surface) refuse(aov, "a surface", "what a transfer function shows");
-    if (std::any_of(optics.parts.begin(), optics.parts.end(), absorbs))
-        refuse(aov, "a medium of several grids that swallow light", "one that does");
+}
+
+void checkOpacity(double opacity) {
+    if (opacity >= kLeastDepthOpacity && opacity <= 1) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("`depthOpacity`", numberText(opacity), "a number within 0.001..1"));
 }
 
 // What is seen alone of what optics show; all hide as much as they did.
@@ -69,23 +75,52 @@ Optics onlyLights(const Optics& optics, std::optional<std::size_t> light) {
     return direct;
 }
 
-// Places in the box of voxel centres, from 0 to 1 along each index.
-Optics places(Optics optics) {
-    optics.colorBy = ColorBy::kIndex;
-    optics.shading.reset();
-    optics.scattering.reset();
-    optics.parts.clear();
-    optics.colorGrids.reset();
-    return optics;
+// What hides, whatever its colour.
+Optics unlit(const Optics& optics) {
+    Optics unlit = withoutGlow(optics);
+    unlit.colorBy = ColorBy::kValue;
+    unlit.shading.reset();
+    unlit.scattering.reset();
+    unlit.colorGrids.reset();
+    return unlit;
 }
+
+// All of it white.
+Optics outline(const Optics& optics) {
+    Optics outline = unlit(optics);
+    outline.transferFunction.colors = {{0, glm::dvec3(1)}};
+    return outline;
+}
+
+// Places in the box of voxel centres, from 0 to 1 along each index.
+Optics places(const Optics& optics) {
+    Optics places = unlit(optics);
+    places.colorBy = ColorBy::kIndex;
+    return places;
+}
+
+// Whether voxels have no colours but their own.
+bool isColored(const Optics& optics) {
+    return optics.surface || std::any_of(optics.parts.begin(), optics.parts.end(), absorbs);
+}
+
+// In the world; none where nothing is seen.
+using Place = std::optional<glm::dvec3>;
 
 class AovRender {
   public:
-    AovRender(const Volume& volume, const RenderOptions& options, const Camera& camera)
-        : volume_(std::shared_ptr<const Volume>(), &volume), options_(options), camera_(camera) {
+    AovRender(const Volume& volume, const RenderOptions& options, const AovOptions& aovOptions,
+              const Camera& camera)
+        : volume_(std::shared_ptr<const Volume>(), &volume),
+          options_(options),
+          aovOptions_(aovOptions),
+          camera_(camera) {
         const Optics& optics = options.optics;
         // All are drawn as the picture is: of all of its voxels, and none divided if its are not.
-        if (optics.scattering || !optics.parts.empty() || optics.colorGrids) options_.between = 0;
+        const bool isWhole =
+            optics.scattering || !optics.parts.empty() || optics.colorGrids ||
+            (!options.between && !optics.surface && optics.transferFunction.colorsJump());
+        if (isWhole) options_.between = 0;
         if (optics.parts.empty()) return;
         Optics unlit = optics;
         unlit.scattering.reset();
@@ -94,12 +129,17 @@ class AovRender {
 
     std::vector<ImageChannel> take() { return std::move(channels_); }
 
-    void add(Aov aov, bool withDepth, bool withPosition, const Listener& listener) {
+    void add(Aov aov, const Listener& listener) {
         const Optics& optics = options_.optics;
         switch (aov) {
             case Aov::kDepth:
+                return addDepth(listener);
+            case Aov::kFront:
+                return channels_.push_back({"depth_front.Z", depths(listener).front()});
+            case Aov::kBack:
+                return channels_.push_back({"ZBack", depths(listener).back()});
             case Aov::kPosition:
-                return addPlaces(withDepth, withPosition, listener);
+                return addPosition(listener);
             case Aov::kEmission:
                 return addColors("emission", onlyGlow(optics), listener);
             case Aov::kAmbient:
@@ -150,8 +190,46 @@ class AovRender {
         addChannel("transmittance", image, [](const float* rgba) { return 1 - rgba[3]; });
     }
 
-    // World position of the mean place of a pixel; none where nothing is seen.
-    std::optional<glm::dvec3> meanPlace(const float* rgba) const {
+    // Made for the first channel that needs it, as those below.
+    const DepthBuilder& depths(const Listener& listener) {
+        if (depths_) return *depths_;
+        const Optics& optics = options_.optics;
+        depths_.emplace(
+            camera_, aovOptions_.depthOpacity,
+            optics.surface ? DepthBuilder::Growth::kSurface : DepthBuilder::Growth::kFog);
+        const PreparedScene scene({volume_, outline(optics)}, options_);
+        const DeepRequest singleSlices{0, *depths_};
+        KeptMemory memory;
+        Image image(camera_.sizePixels);
+        renderComposite(scene.impl(), camera_, memory, image, listener, &singleSlices);
+        return *depths_;
+    }
+
+    const std::vector<Place>& meanPlaces(const Listener& listener) {
+        if (!places_.empty()) return places_;
+        if (isColored(options_.optics)) {
+            findPlaces(depths(listener).mean());
+        } else {
+            findPlaces(picture(places(options_.optics), listener));
+        }
+        return places_;
+    }
+
+    void findPlaces(const Image& indices) {
+        for (std::size_t i = 0; i < indices.rgba.size(); i += 4)
+            places_.push_back(meanPlace(&indices.rgba[i]));
+    }
+
+    void findPlaces(const std::vector<float>& depths) {
+        for (std::size_t i = 0; i < depths.size(); ++i) {
+            const auto width = std::size_t(camera_.sizePixels.x);
+            const glm::dvec2 pixel(double(i % width) + 0.5, double(i / width) + 0.5);
+            places_.push_back(depths[i] == kNoDepth ? Place() : placeAt(pixel, depths[i]));
+        }
+    }
+
+    // World position of the mean place of a pixel.
+    Place meanPlace(const float* rgba) const {
         if (!(rgba[3] > 0)) return {};
         const IndexBox& box = volume_->box;
         glm::dvec3 index;
@@ -162,32 +240,45 @@ class AovRender {
         return glm::dvec3(volume_->worldFromIndex * glm::dvec4(index, 1));
     }
 
+    glm::dvec3 placeAt(glm::dvec2 pixel, double depth) const {
+        const glm::dvec3 eye = camera_.eyeWorld();
+        if (camera_.projection == Projection::kOrtho) {
+            const glm::dvec3 aside = camera_.worldFromPixel(pixel) - camera_.targetWorld;
+            return eye + aside + depth * camera_.direction;
+        }
+        const glm::dvec3 ray = camera_.rayThrough(pixel);
+        return eye + depth / depthOf(eye + ray) * ray;
+    }
+
     double depthOf(const glm::dvec3& world) const {
         const glm::dvec3 away = world - camera_.eyeWorld();
         return camera_.projection == Projection::kLatlong ? glm::length(away)
                                                           : glm::dot(away, camera_.direction);
     }
 
-    void addPlaces(bool withDepth, bool withPosition, const Listener& listener) {
-        const Image image = picture(places(options_.optics), listener);
-        if (withDepth) {
-            addChannel("Z", image, [&](const float* rgba) {
-                const auto place = meanPlace(rgba);
-                return place ? depthOf(*place) : double(kNoDepth);
-            });
-        }
-        for (int axis = 0; withPosition && axis < 3; ++axis) {
-            addChannel(std::string("P.") + "XYZ"[axis], image, [&](const float* rgba) {
-                const auto place = meanPlace(rgba);
-                return place ? (*place)[axis] : 0.0;
-            });
+    void addDepth(const Listener& listener) {
+        ImageChannel channel{"Z", {}};
+        for (const Place& place : meanPlaces(listener))
+            channel.values.push_back(place ? float(depthOf(*place)) : kNoDepth);
+        channels_.push_back(std::move(channel));
+    }
+
+    void addPosition(const Listener& listener) {
+        for (int axis = 0; axis < 3; ++axis) {
+            ImageChannel channel{std::string("P.") + "XYZ" [axis], {}};
+            for (const Place& place : meanPlaces(listener))
+                channel.values.push_back(place ? float((*place)[axis]) : 0);
+            channels_.push_back(std::move(channel));
         }
     }
 
     std::shared_ptr<const Volume> volume_;
     RenderOptions options_;
+    AovOptions aovOptions_;
     const Camera& camera_;
     std::vector<ImageChannel> channels_;
+    std::optional<DepthBuilder> depths_;
+    std::vector<Place> places_;  // [height][width]
 };
 
 }  // namespace
@@ -196,6 +287,10 @@ std::string aovName(Aov aov) {
     switch (aov) {
         case Aov::kDepth:
             return "depth";
+        case Aov::kFront:
+            return "front";
+        case Aov::kBack:
+            return "back";
         case Aov::kPosition:
             return "position";
         case Aov::kEmission:
@@ -216,7 +311,7 @@ std::span<const Aov> allAovs() {
 
 std::vector<ImageChannel> renderAovs(const Volume& volume, const RenderOptions& options,
                                      const Camera& camera, std::span<const Aov> aovs,
-                                     const Listener& listener) {
+                                     const AovOptions& aovOptions, const Listener& listener) {
     const DefaultFloats floats;
     if (options.mode != Mode::kComposite && !aovs.empty())
         refuse(aovs.front(), "`mode` " + modeName(options.mode), "composite");
@@ -225,19 +320,14 @@ std::vector<ImageChannel> renderAovs(const Volume& volume, const RenderOptions& 
     };
     for (const Aov aov : kAll)
         if (isWanted(aov)) check(aov, options.optics);
-    // A picture, and what is made of it.
-    constexpr double kBytesPerPixel = 16 + 4 * 6;
-    requireMemory("`aovs`",
-                  kBytesPerPixel * double(aovs.size()) * camera.sizePixels.x * camera.sizePixels.y);
-    AovRender render(volume, options, camera);
-    const bool withDepth = isWanted(Aov::kDepth);
-    const bool withPosition = isWanted(Aov::kPosition);
+    checkOpacity(aovOptions.depthOpacity);
+    // A picture, and what is made of it, for each; and places.
+    const double bytesPerPixel = (16 + 4 * 6) * double(aovs.size()) + sizeof(Place);
+    requireMemory("`aovs`", bytesPerPixel * camera.sizePixels.x * camera.sizePixels.y);
+    AovRender render(volume, options, aovOptions, camera);
     for (std::size_t i = 0; i < kAll.size(); ++i) {
-        // Depths and places are one picture.
-        const bool isDone = kAll[i] == Aov::kPosition && withDepth;
-        if (!isWanted(kAll[i]) || isDone) continue;
-        render.add(kAll[i], withDepth, withPosition,
-                   partOf(listener, double(i) / kAll.size(), double(i + 1) / kAll.size()));
+        if (!isWanted(kAll[i])) continue;
+        render.add(kAll[i], partOf(listener, double(i) / kAll.size(), double(i + 1) / kAll.size()));
     }
     return render.take();
 }

@@ -71,7 +71,7 @@ class CompositeRender {
 
     double showDeep(const PictureView& picture, const Listener& listener) {
         const DeepViewResult result =
-            renderDeepView(picture, deep_->slicesPerSample, memory_, deep_->builder, image_,
+            renderDeepView(picture, deep_->slicesPerSample, memory_, deep_->stages, image_,
                            partOf(listener, 0.2, 0.95));
         stats_.compositeSeconds += result.slabSeconds * result.compositeShare;
         stats_.splatSeconds += result.slabSeconds * (1 - result.compositeShare);

@@ -32,6 +32,7 @@ constexpr FlagName kFlagNames[] = {
     {"cropIndex", "--crop"},
     {"cropWorld", "--crop"},
     {"densityScale", "--density-scale"},
+    {"depthOpacity", "--depth-opacity"},
     {"depthShade", "--depth-shade"},
     {"detectorWorld", "--detector"},
     {"dims", "--dims"},

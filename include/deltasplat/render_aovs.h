@@ -14,6 +14,8 @@ namespace deltasplat {
 /// and camera, and takes as long.
 enum class Aov {
     kDepth,          ///< `Z`: mean depth of what is seen, in world units
+    kFront,          ///< `depth_front.Z`: depth where alpha passes AovOptions::depthOpacity
+    kBack,           ///< `ZBack`: depth behind which alpha grows by less than 2^-10
     kPosition,       ///< `P.X`, `P.Y`, `P.Z`: its mean place in the world
     kEmission,       ///< `emission.R`, `.G`, `.B`: what shines by itself
     kAmbient,        ///< `ambient.R`, ...: what fog scatters of light from everywhere
@@ -21,10 +23,18 @@ enum class Aov {
     kTransmittance,  ///< `transmittance`: the share of light from behind that gets through
 };
 
-/// Returns "depth", "position", "emission", "ambient", "direct" or "transmittance".
+/// Returns "depth", "front", "back", "position", "emission", "ambient", "direct" or
+/// "transmittance".
 std::string aovName(Aov aov);
 /// Returns all of them, in order.
 std::span<const Aov> allAovs();
+
+/// How channels are made.
+struct AovOptions {
+    double depthOpacity = 0.5;  ///< of kFront: kLeastDepthOpacity..1
+};
+
+inline constexpr double kLeastDepthOpacity = 0.001;
 
 /// Lights that get channels of their own, beside their sum.
 inline constexpr int kMostLightChannels = 8;
@@ -35,12 +45,16 @@ inline constexpr float kNoDepth = 1e10f;
 /// `direct` is the picture, as far as each is told of a voxel (ClassTable: to 2^-8). Depths and
 /// places are means over what is seen of a pixel, by how much it hides; depth counts along the
 /// camera's line of sight from its eye, or of a panorama from the eye to the mean place. Where
-/// nothing is seen, places are 0.
+/// nothing is seen, places are 0. kFront and kBack, and depths and places of surfaces and of media
+/// whose parts swallow light, are of what the picture is as slice after slice is put behind the
+/// others, on the line of sight of the middle of a pixel: this takes as long as a deep picture of
+/// single slices. All of its depths that are wanted are made at once.
 /// @param camera  of the picture
-/// @throw Error(kUsage) for what the scene does not have: depth or position of surfaces or of media
-///        whose parts swallow light, ambient and direct light without scattering; as render
+/// @throw Error(kUsage) for what the scene does not have: ambient and direct light without
+///        scattering; for an opacity out of range; as render
 std::vector<ImageChannel> renderAovs(const Volume& volume, const RenderOptions& options,
                                      const Camera& camera, std::span<const Aov> aovs,
+                                     const AovOptions& aovOptions = {},
                                      const Listener& listener = {});
 
 }  // namespace deltasplat

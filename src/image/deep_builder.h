@@ -4,28 +4,25 @@
 #include <cstddef>
 #include <glm/vec4.hpp>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "deltasplat/image/deep_image.h"
 #include "deltasplat/image/image.h"
-#include "view/slice_depths.h"
+#include "image/deep_stages.h"
 
 namespace deltasplat {
 
 /// Makes samples of what a picture looks like as more and more is put behind what is there: each
 /// sample is what turns one of these pictures into the next.
-class DeepBuilder {
+class DeepBuilder : public DeepStages {
   public:
     /// @param slicesPerSample  for messages
     DeepBuilder(glm::ivec2 size, int slicesPerSample);
 
-    /// Says where the slices of samples that follow lie.
-    void begin(std::shared_ptr<const SliceDepths> depths) { depths_ = std::move(depths); }
-    /// Takes the picture as it is now that what lies between two positions of slices has been put
-    /// behind the rest. Multi-threaded.
-    /// @param front,back  positions; lines of sight meet `front` first
-    /// @throw Error(kFailed) if the samples do not fit into memory
-    void add(const Image& picture, double front, double back);
+    void begin(std::shared_ptr<const SliceDepths> depths) override { depths_ = std::move(depths); }
+    /// Multi-threaded.
+    void add(const Image& picture, double front, double back) override;
     /// Returns the samples of all. Call it once. Multi-threaded.
     /// @throw Error(kFailed) as add
     DeepImage finish();

@@ -166,9 +166,15 @@ TEST(Aovs, areRefusedWhereThereAreNone) {
     EXPECT_EQ(errorWith(Colors::kLit, Aov::kEmission, none),
               "usage: `aovs` emission: got what reflects lights; expected what shines by itself, "
               "or fog");
-    EXPECT_EQ(errorWith(Colors::kOne, Aov::kDepth,
-                        [](RenderOptions& options) { options.optics.surface = Surface{90}; }),
-              "usage: `aovs` depth: got a surface; expected what a transfer function shows");
+    const Camera camera = test::cameraOf(*volume, {});
+    for (const double opacity : {0.0, 1.01, std::nan("")}) {
+        const std::string error = errorOf([&] {
+            renderAovs(*volume, optionsOf(Colors::kOne, {}), camera, std::vector{Aov::kFront},
+                       {opacity});
+        });
+        EXPECT_EQ(error.substr(0, 26), "usage: `depthOpacity`: got");
+        EXPECT_EQ(error.substr(error.find(';')), "; expected a number within 0.001..1");
+    }
     EXPECT_EQ(errorWith(Colors::kOne, Aov::kDepth,
                         [](RenderOptions& options) { options.mode = Mode::kXray; }),
               "usage: `aovs` depth: got `mode` xray; expected composite");

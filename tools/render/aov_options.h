@@ -8,12 +8,19 @@
 
 namespace deltasplat {
 
-/// Declares the option that says which channels are wanted beside a picture's own.
-void addAovOption(CLI::App& app, std::vector<Aov>& aovs);
+/// Declares the options that say which channels are wanted beside a picture's own.
+void addAovOptions(CLI::App& app, RenderCommand& command);
+
+/// Whether a channel is wanted that depends on AovOptions::depthOpacity.
+bool hasFront(const std::vector<Aov>& aovs);
 
 /// Refuses channels where there can be none.
 /// @throw Error(kUsage)
 void checkAovs(const RenderCommand& command);
+
+/// Warns of options that were given and change nothing.
+void warnOfUnusedAovOptions(const CLI::App& app, const RenderCommand& command,
+                            ProgressDisplay& display);
 
 /// Says that depths are by what hides something, and fire hides nothing.
 void warnOfDepths(const std::vector<Aov>& aovs, const Optics& optics, const Listener& listener);

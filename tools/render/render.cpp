@@ -65,6 +65,8 @@ ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume
     }
     if (result.stats.mode == Mode::kMip && render.depthShade > 0)
         options.metadata.emplace_back("depthShade", numberText(render.depthShade));
+    if (hasFront(command.aovs))
+        options.metadata.emplace_back("depthOpacity", numberText(command.aovOptions.depthOpacity));
     if (command.deep)
         options.metadata.emplace_back("deepSlices",
                                       std::to_string(command.deepOptions.slicesPerSample));
@@ -117,6 +119,7 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
         display.warn("--dither: has no effect but in pictures of 8 bits");
     warnOfUnusedTone(app, command, display);
     warnOfUnusedDeepOptions(app, command, display);
+    warnOfUnusedAovOptions(app, command, display);
     warnOfUnusedModeOptions(app, command, display);
     if (command.picture.render.mode != Mode::kComposite) return;
     warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading, display);
@@ -272,7 +275,7 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     ImageFileOptions image = imageOptions(command, volume, result, session);
     const Listener writing = partOf(listener, kRenderShare, 1);
     warnOfDepths(command.aovs, options.optics, writing);
-    image.channels = renderAovs(volume, options, result.camera, command.aovs);
+    image.channels = renderAovs(volume, options, result.camera, command.aovs, command.aovOptions);
     finishPicture(command, volume, options.optics, result, image, writing);
     writing.report(0);
     const auto beginWrite = std::chrono::steady_clock::now();

@@ -335,7 +335,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addSequenceOptions(app, command);
     addToneOptions(app, command.tone);
     addDeepOptions(app, command);
-    addAovOption(app, command.aovs);
+    addAovOptions(app, command);
     addCameraOptions(app, command.picture);
     addModeOption(app, command.picture.render.mode);
     addRayOptions(app, command);

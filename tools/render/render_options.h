@@ -59,6 +59,7 @@ struct RenderCommand {
     ImageFileOptions image;
     ToneChoice tone;
     std::vector<Aov> aovs;               ///< channels beside the picture's own
+    AovOptions aovOptions;
     std::filesystem::path holdoutDepth;  ///< of solid things before what is left out; empty: none
     bool deep = false;                   ///< samples with depths instead of a flat picture
     DeepOptions deepOptions;
