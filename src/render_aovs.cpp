@@ -21,11 +21,16 @@
 namespace deltasplat {
 namespace {
 
-constexpr std::array kAll{Aov::kDepth,    Aov::kFront,   Aov::kBack,   Aov::kPosition,
-                          Aov::kEmission, Aov::kAmbient, Aov::kDirect, Aov::kTransmittance};
+constexpr std::array kAll{Aov::kDepth,    Aov::kFront,  Aov::kBack,
+                          Aov::kPosition, Aov::kNormal, Aov::kEmission,
+                          Aov::kAmbient,  Aov::kDirect, Aov::kTransmittance};
 
 bool absorbs(const MediumPart& part) {
     return part.kind == MediumPart::Kind::kAbsorption;
+}
+
+bool severalAbsorb(const Optics& optics) {
+    return std::any_of(optics.parts.begin(), optics.parts.end(), absorbs);
 }
 
 [[noreturn]] void refuse(Aov aov, const std::string& got, const std::string& expected) {
@@ -38,6 +43,8 @@ void check(Aov aov, const Optics& optics) {
         refuse(aov, "what shines by itself", "`scattering`, light in fog");
     if (aov == Aov::kEmission && optics.shading)
         refuse(aov, "what reflects lights", "what shines by itself, or fog");
+    if (aov == Aov::kNormal && severalAbsorb(optics))
+        refuse(aov, "a medium of several grids that swallow light", "one that does");
 }
 
 void checkOpacity(double opacity) {
@@ -92,6 +99,23 @@ Optics outline(const Optics& optics) {
     return outline;
 }
 
+// White, lit along the world's axes, or against them, in red, green and blue: how much normals turn
+// to either side.
+Optics facing(const Optics& optics, double way) {
+    Optics facing = outline(optics);
+    if (facing.surface) facing.surface->color = glm::dvec3(1);
+    Shading shading{0, 1, 0, 1, {}};
+    for (int axis = 0; axis < 3; ++axis) {
+        Light& light = shading.lights.emplace_back();
+        light.frame = LightFrame::kWorld;
+        light.direction = light.color = glm::dvec3(0);
+        light.direction[axis] = -way;
+        light.color[axis] = 1;
+    }
+    facing.shading = shading;
+    return facing;
+}
+
 // Places in the box of voxel centres, from 0 to 1 along each index.
 Optics places(const Optics& optics) {
     Optics places = unlit(optics);
@@ -101,7 +125,7 @@ Optics places(const Optics& optics) {
 
 // Whether voxels have no colours but their own.
 bool isColored(const Optics& optics) {
-    return optics.surface || std::any_of(optics.parts.begin(), optics.parts.end(), absorbs);
+    return optics.surface || severalAbsorb(optics);
 }
 
 // In the world; none where nothing is seen.
@@ -140,6 +164,8 @@ class AovRender {
                 return channels_.push_back({"ZBack", depths(listener).back()});
             case Aov::kPosition:
                 return addPosition(listener);
+            case Aov::kNormal:
+                return addNormal(listener);
             case Aov::kEmission:
                 return addColors("emission", onlyGlow(optics), listener);
             case Aov::kAmbient:
@@ -272,6 +298,21 @@ class AovRender {
         }
     }
 
+    void addNormal(const Listener& listener) {
+        const Image along = picture(facing(options_.optics, 1), partOf(listener, 0, 0.5));
+        const Image against = picture(facing(options_.optics, -1), partOf(listener, 0.5, 1));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            ImageChannel channel{std::string("N.") + "XYZ" [axis], {}};
+            for (std::size_t i = 0; i < along.rgba.size(); i += 4) {
+                const double alpha = along.rgba[i + 3];
+                const double turned = double(along.rgba[i + axis]) - against.rgba[i + axis];
+                channel.values.push_back(alpha > 0 ? float(std::clamp(turned / alpha, -1.0, 1.0))
+                                                   : 0);
+            }
+            channels_.push_back(std::move(channel));
+        }
+    }
+
     std::shared_ptr<const Volume> volume_;
     RenderOptions options_;
     AovOptions aovOptions_;
@@ -293,6 +334,8 @@ std::string aovName(Aov aov) {
             return "back";
         case Aov::kPosition:
             return "position";
+        case Aov::kNormal:
+            return "normal";
         case Aov::kEmission:
             return "emission";
         case Aov::kAmbient:

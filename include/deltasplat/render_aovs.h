@@ -17,13 +17,14 @@ enum class Aov {
     kFront,          ///< `depth_front.Z`: depth where alpha passes AovOptions::depthOpacity
     kBack,           ///< `ZBack`: depth behind which alpha grows by less than 2^-10
     kPosition,       ///< `P.X`, `P.Y`, `P.Z`: its mean place in the world
+    kNormal,         ///< `N.X`, `N.Y`, `N.Z`: mean of the normals that Shading has, in the world
     kEmission,       ///< `emission.R`, `.G`, `.B`: what shines by itself
     kAmbient,        ///< `ambient.R`, ...: what fog scatters of light from everywhere
     kDirect,         ///< `direct.R`, ...: of all lights, and `direct_1.R`, ... of each, if several
     kTransmittance,  ///< `transmittance`: the share of light from behind that gets through
 };
 
-/// Returns "depth", "front", "back", "position", "emission", "ambient", "direct" or
+/// Returns "depth", "front", "back", "position", "normal", "emission", "ambient", "direct" or
 /// "transmittance".
 std::string aovName(Aov aov);
 /// Returns all of them, in order.
@@ -49,9 +50,15 @@ inline constexpr float kNoDepth = 1e10f;
 /// whose parts swallow light, are of what the picture is as slice after slice is put behind the
 /// others, on the line of sight of the middle of a pixel: this takes as long as a deep picture of
 /// single slices. All of its depths that are wanted are made at once.
+///
+/// Normals are those that face the camera, and means as places are: shorter than 1 where what is
+/// seen of a pixel faces several ways. Of what is not shaded, where values hardly change, they are
+/// half of the way to the camera, the mean of all that face it. They need no Shading: fog has them
+/// as well. Where nothing is seen they are 0.
 /// @param camera  of the picture
 /// @throw Error(kUsage) for what the scene does not have: ambient and direct light without
-///        scattering; for an opacity out of range; as render
+///        scattering, normals of media whose parts swallow light; for an opacity out of range; as
+///        render
 std::vector<ImageChannel> renderAovs(const Volume& volume, const RenderOptions& options,
                                      const Camera& camera, std::span<const Aov> aovs,
                                      const AovOptions& aovOptions = {},

@@ -108,7 +108,7 @@ set_tests_properties(cli.medium PROPERTIES FIXTURES_REQUIRED cli_files)
 
 # Channels beside the picture.
 deltasplat_refusal(aov_unknown
-    "--aov: got depth,height; expected some of depth, front, back, position, emission, ambient, direct and transmittance, with commas between"
+    "--aov: got depth,height; expected some of depth, front, back, position, normal, emission, ambient, direct and transmittance, with commas between"
     --aov depth,height)
 deltasplat_cli_test(usage.aov_png EXIT 2 ARGS render ${cube} -o out.png --aov depth
     STDERR "deltasplat: --aov: got out.png; expected an .exr file")
@@ -118,6 +118,9 @@ deltasplat_refusal(aov_deep "--aov: got --deep besides; expected a flat picture,
 deltasplat_refusal(aov_direct
     "--aov direct: got what shines by itself; expected --lighting scatter, light in fog"
     --size 8x8 --aov direct)
+deltasplat_cli_test(medium.aov_normal EXIT 2
+    ARGS render fire.vdb -o out.exr --size 8x8 --layer r:grey --layer g:grey --aov normal
+    STDERR "deltasplat: --aov normal: got a medium of several grids that swallow light; expected one that does")
 foreach(opacity 0 1.5 half)
     deltasplat_refusal(depth_opacity_${opacity}
         "--depth-opacity: got ${opacity}; expected a finite number from 0.001 to 1"
@@ -126,7 +129,7 @@ endforeach()
 deltasplat_unused(depth_opacity --depth-opacity "without --aov front" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --aov back --depth-opacity 0.3)
 deltasplat_cli_test(medium.aov_surface CREATES out.exr
-    ARGS render ball.vdb -o out.exr --size 8x8 --isovalue 0.5 --aov depth,front,back,position)
+    ARGS render ball.vdb -o out.exr --size 8x8 --isovalue 0.5 --aov depth,front,back,position,normal)
 deltasplat_refusal(holdout_mode "--holdout-depth: got --mode mip besides; expected --mode composite"
     --holdout-depth z.exr --mode mip)
 deltasplat_refusal(holdout_deep "--holdout-depth: got --deep besides; expected one of the two"

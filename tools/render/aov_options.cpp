@@ -45,10 +45,11 @@ void addAovOptions(CLI::App& app, RenderCommand& command) {
                    "Channels of an .exr beside its colours, with commas between: depth\n"
                    "(Z: mean depth of what is seen), front (depth_front.Z: where alpha\n"
                    "passes --depth-opacity), back (ZBack: of the last that is seen),\n"
-                   "position (P.X, P.Y, P.Z: its mean place in the world), emission\n"
-                   "(emission.R ...: what shines by itself), ambient and direct (of\n"
-                   "--lighting scatter; direct_1.R ... of each light, up to 8) and\n"
-                   "transmittance. Each takes as long as a picture, front and back as long\n"
+                   "position (P.X, P.Y, P.Z: its mean place in the world), normal (N.X,\n"
+                   "N.Y, N.Z: mean of its normals, likewise), emission (emission.R ...:\n"
+                   "what shines by itself), ambient and direct (of --lighting scatter;\n"
+                   "direct_1.R ... of each light, up to 8) and transmittance. Each takes as long "
+                   "as a picture, front and back as long\n"
                    "as --deep-slices 1");
     group.addValue("--depth-opacity", "A", command.aovOptions.depthOpacity,
                    number(kLeastDepthOpacity, 1),
