@@ -21,9 +21,9 @@
 namespace deltasplat {
 namespace {
 
-constexpr std::array kAll{Aov::kDepth,    Aov::kFront,  Aov::kBack,
-                          Aov::kPosition, Aov::kNormal, Aov::kEmission,
-                          Aov::kAmbient,  Aov::kDirect, Aov::kTransmittance};
+constexpr std::array kAll{Aov::kDepth,         Aov::kFront,    Aov::kBack,    Aov::kPosition,
+                          Aov::kNormal,        Aov::kEmission, Aov::kAmbient, Aov::kDirect,
+                          Aov::kTransmittance, Aov::kMattes};
 
 bool absorbs(const MediumPart& part) {
     return part.kind == MediumPart::Kind::kAbsorption;
@@ -97,6 +97,21 @@ Optics outline(const Optics& optics) {
     Optics outline = unlit(optics);
     outline.transferFunction.colors = {{0, glm::dvec3(1)}};
     return outline;
+}
+
+// Layers from one on in red, green and blue, and others black.
+Optics mattes(const Optics& optics, int firstLayer) {
+    Optics mattes = unlit(optics);
+    int layer = 0;
+    const auto colorNext = [&](TransferFunction& function) {
+        const int channel = layer++ - firstLayer;
+        glm::dvec3 color(0);
+        if (channel >= 0 && channel < 3) color[channel] = 1;
+        function.colors = {{0, color}};
+    };
+    colorNext(mattes.transferFunction);
+    for (MediumPart& part : mattes.parts) colorNext(part.transferFunction);
+    return mattes;
 }
 
 // White, lit along the world's axes, or against them, in red, green and blue: how much normals turn
@@ -173,9 +188,11 @@ class AovRender {
             case Aov::kDirect:
                 return addDirect(listener);
             case Aov::kTransmittance:
+                return addTransmittance(listener);
+            case Aov::kMattes:
                 break;
         }
-        addTransmittance(listener);
+        addMattes(listener);
     }
 
   private:
@@ -214,6 +231,19 @@ class AovRender {
     void addTransmittance(const Listener& listener) {
         const Image image = picture(withoutGlow(options_.optics), listener);
         addChannel("transmittance", image, [](const float* rgba) { return 1 - rgba[3]; });
+    }
+
+    void addMattes(const Listener& listener) {
+        const auto layers = 1 + int(withoutGlow(options_.optics).parts.size());
+        for (int first = 0; first < layers; first += 3) {
+            const Image image = picture(mattes(options_.optics, first),
+                                        partOf(listener, double(first) / layers,
+                                               std::min(first + 3.0, double(layers)) / layers));
+            for (int i = first; i < std::min(first + 3, layers); ++i) {
+                addChannel("matte_" + std::to_string(i + 1), image,
+                           [&](const float* rgba) { return rgba[i - first]; });
+            }
+        }
     }
 
     // Made for the first channel that needs it, as those below.
@@ -343,9 +373,11 @@ std::string aovName(Aov aov) {
         case Aov::kDirect:
             return "direct";
         case Aov::kTransmittance:
+            return "transmittance";
+        case Aov::kMattes:
             break;
     }
-    return "transmittance";
+    return "mattes";
 }
 
 std::span<const Aov> allAovs() {

@@ -22,10 +22,11 @@ enum class Aov {
     kAmbient,        ///< `ambient.R`, ...: what fog scatters of light from everywhere
     kDirect,         ///< `direct.R`, ...: of all lights, and `direct_1.R`, ... of each, if several
     kTransmittance,  ///< `transmittance`: the share of light from behind that gets through
+    kMattes,         ///< `matte_1`, ...: the share of alpha of each layer that swallows light
 };
 
-/// Returns "depth", "front", "back", "position", "normal", "emission", "ambient", "direct" or
-/// "transmittance".
+/// Returns "depth", "front", "back", "position", "normal", "emission", "ambient", "direct",
+/// "transmittance" or "mattes".
 std::string aovName(Aov aov);
 /// Returns all of them, in order.
 std::span<const Aov> allAovs();
@@ -55,6 +56,9 @@ inline constexpr float kNoDepth = 1e10f;
 /// seen of a pixel faces several ways. Of what is not shaded, where values hardly change, they are
 /// half of the way to the camera, the mean of all that face it. They need no Shading: fog has them
 /// as well. Where nothing is seen they are 0.
+///
+/// Mattes are of the volume and of the parts of Optics that swallow light, in their order, three of
+/// them to a picture; they add up to alpha as parts of light do to the picture.
 /// @param camera  of the picture
 /// @throw Error(kUsage) for what the scene does not have: ambient and direct light without
 ///        scattering, normals of media whose parts swallow light; for an opacity out of range; as

@@ -263,6 +263,7 @@ void writeFire() {
               ballOf("fine", 1500.0f, 0.25), ballOf("far", 1500.0f, 1, 100),
               ballOf<Vec3SGrid>("Cd", {0.25f, 0.5f, 2.0f}), ballOf<Vec3SGrid>("v", {-1, 0, 2}),
               ballOf("r", 0.25f), ballOf("g", 0.5f), ballOf("b", 2.0f)});
+    writeVdb("layers.vdb", {smoke, emptyFog<openvdb::FloatGrid>("none"), ballOf("g", 0.5f)});
     const auto celsius = ballOf("temperature", 900.0f);
     celsius->getAccessor().setValueOn({0, 0, 0}, -20.0f);
     writeVdb("celsius.vdb", {smoke, celsius});

@@ -108,7 +108,7 @@ set_tests_properties(cli.medium PROPERTIES FIXTURES_REQUIRED cli_files)
 
 # Channels beside the picture.
 deltasplat_refusal(aov_unknown
-    "--aov: got depth,height; expected some of depth, front, back, position, normal, emission, ambient, direct and transmittance, with commas between"
+    "--aov: got depth,height; expected some of depth, front, back, position, normal, emission, ambient, direct, transmittance and mattes, with commas between"
     --aov depth,height)
 deltasplat_cli_test(usage.aov_png EXIT 2 ARGS render ${cube} -o out.png --aov depth
     STDERR "deltasplat: --aov: got out.png; expected an .exr file")
@@ -121,6 +121,11 @@ deltasplat_refusal(aov_direct
 deltasplat_cli_test(medium.aov_normal EXIT 2
     ARGS render fire.vdb -o out.exr --size 8x8 --layer r:grey --layer g:grey --aov normal
     STDERR "deltasplat: --aov normal: got a medium of several grids that swallow light; expected one that does")
+deltasplat_refusal(aov_mattes
+    "--aov: got mattes of one volume; expected several --layer that swallow light" --aov mattes)
+deltasplat_cli_test(medium.aov_mattes_of_fire EXIT 2
+    ARGS render fire.vdb -o out.exr --layer density:grey --layer temperature:fire --aov mattes
+    STDERR "deltasplat: --aov: got mattes of one volume; expected several --layer that swallow light")
 foreach(opacity 0 1.5 half)
     deltasplat_refusal(depth_opacity_${opacity}
         "--depth-opacity: got ${opacity}; expected a finite number from 0.001 to 1"

@@ -33,6 +33,14 @@ std::vector<Aov> parseAovs(const std::string& option, const std::string& text) {
     return aovs;
 }
 
+// Grids of layers that swallow light, but for the first, which is the volume.
+std::vector<std::string> otherFogs(const MediumChoice& medium) {
+    std::vector<std::string> grids;
+    for (const LayerChoice& layer : medium.layers)
+        if (!layer.transferFunction.empty()) grids.push_back(layer.grid);
+    return grids;
+}
+
 }  // namespace
 
 bool hasFront(const std::vector<Aov>& aovs) {
@@ -48,9 +56,10 @@ void addAovOptions(CLI::App& app, RenderCommand& command) {
                    "position (P.X, P.Y, P.Z: its mean place in the world), normal (N.X,\n"
                    "N.Y, N.Z: mean of its normals, likewise), emission (emission.R ...:\n"
                    "what shines by itself), ambient and direct (of --lighting scatter;\n"
-                   "direct_1.R ... of each light, up to 8) and transmittance. Each takes as long "
-                   "as a picture, front and back as long\n"
-                   "as --deep-slices 1");
+                   "direct_1.R ... of each light, up to 8), transmittance and mattes\n"
+                   "(matte_1 ...: share of alpha of each --layer that swallows light).\n"
+                   "Each takes as long as a picture or two, front and back as long as\n"
+                   "--deep-slices 1");
     group.addValue("--depth-opacity", "A", command.aovOptions.depthOpacity,
                    number(kLeastDepthOpacity, 1),
                    withDefault("--aov front: alpha that is passed there, 0.001 to 1",
@@ -63,12 +72,41 @@ void checkAovs(const RenderCommand& command) {
     const Mode mode = command.picture.render.mode;
     if (mode != Mode::kComposite) refuse("--mode " + modeName(mode), "--mode composite");
     if (command.deep) refuse("--deep besides", "a flat picture, or --deep alone");
+    const bool hasMattes =
+        std::find(command.aovs.begin(), command.aovs.end(), Aov::kMattes) != command.aovs.end();
+    if (hasMattes && otherFogs(command.picture.medium).empty())
+        refuse("mattes of one volume", "several --layer that swallow light");
 }
 
 void warnOfUnusedAovOptions(const CLI::App& app, const RenderCommand& command,
                             ProgressDisplay& display) {
     if (isGiven(app, "--depth-opacity") && !hasFront(command.aovs))
         display.warn("--depth-opacity: has no effect without --aov front");
+}
+
+std::vector<ImageChannel> withEmptyMattes(const MediumChoice& medium, const Optics& optics,
+                                          std::vector<ImageChannel> channels) {
+    std::vector<std::string> shown;
+    for (const MediumPart& part : optics.parts) {
+        if (part.kind == MediumPart::Kind::kAbsorption) shown.push_back(part.volume->name);
+    }
+    const std::vector<std::string> asked = otherFogs(medium);
+    const auto isFirst = [](const ImageChannel& one) { return one.name == "matte_1"; };
+    const auto first = std::find_if(channels.begin(), channels.end(), isFirst);
+    if (first == channels.end() || asked.size() <= shown.size()) return channels;
+    const std::size_t pixels = first->values.size();
+    auto next = first + 1;
+    for (std::size_t i = 0, found = 0; i < asked.size(); ++i) {
+        const std::string name = "matte_" + std::to_string(i + 2);
+        if (found < shown.size() && shown[found] == asked[i]) {
+            next->name = name;
+            ++found;
+        } else {
+            next = channels.insert(next, {name, std::vector<float>(pixels)});
+        }
+        ++next;
+    }
+    return channels;
 }
 
 void warnOfDepths(const std::vector<Aov>& aovs, const Optics& optics, const Listener& listener) {

@@ -22,6 +22,11 @@ void checkAovs(const RenderCommand& command);
 void warnOfUnusedAovOptions(const CLI::App& app, const RenderCommand& command,
                             ProgressDisplay& display);
 
+/// Adds the mattes of layers of which nothing is active, which are no part of the medium: a
+/// sequence has the same channels in each of its pictures.
+std::vector<ImageChannel> withEmptyMattes(const MediumChoice& medium, const Optics& optics,
+                                          std::vector<ImageChannel> channels);
+
 /// Says that depths are by what hides something, and fire hides nothing.
 void warnOfDepths(const std::vector<Aov>& aovs, const Optics& optics, const Listener& listener);
 

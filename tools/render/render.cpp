@@ -275,7 +275,9 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     ImageFileOptions image = imageOptions(command, volume, result, session);
     const Listener writing = partOf(listener, kRenderShare, 1);
     warnOfDepths(command.aovs, options.optics, writing);
-    image.channels = renderAovs(volume, options, result.camera, command.aovs, command.aovOptions);
+    image.channels = withEmptyMattes(
+        picture.medium, options.optics,
+        renderAovs(volume, options, result.camera, command.aovs, command.aovOptions));
     finishPicture(command, volume, options.optics, result, image, writing);
     writing.report(0);
     const auto beginWrite = std::chrono::steady_clock::now();

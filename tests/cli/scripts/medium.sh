@@ -63,6 +63,14 @@ done
     --add aovs.exr --ch ambient.R,ambient.G,ambient.B --add aovs.exr --ch R,G,B --fail 2e-2 --diff \
     >/dev/null || fail "channels of light: got another sum than the picture"
 
+# Mattes of all layers, also of those that are empty, and of no fire.
+draw mattes --layer r:grey --layer temperature:fire --layer g:grey --layer density:grey --range 0,4 --aov mattes
+"$oiiotool" -q mattes.exr --ch matte_1 mattes.exr --ch matte_2 --add mattes.exr --ch matte_3 --add \
+    mattes.exr --ch A --fail 1e-2 --diff >/dev/null || fail "mattes: got another sum than alpha"
+"$program" render -q -q "${fire%/*}/layers.vdb" -o empty.exr --size 24x24 --layer density:grey --layer none:grey --layer g:grey --range 0,4 --aov mattes
+most=$("$oiiotool" --stats empty.exr 2>&1 | sed -n 's/.*Stats Max: //p' | cut -d' ' -f5-7)
+[[ $most =~ ^0\.1[0-9]*\ 0\.0*\ 0\.1[0-9]*$ ]] || fail "empty: got mattes up to $most; expected none of the second"
+
 # What is cut off changes no colours of what is left: cut by a box or by a plane.
 draw ramp --layer temperature:fire --emission-tf inferno --emission-range 0,1500 --target 0,0,0 \
     --crop :,0:,:
