@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::array kAll{Aov::kDepth,         Aov::kFront,    Aov::kBack,    Aov::kPosition,
                           Aov::kNormal,        Aov::kEmission, Aov::kAmbient, Aov::kDirect,
-                          Aov::kTransmittance, Aov::kMattes};
+                          Aov::kTransmittance, Aov::kMattes,   Aov::kSamples};
 
 bool absorbs(const MediumPart& part) {
     return part.kind == MediumPart::Kind::kAbsorption;
@@ -190,9 +190,11 @@ class AovRender {
             case Aov::kTransmittance:
                 return addTransmittance(listener);
             case Aov::kMattes:
+                return addMattes(listener);
+            case Aov::kSamples:
                 break;
         }
-        addMattes(listener);
+        channels_.push_back({"samples", depths(listener).samples()});
     }
 
   private:
@@ -375,9 +377,11 @@ std::string aovName(Aov aov) {
         case Aov::kTransmittance:
             return "transmittance";
         case Aov::kMattes:
+            return "mattes";
+        case Aov::kSamples:
             break;
     }
-    return "mattes";
+    return "samples";
 }
 
 std::span<const Aov> allAovs() {

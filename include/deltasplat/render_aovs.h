@@ -23,10 +23,11 @@ enum class Aov {
     kDirect,         ///< `direct.R`, ...: of all lights, and `direct_1.R`, ... of each, if several
     kTransmittance,  ///< `transmittance`: the share of light from behind that gets through
     kMattes,         ///< `matte_1`, ...: the share of alpha of each layer that swallows light
+    kSamples,        ///< `samples`: how many slices hide something of a pixel
 };
 
 /// Returns "depth", "front", "back", "position", "normal", "emission", "ambient", "direct",
-/// "transmittance" or "mattes".
+/// "transmittance", "mattes" or "samples".
 std::string aovName(Aov aov);
 /// Returns all of them, in order.
 std::span<const Aov> allAovs();
@@ -47,10 +48,10 @@ inline constexpr float kNoDepth = 1e10f;
 /// `direct` is the picture, as far as each is told of a voxel (ClassTable: to 2^-8). Depths and
 /// places are means over what is seen of a pixel, by how much it hides; depth counts along the
 /// camera's line of sight from its eye, or of a panorama from the eye to the mean place. Where
-/// nothing is seen, places are 0. kFront and kBack, and depths and places of surfaces and of media
-/// whose parts swallow light, are of what the picture is as slice after slice is put behind the
-/// others, on the line of sight of the middle of a pixel: this takes as long as a deep picture of
-/// single slices. All of its depths that are wanted are made at once.
+/// nothing is seen, places are 0. kFront, kBack and kSamples, and depths and places of surfaces and
+/// of media whose parts swallow light, are of what the picture is as slice after slice is put
+/// behind the others, on the line of sight of the middle of a pixel: this takes as long as a deep
+/// picture of single slices. All of these that are wanted are made at once.
 ///
 /// Normals are those that face the camera, and means as places are: shorter than 1 where what is
 /// seen of a pixel faces several ways. Of what is not shaded, where values hardly change, they are
@@ -59,6 +60,10 @@ inline constexpr float kNoDepth = 1e10f;
 ///
 /// Mattes are of the volume and of the parts of Optics that swallow light, in their order, three of
 /// them to a picture; they add up to alpha as parts of light do to the picture.
+///
+/// kSamples counts slices, those that voxels are divided into one by one, by which alpha grows,
+/// until less than 2^-10 gets through: about what a deep picture of single slices has samples.
+/// Nothing is drawn at random here, which other renderers count by this name.
 /// @param camera  of the picture
 /// @throw Error(kUsage) for what the scene does not have: ambient and direct light without
 ///        scattering, normals of media whose parts swallow light; for an opacity out of range; as

@@ -63,6 +63,7 @@ void DepthBuilder::change(Pixel& pixel, float alpha, const Stage& stage) const {
     } else {
         pixel.alphaAtBack = std::min(pixel.alphaAtBack, alpha);
     }
+    if (alpha > pixel.alpha && 1 - double(pixel.alpha) >= kLeastGrowth) ++pixel.samples;
     pixel.sum += (double(alpha) - pixel.alpha) * 0.5 * (stage.front + stage.back);
     pixel.alpha = alpha;
 }
@@ -104,6 +105,13 @@ std::vector<float> DepthBuilder::back() const {
 std::vector<float> DepthBuilder::mean() const {
     return depths(
         [](const Pixel& pixel) { return pixel.alpha > 0 ? pixel.sum / pixel.alpha : kNowhere; });
+}
+
+std::vector<float> DepthBuilder::samples() const {
+    std::vector<float> samples;
+    samples.reserve(pixels_.size());
+    for (const Pixel& pixel : pixels_) samples.push_back(float(pixel.samples));
+    return samples;
 }
 
 }  // namespace deltasplat

@@ -34,6 +34,9 @@ class DepthBuilder : public DeepStages {
     std::vector<float> back() const;
     /// The mean, by how much alpha grows.
     std::vector<float> mean() const;
+    /// By how many stages alpha grows, until less than kLeastGrowth gets through,
+    /// `[height][width]`.
+    std::vector<float> samples() const;
 
     static constexpr double kLeastGrowth = 0x1p-10;
 
@@ -44,6 +47,7 @@ class DepthBuilder : public DeepStages {
         float alpha = 0;
         float alphaAtBack = 0;
         std::uint32_t region = 0;
+        std::uint32_t samples = 0;
         double front = kNowhere;
         double back = kNowhere;
         double sum = 0;  // of positions, times how much alpha grows there

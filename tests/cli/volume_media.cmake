@@ -108,7 +108,7 @@ set_tests_properties(cli.medium PROPERTIES FIXTURES_REQUIRED cli_files)
 
 # Channels beside the picture.
 deltasplat_refusal(aov_unknown
-    "--aov: got depth,height; expected some of depth, front, back, position, normal, emission, ambient, direct, transmittance and mattes, with commas between"
+    "--aov: got depth,height; expected some of depth, front, back, position, normal, emission, ambient, direct, transmittance, mattes and samples, with commas between"
     --aov depth,height)
 deltasplat_cli_test(usage.aov_png EXIT 2 ARGS render ${cube} -o out.png --aov depth
     STDERR "deltasplat: --aov: got out.png; expected an .exr file")
@@ -134,7 +134,7 @@ endforeach()
 deltasplat_unused(depth_opacity --depth-opacity "without --aov front" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --aov back --depth-opacity 0.3)
 deltasplat_cli_test(medium.aov_surface CREATES out.exr
-    ARGS render ball.vdb -o out.exr --size 8x8 --isovalue 0.5 --aov depth,front,back,position,normal)
+    ARGS render ball.vdb -o out.exr --size 8x8 --isovalue 0.5 --aov depth,front,back,position,normal,samples)
 deltasplat_refusal(holdout_mode "--holdout-depth: got --mode mip besides; expected --mode composite"
     --holdout-depth z.exr --mode mip)
 deltasplat_refusal(holdout_deep "--holdout-depth: got --deep besides; expected one of the two"

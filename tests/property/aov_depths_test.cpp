@@ -102,9 +102,9 @@ TEST(AovDepths, ofFogAreThoseOfItsExtinction) {
         for (const auto& [extinction, opacity] :
              {std::pair(0.04, 0.3), {0.04, 0.9}, {0.4, 0.001}, {0.4, 0.5}, {0.4, 0.9}}) {
             options.optics.extinctionScale = extinction / std::log(2);
-            const Channels channels =
-                channelsOf(volume, options, camera, {Aov::kFront, Aov::kBack}, opacity);
-            ASSERT_EQ(channels.size(), 2u);
+            const Channels channels = channelsOf(volume, options, camera,
+                                                 {Aov::kFront, Aov::kBack, Aov::kSamples}, opacity);
+            ASSERT_EQ(channels.size(), 3u);
             int seen = 0;
             for (int y = 0; y < camera.sizePixels.y; ++y) {
                 for (int x = 0; x < camera.sizePixels.x; ++x) {
@@ -122,6 +122,10 @@ TEST(AovDepths, ofFogAreThoseOfItsExtinction) {
                         EXPECT_LT(errorOf(channels.at("depth_front.Z")[i],
                                           sight.depthOfOne * (ways->x + passed)),
                                   0.05);
+                    }
+                    // Seen straight on, as long as it is clear enough, one for each slice.
+                    if (!cameraOptions.direction && extinction < 0.1 && !cameraOptions.eyeWorld) {
+                        EXPECT_EQ(channels.at("samples")[i], box.dims().z);
                     }
                     // Where it ends, or so little is left that it does not count.
                     const double back = channels.at("ZBack")[i] / sight.depthOfOne - ways->x;
@@ -180,14 +184,16 @@ TEST(AovDepths, areThoseOfADeepPicture) {
         const double opacity = 0.7;
         DeepImage deep;
         const RenderResult flat = renderDeep(*volume, options, {1}, deep);
-        const Channels channels =
-            channelsOf(*volume, options, flat.camera, {Aov::kFront, Aov::kBack}, opacity);
+        const Channels channels = channelsOf(*volume, options, flat.camera,
+                                             {Aov::kFront, Aov::kBack, Aov::kSamples}, opacity);
         int met = 0;
         int same = 0;
+        double samples = 0;
         for (int y = 0; y < deep.size.y; ++y) {
             for (int x = 0; x < deep.size.x; ++x) {
                 const auto i = std::size_t(y * deep.size.x + x);
                 const float back = channels.at("ZBack")[i];
+                samples += channels.at("samples")[i];
                 double alpha = 0;
                 double front = kNoDepth;
                 double alphaAtBack = 0;
@@ -210,6 +216,9 @@ TEST(AovDepths, areThoseOfADeepPicture) {
         EXPECT_GT(met, 500);
         // But for what filters take away again.
         EXPECT_GT(same, 0.93 * met);
+        // Of colours that filters take away again a deep picture has samples as well.
+        EXPECT_LT(samples, double(deep.samples()));
+        EXPECT_GT(samples, 0.93 * double(deep.samples()));
     }
 }
 
@@ -224,7 +233,7 @@ TEST(AovDepths, areTheSameForEveryMethodAndThread) {
             options.method = method;
             const Channels channels =
                 channelsOf(*volume, options, test::cameraOf(*volume, options.camera),
-                           {Aov::kDepth, Aov::kFront, Aov::kBack});
+                           {Aov::kDepth, Aov::kFront, Aov::kBack, Aov::kSamples});
             if (first.empty()) first = channels;
             EXPECT_TRUE(channels == first) << methodName(method);
         };

@@ -56,10 +56,11 @@ void addAovOptions(CLI::App& app, RenderCommand& command) {
                    "position (P.X, P.Y, P.Z: its mean place in the world), normal (N.X,\n"
                    "N.Y, N.Z: mean of its normals, likewise), emission (emission.R ...:\n"
                    "what shines by itself), ambient and direct (of --lighting scatter;\n"
-                   "direct_1.R ... of each light, up to 8), transmittance and mattes\n"
-                   "(matte_1 ...: share of alpha of each --layer that swallows light).\n"
-                   "Each takes as long as a picture or two, front and back as long as\n"
-                   "--deep-slices 1");
+                   "direct_1.R ... of each light, up to 8), transmittance, mattes\n"
+                   "(matte_1 ...: share of alpha of each --layer that swallows light)\n"
+                   "and samples (slices that hide something of a pixel). Each takes as\n"
+                   "long as a picture or two; front, back and samples, together, about\n"
+                   "half as long as --deep-slices 1");
     group.addValue("--depth-opacity", "A", command.aovOptions.depthOpacity,
                    number(kLeastDepthOpacity, 1),
                    withDefault("--aov front: alpha that is passed there, 0.001 to 1",
@@ -110,7 +111,8 @@ std::vector<ImageChannel> withEmptyMattes(const MediumChoice& medium, const Opti
 }
 
 void warnOfDepths(const std::vector<Aov>& aovs, const Optics& optics, const Listener& listener) {
-    constexpr std::array kOfWhatHides{Aov::kDepth, Aov::kFront, Aov::kBack, Aov::kPosition};
+    constexpr std::array kOfWhatHides{Aov::kDepth, Aov::kFront, Aov::kBack, Aov::kPosition,
+                                      Aov::kSamples};
     for (const Aov aov : aovs) {
         const bool isOfWhatHides =
             std::find(kOfWhatHides.begin(), kOfWhatHides.end(), aov) != kOfWhatHides.end();

@@ -53,9 +53,9 @@ expect_same scaled scaled_half 1e-6
 
 # Channels beside the picture, by their names and in floats.
 draw aovs --grid density --tf grey --range 0,1 --emission-grid temperature --lighting scatter --light 1,-1,0 --light 0,-1,1 \
-    --aov depth,front,back,position,normal,emission,ambient,direct,transmittance --depth-opacity 0.25
+    --aov depth,front,back,position,normal,emission,ambient,direct,transmittance,samples --depth-opacity 0.25
 names=$("$oiiotool" --info -v aovs.exr | sed -n 's/^ *channel list: //p')
-for channel in Z depth_front.Z ZBack P.X P.Y P.Z N.X N.Y N.Z emission.R ambient.G direct.B direct_1.R direct_2.B transmittance; do
+for channel in Z depth_front.Z ZBack P.X P.Y P.Z N.X N.Y N.Z emission.R ambient.G direct.B direct_1.R direct_2.B transmittance samples; do
     [[ ", $names," == *", $channel,"* || ", $names," == *", $channel ("* ]] || fail "channels: got $names; expected $channel"
 done
 "$oiiotool" --info -v aovs.exr | grep -q 'deltasplat:depthOpacity: "0.25"' || fail "channels: got no opacity of depths"
