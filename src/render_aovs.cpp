@@ -279,9 +279,9 @@ class AovRender {
     }
 
     void findPlaces(const std::vector<float>& depths) {
+        const auto width = std::size_t(camera_.sizePixels.x);
         for (std::size_t i = 0; i < depths.size(); ++i) {
-            const auto width = std::size_t(camera_.sizePixels.x);
-            const glm::dvec2 pixel(double(i % width) + 0.5, double(i / width) + 0.5);
+            const glm::dvec2 pixel = glm::dvec2(i % width, i / width) + 0.5;
             places_.push_back(depths[i] == kNoDepth ? Place() : placeAt(pixel, depths[i]));
         }
     }

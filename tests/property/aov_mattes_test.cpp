@@ -126,6 +126,23 @@ TEST(AovMattes, ofOneVolumeIsAlpha) {
     }
 }
 
+// Where colours jump voxels are not divided, and so they are not in mattes, which are white.
+TEST(AovMattes, areDrawnAsThePictureIs) {
+    const auto volume = test::someVolume();
+    RenderOptions options;
+    options.optics = test::someOptics(Colors::kOne);
+    options.optics.transferFunction.colors = {
+        {0, {1, 0, 0}}, {200, {1, 0, 0}}, {200, {0, 1, 0}}, {255, {0, 1, 0}}};
+    options.camera = test::someCameras()[0];
+    const RenderResult beauty = render(*volume, options);
+    EXPECT_EQ(beauty.stats.between, 0);
+    const std::vector<ImageChannel> mattes = mattesOf(*volume, options, beauty.camera);
+    for (std::size_t i = 0; i < mattes[0].values.size(); ++i)
+        EXPECT_NEAR(mattes[0].values[i], beauty.image.rgba[4 * i + 3], 4e-3);
+    options.optics.transferFunction.colors = {{0, {1, 0, 0}}};
+    EXPECT_EQ(render(*volume, options).stats.between, 1);
+}
+
 TEST(AovMattes, areTheSameForEveryMethodAndThread) {
     const auto volume = test::someVolume();
     RenderOptions options = optionsOf(test::someCameras()[6]);
