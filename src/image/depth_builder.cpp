@@ -48,7 +48,7 @@ void DepthBuilder::add(const Image& picture, double front, double back) {
 }
 
 // Filters overshoot, so that what is put behind may take alpha away. What is gone again was not
-// there.
+// there; a mean loses it of all alike.
 void DepthBuilder::change(Pixel& pixel, float alpha, const Stage& stage) const {
     pixel.region = std::uint32_t(regions_.size() - 1);
     const double before = std::min(pixel.alpha, alpha);
@@ -64,7 +64,11 @@ void DepthBuilder::change(Pixel& pixel, float alpha, const Stage& stage) const {
         pixel.alphaAtBack = std::min(pixel.alphaAtBack, alpha);
     }
     if (alpha > pixel.alpha && 1 - double(pixel.alpha) >= kLeastGrowth) ++pixel.samples;
-    pixel.sum += (double(alpha) - pixel.alpha) * 0.5 * (stage.front + stage.back);
+    if (alpha < pixel.alpha) {
+        pixel.sum *= double(alpha) / pixel.alpha;
+    } else {
+        pixel.sum += (double(alpha) - pixel.alpha) * 0.5 * (stage.front + stage.back);
+    }
     pixel.alpha = alpha;
 }
 

@@ -49,6 +49,10 @@ Sight sightOf(const Camera& camera, int x, int y) {
     return sight;
 }
 
+std::size_t indexOf(const Camera& camera, int x, int y) {
+    return std::size_t(y) * std::size_t(camera.sizePixels.x) + std::size_t(x);
+}
+
 // Parallel, straight and oblique, from an eye outside, and all around from one inside.
 std::vector<CameraOptions> cameras(const glm::dvec3& inside) {
     std::vector<CameraOptions> cameras(4);
@@ -112,7 +116,7 @@ TEST(AovDepths, ofFogAreThoseOfItsExtinction) {
                     const auto ways = waysThrough(sight, low, high, 4);
                     if (!ways) continue;
                     ++seen;
-                    const auto i = std::size_t(y * camera.sizePixels.x + x);
+                    const auto i = indexOf(camera, x, y);
                     const double steep = sight.depthOfOne / std::abs(sight.way.z);
                     const double passed = -std::log(1 - opacity) / extinction;
                     const double all = ways->y - ways->x;
@@ -191,7 +195,7 @@ TEST(AovDepths, areThoseOfADeepPicture) {
         double samples = 0;
         for (int y = 0; y < deep.size.y; ++y) {
             for (int x = 0; x < deep.size.x; ++x) {
-                const auto i = std::size_t(y * deep.size.x + x);
+                const auto i = indexOf(flat.camera, x, y);
                 const float back = channels.at("ZBack")[i];
                 samples += channels.at("samples")[i];
                 double alpha = 0;
@@ -321,7 +325,7 @@ TEST(AovDepths, ofASurfaceAreWhereItIsMet) {
             int missed = 0;
             for (int y = 0; y < camera.sizePixels.y; ++y) {
                 for (int x = 0; x < camera.sizePixels.x; ++x) {
-                    const auto i = std::size_t(y * camera.sizePixels.x + x);
+                    const auto i = indexOf(camera, x, y);
                     const Sight sight = sightOf(camera, x, y);
                     const double along = -glm::dot(sight.from, sight.way);
                     const double square = glm::dot(sight.from, sight.from) - along * along;

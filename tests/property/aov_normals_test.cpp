@@ -61,6 +61,10 @@ std::vector<CameraOptions> cameras() {
     return cameras;
 }
 
+std::size_t indexOf(const Camera& camera, int x, int y) {
+    return std::size_t(y) * std::size_t(camera.sizePixels.x) + std::size_t(x);
+}
+
 // Where a pixel's line of sight meets the ball's surface, unless that is at a grazing angle.
 bool meets(const Camera& camera, int x, int y, glm::dvec3& place, glm::dvec3& way) {
     const glm::dvec2 pixel(x + 0.5, y + 0.5);
@@ -99,7 +103,7 @@ TEST(AovNormals, ofABallAreItsRadii) {
                         glm::dvec3 place, way;
                         if (!meets(camera, x, y, place, way)) continue;
                         ++met;
-                        const glm::dvec3 n = normals[std::size_t(y * camera.sizePixels.x + x)];
+                        const glm::dvec3 n = normals[indexOf(camera, x, y)];
                         const double length = glm::length(n);
                         shortest = std::min(shortest, length);
                         longest = std::max(longest, length);

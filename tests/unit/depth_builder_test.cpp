@@ -77,6 +77,9 @@ TEST(DepthBuilder, theBackIsWhereAlphaHasGrownForTheLastTime) {
 TEST(DepthBuilder, theMeanIsByGrowth) {
     EXPECT_FLOAT_EQ(toldOf({0.5f}, 0.5).mean, 13.25f);
     EXPECT_FLOAT_EQ(toldOf({0.25f, 0.25f, 1}, 0.5).mean, 0.25f * 13.25f + 0.75f * 14.25f);
+    // It stays between the first and the last.
+    EXPECT_FLOAT_EQ(toldOf({0.5f, 0.001f}, 0.5).mean, 13.25f);
+    EXPECT_FLOAT_EQ(toldOf({0.5f, 0.75f, 0.01f}, 0.5).mean, 13.25f + 0.5f / 3);
 }
 
 // A surface's voxel that is there by a half is cut in the middle, and a quarter is taken back.

@@ -58,7 +58,7 @@ struct RenderCommand {
     std::optional<glm::dvec2> window;  ///< values of black and white; empty: percentiles
     ImageFileOptions image;
     ToneChoice tone;
-    std::vector<Aov> aovs;               ///< channels beside the picture's own
+    std::vector<Aov> aovs;  ///< channels beside the picture's own
     AovOptions aovOptions;
     std::filesystem::path holdoutDepth;  ///< of solid things before what is left out; empty: none
     bool deep = false;                   ///< samples with depths instead of a flat picture

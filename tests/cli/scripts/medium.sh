@@ -53,9 +53,11 @@ expect_same scaled scaled_half 1e-6
 
 # Channels beside the picture, by their names and in floats.
 draw aovs --grid density --tf grey --range 0,1 --emission-grid temperature --lighting scatter --light 1,-1,0 --light 0,-1,1 \
-    --aov depth,front,back,position,normal,emission,ambient,direct,transmittance,samples --depth-opacity 0.25
+    --aov depth,front,back,position,normal,emission,ambient,direct,transmittance,samples \
+    --depth-opacity 0.25
 names=$("$oiiotool" --info -v aovs.exr | sed -n 's/^ *channel list: //p')
-for channel in Z depth_front.Z ZBack P.X P.Y P.Z N.X N.Y N.Z emission.R ambient.G direct.B direct_1.R direct_2.B transmittance samples; do
+for channel in Z depth_front.Z ZBack P.X P.Y P.Z N.X N.Y N.Z emission.R ambient.G direct.B direct_1.R \
+    direct_2.B transmittance samples; do
     [[ ", $names," == *", $channel,"* || ", $names," == *", $channel ("* ]] || fail "channels: got $names; expected $channel"
 done
 "$oiiotool" --info -v aovs.exr | grep -q 'deltasplat:depthOpacity: "0.25"' || fail "channels: got no opacity of depths"
@@ -67,7 +69,8 @@ done
 draw mattes --layer r:grey --layer temperature:fire --layer g:grey --layer density:grey --range 0,4 --aov mattes
 "$oiiotool" -q mattes.exr --ch matte_1 mattes.exr --ch matte_2 --add mattes.exr --ch matte_3 --add \
     mattes.exr --ch A --fail 1e-2 --diff >/dev/null || fail "mattes: got another sum than alpha"
-"$program" render -q -q "${fire%/*}/layers.vdb" -o empty.exr --size 24x24 --layer density:grey --layer none:grey --layer g:grey --range 0,4 --aov mattes
+"$program" render -q -q "${fire%/*}/layers.vdb" -o empty.exr --size 24x24 --layer density:grey \
+    --layer none:grey --layer g:grey --range 0,4 --aov mattes
 most=$("$oiiotool" --stats empty.exr 2>&1 | sed -n 's/.*Stats Max: //p' | cut -d' ' -f5-7)
 [[ $most =~ ^0\.1[0-9]*\ 0\.0*\ 0\.1[0-9]*$ ]] || fail "empty: got mattes up to $most; expected none of the second"
 
