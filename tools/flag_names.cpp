@@ -51,6 +51,7 @@ constexpr FlagName kFlagNames[] = {
     {"frameWidthWorld", "--frame-width"},
     {"gradientOpacity", "--gradient-opacity"},
     {"gridName", "--grid"},
+    {"ground", "--ground"},
     {"groundAlbedo", "--sky"},
     {"image.size", "--size"},
     {"labels.hidden", "--hide-labels"},

@@ -108,7 +108,7 @@ set_tests_properties(cli.medium PROPERTIES FIXTURES_REQUIRED cli_files)
 
 # Channels beside the picture.
 deltasplat_refusal(aov_unknown
-    "--aov: got depth,height; expected some of depth, front, back, position, normal, emission, ambient, direct, transmittance, mattes and samples, with commas between"
+    "--aov: got depth,height; expected some of depth, front, back, position, normal, emission, ambient, direct, transmittance, mattes, samples and shadow, with commas between"
     --aov depth,height)
 deltasplat_cli_test(usage.aov_png EXIT 2 ARGS render ${cube} -o out.png --aov depth
     STDERR "deltasplat: --aov: got out.png; expected an .exr file")

@@ -13,14 +13,19 @@
 namespace deltasplat {
 namespace {
 
+constexpr const char* kShadow = "shadow";
+
 void refuse(const std::string& got, const std::string& expected) {
     throw Error(ErrorCode::kUsage, gotExpected("--aov", got, expected));
 }
 
-std::vector<Aov> parseAovs(const std::string& option, const std::string& text) {
+// @param withShadow  whether the shadow on the ground, which is no Aov, is among them
+std::vector<Aov> parseAovs(const std::string& option, const std::string& text, bool& withShadow) {
     std::vector<std::string> names;
     for (const Aov aov : allAovs()) names.push_back(aovName(aov));
+    names.emplace_back(kShadow);
     std::vector<Aov> aovs;
+    withShadow = false;
     for (const std::string& part : splitAt(text, ',')) {
         const auto found = std::find(names.begin(), names.end(), part);
         if (found == names.end()) {
@@ -28,7 +33,12 @@ std::vector<Aov> parseAovs(const std::string& option, const std::string& text) {
                                                        "some of " + joinWords(names, "and") +
                                                            ", with commas between"));
         }
-        aovs.push_back(allAovs()[std::size_t(found - names.begin())]);
+        const auto number = std::size_t(found - names.begin());
+        if (*found == kShadow) {
+            withShadow = true;
+        } else {
+            aovs.push_back(allAovs()[number]);
+        }
     }
     return aovs;
 }
@@ -49,7 +59,11 @@ bool hasFront(const std::vector<Aov>& aovs) {
 
 void addAovOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup group(app, "Output");
-    group.addValue("--aov", "LIST", command.aovs, Parser<std::vector<Aov>>(parseAovs),
+    const Parser<std::vector<Aov>> parse = [&command](const std::string& option,
+                                                      const std::string& text) {
+        return parseAovs(option, text, command.withShadow);
+    };
+    group.addValue("--aov", "LIST", command.aovs, parse,
                    "Channels of an .exr beside its colours, with commas between: depth\n"
                    "(Z: mean depth of what is seen), front (depth_front.Z: where alpha\n"
                    "passes --depth-opacity), back (ZBack: of the last that is seen),\n"
@@ -57,8 +71,9 @@ void addAovOptions(CLI::App& app, RenderCommand& command) {
                    "N.Y, N.Z: mean of its normals, likewise), emission (emission.R ...:\n"
                    "what shines by itself), ambient and direct (of --lighting scatter;\n"
                    "direct_1.R ... of each light, up to 8), transmittance, mattes\n"
-                   "(matte_1 ...: share of alpha of each --layer that swallows light)\n"
-                   "and samples (slices that hide something of a pixel). Each takes as\n"
+                   "(matte_1 ...: share of alpha of each --layer that swallows light),\n"
+                   "samples (slices that hide something of a pixel) and shadow\n"
+                   "(shadow.R ...: the share of light lost on --ground). Each takes as\n"
                    "long as a picture or two; front, back and samples, together, about\n"
                    "half as long as --deep-slices 1");
     group.addValue("--depth-opacity", "A", command.aovOptions.depthOpacity,
@@ -68,7 +83,7 @@ void addAovOptions(CLI::App& app, RenderCommand& command) {
 }
 
 void checkAovs(const RenderCommand& command) {
-    if (command.aovs.empty()) return;
+    if (command.aovs.empty() && !command.withShadow) return;
     if (!isExr(command)) refuse(command.output.string(), "an .exr file");
     const Mode mode = command.picture.render.mode;
     if (mode != Mode::kComposite) refuse("--mode " + modeName(mode), "--mode composite");

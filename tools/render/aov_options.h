@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <vector>
 
 #include "render/render_options.h"
 

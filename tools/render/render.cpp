@@ -22,6 +22,7 @@
 #include "process/interrupt.h"
 #include "render/aov_options.h"
 #include "render/deep_options.h"
+#include "render/ground_options.h"
 #include "render/picture_legend.h"
 #include "render/read_medium.h"
 #include "render/render_input.h"
@@ -278,6 +279,7 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     image.channels = withEmptyMattes(
         picture.medium, options.optics,
         renderAovs(volume, options, result.camera, command.aovs, command.aovOptions));
+    addGroundShadow(command, volume, options, result, image, {{}, writing.warning});
     finishPicture(command, volume, options.optics, result, image, writing);
     writing.report(0);
     const auto beginWrite = std::chrono::steady_clock::now();

@@ -221,13 +221,12 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
     return options;
 }
 
-namespace {
-
-// Up in the world: the head, if it is a patient's.
 glm::dvec3 upOf(const PictureOptions& picture, const Volume& volume) {
     const glm::dvec3 up = volume.space.empty() ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
     return picture.render.camera.up.value_or(up);
 }
+
+namespace {
 
 // Labels stand apart; what is between two of them looks like a third.
 void warnOfMixedLabels(const PictureOptions& picture, const Listener& listener) {

@@ -20,4 +20,7 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
                     RenderOptions& options, const Listener& listener,
                     const FrameLook* look = nullptr);
 
+/// Returns what is up in the world: --up, else y or, of a patient, the head.
+glm::dvec3 upOf(const PictureOptions& picture, const Volume& volume);
+
 }  // namespace deltasplat

@@ -18,6 +18,7 @@
 #include "render/annotation_options.h"
 #include "render/aov_options.h"
 #include "render/deep_options.h"
+#include "render/ground_options.h"
 #include "render/list_presets.h"
 #include "render/render_sequence.h"
 #include "render/tone_options.h"
@@ -344,6 +345,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addSurfaceOptions(app, command.picture.surface, command.picture.render.optics.gradientOpacity);
     addShadingOptions(app, command.picture.shading);
     addScatterOptions(app, command.picture.scatter);
+    addGroundOption(app, command.ground);
     addMediumOptions(app, command.picture.medium);
     addPartOptions(app, command.picture);
     addMethodOption(app, command.picture.render.method);
@@ -406,6 +408,7 @@ void warnOfDetector(const CameraOptions& options, const Volume& volume, const Li
 void validate(const RenderCommand& command) {
     checkDeep(command);
     checkAovs(command);
+    checkGround(command);
     checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     checkCamera(command.picture.render.camera);
     checkAnnotations(command);

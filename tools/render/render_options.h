@@ -48,6 +48,12 @@ struct ToneChoice {
     Tone tone = Tone::kStandard;
 };
 
+/// A plane to throw a shadow on.
+struct GroundChoice {
+    glm::dvec3 pointWorld{0.0};
+    std::optional<glm::dvec3> normalWorld;  ///< empty: what is up
+};
+
 /// What `deltasplat render` was asked to do.
 struct RenderCommand {
     std::filesystem::path input;
@@ -60,6 +66,8 @@ struct RenderCommand {
     ToneChoice tone;
     std::vector<Aov> aovs;  ///< channels beside the picture's own
     AovOptions aovOptions;
+    std::optional<GroundChoice> ground;  ///< whose shadow is shown; empty: none
+    bool withShadow = false;             ///< in channels, not under the picture
     std::filesystem::path holdoutDepth;  ///< of solid things before what is left out; empty: none
     bool deep = false;                   ///< samples with depths instead of a flat picture
     DeepOptions deepOptions;
