@@ -42,6 +42,7 @@ constexpr FlagName kFlagNames[] = {
     {"drr.muWater", "--mu-water"},
     {"drr.photons", "--photons"},
     {"elevationDegrees", "--elevation"},
+    {"emissionLights", "--emission-lights"},
     {"exposureStops", "--exposure"},
     {"extinctionScale", "--extinction"},
     {"eyeWorld", "--eye"},

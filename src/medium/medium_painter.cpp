@@ -8,28 +8,16 @@
 #include <utility>
 #include <vector>
 
+#include "medium/longest_way.h"
 #include "medium/medium_light.h"
 #include "medium/part_looks.h"
 #include "medium/part_sampler.h"
 #include "medium/room.h"
 #include "optics/class_light.h"
 #include "optics/painters.h"
-#include "optics/unit_distance.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 namespace {
-
-// Unit distances of the way from one corner to the other of all that there is.
-double longestWay(const Volume& volume, const Optics& optics) {
-    WorldBox world = worldBox(volume.box, volume.worldFromIndex);
-    for (const MediumPart& part : optics.parts) {
-        const WorldBox other = worldBox(part.volume->box, part.volume->worldFromIndex);
-        world.min = glm::min(world.min, other.min);
-        world.max = glm::max(world.max, other.max);
-    }
-    return glm::length(world.max - world.min) / unitDistanceOf(volume, optics);
-}
 
 // Grids that colours are multiplied by.
 class ColorReader {

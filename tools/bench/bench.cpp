@@ -70,7 +70,8 @@ void warnOfUnusedOptions(const CLI::App& app, const BenchCommand& command,
     const Files mask = filesOfMask(command.picture.parts);
     inputs.insert(inputs.end(), mask.begin(), mask.end());
     warnOfUnusedInputOptions(app, inputs, display);
-    warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading, display);
+    warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading,
+                               command.picture.medium.emissionLights.has_value(), display);
     if (isGiven(app, "--background") && command.report.empty())
         display.warn("--background: has no effect without --report");
 }
@@ -125,8 +126,8 @@ void runBench(const CLI::App& app, BenchCommand command, const Session& session)
     applyProjection(app, command.picture.render.camera);
     checkCamera(command.picture.render.camera);
     applyLayers(app, command.picture);
-    applySurface(app, command.picture.render.mode, isFog(command.picture),
-                 command.picture.surface, command.picture.read);
+    applySurface(app, command.picture.render.mode, isFog(command.picture), command.picture.surface,
+                 command.picture.read);
     if (!command.report.empty()) checkReport(command);
     Findings found = measureAll(app, command, session);
     if (!found.report.entries.empty()) {

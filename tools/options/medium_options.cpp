@@ -13,6 +13,7 @@ namespace deltasplat {
 namespace {
 
 constexpr const char* kFire = "fire";
+constexpr std::int64_t kMostLights = 4096;
 
 LayerChoice parseLayer(const std::string& option, const std::string& text) {
     const std::size_t colon = text.find(':');
@@ -44,8 +45,8 @@ bool MediumChoice::burns() const {
 }
 
 std::vector<std::string> mediumOptions() {
-    return {"--emission-grid",     "--emission-tf", "--emission-range", "--emission-strength",
-            "--temperature-scale", "--color-grid",  "--layer"};
+    return {"--emission-grid",   "--emission-tf",       "--emission-range", "--emission-strength",
+            "--emission-lights", "--temperature-scale", "--color-grid",     "--layer"};
 }
 
 void warnOfUnusedMediumOptions(const CLI::App& app, const MediumChoice& choice,
@@ -84,6 +85,9 @@ void addMediumOptions(CLI::App& app, MediumChoice& choice) {
     group.addValue(
         "--emission-strength", "S", choice.emissionStrength, number(0, kMostLight),
         withDefault("What all that shines is multiplied by", numberText(choice.emissionStrength)));
+    group.addValue("--emission-lights", "N", choice.emissionLights, wholeNumber(1, kMostLights),
+                   "Point lights that what shines is cut into, at most, to light the fog of\n"
+                   "--lighting scatter (default: fire is seen, and lights nothing)");
     group.addValue("--color-grid", "NAME", choice.colorGrid, anyText(),
                    "Vector grid that the volume's colours are multiplied by, such as Cd,\n"
                    "or three float grids R,G,B, or auto: the first of Cd, color, albedo");

@@ -30,6 +30,8 @@ struct MediumChoice {
     double emissionStrength = 1;
     /// Of values: kelvin = x * value + y; empty: as values suggest.
     std::optional<glm::dvec2> kelvin;
+    /// Point lights that what shines is cut into, to light the fog; empty: it lights nothing.
+    std::optional<int> emissionLights;
     std::optional<std::string> colorGrid;  ///< "auto": by its name; of floats "R,G,B"
     /// All grids, of which the volume is taken out when it is known; empty: the volume and those
     /// above.

@@ -86,11 +86,11 @@ void addTo(std::vector<Light>& lights, const std::vector<Light>& more, double st
 }  // namespace
 
 // Where nothing is said, fog stands under a sky.
-std::vector<Light> ScatterChoice::lights(const ShadingChoice& shading, const glm::dvec3& up,
-                                         const Listener& listener) const {
+std::vector<Light> ScatterChoice::lights(const ShadingChoice& shading, bool isLitBesides,
+                                         const glm::dvec3& up, const Listener& listener) const {
     std::vector<Light> all = shading.lights;
     std::optional<SunPlace> sun = sky;
-    if (!sun && environment.empty() && all.empty())
+    if (!sun && environment.empty() && all.empty() && !isLitBesides)
         sun = SunPlace{turnUp(up) * kDefaultSun, kDefaultSunStrength};
     if (sun) {
         const Sky day{sun->towards, up, turbidity, sun->strength, Sky{}.groundAlbedo};
@@ -107,14 +107,14 @@ std::vector<Light> ScatterChoice::lights(const ShadingChoice& shading, const glm
     return all;
 }
 
-std::optional<Scattering> ScatterChoice::of(const ShadingChoice& shading, const glm::dvec3& up,
-                                            const Listener& listener) const {
+std::optional<Scattering> ScatterChoice::of(const ShadingChoice& shading, bool isLitBesides,
+                                            const glm::dvec3& up, const Listener& listener) const {
     if (!asked()) return {};
     Scattering result = scattering;
     result.anisotropy = lobes.first;
     result.backAnisotropy = lobes.second;
     result.backShare = lobes.share;
-    result.lights = lights(shading, up, listener);
+    result.lights = lights(shading, isLitBesides, up, listener);
     if (shading.isAmbientGiven) result.ambient = glm::dvec3(shading.shading.ambient);
     return result;
 }
@@ -125,7 +125,8 @@ std::vector<std::string> scatterOptions() {
 }
 
 void warnOfUnusedScatterOptions(const CLI::App& app, const ScatterChoice& choice,
-                                const ShadingChoice& shading, ProgressDisplay& display) {
+                                const ShadingChoice& shading, bool isLitBesides,
+                                ProgressDisplay& display) {
     const auto warnOf = [&](const std::vector<std::string>& options, const std::string& where) {
         const std::string remark = ": has no effect " + where;
         for (const std::string& option : options)
@@ -138,7 +139,8 @@ void warnOfUnusedScatterOptions(const CLI::App& app, const ScatterChoice& choice
     }
     warnOf({"--diffuse", "--specular", "--shininess"}, "on fog, which has no surfaces");
     const bool hasEnvironment = !choice.environment.empty();
-    const bool hasSky = choice.sky || (!hasEnvironment && shading.lights.empty());
+    const bool isLit = hasEnvironment || !shading.lights.empty() || isLitBesides;
+    const bool hasSky = choice.sky || !isLit;
     if (!hasSky) warnOf({"--turbidity"}, "without --sky");
     if (!hasEnvironment) warnOf({"--env-strength", "--env-turn"}, "without --env");
     if (!hasSky && !hasEnvironment) warnOf({"--env-lights"}, "without --sky or --env");

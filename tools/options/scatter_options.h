@@ -42,13 +42,14 @@ struct ScatterChoice {
     /// Returns how the picture's fog scatters, if it does.
     /// @param shading  says which lights there are besides, and how much light comes from
     ///                 everywhere
+    /// @param isLitBesides  whether there will be yet others, so that no sky is needed
     /// @param up       of the world
     /// @throw Error for an environment that cannot be read
-    std::optional<Scattering> of(const ShadingChoice& shading, const glm::dvec3& up,
-                                 const Listener& listener) const;
+    std::optional<Scattering> of(const ShadingChoice& shading, bool isLitBesides,
+                                 const glm::dvec3& up, const Listener& listener) const;
 
   private:
-    std::vector<Light> lights(const ShadingChoice& shading, const glm::dvec3& up,
+    std::vector<Light> lights(const ShadingChoice& shading, bool isLitBesides, const glm::dvec3& up,
                               const Listener& listener) const;
 };
 
@@ -58,8 +59,9 @@ void addScatterOptions(CLI::App& app, ScatterChoice& choice);
 std::vector<std::string> scatterOptions();
 
 /// Warns of options that were given and change nothing, as others say how the picture is lit.
-/// @param shading  says which lights there are besides
+/// @param shading,isLitBesides  say which lights there are besides
 void warnOfUnusedScatterOptions(const CLI::App& app, const ScatterChoice& choice,
-                                const ShadingChoice& shading, ProgressDisplay& display);
+                                const ShadingChoice& shading, bool isLitBesides,
+                                ProgressDisplay& display);
 
 }  // namespace deltasplat

@@ -8,6 +8,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
+#include "deltasplat/optics/emission_lights.h"
 #include "deltasplat/optics/presets.h"
 #include "ingest/files/input_kind.h"
 #include "medium/medium_light.h"
@@ -249,6 +250,13 @@ bool isClear(const PictureOptions& picture) {
     return picture.medium.isLayered && picture.transferFunction.empty();
 }
 
+void addEmissionLights(const Volume& volume, int count, Optics& optics, const Listener& listener) {
+    const std::vector<Light> fire = emissionLights(volume, optics, count);
+    if (fire.empty()) listener.warn("--emission-lights: nothing shines that could light the fog");
+    std::vector<Light>& lights = optics.scattering->lights;
+    lights.insert(lights.end(), fire.begin(), fire.end());
+}
+
 }  // namespace
 
 void applyLayers(const CLI::App& app, PictureOptions& picture) {
@@ -323,6 +331,8 @@ void readMedium(const std::filesystem::path& input, const PictureOptions& pictur
         readColors(chosen("--color-grid", *choice.colorGrid, found.color, entries), entries, reader,
                    optics, listener);
     }
+    if (choice.emissionLights && optics.scattering)
+        addEmissionLights(volume, *choice.emissionLights, optics, listener);
 }
 
 }  // namespace deltasplat

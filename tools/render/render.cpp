@@ -123,7 +123,8 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     warnOfUnusedAovOptions(app, command, display);
     warnOfUnusedModeOptions(app, command, display);
     if (command.picture.render.mode != Mode::kComposite) return;
-    warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading, display);
+    warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading,
+                               command.picture.medium.emissionLights.has_value(), display);
     warnOfUnusedLight(app, command.picture, display);
     warnOfUnusedMediumOptions(app, command.picture.medium, display);
     if (!command.picture.surface.asked) return;

@@ -146,6 +146,18 @@ void checkFog(const PictureOptions& picture) {
     }
 }
 
+// Fire is made lights for fog that scatters them.
+void checkEmissionLights(const PictureOptions& picture) {
+    if (!picture.medium.emissionLights || picture.render.mode != Mode::kComposite) return;
+    const bool burns = picture.medium.burns();
+    if (burns && picture.scatter.asked()) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("--emission-lights",
+                            burns ? "it without --lighting scatter" : "it without fire",
+                            burns ? "--lighting scatter, fog that they light"
+                                  : "--emission-grid, or a --layer shown as fire"));
+}
+
 // Where values are all on one side, there is nothing to see but where the volume ends.
 void warnOfNoSurface(const Volume& volume, double isovalue, const Listener& listener) {
     double low = volume.valueMin;
@@ -211,6 +223,7 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
     }
     checkSurface(picture);
     checkFog(picture);
+    checkEmissionLights(picture);
     const bool ramp = picture.transferFunction.empty();
     if (!ramp) {
         options.optics.transferFunction =
@@ -259,7 +272,8 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
     options.optics.shading = shadingOf(picture, volume, preset, options.optics.surface.has_value());
     if (picture.render.mode == Mode::kComposite)
         options.optics.scattering =
-            picture.scatter.of(picture.shading, upOf(picture, volume), listener);
+            picture.scatter.of(picture.shading, picture.medium.emissionLights.has_value(),
+                               upOf(picture, volume), listener);
     if (preset && !options.optics.surface) warnOfOtherData(*preset, volume, listener);
     if (picture.transferFunction.empty()) {
         const bool isOfValues = picture.render.mode != Mode::kComposite;
