@@ -53,18 +53,20 @@ draw signal "$signal" --isovalue 0.5 --view iso --surface-color 0.7,0.55,0.3 "${
 cloud=(--extinction 3 --azimuth 30 --elevation 10 --scatter-octaves 5)
 draw cloud "$folder/cloud.vdb" "${cloud[@]}" --sky 0.6,0.8,0.9:3 --anisotropy 0.7,-0.2,0.3 \
     --background 0.1,0.2,0.42
+dim=(--tone filmic --exposure=-0.5)
 draw cloud-sunset "$folder/cloud.vdb" "${cloud[@]}" --lighting scatter \
-    --light=-1,-0.15,0.4:1,0.42,0.16:9 --light 0.2,-1,0.1:0.35,0.4,0.75:2.5 \
-    --light 0,1,0:0.5,0.3,0.3:1 --anisotropy 0.6,-0.3,0.4 --background 0.35,0.17,0.14
+    --light=-1,-0.15,0.4:1,0.3,0.07:6 --light 0.2,-1,0.1:0.2,0.3,0.8:1.5 \
+    --anisotropy 0.6,-0.3,0.4 --background 0.1,0.07,0.14 "${dim[@]}"
 draw cloud-backlit "$folder/cloud.vdb" "${cloud[@]}" --lighting scatter \
-    --light 0.35,-0.35,1:1,0.85,0.7:3 --ambient 0.1 --anisotropy 0.75,-0.2,0.3 \
-    --background 0.05,0.09,0.18
+    --light 0.35,-0.35,1:1,0.78,0.55:3 --ambient 0.04 --anisotropy 0.75,-0.2,0.3 \
+    --background 0.05,0.09,0.18 "${dim[@]}"
 flame=(--temperature-scale 1500,600 --emission-strength 0.25 --tone filmic)
 draw fire "$folder/fire.vdb" --layer flame:fire "${flame[@]}" --background 0.01,0.012,0.02
 draw fire-smoke "$folder/fire.vdb" --emission-grid flame "${flame[@]}" --extinction 2 \
-    --sky 0.6,0.8,0.9:1.2 --background 0.02,0.04,0.09
+    --sky 0.6,0.8,0.9:0.3 --light point:92,30,90,16:1,0.2,0.01:2700 \
+    --light point:95,75,90,10:1,0.18,0.01:500 --scatter-octaves 4 --background 0.01,0.02,0.045
 draw explosion "$folder/explosion.vdb" --emission-grid temperature --color-grid Cd \
-    --density-scale 15 --sky 0.6,0.8,0.9:3 --scatter-octaves 4 --background 0.1,0.2,0.42 \
+    --density-scale 1 --sky 0.6,0.8,0.9:3 --scatter-octaves 1 --background 0.1,0.2,0.42 \
     --tone filmic
 
 [[ -n $data ]] || exit 0
