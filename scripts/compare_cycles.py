@@ -35,6 +35,7 @@ def parse():
     render.add_argument("--bounces", type=int, default=0)
     render.add_argument("--samples", type=int, default=64)
     render.add_argument("--step", type=float, default=0.5, help="in voxels")
+    render.add_argument("--offset", type=float, default=0.5, help="of Blender's values, in voxels")
     render.add_argument("--threads", type=int, default=1)
     render.add_argument("--seed", type=int, default=1)
     compare = commands.add_parser("compare")
@@ -55,8 +56,9 @@ def add_volume(options):
         sys.exit(f"{options.volume}: {data.grids.error_message}")
     if options.grid not in [grid.name for grid in data.grids]:
         sys.exit(f"{options.volume}: no grid {options.grid}")
-    voxel = data.grids[options.grid].matrix_object.to_scale()
-    data.render.space, data.render.step_size = "WORLD", options.step * min(voxel)
+    world_from_index = data.grids[options.grid].matrix_object
+    data.render.space = "WORLD"
+    data.render.step_size = options.step * min(world_from_index.to_scale())
     data.render.precision, data.render.clipping = "FULL", 0
 
     # What is not scattered is swallowed: a "Volume Scatter" node would dim by what it scatters.
@@ -75,7 +77,8 @@ def add_volume(options):
     surface = nodes.new("ShaderNodeOutputMaterial")
     material.node_tree.links.new(fog.outputs[0], surface.inputs["Volume"])
     data.materials.append(material)
-    link("fog", data)
+    # Blender has a voxel's value half a voxel off its centre, along each axis.
+    link("fog", data).location = world_from_index.to_3x3() @ Vector([-options.offset] * 3)
 
 
 def add_sun(options):
