@@ -63,8 +63,7 @@ draw cloud-backlit "$folder/cloud.vdb" "${cloud[@]}" --lighting scatter \
 flame=(--temperature-scale 1500,600 --emission-strength 0.25 --tone filmic)
 draw fire "$folder/fire.vdb" --layer flame:fire "${flame[@]}" --background 0.01,0.012,0.02
 draw fire-smoke "$folder/fire.vdb" --emission-grid flame "${flame[@]}" --extinction 2 \
-    --sky 0.6,0.8,0.9:0.3 --light point:92,30,90,16:1,0.2,0.01:2700 \
-    --light point:95,75,90,10:1,0.18,0.01:500 --scatter-octaves 4 --background 0.01,0.02,0.045
+    --sky 0.6,0.8,0.9:0.3 --emission-lights 16 --scatter-octaves 4 --background 0.01,0.02,0.045
 draw explosion "$folder/explosion.vdb" --emission-grid temperature --color-grid Cd \
     --density-scale 1 --sky 0.6,0.8,0.9:3 --scatter-octaves 1 --background 0.1,0.2,0.42 \
     --tone filmic
