@@ -19,8 +19,8 @@ struct DepthImage {
 };
 
 /// Reads the channel Z of an .exr, else depth, else the .Z of a layer called depth (as
-/// ViewLayer.Depth.Z; all in any case), else the only one there is. Depths of 0 and below, NaN and those from 1e10 on stand for nothing, the
-/// first two with a warning.
+/// ViewLayer.Depth.Z; all in any case), else the only one there is. Depths of 0 and below, NaN and
+/// those from 1e10 on stand for nothing, the first two with a warning.
 /// @throw Error(kInput) if the file is none, or has no such channel
 DepthImage readDepthImage(const std::filesystem::path& file, const Listener& listener = {});
 
