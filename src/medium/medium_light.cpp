@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 #include <utility>
 
+#include "optics/color_factor.h"
 #include "portable_math.h"
 
 namespace deltasplat {
@@ -68,25 +69,6 @@ VoxelUnits unitsFor(const LookLight& inner, const std::vector<PartLooks>& parts,
 }
 
 }  // namespace
-
-glm::dvec3 ColorFactor::largestOf(const ColorGrids& grids) {
-    glm::dvec3 largest(1);
-    for (int c = 0; c < 3; ++c)
-        largest[c] = std::clamp(grids[std::size_t(c)]->valueMax, 1.0, kBrightestColor);
-    return largest;
-}
-
-std::uint32_t ColorFactor::packed(const glm::dvec3& share) {
-    const glm::dvec3 root = glm::sqrt(glm::clamp(share, 0.0, 1.0));
-    const auto bits = [](double part, int most) { return std::uint32_t(part * most + 0.5); };
-    return bits(root.x, 2047) | bits(root.y, 2047) << 11 | bits(root.z, 1023) << 22;
-}
-
-glm::vec3 ColorFactor::unpacked(std::uint32_t bits) {
-    const glm::vec3 root(float(bits & 2047) / 2047, float(bits >> 11 & 2047) / 2047,
-                         float(bits >> 22) / 1023);
-    return root * root;
-}
 
 MediumLight::MediumLight(std::unique_ptr<const LookLight> inner,
                          const std::vector<PartLooks>& parts, const glm::dvec3* factor,

@@ -14,6 +14,7 @@
 #include "medium/part_sampler.h"
 #include "medium/room.h"
 #include "optics/class_light.h"
+#include "optics/color_factor.h"
 #include "optics/painters.h"
 
 namespace deltasplat {
