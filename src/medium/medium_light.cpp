@@ -118,10 +118,9 @@ void MediumLight::lightVoxels(const WordPlace& place, const std::uint16_t* class
     for (std::size_t c = 0; c < 4; ++c)
         for (std::size_t n = 0; n < 64; ++n) colors[c][n] *= fromInner_[int(c)];
     if (hasFactors_) {
-        for (std::size_t n = 0; n < 64; ++n) {
-            const glm::vec3 factor = factor_ * ColorFactor::unpacked(factorBits(looks[n]));
-            for (int c = 0; c < 3; ++c) colors[std::size_t(c)][n] *= factor[c];
-        }
+        const WordFactors factors = factorsOf(looks);
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t n = 0; n < 64; ++n) colors[c][n] *= factor_[int(c)] * factors[c][n];
     }
     if (absorbs_) {
         addParts(classes, looks, colors);

@@ -26,4 +26,13 @@ glm::vec3 ColorFactor::unpacked(std::uint32_t bits) {
     return root * root;
 }
 
+WordFactors factorsOf(const OwnLook* looks) {
+    WordFactors factors;
+    for (std::size_t n = 0; n < 64; ++n) {
+        const glm::vec3 factor = ColorFactor::unpacked(factorBits(looks[n]));
+        for (int c = 0; c < 3; ++c) factors[std::size_t(c)][n] = factor[c];
+    }
+    return factors;
+}
+
 }  // namespace deltasplat

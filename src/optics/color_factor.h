@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 
@@ -26,5 +27,11 @@ struct ColorFactor {
 inline std::uint32_t factorBits(const OwnLook& look) {
     return look.bits[1] | std::uint32_t(look.bits[2]) << 16;
 }
+
+/// Colour factors of 64 voxels as channels, RGB: shares of the largest.
+using WordFactors = std::array<std::array<float, 64>, 3>;
+
+/// @param looks  [64]
+WordFactors factorsOf(const OwnLook* looks);
 
 }  // namespace deltasplat

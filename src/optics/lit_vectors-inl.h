@@ -28,6 +28,14 @@ HWY_INLINE Vector dot(const Vector3& a, const Vector3& b) {
     return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 
+HWY_INLINE Vector3 same(Vector a) {
+    return {a, a, a};
+}
+
+HWY_INLINE Vector3 product(const Vector3& a, const Vector3& b) {
+    return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)};
+}
+
 HWY_INLINE Vector3 scaled(const Vector3& a, Vector share) {
     return {hn::Mul(a.x, share), hn::Mul(a.y, share), hn::Mul(a.z, share)};
 }

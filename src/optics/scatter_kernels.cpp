@@ -49,6 +49,31 @@ HWY_INLINE Vector ownLeft(const Vector (&own)[4], Vector cosine, int octaves) {
     return left;
 }
 
+// What voxels send on each time of the light that they meet: colour times albedo, no more than all.
+HWY_INLINE Vector3 sentOnBy(const ScatterWord& word, int n) {
+    Vector share[4];
+    loadColors(word.sentOn, word.classes + n, share);
+    const auto channel = [&](std::size_t c) {
+        auto all = share[c];
+        if (word.factors) all = hn::Mul(all, hn::LoadU(FullTag(), (*word.factors)[c].data() + n));
+        return hn::Min(all, constant(1));
+    };
+    return {channel(0), channel(1), channel(2)};
+}
+
+// The sum over octaves of share(octave) left 2^octave sentOn^octave, by Horner's rule: from the
+// last octave, which is dimmed least, each has twice the extinction of the next.
+template <typename Share>
+HWY_INLINE Vector3 sumOfOctaves(int octaves, Vector left, const Vector3& sentOn,
+                                const Share& share) {
+    Vector3 all = share(octaves, left);
+    for (int octave = octaves - 1; octave >= 0; --octave) {
+        left = hn::Mul(left, left);
+        all = sum(product(all, sentOn), share(octave, left));
+    }
+    return all;
+}
+
 // How a vector of voxels is lit from a point.
 struct LitFromPoint {
     Vector share;    // of the light's colour
@@ -68,17 +93,17 @@ HWY_INLINE LitFromPoint litFrom(const WaysToEye& toLight, int n, const Vector3& 
 // What voxels scatter that a point lights.
 HWY_INLINE Vector3 scatteredFromPoint(const ScatterSums& sums, const ScatterRay& ray,
                                       const LitFromPoint& lit, const Vector (&own)[4],
-                                      Vector left) {
+                                      const Vector3& sentOn, Vector left) {
     const int octaves = int(sums.phases.size()) - 1;
     left = hn::Mul(left, ownLeft(own, hn::Mul(lit.oneSide, lit.cosine), octaves));
-    auto all = constant(0);
-    for (int octave = octaves; octave >= 0; --octave, left = hn::Mul(left, left)) {
+    const auto share = [&](int octave, Vector leftOfIt) {
         const auto even = constant(0.25 / double(1 << octave));
         const auto straight = phaseAt(sums.phases[std::size_t(octave)], lit.cosine);
-        const auto share = hn::Add(even, hn::Mul(lit.oneSide, hn::Sub(straight, even)));
-        all = hn::Add(all, hn::Mul(share, left));
-    }
-    return scaled(vectorOf(ray.color), hn::Mul(lit.share, all));
+        const auto turned = hn::Add(even, hn::Mul(lit.oneSide, hn::Sub(straight, even)));
+        return same(hn::Mul(turned, leftOfIt));
+    };
+    const Vector3 all = sumOfOctaves(octaves, left, sentOn, share);
+    return product(vectorOf(ray.color), scaled(all, lit.share));
 }
 
 template <bool kFromEye>
@@ -92,6 +117,7 @@ void scatterFrom(const ScatterSums& sums, const ScatterWord& word, WordUnits& un
     for (int n = 0; n < 64; n += kLanes) {
         Vector own[4];
         loadColors(word.own, word.classes + n, own);
+        const Vector3 sentOn = octaves > 0 ? sentOnBy(word, n) : same(constant(1));
         Vector3 light = vectorOf(sums.ambient);
         Vector3 toCamera = vectorOf(sums.toCamera);
         if (kFromEye) toCamera = waysFrom(*word.ways, n);
@@ -101,21 +127,24 @@ void scatterFrom(const ScatterSums& sums, const ScatterWord& word, WordUnits& un
             auto left = leftOf(word.depths + 64 * i + n, perStep);
             if (ray.isPoint) {
                 const LitFromPoint lit = litFrom(*toLight++, n, toCamera);
-                light = sum(light, scatteredFromPoint(sums, ray, lit, own, left));
+                light = sum(light, scatteredFromPoint(sums, ray, lit, own, sentOn, left));
                 continue;
             }
             auto cosine = hn::Set(tag, ray.cosine);
             if (kFromEye) cosine = dot(vectorOf(ray.way), toCamera);
             left = hn::Mul(left, ownLeft(own, cosine, octaves));
-            // Each octave has twice the extinction of the next.
-            for (int octave = octaves; octave >= 0; --octave, left = hn::Mul(left, left)) {
-                if (kFromEye) {
-                    const auto share = phaseAt(sums.phases[std::size_t(octave)], cosine);
-                    light = sum(light, scaled(vectorOf(ray.color), hn::Mul(share, left)));
-                } else {
-                    light =
-                        sum(light, scaled(vectorOf(ray.towardsCamera[std::size_t(octave)]), left));
-                }
+            if (kFromEye) {
+                const auto share = [&](int octave, Vector leftOfIt) {
+                    const auto turned = phaseAt(sums.phases[std::size_t(octave)], cosine);
+                    return same(hn::Mul(turned, leftOfIt));
+                };
+                const Vector3 all = sumOfOctaves(octaves, left, sentOn, share);
+                light = sum(light, product(vectorOf(ray.color), all));
+            } else {
+                const auto share = [&](int octave, Vector leftOfIt) {
+                    return scaled(vectorOf(ray.towardsCamera[std::size_t(octave)]), leftOfIt);
+                };
+                light = sum(light, sumOfOctaves(octaves, left, sentOn, share));
             }
         }
         Vector rgba[4];

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "deltasplat/optics/scattering.h"
+#include "optics/color_factor.h"
 #include "optics/voxel_units.h"
 #include "optics/ways_to_eye.h"
 
@@ -65,8 +66,11 @@ struct ScatterSums {
 
 /// What is lit.
 struct ScatterWord {
-    const glm::vec4* colors;       ///< of classes, premultiplied
-    const glm::vec4* own;          ///< of classes: ownLight()
+    const glm::vec4* colors;  ///< of classes, premultiplied
+    const glm::vec4* own;     ///< of classes: ownLight()
+    const glm::vec4* sentOn;  ///< of classes: colour times albedo; of use to octaves alone
+    /// [3][64]: what each voxel's is multiplied by; null if by nothing.
+    const WordFactors* factors;
     const std::uint16_t* classes;  ///< [64]
     const std::uint16_t* depths;   ///< [rays][64]: as LightDepths has them
     const WaysToEye* ways;         ///< null if all see it from one side

@@ -11,6 +11,7 @@
 #include "floor_div.h"
 #include "ingest/codes/leaf_slices.h"
 #include "light/light_depths.h"
+#include "optics/color_factor.h"
 #include "optics/painters.h"
 #include "optics/scatter_kernels.h"
 #include "portable_math.h"
@@ -61,11 +62,13 @@ Shine shineOf(const Light& light, const LitBlocks::Reach& reach, const Volume& v
 class ScatteredLight : public LookLight {
   public:
     ScatteredLight(const Scattering& scattering, const std::vector<Shine>& shines,
-                   const LightDepths& depths, const ClassTable& classes, const LitScene& scene)
+                   const LightDepths& depths, const glm::dvec3* factor, const ClassTable& classes,
+                   const LitScene& scene)
         : LookLight(VoxelUnits(classes, brightestOf(scattering, shines, classes, scene.camera)),
                     dimmestOf(scattering, shines, scene.camera)),
           depths_(depths),
           sliceAxis_(scene.sliceAxis),
+          hasFactors_(factor != nullptr),
           colors_(units().unitsOfClasses(classes)) {
         const Camera& camera = scene.camera;
         sums_.ambient = glm::vec3(scattering.albedo * scattering.ambient);
@@ -79,20 +82,32 @@ class ScatteredLight : public LookLight {
         }
         for (const double depth : depthsOf(classes, classes.stepWorld))
             own_.push_back(ownLight(depth));
+        const glm::dvec3 albedo = scattering.albedo * (factor ? *factor : glm::dvec3(1));
+        for (const Look& look : classes.looks) sentOn_.emplace_back(albedo * look.color, 0);
         if (camera.projection != Projection::kOrtho)
             eye_.emplace(camera.eyeWorld(), scene.worldFromVoxel);
     }
 
   protected:
-    void lightVoxels(const WordPlace& place, const std::uint16_t* classes, const OwnLook*,
+    void lightVoxels(const WordPlace& place, const std::uint16_t* classes, const OwnLook* looks,
                      WordUnits& colors) const override {
         FewOrMany<std::uint16_t, 64 * kMostAtOnce> depths(64 * sums_.rays.size());
         readDepths(place, depths.data());
         FewOrMany<WaysToEye, kMostAtOnce> toLights(points_.size());
         for (std::size_t i = 0; i < points_.size(); ++i)
             toLights.data()[i] = points_[i].waysFrom(place);
-        ScatterWord word{colors_.data(), own_.data(), classes,
-                         depths.data(),  nullptr,     toLights.data()};
+        ScatterWord word{};
+        word.colors = colors_.data();
+        word.own = own_.data();
+        word.sentOn = sentOn_.data();
+        word.classes = classes;
+        word.depths = depths.data();
+        word.toLights = toLights.data();
+        WordFactors factors;
+        if (hasFactors_ && sums_.phases.size() > 1) {
+            factors = factorsOf(looks);
+            word.factors = &factors;
+        }
         if (!eye_) return scatter(sums_, word, colors);
         const WaysToEye ways = eye_->waysFrom(place);
         word.ways = &ways;
@@ -191,8 +206,10 @@ class ScatteredLight : public LookLight {
 
     const LightDepths& depths_;
     int sliceAxis_;
+    bool hasFactors_;
     std::vector<glm::vec4> colors_;  // [classes]: premultiplied
     std::vector<glm::vec4> own_;     // [classes]: ownLight()
+    std::vector<glm::vec4> sentOn_;  // [classes]: as ScatterWord has it, times the largest factor
     ScatterSums sums_;
     std::optional<EyeOfVoxels> eye_;
     std::vector<EyeOfVoxels> points_;  // lights that shine from a point
@@ -204,6 +221,7 @@ class ScatterPainter : public VoxelPainter {
         : scattering_(*optics.scattering),
           classes_(classify(volume, optics, smallestSize(volume))),
           depths_(volume, classes_, shiningOf(scattering_), scattering_.octaves) {
+        if (optics.colorGrids) largestFactor_ = ColorFactor::largestOf(*optics.colorGrids);
         const std::vector<Light> lights = shiningOf(scattering_);
         for (std::size_t i = 0; i < lights.size(); ++i)
             shines_.push_back(shineOf(lights[i], depths_.reach(i), volume));
@@ -220,14 +238,17 @@ class ScatterPainter : public VoxelPainter {
 
     std::unique_ptr<const LookLight> lightOf(const ClassTable& classes,
                                              const LitScene* scene) const override {
-        return std::make_unique<ScatteredLight>(scattering_, shines_, depths_, classes, *scene);
+        return std::make_unique<ScatteredLight>(scattering_, shines_, depths_,
+                                                largestFactor_ ? &*largestFactor_ : nullptr,
+                                                classes, *scene);
     }
 
   private:
     Scattering scattering_;
     ClassTable classes_;
     LightDepths depths_;
-    std::vector<Shine> shines_;  // as `depths_` has them
+    std::vector<Shine> shines_;                // as `depths_` has them
+    std::optional<glm::dvec3> largestFactor_;  // empty: voxels have the colours of their classes
 };
 
 }  // namespace

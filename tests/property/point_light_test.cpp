@@ -73,7 +73,7 @@ double shownOf(const Light& light, const Ball& ball, const Scattering& fog, cons
         const double part = std::pow(0.5, i);
         const double phase =
             oneSide * phaseOf(fog, i, glm::dot(way, -ray)) + (1 - oneSide) / (4 * kPi);
-        sum += kPi * part * phase * std::exp(-depth * part);
+        sum += std::pow(fog.albedo.x, i) * kPi * part * phase * std::exp(-depth * part);
     }
     return light.strength * light.color.x * share * sum;
 }

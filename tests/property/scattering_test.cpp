@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "deltasplat/prepared_scene.h"
@@ -63,7 +64,7 @@ double radianceOf(const Ball& ball, const Scattering& fog, const glm::dvec3& sta
         for (const Light& one : fog.lights) {
             const glm::dvec3 way = glm::normalize(one.direction);
             for (int i = 0; i <= fog.octaves; ++i) {
-                light += kPi * one.strength * one.color.x * std::pow(0.5, i) *
+                light += kPi * one.strength * one.color.x * std::pow(0.5 * fog.albedo.x, i) *
                          phaseOf(fog, i, glm::dot(way, -ray)) *
                          std::exp(-ball.depthAt(p, way) * std::pow(0.5, i));
             }
@@ -181,15 +182,65 @@ TEST(Scattering, octavesAreWhatIsWritten) {
     fog.octaves = 8;
     fog.lights = {sunOf({0, 0, 1})};
     const double depth = 24 * 0.3;
-    double expected = 0;
-    for (int i = 0; i <= 8; ++i) {
-        const double part = std::pow(0.5, i);
-        // From behind: exp(-part * (depth - t)) exp(-t), over t.
-        const double way = i == 0 ? depth * std::exp(-depth)
-                                  : (std::exp(-part * depth) - std::exp(-depth)) / (1 - part);
-        expected += part * kPi * henyeyGreenstein(0.5 * part, 1) * way;
+    for (const double albedo : {1.0, 0.5}) {
+        fog.albedo = glm::dvec3(albedo);
+        double expected = 0;
+        for (int i = 0; i <= 8; ++i) {
+            const double part = std::pow(0.5, i);
+            // From behind: exp(-part * (depth - t)) exp(-t), over t.
+            const double way = i == 0 ? depth * std::exp(-depth)
+                                      : (std::exp(-part * depth) - std::exp(-depth)) / (1 - part);
+            expected +=
+                std::pow(albedo, i + 1) * part * kPi * henyeyGreenstein(0.5 * part, 1) * way;
+        }
+        EXPECT_NEAR(slabRadiance(0.3, 0.5, fog), expected, 0.01 * expected);
     }
-    EXPECT_NEAR(slabRadiance(0.3, 0.5, fog), expected, 0.01 * expected);
+}
+
+// Whether the albedo, the transfer function or a grid of colours swallows light: as often as it is
+// scattered. What sends on more than it gets does so but once.
+TEST(Scattering, swallowsEachTime) {
+    const Ball ball{0.25, 5};
+    const Volume volume = fogOf(glm::ivec3(32), test::aroundMiddle(32, 1),
+                                [&](const auto& p) { return ball.extinctionAt(p); });
+    const auto same = std::make_shared<const Volume>(
+        fogOf(glm::ivec3(32), test::aroundMiddle(32, 1), [](const auto&) { return std::log(2); }));
+    ASSERT_NEAR(same->valueMax, 0.5, 1e-6);
+    Scattering fog = someFog();
+    fog.ambient = glm::dvec3(0);
+    fog.albedo = glm::dvec3(0.5);
+    fog.lights.push_back(test::pointAt({3, 1, 2}));
+    fog.lights.back().strength = 30;
+    RenderOptions options;
+    options.camera.view = "iso";
+    options.camera.sizePixels = {32, 32};
+    for (const Projection projection : {Projection::kOrtho, Projection::kPerspective}) {
+        options.camera.projection = projection;
+        options.optics = fogOptics(fog);
+        options.optics.transferFunction.linearColors = true;
+        const Image byAlbedo = render(volume, options).image;
+        options.optics.scattering->albedo = glm::dvec3(1);
+        const Image white = render(volume, options).image;
+        options.optics.transferFunction.colors = {{0, glm::dvec3(0.5)}};
+        const Image byFunction = render(volume, options).image;
+        options.optics.transferFunction.colors = {{0, glm::dvec3(1)}};
+        options.optics.colorGrids = ColorGrids{same, same, same};
+        const Image byGrid = render(volume, options).image;
+        options.optics.colorGrids.reset();
+        options.optics.transferFunction.colors = {{0, glm::dvec3(2)}};
+        const Image bright = render(volume, options).image;
+        const double brightest = *std::max_element(byAlbedo.rgba.begin(), byAlbedo.rgba.end());
+        const double most = 2e-3 * brightest;
+        for (int y = 0; y < 32; ++y) {
+            for (int x = 0; x < 32; ++x) {
+                const double red = pixelOf(byAlbedo, x, y).r;
+                EXPECT_NEAR(pixelOf(byFunction, x, y).r, red, most);
+                EXPECT_NEAR(pixelOf(byGrid, x, y).r, red, most);
+                EXPECT_NEAR(pixelOf(bright, x, y).r, 2 * pixelOf(white, x, y).r, 4 * most);
+            }
+        }
+        EXPECT_LT(meanOf(byAlbedo, 0), 0.45 * meanOf(white, 0));
+    }
 }
 
 TEST(Scattering, phasesAddUpToOne) {

@@ -12,13 +12,13 @@ namespace deltasplat {
 /// lamp, which it dims, and sends some of it to the camera. A voxel shines with
 ///
 ///     c albedo (ambient + sum over lights, and over i = 0..octaves, of
-///               pi I 2^-i p_i(cos) exp(-depth 2^-i))
+///               min(c albedo, 1)^i pi I 2^-i p_i(cos) exp(-depth 2^-i))
 ///
-/// where c is the transfer function's colour, I a light's colour times its strength, depth the
-/// extinction that its light has come through (Optics, scaled), and cos that of the angle by which
-/// it is turned towards the camera. i = 0 is what is scattered once. The others stand for what is
-/// scattered more often: less of it, from farther, in more directions (Wrenninge, Kulla, Lundqvist,
-/// Oz: The Great and Volumetric, 2013).
+/// where c is the colour (the transfer function's, times that of colour grids), I a light's colour
+/// times its strength, depth the extinction that its light has come through (Optics, scaled), and
+/// cos that of the angle by which it is turned towards the camera. i = 0 is what is scattered once.
+/// The others stand for what is scattered more often: less of it, from farther, in more directions
+/// (Wrenninge, Kulla, Lundqvist, Oz: The Great and Volumetric, 2013).
 ///
 /// p is Henyey and Greenstein's (1941), of two lobes, and adds up to 1 over all directions:
 ///
