@@ -151,13 +151,12 @@ class RegionWarper {
     void warpTile(glm::ivec2 first) {
         const glm::ivec2 last = glm::min(first + glm::ivec2(kStretch, kBand), picture_.size);
         if (isEmpty(first, last - 1)) return;
-        // Of panoramas, which bend, these are those of the tile's first pixel.
-        const glm::dvec3 alongX = rays_.alongX(first.x, first.y);
-        const glm::dvec3 alongY = rays_.alongY(first.x, first.y);
         std::array<Place, kStretch> places;
         for (int y = first.y; y < last.y; ++y) {
-            for (int x = first.x; x < last.x; ++x)
-                places[std::size_t(x - first.x)] = placeOf(rays_.at(x, y), alongX, alongY);
+            for (int x = first.x; x < last.x; ++x) {
+                places[std::size_t(x - first.x)] =
+                    placeOf(rays_.at(x, y), rays_.alongX(x, y), rays_.alongY(x, y));
+            }
             warpRow({first.x, y}, std::span(places).first(std::size_t(last.x - first.x)));
         }
     }

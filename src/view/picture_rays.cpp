@@ -15,21 +15,28 @@ PictureRays::PictureRays(const Camera& camera, const glm::dmat3& fromWorld) {
     const bool flat = camera.projection == Projection::kPerspective;
     // Of a flat picture at distance 1.
     const double pixel = camera.pixelWorld() / camera.targetDistanceWorld;
+    // Of a panorama: the angle of a pixel.
+    const glm::dvec2 angle = glm::dvec2(2, 1) * std::numbers::pi / size;
     for (int x = 0; x < camera.sizePixels.x; ++x) {
         const double across = x + 0.5 - 0.5 * size.x;
-        const double longitude = 2 * std::numbers::pi * across / size.x;
-        columns_.push_back(flat ? ahead + (across * pixel) * right
-                                : portable::sin(longitude) * right +
-                                      portable::cos(longitude) * ahead);
+        if (flat) {
+            columns_.push_back({ahead + (across * pixel) * right, pixel * right});
+            continue;
+        }
+        const double sine = portable::sin(angle.x * across);
+        const double cosine = portable::cos(angle.x * across);
+        columns_.push_back(
+            {sine * right + cosine * ahead, angle.x * (cosine * right - sine * ahead)});
     }
     for (int y = 0; y < camera.sizePixels.y; ++y) {
         const double above = 0.5 * size.y - (y + 0.5);
-        const double latitude = std::numbers::pi * above / size.y;
         if (flat) {
-            rows_.push_back({1, (above * pixel) * up});
-        } else {
-            rows_.push_back({portable::cos(latitude), portable::sin(latitude) * up});
+            rows_.push_back({1, 0, (above * pixel) * up, -pixel * up});
+            continue;
         }
+        const double sine = portable::sin(angle.y * above);
+        const double cosine = portable::cos(angle.y * above);
+        rows_.push_back({cosine, angle.y * sine, sine * up, -angle.y * cosine * up});
     }
 }
 

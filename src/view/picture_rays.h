@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -18,26 +17,33 @@ class PictureRays {
 
     /// Returns the direction, not of length 1, of a pixel's middle.
     glm::dvec3 at(int x, int y) const {
-        return rows_[std::size_t(y)].share * columns_[std::size_t(x)] + rows_[std::size_t(y)].rest;
+        const Row& row = rows_[std::size_t(y)];
+        return row.share * columns_[std::size_t(x)].ray + row.rest;
     }
 
-    /// By how much directions change from this pixel to the next one, or from the one before.
+    /// By how much directions change for each pixel to the right, or down: how steeply in the
+    /// pixel's middle, so that they are the same from left and right.
     glm::dvec3 alongX(int x, int y) const {
-        const int next = std::min(x + 1, int(columns_.size()) - 1);
-        return next == 0 ? glm::dvec3(0) : at(next, y) - at(next - 1, y);
+        return rows_[std::size_t(y)].share * columns_[std::size_t(x)].change;
     }
     glm::dvec3 alongY(int x, int y) const {
-        const int next = std::min(y + 1, int(rows_.size()) - 1);
-        return next == 0 ? glm::dvec3(0) : at(x, next) - at(x, next - 1);
+        const Row& row = rows_[std::size_t(y)];
+        return row.changeOfShare * columns_[std::size_t(x)].ray + row.changeOfRest;
     }
 
   private:
+    struct Column {
+        glm::dvec3 ray;
+        glm::dvec3 change;  // to the right
+    };
     struct Row {
         double share;
+        double changeOfShare;  // down
         glm::dvec3 rest;
+        glm::dvec3 changeOfRest;
     };
 
-    std::vector<glm::dvec3> columns_;
+    std::vector<Column> columns_;
     std::vector<Row> rows_;
 };
 

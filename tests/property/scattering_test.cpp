@@ -401,13 +401,28 @@ TEST(Scattering, mirrorsWithTheScene) {
     RenderOptions options = someOptions();
     options.camera.targetWorld = glm::dvec3(1, 2, 0);
     options.camera.frameWidthWorld = 50;
-    const Image image = render(volume, options).image;
-    EXPECT_GT(meanOf(image, 0), 0.01);
-    for (int i = 0; i < 4; ++i) volume.worldFromIndex[i].x = -volume.worldFromIndex[i].x;
-    options.camera.direction->x = -options.camera.direction->x;
-    options.camera.targetWorld->x = -options.camera.targetWorld->x;
-    for (Light& light : options.optics.scattering->lights) light.direction.x *= -1;
-    EXPECT_EQ(mirrored(render(volume, options).image).rgba, image.rgba);
+    Volume other = volume;
+    for (int i = 0; i < 4; ++i) other.worldFromIndex[i].x = -other.worldFromIndex[i].x;
+    RenderOptions fromThere = options;
+    fromThere.camera.direction->x = -fromThere.camera.direction->x;
+    fromThere.camera.targetWorld->x = -fromThere.camera.targetWorld->x;
+    for (Light& light : fromThere.optics.scattering->lights) light.direction.x *= -1;
+    for (const Projection projection :
+         {Projection::kOrtho, Projection::kPerspective, Projection::kLatlong}) {
+        for (CameraOptions* camera : {&options.camera, &fromThere.camera}) {
+            camera->projection = projection;
+            if (projection != Projection::kOrtho) camera->frameWidthWorld.reset();
+            if (projection == Projection::kLatlong) {
+                camera->eyeWorld = camera->targetWorld;
+                camera->targetWorld.reset();
+                camera->sizePixels = {96, 48};
+            }
+        }
+        const Image image = render(volume, options).image;
+        EXPECT_GT(meanOf(image, 0), 0.01);
+        EXPECT_EQ(mirrored(render(other, fromThere).image).rgba, image.rgba)
+            << projectionName(projection);
+    }
 }
 
 TEST(Scattering, isTheSameHoweverItIsMade) {
