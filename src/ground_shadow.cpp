@@ -20,6 +20,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/prepared_scene.h"
 #include "dims_text.h"
+#include "luminance.h"
 #include "memory.h"
 #include "number_text.h"
 #include "parallel.h"
@@ -29,8 +30,6 @@
 
 namespace deltasplat {
 namespace {
-
-constexpr glm::dvec3 kLuminance(0.2126, 0.7152, 0.0722);
 
 [[noreturn]] void refuse(const std::string& got, const std::string& expected) {
     throw Error(ErrorCode::kUsage, gotExpected("`ground`", got, expected));

@@ -18,6 +18,7 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/environment.h"
+#include "luminance.h"
 #include "number_text.h"
 #include "parallel.h"
 #include "portable_math.h"
@@ -96,7 +97,7 @@ class Cells {
         Cell* row = &cells_[std::size_t(y / side_) * std::size_t(size_.x)];
         for (int x = 0; x < size.x; ++x, rgb += 3) {
             const glm::dvec3 color = solidAngle * glm::dvec3(rgb[0], rgb[1], rgb[2]);
-            const double energy = glm::dot(color, {0.2126, 0.7152, 0.0722});
+            const double energy = glm::dot(color, kLuminance);
             Cell& cell = row[x / side_];
             cell.color += color;
             cell.moments += {energy, energy * rays.at(x, y)};

@@ -21,6 +21,7 @@
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
+#include "luminance.h"
 #include "medium/longest_way.h"
 #include "medium/part_looks.h"
 #include "medium/part_sampler.h"
@@ -107,7 +108,7 @@ class Glow {
         }
         for (int n = 0; n < 512; ++n) {
             const glm::dvec3& glow = glows[std::size_t(n)];
-            const double energy = glm::dot(glow, {0.2126, 0.7152, 0.0722});
+            const double energy = glm::dot(glow, kLuminance);
             if (!(energy > 0)) continue;
             const glm::dvec3 world =
                 worldOf(place.first + glm::dvec3(n / 64, n / 8 % 8, n % 8)) - origin_;

@@ -9,6 +9,8 @@
 #include <glm/mat3x3.hpp>
 #include <numbers>
 
+#include "luminance.h"
+
 namespace deltasplat {
 namespace {
 
@@ -17,9 +19,6 @@ constexpr double kHighest = 15000;
 
 // Below Draper's point nothing is seen to glow, however it radiates; it fades out from there on.
 constexpr double kDraperPoint = 798;
-
-// Of linear sRGB (IEC 61966-2-1).
-constexpr glm::dvec3 kLuminance(0.2126, 0.7152, 0.0722);
 
 glm::dvec3 linearFromXyz(const glm::dvec3& xyz) {
     return {3.2406 * xyz.x - 1.5372 * xyz.y - 0.4986 * xyz.z,

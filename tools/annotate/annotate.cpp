@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "annotate/axes.h"
 #include "annotate/scale_bar.h"
 #include "annotate/text_lines.h"
+#include "luminance.h"
 
 namespace deltasplat {
 namespace {
@@ -79,7 +81,8 @@ const InkColors& inkFor(const Image& image) {
                                 y < image.size.y - border.y;
             if (inside) continue;
             const float* const rgba = image.pixel(x, y);
-            sum += std::clamp(0.2126 * rgba[0] + 0.7152 * rgba[1] + 0.0722 * rgba[2], 0.0, 1.0);
+            sum +=
+                std::clamp(glm::dot(glm::dvec3(rgba[0], rgba[1], rgba[2]), kLuminance), 0.0, 1.0);
             ++count;
         }
     }

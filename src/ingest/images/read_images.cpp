@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "ingest/files/refuse_file.h"
 #include "ingest/images/image_file.h"
 #include "ingest/readers.h"
+#include "luminance.h"
 #include "memory.h"
 #include "parallel.h"
 
@@ -96,7 +98,6 @@ void warnOfLosses(const std::filesystem::path& file, const ImageSpec& spec,
     }
 }
 
-// The weights are those of Rec. 709; they add up to 1, so a grey keeps its value.
 template <typename T>
 void toLuminance(const std::byte* colors, std::size_t pixels, std::byte* to) {
     const std::size_t run = std::size_t{1} << 16;
@@ -104,8 +105,7 @@ void toLuminance(const std::byte* colors, std::size_t pixels, std::byte* to) {
         for (std::size_t i = part * run; i < std::min(pixels, (part + 1) * run); ++i) {
             T rgb[3];
             std::memcpy(rgb, colors + i * sizeof rgb, sizeof rgb);
-            const double sum =
-                0.2126 * double(rgb[0]) + 0.7152 * double(rgb[1]) + 0.0722 * double(rgb[2]);
+            const double sum = glm::dot(glm::dvec3(rgb[0], rgb[1], rgb[2]), kLuminance);
             const T grey = std::is_integral_v<T> ? T(std::floor(sum + 0.5)) : T(sum);
             std::memcpy(to + i * sizeof grey, &grey, sizeof grey);
         }
