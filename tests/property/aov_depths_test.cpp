@@ -14,8 +14,8 @@
 
 #include "deltasplat/render_aovs.h"
 #include "deltasplat/render_deep.h"
-#include "deltasplat/threads.h"
 #include "support/error_of.h"
+#include "support/same_picture.h"
 #include "support/some_scene.h"
 
 namespace deltasplat {
@@ -232,22 +232,11 @@ TEST(AovDepths, areTheSameForEveryMethodAndThread) {
         RenderOptions options;
         options.optics = test::someOptics(test::Colors::kLit);
         options.camera = test::someCameras()[std::size_t(camera)];
-        Channels first;
-        const auto compare = [&](Method method) {
+        test::expectTheSameHoweverMade([&](Method method) {
             options.method = method;
-            const Channels channels =
-                channelsOf(*volume, options, test::cameraOf(*volume, options.camera),
-                           {Aov::kDepth, Aov::kFront, Aov::kBack, Aov::kSamples});
-            if (first.empty()) first = channels;
-            EXPECT_TRUE(channels == first) << methodName(method);
-        };
-        for (const Method method :
-             {Method::kAuto, Method::kDelta, Method::kSparse, Method::kTraditional})
-            compare(method);
-        for (const int threads : {1, 3}) {
-            const ThreadLimit limit(threads);
-            compare(Method::kAuto);
-        }
+            return channelsOf(*volume, options, test::cameraOf(*volume, options.camera),
+                              {Aov::kDepth, Aov::kFront, Aov::kBack, Aov::kSamples});
+        });
     }
 }
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "deltasplat/render_aovs.h"
-#include "deltasplat/threads.h"
 #include "support/error_of.h"
+#include "support/same_picture.h"
 #include "support/some_scene.h"
 
 namespace deltasplat {
@@ -127,20 +127,10 @@ TEST(AovNormals, areTheSameForEveryMethodAndThread) {
         RenderOptions options;
         options.optics = test::someOptics(Colors::kSeveral);
         options.camera = test::someCameras()[std::size_t(camera)];
-        std::vector<glm::dvec3> first;
-        const auto compare = [&](Method method) {
+        test::expectTheSameHoweverMade([&](Method method) {
             options.method = method;
-            const std::vector<glm::dvec3> normals = normalsOf(*volume, options);
-            if (first.empty()) first = normals;
-            EXPECT_TRUE(normals == first) << methodName(method);
-        };
-        for (const Method method :
-             {Method::kAuto, Method::kDelta, Method::kSparse, Method::kTraditional})
-            compare(method);
-        for (const int threads : {1, 3}) {
-            const ThreadLimit limit(threads);
-            compare(Method::kAuto);
-        }
+            return normalsOf(*volume, options);
+        });
     }
 }
 

@@ -13,10 +13,8 @@
 #include "deltasplat/cut/cut_volume.h"
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/render_deep.h"
-#include "deltasplat/simd.h"
-#include "deltasplat/threads.h"
 #include "support/error_of.h"
-#include "support/simd_levels.h"
+#include "support/same_picture.h"
 #include "support/some_scene.h"
 
 namespace deltasplat {
@@ -102,8 +100,7 @@ TEST(Deep, samplesOverEachOtherAreTheFlatPicture) {
 
 TEST(Deep, hasTheSameSamplesForEveryMethodThreadAndSimdLevel) {
     const CameraOptions options = someCameras()[6];
-    std::string first;
-    const auto compare = [&](Method method) {
+    test::expectTheSameHoweverMade([&](Method method) {
         SplatOptions splat;
         splat.method = method;
         const PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, splat);
@@ -115,21 +112,8 @@ TEST(Deep, hasTheSameSamplesForEveryMethodThreadAndSimdLevel) {
             bytes.append(reinterpret_cast<const char*>(row.samples.data()),
                          row.samples.size() * sizeof(DeepSample));
         }
-        if (first.empty()) first = bytes;
-        EXPECT_TRUE(bytes == first) << methodName(method);
-    };
-    for (const Method method :
-         {Method::kAuto, Method::kDelta, Method::kSparse, Method::kTraditional})
-        compare(method);
-    for (const int threads : {1, 3}) {
-        const ThreadLimit limit(threads);
-        compare(Method::kAuto);
-    }
-    for (const std::string& level : test::testedSimdLevels()) {
-        setSimdLevel(level);
-        compare(Method::kAuto);
-    }
-    setSimdLevel("auto");
+        return bytes;
+    });
 }
 
 // A single slice of voxels, in a volume of others that are clear.

@@ -13,13 +13,12 @@
 #include <vector>
 
 #include "deltasplat/ground_shadow.h"
-#include "deltasplat/threads.h"
 #include "support/error_of.h"
 #include "support/lit_fog.h"
 #include "support/make_volume.h"
 #include "support/mirrored.h"
+#include "support/same_picture.h"
 #include "support/sight_line.h"
-#include "support/simd_levels.h"
 #include "support/some_scene.h"
 
 namespace deltasplat {
@@ -280,23 +279,11 @@ Scene mirroredScene(Scene scene) {
 // Bit for bit: whatever the method, on however many threads, at every SIMD level.
 TEST(GroundShadow, isTheSameHoweverItIsMade) {
     Scene scene = someScene();
-    std::optional<ThreadLimit> threads(std::in_place, 1);
-    const Image shadow = shadowOf(scene);
-    EXPECT_GT(sumOf(shadow), 300);
-    for (const Method method : {Method::kTraditional, Method::kSparse, Method::kDelta}) {
+    EXPECT_GT(sumOf(shadowOf(scene)), 300);
+    test::expectTheSameHoweverMade([&](Method method) {
         scene.options.method = method;
-        EXPECT_EQ(shadowOf(scene).rgba, shadow.rgba) << methodName(method);
-    }
-    for (const int count : {7, 2}) {
-        threads.reset();
-        threads.emplace(count);
-        EXPECT_EQ(shadowOf(scene).rgba, shadow.rgba) << count;
-    }
-    for (const std::string& level : test::testedSimdLevels()) {
-        setSimdLevel(level);
-        EXPECT_EQ(shadowOf(scene).rgba, shadow.rgba) << level;
-    }
-    setSimdLevel("auto");
+        return shadowOf(scene).rgba;
+    });
 }
 
 // Bit for bit, with a light within the volume, which sees all around.
