@@ -2,23 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 # The shadow on a ground: in channels, and under the picture.
 # Usage: ground.sh PROGRAM OIIOTOOL SCRATCH FIRE.vdb
-set -euo pipefail
-program=$1 oiiotool=$2 scratch=$3 fire=$4
-rm -rf "$scratch"
-mkdir -p "$scratch"
-cd "$scratch"
-failed=0
-fail() { echo "$*"; failed=1; }
+source "${BASH_SOURCE%/*}/pictures.sh"
+begin "$@"
+fire=$4
 
 draw() { # picture options
     "$program" render -q "$fire" -o "$1.exr" --float --size 32x24 --frame-width 40 --view iso --grid density \
         --tf grey --range 0,1 --lighting scatter --light=-1,-3,0.5:1,0.5,0.2:3 --light 2,-2,1:0.2,0.5,1 "${@:2}"
 }
-same() { "$oiiotool" -q "$1.exr" "$2.exr" --fail "$3" --diff >/dev/null 2>&1; }
 # The largest of a picture's first channel.
-largest() { "$oiiotool" --stats "$1.exr" 2>&1 | sed -n 's/.*Stats Max: //p' | cut -d' ' -f1; }
+largest() { most "$1" | cut -d' ' -f1; }
 alpha() { "$oiiotool" -q "$1.exr" --ch A --chnames Y -o "$1_alpha.exr"; }
-holds() { awk "BEGIN { exit !($1) }"; }
 
 draw plain
 draw channels --ground 0,-7,0 --aov shadow
@@ -32,8 +26,8 @@ same under up 0 || fail "up: got another shadow; expected that of what is up"
 ! same under slope 1e-3 || fail "slope: got the same shadow as of what is up"
 for channel in R G B; do
     "$oiiotool" -q channels.exr --ch shadow.$channel --chnames Y -o "$channel.exr"
-    most=$(largest "$channel")
-    holds "$most > 0.3 && $most <= 1" || fail "shadow.$channel: got at most $most; expected a shadow"
+    red=$(largest "$channel")
+    holds "$red > 0.3 && $red <= 1" || fail "shadow.$channel: got at most $red; expected a shadow"
 done
 ! same R B 0.05 || fail "shadow: got red as blue; expected what each light loses"
 for picture in plain under; do
@@ -59,4 +53,3 @@ draw bare --background 1,1,1
 "$oiiotool" -q plate.exr --ch R --crop 1x1+0+0 -o corner.exr
 holds "$(largest darker) > 0.2" || fail "plate: got $(largest darker) less light; expected a shadow"
 holds "$(largest corner) == 1" || fail "plate: got $(largest corner) in a corner; expected 1"
-exit "$failed"

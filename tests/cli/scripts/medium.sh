@@ -2,20 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 # Fire, colours and layers of several grids, by pictures that have to be the same.
 # Usage: medium.sh PROGRAM OIIOTOOL SCRATCH FIRE.vdb
-set -euo pipefail
-program=$1 oiiotool=$2 scratch=$3 fire=$4
-rm -rf "$scratch"
-mkdir -p "$scratch"
-cd "$scratch"
-failed=0
-fail() { echo "$*"; failed=1; }
+source "${BASH_SOURCE%/*}/pictures.sh"
+begin "$@"
+fire=$4
 
 draw() { # picture options
     "$program" render -q -q "$fire" -o "$1.exr" --float --size 24x24 --frame-width 20 --view iso "${@:2}"
 }
-same() { "$oiiotool" -q "$1.exr" "$2.exr" --fail "$3" --diff >/dev/null 2>&1; }
-expect_same() { same "$1" "$2" "${3:-0}" || fail "$1 and $2: got different pictures"; }
-expect_different() { ! same "$1" "$2" 1e-4 || fail "$1 and $2: got one picture; expected two"; }
 
 draw smoke --grid density --tf grey --range 0,1
 draw fire --grid density --tf grey --range 0,1 --emission-grid temperature
@@ -71,8 +64,8 @@ draw mattes --layer r:grey --layer temperature:fire --layer g:grey --layer densi
     mattes.exr --ch A --fail 1e-2 --diff >/dev/null || fail "mattes: got another sum than alpha"
 "$program" render -q -q "${fire%/*}/layers.vdb" -o empty.exr --size 24x24 --layer density:grey \
     --layer none:grey --layer g:grey --range 0,4 --aov mattes
-most=$("$oiiotool" --stats empty.exr 2>&1 | sed -n 's/.*Stats Max: //p' | cut -d' ' -f5-7)
-[[ $most =~ ^0\.1[0-9]*\ 0\.0*\ 0\.1[0-9]*$ ]] || fail "empty: got mattes up to $most; expected none of the second"
+mattes=$(most empty | cut -d' ' -f5-7)
+[[ $mattes =~ ^0\.1[0-9]*\ 0\.0*\ 0\.1[0-9]*$ ]] || fail "empty: got mattes up to $mattes; expected none of the second"
 
 # What is cut off changes no colours of what is left: cut by a box or by a plane.
 draw ramp --layer temperature:fire --emission-tf inferno --emission-range 0,1500 --target 0,0,0 \
@@ -89,13 +82,11 @@ draw plain --grid density --tf grey --range 0,1 --between 0
 draw before_far --grid density --tf grey --range 0,1 --between 0 --holdout-depth far.exr
 draw before_near --grid density --tf grey --range 0,1 --between 0 --holdout-depth near.exr
 expect_same plain before_far 1e-4
-"$oiiotool" --stats before_near.exr 2>&1 | grep -q "Stats Max: 0.000000 0.000000 0.000000 0.000000" ||
+[[ $(most before_near) == "0.000000 0.000000 0.000000 0.000000 " ]] ||
     fail "before_near: got something; expected nothing"
 draw depth --grid density --tf grey --range 0,1 --between 0 --aov depth
 "$oiiotool" -q depth.exr --ch Z -d float -o middle.exr
 draw before_middle --grid density --tf grey --range 0,1 --between 0 --holdout-depth middle.exr
-sum() { "$oiiotool" --stats "$1.exr" 2>&1 | sed -n 's/.*Stats Avg: //p' | cut -d' ' -f4; }
-awk -v whole="$(sum plain)" -v part="$(sum before_middle)" \
-    'BEGIN { exit !(part > 0.4 * whole && part < 0.8 * whole) }' ||
+sum() { mean "$1" | cut -d' ' -f4; }
+holds "$(sum before_middle) > 0.4 * $(sum plain) && $(sum before_middle) < 0.8 * $(sum plain)" ||
     fail "before_middle: got $(sum before_middle) of $(sum plain)"
-exit "$failed"

@@ -3,26 +3,13 @@
 # Checks the values that modes other than composite store, and what becomes of them in a .png: of a
 # slab of 10x8x4 voxels of 255 in 12x10x8 voxels of 0.
 # Usage: modes.sh PROGRAM OIIOTOOL SCRATCH
-set -euo pipefail
-program=$1 oiiotool=$2 scratch=$3
-rm -rf "$scratch"
-mkdir -p "$scratch"
-cd "$scratch"
+source "${BASH_SOURCE%/*}/pictures.sh"
+begin "$@"
 slab=slab_12x10x8_uint8.raw
 "$program" synth slab "$slab" --dims 12x10x8 -q
 
 render() { # OUTPUT OPTIONS...: a picture of one pixel a voxel, the volume in its middle
     "$program" render "$slab" -q --view front --frame-width 16 --size 16x16 -o "$@"
-}
-expect_pixel() { # FILE X Y VALUES
-    local got
-    got=$("$oiiotool" "$1" --cut "1x1+$2+$3" --printstats | sed -n 's/^ *Stats Max: \(.*\) (.*$/\1/p')
-    [[ $got == "$4" ]] || { echo "$1 at $2,$3: got $got; expected $4"; exit 1; }
-}
-expect_metadata() { # FILE NAME VALUE, which is empty if there must be none
-    local got
-    got=$("$oiiotool" --info -v "$1" | sed -n "s/^ *deltasplat:$2: \"\(.*\)\"$/\1/p")
-    [[ $got == "$3" ]] || { echo "$1, $2: got $got; expected $3"; exit 1; }
 }
 
 # Integrals in world units, as 32-bit floats without being asked: halves would round them.
@@ -68,7 +55,7 @@ done >hu_16x16x8_int16.raw
 expect_pixel hu.png 3 3 "0.000000 0.000000 0.000000 1.000000"
 expect_pixel hu.png 0 9 "0.000000 0.000000 0.000000 0.000000"
 middle=$("$oiiotool" hu.png --cut 1x1+9+9 --printstats | sed -n 's/^ *Stats Max: \([^ ]*\) .*/\1/p')
-[[ $middle > 0.9 ]] || { echo "hu.png: got $middle in the middle; expected nearly white"; exit 1; }
+[[ $middle > 0.9 ]] || fail "hu.png: got $middle in the middle; expected nearly white"
 
 # Largest values: where there are voxels, if of 0, and nothing beside the volume.
 render mip.exr --mode mip
@@ -106,7 +93,7 @@ expect_metadata shaded.exr depthShade 0.7
 eye=(--projection perspective --distance 4000 --fov 0.23)
 "$program" render "$slab" -q --view front --size 16x16 "${eye[@]}" -o eye.exr --mode xray
 got=$("$oiiotool" eye.exr --cut 1x1+8+8 --printstats | sed -n 's/^ *Stats Max: \([0-9]*\.[0-9]\).*/\1/p')
-[[ $got == 1020.0 ]] || { echo "eye.exr: got $got; expected 1020.0"; exit 1; }
+[[ $got == 1020.0 ]] || fail "eye.exr: got $got; expected 1020.0"
 "$program" render "$slab" -q --view front --size 16x16 "${eye[@]}" -o eye.png --mode xray
 expect_pixel eye.png 8 8 "1.000000 1.000000 1.000000 1.000000"
 expect_pixel eye.png 0 0 "0.000000 0.000000 0.000000 0.000000"

@@ -3,12 +3,8 @@
 # Sequences: frames are shown alike, the same in one go, in parts and on any number of threads; what
 # becomes of frames that are not there, cannot be read or are made already.
 # Usage: sequence.sh PROGRAM OIIOTOOL SCRATCH
-set -euo pipefail
-program=$1 oiiotool=$2 scratch=$3
-rm -rf "$scratch"
-mkdir -p "$scratch"
-cd "$scratch"
-fail() { echo "$*"; exit 1; }
+source "${BASH_SOURCE%/*}/pictures.sh"
+begin "$@"
 expect_code() { # CODE COMMAND...
     local code=0
     "${@:2}" 2>stderr.txt || code=$?
@@ -19,7 +15,6 @@ expect_files() { # NAMES PATTERN
     got=$(compgen -G "$2" | sort | tr '\n' ' ' | sed 's/ $//' || true)
     [[ $got == "$1" ]] || fail "got files $got; expected $1"
 }
-same() { "$oiiotool" -q "$1" "$2" --fail 0 --diff >/dev/null; }
 expect_said() { grep -qxF -- "$1" stderr.txt || { cat stderr.txt; fail "expected to be told: $1"; }; }
 
 # A cube of 8x8x8 voxels of value 100, from frame to frame in a larger volume with a brighter voxel

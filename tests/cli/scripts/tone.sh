@@ -3,11 +3,8 @@
 # Checks what --exposure and --tone make of light in files of 8 and 16 bits, and of nothing else: of
 # an opaque slab of 10x8x4 voxels in 12x10x8, four times as bright as white.
 # Usage: tone.sh PROGRAM OIIOTOOL SCRATCH
-set -euo pipefail
-program=$1 oiiotool=$2 scratch=$3
-rm -rf "$scratch"
-mkdir -p "$scratch"
-cd "$scratch"
+source "${BASH_SOURCE%/*}/pictures.sh"
+begin "$@"
 slab=slab_12x10x8_uint8.raw
 "$program" synth slab "$slab" --dims 12x10x8 -q
 cat >bright.json <<'END'
@@ -18,20 +15,6 @@ END
 render() { # OUTPUT OPTIONS...: a picture of one pixel a voxel, the volume in its middle
     "$program" render "$slab" -qq --tf bright.json --view front --frame-width 16 --size 16x16 \
         --dither 0 -o "$@"
-}
-expect_pixel() { # FILE X Y VALUES
-    local got
-    got=$("$oiiotool" "$1" --cut "1x1+$2+$3" --printstats | sed -n 's/^ *Stats Max: \(.*\) (.*$/\1/p')
-    [[ $got == "$4" ]] || { echo "$1 at $2,$3: got $got; expected $4"; exit 1; }
-}
-expect_metadata() { # FILE NAME VALUE, which is empty if there must be none
-    local got
-    got=$("$oiiotool" --info -v "$1" | sed -n "s/^ *deltasplat:$2: \"\(.*\)\"$/\1/p")
-    [[ $got == "$3" ]] || { echo "$1, $2: got $got; expected $3"; exit 1; }
-}
-pixels() { "$oiiotool" --hash "$1" | grep -o 'SHA-1.*'; }
-expect_same() { # FILES
-    [[ $(pixels "$1") == "$(pixels "$2")" ]] || { echo "$1 and $2 differ"; exit 1; }
 }
 
 # Light is stored as it is, and clipped where a file ends at white.
@@ -96,7 +79,7 @@ render toned_ink.png "${corner[@]}" --tone filmic --exposure -3
 for file in ink toned_ink; do "$oiiotool" -q $file.png --cut 200x30+0+0 -o ${file}_top.png; done
 expect_same ink_top.png toned_ink_top.png
 top=$("$oiiotool" ink_top.png --printstats | sed -n 's/^ *Stats Max: \([^ ]*\) .*/\1/p')
-[[ $top > 0.8 ]] || { echo "ink_top.png: got $top; expected letters"; exit 1; }
+[[ $top > 0.8 ]] || fail "ink_top.png: got $top; expected letters"
 
 # Values stay values.
 for mode in mip xray; do
