@@ -11,6 +11,7 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/prepared_scene.h"
+#include "dims_text.h"
 #include "image/depth_builder.h"
 #include "kept_memory.h"
 #include "listener_part.h"
@@ -205,20 +206,24 @@ class AovRender {
         return image;
     }
 
-    // @param valueOf  of a pixel's four numbers
+    // @param valueOf  of a pixel, by its number
     template <typename ValueOf>
-    void addChannel(const std::string& name, const Image& image, const ValueOf& valueOf) {
-        ImageChannel channel{name, std::vector<float>(image.rgba.size() / 4)};
+    void addChannel(const std::string& name, const ValueOf& valueOf) {
+        const glm::ivec2 size = camera_.sizePixels;
+        ImageChannel channel{name, std::vector<float>(std::size_t(size.x) * std::size_t(size.y))};
         for (std::size_t i = 0; i < channel.values.size(); ++i)
-            channel.values[i] = float(valueOf(&image.rgba[4 * i]));
+            channel.values[i] = float(valueOf(i));
         channels_.push_back(std::move(channel));
+    }
+
+    // One of a picture's four.
+    void addChannel(const std::string& name, const Image& image, int channel) {
+        addChannel(name, [&](std::size_t i) { return image.rgba[4 * i + std::size_t(channel)]; });
     }
 
     void addColors(const std::string& name, Optics optics, const Listener& listener) {
         const Image image = picture(std::move(optics), listener);
-        for (int c = 0; c < 3; ++c) {
-            addChannel(name + "." + "RGB"[c], image, [&](const float* rgba) { return rgba[c]; });
-        }
+        for (int c = 0; c < 3; ++c) addChannel(name + "." + "RGB"[c], image, c);
     }
 
     void addDirect(const Listener& listener) {
@@ -231,8 +236,10 @@ class AovRender {
     }
 
     void addTransmittance(const Listener& listener) {
-        const Image image = picture(withoutGlow(options_.optics), listener);
-        addChannel("transmittance", image, [](const float* rgba) { return 1 - rgba[3]; });
+        std::optional<Image> made;
+        if (!aovOptions_.picture) made = picture(withoutGlow(options_.optics), listener);
+        const Image& image = made ? *made : *aovOptions_.picture;
+        addChannel("transmittance", [&](std::size_t i) { return 1 - image.rgba[4 * i + 3]; });
     }
 
     void addMattes(const Listener& listener) {
@@ -241,10 +248,8 @@ class AovRender {
             const Image image = picture(mattes(options_.optics, first),
                                         partOf(listener, double(first) / layers,
                                                std::min(first + 3.0, double(layers)) / layers));
-            for (int i = first; i < std::min(first + 3, layers); ++i) {
-                addChannel("matte_" + std::to_string(i + 1), image,
-                           [&](const float* rgba) { return rgba[i - first]; });
-            }
+            for (int i = first; i < std::min(first + 3, layers); ++i)
+                addChannel("matte_" + std::to_string(i + 1), image, i - first);
         }
     }
 
@@ -315,18 +320,15 @@ class AovRender {
     }
 
     void addDepth(const Listener& listener) {
-        ImageChannel channel{"Z", {}};
-        for (const Place& place : meanPlaces(listener))
-            channel.values.push_back(place ? float(depthOf(*place)) : kNoDepth);
-        channels_.push_back(std::move(channel));
+        const std::vector<Place>& places = meanPlaces(listener);
+        addChannel("Z", [&](std::size_t i) { return places[i] ? depthOf(*places[i]) : kNoDepth; });
     }
 
     void addPosition(const Listener& listener) {
+        const std::vector<Place>& places = meanPlaces(listener);
         for (int axis = 0; axis < 3; ++axis) {
-            ImageChannel channel{std::string("P.") + "XYZ" [axis], {}};
-            for (const Place& place : meanPlaces(listener))
-                channel.values.push_back(place ? float((*place)[axis]) : 0);
-            channels_.push_back(std::move(channel));
+            addChannel(std::string("P.") + "XYZ"[axis],
+                       [&](std::size_t i) { return places[i] ? (*places[i])[axis] : 0; });
         }
     }
 
@@ -334,14 +336,11 @@ class AovRender {
         const Image along = picture(facing(options_.optics, 1), partOf(listener, 0, 0.5));
         const Image against = picture(facing(options_.optics, -1), partOf(listener, 0.5, 1));
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            ImageChannel channel{std::string("N.") + "XYZ" [axis], {}};
-            for (std::size_t i = 0; i < along.rgba.size(); i += 4) {
-                const double alpha = along.rgba[i + 3];
-                const double turned = double(along.rgba[i + axis]) - against.rgba[i + axis];
-                channel.values.push_back(alpha > 0 ? float(std::clamp(turned / alpha, -1.0, 1.0))
-                                                   : 0);
-            }
-            channels_.push_back(std::move(channel));
+            addChannel(std::string("N.") + "XYZ"[axis], [&](std::size_t i) {
+                const double alpha = along.rgba[4 * i + 3];
+                const double turned = double(along.rgba[4 * i + axis]) - against.rgba[4 * i + axis];
+                return alpha > 0 ? std::clamp(turned / alpha, -1.0, 1.0) : 0;
+            });
         }
     }
 
@@ -400,6 +399,11 @@ std::vector<ImageChannel> renderAovs(const Volume& volume, const RenderOptions& 
     for (const Aov aov : kAll)
         if (isWanted(aov)) check(aov, options.optics);
     checkOpacity(aovOptions.depthOpacity);
+    if (aovOptions.picture && aovOptions.picture->size != camera.sizePixels) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("`picture`", dimsText(aovOptions.picture->size) + " pixels",
+                                dimsText(camera.sizePixels) + ", those of the camera"));
+    }
     // A picture, and what is made of it, for each; and places.
     const double bytesPerPixel = (16 + 4 * 6) * double(aovs.size()) + sizeof(Place);
     requireMemory("`aovs`", bytesPerPixel * camera.sizePixels.x * camera.sizePixels.y);

@@ -35,6 +35,9 @@ std::span<const Aov> allAovs();
 /// How channels are made.
 struct AovOptions {
     double depthOpacity = 0.5;  ///< of kFront: kLeastDepthOpacity..1
+    /// What render makes of the same, if that is there: kTransmittance is read from it, and takes
+    /// no time. Null: it is rendered.
+    const Image* picture = nullptr;
 };
 
 inline constexpr double kLeastDepthOpacity = 0.001;

@@ -77,6 +77,28 @@ TEST(Aovs, ofLightAddUpToThePicture) {
     }
 }
 
+// It is the picture's, if that is there, and otherwise as it is within rounding.
+TEST(Aovs, transmittanceIsReadFromThePicture) {
+    const auto volume = test::someVolume();
+    const RenderOptions options = optionsOf(Colors::kFire, test::someCameras()[1]);
+    const RenderResult beauty = render(*volume, options);
+    AovOptions aovOptions;
+    aovOptions.picture = &beauty.image;
+    const std::vector<ImageChannel> channels =
+        renderAovs(*volume, options, beauty.camera, std::vector{Aov::kTransmittance}, aovOptions);
+    ASSERT_EQ(channels.size(), 1u);
+    EXPECT_EQ(channels[0].name, "transmittance");
+    for (std::size_t i = 0; i < channels[0].values.size(); ++i)
+        ASSERT_EQ(channels[0].values[i], 1 - beauty.image.rgba[4 * i + 3]);
+    const Image other({3, 3});
+    aovOptions.picture = &other;
+    EXPECT_EQ(test::errorOf([&] {
+                  renderAovs(*volume, options, beauty.camera, std::vector{Aov::kTransmittance},
+                             aovOptions);
+              }),
+              "usage: `picture`: got 3x3 pixels; expected 90x70, those of the camera");
+}
+
 // Without lights all that is shown shines.
 TEST(Aovs, emissionOfWhatShinesIsThePicture) {
     const auto volume = test::someVolume();
