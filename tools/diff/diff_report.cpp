@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <glm/vec4.hpp>
 
+#include "dims_text.h"
 #include "number_text.h"
 #include "text/json_text.h"
 
@@ -109,11 +110,6 @@ std::string backgroundText(const GridDiff& grid) {
            (error > 0 ? "; they differ by " + numberText(error) : "");
 }
 
-std::string dimsText(const Volume& volume) {
-    const glm::ivec3 dims = volume.box.dims();
-    return std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " + std::to_string(dims.z);
-}
-
 std::string overText(std::uint64_t over, std::uint64_t voxels, double threshold) {
     char percent[32];
     std::snprintf(percent, sizeof percent, "%.3g",
@@ -141,7 +137,8 @@ std::string plainText(const GridDiff& grid, const CompareOptions& thresholds) {
     text += line("background", backgroundText(grid));
     text += line("active", activeText(grid));
     if (!c.sizeEqual) {
-        const std::string dims = agreement(dimsText(grid.a), dimsText(grid.b));
+        const std::string dims =
+            agreement(dimsText(grid.a.box.dims(), " x "), dimsText(grid.b.box.dims(), " x "));
         text += line("dims", dims + (c.offset == glm::ivec3(0) ? "" : ", from other voxels on"));
     }
     text += "  Mean error = " + numberText(c.meanError) + "\n";

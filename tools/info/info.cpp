@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <memory>
-#include <set>
 
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "dims_text.h"
 #include "drawing/plot_file.h"
 #include "info/describe_volume.h"
 #include "info/info_list.h"
@@ -19,6 +19,7 @@
 #include "output_files.h"
 #include "process/interrupt.h"
 #include "subcommands.h"
+#include "warn_once.h"
 
 namespace deltasplat {
 namespace {
@@ -104,15 +105,13 @@ void addFile(const std::string& file, const InfoOptions& options, const Describe
         found.failures.push_back(error);
     }
     double done = 0;
-    std::set<std::string> warned;  // what is said of a folder is said with each series
+    WarnOnce warnings(listener);  // what is said of a folder is said with each series
     for (const VolumeChoice& choice : choices) {
         Listener part;
         part.progress = [&](double share) {
             listener.report((done + share) / double(choices.size()));
         };
-        part.warning = [&](const std::string& text) {
-            if (warned.insert(text).second) listener.warn(text);
-        };
+        part.warning = [&](const std::string& text) { warnings.warn(text); };
         if (choices.size() > 1 && choice.entry.type == kNoImages) {
             report.others.push_back(seriesText(choice.entry) + " (" + kNoImages + ")");
         } else {
@@ -120,8 +119,7 @@ void addFile(const std::string& file, const InfoOptions& options, const Describe
         }
         ++done;
     }
-    const bool anyGrid = !report.grids.empty();
-    if (anyGrid && findInput(file, {}).format == InputKind::Format::kVdb)
+    if (!report.grids.empty() && findInput(file, {}).format == InputKind::Format::kVdb)
         report.medium = mediumGrids(listVolumes(file, options.read));
     if (!report.grids.empty() || !report.others.empty()) found.reports.push_back(std::move(report));
 }
@@ -144,7 +142,7 @@ SlicePlot plotOf(const std::string& file, const GridReport& report) {
     if (volume.hasBackground) plot.title += ", " + volume.name;
     if (!report.entry.description.empty()) plot.title += ", " + report.entry.description;
     if (report.entry.volumes > 1) plot.title += ", volume " + std::to_string(report.volumeIndex);
-    plot.title += ", " + joinNumbers({double(dims.x), double(dims.y), double(dims.z)}, " x ");
+    plot.title += ", " + dimsText(dims, " x ");
     plot.visible = "visible: " + report.visible;
     plot.box = volume.box;
     plot.columns = report.columns;

@@ -19,51 +19,41 @@ void refuse(const std::string& got, const std::string& expected) {
     throw Error(ErrorCode::kUsage, gotExpected("--aov", got, expected));
 }
 
-// @param withShadow  whether the shadow on the ground, which is no Aov, is among them
-std::vector<Aov> parseAovs(const std::string& option, const std::string& text, bool& withShadow) {
+ChannelChoice parseChannels(const std::string& option, const std::string& text) {
     std::vector<std::string> names;
     for (const Aov aov : allAovs()) names.push_back(aovName(aov));
     names.emplace_back(kShadow);
-    std::vector<Aov> aovs;
-    withShadow = false;
+    ChannelChoice channels;
     for (const std::string& part : splitAt(text, ',')) {
-        const auto found = std::find(names.begin(), names.end(), part);
-        if (found == names.end()) {
+        const auto number =
+            std::size_t(std::find(names.begin(), names.end(), part) - names.begin());
+        if (number == names.size()) {
             throw Error(ErrorCode::kUsage, gotExpected(option, text,
                                                        "some of " + joinWords(names, "and") +
                                                            ", with commas between"));
         }
-        const auto number = std::size_t(found - names.begin());
-        if (*found == kShadow) {
-            withShadow = true;
+        if (part == kShadow) {
+            channels.shadow = true;
         } else {
-            aovs.push_back(allAovs()[number]);
+            channels.aovs.push_back(allAovs()[number]);
         }
     }
-    return aovs;
+    return channels;
 }
 
 // Grids of layers that swallow light, but for the first, which is the volume.
 std::vector<std::string> otherFogs(const MediumChoice& medium) {
     std::vector<std::string> grids;
     for (const LayerChoice& layer : medium.layers)
-        if (!layer.transferFunction.empty()) grids.push_back(layer.grid);
+        if (layer.isFog()) grids.push_back(layer.grid);
     return grids;
 }
 
 }  // namespace
 
-bool hasFront(const std::vector<Aov>& aovs) {
-    return std::find(aovs.begin(), aovs.end(), Aov::kFront) != aovs.end();
-}
-
 void addAovOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup group(app, "Output");
-    const Parser<std::vector<Aov>> parse = [&command](const std::string& option,
-                                                      const std::string& text) {
-        return parseAovs(option, text, command.withShadow);
-    };
-    group.addValue("--aov", "LIST", command.aovs, parse,
+    group.addValue("--aov", "LIST", command.channels, Parser<ChannelChoice>(parseChannels),
                    "Channels of an .exr beside its colours, with commas between: depth\n"
                    "(Z: mean depth of what is seen), front (depth_front.Z: where alpha\n"
                    "passes --depth-opacity), back (ZBack: of the last that is seen),\n"
@@ -74,8 +64,9 @@ void addAovOptions(CLI::App& app, RenderCommand& command) {
                    "(matte_1 ...: share of alpha of each --layer that swallows light),\n"
                    "samples (slices that hide something of a pixel) and shadow\n"
                    "(shadow.R ...: the share of light lost on --ground). Each takes as\n"
-                   "long as a picture or two; front, back and samples, together, about\n"
-                   "half as long as --deep-slices 1");
+                   "long as a picture or two, but for transmittance, which takes none;\n"
+                   "front, back and samples, together, about half as long as\n"
+                   "--deep-slices 1");
     group.addValue("--depth-opacity", "A", command.aovOptions.depthOpacity,
                    number(kLeastDepthOpacity, 1),
                    withDefault("--aov front: alpha that is passed there, 0.001 to 1",
@@ -83,20 +74,18 @@ void addAovOptions(CLI::App& app, RenderCommand& command) {
 }
 
 void checkAovs(const RenderCommand& command) {
-    if (command.aovs.empty() && !command.withShadow) return;
+    if (!command.channels.asked()) return;
     if (!isExr(command)) refuse(command.output.string(), "an .exr file");
     const Mode mode = command.picture.render.mode;
     if (mode != Mode::kComposite) refuse("--mode " + modeName(mode), "--mode composite");
     if (command.deep) refuse("--deep besides", "a flat picture, or --deep alone");
-    const bool hasMattes =
-        std::find(command.aovs.begin(), command.aovs.end(), Aov::kMattes) != command.aovs.end();
-    if (hasMattes && otherFogs(command.picture.medium).empty())
+    if (command.channels.has(Aov::kMattes) && otherFogs(command.picture.medium).empty())
         refuse("mattes of one volume", "several --layer that swallow light");
 }
 
 void warnOfUnusedAovOptions(const CLI::App& app, const RenderCommand& command,
                             ProgressDisplay& display) {
-    if (isGiven(app, "--depth-opacity") && !hasFront(command.aovs))
+    if (isGiven(app, "--depth-opacity") && !command.channels.has(Aov::kFront))
         display.warn("--depth-opacity: has no effect without --aov front");
 }
 
@@ -125,17 +114,15 @@ std::vector<ImageChannel> withEmptyMattes(const MediumChoice& medium, const Opti
     return channels;
 }
 
-void warnOfDepths(const std::vector<Aov>& aovs, const Optics& optics, const Listener& listener) {
+void warnOfDepths(const ChannelChoice& channels, const Optics& optics, const Listener& listener) {
     constexpr std::array kOfWhatHides{Aov::kDepth, Aov::kFront, Aov::kBack, Aov::kPosition,
                                       Aov::kSamples};
-    for (const Aov aov : aovs) {
-        const bool isOfWhatHides =
-            std::find(kOfWhatHides.begin(), kOfWhatHides.end(), aov) != kOfWhatHides.end();
-        if (!isOfWhatHides || optics.parts.empty()) continue;
-        listener.warn("--aov " + aovName(aov) +
-                      ": is of what hides something; light of fire alone has none");
-        return;
-    }
+    if (optics.parts.empty()) return;
+    const auto first = std::find_first_of(channels.aovs.begin(), channels.aovs.end(),
+                                          kOfWhatHides.begin(), kOfWhatHides.end());
+    if (first == channels.aovs.end()) return;
+    listener.warn("--aov " + aovName(*first) +
+                  ": is of what hides something; light of fire alone has none");
 }
 
 }  // namespace deltasplat

@@ -10,9 +10,6 @@ namespace deltasplat {
 /// Declares the options that say which channels are wanted beside a picture's own.
 void addAovOptions(CLI::App& app, RenderCommand& command);
 
-/// Whether a channel is wanted that depends on AovOptions::depthOpacity.
-bool hasFront(const std::vector<Aov>& aovs);
-
 /// Refuses channels where there can be none.
 /// @throw Error(kUsage)
 void checkAovs(const RenderCommand& command);
@@ -27,6 +24,6 @@ std::vector<ImageChannel> withEmptyMattes(const MediumChoice& medium, const Opti
                                           std::vector<ImageChannel> channels);
 
 /// Says that depths are by what hides something, and fire hides nothing.
-void warnOfDepths(const std::vector<Aov>& aovs, const Optics& optics, const Listener& listener);
+void warnOfDepths(const ChannelChoice& channels, const Optics& optics, const Listener& listener);
 
 }  // namespace deltasplat

@@ -16,10 +16,10 @@ void refuse(const std::string& got, const std::string& expected) {
 
 void checkHoldout(const RenderCommand& command) {
     const Mode mode = command.picture.render.mode;
-    const std::string got = mode != Mode::kComposite ? "--mode " + modeName(mode)
-                            : command.deep           ? "--deep"
-                            : !command.aovs.empty()  ? "--aov"
-                                                     : "";
+    const std::string got = mode != Mode::kComposite         ? "--mode " + modeName(mode)
+                            : command.deep                   ? "--deep"
+                            : !command.channels.aovs.empty() ? "--aov"
+                                                             : "";
     if (got.empty()) return;
     throw Error(ErrorCode::kUsage,
                 gotExpected("--holdout-depth", got + " besides",

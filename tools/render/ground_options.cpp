@@ -43,7 +43,7 @@ void addGroundOption(CLI::App& app, std::optional<GroundChoice>& choice) {
 }
 
 void checkGround(const RenderCommand& command) {
-    if (command.withShadow && !command.ground) {
+    if (command.channels.shadow && !command.ground) {
         throw Error(ErrorCode::kUsage, gotExpected("--aov shadow", "no --ground",
                                                    "--ground X,Y,Z, a point of what it falls on"));
     }
@@ -65,7 +65,7 @@ void addGroundShadow(const RenderCommand& command, const Volume& volume,
     image.metadata.emplace_back(
         "ground", numberText(ground.pointWorld) + ":" + numberText(ground.normalWorld));
     const Image shadow = renderGroundShadow(volume, options, result.camera, ground, listener);
-    if (!command.withShadow) return putShadowBehind(result.image, shadow);
+    if (!command.channels.shadow) return putShadowBehind(result.image, shadow);
     for (ImageChannel& channel : shadowChannels(shadow))
         image.channels.push_back(std::move(channel));
 }

@@ -66,7 +66,7 @@ ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume
     }
     if (result.stats.mode == Mode::kMip && render.depthShade > 0)
         options.metadata.emplace_back("depthShade", numberText(render.depthShade));
-    if (hasFront(command.aovs))
+    if (command.channels.has(Aov::kFront))
         options.metadata.emplace_back("depthOpacity", numberText(command.aovOptions.depthOpacity));
     if (command.deep)
         options.metadata.emplace_back("deepSlices",
@@ -204,25 +204,19 @@ void writePicture(const RenderCommand& command, const DeepImage& deep, const Ima
     writeImage(command.output, flat, options);
 }
 
-// A scene, ready to be made into a picture.
-struct ReadScene {
-    RenderOptions options;
-    std::shared_ptr<const Volume> volume;
-};
-
-ReadScene readScene(const RenderCommand& command, const SequencePart& part,
-                    const Listener& listener) {
+// Reads the scene, unless it is there already.
+ReadScene sceneOf(const RenderCommand& command, const SequencePart& part,
+                  const Listener& listener) {
     if (part.prepared) {
         const Scene& scene = part.prepared->scene();
         ReadScene read{command.picture.render, scene.volume};
         read.options.optics = scene.optics;
         return read;
     }
-    RenderOptions options = readOptics(command.picture, listener);
-    Volume volume = readToRender(command.input, command.picture, options, listener, part.look);
-    if (command.picture.surface.color && !options.optics.surface)
+    ReadScene read = readScene(command.input, command.picture, listener, part.look);
+    if (command.picture.surface.color && !read.options.optics.surface)
         listener.warn("--surface-color: has no effect without a surface");
-    return {options, std::make_shared<const Volume>(std::move(volume))};
+    return read;
 }
 
 RenderResult renderPrepared(const PreparedScene& scene, const RenderOptions& options,
@@ -251,7 +245,7 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     const auto beginRead = std::chrono::steady_clock::now();
     // Everything from here on is reading; what can be refused without it has been.
     const Listener reading = partOf(listener, 0, kReadShare);
-    const ReadScene scene = readScene(command, part, reading);
+    const ReadScene scene = sceneOf(command, part, reading);
     const RenderOptions& options = scene.options;
     const Volume& volume = *scene.volume;
     if (!part.look) warnOfUnusedView(app, options.camera, volume, reading);
@@ -276,10 +270,12 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     boundOver(picture.background, result.stats);
     ImageFileOptions image = imageOptions(command, volume, result, session);
     const Listener writing = partOf(listener, kRenderShare, 1);
-    warnOfDepths(command.aovs, options.optics, writing);
+    warnOfDepths(command.channels, options.optics, writing);
+    AovOptions aovOptions = command.aovOptions;
+    aovOptions.picture = &result.image;
     image.channels = withEmptyMattes(
         picture.medium, options.optics,
-        renderAovs(volume, options, result.camera, command.aovs, command.aovOptions));
+        renderAovs(volume, options, result.camera, command.channels.aovs, aovOptions));
     addGroundShadow(command, volume, options, result, image, {{}, writing.warning});
     finishPicture(command, volume, options.optics, result, image, writing);
     writing.report(0);

@@ -324,4 +324,11 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
                   look);
 }
 
+ReadScene readScene(const std::filesystem::path& input, const PictureOptions& picture,
+                    const Listener& listener, const FrameLook* look) {
+    RenderOptions options = readOptics(picture, listener);
+    Volume volume = readToRender(input, picture, options, listener, look);
+    return {options, std::make_shared<const Volume>(std::move(volume))};
+}
+
 }  // namespace deltasplat

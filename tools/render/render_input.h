@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 
 #include "render/render_options.h"
 #include "sequence/sequence_look.h"
@@ -19,6 +20,16 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
 Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
                     RenderOptions& options, const Listener& listener,
                     const FrameLook* look = nullptr);
+
+/// A scene, ready to be made into a picture.
+struct ReadScene {
+    RenderOptions options;
+    std::shared_ptr<const Volume> volume;
+};
+
+/// Reads all of what a picture is made of: readOptics and readToRender.
+ReadScene readScene(const std::filesystem::path& input, const PictureOptions& picture,
+                    const Listener& listener, const FrameLook* look = nullptr);
 
 /// Returns what is up in the world: --up, else y or, of a patient, the head.
 glm::dvec3 upOf(const PictureOptions& picture, const Volume& volume);

@@ -9,6 +9,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/splat/footprint.h"
+#include "dims_text.h"
 #include "drawing/plot_file.h"
 #include "number_text.h"
 #include "options/input_options.h"
@@ -108,10 +109,6 @@ std::string presetNames() {
         if (&preset != &presets().back()) line += ",";
     }
     return text + "\n" + line;
-}
-
-std::string sizeText(const glm::ivec2& size) {
-    return joinNumbers({double(size.x), double(size.y)}, "x");
 }
 
 void addOutputOptions(CLI::App& app, RenderCommand& command) {
@@ -252,7 +249,7 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
                                numberText(camera.nearWorld)));
     group.addValue(
         "--size", "WxH", camera.sizePixels, pixelSize(),
-        withDefault("Width and height in pixels; latlong 1024x512", sizeText(camera.sizePixels)));
+        withDefault("Width and height in pixels; latlong 1024x512", dimsText(camera.sizePixels)));
 }
 
 void addOpticsOptions(CLI::App& app, PictureOptions& options) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
+#include <vector>
 
 #include "annotate/annotation_choice.h"
 #include "deltasplat/image/tone.h"
@@ -48,6 +50,15 @@ struct ToneChoice {
     Tone tone = Tone::kStandard;
 };
 
+/// Channels beside a picture's own.
+struct ChannelChoice {
+    std::vector<Aov> aovs;
+    bool shadow = false;  ///< on the ground, not under the picture
+
+    bool asked() const { return shadow || !aovs.empty(); }
+    bool has(Aov aov) const { return std::find(aovs.begin(), aovs.end(), aov) != aovs.end(); }
+};
+
 /// A plane to throw a shadow on.
 struct GroundChoice {
     glm::dvec3 pointWorld{0.0};
@@ -64,10 +75,9 @@ struct RenderCommand {
     std::optional<glm::dvec2> window;  ///< values of black and white; empty: percentiles
     ImageFileOptions image;
     ToneChoice tone;
-    std::vector<Aov> aovs;  ///< channels beside the picture's own
+    ChannelChoice channels;
     AovOptions aovOptions;
     std::optional<GroundChoice> ground;  ///< whose shadow is shown; empty: none
-    bool withShadow = false;             ///< in channels, not under the picture
     std::filesystem::path holdoutDepth;  ///< of solid things before what is left out; empty: none
     bool deep = false;                   ///< samples with depths instead of a flat picture
     DeepOptions deepOptions;

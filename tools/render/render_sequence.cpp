@@ -44,11 +44,13 @@ double turnOf(int frame, std::optional<int> turntable) {
 }
 
 // The command that makes one frame.
-RenderCommand commandOf(const RenderCommand& command, const FrameFiles& files) {
+// @param stats  empty: none are written
+RenderCommand commandOf(const RenderCommand& command, const FrameFiles& files,
+                        const std::optional<FrameName>& stats) {
     RenderCommand frame = command;
     frame.input = files.input;
     frame.output = files.output;
-    if (!command.stats.empty()) frame.stats = FrameName::find(command.stats)->at(files.frame);
+    if (stats) frame.stats = stats->at(files.frame);
     frame.picture.render.camera.azimuthDegrees += turnOf(files.frame, command.turntable);
     return frame;
 }
@@ -77,8 +79,7 @@ class Survey {
         silent.progress = part.progress;
         const FrameLook frame{look, i};
         try {
-            RenderOptions options = readOptics(command_.picture, silent);
-            readToRender(files.input, command_.picture, options, silent, &frame);
+            readScene(files.input, command_.picture, silent, &frame);
             anyIsRead_ = true;
         } catch (const Error& error) {
             if (error.code() == ErrorCode::kInterrupted) throw;
@@ -122,7 +123,7 @@ void writeFirstPass(const std::filesystem::path& file, const SequenceLook& look)
 bool seesOneThing(const RenderCommand& command) {
     return !FrameName::findInput(command.input) &&
            command.picture.render.mode == Mode::kComposite && !command.deep &&
-           command.holdoutDepth.empty() && command.aovs.empty();
+           command.holdoutDepth.empty() && command.channels.aovs.empty();
 }
 
 PreparedScene prepareOnce(const RenderCommand& command, SequenceLook& look,
@@ -130,10 +131,8 @@ PreparedScene prepareOnce(const RenderCommand& command, SequenceLook& look,
     Listener warnings;
     warnings.warning = listener.warning;
     const FrameLook frame{look, 0};
-    RenderOptions options = readOptics(command.picture, warnings);
-    Volume volume = readToRender(command.input, command.picture, options, warnings, &frame);
-    return PreparedScene({std::make_shared<const Volume>(std::move(volume)), options.optics},
-                         options);
+    const ReadScene scene = readScene(command.input, command.picture, warnings, &frame);
+    return PreparedScene({scene.volume, scene.options.optics}, scene.options);
 }
 
 // Makes a camera, as far as it is not said where it is, hold all of a turn.
@@ -203,14 +202,9 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
     requireFramesOf(app, command.frames, command.input);
     if (!command.frames.asked()) {
         if (command.firstPass.empty()) return;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--first-pass", "it without --frames", "the frames of a sequence"));
+        refuseWithoutFrames("--first-pass");
     }
-    if (!command.stats.empty() && !FrameName::find(command.stats)) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--stats", command.stats.string() + " with --frames",
-                                "a name with ####, %04d, @ or $F4 for the number"));
-    }
+    if (!command.stats.empty()) frameNameOf("--stats", command.stats);
 }
 
 void renderSequence(const RenderCommand& command, const Listener& listener,
@@ -229,14 +223,15 @@ void renderSequence(const RenderCommand& command, const Listener& listener,
     const Listener making = partOf(listener, kSurveyShare, 1);
     const std::vector<FrameFiles> frames = framesToMake(present, command.frames);
     const RenderCommand fixed = fixedTo(look, command);
+    const std::optional<FrameName> stats = FrameName::find(command.stats);
     std::optional<PreparedScene> prepared;
     if (!frames.empty() && seesOneThing(command)) prepared = prepareOnce(fixed, look, making);
     runFrames(
         frames, command.frames.keepGoing, workersFor(command, look),
         [&](std::size_t i, const Listener& part) {
             const FrameLook frame{look, i};
-            makePicture(commandOf(fixed, frames[i]), {&frame, prepared ? &*prepared : nullptr},
-                        part);
+            makePicture(commandOf(fixed, frames[i], stats),
+                        {&frame, prepared ? &*prepared : nullptr}, part);
         },
         making);
 }

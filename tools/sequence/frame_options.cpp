@@ -28,6 +28,17 @@ Parser<MissingFrames> missingFrames() {
 
 }  // namespace
 
+FrameName frameNameOf(const std::string& option, const std::filesystem::path& file) {
+    const std::optional<FrameName> found = FrameName::find(file);
+    if (!found) refuseName(option, file);
+    return *found;
+}
+
+void refuseWithoutFrames(const std::string& option) {
+    throw Error(ErrorCode::kUsage,
+                gotExpected(option, "it without --frames", "the frames of a sequence"));
+}
+
 void addFrameOptions(CLI::App& app, FrameChoice& choice) {
     OptionGroup group(app, "Sequence");
     group.addValue("--frames", "LIST", choice.frames, frameList(),
@@ -52,13 +63,12 @@ std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::file
                                       bool mayStand, const std::string& outputOption,
                                       const std::filesystem::path& output) {
     const std::optional<FrameName> inputName = FrameName::findInput(input);
-    const std::optional<FrameName> outputName = FrameName::find(output);
     if (!inputName && !mayStand) refuseName("INPUT", input);
-    if (!outputName) refuseName(outputOption, output);
+    const FrameName outputName = frameNameOf(outputOption, output);
     std::vector<FrameFiles> files;
     std::map<std::filesystem::path, int> outputs;
     for (const int frame : choice.frames) {
-        files.push_back({frame, inputName ? inputName->at(frame) : input, outputName->at(frame)});
+        files.push_back({frame, inputName ? inputName->at(frame) : input, outputName.at(frame)});
         const auto [known, isNew] = outputs.emplace(files.back().output, frame);
         if (isNew) continue;
         throw Error(ErrorCode::kUsage,
@@ -74,9 +84,7 @@ void requireFramesOf(const CLI::App& app, const FrameChoice& choice,
                      const std::filesystem::path& input) {
     if (choice.asked()) return;
     for (const char* option : {"--missing", "--keep-going", "--skip-existing", "--update"}) {
-        if (!isGiven(app, option)) continue;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, "it without --frames", "the frames of a sequence"));
+        if (isGiven(app, option)) refuseWithoutFrames(option);
     }
     std::error_code ignored;
     if (!FrameName::findInput(input) || std::filesystem::exists(input, ignored)) return;

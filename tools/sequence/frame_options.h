@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sequence/frame_name.h"
+
 namespace deltasplat {
 
 /// What becomes of frames that have no input.
@@ -42,6 +44,13 @@ struct FrameFiles {
 std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::filesystem::path& input,
                                       bool mayStand, const std::string& outputOption,
                                       const std::filesystem::path& output);
+
+/// Returns a name with a place for the frame's number.
+/// @throw Error(kUsage) naming the option, if it has none
+FrameName frameNameOf(const std::string& option, const std::filesystem::path& file);
+
+/// @throw Error(kUsage) always: the option is given without --frames
+[[noreturn]] void refuseWithoutFrames(const std::string& option);
 
 /// Refuses names with a place for a frame's number if there is no such file and no frames are asked
 /// for; warns of options that frames alone have.

@@ -7,13 +7,13 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <thread>
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "process/terminate.h"
+#include "warn_once.h"
 
 namespace deltasplat {
 namespace {
@@ -23,7 +23,11 @@ class FrameRun {
     FrameRun(const std::vector<FrameFiles>& frames, bool keepGoing,
              const std::function<void(std::size_t, const Listener&)>& work,
              const Listener& listener)
-        : frames_(frames), keepGoing_(keepGoing), work_(work), listener_(listener) {}
+        : frames_(frames),
+          keepGoing_(keepGoing),
+          work_(work),
+          listener_(listener),
+          warnings_(listener) {}
 
     void run(int workers) {
         workers = int(std::clamp<std::size_t>(std::size_t(workers), 1, frames_.size()));
@@ -83,8 +87,7 @@ class FrameRun {
             if (at != std::string::npos) about.replace(at, file.size(), "");
         }
         const std::lock_guard lock(mutex_);
-        if (warned_.insert(about).second)
-            listener_.warn("frame " + std::to_string(files.frame) + ": " + text);
+        warnings_.warn("frame " + std::to_string(files.frame) + ": " + text, about);
     }
 
     void fail(std::size_t i, const Error& error) {
@@ -120,7 +123,7 @@ class FrameRun {
     std::mutex mutex_;
     std::map<std::size_t, double> shares_;  // of frames in work
     double done_ = 0;
-    std::set<std::string> warned_;
+    WarnOnce warnings_;
     std::map<std::size_t, Error> failures_;
 };
 
