@@ -69,7 +69,7 @@ void warnOfUnusedOptions(const CLI::App& app, const BenchCommand& command,
     Files inputs(command.inputs.begin(), command.inputs.end());
     const Files mask = filesOfMask(command.picture.parts);
     inputs.insert(inputs.end(), mask.begin(), mask.end());
-    warnOfUnusedInputOptions(app, inputs, display);
+    warnOfUnusedInputOptions(app, inputs, display.stage(0, 0));
     warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading,
                                command.picture.medium.emissionLights.has_value(), display);
     if (isGiven(app, "--background") && command.report.empty())

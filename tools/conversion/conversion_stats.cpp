@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "options/parse.h"
 #include "process/peak_bytes.h"
 #include "text/json_text.h"
 
@@ -18,9 +19,23 @@ void ConversionStats::add(const Volume& volume) {
     active += volume.activeCount;
     maxError = std::max(maxError, volume.readError);
     lossless = lossless && volume.replaced == 0 && volume.readError == 0;
-    const std::string book = volume.codeBook.name();
-    if ((", " + codeBook + ",").find(", " + book + ",") != std::string::npos) return;
-    codeBook += (codeBook.empty() ? "" : ", ") + book;
+    addBook(volume.codeBook.name());
+}
+
+void ConversionStats::add(const ConversionStats& other) {
+    inputBytes += other.inputBytes;
+    outputBytes += other.outputBytes;
+    voxels += other.voxels;
+    active += other.active;
+    deltas += other.deltas;
+    maxError = std::max(maxError, other.maxError);
+    lossless = lossless && other.lossless;
+    for (const std::string& book : other.codeBooks) addBook(book);
+}
+
+void ConversionStats::addBook(const std::string& book) {
+    if (std::find(codeBooks.begin(), codeBooks.end(), book) == codeBooks.end())
+        codeBooks.push_back(book);
 }
 
 std::uint64_t bytesOf(const std::vector<fs::path>& files) {
@@ -39,7 +54,7 @@ std::string statsJson(const ConversionStats& stats) {
         {"voxels", stats.voxels},
         {"active", stats.active},
         {"deltas", stats.deltas},
-        {"code_book", stats.codeBook},
+        {"code_book", joinNames(stats.codeBooks)},
         {"max_error", stats.maxError},
         {"lossless", stats.lossless},
         {"seconds", stats.seconds},
@@ -53,7 +68,7 @@ std::string statsSummary(const ConversionStats& stats) {
                   "%llu of %llu voxels active, code book %s\n"
                   "%llu bytes read, %llu bytes written, largest error %g, %.3f seconds\n",
                   (unsigned long long)stats.active, (unsigned long long)stats.voxels,
-                  stats.codeBook.c_str(), (unsigned long long)stats.inputBytes,
+                  joinNames(stats.codeBooks).c_str(), (unsigned long long)stats.inputBytes,
                   (unsigned long long)stats.outputBytes, stats.maxError, stats.seconds);
     return text;
 }

@@ -17,13 +17,18 @@ struct ConversionStats {
     std::uint64_t voxels = 0;  ///< in the boxes of all volumes
     std::uint64_t active = 0;
     std::uint64_t deltas = 0;
-    std::string codeBook;  ///< of all volumes; "half, integer" if they differ
-    double maxError = 0;   ///< over all voxels
+    std::vector<std::string> codeBooks;  ///< of all volumes, each once
+    double maxError = 0;                 ///< over all voxels
     bool lossless = true;
     double seconds = 0;
 
     /// Adds what there is to say of a volume.
     void add(const Volume& volume);
+    /// Adds what came of another conversion.
+    void add(const ConversionStats& other);
+
+  private:
+    void addBook(const std::string& book);
 };
 
 /// Returns the bytes of files; one that is no regular file counts as none.

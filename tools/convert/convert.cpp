@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
-#include "conversion/conversion_files.h"
-#include "conversion/conversion_stats.h"
 #include "conversion/read_grids.h"
+#include "conversion/run_conversion.h"
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "listener.h"
-#include "lower_case.h"
+#include "ingest/files/file_name.h"
+#include "listener_part.h"
 #include "options/input_options.h"
-#include "output_files.h"
-#include "stopwatch.h"
 #include "subcommands.h"
 
 namespace deltasplat {
@@ -27,13 +23,12 @@ constexpr double kBytesPerBlock = 2200;
 constexpr double kReadShare = 0.5;
 
 struct ConvertCommand {
-    std::filesystem::path input;
-    std::filesystem::path output;
-    std::filesystem::path stats;  // empty: none
+    ConversionFiles files;
+    FrameChoice frames;
     ReadOptions read;
     WriteOptions write;
 
-    bool toVdb() const { return lowerCase(output.extension().string()) == ".vdb"; }
+    bool toVdb() const { return lowerExtension(files.output) == ".vdb"; }
 };
 
 // "auto", "none" or a number.
@@ -56,11 +51,11 @@ Parser<WriteOptions> background(const WriteOptions& before) {
 void declareOptions(CLI::App& app, ConvertCommand& command) {
     OptionGroup arguments(app, "Arguments");
     arguments
-        .addValue("INPUT", "FILE", command.input, anyText(),
+        .addValue("INPUT", "FILE", command.files.input, anyText(),
                   std::string("Volume to read: ") + kInputFormats)
         .required();
     arguments
-        .addValue("OUTPUT", "FILE", command.output, anyText(),
+        .addValue("OUTPUT", "FILE", command.files.output, anyText(),
                   "File to write: .vdb .npy .nrrd .nhdr .mhd .mha .nii .nii.gz\n"
                   ".raw or .raw.gz; of the input's grids a .vdb gets all scalar\n"
                   "ones, the others the first")
@@ -74,30 +69,29 @@ void declareOptions(CLI::App& app, ConvertCommand& command) {
                     "background; auto: the background that a .vdb has, what info\n"
                     "guesses for other inputs (default none: every voxel stays as\n"
                     "active as it was)");
-    output.addValue("--stats", "FILE", command.stats, anyText(),
-                    "JSON file to write: sizes, largest error, seconds");
+    addConversionOptions(app, "sizes, largest error, seconds", command.files, command.frames);
     addInputOptions(app, command.read);
 }
 
 void warnOfUnusedOptions(const CLI::App& app, const ConvertCommand& command,
-                         ProgressDisplay& display) {
-    warnOfUnusedInputOptions(app, {command.input}, display);
+                         const std::filesystem::path& input, const Listener& listener) {
+    warnOfUnusedInputOptions(app, {input}, listener);
     for (const char* const option : {"--float", "--background"}) {
         if (isGiven(app, option) && !command.toVdb())
-            display.warn(std::string(option) + ": has no effect without a .vdb output");
+            listener.warn(std::string(option) + ": has no effect without a .vdb output");
     }
 }
 
 // Sets `complete` unless grids are left out.
-std::vector<Volume> readInput(const ConvertCommand& command, const Listener& listener,
-                              bool& complete) {
+std::vector<Volume> readInput(const ConvertCommand& command, const std::filesystem::path& input,
+                              const Listener& listener, bool& complete) {
     std::vector<Volume> volumes;
     if (!command.toVdb()) {
-        volumes.push_back(readVolume(command.input, command.read, listener));
+        volumes.push_back(readVolume(input, command.read, listener));
         return volumes;
     }
     complete = forEachScalarGrid(
-        command.input, command.read,
+        input, command.read,
         [&](Volume volume) {
             // The source says all that the codes do, and more.
             if (volume.source) volume.codes.reset();
@@ -107,28 +101,30 @@ std::vector<Volume> readInput(const ConvertCommand& command, const Listener& lis
     return volumes;
 }
 
-void runConvert(const CLI::App& app, const ConvertCommand& command, const Session& session) {
-    checkVolumeFile(command.output);
+ConversionStats convertFile(const CLI::App& app, const ConvertCommand& command,
+                            const ConversionFiles& files, const Listener& listener) {
     ConversionStats stats;
-    // Asked before writing, which may take the input's place.
-    stats.inputBytes = bytesOf(checkConversionFiles(command.input, command.output, command.stats));
-    {
-        ProgressDisplay display(session.common);
-        warnOfUnusedOptions(app, command, display);
-        bool complete = true;
-        std::vector<Volume> volumes = readInput(command, display.stage(0, kReadShare), complete);
-        for (const Volume& volume : volumes) stats.add(volume);
+    warnOfUnusedOptions(app, command, files.input, listener);
+    bool complete = true;
+    std::vector<Volume> volumes =
+        readInput(command, files.input, partOf(listener, 0, kReadShare), complete);
+    for (const Volume& volume : volumes) stats.add(volume);
 
-        const WriteReport report = writeVolumes(command.output, std::move(volumes), command.write,
-                                                display.stage(kReadShare, 1));
-        for (const std::string& note : report.notes) display.warn(note);
-        stats.outputBytes = bytesOf(report.files);
-        stats.maxError = std::max(stats.maxError, report.maxError);
-        stats.lossless = stats.lossless && report.lossless && complete;
-        stats.seconds = secondsSince(session.begin);
-    }
-    writeStats(command.stats, statsJson(stats));
-    if (session.common.verbose) std::fputs(statsSummary(stats).c_str(), stderr);
+    const WriteReport report = writeVolumes(files.output, std::move(volumes), command.write,
+                                            partOf(listener, kReadShare, 1));
+    for (const std::string& note : report.notes) listener.warn(note);
+    stats.outputBytes = bytesOf(report.files);
+    stats.maxError = std::max(stats.maxError, report.maxError);
+    stats.lossless = stats.lossless && report.lossless && complete;
+    return stats;
+}
+
+void runConvert(const CLI::App& app, const ConvertCommand& command, const Session& session) {
+    checkVolumeFile(command.files.output);
+    runConversion(app, command.files, command.frames, session,
+                  [&](const ConversionFiles& files, const Listener& listener) {
+                      return convertFile(app, command, files, listener);
+                  });
 }
 
 }  // namespace

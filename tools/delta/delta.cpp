@@ -2,22 +2,18 @@
 #include "deltasplat/delta/delta_file.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
-#include "conversion/conversion_files.h"
-#include "conversion/conversion_stats.h"
 #include "conversion/read_grids.h"
+#include "conversion/run_conversion.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
-#include "listener.h"
-#include "lower_case.h"
+#include "ingest/files/file_name.h"
+#include "listener_part.h"
 #include "number_text.h"
 #include "options/input_options.h"
-#include "output_files.h"
-#include "stopwatch.h"
 #include "subcommands.h"
 
 namespace deltasplat {
@@ -34,9 +30,8 @@ constexpr double kBytesPerHeldBlock = 1200 + kBytesPerInexactBlock;
 constexpr double kTakeShare = 0.8;
 
 struct DeltaCommand {
-    std::filesystem::path input;
-    std::filesystem::path output;
-    std::filesystem::path stats;  // empty: none
+    ConversionFiles files;
+    FrameChoice frames;
     ReadOptions read;
     DeltaFileOptions file;
 };
@@ -59,11 +54,11 @@ Parser<int> keyInterval() {
 void declareOptions(CLI::App& app, DeltaCommand& command) {
     OptionGroup arguments(app, "Arguments");
     arguments
-        .addValue("INPUT", "FILE", command.input, anyText(),
+        .addValue("INPUT", "FILE", command.files.input, anyText(),
                   "Volume to read, in any format that render reads; of a .vdb\n"
                   "every scalar grid")
         .required();
-    arguments.addValue("OUTPUT", "FILE.vdb", command.output, anyText(), "Delta grids to write")
+    arguments.addValue("OUTPUT", "FILE.vdb", command.files.output, anyText(), "Delta grids to write")
         .required();
 
     OptionGroup deltas(app, "Delta grids");
@@ -89,19 +84,18 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
                     withDefault("Keep a voxel's value while the true one stays within V data\n"
                                 "units",
                                 numberText(command.file.tolerance.value)));
-    deltas.addValue("--stats", "FILE", command.stats, anyText(),
-                    "JSON file to write: sizes, deltas, largest error, seconds");
+    addConversionOptions(app, "sizes, deltas, largest error, seconds", command.files,
+                         command.frames);
     addInputOptions(app, command.read);
 }
 
-void checkOutput(const DeltaCommand& command) {
-    if (lowerCase(command.output.extension().string()) != ".vdb") {
-        throw Error(
-            ErrorCode::kUsage,
-            gotExpected(command.output.string(),
-                        "extension \"" + command.output.extension().string() + "\"", ".vdb"));
+void checkOutput(const std::filesystem::path& output) {
+    if (lowerExtension(output) != ".vdb") {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(output.string(),
+                                "extension \"" + output.extension().string() + "\"", ".vdb"));
     }
-    const AtomicFile probe(command.output);
+    const AtomicFile probe(output);
 }
 
 void add(const DeltaFileEntry& entry, ConversionStats& stats) {
@@ -126,46 +120,45 @@ void warnOfWholeNumbers(const Volume& volume, const DeltaFileEntry& entry,
                   " (--max-error 0 refuses)");
 }
 
-void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& session) {
-    checkOutput(command);
-    ConversionStats stats;
-    // Asked before writing, which may take the input's place.
-    stats.inputBytes = bytesOf(checkConversionFiles(command.input, command.output, command.stats));
+ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
+                           const ConversionFiles& files, const Listener& listener) {
     ReadOptions reading = command.read;
     // Half of what may be lost goes to the code book, where one is needed, the rest to holding.
     const double relative = command.file.tolerance.relative;
     if (relative > 0) reading.relativeError = relative / 2;
     if (!command.file.tolerance.isExact()) reading.bytesPerBlock += kBytesPerHeldBlock;
-    {
-        ProgressDisplay display(session.common);
-        warnOfUnusedInputOptions(app, {command.input}, display);
-        DeltaFile file;
-        const Listener taking = display.stage(0, kTakeShare);
-        Listener remarks;
-        remarks.warning = taking.warning;
-        const bool complete = forEachScalarGrid(
-            command.input, reading,
-            [&](const Volume& volume) {
-                if (volume.origin && reading.bits)
-                    remarks.warn(
-                        "--bits: has no effect on delta grids, which keep their code book");
-                stats.add(volume);
-                const DeltaFileEntry entry = file.add(volume, command.file, remarks);
-                warnOfWholeNumbers(volume, entry, command, remarks);
-                add(entry, stats);
-            },
-            taking);
-        file.write(command.output);
-        display.stage(kTakeShare, 1).report(1);
+    warnOfUnusedInputOptions(app, {files.input}, listener);
+    ConversionStats stats;
+    DeltaFile file;
+    Listener remarks;
+    remarks.warning = listener.warning;
+    const bool complete = forEachScalarGrid(
+        files.input, reading,
+        [&](const Volume& volume) {
+            if (volume.origin && reading.bits)
+                remarks.warn("--bits: has no effect on delta grids, which keep their code book");
+            stats.add(volume);
+            const DeltaFileEntry entry = file.add(volume, command.file, remarks);
+            warnOfWholeNumbers(volume, entry, command, remarks);
+            add(entry, stats);
+        },
+        partOf(listener, 0, kTakeShare));
+    file.write(files.output);
+    listener.report(1);
+    stats.outputBytes = bytesOf({files.output});
+    stats.lossless = stats.lossless && complete;
+    return stats;
+}
 
-        stats.outputBytes = bytesOf({command.output});
-        stats.lossless = stats.lossless && complete;
-        stats.seconds = secondsSince(session.begin);
-    }
+void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& session) {
+    checkOutput(command.files.output);
+    const ConversionStats stats =
+        runConversion(app, command.files, command.frames, session,
+                      [&](const ConversionFiles& files, const Listener& listener) {
+                          return takeDeltas(app, command, files, listener);
+                      });
     if (stats.maxError > 0 && !session.common.quiet)
         printOut("largest error " + numberText(stats.maxError) + "\n");
-    writeStats(command.stats, statsJson(stats));
-    if (session.common.verbose) std::fputs(statsSummary(stats).c_str(), stderr);
 }
 
 }  // namespace

@@ -144,7 +144,7 @@ Verdict runDiff(const CLI::App& app, const DiffOptions& options, const Session& 
     FileDiff diff;
     {
         ProgressDisplay display(session.common);
-        warnOfUnusedInputOptions(app, {options.a, options.b}, display);
+        warnOfUnusedInputOptions(app, {options.a, options.b}, display.stage(0, 0));
         const std::vector<GridPair> pairs = pairGrids(options, diff);
         const double count = double(pairs.size());
         double done = 0;

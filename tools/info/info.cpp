@@ -47,7 +47,7 @@ void listInputs(const CLI::App& app, const InfoOptions& options, const Session& 
     std::vector<FileListing> files;
     std::vector<Error> failures;
     ProgressDisplay display(session.common);
-    warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()}, display);
+    warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()}, display.stage(0, 0));
     for (const char* const option : {"--plot", "--tf"}) {
         if (isGiven(app, option)) display.warn(std::string(option) + ": has no effect with --list");
     }
@@ -171,7 +171,7 @@ void runInfo(const CLI::App& app, const InfoOptions& options, const Session& ses
     Findings found;
     {
         ProgressDisplay display(session.common);
-        warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()}, display);
+        warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()}, display.stage(0, 0));
         const DescribeOptions describe = describeOptions(options, display.stage(0, 0));
         const double count = double(options.inputs.size());
         double done = 0;

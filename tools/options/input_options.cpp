@@ -99,7 +99,7 @@ void requireChoice(const CLI::App& app, const std::string& option, bool meant,
 }  // namespace
 
 void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesystem::path>& inputs,
-                              ProgressDisplay& display) {
+                              const Listener& listener) {
     std::set<InputKind::Format> formats;
     for (const std::filesystem::path& input : inputs) {
         // What is wrong with an input is for its reader to say.
@@ -118,7 +118,7 @@ void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesy
     const auto warnOf = [&](const std::vector<std::string>& options, const std::string& input) {
         const std::string remark = ": has no effect without " + input;
         for (const std::string& option : options) {
-            if (isGiven(app, option)) display.warn(option + remark);
+            if (isGiven(app, option)) listener.warn(option + remark);
         }
     };
     if (!formats.contains(InputKind::Format::kVdb)) {

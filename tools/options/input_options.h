@@ -24,6 +24,6 @@ void addConfineOption(CLI::App& app);
 /// Warns of options that were given and are for another kind of file than any of the inputs.
 /// @throw Error(kUsage) if these are --volume or --series
 void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesystem::path>& inputs,
-                              ProgressDisplay& display);
+                              const Listener& listener);
 
 }  // namespace deltasplat

@@ -92,6 +92,12 @@ std::string joinWords(const std::vector<std::string>& words, const std::string& 
     return text;
 }
 
+std::string joinNames(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
 Parser<std::string> anyText() {
     return [](const std::string&, const std::string& text) { return text; };
 }

@@ -53,5 +53,7 @@ std::vector<std::string> splitAt(const std::string& text, char separator);
 std::string joinNumbers(const std::vector<double>& values, const std::string& separator);
 /// Returns the words as one text: "a, b or c".
 std::string joinWords(const std::vector<std::string>& words, const std::string& last);
+/// The same with commas alone: "a, b, c".
+std::string joinNames(const std::vector<std::string>& names);
 
 }  // namespace deltasplat

@@ -114,7 +114,7 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
                          ProgressDisplay& display) {
     Files inputs = filesOfMask(command.picture.parts);
     inputs.push_back(command.input);
-    warnOfUnusedInputOptions(app, inputs, display);
+    warnOfUnusedInputOptions(app, inputs, display.stage(0, 0));
     if (isGiven(app, "--bits") && isExr(command)) display.warn("--bits: has no effect on an .exr");
     if (isGiven(app, "--dither") && (isExr(command) || command.image.bits == 16))
         display.warn("--dither: has no effect but in pictures of 8 bits");

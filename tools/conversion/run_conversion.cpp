@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conversion/run_conversion.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <vector>
+
+#include "conversion/conversion_files.h"
+#include "deltasplat/threads.h"
+#include "memory.h"
+#include "output_files.h"
+#include "process/interrupt.h"
+#include "sequence/frame_name.h"
+#include "sequence/frames_to_make.h"
+#include "sequence/run_frames.h"
+#include "stopwatch.h"
+
+namespace deltasplat {
+namespace {
+
+// Of the memory there is, what conversions may take that go on at the same time, and what each
+// takes of a byte that it reads: compressed halves become floats, and they codes.
+constexpr double kWorkShare = 0.5;
+constexpr double kBytesPerByte = 40;
+
+ConversionStats convertOne(const ConversionFiles& files, const Convert& convert,
+                           const Listener& listener) {
+    const auto begin = std::chrono::steady_clock::now();
+    // Asked before writing, which may take the input's place.
+    const std::uint64_t bytes =
+        bytesOf(checkConversionFiles(files.input, files.output, files.stats));
+    ConversionStats stats = convert(files, listener);
+    stats.inputBytes = bytes;
+    stats.seconds = secondsSince(begin);
+    return stats;
+}
+
+int workersFor(const std::vector<FrameFiles>& frames) {
+    std::uint64_t largest = 1;
+    for (const FrameFiles& frame : frames) largest = std::max(largest, bytesOf({frame.input}));
+    const double fitting =
+        kWorkShare * double(availableMemory()) / (kBytesPerByte * double(largest));
+    return std::max(1, int(std::min(double(threadCount()), fitting)));
+}
+
+ConversionStats convertFrames(const ConversionFiles& files, const FrameChoice& choice,
+                              const Convert& convert, const Listener& listener) {
+    interruptBetweenFiles();
+    const std::vector<FrameFiles> frames = framesToMake(
+        withInputs(filesOfFrames(choice, files.input, false, "OUTPUT", files.output),
+                   choice.missing, listener),
+        choice);
+    std::vector<ConversionStats> each(frames.size());
+    runFrames(
+        frames, choice.keepGoing, workersFor(frames),
+        [&](std::size_t i, const Listener& part) {
+            ConversionFiles one{frames[i].input, frames[i].output, {}};
+            if (!files.stats.empty())
+                one.stats = frameNameOf("--stats", files.stats).at(frames[i].frame);
+            each[i] = convertOne(one, convert, part);
+            writeStats(one.stats, statsJson(each[i]));
+        },
+        listener);
+    ConversionStats all;
+    for (const ConversionStats& stats : each) all.add(stats);
+    return all;
+}
+
+}  // namespace
+
+void addConversionOptions(CLI::App& app, const std::string& what, ConversionFiles& files,
+                          FrameChoice& frames) {
+    OptionGroup(app, "Output")
+        .addValue("--stats", "FILE", files.stats, anyText(), "JSON file to write: " + what);
+    addFrameOptions(app, frames);
+}
+
+ConversionStats runConversion(const CLI::App& app, const ConversionFiles& files,
+                              const FrameChoice& frames, const Session& session,
+                              const Convert& convert) {
+    requireFramesOf(app, frames, files.input);
+    if (frames.asked() && !files.stats.empty()) frameNameOf("--stats", files.stats);
+    ConversionStats stats;
+    {
+        ProgressDisplay display(session.common);
+        const Listener listener = display.stage(0, 1);
+        stats = frames.asked() ? convertFrames(files, frames, convert, listener)
+                               : convertOne(files, convert, listener);
+        stats.seconds = secondsSince(session.begin);
+    }
+    if (!frames.asked()) writeStats(files.stats, statsJson(stats));
+    if (session.common.verbose) std::fputs(statsSummary(stats).c_str(), stderr);
+    return stats;
+}
+
+}  // namespace deltasplat
