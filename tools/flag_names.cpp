@@ -68,6 +68,7 @@ constexpr FlagName kFlagNames[] = {
     {"noise", "--noise"},
     {"origin", "--origin"},
     {"parts", "--emission-grid"},
+    {"picture", "--aov transmittance"},
     {"projection", "--projection"},
     {"range", "--range"},
     {"resolution", "--resolution"},

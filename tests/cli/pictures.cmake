@@ -22,6 +22,8 @@ foreach(signal INT TERM HUP)
 endforeach()
 deltasplat_script_test(sequence sequence.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/sequence)
+deltasplat_script_test(converted_sequence converted_sequence.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/converted_sequence)
 deltasplat_script_test(interrupt.full_pipe interrupt_full_pipe.sh
     ARGS ${tool} ${scratch}/interrupt_full_pipe)
 deltasplat_script_test(interrupt.write interrupt_write.sh ARGS ${tool} ${scratch}/interrupt_write)

@@ -48,10 +48,10 @@ int workersFor(const std::vector<FrameFiles>& frames) {
 ConversionStats convertFrames(const ConversionFiles& files, const FrameChoice& choice,
                               const Convert& convert, const Listener& listener) {
     interruptBetweenFiles();
-    const std::vector<FrameFiles> frames = framesToMake(
-        withInputs(filesOfFrames(choice, files.input, false, "OUTPUT", files.output),
-                   choice.missing, listener),
-        choice);
+    const std::vector<FrameFiles> frames =
+        framesToMake(withInputs(filesOfFrames(choice, files.input, false, "OUTPUT", files.output),
+                                choice.missing, listener),
+                     choice);
     std::vector<ConversionStats> each(frames.size());
     runFrames(
         frames, choice.keepGoing, workersFor(frames),

@@ -58,7 +58,8 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
                   "Volume to read, in any format that render reads; of a .vdb\n"
                   "every scalar grid")
         .required();
-    arguments.addValue("OUTPUT", "FILE.vdb", command.files.output, anyText(), "Delta grids to write")
+    arguments
+        .addValue("OUTPUT", "FILE.vdb", command.files.output, anyText(), "Delta grids to write")
         .required();
 
     OptionGroup deltas(app, "Delta grids");

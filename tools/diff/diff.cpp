@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -12,6 +13,8 @@
 #include "listener.h"
 #include "options/input_options.h"
 #include "options/volume_choices.h"
+#include "sequence/frame_name.h"
+#include "sequence/frames_to_make.h"
 #include "subcommands.h"
 
 namespace deltasplat {
@@ -140,29 +143,95 @@ void addComparison(const DiffOptions& options, const GridPair& pair, bool amongO
     }
 }
 
-Verdict runDiff(const CLI::App& app, const DiffOptions& options, const Session& session) {
+// Compares two files. The display's part is what `stage` gives.
+FileDiff compareFiles(const CLI::App& app, const DiffOptions& options,
+                      const std::function<Listener(double begin, double end)>& stage) {
+    FileDiff diff;
+    warnOfUnusedInputOptions(app, {options.a, options.b}, stage(0, 0));
+    const std::vector<GridPair> pairs = pairGrids(options, diff);
+    const double count = double(pairs.size());
+    double done = 0;
+    for (const GridPair& pair : pairs) {
+        const auto part = [&](double begin, double end) {
+            return stage((done + begin) / count, (done + end) / count);
+        };
+        addComparison(options, pair, pairs.size() > 1, part, diff);
+        ++done;
+    }
+    diff.incompleteCounts = !options.limits.ignoreMissing;
+    return diff;
+}
+
+Verdict compareOnce(const CLI::App& app, const DiffOptions& options, const Session& session) {
     FileDiff diff;
     {
         ProgressDisplay display(session.common);
-        warnOfUnusedInputOptions(app, {options.a, options.b}, display.stage(0, 0));
-        const std::vector<GridPair> pairs = pairGrids(options, diff);
-        const double count = double(pairs.size());
-        double done = 0;
-        for (const GridPair& pair : pairs) {
-            const auto stage = [&](double begin, double end) {
-                return display.stage((done + begin) / count, (done + end) / count);
-            };
-            addComparison(options, pair, pairs.size() > 1, stage, diff);
-            ++done;
-        }
+        diff = compareFiles(app, options,
+                            [&](double begin, double end) { return display.stage(begin, end); });
     }
-    diff.incompleteCounts = !options.limits.ignoreMissing;
     if (options.json) {
         printOut(jsonText(diff));
     } else if (!session.common.quiet) {
         printOut(plainText(diff, options));
     }
     return diff.verdict();
+}
+
+// The files of all frames: one of the two may be the same for all.
+std::vector<FrameDiff> framesOf(const DiffOptions& options, const Listener& listener) {
+    const auto filesOf = [&](const std::string& option, const std::filesystem::path& file) {
+        return withInputs(inputsOfFrames(options.frames, option, file), options.frames.missing,
+                          listener);
+    };
+    const bool isOfA = FrameName::findInput(options.a).has_value();
+    const bool isOfB = isOfA && FrameName::findInput(options.b).has_value();
+    std::map<int, std::filesystem::path> ofB;
+    if (isOfB || !isOfA)
+        for (const FrameFiles& one : filesOf("B", options.b)) ofB[one.frame] = one.input;
+    std::vector<FrameDiff> frames;
+    if (!isOfA) {
+        for (const int frame : options.frames.frames)
+            if (ofB.contains(frame)) frames.push_back({frame, options.a, ofB[frame], {}});
+        return frames;
+    }
+    for (const FrameFiles& one : filesOf("A", options.a)) {
+        if (isOfB && !ofB.contains(one.frame)) continue;
+        frames.push_back({one.frame, one.input, isOfB ? ofB[one.frame] : options.b, {}});
+    }
+    return frames;
+}
+
+Verdict compareFrames(const CLI::App& app, const DiffOptions& options, const Session& session) {
+    ProgressDisplay display(session.common);
+    std::vector<FrameDiff> frames = framesOf(options, display.stage(0, 0));
+    Verdict worst = Verdict::kPass;
+    double done = 0;
+    for (FrameDiff& frame : frames) {
+        DiffOptions one = options;
+        one.a = frame.a;
+        one.b = frame.b;
+        const auto stage = [&](double begin, double end) {
+            const double count = double(frames.size());
+            return display.stage((done + begin) / count, (done + end) / count);
+        };
+        frame.diff = compareFiles(app, one, stage);
+        worst = std::max(worst, frame.diff.verdict());
+        if (!options.json && !session.common.quiet) printOut(plainText(frame.diff, one));
+        ++done;
+    }
+    if (options.json) {
+        printOut(jsonText(frames));
+    } else if (!session.common.quiet) {
+        printOut(plainText(frames));
+    }
+    return worst;
+}
+
+Verdict runDiff(const CLI::App& app, const DiffOptions& options, const Session& session) {
+    if (options.frames.asked()) return compareFrames(app, options, session);
+    for (const std::filesystem::path& file : {options.a, options.b})
+        requireFramesOf(app, options.frames, file);
+    return compareOnce(app, options, session);
 }
 
 }  // namespace

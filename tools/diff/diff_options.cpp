@@ -49,6 +49,7 @@ void addDiffOptions(CLI::App& app, DiffOptions& options) {
                   "only one file has, vectors, points, and those with NaN (default:\n"
                   "they make files different, unless --grid asks for another one)");
     OptionGroup(app, "Output").addFlag("--json", options.json, "Print one JSON object");
+    addFrameList(app, options.frames);
     addInputOptions(app, options.read);
 }
 

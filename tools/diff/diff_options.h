@@ -7,6 +7,7 @@
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "options/command_line.h"
+#include "sequence/frame_options.h"
 
 namespace deltasplat {
 
@@ -26,6 +27,7 @@ struct DiffOptions {
     CompareOptions compare;
     DiffLimits limits;
     ReadOptions read;
+    FrameChoice frames;
     bool json = false;
 };
 

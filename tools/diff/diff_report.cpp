@@ -7,7 +7,9 @@
 
 #include "dims_text.h"
 #include "number_text.h"
+#include "options/parse.h"
 #include "text/json_text.h"
+#include "text/text_line.h"
 
 namespace deltasplat {
 namespace {
@@ -45,11 +47,10 @@ Json toJson(const VolumeComparison& c, Verdict verdict) {
             {"result", nameOf(verdict)}};
 }
 
-// Errors as in the worst grid, counts of all, and what is equal only if it is so everywhere.
-VolumeComparison worstOf(const std::vector<GridDiff>& grids) {
+// Errors as in the worst of them, counts of all, and what is equal only if it is so everywhere.
+VolumeComparison worstOf(const std::vector<VolumeComparison>& comparisons) {
     VolumeComparison worst;
-    for (const GridDiff& grid : grids) {
-        const VolumeComparison& c = grid.comparison;
+    for (const VolumeComparison& c : comparisons) {
         if (c.maxError > worst.maxError) {
             worst.maxError = c.maxError;
             worst.maxAt = c.maxAt;
@@ -68,10 +69,6 @@ VolumeComparison worstOf(const std::vector<GridDiff>& grids) {
         worst.classEqual = worst.classEqual && c.classEqual;
     }
     return worst;
-}
-
-std::string line(const std::string& label, const std::string& value) {
-    return "  " + label + std::string(14 - label.size(), ' ') + value + "\n";
 }
 
 std::string agreement(const std::string& a, const std::string& b) {
@@ -130,16 +127,17 @@ std::string maxText(const GridDiff& grid) {
 
 std::string plainText(const GridDiff& grid, const CompareOptions& thresholds) {
     const VolumeComparison& c = grid.comparison;
-    std::string text = line("grid", agreement(grid.a.name, grid.b.name));
-    text += line("transform", placeText(c));
-    text += line("type", agreement(grid.a.type, grid.b.type));
-    text += line("class", agreement(grid.a.gridClass, grid.b.gridClass));
-    text += line("background", backgroundText(grid));
-    text += line("active", activeText(grid));
+    std::string text = textLine("grid", agreement(grid.a.name, grid.b.name));
+    text += textLine("transform", placeText(c));
+    text += textLine("type", agreement(grid.a.type, grid.b.type));
+    text += textLine("class", agreement(grid.a.gridClass, grid.b.gridClass));
+    text += textLine("background", backgroundText(grid));
+    text += textLine("active", activeText(grid));
     if (!c.sizeEqual) {
         const std::string dims =
             agreement(dimsText(grid.a.box.dims(), " x "), dimsText(grid.b.box.dims(), " x "));
-        text += line("dims", dims + (c.offset == glm::ivec3(0) ? "" : ", from other voxels on"));
+        text +=
+            textLine("dims", dims + (c.offset == glm::ivec3(0) ? "" : ", from other voxels on"));
     }
     text += "  Mean error = " + numberText(c.meanError) + "\n";
     text += "  RMS error = " + numberText(c.rmsError) + "\n";
@@ -171,8 +169,16 @@ Verdict FileDiff::verdict() const {
     return worst;
 }
 
-std::string jsonText(const FileDiff& diff) {
-    Json json = toJson(worstOf(diff.grids), diff.verdict());
+namespace {
+
+VolumeComparison worstOf(const FileDiff& diff) {
+    std::vector<VolumeComparison> comparisons;
+    for (const GridDiff& grid : diff.grids) comparisons.push_back(grid.comparison);
+    return worstOf(comparisons);
+}
+
+Json toJson(const FileDiff& diff) {
+    Json json = toJson(worstOf(diff), diff.verdict());
     json["equal"] = json["equal"] && !diff.isIncomplete();
     json["only_in_a"] = diff.onlyInA;
     json["only_in_b"] = diff.onlyInB;
@@ -186,6 +192,31 @@ std::string jsonText(const FileDiff& diff) {
         one.update(toJson(grid.comparison, grid.verdict));
         json["grids"].push_back(one);
     }
+    return json;
+}
+
+}  // namespace
+
+std::string jsonText(const FileDiff& diff) {
+    return dumpJson(toJson(diff));
+}
+
+std::string jsonText(const std::vector<FrameDiff>& frames) {
+    std::vector<VolumeComparison> comparisons;
+    Verdict verdict = Verdict::kPass;
+    bool isComplete = true;
+    Json each = Json::array();
+    for (const FrameDiff& frame : frames) {
+        comparisons.push_back(worstOf(frame.diff));
+        verdict = std::max(verdict, frame.diff.verdict());
+        isComplete = isComplete && !frame.diff.isIncomplete();
+        Json one{{"frame", frame.frame}, {"a", frame.a.string()}, {"b", frame.b.string()}};
+        one.update(toJson(frame.diff));
+        each.push_back(one);
+    }
+    Json json = toJson(worstOf(comparisons), verdict);
+    json["equal"] = json["equal"] && isComplete;
+    json["frames"] = each;
     return dumpJson(json);
 }
 
@@ -193,10 +224,23 @@ std::string plainText(const FileDiff& diff, const DiffOptions& options) {
     std::string text =
         "Comparing \"" + options.a.string() + "\" and \"" + options.b.string() + "\"\n";
     for (const GridDiff& grid : diff.grids) text += plainText(grid, options.compare);
-    for (const std::string& name : diff.onlyInA) text += line("only in A", name);
-    for (const std::string& name : diff.onlyInB) text += line("only in B", name);
-    for (const std::string& name : diff.notCompared) text += line("not compared", name);
+    for (const std::string& name : diff.onlyInA) text += textLine("only in A", name);
+    for (const std::string& name : diff.onlyInB) text += textLine("only in B", name);
+    for (const std::string& name : diff.notCompared) text += textLine("not compared", name);
     return text + nameOf(diff.verdict()) + "\n";
+}
+
+std::string plainText(const std::vector<FrameDiff>& frames) {
+    std::string text;
+    for (const Verdict verdict : {Verdict::kPass, Verdict::kWarning, Verdict::kFailure}) {
+        std::vector<std::string> those;
+        for (const FrameDiff& frame : frames)
+            if (frame.diff.verdict() == verdict) those.push_back(std::to_string(frame.frame));
+        if (those.empty()) continue;
+        text += (text.empty() ? "" : ", ") + std::to_string(those.size()) + " " + nameOf(verdict);
+        if (verdict != Verdict::kPass) text += " (" + joinNames(those) + ")";
+    }
+    return "Frames: " + text + "\n";
 }
 
 }  // namespace deltasplat

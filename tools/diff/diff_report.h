@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -41,10 +42,24 @@ struct FileDiff {
 Verdict judge(const VolumeComparison& comparison, const CompareOptions& thresholds,
               const DiffLimits& limits);
 
+/// The files of a frame and how they differ.
+struct FrameDiff {
+    int frame;
+    std::filesystem::path a, b;
+    FileDiff diff;
+};
+
 /// Returns one JSON object with a line end: the worst of all grids, then `"grids"`, one by one.
 std::string jsonText(const FileDiff& diff);
 
+/// Returns one JSON object with a line end: the worst of all grids of all frames, then `"frames"`,
+/// what there would be of each by itself, with its number and its files.
+std::string jsonText(const std::vector<FrameDiff>& frames);
+
 /// Returns one block of lines for each pair of grids, and last PASS, WARNING or FAILURE.
 std::string plainText(const FileDiff& diff, const DiffOptions& options);
+
+/// Returns a line that says how many frames pass, and which do not.
+std::string plainText(const std::vector<FrameDiff>& frames);
 
 }  // namespace deltasplat

@@ -10,6 +10,7 @@
 #include "info/describe_volume.h"
 #include "info/info_list.h"
 #include "info/info_report.h"
+#include "info/sequence_report.h"
 #include "info/slice_plot.h"
 #include "ingest/files/input_kind.h"
 #include "listener.h"
@@ -18,6 +19,8 @@
 #include "options/volume_choices.h"
 #include "output_files.h"
 #include "process/interrupt.h"
+#include "sequence/frame_options.h"
+#include "sequence/frames_to_make.h"
 #include "subcommands.h"
 #include "warn_once.h"
 
@@ -28,7 +31,8 @@ namespace {
 constexpr std::size_t kMaxPlots = 16;
 
 struct InfoOptions {
-    std::vector<std::string> inputs;
+    std::vector<std::string> inputs;  // of frames their files
+    FrameChoice frames;
     bool json = false;
     bool list = false;
     std::filesystem::path plot;              // empty: none
@@ -47,7 +51,8 @@ void listInputs(const CLI::App& app, const InfoOptions& options, const Session& 
     std::vector<FileListing> files;
     std::vector<Error> failures;
     ProgressDisplay display(session.common);
-    warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()}, display.stage(0, 0));
+    warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()},
+                             display.stage(0, 0));
     for (const char* const option : {"--plot", "--tf"}) {
         if (isGiven(app, option)) display.warn(std::string(option) + ": has no effect with --list");
     }
@@ -159,7 +164,24 @@ void writePlot(const std::filesystem::path& file, const Findings& found) {
     if (!plots.empty()) writeDrawing(file, drawSlicePlots(plots));
 }
 
-void runInfo(const CLI::App& app, const InfoOptions& options, const Session& session) {
+// The same with the files of frames in place of names that stand for them.
+InfoOptions withFrames(const CLI::App& app, InfoOptions options, const Session& session) {
+    std::vector<std::string> inputs;
+    for (const std::string& input : options.inputs) {
+        requireFramesOf(app, options.frames, input);
+        if (!options.frames.asked()) continue;
+        const std::vector<FrameFiles> frames = inputsOfFrames(options.frames, "INPUT", input);
+        ProgressDisplay display(session.common);
+        for (const FrameFiles& frame :
+             withInputs(frames, options.frames.missing, display.stage(0, 0)))
+            inputs.push_back(frame.input.string());
+    }
+    if (options.frames.asked()) options.inputs = std::move(inputs);
+    return options;
+}
+
+void runInfo(const CLI::App& app, const InfoOptions& asked, const Session& session) {
+    const InfoOptions options = withFrames(app, asked, session);
     if (options.list) return listInputs(app, options, session);
     if (!options.plot.empty()) {
         checkDrawingFile(options.plot);
@@ -171,7 +193,8 @@ void runInfo(const CLI::App& app, const InfoOptions& options, const Session& ses
     Findings found;
     {
         ProgressDisplay display(session.common);
-        warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()}, display.stage(0, 0));
+        warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()},
+                                 display.stage(0, 0));
         const DescribeOptions describe = describeOptions(options, display.stage(0, 0));
         const double count = double(options.inputs.size());
         double done = 0;
@@ -182,8 +205,11 @@ void runInfo(const CLI::App& app, const InfoOptions& options, const Session& ses
         }
     }
     if (!found.reports.empty()) {
-        printOut(options.json ? jsonText(found.reports, options.transferFunction.string())
-                              : plainText(found.reports));
+        const bool isSequence = options.frames.asked();
+        printOut(options.json
+                     ? jsonText(found.reports, options.transferFunction.string(), isSequence)
+                     : plainText(found.reports) +
+                           (isSequence ? "\n" + sequenceText(found.reports) : ""));
     }
     if (!options.plot.empty()) writePlot(options.plot, found);
     throwFailures(found.failures);
@@ -219,6 +245,7 @@ Subcommand addInfo(CLI::App& program) {
         .addValue("--tf", "FILE|PRESET", options->transferFunction, anyText(),
                   "Transfer function, as for render, that stamps and picture are\n"
                   "for (default: all voxels but the background are visible)");
+    addFrameList(app, options->frames);
     addInputOptions(app, options->read);
     return {&app, [&app, options](const Session& session) { runInfo(app, *options, session); }};
 }

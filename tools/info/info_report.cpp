@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "deltasplat/ingest/value_statistics.h"
+#include "info/sequence_report.h"
 #include "text/json_text.h"
 #include "volume_place.h"
 
@@ -98,7 +99,8 @@ double comparability(const GridReport& report, int axis) {
     return voxels > 0 ? 1 - double(report.counts[axis].deltas) / voxels : 1;
 }
 
-std::string jsonText(const std::vector<FileReport>& reports, const std::string& transferFunction) {
+std::string jsonText(const std::vector<FileReport>& reports, const std::string& transferFunction,
+                     bool isSequence) {
     const Json usedFunction = transferFunction.empty() ? Json() : Json(transferFunction);
     Json files = Json::array();
     for (const FileReport& report : reports) {
@@ -115,7 +117,9 @@ std::string jsonText(const std::vector<FileReport>& reports, const std::string& 
                          {"color_grid", nameOf(report.medium.color)},
                          {"grids", grids}});
     }
-    return dumpJson({{"files", files}});
+    Json json{{"files", files}};
+    if (isSequence) json["sequence"] = sequenceJson(reports);
+    return dumpJson(json);
 }
 
 }  // namespace deltasplat

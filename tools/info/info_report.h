@@ -40,7 +40,9 @@ double comparability(const GridReport& report, int axis);
 /// Returns one JSON object, `{"files":[{"file":...,"emission_grid":...,"color_grid":...,
 /// "grids":[...]}]}`, with a line end.
 /// @param transferFunction  its file, or empty
-std::string jsonText(const std::vector<FileReport>& reports, const std::string& transferFunction);
+/// @param isSequence        whether `"sequence"` (sequenceJson) follows
+std::string jsonText(const std::vector<FileReport>& reports, const std::string& transferFunction,
+                     bool isSequence);
 
 /// Returns one block of aligned lines for each grid, and names the grids that are not scalar.
 std::string plainText(const std::vector<FileReport>& reports);

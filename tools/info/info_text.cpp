@@ -9,6 +9,7 @@
 #include "options/parse.h"
 #include "options/volume_choices.h"
 #include "text/short_number.h"
+#include "text/text_line.h"
 #include "volume_place.h"
 
 namespace deltasplat {
@@ -23,11 +24,6 @@ std::string toText(const Vector& v, const std::string& separator) {
 std::string sizeText(const glm::dvec3& size) {
     return shortNumberText(size.x) + " x " + shortNumberText(size.y) + " x " +
            shortNumberText(size.z);
-}
-
-std::string line(const std::string& label, const std::string& value) {
-    return "  " + label + std::string(label.size() < 14 ? 14 - label.size() : 1, ' ') + value +
-           "\n";
 }
 
 std::string padded(const std::string& text, std::size_t width) {
@@ -82,14 +78,14 @@ std::string codeBookText(const Volume& volume) {
 }
 
 std::string valuesText(const Volume& volume) {
-    if (volume.empty()) return line("range", "none");
+    if (volume.empty()) return textLine("range", "none");
     std::string shares;
     for (const int share : {1, 50, 99}) {
         shares += (shares.empty() ? "" : ", ") + std::to_string(share) +
                   " %: " + numberText(percentileValue(volume, share));
     }
-    return line("range", numberText(volume.valueMin) + " to " + numberText(volume.valueMax)) +
-           line("percentiles", shares);
+    return textLine("range", numberText(volume.valueMin) + " to " + numberText(volume.valueMax)) +
+           textLine("percentiles", shares);
 }
 
 // A bar that has its full length at 100 % and loses the same for every tenth of it.
@@ -114,8 +110,8 @@ std::string histogramText(const Volume& volume) {
         // Bins of whole numbers may go on behind the largest value, and one value has one bin.
         if (width == 0 || histogram.low + width * double(i + 1) > volume.valueMax) break;
     }
-    std::string text =
-        line("histogram", "values from; share of the active voxels; 12 # more: ten times as many");
+    std::string text = textLine(
+        "histogram", "values from; share of the active voxels; 12 # more: ten times as many");
     for (std::size_t i = 0; i < from.size(); ++i) {
         const double share = double(histogram.counts[i]) / double(volume.activeCount);
         char number[32];
@@ -128,11 +124,11 @@ std::string histogramText(const Volume& volume) {
 
 std::string stampsText(const GridReport& report) {
     std::string text =
-        line("stamps", "predicted for a view along an axis; visible: " + report.visible);
+        textLine("stamps", "predicted for a view along an axis; visible: " + report.visible);
     const auto row = [](const std::string& name, const std::vector<std::string>& cells) {
         std::string words;
         for (const std::string& cell : cells) words += padded(cell, 13);
-        return line("  " + name, words);
+        return textLine("  " + name, words);
     };
     text += row("", {"traditional", "sparse", "delta", "auto"});
     for (int axis = 0; axis < 3; ++axis) {
@@ -153,43 +149,45 @@ std::string placeText(const Volume& volume) {
         directions += (axis > 0 ? ", " : "") + std::string(1, "ijk"[axis]) + " " +
                       directionText(place, volume.space, axis);
     }
-    std::string text = line("world box", "(" + toText(place.box.min, ", ") + ") to (" +
-                                             toText(place.box.max, ", ") + ")");
-    text += line("origin", "(" + toText(place.origin, ", ") + ")");
-    if (!volume.space.empty()) text += line("space", spaceText(volume.space));
-    text += line("directions", directions);
-    return text + line("front view", "target (" + toText(camera.targetWorld, ", ") +
-                                         "), frame width " + numberText(camera.frameWidthWorld));
+    std::string text = textLine("world box", "(" + toText(place.box.min, ", ") + ") to (" +
+                                                 toText(place.box.max, ", ") + ")");
+    text += textLine("origin", "(" + toText(place.origin, ", ") + ")");
+    if (!volume.space.empty()) text += textLine("space", spaceText(volume.space));
+    text += textLine("directions", directions);
+    return text +
+           textLine("front view", "target (" + toText(camera.targetWorld, ", ") +
+                                      "), frame width " + numberText(camera.frameWidthWorld));
 }
 
 // Which one of several it is.
 std::string choiceText(const GridReport& report) {
     const VolumeEntry& entry = report.entry;
     std::string text;
-    if (entry.series) text += line("series", seriesText(entry));
+    if (entry.series) text += textLine("series", seriesText(entry));
     if (entry.volumes > 1) {
-        text += line("volume", std::to_string(report.volumeIndex) + " of " +
-                                   std::to_string(entry.volumes) + ", --volume 0 to " +
-                                   std::to_string(entry.volumes - 1));
+        text += textLine("volume", std::to_string(report.volumeIndex) + " of " +
+                                       std::to_string(entry.volumes) + ", --volume 0 to " +
+                                       std::to_string(entry.volumes - 1));
     }
     return text;
 }
 
 std::string gridText(const GridReport& report) {
     const Volume& v = report.volume;
-    std::string text = line("grid", v.name) + line("type", v.type) + line("class", v.gridClass);
+    std::string text =
+        textLine("grid", v.name) + textLine("type", v.type) + textLine("class", v.gridClass);
     text += choiceText(report);
-    text += line("dims", toText(v.box.dims(), " x "));
-    text += line("box", v.empty() ? "empty"
-                                  : "(" + toText(v.box.min, ", ") + ") to (" +
-                                        toText(v.box.max, ", ") + ")");
-    text += line("voxel size", sizeText(v.voxelSize())) + placeText(v);
-    text += line("active", std::to_string(v.activeCount) + " (" +
-                               percent(double(v.activeCount), double(v.box.voxels())) + ")");
+    text += textLine("dims", toText(v.box.dims(), " x "));
+    text += textLine("box", v.empty() ? "empty"
+                                      : "(" + toText(v.box.min, ", ") + ") to (" +
+                                            toText(v.box.max, ", ") + ")");
+    text += textLine("voxel size", sizeText(v.voxelSize())) + placeText(v);
+    text += textLine("active", std::to_string(v.activeCount) + " (" +
+                                   percent(double(v.activeCount), double(v.box.voxels())) + ")");
     text += valuesText(v);
-    text += line("background", backgroundText(report)) + line("code book", codeBookText(v));
-    if (v.origin) text += line("delta grid", deltaText(*v.origin));
-    for (int axis = 0; axis < 3; ++axis) text += line(alongText(axis), axisText(report, axis));
+    text += textLine("background", backgroundText(report)) + textLine("code book", codeBookText(v));
+    if (v.origin) text += textLine("delta grid", deltaText(*v.origin));
+    for (int axis = 0; axis < 3; ++axis) text += textLine(alongText(axis), axisText(report, axis));
     return text + stampsText(report) + histogramText(v);
 }
 
@@ -201,11 +199,11 @@ std::string plainText(const std::vector<FileReport>& reports) {
         text += (text.empty() ? "" : "\n") + report.file + "\n";
         for (std::size_t i = 0; i < report.grids.size(); ++i)
             text += (i > 0 ? "\n" : "") + gridText(report.grids[i]);
-        for (const std::string& grid : report.others) text += line("not read", grid);
+        for (const std::string& grid : report.others) text += textLine("not read", grid);
         if (!report.medium.emission.empty())
-            text += line("fire", report.medium.emission + " (--emission-grid auto)");
+            text += textLine("fire", report.medium.emission + " (--emission-grid auto)");
         if (!report.medium.color.empty())
-            text += line("colours", report.medium.color + " (--color-grid auto)");
+            text += textLine("colours", report.medium.color + " (--color-grid auto)");
     }
     return text;
 }

@@ -57,10 +57,9 @@ void requireVdb(const std::filesystem::path& input) {
 
 void requireDeltas(const std::filesystem::path& input, const Volume& volume) {
     if (volume.origin) return;
-    throw Error(
-        ErrorCode::kInput,
-        gotExpected(input.string() + ": grid \"" + volume.name + "\"",
-                    "a grid of type " + volume.type, "a delta grid (convert takes other grids)"));
+    throw Error(ErrorCode::kInput, gotExpected(input.string() + ": grid \"" + volume.name + "\"",
+                                               "a grid of type " + volume.type,
+                                               "a delta grid (convert takes other grids)"));
 }
 
 // The delta grids that the output can hold, by name. Without any, reading says what is wrong.
@@ -73,7 +72,8 @@ std::vector<std::string> chooseGrids(const RestoreCommand& command,
     if (grids.deltas.empty()) return {grids.scalar.empty() ? "" : grids.scalar.front()};
     const std::string where = input.string() + ": ";
     if (!grids.ordinary.empty()) {
-        listener.warn(where + "left out " + joinNames(grids.ordinary) + ", which are no delta grids");
+        listener.warn(where + "left out " + joinNames(grids.ordinary) +
+                      ", which are no delta grids");
     }
     if (!command.toVdb() && grids.deltas.size() > 1) {
         listener.warn(where + "reading grid \"" + grids.deltas.front() + "\", the first of " +
@@ -92,8 +92,8 @@ std::vector<Volume> readInput(const RestoreCommand& command, const std::filesyst
         const double done = double(volumes.size()) / double(names.size());
         ReadOptions options = command.read;
         options.gridName = name;
-        Volume volume = readVolume(input, options,
-                                   partOf(listener, done, done + 1 / double(names.size())));
+        Volume volume =
+            readVolume(input, options, partOf(listener, done, done + 1 / double(names.size())));
         requireDeltas(input, volume);
         stats.add(volume);
         stats.deltas += volume.origin->deltas;
@@ -112,8 +112,8 @@ ConversionStats restoreFile(const RestoreCommand& command, const ConversionFiles
         readInput(command, files.input, partOf(listener, 0, kReadShare), stats);
     WriteOptions writing;
     writing.keepPrecision = true;
-    const WriteReport report = writeVolumes(files.output, std::move(volumes), writing,
-                                            partOf(listener, kReadShare, 1));
+    const WriteReport report =
+        writeVolumes(files.output, std::move(volumes), writing, partOf(listener, kReadShare, 1));
     for (const std::string& note : report.notes) listener.warn(note);
     stats.outputBytes = bytesOf(report.files);
     stats.lossless = stats.lossless && report.lossless && stats.maxError == 0;

@@ -12,9 +12,9 @@
 namespace deltasplat {
 namespace {
 
-Parser<MissingFrames> missingFrames() {
-    return [](const std::string& option, const std::string& text) {
-        const std::string word = choice({"error", "skip", "hold"})(option, text);
+Parser<MissingFrames> missingFrames(const std::vector<std::string>& words) {
+    return [words](const std::string& option, const std::string& text) {
+        const std::string word = choice(words)(option, text);
         return word == "skip"   ? MissingFrames::kSkip
                : word == "hold" ? MissingFrames::kHold
                                 : MissingFrames::kError;
@@ -45,7 +45,8 @@ void addFrameOptions(CLI::App& app, FrameChoice& choice) {
                    "Frames to work on: 1-100, 1-100x2 (every second), 100-1, -5--1,\n"
                    "1,4,10-20. INPUT and output have ####, %04d, @@@@ or $F4 where the\n"
                    "number stands (in the name of an image stack $F4 or @@@@)");
-    group.addValue("--missing", "error|skip|hold", choice.missing, missingFrames(),
+    group.addValue("--missing", "error|skip|hold", choice.missing,
+                   missingFrames({"error", "skip", "hold"}),
                    "Of frames without a file: they have failed, nothing is made of them,\n"
                    "or they repeat the one before; of the first ones, the next there is\n"
                    "(default error)");
@@ -57,6 +58,25 @@ void addFrameOptions(CLI::App& app, FrameChoice& choice) {
                   "made anew");
     group.addFlag("--update", choice.update,
                   "Leave out frames whose output is there and no older than the input");
+}
+
+void addFrameList(CLI::App& app, FrameChoice& choice) {
+    OptionGroup group(app, "Sequence");
+    group.addValue("--frames", "LIST", choice.frames, frameList(),
+                   "Frames to look at, as 1-100, 1-100x2, 1,4,10-20; files have ####,\n"
+                   "%04d, @@@@ or $F4 where the number stands (image stacks $F4 or @@@@)");
+    group.addValue("--missing", "error|skip", choice.missing, missingFrames({"error", "skip"}),
+                   "Of frames without a file: they have failed, or are passed over\n"
+                   "(default error)");
+}
+
+std::vector<FrameFiles> inputsOfFrames(const FrameChoice& choice, const std::string& option,
+                                       const std::filesystem::path& input) {
+    const std::optional<FrameName> name = FrameName::findInput(input);
+    if (!name) refuseName(option, input);
+    std::vector<FrameFiles> files;
+    for (const int frame : choice.frames) files.push_back({frame, name->at(frame), {}});
+    return files;
 }
 
 std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::filesystem::path& input,
@@ -84,7 +104,7 @@ void requireFramesOf(const CLI::App& app, const FrameChoice& choice,
                      const std::filesystem::path& input) {
     if (choice.asked()) return;
     for (const char* option : {"--missing", "--keep-going", "--skip-existing", "--update"}) {
-        if (isGiven(app, option)) refuseWithoutFrames(option);
+        if (app.get_option_no_throw(option) && isGiven(app, option)) refuseWithoutFrames(option);
     }
     std::error_code ignored;
     if (!FrameName::findInput(input) || std::filesystem::exists(input, ignored)) return;

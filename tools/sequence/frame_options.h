@@ -28,7 +28,11 @@ struct FrameChoice {
     bool asked() const { return !frames.empty(); }
 };
 
+/// Declares all of it.
 void addFrameOptions(CLI::App& app, FrameChoice& choice);
+
+/// Declares which frames are only looked at, and whether those without a file are passed over.
+void addFrameList(CLI::App& app, FrameChoice& choice);
 
 /// A file of each frame.
 struct FrameFiles {
@@ -51,6 +55,12 @@ FrameName frameNameOf(const std::string& option, const std::filesystem::path& fi
 
 /// @throw Error(kUsage) always: the option is given without --frames
 [[noreturn]] void refuseWithoutFrames(const std::string& option);
+
+/// Returns the file of each frame that is asked for, of the input alone.
+/// @param option  what names it, for messages
+/// @throw Error(kUsage) if it has no place for a frame's number
+std::vector<FrameFiles> inputsOfFrames(const FrameChoice& choice, const std::string& option,
+                                       const std::filesystem::path& input);
 
 /// Refuses names with a place for a frame's number if there is no such file and no frames are asked
 /// for; warns of options that frames alone have.

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "deltasplat/error.h"
+#include "deltasplat/ingest/list_grids.h"
 #include "image/whole_image.h"
 #include "ingest/files/input_files.h"
 #include "ingest/files/input_kind.h"
@@ -30,7 +31,12 @@ bool isThere(const fs::path& input) {
 bool isReadable(const fs::path& output) {
     std::error_code error;
     if (!fs::is_regular_file(output, error) || fs::file_size(output, error) == 0) return false;
-    return !isImageName(output) || isWholeImage(output);
+    if (isImageName(output)) return isWholeImage(output);
+    try {
+        return !listVolumes(output, {}).empty();
+    } catch (const Error&) {
+        return false;
+    }
 }
 
 // Whether an output is no older than any file of its input.

@@ -4,18 +4,8 @@
 # becomes of frames that are not there, cannot be read or are made already.
 # Usage: sequence.sh PROGRAM OIIOTOOL SCRATCH
 source "${BASH_SOURCE%/*}/pictures.sh"
+source "${BASH_SOURCE%/*}/runs.sh"
 begin "$@"
-expect_code() { # CODE COMMAND...
-    local code=0
-    "${@:2}" 2>stderr.txt || code=$?
-    [[ $code == "$1" ]] || { cat stderr.txt; fail "got exit code $code from ${*:2}; expected $1"; }
-}
-expect_files() { # NAMES PATTERN
-    local got
-    got=$(compgen -G "$2" | sort | tr '\n' ' ' | sed 's/ $//' || true)
-    [[ $got == "$1" ]] || fail "got files $got; expected $1"
-}
-expect_said() { grep -qxF -- "$1" stderr.txt || { cat stderr.txt; fail "expected to be told: $1"; }; }
 
 # A cube of 8x8x8 voxels of value 100, from frame to frame in a larger volume with a brighter voxel
 # farther away.
