@@ -74,7 +74,7 @@ void addConversionOptions(CLI::App& app, const std::string& what, ConversionFile
                           FrameChoice& frames) {
     OptionGroup(app, "Output")
         .addValue("--stats", "FILE", files.stats, anyText(), "JSON file to write: " + what);
-    addFrameOptions(app, frames);
+    addFrameOptions(app, frames, false);
 }
 
 ConversionStats runConversion(const CLI::App& app, const ConversionFiles& files,

@@ -44,20 +44,23 @@ namespace {
 constexpr double kReadShare = 0.3;
 constexpr double kRenderShare = 0.95;
 
+// What every picture says of how it was made.
+std::vector<std::pair<std::string, std::string>> commonMetadata(const Session& session) {
+    return {{"version", programVersion()}, {"commandLine", session.commandLine}};
+}
+
 ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume,
                               const RenderResult& result, const Session& session) {
     ImageFileOptions options = command.image;
     options.cameraFromWorld = result.camera.cameraFromWorld();
     options.ndcFromWorld = result.camera.ndcFromWorld();
-    options.metadata = {
-        {"version", programVersion()},
-        {"commandLine", session.commandLine},
-        {"input", command.input.string()},
-        {"mode", modeName(result.stats.mode)},
-        {"camera", cameraOptionsText(result.camera)},
-        {"codeBook", volume.codeBook.name()},
-        {"codeError", codeErrorText(volume.codeError)},
-    };
+    options.metadata = commonMetadata(session);
+    options.metadata.insert(options.metadata.end(),
+                            {{"input", command.input.string()},
+                             {"mode", modeName(result.stats.mode)},
+                             {"camera", cameraOptionsText(result.camera)},
+                             {"codeBook", volume.codeBook.name()},
+                             {"codeError", codeErrorText(volume.codeError)}});
     const RenderOptions& render = command.picture.render;
     if (result.stats.mode == Mode::kDrr) {
         options.metadata.emplace_back("muWater", numberText(render.drr.muWater));
@@ -280,12 +283,30 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     finishPicture(command, volume, options.optics, result, image, writing);
     writing.report(0);
     const auto beginWrite = std::chrono::steady_clock::now();
-    writePicture(command, deep, result.image, image);
+    if (part.take) part.take(result.image);
+    if (part.isWritten) writePicture(command, deep, result.image, image);
     made.times.write = secondsSince(beginWrite);
     made.times.total = secondsSince(session.begin);
     writeStats(command.stats, statsJson(result, volume, made.times, made.deep));
     writing.report(1);
     return made;
+}
+
+// Writes what stands for a frame that there is none of.
+void makeBlack(const RenderCommand& command, const Session& session, const SequencePart& part) {
+    Image image = blackPicture(command);
+    if (!command.annotations.lines.empty()) {
+        AnnotationChoice lines;
+        lines.lines = command.annotations.lines;
+        Camera camera;
+        camera.sizePixels = image.size;
+        annotate(layOut(lines, camera, "", std::nullopt, inkFor(image)), image);
+    }
+    if (part.take) part.take(image);
+    if (!part.isWritten) return;
+    ImageFileOptions options = command.image;
+    options.metadata = commonMetadata(session);
+    writeImage(command.output, image, options);
 }
 
 // Of a sequence, the largest bound is said.
@@ -295,10 +316,12 @@ void runSequence(const CLI::App& app, const RenderCommand& command, const Sessio
     {
         ProgressDisplay display(session.common);
         warnOfUnusedOptions(app, command, display);
+        SequenceSinks sinks(command, commonMetadata(session));
         renderSequence(
-            command, display.stage(0, 1),
+            command, sinks, display.stage(0, 1),
             [&](const RenderCommand& frame, const SequencePart& part, const Listener& listener) {
                 validate(frame);
+                if (frame.input.empty()) return makeBlack(frame, session, part);
                 const MadePicture made = makePicture(app, frame, session, part, listener);
                 const std::lock_guard lock(mutex);
                 if (!made.result.stats.tolerance.isExact() &&

@@ -113,11 +113,10 @@ std::string presetNames() {
 
 void addOutputOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup group(app, "Output");
-    group
-        .addValue("-o,--output", "FILE", command.output, anyText(),
-                  "Picture to write: .exr (scene-linear, premultiplied) or .png, .tif\n"
-                  "or .jpg (sRGB; a .jpg without alpha: over --background or black)")
-        .required();
+    group.addValue("-o,--output", "FILE", command.output, anyText(),
+                   "Picture to write: .exr (scene-linear, premultiplied) or .png, .tif\n"
+                   "or .jpg (sRGB; a .jpg without alpha: over --background or black);\n"
+                   "has to be given, but for a --movie");
     group.addFlag("--float", command.image.floatExr, "Store 32-bit floats in an .exr, not halves");
     group.addValue("--bits", "8|16", command.image.bits, bits(),
                    withDefault("Bits per channel of a .png or .tif; of a .jpg 8",

@@ -83,8 +83,13 @@ struct RenderCommand {
     DeepOptions deepOptions;
     AnnotationChoice annotations;
     FrameChoice frames;
-    std::filesystem::path firstPass;  ///< of a sequence; empty: none
-    std::optional<int> turntable;     ///< frames of a turn of the camera
+    std::filesystem::path firstPass;         ///< of a sequence; empty: none
+    std::optional<int> turntable;            ///< frames of a turn of the camera
+    std::optional<glm::ivec2> contactSheet;  ///< columns and rows; empty: none
+    bool slate = false;                      ///< whether frames have their numbers drawn into them
+    std::filesystem::path movie;             ///< empty: none
+    bool isMovieAlone = false;               ///< made, then, without pictures besides
+    double framesPerSecond = 24;
 };
 
 void addCameraOptions(CLI::App& app, PictureOptions& options);

@@ -52,6 +52,10 @@ RenderCommand commandOf(const RenderCommand& command, const FrameFiles& files,
     frame.output = files.output;
     if (stats) frame.stats = stats->at(files.frame);
     frame.picture.render.camera.azimuthDegrees += turnOf(files.frame, command.turntable);
+    if (command.slate) {
+        frame.annotations.lines.insert(frame.annotations.lines.begin(),
+                                       "frame " + std::to_string(files.frame));
+    }
     return frame;
 }
 
@@ -65,7 +69,7 @@ class Survey {
         std::vector<FrameFiles> files;
         std::set<std::filesystem::path> known;
         for (const FrameFiles& one : frames_)
-            if (known.insert(one.input).second) files.push_back(one);
+            if (!one.input.empty() && known.insert(one.input).second) files.push_back(one);
         runFrames(
             files, false, threadCount(),
             [&](std::size_t i, const Listener& part) { add(i, files[i], look, part); }, listener);
@@ -163,6 +167,22 @@ RenderCommand fixedTo(const SequenceLook& look, RenderCommand command) {
     return command;
 }
 
+// The files of all frames; if pictures go elsewhere, all have the same output.
+std::vector<FrameFiles> filesFor(const RenderCommand& command, bool areWritten) {
+    const bool mayStand = command.turntable.has_value();
+    if (areWritten)
+        return filesOfFrames(command.frames, command.input, mayStand, "--output", command.output);
+    std::vector<FrameFiles> files;
+    if (mayStand && !FrameName::findInput(command.input)) {
+        for (const int frame : command.frames.frames)
+            files.push_back({frame, command.input, command.output});
+        return files;
+    }
+    files = inputsOfFrames(command.frames, "INPUT", command.input);
+    for (FrameFiles& one : files) one.output = command.output;
+    return files;
+}
+
 // How many pictures may be made at once.
 int workersFor(const RenderCommand& command, const SequenceLook& look) {
     const glm::dvec2 pixels(command.picture.render.camera.sizePixels);
@@ -183,12 +203,13 @@ void warnOfWindows(const RenderCommand& command, const Listener& listener) {
 }  // namespace
 
 void addSequenceOptions(CLI::App& app, RenderCommand& command) {
-    addFrameOptions(app, command.frames);
+    addFrameOptions(app, command.frames, true);
     OptionGroup group(app, "Sequence");
     group.addValue("--first-pass", "FILE", command.firstPass, anyText(),
                    "JSON file of what all frames are shown by alike: the values and the\n"
                    "place of all of them. Made from --frames if it is not there; tasks\n"
                    "of a farm that have some of the frames each share one");
+    addSinkOptions(app, command);
     group.addValue("--turntable", "N", command.turntable, wholeNumber(1, 1'000'000),
                    "Turns the camera once around in N frames, 1 to N if --frames names\n"
                    "no others; INPUT may be one volume");
@@ -200,6 +221,7 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
         std::iota(command.frames.frames.begin(), command.frames.frames.end(), 1);
     }
     requireFramesOf(app, command.frames, command.input);
+    applySinks(app, command);
     if (!command.frames.asked()) {
         if (command.firstPass.empty()) return;
         refuseWithoutFrames("--first-pass");
@@ -207,12 +229,11 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
     if (!command.stats.empty()) frameNameOf("--stats", command.stats);
 }
 
-void renderSequence(const RenderCommand& command, const Listener& listener,
+void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Listener& listener,
                     const MakePicture& makePicture) {
     interruptBetweenFiles();
     warnOfWindows(command, listener);
-    const std::vector<FrameFiles> all = filesOfFrames(
-        command.frames, command.input, command.turntable.has_value(), "--output", command.output);
+    const std::vector<FrameFiles> all = filesFor(command, sinks.areWritten());
     SequenceLook look(kKeptShare * double(availableMemory()));
     const std::vector<FrameFiles> present = withInputs(all, command.frames.missing, listener);
     const bool isKnown = !command.firstPass.empty() && readFirstPass(command.firstPass, look);
@@ -226,14 +247,31 @@ void renderSequence(const RenderCommand& command, const Listener& listener,
     const std::optional<FrameName> stats = FrameName::find(command.stats);
     std::optional<PreparedScene> prepared;
     if (!frames.empty() && seesOneThing(command)) prepared = prepareOnce(fixed, look, making);
-    runFrames(
-        frames, command.frames.keepGoing, workersFor(command, look),
-        [&](std::size_t i, const Listener& part) {
-            const FrameLook frame{look, i};
-            makePicture(commandOf(fixed, frames[i], stats),
-                        {&frame, prepared ? &*prepared : nullptr}, part);
-        },
-        making);
+    const auto makeAll = [&] {
+        runFrames(
+            frames, command.frames.keepGoing, workersFor(command, look),
+            [&](std::size_t i, const Listener& part) {
+                const FrameLook frame{look, i};
+                const SequencePart sequence{&frame, prepared ? &*prepared : nullptr,
+                                            [&](const Image& image) { sinks.put(i, image); },
+                                            sinks.areWritten()};
+                try {
+                    makePicture(commandOf(fixed, frames[i], stats), sequence, part);
+                } catch (...) {
+                    sinks.skip(i);
+                    throw;
+                }
+            },
+            making);
+    };
+    try {
+        makeAll();
+    } catch (const Error& error) {
+        // What there is goes into the file of all.
+        if (command.frames.keepGoing && error.code() != ErrorCode::kInterrupted) sinks.finish();
+        throw;
+    }
+    sinks.finish();
 }
 
 }  // namespace deltasplat

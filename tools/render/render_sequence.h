@@ -7,18 +7,22 @@
 
 #include "deltasplat/prepared_scene.h"
 #include "render/render_options.h"
+#include "render/sequence_sinks.h"
 #include "sequence/sequence_look.h"
 
 namespace deltasplat {
 
-/// What a picture of a sequence takes from the sequence; of a single one both are null.
+/// What a picture of a sequence takes from the sequence; of a single one all is empty.
 struct SequencePart {
     const FrameLook* look = nullptr;
     /// What is seen, made ready once for all frames, in place of what would be read.
     const PreparedScene* prepared = nullptr;
+    /// Takes the finished picture, linear.
+    std::function<void(const Image& image)> take;
+    bool isWritten = true;  ///< whether it has a file of its own
 };
 
-/// Makes and writes one picture.
+/// Makes and writes one picture; an input that is empty is that of a black one.
 using MakePicture = std::function<void(const RenderCommand& command, const SequencePart& part,
                                        const Listener& listener)>;
 
@@ -31,7 +35,7 @@ void applySequence(const CLI::App& app, RenderCommand& command);
 
 /// Makes the pictures of all frames, several at once, shown alike: by the values of all.
 /// @throw as runFrames; Error(kInput) for a --first-pass file of something else
-void renderSequence(const RenderCommand& command, const Listener& listener,
+void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Listener& listener,
                     const MakePicture& makePicture);
 
 }  // namespace deltasplat

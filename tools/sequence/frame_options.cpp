@@ -15,9 +15,10 @@ namespace {
 Parser<MissingFrames> missingFrames(const std::vector<std::string>& words) {
     return [words](const std::string& option, const std::string& text) {
         const std::string word = choice(words)(option, text);
-        return word == "skip"   ? MissingFrames::kSkip
-               : word == "hold" ? MissingFrames::kHold
-                                : MissingFrames::kError;
+        return word == "skip"    ? MissingFrames::kSkip
+               : word == "hold"  ? MissingFrames::kHold
+               : word == "black" ? MissingFrames::kBlack
+                                 : MissingFrames::kError;
     };
 }
 
@@ -39,17 +40,21 @@ void refuseWithoutFrames(const std::string& option) {
                 gotExpected(option, "it without --frames", "the frames of a sequence"));
 }
 
-void addFrameOptions(CLI::App& app, FrameChoice& choice) {
+void addFrameOptions(CLI::App& app, FrameChoice& choice, bool arePictures) {
     OptionGroup group(app, "Sequence");
     group.addValue("--frames", "LIST", choice.frames, frameList(),
                    "Frames to work on: 1-100, 1-100x2 (every second), 100-1, -5--1,\n"
                    "1,4,10-20. INPUT and output have ####, %04d, @@@@ or $F4 where the\n"
                    "number stands (in the name of an image stack $F4 or @@@@)");
-    group.addValue("--missing", "error|skip|hold", choice.missing,
-                   missingFrames({"error", "skip", "hold"}),
-                   "Of frames without a file: they have failed, nothing is made of them,\n"
-                   "or they repeat the one before; of the first ones, the next there is\n"
-                   "(default error)");
+    std::vector<std::string> words{"error", "skip", "hold"};
+    if (arePictures) words.emplace_back("black");
+    group.addValue("--missing", arePictures ? "error|skip|hold|black" : "error|skip|hold",
+                   choice.missing, missingFrames(words),
+                   std::string("Of frames without a file: they have failed, nothing is made of "
+                               "them,\nthey repeat the one before; of the first ones, the next "
+                               "there is") +
+                       (arePictures ? ";\nor are black, or --background" : "") +
+                       "\n(default error)");
     group.addFlag("--keep-going", choice.keepGoing,
                   "Work on the other frames if one has failed; the exit code is that of\n"
                   "the first that has");

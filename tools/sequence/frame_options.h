@@ -14,6 +14,7 @@ namespace deltasplat {
 enum class MissingFrames {
     kError,  ///< they have failed
     kSkip,   ///< nothing is made of them
+    kBlack,  ///< they are black
     kHold    ///< they show the frame before, or of the first ones the next that there is
 };
 
@@ -29,7 +30,8 @@ struct FrameChoice {
 };
 
 /// Declares all of it.
-void addFrameOptions(CLI::App& app, FrameChoice& choice);
+/// @param arePictures  whether frames may be black
+void addFrameOptions(CLI::App& app, FrameChoice& choice, bool arePictures);
 
 /// Declares which frames are only looked at, and whether those without a file are passed over.
 void addFrameList(CLI::App& app, FrameChoice& choice);

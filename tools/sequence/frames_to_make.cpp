@@ -68,13 +68,16 @@ std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, Missin
         if (!isPresent) ++absent;
         if (isPresent) {
             // Those before the first one show it.
-            if (!before)
+            if (!before && missing == MissingFrames::kHold)
                 for (FrameFiles& early : result) early.input = frame.input;
             before = frame.input;
         }
-        if (isPresent || missing == MissingFrames::kHold)
+        if (isPresent || missing == MissingFrames::kHold) {
             result.push_back(
                 {frame.frame, isPresent || !before ? frame.input : *before, frame.output});
+        } else if (missing == MissingFrames::kBlack) {
+            result.push_back({frame.frame, {}, frame.output});
+        }
     }
     if (!before) {
         throw Error(ErrorCode::kInput, gotExpected(frames.front().input.string(),
@@ -83,7 +86,9 @@ std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, Missin
     if (absent > 0) {
         listener.warn("--missing: " + std::to_string(absent) + " of " +
                       std::to_string(frames.size()) + " frames have no file and " +
-                      (missing == MissingFrames::kHold ? "show another" : "are left out"));
+                      (missing == MissingFrames::kHold    ? "show another"
+                       : missing == MissingFrames::kBlack ? "are black"
+                                                          : "are left out"));
     }
     return result;
 }

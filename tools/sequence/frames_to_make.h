@@ -9,7 +9,7 @@
 namespace deltasplat {
 
 /// Returns the frames that something can be made of: those without an input stay, and will fail;
-/// are left out, with a remark; or get another frame's input.
+/// are left out, with a remark; or get another frame's input, or, to be black, an empty one.
 /// @throw Error(kInput) if no frame has an input
 std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, MissingFrames missing,
                                    const Listener& listener);

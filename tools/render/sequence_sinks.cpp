@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/sequence_sinks.h"
+
+#include "deltasplat/error.h"
+#include "dims_text.h"
+#include "render/render_modes.h"
+#include "sequence/contact_sheet.h"
+#include "sequence/movie.h"
+
+namespace deltasplat {
+namespace {
+
+[[noreturn]] void refuse(const std::string& option, const std::string& got,
+                         const std::string& expected) {
+    throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
+}
+
+void checkSheet(const CLI::App& app, const RenderCommand& command) {
+    const glm::ivec2 cells = *command.contactSheet;
+    const auto room = std::size_t(cells.x) * std::size_t(cells.y);
+    if (command.frames.frames.size() > room) {
+        refuse("--contact-sheet",
+               dimsText(cells) + " for " + std::to_string(command.frames.frames.size()) + " frames",
+               "room for all of them");
+    }
+    for (const char* option : {"--aov", "--deep", "--stats"})
+        if (isGiven(app, option))
+            refuse("--contact-sheet", option + std::string(" besides"), "one of them");
+    checkImageFile(command.output, cells * command.picture.render.camera.sizePixels, command.image);
+}
+
+void checkMovieOf(RenderCommand& command) {
+    checkMovie(command.movie, command.picture.render.camera.sizePixels);
+    command.isMovieAlone = command.output.empty();
+    if (command.isMovieAlone)
+        command.output = std::filesystem::path(command.movie).replace_extension(".png");
+    if (isExr(command))
+        refuse("--movie", "an .exr besides, which shows light as it is", "-o with a .png, or none");
+}
+
+}  // namespace
+
+void addSinkOptions(CLI::App& app, RenderCommand& command) {
+    OptionGroup group(app, "Sequence");
+    group.addValue("--contact-sheet", "CxR", command.contactSheet, pixelSize(),
+                   "Put all frames into one picture, the output, in so many columns and\n"
+                   "rows, each of --size");
+    group.addFlag("--slate", command.slate, "Draw the number of its frame into each, upper left");
+    group.addValue("--movie", "FILE", command.movie, anyText(),
+                   "Movie to make of all frames, in place of pictures or, with -o,\n"
+                   "besides: .mp4, .m4v or .mkv (H.264, 8 bits) or .mov (ProRes 422 HQ,\n"
+                   "10 bits), sRGB over --background or black; needs ffmpeg");
+    group.addValue("--fps", "N", command.framesPerSecond, number(0.1, 1000),
+                   withDefault("Frames a second of it", "24"));
+}
+
+void applySinks(const CLI::App& app, RenderCommand& command) {
+    const bool isSingle = !command.frames.asked();
+    for (const char* option : {"--contact-sheet", "--movie", "--slate"})
+        if (isSingle && isGiven(app, option)) refuseWithoutFrames(option);
+    if (command.output.empty() && command.movie.empty())
+        refuse("--output", "nothing", "FILE (see 'deltasplat render --help')");
+    if (isGiven(app, "--fps") && command.movie.empty())
+        refuse("--fps", "it without --movie", "a movie to make");
+    if (command.contactSheet && !command.movie.empty())
+        refuse("--contact-sheet", "--movie besides", "one of them");
+    if (command.contactSheet) checkSheet(app, command);
+    if (!command.movie.empty()) checkMovieOf(command);
+    if (!command.contactSheet && command.movie.empty()) return;
+    for (const char* option : {"--skip-existing", "--update"})
+        if (isGiven(app, option))
+            refuse(option, "a sheet or movie of all frames", "pictures of their own");
+}
+
+SequenceSinks::SequenceSinks(const RenderCommand& command,
+                             const std::vector<std::pair<std::string, std::string>>& metadata)
+    : areWritten_(!command.contactSheet && !command.isMovieAlone) {
+    const glm::ivec2 size = command.picture.render.camera.sizePixels;
+    if (command.contactSheet) {
+        ImageFileOptions options = command.image;
+        options.metadata = metadata;
+        sinks_.push_back(std::make_unique<ContactSheet>(command.output, *command.contactSheet, size,
+                                                        options, blackPicture(command)));
+    }
+    if (!command.movie.empty()) {
+        sinks_.push_back(std::make_unique<Movie>(
+            command.movie, size, MovieOptions{command.framesPerSecond, command.image.dither}));
+    }
+}
+
+void SequenceSinks::put(std::size_t i, const Image& image) {
+    for (const auto& sink : sinks_) sink->put(i, image);
+}
+
+void SequenceSinks::skip(std::size_t i) {
+    for (const auto& sink : sinks_) sink->skip(i);
+}
+
+void SequenceSinks::finish() {
+    for (const auto& sink : sinks_) sink->finish();
+}
+
+Image blackPicture(const RenderCommand& command) {
+    Image image(command.picture.render.camera.sizePixels);
+    if (command.picture.background && !storesValues(command))
+        compositeOver(image, *command.picture.background);
+    return image;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/render_options.h"
+#include "sequence/frame_sink.h"
+
+namespace deltasplat {
+
+/// Declares --contact-sheet, --movie, --fps and --slate.
+void addSinkOptions(CLI::App& app, RenderCommand& command);
+
+/// Gives what a movie is made of, where no pictures are wanted besides, a format; refuses a command
+/// without any output, and what cannot be made of frames.
+/// @throw Error(kUsage)
+void applySinks(const CLI::App& app, RenderCommand& command);
+
+/// Where pictures of frames go besides, or instead of, files of their own.
+class SequenceSinks {
+  public:
+    /// @param metadata  of a sheet, as ImageFileOptions
+    /// @throw Error(kOutput) if one of them cannot be made
+    SequenceSinks(const RenderCommand& command,
+                  const std::vector<std::pair<std::string, std::string>>& metadata);
+
+    /// Whether frames have files of their own.
+    bool areWritten() const { return areWritten_; }
+    void put(std::size_t i, const Image& image);
+    void skip(std::size_t i);
+    void finish();
+
+  private:
+    std::vector<std::unique_ptr<FrameSink>> sinks_;
+    bool areWritten_;
+};
+
+/// Returns the picture of a frame that there is none of: black, or the background.
+Image blackPicture(const RenderCommand& command);
+
+}  // namespace deltasplat
