@@ -10,16 +10,22 @@
 #include "flag_names.h"
 #include "printable.h"
 #include "process/interrupt.h"
+#include "process/run_log.h"
+#include "process/tell_place.h"
 
 namespace deltasplat {
 
 void showError(const std::string& what) {
-    std::fprintf(stderr, "deltasplat: %s\n", printable(withFlagNames(what)).c_str());
+    const std::string line = printable(withFlagNames(what));
+    std::fprintf(stderr, "deltasplat: %s\n", line.c_str());
+    logLine(LogLevel::kError, line);
 }
 
 ProgressDisplay::ProgressDisplay(const CommonOptions& options)
-    : terminal_(isatty(STDERR_FILENO)),
-      showsProgress_(options.quiet == 0 && (terminal_ || options.verbose || options.progress)),
+    : terminal_(isatty(STDERR_FILENO) && !options.alfProgress),
+      alf_(options.alfProgress),
+      showsProgress_(options.quiet == 0 &&
+                     (terminal_ || options.verbose || options.progress || options.alfProgress)),
       showsWarnings_(options.quiet < 2) {}
 
 ProgressDisplay::~ProgressDisplay() {
@@ -37,12 +43,20 @@ Listener ProgressDisplay::stage(double begin, double end) {
 }
 
 void ProgressDisplay::warn(const std::string& line) {
+    const std::string text = printable(withFlagNames(line));
+    logLine(LogLevel::kWarning, text);
     if (!showsWarnings_) return;
     clearBar();
-    std::fprintf(stderr, "deltasplat: warning: %s\n", printable(withFlagNames(line)).c_str());
+    std::fprintf(stderr, "deltasplat: warning: %s\n", text.c_str());
 }
 
 void ProgressDisplay::show(double share) {
+    notePlace(share);
+    const int tens = int(10 * std::clamp(share, 0.0, 1.0) + 1e-9);
+    if (tens > loggedTens_) {
+        loggedTens_ = tens;
+        logLine(LogLevel::kInfo, "Progress: " + std::to_string(10 * tens) + "%");
+    }
     if (!showsProgress_) return;
     const int percent = int(100 * std::clamp(share, 0.0, 1.0) + 1e-9);
     const int shown = terminal_ ? percent : percent / 10 * 10;
@@ -52,7 +66,7 @@ void ProgressDisplay::show(double share) {
         drawBar(percent);
     } else {
         // Standard error is not buffered, so a reader of the pipe sees the line at once.
-        std::fprintf(stderr, "Progress: %d%%\n", shown);
+        std::fprintf(stderr, alf_ ? "ALF_PROGRESS %d%%\n" : "Progress: %d%%\n", shown);
     }
 }
 

@@ -36,9 +36,11 @@ class ProgressDisplay {
     void clearBar();
 
     bool terminal_;
+    bool alf_;  // progress is told as a farm's dispatcher wants it
     bool showsProgress_;
     bool showsWarnings_;
     int shownPercent_ = -1;
+    int loggedTens_ = -1;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 

@@ -19,6 +19,8 @@
 #include "printable.h"
 #include "process/interrupt.h"
 #include "process/reuse_memory.h"
+#include "process/run_log.h"
+#include "process/tell_place.h"
 #include "process/terminate.h"
 #include "suggest.h"
 
@@ -267,6 +269,12 @@ int execute(const std::vector<std::string>& arguments,
 
     const Subcommand* const subcommand = parse(program, subcommands, arguments);
     if (subcommand == nullptr) return 0;
+    if (session.common.jsonLog && session.common.log.empty()) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--json-log", "it without --log", "a file to add lines to"));
+    }
+    if (!session.common.log.empty()) openRunLog(session.common.log, session.common.jsonLog);
+    logLine(LogLevel::kInfo, session.commandLine);
     setSimdLevel(session.common.simd);
     const ThreadLimit limit(threadsFor(session.common));
     setSyncFiles(session.common.fsync);
@@ -295,9 +303,10 @@ int fail(const std::vector<std::string>& arguments, const std::string& what, Err
 
 }  // namespace
 
-int runProgram(const std::vector<std::string>& arguments,
-               const std::vector<AddSubcommand>& addSubcommands) {
-    handleSignals();
+namespace {
+
+int runLogged(const std::vector<std::string>& arguments,
+              const std::vector<AddSubcommand>& addSubcommands) {
     std::optional<int> errorExit;
     try {
         return execute(arguments, addSubcommands, errorExit);
@@ -308,6 +317,17 @@ int runProgram(const std::vector<std::string>& arguments,
     } catch (const std::exception& error) {
         return fail(arguments, describe(error), ErrorCode::kFailed, errorExit);
     }
+}
+
+}  // namespace
+
+int runProgram(const std::vector<std::string>& arguments,
+               const std::vector<AddSubcommand>& addSubcommands) {
+    handleSignals();
+    tellPlaceOnSignal();
+    const int exitCode = runLogged(arguments, addSubcommands);
+    logEnd(exitCode);
+    return exitCode;
 }
 
 }  // namespace deltasplat

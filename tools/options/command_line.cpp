@@ -53,6 +53,12 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
     group.addFlag("--progress", options.progress,
                   "Show progress where standard error is no terminal, too: lines\n"
                   "\"Progress: 10%\", as -v does");
+    group.addFlag("--alf-progress", options.alfProgress,
+                  "The same as lines \"ALF_PROGRESS 10%\", which render farms read");
+    group.addValue("--log", "FILE", options.log, anyText(),
+                   "Add lines to this file: the command line, warnings, errors, progress,\n"
+                   "and last exit code, seconds and most memory held, each with the time");
+    group.addFlag("--json-log", options.jsonLog, "Make each line of --log a JSON object");
     group.addValue("--threads", "N", options.threads, wholeNumber(0, 1024),
                    withDefault("Threads to use, 0 = all", std::to_string(options.threads)));
     group.addValue("--max-memory", "SIZE", options.maxMemory, byteCount(),

@@ -15,9 +15,12 @@ namespace deltasplat {
 
 /// Options that every subcommand has.
 struct CommonOptions {
-    int quiet = 0;          ///< how often -q was given: 1 hides progress, 2 warnings as well
-    bool verbose = false;   ///< say more
-    bool progress = false;  ///< show progress on a pipe too
+    int quiet = 0;              ///< how often -q was given: 1 hides progress, 2 warnings as well
+    bool verbose = false;       ///< say more
+    bool progress = false;      ///< show progress on a pipe too
+    bool alfProgress = false;   ///< in the words of Tractor and Alfred
+    std::filesystem::path log;  ///< empty: none
+    bool jsonLog = false;       ///< whether its lines are JSON objects
     int threads = 0;
     std::uint64_t maxMemory = 0;  ///< bytes; 0: no limit
     std::string simd = "auto";

@@ -45,3 +45,39 @@ if command -v script >/dev/null; then
     script -qec "'$program' render '$fixtures/two.vdb' -o out.exr --size 8x8 -q" /dev/null >said </dev/null
     ! grep -q '####' said || { echo "a bar"; exit 1; }
 fi
+
+# In the words of a farm's dispatcher.
+"$program" render "$fixtures/two.vdb" -o out.exr --size 8x8 -qq 2>said --alf-progress
+[[ ! -s said ]] || { cat said; exit 1; }
+"$program" render "$fixtures/two.vdb" -o out.exr --size 8x8 --alf-progress 2>said
+grep -qx 'ALF_PROGRESS 100%' said || { cat said; exit 1; }
+! grep -q '^Progress' said || { cat said; exit 1; }
+
+# A log has it all, whatever is shown; a second run adds to it.
+"$program" render "$fixtures/two.vdb" -o out.exr --size 8x8 -qq --log run.log
+"$program" render none.vdb -o out.exr -qq --log run.log 2>/dev/null && exit 1
+line() { grep -qE "^[0-9-]{10}T[0-9:]{8}Z [0-9]+ $1" run.log || { echo "no line $1"; cat run.log; exit 1; }; }
+line 'info deltasplat render .*two.vdb -o out.exr'
+line 'warning .*'
+line 'info Progress: 100%$'
+line 'info end exit_code=0 seconds=[0-9.e-]+ processor_seconds=[0-9.e-]+ peak_bytes=[0-9]+$'
+line 'error none.vdb: got no such file'
+line 'error end exit_code=3 '
+"$program" render "$fixtures/two.vdb" -o out.exr --size 8x8 -qq --log run.json --json-log
+[[ $(grep -c '^{"time":".*","process":[0-9]*,"level":".*","text":".*}$' run.json) == $(wc -l <run.json) ]] ||
+    { cat run.json; exit 1; }
+tail -1 run.json | grep -q '"exit_code":0,' || { cat run.json; exit 1; }
+for arguments in "--log no/folder.log" "--json-log"; do
+    ! "$program" render "$fixtures/two.vdb" -o other.exr -qq $arguments 2>said || exit 1
+    grep -q "^deltasplat: ${arguments%% *}: got " said || { cat said; exit 1; }
+done
+[[ ! -e other.exr ]]
+
+# Asked by a signal, it says where it is and goes on.
+"$program" synth cloud big.vdb --dims 200x200x200 -qq
+"$program" render big.vdb -o big.exr --size 3000x3000 --threads 1 -qq --log big.log 2>said &
+# Before it runs, the signal would end it.
+while [[ ! -s big.log ]]; do sleep 0.01; done
+while [[ ! -s said ]] && kill -USR1 $! 2>/dev/null; do sleep 0.02; done
+wait $!
+grep -qE '^deltasplat: [0-9]+% after [0-9]+ s$' said || { cat said; exit 1; }

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "process/run_log.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "deltasplat/error.h"
+#include "process/peak_bytes.h"
+
+namespace deltasplat {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* nameOf(LogLevel level) {
+    constexpr std::array kNames{"info", "warning", "error"};
+    return kNames[std::size_t(level)];
+}
+
+std::string timeText() {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text;
+}
+
+double processorSeconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) {
+        return double(t.tv_sec) + 1e-6 * double(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+class RunLog {
+  public:
+    RunLog(int file, bool asJson) : file_(file), asJson_(asJson) {}
+    ~RunLog() { close(file_); }
+    RunLog(const RunLog&) = delete;
+    RunLog& operator=(const RunLog&) = delete;
+
+    void add(LogLevel level, const std::string& text, const Json& more) {
+        Json json{{"time", timeText()},
+                  {"process", int(getpid())},
+                  {"level", nameOf(level)},
+                  {"text", text}};
+        std::string line;
+        if (asJson_) {
+            json.update(more);
+            line = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+        } else {
+            line = timeText() + " " + std::to_string(getpid()) + " " + nameOf(level) + " " + text;
+            for (const auto& [name, value] : more.items()) line += " " + name + "=" + value.dump();
+            for (char& c : line)
+                if (c == '\n') c = ' ';
+        }
+        line += '\n';
+        const std::lock_guard lock(mutex_);
+        // In one piece, for others may write as well.
+        (void)!::write(file_, line.data(), line.size());
+    }
+
+    double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    }
+
+  private:
+    int file_;
+    bool asJson_;
+    std::mutex mutex_;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+std::unique_ptr<RunLog> log;
+
+}  // namespace
+
+void openRunLog(const std::filesystem::path& file, bool asJson) {
+    const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (descriptor < 0) {
+        throw Error(ErrorCode::kOutput,
+                    gotExpected("--log", file.string() + " (" + std::strerror(errno) + ")",
+                                "a file that can be written"));
+    }
+    log = std::make_unique<RunLog>(descriptor, asJson);
+}
+
+void logLine(LogLevel level, const std::string& text) {
+    if (log) log->add(level, text, Json::object());
+}
+
+void logEnd(int exitCode) {
+    if (!log) return;
+    log->add(exitCode == 0 ? LogLevel::kInfo : LogLevel::kError, "end",
+             {{"exit_code", exitCode},
+              {"seconds", log->seconds()},
+              {"processor_seconds", processorSeconds()},
+              {"peak_bytes", peakBytes()}});
+    log.reset();
+}
+
+}  // namespace deltasplat
