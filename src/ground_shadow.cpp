@@ -114,7 +114,8 @@ class SeenGround {
     double pixelAt(double rays) const {
         if (camera_.projection == Projection::kLatlong)
             return rays * 2 * std::numbers::pi / camera_.sizePixels.x;
-        return camera_.pixelWorld() * (camera_.projection == Projection::kOrtho ? 1 : rays);
+        const double pixel = std::min(camera_.pixelWorld(), camera_.pixelHeightWorld());
+        return pixel * (camera_.projection == Projection::kOrtho ? 1 : rays);
     }
 
     const Camera& camera_;

@@ -49,6 +49,7 @@ constexpr FlagName kFlagNames[] = {
     {"floatExr", "--float"},
     {"focalMm", "--focal"},
     {"fovDegrees", "--fov"},
+    {"frameOffset", "--frame-offset"},
     {"frameWidthWorld", "--frame-width"},
     {"gradientOpacity", "--gradient-opacity"},
     {"gridName", "--grid"},
@@ -69,6 +70,7 @@ constexpr FlagName kFlagNames[] = {
     {"origin", "--origin"},
     {"parts", "--emission-grid"},
     {"picture", "--aov transmittance"},
+    {"pixelAspect", "--pixel-aspect"},
     {"projection", "--projection"},
     {"range", "--range"},
     {"resolution", "--resolution"},
@@ -112,6 +114,7 @@ constexpr FlagName kFlagNames[] = {
     {"up", "--up"},
     {"view", "--view"},
     {"volume", "--volume"},
+    {"worldFromCamera", "--camera-matrix"},
     {"worldFromEnvironment", "--env"},
 };
 

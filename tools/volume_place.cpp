@@ -107,6 +107,9 @@ std::string cameraOptionsText(const Camera& camera) {
             text += " --fov " + numberText(camera.fovDegrees());
         if (camera.nearWorld > 0) text += " --near " + numberText(camera.nearWorld);
     }
+    if (camera.frameOffset() != glm::dvec2(0))
+        text += " --frame-offset=" + numberText(camera.frameOffset());
+    if (camera.pixelAspect != 1) text += " --pixel-aspect " + numberText(camera.pixelAspect);
     return text + " --size " + joinNumbers({double(size.x), double(size.y)}, "x");
 }
 
@@ -122,6 +125,8 @@ Json cameraJson(const Camera& camera) {
                  {"up", vectorJson(camera.up)},
                  {"target", vectorJson(camera.targetWorld)},
                  {"frame_width", camera.frameWidthWorld},
+                 {"frame_offset", {camera.frameOffset().x, camera.frameOffset().y}},
+                 {"pixel_aspect", camera.pixelAspect},
                  {"size", {camera.sizePixels.x, camera.sizePixels.y}},
                  {"options", cameraOptionsText(camera)}});
     return json;

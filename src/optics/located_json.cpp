@@ -56,8 +56,8 @@ struct TrackingIterator {
 // Builds the tree from the parser's events (nlohmann-json's SAX interface).
 class TreeBuilder {
   public:
-    TreeBuilder(const std::filesystem::path& file, const std::string& text)
-        : place_(text.data()), file_(file), counted_(text.data()) {}
+    TreeBuilder(const std::filesystem::path& file, const std::string& text, const std::string& what)
+        : place_(text.data()), file_(file), what_(what), counted_(text.data()) {}
 
     bool null() { return add(LocatedJson::Kind::kNull) != nullptr; }
     bool boolean(bool value) {
@@ -117,7 +117,7 @@ class TreeBuilder {
         LocatedJson* container = add(kind);
         if (open_.size() == kMaxDepth) {
             fail(file_, container->line, "more than " + std::to_string(kMaxDepth) + " levels",
-                 "a transfer function");
+                 what_);
         }
         open_.push_back(container);
         return true;
@@ -140,6 +140,7 @@ class TreeBuilder {
     }
 
     std::filesystem::path file_;
+    std::string what_;
     const char* counted_;
     int line_ = 1;
     std::string key_;
@@ -173,9 +174,10 @@ std::string LocatedJson::quoted() const {
     return "";
 }
 
-LocatedJson readLocatedJson(const std::filesystem::path& file) {
-    const std::string text = readSmallText(file, "a transfer function (ParaView's JSON)");
-    TreeBuilder builder(file, text);
+LocatedJson readLocatedJson(const std::filesystem::path& file, const std::string& what,
+                            const std::string& longName) {
+    const std::string text = readSmallText(file, longName);
+    TreeBuilder builder(file, text, what);
     const char* const end = text.data() + text.size();
     Json::sax_parse(TrackingIterator{text.data(), &builder.place_},
                     TrackingIterator{end, &builder.place_}, &builder);

@@ -35,8 +35,12 @@ struct LocatedMember {
 };
 
 /// Reads a whole JSON file.
+/// @param what      it holds, for messages
+/// @param longName  the same of what is no text at all
 /// @throw Error(kInput) `<file>:<line>: got X; expected Y` if it is missing, no JSON, longer than
 /// 16 MiB or nested deeper than 32 levels
-LocatedJson readLocatedJson(const std::filesystem::path& file);
+LocatedJson readLocatedJson(const std::filesystem::path& file,
+                            const std::string& what = "a transfer function",
+                            const std::string& longName = "a transfer function (ParaView's JSON)");
 
 }  // namespace deltasplat

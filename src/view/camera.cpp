@@ -13,6 +13,7 @@
 #include "number_text.h"
 #include "portable_math.h"
 #include "view/affine.h"
+#include "view/camera_axes.h"
 
 namespace deltasplat {
 namespace {
@@ -112,6 +113,10 @@ void checkProjection(const CameraOptions& options) {
                "`projection` perspective or latlong");
     requireFor(options.nearWorld != 0, !parallel, "`nearWorld`",
                "`projection` perspective or latlong");
+    requireFor(options.frameOffset != glm::dvec2(0), parallel || flat, "`frameOffset`",
+               "`projection` ortho or perspective");
+    requireFor(options.pixelAspect != 1, parallel || flat, "`pixelAspect`",
+               "`projection` ortho or perspective");
     requireFor(options.distanceWorld.has_value(), parallel || flat, "`distanceWorld`",
                "`projection` ortho or perspective");
     for (const auto& [option, given] :
@@ -192,13 +197,42 @@ void checkCArm(const CameraOptions& options) {
         refuse("`detectorWorld`", text, "WxH, two finite numbers > 0");
     const glm::ivec2 pixels = options.sizePixels;
     const double width = size->x / pixels.x;
-    const double height = size->y / pixels.y;
+    const double height = size->y / pixels.y * options.pixelAspect;
     if (!(std::abs(width - height) <= 1e-3 * width)) {
         refuse(
             "`detectorWorld`",
             text + " of " + std::to_string(pixels.x) + "x" + std::to_string(pixels.y) + " pixels",
             "square pixels, as " + numberText(size->x) + "x" + numberText(width * pixels.y));
     }
+}
+
+void checkFrame(const CameraOptions& options) {
+    const glm::dvec2& offset = options.frameOffset;
+    if (!(std::abs(offset.x) <= kMostFrameOffset && std::abs(offset.y) <= kMostFrameOffset)) {
+        refuse("`frameOffset`", numberText(offset),
+               "two numbers from " + numberText(-kMostFrameOffset) + " to " +
+                   numberText(kMostFrameOffset));
+    }
+    if (!(options.pixelAspect >= kLeastPixelAspect && options.pixelAspect <= kMostPixelAspect)) {
+        refuse("`pixelAspect`", numberText(options.pixelAspect),
+               "a number from " + numberText(kLeastPixelAspect) + " to " +
+                   numberText(kMostPixelAspect));
+    }
+}
+
+// A matrix says all of where the camera is.
+void checkMatrix(const CameraOptions& options) {
+    if (!options.worldFromCamera) return;
+    const char* other = options.direction               ? "`direction`"
+                        : options.targetWorld           ? "`targetWorld`"
+                        : options.eyeWorld              ? "`eyeWorld`"
+                        : options.distanceWorld         ? "`distanceWorld`"
+                        : options.detectorWorld         ? "`detectorWorld`"
+                        : options.azimuthDegrees != 0   ? "`azimuthDegrees`"
+                        : options.elevationDegrees != 0 ? "`elevationDegrees`"
+                        : options.rollDegrees != 0      ? "`rollDegrees`"
+                                                        : nullptr;
+    if (other) refuse(other, "it and `worldFromCamera`", "the camera one way or the other");
 }
 
 void checkOptions(const CameraOptions& options) {
@@ -217,6 +251,8 @@ void checkOptions(const CameraOptions& options) {
     }
     checkSize(options);
     checkCArm(options);
+    checkFrame(options);
+    checkMatrix(options);
 }
 
 // Turns v about a unit axis by the right-hand rule (O. Rodrigues, 1840). Quarter turns are exact,
@@ -282,7 +318,7 @@ glm::dvec3 transformed(const glm::dmat4& worldFromIndex, const glm::dvec3& index
     return glm::dvec3(worldFromIndex * glm::dvec4(index, 1));
 }
 
-// The narrowest frame of square pixels that holds the projected box both ways.
+// The narrowest frame that holds the projected box both ways.
 double fittingFrame(const Camera& camera, const IndexBox& box, const glm::dmat4& worldFromIndex) {
     const glm::dmat3 linear(worldFromIndex);
     const glm::dvec3 edges = glm::max(glm::dvec3(box.max) - glm::dvec3(box.min), 0.0);
@@ -296,7 +332,7 @@ double fittingFrame(const Camera& camera, const IndexBox& box, const glm::dmat4&
     }
 
     // A point, or a line seen end-on, is framed as one voxel; rounding may keep it from being zero.
-    const double aspect = double(camera.sizePixels.x) / camera.sizePixels.y;
+    const double aspect = double(camera.sizePixels.x) / camera.sizePixels.y * camera.pixelAspect;
     const double width = std::max(extent.x, extent.y * aspect);
     return width > 1e-6 * voxel ? width : voxel;
 }
@@ -326,14 +362,14 @@ double tangentOf(const CameraOptions& options) {
     }
     const double half = 0.5 * kRadians * options.fovDegrees.value_or(kDefaultFov);
     const double tangent = portable::sin(half) / portable::cos(half);
-    return tangent * options.sizePixels.x / options.sizePixels.y;
+    return tangent * options.sizePixels.x / options.sizePixels.y * options.pixelAspect;
 }
 
 // The nearest that the eye may come to the target for the whole box to be in the picture; a point,
 // or a line seen end-on, is framed as one voxel.
 double fittingDistance(const Camera& camera, double tangent, const IndexBox& box,
                        const glm::dmat4& worldFromIndex) {
-    const double aspect = double(camera.sizePixels.x) / camera.sizePixels.y;
+    const double aspect = double(camera.sizePixels.x) / camera.sizePixels.y * camera.pixelAspect;
     double distance = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 index = cornerOf(box, corner);
@@ -381,87 +417,29 @@ void placeEye(Camera& camera, const CameraOptions& options, const glm::dvec3& ta
     }
 }
 
+// A camera that stands where a matrix says. What it looks at is as far away as the middle of the
+// volume, but not behind.
+void placeByMatrix(Camera& camera, CameraOptions options, const IndexBox& box,
+                   const glm::dmat4& worldFromIndex) {
+    const CameraAxes axes =
+        cameraAxes(*options.worldFromCamera, "`worldFromCamera`", ErrorCode::kUsage);
+    camera.right = axes.right;
+    camera.up = axes.up;
+    camera.direction = axes.direction;
+    if (options.projection != Projection::kOrtho) {
+        options.eyeWorld = axes.positionWorld;
+        options.direction = axes.direction;
+        return placeEye(camera, options, camera.targetWorld, box, worldFromIndex);
+    }
+    camera.targetDistanceWorld =
+        std::max(glm::dot(camera.targetWorld - axes.positionWorld, axes.direction),
+                 glm::length(glm::dvec3(worldFromIndex[0])));
+    camera.targetWorld = axes.positionWorld + camera.targetDistanceWorld * axes.direction;
+    camera.frameWidthWorld =
+        options.frameWidthWorld.value_or(fittingFrame(camera, box, worldFromIndex));
+}
+
 }  // namespace
-
-std::string projectionName(Projection projection) {
-    switch (projection) {
-        case Projection::kOrtho:
-            return "ortho";
-        case Projection::kPerspective:
-            return "perspective";
-        case Projection::kLatlong:
-            return "latlong";
-    }
-    return "ortho";
-}
-
-double Camera::fovDegrees() const {
-    const double height = frameWidthWorld * sizePixels.y / sizePixels.x;
-    return 360 / std::numbers::pi * portable::atan2(0.5 * height, targetDistanceWorld);
-}
-
-glm::dvec3 Camera::rayThrough(glm::dvec2 pixel) const {
-    if (projection == Projection::kOrtho) return direction;
-    if (projection == Projection::kPerspective) {
-        const glm::dvec2 offset = (pixel - 0.5 * glm::dvec2(sizePixels)) * pixelWorld();
-        return targetDistanceWorld * direction + offset.x * right - offset.y * up;
-    }
-    const double longitude = 2 * std::numbers::pi * (pixel.x / sizePixels.x - 0.5);
-    const double latitude = std::numbers::pi * (0.5 - pixel.y / sizePixels.y);
-    return portable::cos(latitude) *
-               (portable::sin(longitude) * right + portable::cos(longitude) * direction) +
-           portable::sin(latitude) * up;
-}
-
-glm::dvec3 Camera::worldFromPixel(glm::dvec2 pixel) const {
-    if (projection == Projection::kLatlong)
-        return eyeWorld() + targetDistanceWorld * rayThrough(pixel);
-    const glm::dvec2 offset = (pixel - 0.5 * glm::dvec2(sizePixels)) * pixelWorld();
-    return targetWorld + offset.x * right - offset.y * up;
-}
-
-glm::dvec2 Camera::pixelFromWorld(const glm::dvec3& world) const {
-    glm::dvec3 offset = world - targetWorld;
-    if (projection == Projection::kPerspective) {
-        offset = world - eyeWorld();
-        offset *= targetDistanceWorld / glm::dot(offset, direction);
-    } else if (projection == Projection::kLatlong) {
-        const glm::dvec3 ray = world - eyeWorld();
-        const glm::dvec2 level(glm::dot(ray, direction), glm::dot(ray, right));
-        const double longitude = portable::atan2(level.y, level.x);
-        const double latitude =
-            portable::atan2(glm::dot(ray, up), portable::hypot(level.x, level.y));
-        return {sizePixels.x * (0.5 + longitude / (2 * std::numbers::pi)),
-                sizePixels.y * (0.5 - latitude / std::numbers::pi)};
-    }
-    return 0.5 * glm::dvec2(sizePixels) +
-           glm::dvec2(glm::dot(offset, right), -glm::dot(offset, up)) / pixelWorld();
-}
-
-// Based on: the OpenEXR project, "Standard Attributes" (worldToCamera, worldToNDC).
-glm::dmat4 Camera::cameraFromWorld() const {
-    const glm::dmat3 rotation = glm::transpose(glm::dmat3(right, up, direction));
-    glm::dmat4 matrix(rotation);
-    matrix[3] = glm::dvec4(glm::dvec3(0, 0, targetDistanceWorld) - rotation * targetWorld, 1);
-    return matrix;
-}
-
-glm::dmat4 Camera::ndcFromWorld() const {
-    const double frameHeightWorld = frameWidthWorld * sizePixels.y / sizePixels.x;
-    glm::dmat4 ndcFromCamera(1);
-    if (projection == Projection::kPerspective) {
-        // Homogeneous: the fourth number is z, by which the others are divided.
-        ndcFromCamera[0][0] = targetDistanceWorld / frameWidthWorld;
-        ndcFromCamera[1][1] = -targetDistanceWorld / frameHeightWorld;
-        ndcFromCamera[2] = glm::dvec4(0.5, 0.5, 1, 1);
-        ndcFromCamera[3] = glm::dvec4(0);
-        return ndcFromCamera * cameraFromWorld();
-    }
-    ndcFromCamera[0][0] = 1 / frameWidthWorld;
-    ndcFromCamera[1][1] = -1 / frameHeightWorld;
-    ndcFromCamera[3] = glm::dvec4(0.5, 0.5, 0, 1);
-    return ndcFromCamera * cameraFromWorld();
-}
 
 Camera makeCamera(const CameraOptions& options, const IndexBox& box,
                   const glm::dmat4& worldFromIndex, const std::string& space) {
@@ -475,7 +453,13 @@ Camera makeCamera(const CameraOptions& options, const IndexBox& box,
     camera.projection = options.projection;
     camera.sizePixels = options.sizePixels;
     camera.nearWorld = options.nearWorld;
+    camera.pixelAspect = options.pixelAspect;
+    camera.targetInFrame = {0.5 - options.frameOffset.x, 0.5 + options.frameOffset.y};
     camera.targetWorld = options.targetWorld.value_or(transformed(worldFromIndex, middle));
+    if (options.worldFromCamera) {
+        placeByMatrix(camera, options, framed, worldFromIndex);
+        return camera;
+    }
     orient(camera, options, viewerOf(space), givenDirection(options, camera.targetWorld));
     if (options.projection != Projection::kOrtho) {
         placeEye(camera, options, camera.targetWorld, framed, worldFromIndex);

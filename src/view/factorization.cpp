@@ -132,7 +132,8 @@ double densityAt(const Camera& camera, const glm::dmat3& worldFromStep, glm::dve
         for (int i = 0; i < 2; ++i) {
             const glm::dvec3& step = worldFromStep[i + 1];
             const glm::dvec3 moved = step - ray * (glm::dot(step, camera.direction) / depth);
-            across[i] = {glm::dot(moved, camera.right), glm::dot(moved, camera.up), 0};
+            across[i] = {glm::dot(moved, camera.right),
+                         glm::dot(moved, camera.up) * camera.pixelAspect, 0};
         }
     }
     const double a = glm::dot(across[0], across[0]);
@@ -175,8 +176,8 @@ double pixelsAtMiddle(const Camera& camera, const IndexBox& box, const glm::dmat
     // Along the picture's own middle line of sight where the volume lies behind it.
     const bool isAhead = camera.projection == Projection::kLatlong ||
                          glm::dot(steps * glm::dvec3(1, slope), camera.direction) > 0;
-    return (isAhead ? densityAt(camera, steps, slope)
-                    : camera.targetDistanceWorld / camera.pixelWorld()) /
+    const double finePixel = std::min(camera.pixelWorld(), camera.pixelHeightWorld());
+    return (isAhead ? densityAt(camera, steps, slope) : camera.targetDistanceWorld / finePixel) /
            slices;
 }
 
@@ -211,11 +212,11 @@ Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
     const auto baseFromWorldVector = [&](const glm::dvec3& world) {
         return onBasePlane(indexFromWorldLinear * world, order, result.shiftPerSlice);
     };
-    const double pixel = camera.pixelWorld();
     const glm::dvec3 topLeft = camera.worldFromPixel({0, 0}) - glm::dvec3(worldFromIndex[3]);
-    result.baseFromPixel = {glm::dvec3(baseFromWorldVector(pixel * camera.right), 0),
-                            glm::dvec3(baseFromWorldVector(-pixel * camera.up), 0),
-                            glm::dvec3(baseFromWorldVector(topLeft), 1)};
+    result.baseFromPixel = {
+        glm::dvec3(baseFromWorldVector(camera.pixelWorld() * camera.right), 0),
+        glm::dvec3(baseFromWorldVector(-camera.pixelHeightWorld() * camera.up), 0),
+        glm::dvec3(baseFromWorldVector(topLeft), 1)};
     result.pixelsPerVoxel = largestSingularValue(glm::inverse(glm::dmat2(result.baseFromPixel)));
     result.resolution = resolution ? *resolution : screenResolution(result.pixelsPerVoxel);
     return result;

@@ -13,12 +13,14 @@ PictureRays::PictureRays(const Camera& camera, const glm::dmat3& fromWorld) {
     const glm::dvec3 ahead = fromWorld * camera.direction;
     const glm::dvec2 size(camera.sizePixels);
     const bool flat = camera.projection == Projection::kPerspective;
+    const glm::dvec2 middle = camera.targetPixel();
     // Of a flat picture at distance 1.
     const double pixel = camera.pixelWorld() / camera.targetDistanceWorld;
+    const double pixelHeight = camera.pixelHeightWorld() / camera.targetDistanceWorld;
     // Of a panorama: the angle of a pixel.
     const glm::dvec2 angle = glm::dvec2(2, 1) * std::numbers::pi / size;
     for (int x = 0; x < camera.sizePixels.x; ++x) {
-        const double across = x + 0.5 - 0.5 * size.x;
+        const double across = x + 0.5 - middle.x;
         if (flat) {
             columns_.push_back({ahead + (across * pixel) * right, pixel * right});
             continue;
@@ -29,9 +31,9 @@ PictureRays::PictureRays(const Camera& camera, const glm::dmat3& fromWorld) {
             {sine * right + cosine * ahead, angle.x * (cosine * right - sine * ahead)});
     }
     for (int y = 0; y < camera.sizePixels.y; ++y) {
-        const double above = 0.5 * size.y - (y + 0.5);
+        const double above = middle.y - (y + 0.5);
         if (flat) {
-            rows_.push_back({1, 0, (above * pixel) * up, -pixel * up});
+            rows_.push_back({1, 0, (above * pixelHeight) * up, -pixelHeight * up});
             continue;
         }
         const double sine = portable::sin(angle.y * above);

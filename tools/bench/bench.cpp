@@ -6,6 +6,7 @@
 #include "bench/bench_failures.h"
 #include "bench/bench_page_file.h"
 #include "bench/bench_report.h"
+#include "camera/camera_options.h"
 #include "listener.h"
 #include "options/input_options.h"
 #include "options/transfer_function_option.h"
@@ -124,6 +125,10 @@ void checkReport(const BenchCommand& command) {
 void runBench(const CLI::App& app, BenchCommand command, const Session& session) {
     requireArgument(!command.inputs.empty(), "INPUT", "FILE (see 'deltasplat bench --help')");
     applyProjection(app, command.picture.render.camera);
+    {
+        ProgressDisplay display(session.common);
+        applyCamera(app, {}, command.picture, display.stage(0, 0));
+    }
     checkCamera(command.picture.render.camera);
     applyLayers(app, command.picture);
     applySurface(app, command.picture.render.mode, isFog(command.picture), command.picture.surface,

@@ -151,6 +151,30 @@ Parser<glm::dvec3> vector3(double most) {
         -most, most, "X,Y,Z, three numbers from " + numberText(-most) + " to " + numberText(most));
 }
 
+Parser<glm::dvec2> vector2(double most) {
+    return [=](const std::string& option, const std::string& text) {
+        const std::vector<double> v = toNumbers<double>(text, ',');
+        const auto inRange = [=](double x) { return std::abs(x) <= most; };
+        if (v.size() != 2 || !std::all_of(v.begin(), v.end(), inRange))
+            refuse(option, text, rangeText("X,Y, two numbers", -most, most));
+        return glm::dvec2(v[0], v[1]);
+    };
+}
+
+Parser<glm::dmat4> matrix4() {
+    return [](const std::string& option, const std::string& text) {
+        std::string list = text;
+        std::replace(list.begin(), list.end(), ' ', ',');
+        const std::vector<double> v = toNumbers<double>(list, ',');
+        if (v.size() != 16)
+            refuse(option, text, "16 finite numbers, row by row, with commas between");
+        glm::dmat4 matrix;
+        // Rows of the one are columns of the other.
+        for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = v[std::size_t(i)];
+        return matrix;
+    };
+}
+
 Parser<double> positiveLength() {
     return number(kLeastPositive, kMostPositive);
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -42,6 +43,11 @@ Parser<glm::dvec2> interval();
 Parser<glm::vec4> color();
 /// `WxH`, positive lengths.
 Parser<glm::dvec2> lengthPair();
+/// `X,Y`, each within `most`.
+Parser<glm::dvec2> vector2(double most);
+/// 16 numbers, row by row, of a matrix that points are multiplied with as rows, so that the
+/// translation is the last row but its end; returned for columns. Commas or spaces between.
+Parser<glm::dmat4> matrix4();
 /// `WxH`, whole numbers of at least 1.
 Parser<glm::ivec2> pixelSize();
 /// `AxBxC`, whole numbers; whether they make a volume is for its reader to say.

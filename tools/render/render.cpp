@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "annotate/annotate.h"
+#include "camera/camera_options.h"
 #include "deltasplat/hold_out.h"
 #include "deltasplat/image/write_deep_image.h"
 #include "deltasplat/render_deep.h"
@@ -253,6 +254,7 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     const Volume& volume = *scene.volume;
     if (!part.look) warnOfUnusedView(app, options.camera, volume, reading);
     warnOfDetector(options.camera, volume, reading);
+    warnOfClipping(picture, part.frame, volume, reading);
     made.times.read = secondsSince(beginRead);
     made.codeBook = "code book " + volume.codeBook.name() + ", largest error " +
                     codeErrorText(volume.codeError) + "\n";
@@ -336,6 +338,10 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
     applySequence(app, command);
     applyMode(app, command);
     applyProjection(app, command.picture.render.camera);
+    {
+        ProgressDisplay display(session.common);
+        applyCamera(app, command.frames.frames, command.picture, display.stage(0, 0));
+    }
     applyLayers(app, command.picture);
     applySurface(app, command.picture.render.mode, isFog(command.picture), command.picture.surface,
                  command.picture.read);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "camera/camera_options.h"
 #include "deltasplat/error.h"
 #include "deltasplat/splat/footprint.h"
 #include "dims_text.h"
@@ -249,6 +250,7 @@ void addCameraOptions(CLI::App& app, PictureOptions& options) {
     group.addValue(
         "--size", "WxH", camera.sizePixels, pixelSize(),
         withDefault("Width and height in pixels; latlong 1024x512", dimsText(camera.sizePixels)));
+    addCameraFileOptions(app, options);
 }
 
 void addOpticsOptions(CLI::App& app, PictureOptions& options) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "annotate/annotation_choice.h"
+#include "camera/camera_choice.h"
 #include "deltasplat/image/tone.h"
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/ingest/read_volume.h"
@@ -37,6 +38,7 @@ struct PictureOptions {
     MediumChoice medium;
     SurfaceChoice surface;
     CutChoice parts;
+    CameraChoice camera;
 };
 
 /// Whether what is shown is fog by what was asked for, which has no surfaces.

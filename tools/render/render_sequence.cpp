@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "camera/camera_options.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
@@ -51,7 +52,10 @@ RenderCommand commandOf(const RenderCommand& command, const FrameFiles& files,
     frame.input = files.input;
     frame.output = files.output;
     if (stats) frame.stats = stats->at(files.frame);
-    frame.picture.render.camera.azimuthDegrees += turnOf(files.frame, command.turntable);
+    if (cameraMoves(command.picture))
+        frame.picture.render.camera = cameraAt(command.picture, files.frame);
+    else
+        frame.picture.render.camera.azimuthDegrees += turnOf(files.frame, command.turntable);
     if (command.slate) {
         frame.annotations.lines.insert(frame.annotations.lines.begin(),
                                        "frame " + std::to_string(files.frame));
@@ -149,9 +153,9 @@ void fixCamera(const Volume& seen, std::optional<int> turntable, CameraOptions& 
         const Camera camera = makeCamera(turned, seen.box, seen.worldFromIndex, seen.space);
         width = std::max(width, camera.frameWidthWorld);
         distance = std::max(distance, camera.targetDistanceWorld);
-        if (!choice.targetWorld) choice.targetWorld = camera.targetWorld;
+        if (!choice.targetWorld && !choice.worldFromCamera) choice.targetWorld = camera.targetWorld;
     }
-    const bool isPlaced = choice.eyeWorld || choice.sourceToDetectorWorld;
+    const bool isPlaced = choice.eyeWorld || choice.sourceToDetectorWorld || choice.worldFromCamera;
     if (choice.projection == Projection::kOrtho && !choice.frameWidthWorld)
         choice.frameWidthWorld = width;
     if (choice.projection == Projection::kPerspective && !isPlaced && !choice.distanceWorld)
@@ -169,7 +173,7 @@ RenderCommand fixedTo(const SequenceLook& look, RenderCommand command) {
 
 // The files of all frames; if pictures go elsewhere, all have the same output.
 std::vector<FrameFiles> filesFor(const RenderCommand& command, bool areWritten) {
-    const bool mayStand = command.turntable.has_value();
+    const bool mayStand = command.turntable.has_value() || cameraMoves(command.picture);
     if (areWritten)
         return filesOfFrames(command.frames, command.input, mayStand, "--output", command.output);
     std::vector<FrameFiles> files;
@@ -216,6 +220,15 @@ void addSequenceOptions(CLI::App& app, RenderCommand& command) {
 }
 
 void applySequence(const CLI::App& app, RenderCommand& command) {
+    if (command.turntable &&
+        (command.picture.camera.asked() || command.picture.render.camera.worldFromCamera)) {
+        throw Error(
+            ErrorCode::kUsage,
+            gotExpected("--turntable",
+                        std::string("it and ") +
+                            (command.picture.camera.asked() ? "--camera" : "--camera-matrix"),
+                        "a camera that options turn"));
+    }
     if (command.turntable && !command.frames.asked()) {
         command.frames.frames.resize(std::size_t(*command.turntable));
         std::iota(command.frames.frames.begin(), command.frames.frames.end(), 1);
@@ -254,7 +267,7 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
                 const FrameLook frame{look, i};
                 const SequencePart sequence{&frame, prepared ? &*prepared : nullptr,
                                             [&](const Image& image) { sinks.put(i, image); },
-                                            sinks.areWritten()};
+                                            sinks.areWritten(), frames[i].frame};
                 try {
                     makePicture(commandOf(fixed, frames[i], stats), sequence, part);
                 } catch (...) {

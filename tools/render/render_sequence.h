@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "deltasplat/prepared_scene.h"
 #include "render/render_options.h"
@@ -20,6 +21,7 @@ struct SequencePart {
     /// Takes the finished picture, linear.
     std::function<void(const Image& image)> take;
     bool isWritten = true;  ///< whether it has a file of its own
+    std::optional<int> frame = {};
 };
 
 /// Makes and writes one picture; an input that is empty is that of a black one.

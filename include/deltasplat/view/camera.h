@@ -67,6 +67,17 @@ struct CameraOptions {
     std::optional<double> sourceToIsocenterWorld;
     std::optional<double> sourceToDetectorWorld;
     std::optional<glm::dvec2> detectorWorld;
+    /// Where the camera stands and how it is turned, in place of all of the above that says so:
+    /// its x axis goes to the right, y up, z away from what it sees, which is how most programs
+    /// have it. A rotation, a uniform scale (left out) and a translation. With it, `up` turns
+    /// nothing; kOrtho without `frameWidthWorld`: as wide as the box.
+    std::optional<glm::dmat4> worldFromCamera;
+    /// How far the middle of the picture lies to the right of and above the line of sight, as
+    /// shares of the picture's width and height: a shifted lens, whose picture is a part of a wider
+    /// one. Not kLatlong.
+    glm::dvec2 frameOffset{0.0};
+    /// Width of a pixel over its height, kLeastPixelAspect..kMostPixelAspect. Not kLatlong.
+    double pixelAspect = 1;
     /// What is nearer than this is not seen: along the middle line of sight, or, kLatlong, along
     /// each; >= 0.
     double nearWorld = 0;
@@ -76,10 +87,13 @@ struct CameraOptions {
 inline constexpr double kDefaultFov = 30;
 inline constexpr double kDefaultFocalMm = 50;
 inline constexpr double kDefaultApertureMm = 36;
+inline constexpr double kMostFrameOffset = 100;
+inline constexpr double kLeastPixelAspect = 0.01;
+inline constexpr double kMostPixelAspect = 100;
 
 /// A camera. `right`, `up` and `-direction` are a right-handed orthonormal basis.
-/// Pixel (0,0) is top left, pixel centres are at half-integers, `targetWorld` falls on (width/2,
-/// height/2).
+/// Pixel (0,0) is top left, pixel centres are at half-integers, `targetWorld` falls on
+/// `targetPixel()`.
 struct Camera {
     Projection projection = Projection::kOrtho;
     glm::dvec3 direction{0, 0, -1};
@@ -89,6 +103,10 @@ struct Camera {
     /// Width of what the picture shows of the plane through the target; of kLatlong, 2 pi times
     /// the target's distance: the picture's width on a cylinder around the eye.
     double frameWidthWorld = 1;
+    /// Where in the picture the target falls: (0, 0) is the upper left corner, (1, 1) the lower
+    /// right one.
+    glm::dvec2 targetInFrame{0.5};
+    double pixelAspect = 1;  ///< as CameraOptions::pixelAspect
     /// From the camera to the plane through the target. kOrtho: it moves no pixel.
     double targetDistanceWorld = 0;
     double nearWorld = 0;  ///< as CameraOptions::nearWorld
@@ -96,13 +114,22 @@ struct Camera {
 
     /// Where lines of sight begin (kOrtho: the middle one).
     glm::dvec3 eyeWorld() const { return targetWorld - targetDistanceWorld * direction; }
-    /// kPerspective: full vertical angle of view.
+    /// kPerspective: full vertical angle of view, were the target in the middle.
     double fovDegrees() const;
+    /// As CameraOptions::frameOffset.
+    glm::dvec2 frameOffset() const { return {0.5 - targetInFrame.x, targetInFrame.y - 0.5}; }
+    /// Continuous pixel coordinates of the target.
+    glm::dvec2 targetPixel() const { return targetInFrame * glm::dvec2(sizePixels); }
     /// Direction, not of length 1, in which continuous pixel coordinates are seen from the eye.
     glm::dvec3 rayThrough(glm::dvec2 pixel) const;
 
-    /// World units a pixel, the same both ways.
+    /// World units across a pixel.
     double pixelWorld() const { return frameWidthWorld / sizePixels.x; }
+    /// World units from one pixel to the one below.
+    double pixelHeightWorld() const { return pixelWorld() / pixelAspect; }
+    double frameHeightWorld() const {
+        return frameWidthWorld * sizePixels.y / sizePixels.x / pixelAspect;
+    }
     /// World position, on the plane through the target (kLatlong: as far away as the target), of
     /// continuous pixel coordinates.
     glm::dvec3 worldFromPixel(glm::dvec2 pixel) const;
@@ -124,9 +151,10 @@ struct Camera {
 /// @throw Error(kUsage) naming the option if the view's name is unknown, a number is not finite,
 ///        the direction is zero or parallel to a given up, the eye is the target that it looks
 ///        at, the
-///        frame width, the distance, the angle of view or the size is out of range, or a panorama
-///        is not twice as wide as high; Error(kInput) if worldFromIndex is not finite or cannot be
-///        inverted
+///        frame width, the distance, the angle of view, the frame's offset, the pixels' aspect or
+///        the size is out of range, a panorama is not twice as wide as high, or `worldFromCamera`
+///        is more than turned, moved and scaled; Error(kInput) if worldFromIndex is not finite or
+///        cannot be inverted
 Camera makeCamera(const CameraOptions& options, const IndexBox& box,
                   const glm::dmat4& worldFromIndex, const std::string& space = "");
 

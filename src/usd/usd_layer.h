@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace deltasplat {
+
+/// A value in USD's text format.
+struct UsdValue {
+    enum class Kind {
+        kNone,    ///< None: there is no value
+        kNumber,  ///< of tuples and lists of numbers see `items`
+        kText,    ///< between quotes
+        kWord,    ///< true, false or another bare word
+        kAsset,   ///< @...@
+        kPath,    ///< <...>
+        kItems,   ///< (...) or [...]
+        kSkipped  ///< what is never asked for, and not kept
+    };
+    Kind kind = Kind::kNone;
+    int line = 1;
+    double number = 0;
+    std::string text;
+    std::vector<UsdValue> items;
+
+    /// Returns the value as an error quotes it.
+    std::string quoted() const;
+};
+
+struct UsdSample {
+    double time = 0;
+    UsdValue value;
+};
+
+/// An attribute or a relationship.
+struct UsdProperty {
+    std::string name;
+    int line = 1;
+    std::optional<UsdValue> value;
+    std::vector<UsdSample> samples;  ///< in ascending order of time
+};
+
+struct UsdPrim {
+    std::string type;  ///< empty: of none
+    std::string name;
+    int line = 1;
+    bool isClass = false;               ///< or an `over`: shows nothing by itself
+    std::vector<std::string> composed;  ///< of what is not followed: references, payload, ...
+    std::map<std::string, UsdValue> metadata;
+    std::vector<UsdProperty> properties;
+    std::vector<UsdPrim> children;
+
+    /// Returns null if there is none.
+    const UsdProperty* find(std::string_view property) const;
+};
+
+/// One file in USD's text format (.usda): its prims as they stand there. Nothing is composed:
+/// sublayers, references, payloads, inherited and specialized prims and variants are not followed.
+/// Values of arrays other than token[] are passed over.
+struct UsdLayer {
+    std::filesystem::path file;
+    UsdPrim root;  ///< without a name, with the layer's metadata
+};
+
+/// @throw Error(kInput) `<file>:<line>: got X; expected Y` if it is no such file, longer than 16
+///        MiB or nested deeper than 64 levels
+UsdLayer readUsdLayer(const std::filesystem::path& file);
+
+}  // namespace deltasplat

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/view/film_camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "default_floats.h"
+#include "number_text.h"
+#include "view/camera_axes.h"
+
+namespace deltasplat {
+namespace {
+
+[[noreturn]] void refuse(const char* field, double got, const char* expected) {
+    throw Error(ErrorCode::kUsage, gotExpected(field, numberText(got), expected));
+}
+
+void checkPositive(const char* field, double number) {
+    if (!(std::isfinite(number) && number > 0)) refuse(field, number, "a finite number > 0");
+}
+
+void checkAtLeast0(const char* field, double number) {
+    if (!(std::isfinite(number) && number >= 0)) refuse(field, number, "a finite number >= 0");
+}
+
+void checkNumbers(const FilmCamera& camera) {
+    checkPositive("film: focalMm", camera.focalMm);
+    checkPositive("film: apertureMm", camera.apertureMm.x);
+    checkAtLeast0("film: apertureMm", camera.apertureMm.y);
+    for (const double offset : {camera.offsetMm.x, camera.offsetMm.y})
+        if (!std::isfinite(offset)) refuse("film: offsetMm", offset, "a finite number");
+    checkPositive("film: pixelAspect", camera.pixelAspect);
+    checkPositive("film: frameWidthWorld", camera.frameWidthWorld);
+    checkAtLeast0("film: nearWorld", camera.nearWorld);
+}
+
+// What of the film's plane the picture shows, and what its pixels are like.
+struct Gate {
+    glm::dvec2 sizeMm;
+    double pixelAspect;
+};
+
+// Width, in mm, of a picture so many times as wide as high.
+double widthOf(const FilmCamera& camera, double aspect) {
+    const glm::dvec2 film = camera.apertureMm;
+    if (film.y == 0) return film.x;
+    switch (camera.fit) {
+        case FilmFit::kVertical:
+            return film.y * aspect;
+        case FilmFit::kFill:
+            return std::min(film.x, film.y * aspect);
+        case FilmFit::kOverscan:
+            return std::max(film.x, film.y * aspect);
+        case FilmFit::kHorizontal:
+        case FilmFit::kStretch:
+            break;
+    }
+    return film.x;
+}
+
+Gate gateOf(const FilmCamera& camera, glm::ivec2 sizePixels) {
+    const double pixels = double(sizePixels.x) / sizePixels.y;
+    const glm::dvec2 film = camera.apertureMm;
+    if (camera.fit == FilmFit::kStretch && film.y > 0) return {film, film.x / film.y / pixels};
+    const double aspect = pixels * camera.pixelAspect;
+    const double width = widthOf(camera, aspect);
+    return {{width, width / aspect}, camera.pixelAspect};
+}
+
+}  // namespace
+
+std::string filmFitName(FilmFit fit) {
+    switch (fit) {
+        case FilmFit::kHorizontal:
+            return "horizontal";
+        case FilmFit::kVertical:
+            return "vertical";
+        case FilmFit::kFill:
+            return "fill";
+        case FilmFit::kOverscan:
+            return "overscan";
+        case FilmFit::kStretch:
+            return "stretch";
+    }
+    return "horizontal";
+}
+
+CameraOptions cameraOptions(const FilmCamera& camera, glm::ivec2 sizePixels) {
+    const DefaultFloats floats;
+    checkNumbers(camera);
+    const CameraAxes axes =
+        cameraAxes(camera.worldFromCamera, "film: worldFromCamera", ErrorCode::kUsage);
+    const Gate gate = gateOf(camera, sizePixels);
+    CameraOptions options;
+    options.projection = camera.projection;
+    options.worldFromCamera = camera.worldFromCamera;
+    options.sizePixels = sizePixels;
+    if (camera.projection == Projection::kLatlong) {
+        options.nearWorld = axes.scale * camera.nearWorld;
+        return options;
+    }
+    options.frameOffset = camera.offsetMm / gate.sizeMm;
+    options.pixelAspect = gate.pixelAspect;
+    if (camera.projection == Projection::kOrtho) {
+        options.frameWidthWorld =
+            axes.scale * camera.frameWidthWorld * (gate.sizeMm.x / camera.apertureMm.x);
+        return options;
+    }
+    options.focalMm = camera.focalMm;
+    options.apertureMm = gate.sizeMm.x;
+    options.nearWorld = axes.scale * camera.nearWorld;
+    return options;
+}
+
+}  // namespace deltasplat

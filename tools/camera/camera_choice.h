@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+
+#include "deltasplat/cameras/read_camera.h"
+
+namespace deltasplat {
+
+/// A camera that a file describes instead of options.
+struct CameraChoice {
+    std::filesystem::path file;  ///< perhaps with a prim's path behind a colon; empty: none
+    CameraMotion motion;         ///< once it is read
+    std::map<int, CameraMotion> ofFrames;  ///< of a file for each frame of a sequence
+
+    bool isNearGiven = false;  ///< --near counts, not the file's
+
+    bool asked() const { return !file.empty(); }
+    bool moves() const { return !motion.frames.empty() || !ofFrames.empty(); }
+};
+
+}  // namespace deltasplat

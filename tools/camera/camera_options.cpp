@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/camera_options.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <string>
+
+#include "deltasplat/error.h"
+#include "number_text.h"
+#include "options/command_line.h"
+#include "options/file_and_name.h"
+#include "sequence/frame_name.h"
+#include "text/short_number.h"
+#include "view/affine.h"
+
+namespace deltasplat {
+namespace {
+
+// Of lengths that people read.
+constexpr double kShortShare = 1e-4;
+
+std::string shortText(double number) {
+    return shortNumberText(number, kShortShare);
+}
+
+constexpr const char* kPlaces[] = {"--view", "--azimuth",  "--elevation", "--roll",
+                                   "--eye",  "--distance", "--direction", "--target",
+                                   "--sid",  "--sdd",      "--detector"};
+constexpr const char* kLenses[] = {"--camera-matrix", "--projection",  "--fov",
+                                   "--focal",         "--aperture",    "--frame-width",
+                                   "--frame-offset",  "--pixel-aspect"};
+
+void requireOnce(const CLI::App& app, const std::string& option, const char* other) {
+    if (!isGiven(app, other)) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected(other, "it and " + option, "the camera one way or the other"));
+}
+
+CameraMotion readOne(const std::filesystem::path& given, const Listener& listener) {
+    const std::optional<FileAndName> found = findFileAndName("--camera", given);
+    return found ? readCamera(found->file, found->name, listener) : readCamera(given, "", listener);
+}
+
+const CameraMotion& motionOf(const CameraChoice& choice, std::optional<int> frame) {
+    if (!frame || choice.ofFrames.empty()) return choice.motion;
+    return choice.ofFrames.at(*frame);
+}
+
+FilmCamera filmAt(const CameraChoice& choice, std::optional<int> frame) {
+    const CameraMotion& motion = motionOf(choice, frame);
+    if (frame) return motion.at(*frame);
+    return motion.at(motion.frames.empty() ? 0 : motion.frames.front());
+}
+
+// Frames before the first key and behind the last.
+void warnOfHolding(const CameraChoice& choice, const std::vector<int>& frames,
+                   const Listener& listener) {
+    const std::vector<double>& keys = choice.motion.frames;
+    if (keys.empty()) return;
+    const auto isOutside = [&](int frame) { return frame < keys.front() || frame > keys.back(); };
+    const auto count = std::count_if(frames.begin(), frames.end(), isOutside);
+    if (count == 0) return;
+    listener.warn("--camera: its keys are frames " + numberText(keys.front()) + " to " +
+                  numberText(keys.back()) + ", and " + std::to_string(count) + " of " +
+                  std::to_string(frames.size()) +
+                  " frames, which are not between them, are shown by the nearest");
+}
+
+}  // namespace
+
+void addCameraFileOptions(CLI::App& app, PictureOptions& options) {
+    CameraOptions& camera = options.render.camera;
+    OptionGroup group(app, "Camera");
+    group.addValue("--camera", "FILE", options.camera.file, anyText(),
+                   "Camera of another program in place of the options above but --up\n"
+                   "(of --sky and --ground), --near and --size: .json\n"
+                   "(docs/cameras.md), .usda (FILE:/World/cam, if it has several) or\n"
+                   ".exr (worldToCamera and worldToNDC of a picture). With --frames it\n"
+                   "may move, or have #### or $F4 in its name");
+    group.addValue("--camera-matrix", "M", camera.worldFromCamera, matrix4(),
+                   "Where the camera stands, in place of --view, --eye and the like: 16\n"
+                   "numbers, row by row, the translation in the last row, as Houdini,\n"
+                   "Maya and USD write camera-to-world (x right, y up, looks along -z)");
+    group.addValue("--frame-offset", "X,Y", camera.frameOffset, vector2(kMostFrameOffset),
+                   withDefault("How far the middle of the picture lies to the right of and above\n"
+                               "the line of sight, in widths and heights of the picture",
+                               numberText(camera.frameOffset)));
+    group.addValue("--pixel-aspect", "A", camera.pixelAspect,
+                   number(kLeastPixelAspect, kMostPixelAspect),
+                   withDefault("Width of a pixel over its height", numberText(camera.pixelAspect)));
+}
+
+void applyCamera(const CLI::App& app, const std::vector<int>& frames, PictureOptions& options,
+                 const Listener& listener) {
+    CameraChoice& choice = options.camera;
+    if (options.render.camera.worldFromCamera && !choice.asked())
+        for (const char* other : kPlaces) requireOnce(app, "--camera-matrix", other);
+    if (!choice.asked()) return;
+    for (const char* other : kPlaces) requireOnce(app, "--camera", other);
+    for (const char* other : kLenses) requireOnce(app, "--camera", other);
+
+    const std::optional<FrameName> name = FrameName::find(choice.file);
+    if (name && !frames.empty()) {
+        for (const int frame : frames)
+            choice.ofFrames.emplace(frame, readOne(name->at(frame), listener));
+        choice.motion = choice.ofFrames.begin()->second;
+    } else {
+        choice.motion = readOne(choice.file, listener);
+    }
+    if (frames.empty() && choice.motion.frames.size() > 1)
+        listener.warn("--camera: it moves, and is shown where it is at frame " +
+                      numberText(choice.motion.frames.front()) + "; --frames shows others");
+    warnOfHolding(choice, frames, listener);
+
+    CameraOptions& camera = options.render.camera;
+    const FilmCamera film = filmAt(choice, {});
+    if (!isGiven(app, "--size")) {
+        if (film.projection == Projection::kLatlong) camera.sizePixels = {1024, 512};
+        if (film.sizePixels) camera.sizePixels = *film.sizePixels;
+    }
+    if (!camera.up) camera.up = choice.motion.upWorld;
+    choice.isNearGiven = isGiven(app, "--near");
+    camera = cameraAt(options, frames.empty() ? std::nullopt : std::optional(frames.front()));
+}
+
+bool cameraMoves(const PictureOptions& options) {
+    return options.camera.asked() && options.camera.moves();
+}
+
+CameraOptions cameraAt(const PictureOptions& options, std::optional<int> frame) {
+    const CameraOptions& given = options.render.camera;
+    CameraOptions camera = cameraOptions(filmAt(options.camera, frame), given.sizePixels);
+    camera.up = given.up;
+    if (options.camera.isNearGiven) camera.nearWorld = given.nearWorld;
+    return camera;
+}
+
+void warnOfClipping(const PictureOptions& options, std::optional<int> frame, const Volume& volume,
+                    const Listener& listener) {
+    if (!options.camera.asked() || volume.empty()) return;
+    const FilmCamera film = filmAt(options.camera, frame);
+    const Camera camera =
+        makeCamera(options.render.camera, volume.box, volume.worldFromIndex, volume.space);
+    // Lengths of the camera's own, in the world.
+    const double scale = glm::length(glm::dvec3(film.worldFromCamera[0]));
+    double nearest = std::numeric_limits<double>::infinity();
+    double farthest = -nearest;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 index(cornerOf(volume.box, corner), 1);
+        const glm::dvec3 away = glm::dvec3(volume.worldFromIndex * index) - camera.eyeWorld();
+        nearest = std::min(nearest, glm::dot(away, camera.direction));
+        farthest = std::max(farthest, glm::dot(away, camera.direction));
+    }
+    if (film.farWorld && farthest > scale * *film.farWorld)
+        listener.warn("--camera: the volume reaches " + shortText(farthest) +
+                      " from the camera, and is seen beyond its far plane at " +
+                      shortText(scale * *film.farWorld) + " as well");
+    const double near = scale * film.nearWorld;
+    if (film.projection == Projection::kOrtho && near > 0 && nearest < near)
+        listener.warn("--camera: the volume begins " + shortText(nearest) +
+                      " from the camera, and is seen before its near plane at " + shortText(near) +
+                      " as well");
+}
+
+}  // namespace deltasplat

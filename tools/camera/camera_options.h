@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <vector>
+
+#include "deltasplat/progress.h"
+#include "render/render_options.h"
+
+namespace deltasplat {
+
+/// Declares the options of cameras that other programs have made.
+void addCameraFileOptions(CLI::App& app, PictureOptions& options);
+
+/// Refuses what says twice where the camera is, and reads the file of --camera.
+/// @param frames  of a sequence; empty: a single picture, which is shown by the first key
+/// @throw Error(kUsage), or Error(kInput) for the file
+void applyCamera(const CLI::App& app, const std::vector<int>& frames, PictureOptions& options,
+                 const Listener& listener);
+
+/// Returns whether the camera is another one in each frame.
+bool cameraMoves(const PictureOptions& options);
+
+/// Returns the camera that a file describes, at a frame or, without one, at its first key.
+/// @param options  after applyCamera, with --camera
+CameraOptions cameraAt(const PictureOptions& options, std::optional<int> frame);
+
+/// Warns of a volume that another program would have cut off before or behind its camera, which is
+/// seen all the same.
+void warnOfClipping(const PictureOptions& options, std::optional<int> frame, const Volume& volume,
+                    const Listener& listener);
+
+}  // namespace deltasplat
