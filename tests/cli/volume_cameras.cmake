@@ -89,3 +89,7 @@ deltasplat_cli_test(cameras.still_has_no_frames EXIT 2
     ARGS render ${cube} -o out.\#.exr --camera camera_still.json --frames 3-4)
 deltasplat_cli_test(cameras.bench STDOUT_MATCHES "36 x 24 pixels"
     ARGS bench ${cube} --camera camera_still.json --repeats 1)
+
+# Volumes in scenes.
+deltasplat_script_test(scenes scenes.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${DELTASPLAT_CASE_FILES} ${scratch}/scenes)

@@ -123,6 +123,12 @@ void applyCamera(const CLI::App& app, const std::vector<int>& frames, PictureOpt
     camera = cameraAt(options, frames.empty() ? std::nullopt : std::optional(frames.front()));
 }
 
+std::filesystem::path cameraFile(const PictureOptions& options) {
+    const std::filesystem::path& given = options.camera.file;
+    const std::optional<FileAndName> found = findFileAndName("--camera", given);
+    return found ? found->file : given;
+}
+
 bool cameraMoves(const PictureOptions& options) {
     return options.camera.asked() && options.camera.moves();
 }

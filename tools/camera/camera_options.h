@@ -19,6 +19,10 @@ void addCameraFileOptions(CLI::App& app, PictureOptions& options);
 void applyCamera(const CLI::App& app, const std::vector<int>& frames, PictureOptions& options,
                  const Listener& listener);
 
+/// Returns the file that a camera is read from; of several the name that they have in common. Empty
+/// without --camera.
+std::filesystem::path cameraFile(const PictureOptions& options);
+
 /// Returns whether the camera is another one in each frame.
 bool cameraMoves(const PictureOptions& options);
 

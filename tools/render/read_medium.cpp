@@ -18,6 +18,7 @@
 #include "optics/color_factor.h"
 #include "options/parse.h"
 #include "options/transfer_function_option.h"
+#include "render/scene_input.h"
 #include "text/short_number.h"
 #include "view/affine.h"
 
@@ -61,9 +62,10 @@ class MediumReader {
         ReadOptions read = picture_.read;
         read.gridName = grid;
         read.keepInexact = false;
-        auto volume =
-            std::make_shared<const Volume>(look_ ? look_->sequence.read(input_, read, listener_)
-                                                 : readVolume(input_, read, listener_));
+        auto volume = std::make_shared<const Volume>(
+            placed(look_ ? look_->sequence.read(input_, read, listener_)
+                         : readVolume(input_, read, listener_),
+                   picture_));
         if (volume->empty()) return {};
         whole_ = look_ ? &look_->standIn(grid, *volume) : volume.get();
         fit_ = fitOf(*volume, volume_.worldFromIndex);

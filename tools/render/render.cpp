@@ -31,6 +31,7 @@
 #include "render/render_options.h"
 #include "render/render_sequence.h"
 #include "render/render_stats.h"
+#include "render/scene_input.h"
 #include "render/tone_options.h"
 #include "render/value_window.h"
 #include "stopwatch.h"
@@ -55,6 +56,7 @@ ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume
     ImageFileOptions options = command.image;
     options.cameraFromWorld = result.camera.cameraFromWorld();
     options.ndcFromWorld = result.camera.ndcFromWorld();
+    options.pixelAspect = result.camera.pixelAspect;
     options.metadata = commonMetadata(session);
     options.metadata.insert(options.metadata.end(),
                             {{"input", command.input.string()},
@@ -340,6 +342,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
     applyProjection(app, command.picture.render.camera);
     {
         ProgressDisplay display(session.common);
+        applyScene(app, command.frames.frames, command, display.stage(0, 0));
         applyCamera(app, command.frames.frames, command.picture, display.stage(0, 0));
     }
     applyLayers(app, command.picture);

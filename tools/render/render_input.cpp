@@ -14,6 +14,7 @@
 #include "optics/value_colors.h"
 #include "options/transfer_function_option.h"
 #include "render/read_medium.h"
+#include "render/scene_input.h"
 #include "text/short_number.h"
 
 namespace deltasplat {
@@ -307,8 +308,9 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
                     RenderOptions& options, const Listener& listener, const FrameLook* look) {
     ReadOptions read = picture.read;
     read.keepInexact = picture.render.mode != Mode::kComposite;
-    Volume volume =
-        look ? look->sequence.read(input, read, listener) : readVolume(input, read, listener);
+    Volume volume = placed(
+        look ? look->sequence.read(input, read, listener) : readVolume(input, read, listener),
+        picture);
     fitOptics(input, picture, look ? look->standIn(kMainGrid, volume) : volume,
               !look && !picture.parts.cuts(), options, listener);
     if (options.optics.surface) options.optics.densityScale.reset();

@@ -327,8 +327,9 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
 void addRenderOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup arguments(app, "Arguments");
     arguments
-        .addValue("INPUT", "FILE", command.input, anyText(),
-                  std::string("Volume to render: ") + kInputFormats)
+        .addValue(
+            "INPUT", "FILE", command.input, anyText(),
+            std::string("Volume to render: ") + kInputFormats + "; or a scene with one, .usda")
         .required();
     addOutputOptions(app, command);
     addSequenceOptions(app, command);
@@ -413,6 +414,11 @@ void validate(const RenderCommand& command) {
     const Files mask = filesRead(filesOfMask(command.picture.parts), {});
     checkOutput("--output", command.output, mask, "the mask");
     checkOutput("--stats", command.stats, mask, "the mask");
+    for (const std::filesystem::path& file : {command.scene.file, cameraFile(command.picture)}) {
+        if (file.empty()) continue;
+        checkOutput("--output", command.output, {file}, "the scene or the camera");
+        checkOutput("--stats", command.stats, {file}, "the scene or the camera");
+    }
     Files others =
         filesRead({command.input}, parseTransferFunction(command.picture.transferFunction).file);
     checkOutput("--output", command.output, others, "the input and the transfer function");

@@ -24,6 +24,7 @@
 #include "options/shading_options.h"
 #include "options/surface_options.h"
 #include "sequence/frame_options.h"
+#include "usd/usd_volume.h"
 
 namespace deltasplat {
 
@@ -39,6 +40,7 @@ struct PictureOptions {
     SurfaceChoice surface;
     CutChoice parts;
     CameraChoice camera;
+    glm::dmat4 worldFromInput{1.0};  ///< where a scene has the volume
 };
 
 /// Whether what is shown is fog by what was asked for, which has no surfaces.
@@ -67,6 +69,15 @@ struct GroundChoice {
     std::optional<glm::dvec3> normalWorld;  ///< empty: what is up
 };
 
+/// A scene that says which volume is shown, and where.
+struct SceneChoice {
+    std::filesystem::path file;  ///< empty: none
+    std::optional<UsdVolumeMotion> motion;
+    bool isGridGiven = false;  ///< --grid counts, not the scene's field
+
+    bool moves() const { return motion && !motion->frames.empty(); }
+};
+
 /// What `deltasplat render` was asked to do.
 struct RenderCommand {
     std::filesystem::path input;
@@ -85,6 +96,7 @@ struct RenderCommand {
     DeepOptions deepOptions;
     AnnotationChoice annotations;
     FrameChoice frames;
+    SceneChoice scene;
     std::filesystem::path firstPass;         ///< of a sequence; empty: none
     std::optional<int> turntable;            ///< frames of a turn of the camera
     std::optional<glm::ivec2> contactSheet;  ///< columns and rows; empty: none

@@ -21,6 +21,7 @@
 #include "process/interrupt.h"
 #include "render/render_input.h"
 #include "render/render_modes.h"
+#include "render/scene_input.h"
 #include "sequence/frame_name.h"
 #include "sequence/frames_to_make.h"
 #include "sequence/run_frames.h"
@@ -49,7 +50,11 @@ double turnOf(int frame, std::optional<int> turntable) {
 RenderCommand commandOf(const RenderCommand& command, const FrameFiles& files,
                         const std::optional<FrameName>& stats) {
     RenderCommand frame = command;
-    frame.input = files.input;
+    const std::optional<FrameName> camera = FrameName::find(command.picture.camera.file);
+    if (camera) frame.picture.camera.file = camera->at(files.frame);
+    // One without a file is black.
+    frame.input.clear();
+    if (!files.input.empty()) showFrame(files.frame, files.input, frame);
     frame.output = files.output;
     if (stats) frame.stats = stats->at(files.frame);
     if (cameraMoves(command.picture))
@@ -72,8 +77,10 @@ class Survey {
     void run(SequenceLook& look, const Listener& listener) {
         std::vector<FrameFiles> files;
         std::set<std::filesystem::path> known;
+        // A scene may show one file in several places.
         for (const FrameFiles& one : frames_)
-            if (!one.input.empty() && known.insert(one.input).second) files.push_back(one);
+            if (!one.input.empty() && (command_.scene.moves() || known.insert(one.input).second))
+                files.push_back(one);
         runFrames(
             files, false, threadCount(),
             [&](std::size_t i, const Listener& part) { add(i, files[i], look, part); }, listener);
@@ -87,7 +94,9 @@ class Survey {
         silent.progress = part.progress;
         const FrameLook frame{look, i};
         try {
-            readScene(files.input, command_.picture, silent, &frame);
+            RenderCommand command = command_;
+            showFrame(files.frame, files.input, command);
+            readScene(command.input, command.picture, silent, &frame);
             anyIsRead_ = true;
         } catch (const Error& error) {
             if (error.code() == ErrorCode::kInterrupted) throw;
@@ -129,7 +138,7 @@ void writeFirstPass(const std::filesystem::path& file, const SequenceLook& look)
 
 // Whether all frames show the same, which then is made ready once.
 bool seesOneThing(const RenderCommand& command) {
-    return !FrameName::findInput(command.input) &&
+    return !FrameName::findInput(command.input) && !command.scene.moves() &&
            command.picture.render.mode == Mode::kComposite && !command.deep &&
            command.holdoutDepth.empty() && command.channels.aovs.empty();
 }
@@ -173,7 +182,8 @@ RenderCommand fixedTo(const SequenceLook& look, RenderCommand command) {
 
 // The files of all frames; if pictures go elsewhere, all have the same output.
 std::vector<FrameFiles> filesFor(const RenderCommand& command, bool areWritten) {
-    const bool mayStand = command.turntable.has_value() || cameraMoves(command.picture);
+    const bool mayStand =
+        command.turntable.has_value() || cameraMoves(command.picture) || command.scene.moves();
     if (areWritten)
         return filesOfFrames(command.frames, command.input, mayStand, "--output", command.output);
     std::vector<FrameFiles> files;
@@ -246,7 +256,8 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
                     const MakePicture& makePicture) {
     interruptBetweenFiles();
     warnOfWindows(command, listener);
-    const std::vector<FrameFiles> all = filesFor(command, sinks.areWritten());
+    const std::vector<FrameFiles> all =
+        withScene(command.scene, filesFor(command, sinks.areWritten()));
     SequenceLook look(kKeptShare * double(availableMemory()));
     const std::vector<FrameFiles> present = withInputs(all, command.frames.missing, listener);
     const bool isKnown = !command.firstPass.empty() && readFirstPass(command.firstPass, look);

@@ -58,12 +58,15 @@ bool inputsAreConfined() {
     return confined();
 }
 
-void requireConfined(const std::filesystem::path& input) {
+namespace {
+
+void requireInFolderOf(const std::filesystem::path& input,
+                       const std::vector<std::filesystem::path>& files) {
     namespace fs = std::filesystem;
     std::error_code error;
     const fs::path near = fs::is_directory(input, error) ? input : input.parent_path();
     const fs::path folder = fs::canonical(fs::absolute(near.empty() ? "." : near), error);
-    for (const fs::path& file : filesOf(input)) {
+    for (const fs::path& file : files) {
         // What is not there at all is for its reader to say.
         const fs::path real = fs::weakly_canonical(fs::absolute(file), error);
         const auto parted = std::mismatch(folder.begin(), folder.end(), real.begin(), real.end());
@@ -73,6 +76,16 @@ void requireConfined(const std::filesystem::path& input) {
                                 "the file " + printable(file.string()) + " outside of its folder",
                                 "files inside of it (`confineInputs`)"));
     }
+}
+
+}  // namespace
+
+void requireConfined(const std::filesystem::path& input) {
+    requireInFolderOf(input, filesOf(input));
+}
+
+void requireConfined(const std::filesystem::path& input, const std::filesystem::path& named) {
+    if (inputsAreConfined()) requireInFolderOf(input, {named});
 }
 
 }  // namespace deltasplat

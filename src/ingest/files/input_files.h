@@ -23,4 +23,7 @@ bool inputsAreConfined();
 /// @throw Error(kInput) "<input>: got <file>, which is outside of <folder>; expected ..."
 void requireConfined(const std::filesystem::path& input);
 
+/// The same of a file that an input names, where inputs are confined at all.
+void requireConfined(const std::filesystem::path& input, const std::filesystem::path& named);
+
 }  // namespace deltasplat

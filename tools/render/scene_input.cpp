@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/scene_input.h"
+
+#include "deltasplat/error.h"
+#include "lower_case.h"
+#include "number_text.h"
+#include "options/file_and_name.h"
+
+namespace deltasplat {
+namespace {
+
+// Nothing if it is no scene.
+std::optional<FileAndName> sceneOf(const std::filesystem::path& input) {
+    const std::string text = input.string();
+    const std::string ending = lowerCase(input.extension().string());
+    const bool isNamed = text.find(".usda:") != std::string::npos;
+    if (ending != ".usda" && !isNamed) {
+        if (ending != ".usd" && ending != ".usdc" && ending != ".usdz") return {};
+        throw Error(ErrorCode::kInput, gotExpected(text, "USD that is no text",
+                                                   ".usda, as usdcat -o x.usda writes it"));
+    }
+    const std::optional<FileAndName> found = findFileAndName("INPUT", input);
+    return found ? found : FileAndName{input, ""};
+}
+
+// In place of a file that a scene has not: no name of one.
+std::filesystem::path missingFile(const SceneChoice& scene) {
+    return scene.file / "filePath";
+}
+
+UsdVolume volumeAt(const SceneChoice& scene, std::optional<int> frame) {
+    const std::vector<double>& frames = scene.motion->frames;
+    return scene.motion->at(frame ? *frame : frames.empty() ? 0 : frames.front());
+}
+
+}  // namespace
+
+void applyScene(const CLI::App& app, const std::vector<int>& frames, RenderCommand& command,
+                const Listener& listener) {
+    const std::optional<FileAndName> found = sceneOf(command.input);
+    if (!found) return;
+    SceneChoice& scene = command.scene;
+    scene.file = found->file;
+    scene.motion = readUsdVolume(found->file, found->name, listener);
+    scene.isGridGiven = isGiven(app, "--grid");
+    CameraOptions& camera = command.picture.render.camera;
+    if (!camera.up) camera.up = scene.motion->upWorld;
+    if (!frames.empty()) {
+        // Each frame has its own; until then the first one's will do.
+        showFrame(frames.front(), scene.file, command);
+        return;
+    }
+    if (scene.motion->frames.size() > 1)
+        listener.warn(scene.file.string() +
+                      ": the volume changes, and is shown as it is at frame " +
+                      numberText(scene.motion->frames.front()) + "; --frames shows others");
+    showFrame({}, {}, command);
+}
+
+void showFrame(std::optional<int> frame, const std::filesystem::path& input,
+               RenderCommand& command) {
+    if (!input.empty()) command.input = input;
+    const SceneChoice& scene = command.scene;
+    if (!scene.motion) return;
+    const UsdVolume volume = volumeAt(scene, frame);
+    if (input.empty()) command.input = volume.file;
+    if (command.input.empty() || command.input == missingFile(scene)) {
+        throw Error(ErrorCode::kInput,
+                    gotExpected(scene.file.string(), "no filePath of a volume", "a .vdb"));
+    }
+    command.picture.worldFromInput = volume.worldFromVolume;
+    if (!scene.isGridGiven) command.picture.read.gridName = volume.grid;
+}
+
+std::vector<FrameFiles> withScene(const SceneChoice& scene, std::vector<FrameFiles> frames) {
+    if (!scene.motion) return frames;
+    for (FrameFiles& files : frames) {
+        files.input = volumeAt(scene, files.frame).file;
+        if (files.input.empty()) files.input = missingFile(scene);
+    }
+    return frames;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <vector>
+
+#include "deltasplat/progress.h"
+#include "render/render_options.h"
+#include "sequence/frame_options.h"
+
+namespace deltasplat {
+
+/// Makes of an INPUT that is a scene (.usda, perhaps with a prim's path behind a colon) the volume
+/// that it shows; leaves others alone.
+/// @param frames  of a sequence; empty: a single picture, of the first time sample
+/// @throw Error(kInput) for the scene
+void applyScene(const CLI::App& app, const std::vector<int>& frames, RenderCommand& command,
+                const Listener& listener);
+
+/// Puts what a scene shows at a frame into `command`; without a scene only the input.
+/// @param input  of the frame; empty: the scene's
+/// @throw Error(kInput) if it shows nothing there
+void showFrame(std::optional<int> frame, const std::filesystem::path& input,
+               RenderCommand& command);
+
+/// Puts the files that a scene shows into frames. Those that it has none for get a name
+/// that is none, as a file that is not there.
+std::vector<FrameFiles> withScene(const SceneChoice& scene, std::vector<FrameFiles> frames);
+
+/// Moves a volume that was read to where a scene has it.
+inline Volume placed(Volume volume, const PictureOptions& picture) {
+    volume.worldFromIndex = picture.worldFromInput * volume.worldFromIndex;
+    return volume;
+}
+
+}  // namespace deltasplat
