@@ -1,6 +1,6 @@
 # Cameras that other programs have made: files, matrices, and what they cannot be.
 deltasplat_script_test(cameras cameras.sh
-    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${DELTASPLAT_CASE_FILES} ${scratch}/cameras)
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/cameras ${DELTASPLAT_CASE_FILES})
 
 set(expects_rigid "expected a rotation, perhaps evenly scaled, and a translation in the last row, row by row")
 deltasplat_refusal(camera_matrix_short
@@ -92,4 +92,4 @@ deltasplat_cli_test(cameras.bench STDOUT_MATCHES "36 x 24 pixels"
 
 # Volumes in scenes.
 deltasplat_script_test(scenes scenes.sh
-    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${DELTASPLAT_CASE_FILES} ${scratch}/scenes)
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/scenes ${DELTASPLAT_CASE_FILES})

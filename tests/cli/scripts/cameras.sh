@@ -2,17 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # The same camera, from a .json, a .usda, a matrix, options and another picture, sees the same; one
 # that moves is in each frame where it should be.
-# Usage: cameras.sh PROGRAM OIIOTOOL FILES SCRATCH
-set -euo pipefail
-program=$1 oiiotool=$2 files=$3 scratch=$4
-rm -rf "$scratch"
-mkdir -p "$scratch"
-cd "$scratch"
-fail() { echo "$*"; exit 1; }
-same() { # A B [LARGEST DIFFERENCE]
-    "$oiiotool" -q "$1.exr" "$2.exr" --fail "${3:-0}" --diff >/dev/null || fail "$1 is not $2"
-}
-other() { ! "$oiiotool" -q "$1.exr" "$2.exr" --fail 0.01 --diff >/dev/null || fail "$1 is $2"; }
+# Usage: cameras.sh PROGRAM OIIOTOOL SCRATCH FILES
+source "${BASH_SOURCE%/*}/pictures.sh"
+begin "$@"
+files=$4
 "$program" synth engine volume_8x8x8_uint8.raw --dims 8x8x8
 show() { # NAME OPTION...
     "$program" render volume_8x8x8_uint8.raw -o "$1.exr" --float -qq "${@:2}"
@@ -27,55 +20,54 @@ show options --eye 3.5,3.5,40 --direction 0,0,-1 --projection perspective --foca
     --aperture 36 --frame-offset=0.1,-0.1 --near 1 --size 36x24
 show middle --camera-matrix $matrix --projection perspective --focal 50 --aperture 36 --size 36x24
 show picture --camera json.exr --near 1
-same usda json
-same matrix json
-same options json
-same picture json 1e-4
-other middle json
+expect_same usda json
+expect_same matrix json
+expect_same options json
+expect_same picture json 1e-4
+expect_different middle json 0.01
 
 # Shifted by 9 pixels and by 6, the picture is that part of one without.
 show shifted --camera-matrix $matrix --frame-width 12 --frame-offset=0.25,-0.25 --size 36x24
 show larger --camera-matrix $matrix --frame-width 24 --size 72x48
 "$oiiotool" -q larger.exr --crop 36x24+27+18 --origin +0+0 --fullpixels -o cropped.exr
-same cropped shifted 1e-5
+expect_same cropped shifted 1e-5
 
 # What is noted of a camera makes the same picture.
 eval "options=($("$oiiotool" --info -v json.exr | sed -n 's/.*deltasplat:camera: "\(.*\)"/\1/p'))"
 show noted "${options[@]}" --near 1
-same noted json 1e-5
+expect_same noted json 1e-5
 
 # Wide pixels: a third of them, each with the middle of three.
-show fine --frame-width 24 --size 96x96
 show wide --frame-width 24 --size 32x96 --pixel-aspect 3 --resolution 2
 show fine --frame-width 24 --size 96x96 --resolution 2
 "$oiiotool" --info -v wide.exr | grep -q 'PixelAspectRatio: 3$' || fail "wide pixels are not noted"
 for column in 3 13 16 22; do
     "$oiiotool" -q wide.exr --crop 1x96+$column+0 --origin +0+0 --fullpixels -o one.exr
     "$oiiotool" -q fine.exr --crop 1x96+$((3 * column + 1))+0 --origin +0+0 --fullpixels -o two.exr
-    same one two 3e-3
+    expect_same one two 3e-3
 done
 
 # Frames of one that moves; its frames may stand in several files.
 show at2 --projection ortho --target 4.5,3.5,3.5 --frame-width 18 --size 24x24
 show at3 --projection ortho --target 5.5,3.5,3.5 --frame-width 24 --size 24x24
 for camera in camera_moving.json camera.usda:/World/moving; do
-    rm -f frame.*.exr
-    show frame.# --camera "$files/$camera" --frames 1-3 --size 24x24
-    same frame.2 at2 1e-5
-    same frame.3 at3 1e-5
-    other frame.1 at2
+    rm -f frame_*.exr
+    show frame_# --camera "$files/$camera" --frames 1-3 --size 24x24
+    expect_same frame_2 at2 1e-5
+    expect_same frame_3 at3 1e-5
+    expect_different frame_1 at2 0.01
 done
 for frame in 2 3; do
     "$program" render volume_8x8x8_uint8.raw -o "shot.000$frame.exr" --float -qq --size 24x24 \
-        --camera frame.$frame.exr
+        --camera frame_$frame.exr
 done
-rm -f again.*.exr
-show again.# --camera shot.####.exr --frames 2-3
-same again.2 frame.2 1e-4
-same again.3 frame.3 1e-4
-# --first-pass and frames with volumes of their own.
+rm -f again_*.exr
+show again_# --camera shot.####.exr --frames 2-3
+expect_same again_2 frame_2 1e-4
+expect_same again_3 frame_3 1e-4
+# Frames with volumes of their own.
 for frame in 1 2 3; do "$program" convert volume_8x8x8_uint8.raw in.$frame.vdb -qq; done
-"$program" render in.#.vdb -o own.#.exr --camera "$files/camera_moving.json" --frames 1-3 -qq --float
-"$program" render in.#.vdb -o part.#.exr --camera "$files/camera_moving.json" --frames 2 -qq --float
-same part.2 own.2
-other own.1 own.3
+"$program" render in.#.vdb -o own_#.exr --camera "$files/camera_moving.json" --frames 1-3 -qq --float
+"$program" render in.#.vdb -o part_#.exr --camera "$files/camera_moving.json" --frames 2 -qq --float
+expect_same part_2 own_2
+expect_different own_1 own_3 0.01
