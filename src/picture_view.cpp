@@ -8,7 +8,6 @@
 
 #include "deltasplat/error.h"
 #include "dims_text.h"
-#include "image/warp.h"
 #include "image/warp_region.h"
 #include "optics/opacity_steps.h"
 #include "parallel.h"
@@ -140,14 +139,20 @@ double PictureView::densityOf() const {
 }
 
 double PictureView::show(Layer& layer, Image& image) const {
-    const Raster raster = rasterOf(layer, slabs_->splat.colors.table());
-    if (!view_.eye) {
-        const glm::dmat3& map = plane_->pixelFromPicture();
-        warp(raster, map, WarpFilter::kSharp, image);
-        return warpGain(map);
-    }
+    finish(layer);
+    return showPart(layer, PicturePart(image));
+}
+
+void PictureView::finish(Layer& layer) const {
     if (showChangesLayer()) lengthenSteps(layer);
-    return warpRegion(raster, camera_, view_, thinView_, *plane_, image);
+}
+
+double PictureView::showPart(const Layer& finished, const PicturePart& part) const {
+    const Raster raster = rasterOf(finished, slabs_->splat.colors.table());
+    if (view_.eye) return warpRegion(raster, camera_, view_, thinView_, *plane_, part);
+    const glm::dmat3& map = plane_->pixelFromPicture();
+    warp(raster, map, WarpFilter::kSharp, part);
+    return warpGain(map);
 }
 
 // Opacities are those of ways straight through the slices: makes them those of the lines of sight.

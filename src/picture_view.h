@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "composite/slab_renderer.h"
+#include "image/warp.h"
 #include "optics/hold_rule.h"
 #include "prepared_axis.h"
 #include "sheet_plan.h"
@@ -45,7 +46,12 @@ class PictureView {
     /// Writes what is seen of the base plane into the picture. Changes the layer on the way.
     /// @return the most that this can enlarge a difference of layers
     double show(Layer& layer, Image& image) const;
-    /// Whether show() changes the layer.
+    /// Makes of a layer, once, what showPart() shows.
+    void finish(Layer& layer) const;
+    /// Writes what is seen of a finished layer into a part of the picture.
+    /// @return as show()
+    double showPart(const Layer& finished, const PicturePart& part) const;
+    /// Whether show() and finish() change the layer.
     bool showChangesLayer() const { return view_.eye && slabs_->splat.colors.table().oneColor; }
     /// Most that a layer may differ from the exact one.
     ErrorBound errorBound() const;

@@ -175,9 +175,9 @@ class AovRender {
             case Aov::kDepth:
                 return addDepth(listener);
             case Aov::kFront:
-                return channels_.push_back({"depth_front.Z", depths(listener).front()});
+                return channels_.push_back({"depth_front.Z", depths(listener).front(), kNoDepth});
             case Aov::kBack:
-                return channels_.push_back({"ZBack", depths(listener).back()});
+                return channels_.push_back({"ZBack", depths(listener).back(), kNoDepth});
             case Aov::kPosition:
                 return addPosition(listener);
             case Aov::kNormal:
@@ -207,10 +207,12 @@ class AovRender {
     }
 
     // @param valueOf  of a pixel, by its number
+    // @param nothing  as ImageChannel::nothing
     template <typename ValueOf>
-    void addChannel(const std::string& name, const ValueOf& valueOf) {
+    void addChannel(const std::string& name, const ValueOf& valueOf, float nothing = 0) {
         const glm::ivec2 size = camera_.sizePixels;
-        ImageChannel channel{name, std::vector<float>(std::size_t(size.x) * std::size_t(size.y))};
+        ImageChannel channel{name, std::vector<float>(std::size_t(size.x) * std::size_t(size.y)),
+                             nothing};
         for (std::size_t i = 0; i < channel.values.size(); ++i)
             channel.values[i] = float(valueOf(i));
         channels_.push_back(std::move(channel));
@@ -239,7 +241,8 @@ class AovRender {
         std::optional<Image> made;
         if (!aovOptions_.picture) made = picture(withoutGlow(options_.optics), listener);
         const Image& image = made ? *made : *aovOptions_.picture;
-        addChannel("transmittance", [&](std::size_t i) { return 1 - image.rgba[4 * i + 3]; });
+        addChannel(
+            "transmittance", [&](std::size_t i) { return 1 - image.rgba[4 * i + 3]; }, 1);
     }
 
     void addMattes(const Listener& listener) {
@@ -321,7 +324,9 @@ class AovRender {
 
     void addDepth(const Listener& listener) {
         const std::vector<Place>& places = meanPlaces(listener);
-        addChannel("Z", [&](std::size_t i) { return places[i] ? depthOf(*places[i]) : kNoDepth; });
+        addChannel(
+            "Z", [&](std::size_t i) { return places[i] ? depthOf(*places[i]) : kNoDepth; },
+            kNoDepth);
     }
 
     void addPosition(const Listener& listener) {
@@ -401,7 +406,7 @@ std::vector<ImageChannel> renderAovs(const Volume& volume, const RenderOptions& 
     checkOpacity(aovOptions.depthOpacity);
     if (aovOptions.picture && aovOptions.picture->size != camera.sizePixels) {
         throw Error(ErrorCode::kUsage,
-                    gotExpected("`picture`", dimsText(aovOptions.picture->size) + " pixels",
+                    gotExpected("picture", dimsText(aovOptions.picture->size) + " pixels",
                                 dimsText(camera.sizePixels) + ", those of the camera"));
     }
     // A picture, and what is made of it, for each; and places.

@@ -8,28 +8,34 @@
 #include "default_floats.h"
 #include "deltasplat/prepared_scene.h"
 #include "kept_memory.h"
+#include "kept_view.h"
 #include "listener_part.h"
 #include "number_text.h"
-#include "picture_view.h"
 #include "stopwatch.h"
 #include "view/affine.h"
 
 namespace deltasplat {
 namespace {
 
+// What is made: a picture, perhaps stage by stage as well, or views that it may be made of.
+struct Wanted {
+    Image* image = nullptr;
+    const DeepRequest* deep = nullptr;
+    std::vector<KeptView>* views = nullptr;
+};
+
 // Renders one picture, or the regions of one.
 class CompositeRender {
   public:
     CompositeRender(const PreparedScene::Impl& scene, const Camera& camera, KeptMemory& memory,
-                    Image& image, RenderStats& stats, const DeepRequest* deep)
+                    const Wanted& wanted, RenderStats& stats)
         : scene_(scene),
           volume_(*scene.scene.volume),
           options_(scene.options),
           camera_(camera),
           memory_(memory),
-          image_(image),
-          stats_(stats),
-          deep_(deep) {}
+          wanted_(wanted),
+          stats_(stats) {}
 
     // @param views  of the volume's own voxels
     void run(const std::vector<Factorization>& views, const Listener& listener) {
@@ -53,41 +59,61 @@ class CompositeRender {
         listener.report(0.2);
         if (volume_.empty()) return;
         const Clock::time_point renderStart = Clock::now();
-        const PictureView picture(scene_, camera_, view, *plan_, std::move(axis), memory_);
-        countIn(picture);
-        const double gain = deep_ ? showDeep(picture, listener) : showFlat(picture, listener);
-        if (!options_.tolerance.isExact()) countIn(picture.errorBound(), gain);
+        auto picture = std::make_unique<const PictureView>(scene_, camera_, view, *plan_,
+                                                           std::move(axis), memory_);
+        countIn(*picture);
+        if (wanted_.views) {
+            keep(std::move(picture), listener);
+        } else {
+            const double gain =
+                wanted_.deep ? showDeep(*picture, listener) : showFlat(*picture, listener);
+            if (!options_.tolerance.isExact()) countIn(picture->errorBound(), gain);
+        }
         stats_.renderSeconds += secondsSince(renderStart);
+    }
+
+    void keep(std::unique_ptr<const PictureView> picture, const Listener& listener) {
+        Layer merged = renderSlabs(picture->slabs(), partOf(listener, 0.2, 1));
+        picture->finish(merged);
+        wanted_.views->push_back({std::move(picture), std::move(merged)});
     }
 
     double showFlat(const PictureView& picture, const Listener& listener) {
         Layer merged = renderSlabs(picture.slabs(), partOf(listener, 0.2, 0.9));
         listener.report(0.95);
         const Clock::time_point warpStart = Clock::now();
-        const double gain = picture.show(merged, image_);
+        const double gain = picture.show(merged, *wanted_.image);
         stats_.warpSeconds += secondsSince(warpStart);
         return gain;
     }
 
     double showDeep(const PictureView& picture, const Listener& listener) {
         const DeepViewResult result =
-            renderDeepView(picture, deep_->slicesPerSample, memory_, deep_->stages, image_,
-                           partOf(listener, 0.2, 0.95));
+            renderDeepView(picture, wanted_.deep->slicesPerSample, memory_, wanted_.deep->stages,
+                           *wanted_.image, partOf(listener, 0.2, 0.95));
         stats_.compositeSeconds += result.slabSeconds * result.compositeShare;
         stats_.splatSeconds += result.slabSeconds * (1 - result.compositeShare);
         stats_.warpSeconds += result.warpSeconds;
         return result.gain;
     }
 
+    // Whether a picture, or what it would be made of, has anything to see.
+    bool isAnythingSeen() const {
+        const auto isAnyOf = [](const auto& values) {
+            const auto isSeen = [](float value) { return value != 0; };
+            // Most pictures show something in the middle.
+            const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+            return std::any_of(middle, values.end(), isSeen) ||
+                   std::any_of(values.begin(), middle, isSeen);
+        };
+        if (wanted_.image) return isAnyOf(wanted_.image->rgba);
+        return std::any_of(wanted_.views->begin(), wanted_.views->end(),
+                           [&](const KeptView& view) { return isAnyOf(view.layer.values); });
+    }
+
     // Who reads an empty volume has been told so.
     void warnOfEmptyPicture(const Listener& listener) const {
-        const auto isSeen = [](float value) { return value != 0; };
-        const auto& rgba = image_.rgba;
-        // Most pictures show something in the middle.
-        const auto middle = rgba.begin() + std::ptrdiff_t(rgba.size() / 2);
-        if (volume_.empty() || std::any_of(middle, rgba.end(), isSeen) ||
-            std::any_of(rgba.begin(), middle, isSeen))
-            return;
+        if (volume_.empty() || isAnythingSeen()) return;
         if (stats_.visible == 0) {
             const bool isSurface = scene_.scene.optics.surface.has_value();
             listener.warn(
@@ -143,11 +169,23 @@ class CompositeRender {
     const SplatOptions& options_;
     const Camera& camera_;
     KeptMemory& memory_;
-    Image& image_;
+    const Wanted& wanted_;
     RenderStats& stats_;
-    const DeepRequest* deep_;
     std::optional<SheetPlan> plan_;
 };
+
+RenderStats renderAs(const Wanted& wanted, const PreparedScene::Impl& scene, const Camera& camera,
+                     KeptMemory& memory, const Listener& listener) {
+    const DefaultFloats floats;
+    const std::vector<Factorization> views = viewsOf(camera, *scene.scene.volume, scene.options);
+    RenderStats stats;
+    stats.mode = Mode::kComposite;
+    stats.method = scene.options.method;
+    stats.tolerance = scene.options.tolerance;
+    stats.sliceAxis = views.front().sliceAxis;
+    CompositeRender(scene, camera, memory, wanted, stats).run(views, listener);
+    return stats;
+}
 
 }  // namespace
 
@@ -177,15 +215,12 @@ RenderStats renderComposite(const PreparedScene& scene, const Camera& camera, Im
 RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& camera,
                             KeptMemory& memory, Image& image, const Listener& listener,
                             const DeepRequest* deep) {
-    const DefaultFloats floats;
-    const std::vector<Factorization> views = viewsOf(camera, *scene.scene.volume, scene.options);
-    RenderStats stats;
-    stats.mode = Mode::kComposite;
-    stats.method = scene.options.method;
-    stats.tolerance = scene.options.tolerance;
-    stats.sliceAxis = views.front().sliceAxis;
-    CompositeRender(scene, camera, memory, image, stats, deep).run(views, listener);
-    return stats;
+    return renderAs({&image, deep, nullptr}, scene, camera, memory, listener);
+}
+
+RenderStats renderKept(const PreparedScene::Impl& scene, const Camera& camera, KeptMemory& memory,
+                       std::vector<KeptView>& views, const Listener& listener) {
+    return renderAs({nullptr, nullptr, &views}, scene, camera, memory, listener);
 }
 
 }  // namespace deltasplat

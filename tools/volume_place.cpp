@@ -93,6 +93,11 @@ Json placeJson(const Volume& volume) {
 }
 
 std::string cameraOptionsText(const Camera& camera) {
+    const glm::ivec2 overscan = camera.overscanPixels;
+    if (overscan != glm::ivec2(0)) {
+        return cameraOptionsText(camera.withoutOverscan()) + " --overscan " +
+               joinNumbers({double(overscan.x), double(overscan.y)}, ",");
+    }
     const glm::ivec2 size = camera.sizePixels;
     std::string text = "--projection " + projectionName(camera.projection);
     if (camera.projection == Projection::kOrtho) {
@@ -113,7 +118,8 @@ std::string cameraOptionsText(const Camera& camera) {
     return text + " --size " + joinNumbers({double(size.x), double(size.y)}, "x");
 }
 
-Json cameraJson(const Camera& camera) {
+Json cameraJson(const Camera& whole) {
+    const Camera camera = whole.withoutOverscan();
     Json json = {{"projection", projectionName(camera.projection)}};
     if (camera.projection != Projection::kOrtho) {
         json["eye"] = vectorJson(camera.eyeWorld());
@@ -128,7 +134,9 @@ Json cameraJson(const Camera& camera) {
                  {"frame_offset", {camera.frameOffset().x, camera.frameOffset().y}},
                  {"pixel_aspect", camera.pixelAspect},
                  {"size", {camera.sizePixels.x, camera.sizePixels.y}},
-                 {"options", cameraOptionsText(camera)}});
+                 {"options", cameraOptionsText(whole)}});
+    const glm::ivec2 overscan = whole.overscanPixels;
+    if (overscan != glm::ivec2(0)) json["overscan"] = {overscan.x, overscan.y};
     return json;
 }
 

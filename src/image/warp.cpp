@@ -35,14 +35,18 @@ Columns clipColumns(const Columns& columns, double a, double b, double low, doub
     return {int(std::max<double>(first, columns.first)), int(std::min<double>(last, columns.last))};
 }
 
+Columns bothOf(const Columns& a, const Columns& b) {
+    return {std::max(a.first, b.first), std::min(a.last, b.last)};
+}
+
 class Warper {
   public:
     Warper(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
-           Image& picture)
+           const PicturePart& part)
         : raster_(raster),
           tiles_(raster),
           map_(rasterFromPixel),
-          picture_(picture),
+          part_(part),
           wideX_(tableFor(filter, stretchOf(map_[0].x, map_[1].x))),
           wideY_(tableFor(filter, stretchOf(map_[0].y, map_[1].y))),
           filterX_(wideX_ ? *wideX_ : narrowestFilter(filter)),
@@ -51,8 +55,10 @@ class Warper {
 
     double gain() const { return filterX_.gain() * filterY_.gain(); }
     void run() {
-        const int bands = (picture_.size.y + kBand - 1) / kBand;
-        parallelFor(std::size_t(bands), [&](std::size_t band) { warpBand(int(band) * kBand); });
+        const int first = part_.first.y / kBand;
+        const int end = (part_.last().y + kBand - 1) / kBand;
+        parallelFor(std::size_t(std::max(end - first, 0)),
+                    [&](std::size_t band) { warpBand((first + int(band)) * kBand); });
     }
 
   private:
@@ -88,22 +94,23 @@ class Warper {
         return columns;
     }
 
-    // Warps kBand rows, but for stretches where the raster is empty.
+    // Warps kBand rows, but for stretches where the raster is empty. These lie alike, whatever the
+    // part.
     void warpBand(int firstRow) {
-        const int lastRow = std::min(firstRow + kBand, picture_.size.y);
+        const int lastRow = std::min(firstRow + kBand, part_.size.y);
         std::vector<Columns> stretches;
-        for (int x = 0; x < picture_.size.x; x += kStretch) {
-            const int next = std::min(x + kStretch, picture_.size.x);
+        for (int x = part_.first.x / kStretch * kStretch; x < part_.last().x; x += kStretch) {
+            const int next = std::min(x + kStretch, part_.size.x);
             if (isEmpty({x, firstRow}, {next - 1, lastRow - 1})) continue;
+            const Columns columns{std::max(x, part_.first.x), std::min(next, part_.last().x)};
             if (!stretches.empty() && stretches.back().last == x) {
-                stretches.back().last = next;
+                stretches.back().last = columns.last;
             } else {
-                stretches.push_back({x, next});
+                stretches.push_back(columns);
             }
         }
-        for (int y = firstRow; y < lastRow; ++y) {
-            for (const Columns& columns : stretches) warpRow(y, columns);
-        }
+        for (int y = std::max(firstRow, part_.first.y); y < std::min(lastRow, part_.last().y); ++y)
+            warpRow(y, stretches);
     }
 
     bool isEmpty(glm::ivec2 first, glm::ivec2 last) const {
@@ -123,33 +130,45 @@ class Warper {
                !tiles_.anyIn(glm::ivec2(low), glm::ivec2(high));
     }
 
-    void warpRow(int y, const Columns& within) {
+    void warpRow(int y, const std::vector<Columns>& stretches) {
+        if (stretches.empty()) return;
         const glm::dvec2 last = raster_.size - 1;
         const glm::dvec2 reach(filterX_.taps() / 2, filterY_.taps() / 2);
-        const Columns reached = columnsWithin(y, within, -reach, last + reach);
+        const Columns reached = columnsWithin(y, {0, part_.size.x}, -reach, last + reach);
         // A thousandth of a pixel more, so that rounding lets no tap fall outside.
         const glm::dvec2 padded(filterX_.paddedTaps() - filterX_.taps(), 0);
         Columns inner = columnsWithin(y, reached, reach - 0.999, last - reach - padded - 0.001);
         if (inner.first >= inner.last) inner = {reached.last, reached.last};
-        for (int x = reached.first; x < inner.first; ++x)
-            sampler_.sample(fixedPosition(positionOf(x, y)), picture_.pixel(x, y));
-        sampleColumns(y, inner.first, inner.last);
-        for (int x = inner.last; x < reached.last; ++x)
-            sampler_.sample(fixedPosition(positionOf(x, y)), picture_.pixel(x, y));
+        for (const Columns& stretch : stretches) {
+            const Columns columns = bothOf(stretch, reached);
+            sampleSingly(y, bothOf(columns, {reached.first, inner.first}));
+            sampleColumns(y, inner, bothOf(columns, inner));
+            sampleSingly(y, bothOf(columns, {inner.last, reached.last}));
+        }
     }
 
-    void sampleColumns(int y, int first, int last) {
-        if (first >= last) return;
+    void sampleSingly(int y, const Columns& columns) {
+        for (int x = columns.first; x < columns.last; ++x)
+            sampler_.sample(fixedPosition(positionOf(x, y)), part_.pixel(x, y));
+    }
+
+    // Samples columns of a row whose positions are counted from the first of `inner`.
+    void sampleColumns(int y, const Columns& inner, const Columns& columns) {
+        if (columns.first >= columns.last) return;
         // A single pixel takes no step, which may be too long to be written as a fixed number.
-        const glm::dvec2 along = last - first > 1 ? step() : glm::dvec2(0);
-        sampleRun(raster_, filterX_, filterY_, fixedPosition(positionOf(first, y)),
-                  fixedPosition(along), last - first, picture_.pixel(first, y));
+        const FixedPosition along =
+            fixedPosition(inner.last - inner.first > 1 ? step() : glm::dvec2(0));
+        FixedPosition position = fixedPosition(positionOf(inner.first, y));
+        position.x += along.x * (columns.first - inner.first);
+        position.y += along.y * (columns.first - inner.first);
+        sampleRun(raster_, filterX_, filterY_, position, along, columns.last - columns.first,
+                  part_.pixel(columns.first, y));
     }
 
     const Raster& raster_;
     RasterTiles tiles_;
     const glm::dmat3& map_;
-    Image& picture_;
+    const PicturePart& part_;
     std::optional<FilterTable> wideX_;
     std::optional<FilterTable> wideY_;
     const FilterTable& filterX_;
@@ -160,15 +179,15 @@ class Warper {
 }  // namespace
 
 void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
-          Image& picture) {
-    if (raster.size.x > 0 && raster.size.y > 0)
-        Warper(raster, rasterFromPixel, filter, picture).run();
+          const PicturePart& part) {
+    if (raster.size.x > 0 && raster.size.y > 0) Warper(raster, rasterFromPixel, filter, part).run();
 }
 
 double warpGain(const glm::dmat3& rasterFromPixel) {
     const Raster none;
     Image picture;
-    return Warper(none, rasterFromPixel, WarpFilter::kSharp, picture).gain();
+    const PicturePart part(picture);
+    return Warper(none, rasterFromPixel, WarpFilter::kSharp, part).gain();
 }
 
 }  // namespace deltasplat

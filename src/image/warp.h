@@ -23,13 +23,32 @@ struct Raster {
     std::span<const glm::ivec2> spans{};
 };
 
+/// Pixels of a picture of `size` that are written: those of `image`, from `first` on. What is
+/// written to a pixel does not depend on which others are.
+struct PicturePart {
+    Image& image;
+    glm::ivec2 first;
+    glm::ivec2 size;
+
+    explicit PicturePart(Image& whole) : image(whole), first(0), size(whole.size) {}
+    PicturePart(Image& part, glm::ivec2 firstPixel, glm::ivec2 sizePixels)
+        : image(part), first(firstPixel), size(sizePixels) {}
+    glm::ivec2 last() const { return first + image.size; }
+    /// Of coordinates in the whole picture.
+    float* pixel(int x, int y) const { return image.pixel(x - first.x, y - first.y); }
+};
+
 /// Resamples a raster under an affine map with a filter that is widened where the picture is
 /// coarser than the raster. No value leaves the range of those around it, what lies outside of the
 /// raster (0) among them. Deterministic; multi-threaded.
 /// @param rasterFromPixel  continuous picture coordinates (pixel centres at half-integers) to
 /// lattice positions
 void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
-          Image& picture);
+          const PicturePart& part);
+inline void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
+                 Image& picture) {
+    warp(raster, rasterFromPixel, filter, PicturePart(picture));
+}
 
 /// Returns the most that `warp` with kSharp under the same map can enlarge a difference of rasters.
 double warpGain(const glm::dmat3& rasterFromPixel);

@@ -69,7 +69,7 @@ class FilterLadder {
 class RegionWarper {
   public:
     RegionWarper(const Raster& raster, const Camera& camera, const Factorization& view,
-                 const Factorization& thin, const BasePlane& plane, Image& picture)
+                 const Factorization& thin, const BasePlane& plane, const PicturePart& part)
         : raster_(raster),
           tiles_(raster),
           order_(sliceOrder(view.sliceAxis)),
@@ -77,13 +77,15 @@ class RegionWarper {
           slopeScale_(thin.slopeLimit / view.slopeLimit),
           flat_(camera.projection == Projection::kPerspective),
           plane_(plane),
-          picture_(picture) {}
+          part_(part) {}
 
     void run() {
-        const int bands = (picture_.size.y + kBand - 1) / kBand;
-        parallelFor(std::size_t(bands), [&](std::size_t band) {
-            const int y = int(band) * kBand;
-            for (int x = 0; x < picture_.size.x; x += kStretch) warpTile({x, y});
+        const int first = part_.first.y / kBand;
+        const int end = (part_.last().y + kBand - 1) / kBand;
+        parallelFor(std::size_t(std::max(end - first, 0)), [&](std::size_t band) {
+            const int y = (first + int(band)) * kBand;
+            for (int x = part_.first.x / kStretch * kStretch; x < part_.last().x; x += kStretch)
+                warpTile({x, y});
         });
     }
 
@@ -148,9 +150,12 @@ class RegionWarper {
                !tiles_.anyIn(glm::ivec2(low), glm::ivec2(high));
     }
 
+    // Tiles lie alike, whatever the part.
     void warpTile(glm::ivec2 first) {
-        const glm::ivec2 last = glm::min(first + glm::ivec2(kStretch, kBand), picture_.size);
+        glm::ivec2 last = glm::min(first + glm::ivec2(kStretch, kBand), part_.size);
         if (isEmpty(first, last - 1)) return;
+        first = glm::max(first, part_.first);
+        last = glm::min(last, part_.last());
         std::array<Place, kStretch> places;
         for (int y = first.y; y < last.y; ++y) {
             for (int x = first.x; x < last.x; ++x) {
@@ -170,7 +175,7 @@ class RegionWarper {
             if (count == 0) return;
             const glm::u8vec2 rungs = places[end - 1].rungs;
             sampleAt(raster_, ladder_.at(rungs.x), ladder_.at(rungs.y), run.data(), int(count),
-                     picture_.pixel(first.x + int(end - count), first.y));
+                     part_.pixel(first.x + int(end - count), first.y));
             count = 0;
         };
         for (std::size_t i = 0; i < places.size(); ++i) {
@@ -194,8 +199,7 @@ class RegionWarper {
             if (all(glm::greaterThan(place.position, -reach)) &&
                 all(glm::lessThan(place.position, last + reach))) {
                 EdgeSampler(raster_, filterX, filterY)
-                    .sample(fixedPosition(place.position),
-                            picture_.pixel(first.x + int(i), first.y));
+                    .sample(fixedPosition(place.position), part_.pixel(first.x + int(i), first.y));
             }
         }
         flush(places.size());
@@ -208,16 +212,16 @@ class RegionWarper {
     double slopeScale_;
     bool flat_;
     const BasePlane& plane_;
-    Image& picture_;
+    const PicturePart& part_;
     FilterLadder ladder_;
 };
 
 }  // namespace
 
 double warpRegion(const Raster& raster, const Camera& camera, const Factorization& view,
-                  const Factorization& thin, const BasePlane& plane, Image& picture) {
+                  const Factorization& thin, const BasePlane& plane, const PicturePart& part) {
     if (raster.size.x <= 0 || raster.size.y <= 0) return 1;
-    RegionWarper warper(raster, camera, view, thin, plane, picture);
+    RegionWarper warper(raster, camera, view, thin, plane, part);
     warper.run();
     return warper.gain();
 }

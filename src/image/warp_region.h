@@ -16,6 +16,6 @@ namespace deltasplat {
 /// @param thin    of what they are divided into, which the plane is of
 /// @return the most by which it can enlarge a difference of rasters
 double warpRegion(const Raster& raster, const Camera& camera, const Factorization& view,
-                  const Factorization& thin, const BasePlane& plane, Image& picture);
+                  const Factorization& thin, const BasePlane& plane, const PicturePart& part);
 
 }  // namespace deltasplat

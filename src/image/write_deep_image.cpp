@@ -13,6 +13,7 @@
 #include "deltasplat/error.h"
 #include "dims_text.h"
 #include "image/encode_image.h"
+#include "image/seen_box.h"
 #include "image/stored_samples.h"
 #include "memory.h"
 #include "parallel.h"
@@ -39,25 +40,23 @@ OIIO::ImageSpec deepSpec(glm::ivec2 size, const ImageFileOptions& options) {
     spec.channelformats = {color, color, color, color, OIIO::TypeFloat, OIIO::TypeFloat};
     spec.alpha_channel = 3;
     spec.z_channel = 4;
-    // What deep pictures may have, besides run lengths.
-    spec.attribute("compression", "zips");
     addExrAttributes(options, spec);
     return spec;
 }
 
-// Rows [first, last) as OpenImageIO has them.
+// Pixels as OpenImageIO has them.
 class Band {
   public:
-    Band(const DeepImage& image, int first, int last, const OIIO::ImageSpec& spec, bool asFloat)
-        : width_(image.size.x), rows_(std::size_t(last - first)) {
-        data_.init(std::int64_t{width_} * (last - first), kChannels, spec.channelformats,
+    Band(const DeepImage& image, const PixelBox& part, const OIIO::ImageSpec& spec, bool asFloat)
+        : width_(part.size().x), rows_(std::size_t(part.size().y)) {
+        data_.init(std::int64_t{width_} * part.size().y, kChannels, spec.channelformats,
                    spec.channelnames);
         std::vector<unsigned> counts(rows_.size() * std::size_t(width_));
         parallelFor(rows_.size(), [&](std::size_t y) {
             unsigned* count = &counts[y * std::size_t(width_)];
             for (int x = 0; x < width_; ++x) {
                 const std::size_t before = rows_[y].size();
-                addStored(image.pixel(x, first + int(y)), asFloat, rows_[y]);
+                addStored(image.pixel(part.min.x + x, part.min.y + int(y)), asFloat, rows_[y]);
                 *count++ = unsigned(rows_[y].size() - before);
             }
         });
@@ -88,12 +87,13 @@ class Band {
     OIIO::DeepData data_;
 };
 
-bool writeBands(OIIO::ImageOutput& output, const DeepImage& image, const OIIO::ImageSpec& spec,
-                bool asFloat) {
-    for (int first = 0; first < image.size.y; first += kBand) {
-        const int last = std::min(first + kBand, image.size.y);
-        const Band band(image, first, last, spec, asFloat);
-        if (!output.write_deep_scanlines(first, last, 0, band.data())) return false;
+bool writeBands(OIIO::ImageOutput& output, const DeepImage& image, const PixelBox& box,
+                const OIIO::ImageSpec& spec, bool asFloat) {
+    for (int first = box.min.y; first < box.max.y; first += kBand) {
+        const int last = std::min(first + kBand, box.max.y);
+        const Band band(image, {{box.min.x, first}, {box.max.x, last}}, spec, asFloat);
+        const int y = spec.y - box.min.y;
+        if (!output.write_deep_scanlines(y + first, y + last, 0, band.data())) return false;
     }
     return true;
 }
@@ -103,6 +103,7 @@ bool writeBands(OIIO::ImageOutput& output, const DeepImage& image, const OIIO::I
 void checkDeepImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
                         const ImageFileOptions& options) {
     requireExr(file);
+    checkExrOptions(options.exr, true);
     checkImageFile(file, sizePixels, options);
 }
 
@@ -110,6 +111,7 @@ std::string encodeDeepImage(const std::filesystem::path& file, const DeepImage& 
                             const ImageFileOptions& options) {
     const DefaultFloats floats;
     requireExr(file);
+    checkExrOptions(options.exr, true);
     if (image.size.x < 1 || image.size.y < 1) {
         throw Error(ErrorCode::kUsage,
                     gotExpected(file.string(), dimsText(image.size) + " pixels", "at least 1x1"));
@@ -117,9 +119,12 @@ std::string encodeDeepImage(const std::filesystem::path& file, const DeepImage& 
     const double sampleBytes = options.floatExr ? 24 : 16;
     requireMemory(file.string() + ", " + std::to_string(image.samples()) + " samples",
                   kEncodedCopies * sampleBytes * double(image.samples()));
-    const OIIO::ImageSpec spec = deepSpec(image.size, options);
+    const PixelBox box =
+        storedBox(options, image.size, [&](const PixelBox& part) { return seenBox(image, part); });
+    OIIO::ImageSpec spec = deepSpec(box.size(), options);
+    setWindows(options.exr, image.size, box.min, spec);
     return encodeInMemory(file, "openexr", spec, [&](OIIO::ImageOutput& output) {
-        return writeBands(output, image, spec, options.floatExr);
+        return writeBands(output, image, box, spec, options.floatExr);
     });
 }
 

@@ -13,6 +13,7 @@
 #include "dims_text.h"
 #include "image/encode_image.h"
 #include "image/quantize.h"
+#include "image/seen_box.h"
 #include "lower_case.h"
 
 namespace deltasplat {
@@ -25,6 +26,24 @@ constexpr const char* kJpegCompression = "jpeg:95";
 int maxSide(ImageFormat format) {
     if (format == ImageFormat::kExr) return std::numeric_limits<int>::max();
     return format == ImageFormat::kJpeg ? kMaxJpegSide : kMaxPngSide;
+}
+
+// @param size  of the picture
+PixelBox regionOf(const ImageFileOptions& options, glm::ivec2 size) {
+    return options.region.value_or(PixelBox{{0, 0}, size});
+}
+
+void checkRegion(const ImageFileOptions& options, glm::ivec2 size) {
+    if (!options.region) return;
+    const PixelBox& part = *options.region;
+    if (!part.empty() && part.min.x >= 0 && part.min.y >= 0 && part.max.x <= size.x &&
+        part.max.y <= size.y)
+        return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("`region`",
+                            dimsText(part.size()) + " pixels from " + std::to_string(part.min.x) +
+                                "," + std::to_string(part.min.y) + " on",
+                            "some of the picture's " + dimsText(size)));
 }
 
 void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
@@ -46,9 +65,11 @@ void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
                                 std::to_string(channel.values.size()) + " values",
                                 std::to_string(pixels) + ", one for each pixel"));
     }
+    checkRegion(options, size);
     if (options.floatExr && format != ImageFormat::kExr) {
         throw Error(ErrorCode::kUsage, gotExpected("`floatExr`", file.string(), "an .exr file"));
     }
+    if (format == ImageFormat::kExr) checkExrOptions(options.exr, false);
     const int most = maxSide(format);
     if (size.x > most || size.y > most) {
         throw Error(ErrorCode::kUsage,
@@ -56,13 +77,6 @@ void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
                                 "sides of at most " + std::to_string(most) + " pixels in a " +
                                     lowerCase(file.extension().string())));
     }
-}
-
-OIIO::ImageSpec rgbaSpec(const Image& image, OIIO::TypeDesc type) {
-    OIIO::ImageSpec spec(image.size.x, image.size.y, 4, type);
-    spec.channelnames = {"R", "G", "B", "A"};
-    spec.alpha_channel = 3;
-    return spec;
 }
 
 // For formats that have no names of one's own.
@@ -80,16 +94,23 @@ void addDescription(const std::string& text, OIIO::ImageSpec& spec) {
     if (!text.empty()) spec.attribute("ImageDescription", text);
 }
 
+// Encodes some of a picture's pixels, as many as `spec` says.
+// @param values  of all, `[height][width][spec.nchannels]`
+template <typename Value>
 std::string encode(const std::filesystem::path& file, const char* formatName,
-                   const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
+                   const OIIO::ImageSpec& spec, const std::vector<Value>& values, int width,
+                   glm::ivec2 first) {
+    const auto channels = std::size_t(spec.nchannels);
+    const std::size_t pixel = std::size_t(first.y) * std::size_t(width) + std::size_t(first.x);
+    const auto stride = OIIO::stride_t(channels * sizeof(Value));
     return encodeInMemory(file, formatName, spec, [&](OIIO::ImageOutput& output) {
-        return output.write_image(type, pixels);
+        return output.write_image(OIIO::BaseTypeFromC<Value>::value, &values[channels * pixel],
+                                  stride, stride * width);
     });
 }
 
-void addChannels(const std::vector<ImageChannel>& channels, OIIO::TypeDesc type,
-                 OIIO::ImageSpec& spec) {
-    spec.channelformats.assign(4, type);
+void addChannels(const std::vector<ImageChannel>& channels, OIIO::ImageSpec& spec) {
+    spec.channelformats.assign(4, spec.format);
     for (const ImageChannel& channel : channels) {
         spec.channelnames.push_back(channel.name);
         spec.channelformats.push_back(OIIO::TypeFloat);
@@ -111,18 +132,83 @@ std::vector<float> besideChannels(const std::vector<float>& rgba,
     return all;
 }
 
+// Channels of one name before the dot.
+struct ExrLayer {
+    std::string name;
+    std::vector<const ImageChannel*> channels;
+};
+
+std::vector<ExrLayer> layersOf(const std::vector<ImageChannel>& channels) {
+    std::vector<ExrLayer> layers;
+    for (const ImageChannel& channel : channels) {
+        const std::string name =
+            channel.name == "Z" ? "depth" : channel.name.substr(0, channel.name.find('.'));
+        if (layers.empty() || layers.back().name != name) layers.push_back({name, {}});
+        layers.back().channels.push_back(&channel);
+    }
+    return layers;
+}
+
+// Values of channels, pixel by pixel of a part.
+std::vector<float> valuesIn(const PixelBox& box, int width, const ExrLayer& layer) {
+    std::vector<float> values;
+    for (int y = box.min.y; y < box.max.y; ++y) {
+        for (int x = box.min.x; x < box.max.x; ++x) {
+            const auto i = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            for (const ImageChannel* channel : layer.channels)
+                values.push_back(finiteValue(channel->values[i]));
+        }
+    }
+    return values;
+}
+
+// The picture in one part, and its layers in others.
+std::string encodeMultipart(const std::filesystem::path& file, const Image& image,
+                            const PixelBox& box, OIIO::ImageSpec spec,
+                            const ImageFileOptions& options) {
+    spec.attribute("oiio:subimagename", "rgba");
+    std::vector<OIIO::ImageSpec> specs{spec};
+    const std::vector<ExrLayer> layers = layersOf(options.channels);
+    for (const ExrLayer& layer : layers) {
+        OIIO::ImageSpec& part = specs.emplace_back(spec);
+        part.attribute("oiio:subimagename", layer.name);
+        part.set_format(OIIO::TypeFloat);
+        part.nchannels = int(layer.channels.size());
+        part.alpha_channel = -1;
+        part.channelnames.clear();
+        for (const ImageChannel* channel : layer.channels)
+            part.channelnames.push_back(channel->name);
+        if (layer.channels[0]->name == "Z") part.z_channel = 0;
+    }
+    return encodeParts(file, specs, [&](OIIO::ImageOutput& output, std::size_t i) {
+        if (i > 0) {
+            const std::vector<float> values = valuesIn(box, image.size.x, layers[i - 1]);
+            return output.write_image(OIIO::TypeFloat, values.data());
+        }
+        const std::vector<float> values = finiteValues(image, options.floatExr);
+        const OIIO::stride_t stride = 4 * sizeof(float);
+        const auto first =
+            std::size_t(box.min.y) * std::size_t(image.size.x) + std::size_t(box.min.x);
+        return output.write_image(OIIO::TypeFloat, &values[4 * first], stride,
+                                  stride * image.size.x);
+    });
+}
+
 std::string encodeExr(const std::filesystem::path& file, const Image& image,
                       const ImageFileOptions& options) {
-    const OIIO::TypeDesc type = options.floatExr ? OIIO::TypeFloat : OIIO::TypeHalf;
-    OIIO::ImageSpec spec = rgbaSpec(image, type);
-    spec.attribute("compression", "zip");
-    addExrAttributes(options, spec);
+    const PixelBox box = storedBox(options, image.size, [&](const PixelBox& part) {
+        return seenBox(image, part, options.channels);
+    });
+    OIIO::ImageSpec spec = exrSpec(box.size(), options);
+    setWindows(options.exr, image.size, box.min, spec);
+    if (options.exr.multipart && !options.channels.empty())
+        return encodeMultipart(file, image, box, spec, options);
     std::vector<float> values = finiteValues(image, options.floatExr);
     if (!options.channels.empty()) {
-        addChannels(options.channels, type, spec);
+        addChannels(options.channels, spec);
         values = besideChannels(values, options.channels);
     }
-    return encode(file, "openexr", spec, OIIO::TypeFloat, values.data());
+    return encode(file, "openexr", spec, values, image.size.x, box.min);
 }
 
 template <typename Sample>
@@ -131,8 +217,9 @@ std::string encodeStraight(const std::filesystem::path& file, const char* format
                            const ImageFileOptions& options) {
     // The samples are final: OpenImageIO must not divide them by alpha once more.
     spec.attribute("oiio:UnassociatedAlpha", 1);
-    return encode(file, formatName, spec, spec.format,
-                  straightSrgb<Sample>(image, options.dither && sizeof(Sample) == 1).data());
+    return encode(file, formatName, spec,
+                  straightSrgb<Sample>(image, options.dither && sizeof(Sample) == 1), image.size.x,
+                  regionOf(options, image.size).min);
 }
 
 std::string encodeStraight(const std::filesystem::path& file, const char* formatName,
@@ -149,7 +236,7 @@ OIIO::TypeDesc sampleType(const ImageFileOptions& options) {
 
 std::string encodePng(const std::filesystem::path& file, const Image& image,
                       const ImageFileOptions& options) {
-    OIIO::ImageSpec spec = rgbaSpec(image, sampleType(options));
+    OIIO::ImageSpec spec = rgbaSpec(regionOf(options, image.size).size(), sampleType(options));
     addMetadata(options, spec);
     spec.attribute("oiio:ColorSpace", "sRGB");
     return encodeStraight(file, "png", image, spec, options);
@@ -157,7 +244,7 @@ std::string encodePng(const std::filesystem::path& file, const Image& image,
 
 std::string encodeTiff(const std::filesystem::path& file, const Image& image,
                        const ImageFileOptions& options) {
-    OIIO::ImageSpec spec = rgbaSpec(image, sampleType(options));
+    OIIO::ImageSpec spec = rgbaSpec(regionOf(options, image.size).size(), sampleType(options));
     spec.attribute("compression", "zip");
     addDescription(description(options), spec);
     // Without a date OpenImageIO stores the clock time. A colour space it would put into a second
@@ -168,12 +255,13 @@ std::string encodeTiff(const std::filesystem::path& file, const Image& image,
 
 std::string encodeJpeg(const std::filesystem::path& file, const Image& image,
                        const ImageFileOptions& options) {
-    OIIO::ImageSpec spec(image.size.x, image.size.y, 3, OIIO::TypeUInt8);
+    const PixelBox part = regionOf(options, image.size);
+    OIIO::ImageSpec spec(part.size().x, part.size().y, 3, OIIO::TypeUInt8);
     spec.attribute("compression", kJpegCompression);
     spec.attribute("jpeg:subsampling", "4:4:4");
     spec.attribute("oiio:ColorSpace", "sRGB");
     addDescription(description(options).substr(0, kMaxJpegText), spec);
-    return encode(file, "jpeg", spec, spec.format, opaqueSrgb(image, options.dither).data());
+    return encode(file, "jpeg", spec, opaqueSrgb(image, options.dither), image.size.x, part.min);
 }
 
 }  // namespace

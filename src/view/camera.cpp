@@ -458,18 +458,18 @@ Camera makeCamera(const CameraOptions& options, const IndexBox& box,
     camera.targetWorld = options.targetWorld.value_or(transformed(worldFromIndex, middle));
     if (options.worldFromCamera) {
         placeByMatrix(camera, options, framed, worldFromIndex);
-        return camera;
+        return camera.withOverscan(options.overscanPixels);
     }
     orient(camera, options, viewerOf(space), givenDirection(options, camera.targetWorld));
     if (options.projection != Projection::kOrtho) {
         placeEye(camera, options, camera.targetWorld, framed, worldFromIndex);
-        return camera;
+        return camera.withOverscan(options.overscanPixels);
     }
     camera.frameWidthWorld =
         options.frameWidthWorld.value_or(fittingFrame(camera, framed, worldFromIndex));
     camera.targetDistanceWorld =
         options.distanceWorld.value_or(clearDistance(camera, framed, worldFromIndex));
-    return camera;
+    return camera.withOverscan(options.overscanPixels);
 }
 
 }  // namespace deltasplat

@@ -80,6 +80,7 @@ glm::dmat4 Camera::cameraFromWorld() const {
 }
 
 glm::dmat4 Camera::ndcFromWorld() const {
+    if (overscanPixels != glm::ivec2(0)) return withoutOverscan().ndcFromWorld();
     glm::dmat4 ndcFromCamera(1);
     if (projection == Projection::kPerspective) {
         // Homogeneous: the fourth number is z, by which the others are divided.

@@ -73,6 +73,9 @@ add_test(NAME cli.first_look
 set_tests_properties(cli.first_look PROPERTIES LABELS "cli;data" TIMEOUT 600 SKIP_RETURN_CODE 77)
 deltasplat_script_test(deep deep.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/deep)
 deltasplat_script_test(modes modes.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/modes)
+deltasplat_script_test(colors colors.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/colors ${CMAKE_CURRENT_LIST_DIR}/data)
+deltasplat_script_test(exr exr.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/exr)
 deltasplat_script_test(tone tone.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/tone)
 deltasplat_script_test(labels_first labels_first.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/labels_first $<BOOL:${DELTASPLAT_ITK}>)

@@ -59,7 +59,7 @@ foreach(size 12x 8 8x 8x8x8 0x8 8x-8 8.5x8 3000000000x1 8X8)
 endforeach()
 deltasplat_cli_test(usage.size_absurd EXIT 1
     ARGS render ${cube} -o out.exr --size 2147483647x2147483647
-    STDERR_MATCHES "deltasplat: --size 2147483647x2147483647: needs [0-9.]+ EiB of memory; expected at most [0-9.]+ .iB, which is available")
+    STDERR_MATCHES "deltasplat: --size 2147483647x2147483647: needs [0-9.]+ [GE]iB of memory; expected at most [0-9.]+ .iB, which is available")
 foreach(sigma nan inf 0.1 5 1,0 0.4x 1e)
     deltasplat_refusal(sigma_${sigma}
         "--sigma: got ${sigma}; expected a finite number from 0.2 to 4" --sigma ${sigma})
@@ -200,6 +200,66 @@ foreach(points 1 1:2:3 2:0,1:1 -1:0 1:1.5 x:1)
         "--gradient-opacity: got ${points}; expected GRADIENT:FACTOR,..., gradients of at least 0 in increasing order, factors within 0..1, as in 0:0,200:1"
         --gradient-opacity=${points})
 endforeach()
+deltasplat_refusal(colorspace_name
+    "--colorspace: got none; expected one of ACEScg, lin_srgb, sRGB, half, raw"
+    --ocio config.ocio --colorspace none)
+deltasplat_refusal(colorspace_mode "--colorspace: got --mode mip; expected --mode composite"
+    --colorspace ACEScg --mode mip)
+deltasplat_refusal(colorspace_deep
+    "--colorspace: got --deep besides; expected a flat picture, or --deep alone"
+    --colorspace ACEScg --deep)
+deltasplat_refusal(display_exr
+    "--display: got out.exr; expected a .png, .tif or .jpg file (an .exr: --colorspace)"
+    --display sRGB)
+deltasplat_cli_test(usage.colorspace_png EXIT 2
+    ARGS render ${cube} -o out.png --ocio config.ocio --colorspace ACEScg
+    STDERR "deltasplat: --colorspace: got out.png; expected an .exr file (others: --display)")
+deltasplat_cli_test(usage.display_name EXIT 2
+    ARGS render ${cube} -o out.png --ocio config.ocio --display none
+    STDERR "deltasplat: --display: got none; expected one of sRGB")
+deltasplat_cli_test(usage.look_and_tone EXIT 2
+    ARGS render ${cube} -o out.png --look swap.cube --tone filmic
+    STDERR "deltasplat: --tone: got filmic with --look; expected one of the two")
+deltasplat_cli_test(usage.look_missing EXIT 3 ARGS render ${cube} -o out.png --look none.cube
+    STDERR "deltasplat: none.cube: got no such file; expected a readable file")
+foreach(region 8x8 8x8+1 0x3+1+1 1,2,0,3 8x8+1+1+1 a 3000000000x1+0+0 0,0,2147483647,1)
+    string(MAKE_C_IDENTIFIER ${region} name)
+    deltasplat_refusal(region_${name}
+        "--region: got ${region}; expected WxH+X+Y or XMIN,YMIN,XMAX,YMAX, pixels of the picture, as oiiotool has it"
+        --region ${region})
+endforeach()
+deltasplat_refusal(region_beyond
+    "--region: got pixels 500,0 to 512,9; expected some of the picture's, 0,0 to 511,511"
+    --region 13x10+500+0)
+deltasplat_refusal(region_beyond_overscan
+    "--region: got pixels -5,0 to 4,9; expected some of the picture's, -4,-3 to 515,514"
+    --overscan 4,3 --region 10x10-5+0)
+foreach(overscan -1 1,2,3 1001% x)
+    string(MAKE_C_IDENTIFIER ${overscan} name)
+    deltasplat_refusal(overscan_${name}
+        "--overscan: got ${overscan}; expected N pixels, X,Y or P%, each at most 1000000 (1000 %)"
+        --overscan=${overscan})
+endforeach()
+deltasplat_cli_test(usage.overscan_png EXIT 2 ARGS render ${cube} -o out.png --overscan 4
+    STDERR "deltasplat: --overscan: got out.png; expected an .exr file")
+deltasplat_refusal(overscan_latlong
+    "--overscan: got --projection latlong; expected --projection ortho or perspective"
+    --overscan 4 --projection latlong)
+deltasplat_refusal(compression_name
+    "--compression: got lzw; expected none, rle, zip, zips, piz, pxr24, b44, b44a, dwaa or dwab"
+    --compression lzw)
+deltasplat_refusal(compression_level
+    "--compression: got zip:10; expected a level that is a whole number within 1..9"
+    --compression zip:10)
+deltasplat_refusal(compression_without_level
+    "--compression: got piz:3; expected a level with zip, zips, dwaa or dwab alone"
+    --compression piz:3)
+deltasplat_refusal(compression_two_levels
+    "--compression: got zip:3:4; expected a name, or a name, : and a level, as in dwaa:45"
+    --compression zip:3:4)
+deltasplat_refusal(compression_of_deep
+    "--compression: got piz of a deep picture; expected zips"
+    --compression piz --deep)
 foreach(file out.png out.tif out.jpg)
     deltasplat_cli_test(usage.deep_${file} EXIT 2 ARGS render ${cube} -o ${file} --deep
         STDERR "deltasplat: --deep: got ${file}; expected an .exr file")
@@ -442,6 +502,18 @@ deltasplat_cli_test(used.both ARGS info ball.vdb ${cube} --grid density --spacin
     STDOUT_MATCHES "voxel size +1 x 1 x 2")
 deltasplat_unused(bits --bits "on an .exr"
     ARGS render ${cube} -o out.exr --size 8x8 --bits 16 CREATES out.exr)
+foreach(option ocio=config.ocio working-space=lin_srgb)
+    string(REGEX REPLACE "=.*" "" name ${option})
+    deltasplat_unused(${name} --${name} "without --colorspace, --display or --look"
+        ARGS render ${cube} -o out.exr --size 8x8 --${option} CREATES out.exr)
+endforeach()
+deltasplat_unused(multipart --multipart "without --aov"
+    ARGS render ${cube} -o out.exr --size 8x8 --multipart CREATES out.exr)
+foreach(option compression=piz autocrop)
+    string(REGEX REPLACE "=.*" "" name ${option})
+    deltasplat_unused(${name} --${name} "but in an .exr"
+        ARGS render ${cube} -o out.png --size 8x8 --${option} CREATES out.png)
+endforeach()
 deltasplat_unused(deep_slices --deep-slices "without --deep"
     ARGS render ${cube} -o out.exr --size 8x8 --deep-slices 3 CREATES out.exr)
 deltasplat_unused(dither --dither "but in pictures of 8 bits"

@@ -180,7 +180,7 @@ TEST(Axes, PointWhereTheWorldDoes) {
 }
 
 // The strokes of each axis' letter, boxed: what there is in its colour besides the arrows.
-std::array<PixelBox, 3> letterBoxes(const std::array<SeenAxis, 3>& axes,
+std::array<DrawnBox, 3> letterBoxes(const std::array<SeenAxis, 3>& axes,
                                     const AnnotationStyle& style) {
     std::array<SeenAxis, 3> bare = axes;
     for (SeenAxis& axis : bare) axis.letter.clear();
@@ -193,11 +193,11 @@ std::array<PixelBox, 3> letterBoxes(const std::array<SeenAxis, 3>& axes,
         }
         return lines;
     };
-    std::array<PixelBox, 3> boxes;
+    std::array<DrawnBox, 3> boxes;
     for (std::size_t i = 0; i < 3; ++i) {
         const auto lines = linesOf(drawAxes(axes, style), style.colors.axes[i]);
         const std::size_t arrow = linesOf(drawAxes(bare, style), style.colors.axes[i]).size();
-        PixelBox box{glm::dvec2(1e9), glm::dvec2(-1e9)};
+        DrawnBox box{glm::dvec2(1e9), glm::dvec2(-1e9)};
         for (std::size_t n = arrow; n < lines.size(); ++n) {
             for (const glm::dvec2& p : lines[n]) {
                 box.min = glm::min(box.min, p);
@@ -252,7 +252,7 @@ TEST(Annotations, LeaveThePictureAroundThemAlone) {
             std::vector<int> changed(annotations.size());
             for (int y = 0; y < size.y; ++y) {
                 for (int x = 0; x < size.x; ++x) {
-                    const PixelBox pixel{{x, y}, {x + 1, y + 1}};
+                    const DrawnBox pixel{{x, y}, {x + 1, y + 1}};
                     bool covered = false;
                     for (std::size_t i = 0; i < annotations.size(); ++i) {
                         if (!annotations[i].box.overlaps(pixel)) continue;

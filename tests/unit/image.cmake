@@ -1,4 +1,6 @@
 deltasplat_test(unit/hold_out_test.cpp)
+deltasplat_test(unit/color_management_test.cpp)
+deltasplat_test(unit/exr_options_test.cpp)
 deltasplat_test(unit/image_test.cpp)
 deltasplat_test(unit/tone_test.cpp)
 deltasplat_test(unit/deep_builder_test.cpp)

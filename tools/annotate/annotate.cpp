@@ -22,7 +22,7 @@ class Corners {
 
     // What comes first keeps its place.
     bool add(Annotation annotation) {
-        const PixelBox picture{glm::dvec2(0), style_.picture};
+        const DrawnBox picture{glm::dvec2(0), style_.picture};
         const bool fits =
             picture.contains(annotation.box) &&
             std::none_of(placed_.begin(), placed_.end(), [&](const Annotation& other) {

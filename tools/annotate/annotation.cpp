@@ -9,7 +9,7 @@ namespace deltasplat {
 namespace {
 
 // Adds what points may cover, `margin` wider.
-void grow(PixelBox& box, const std::vector<glm::dvec2>& points, double margin) {
+void grow(DrawnBox& box, const std::vector<glm::dvec2>& points, double margin) {
     for (const glm::dvec2& p : points) {
         const bool first = box.empty();
         box.min = first ? p - margin : glm::min(box.min, p - margin);
@@ -19,18 +19,18 @@ void grow(PixelBox& box, const std::vector<glm::dvec2>& points, double margin) {
 
 }  // namespace
 
-bool PixelBox::overlaps(const PixelBox& other) const {
+bool DrawnBox::overlaps(const DrawnBox& other) const {
     return min.x < other.max.x && other.min.x < max.x && min.y < other.max.y && other.min.y < max.y;
 }
 
-bool PixelBox::contains(const PixelBox& other) const {
+bool DrawnBox::contains(const DrawnBox& other) const {
     return min.x <= other.min.x && min.y <= other.min.y && other.max.x <= max.x &&
            other.max.y <= max.y;
 }
 
 Annotation makeAnnotation(const std::string& option, const Ink& ink) {
     Annotation annotation{option, ink.shapes(), {}};
-    PixelBox box;
+    DrawnBox box;
     for (const Shape& shape : annotation.shapes) {
         // Half a pixel more than a line's half width is covered in part.
         if (const Line* const line = std::get_if<Line>(&shape))

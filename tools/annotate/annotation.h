@@ -11,20 +11,20 @@
 namespace deltasplat {
 
 /// A rectangle of a picture in pixels; empty where min = max.
-struct PixelBox {
+struct DrawnBox {
     glm::dvec2 min{0.0};
     glm::dvec2 max{0.0};
 
     bool empty() const { return !(min.x < max.x && min.y < max.y); }
-    bool overlaps(const PixelBox& other) const;
-    bool contains(const PixelBox& other) const;
+    bool overlaps(const DrawnBox& other) const;
+    bool contains(const DrawnBox& other) const;
 };
 
 /// What is drawn over a part of a picture.
 struct Annotation {
     std::string option;         ///< that asks for it
     std::vector<Shape> shapes;  ///< no Label among them
-    PixelBox box;               ///< beyond which no pixel changes
+    DrawnBox box;               ///< beyond which no pixel changes
 };
 
 Annotation makeAnnotation(const std::string& option, const Ink& ink);

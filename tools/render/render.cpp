@@ -22,9 +22,12 @@
 #include "output_files.h"
 #include "process/interrupt.h"
 #include "render/aov_options.h"
+#include "render/color_options.h"
 #include "render/deep_options.h"
+#include "render/exr_options.h"
 #include "render/ground_options.h"
 #include "render/picture_legend.h"
+#include "render/picture_parts.h"
 #include "render/read_medium.h"
 #include "render/render_input.h"
 #include "render/render_modes.h"
@@ -54,6 +57,7 @@ std::vector<std::pair<std::string, std::string>> commonMetadata(const Session& s
 ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume,
                               const RenderResult& result, const Session& session) {
     ImageFileOptions options = command.image;
+    setExr(command, result.camera, options);
     options.cameraFromWorld = result.camera.cameraFromWorld();
     options.ndcFromWorld = result.camera.ndcFromWorld();
     options.pixelAspect = result.camera.pixelAspect;
@@ -64,6 +68,7 @@ ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume
                              {"camera", cameraOptionsText(result.camera)},
                              {"codeBook", volume.codeBook.name()},
                              {"codeError", codeErrorText(volume.codeError)}});
+    setColors(command, options);
     const RenderOptions& render = command.picture.render;
     if (result.stats.mode == Mode::kDrr) {
         options.metadata.emplace_back("muWater", numberText(render.drr.muWater));
@@ -127,6 +132,8 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     warnOfUnusedTone(app, command, display);
     warnOfUnusedDeepOptions(app, command, display);
     warnOfUnusedAovOptions(app, command, display);
+    warnOfUnusedExrOptions(app, command, display);
+    warnOfUnusedColorOptions(app, command, display);
     warnOfUnusedModeOptions(app, command, display);
     if (command.picture.render.mode != Mode::kComposite) return;
     warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading,
@@ -175,6 +182,7 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
     if (command.picture.background) compositeOver(result.image, *command.picture.background);
     fillForJpeg(command, result.image, listener);
     applyTone(command, result.image, image, listener);
+    convertColors(command, result.image, image);
     std::optional<Legend> legend;
     if (optics.surface && command.annotations.legend) {
         listener.warn("--legend: left out, for what is shown is a surface, of one colour");
@@ -243,6 +251,29 @@ struct MadePicture {
     std::string codeBook;
 };
 
+// Renders and writes a picture some rows at a time.
+RenderResult makeInParts(const RenderCommand& command, const ReadScene& read,
+                         const SequencePart& part, const Session& session,
+                         const Listener& listener) {
+    const Clock::time_point start = Clock::now();
+    std::optional<PreparedScene> own;
+    if (!part.prepared) own.emplace(Scene{read.volume, read.options.optics}, read.options);
+    const double sceneSeconds = own ? secondsSince(start) : 0;
+    RenderResult result = renderInParts(
+        command, own ? *own : *part.prepared, read.options.camera,
+        [&](const RenderResult& known) {
+            RenderResult said;
+            said.camera = known.camera;
+            said.stats = known.stats;
+            boundOver(command.picture.background, said.stats);
+            return imageOptions(command, *read.volume, said, session);
+        },
+        listener);
+    result.stats.prepareSeconds += sceneSeconds;
+    boundOver(command.picture.background, result.stats);
+    return result;
+}
+
 // Reads, renders and writes one picture.
 MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const Session& session,
                         const SequencePart& part, const Listener& listener) {
@@ -261,8 +292,18 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     made.codeBook = "code book " + volume.codeBook.name() + ", largest error " +
                     codeErrorText(volume.codeError) + "\n";
 
-    const Listener rendering = partOf(listener, kReadShare, kRenderShare);
     RenderResult& result = made.result;
+    const auto tell = [&] {
+        made.times.total = secondsSince(session.begin);
+        writeStats(command.stats, statsJson(result, volume, made.times, made.deep));
+        listener.report(1);
+    };
+    if (!part.take && isMadeInParts(command, options.camera)) {
+        result = makeInParts(command, scene, part, session, partOf(listener, kReadShare, 1));
+        tell();
+        return made;
+    }
+    const Listener rendering = partOf(listener, kReadShare, kRenderShare);
     DeepImage deep;
     if (command.deep) {
         result = renderDeep(volume, options, command.deepOptions, deep, rendering);
@@ -290,9 +331,7 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     if (part.take) part.take(result.image);
     if (part.isWritten) writePicture(command, deep, result.image, image);
     made.times.write = secondsSince(beginWrite);
-    made.times.total = secondsSince(session.begin);
-    writeStats(command.stats, statsJson(result, volume, made.times, made.deep));
-    writing.report(1);
+    tell();
     return made;
 }
 
@@ -345,6 +384,8 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
         applyScene(app, command.frames.frames, command, display.stage(0, 0));
         applyCamera(app, command.frames.frames, command.picture, display.stage(0, 0));
     }
+    applyOverscan(command);
+    applySinks(app, command);
     applyLayers(app, command.picture);
     applySurface(app, command.picture.render.mode, isFog(command.picture), command.picture.surface,
                  command.picture.read);

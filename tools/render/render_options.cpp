@@ -19,7 +19,9 @@
 #include "program.h"
 #include "render/annotation_options.h"
 #include "render/aov_options.h"
+#include "render/color_options.h"
 #include "render/deep_options.h"
+#include "render/exr_options.h"
 #include "render/ground_options.h"
 #include "render/list_presets.h"
 #include "render/render_sequence.h"
@@ -334,8 +336,10 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addOutputOptions(app, command);
     addSequenceOptions(app, command);
     addToneOptions(app, command.tone);
+    addColorOptions(app, command.color);
     addDeepOptions(app, command);
     addAovOptions(app, command);
+    addExrOptions(app, command);
     addCameraOptions(app, command.picture);
     addModeOption(app, command.picture.render.mode);
     addRayOptions(app, command);
@@ -407,6 +411,8 @@ void warnOfDetector(const CameraOptions& options, const Volume& volume, const Li
 void validate(const RenderCommand& command) {
     checkDeep(command);
     checkAovs(command);
+    checkExr(command);
+    checkColors(command);
     checkGround(command);
     checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     checkCamera(command.picture.render.camera);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include "annotate/annotation_choice.h"
 #include "camera/camera_choice.h"
+#include "deltasplat/image/color_management.h"
 #include "deltasplat/image/tone.h"
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/ingest/read_volume.h"
@@ -63,6 +65,18 @@ struct ChannelChoice {
     bool has(Aov aov) const { return std::find(aovs.begin(), aovs.end(), aov) != aovs.end(); }
 };
 
+/// How far a picture reaches beyond its frame.
+struct OverscanChoice {
+    glm::ivec2 pixels{0};
+    double percent = 0;  ///< of its width and height, besides
+
+    bool asked() const { return pixels != glm::ivec2(0) || percent > 0; }
+    glm::ivec2 of(glm::ivec2 size) const {
+        const glm::dvec2 share = glm::ceil(percent / 100 * glm::dvec2(size));
+        return pixels + glm::ivec2(glm::min(share, double(kMostOverscan)));
+    }
+};
+
 /// A plane to throw a shadow on.
 struct GroundChoice {
     glm::dvec3 pointWorld{0.0};
@@ -87,7 +101,10 @@ struct RenderCommand {
     bool drr = false;                  ///< another way to say mode drr
     std::optional<glm::dvec2> window;  ///< values of black and white; empty: percentiles
     ImageFileOptions image;
+    std::optional<PixelBox> region;  ///< of the picture without its overscan; empty: all of it
+    OverscanChoice overscan;
     ToneChoice tone;
+    ColorOptions color;
     ChannelChoice channels;
     AovOptions aovOptions;
     std::optional<GroundChoice> ground;  ///< whose shadow is shown; empty: none

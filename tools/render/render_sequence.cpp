@@ -159,7 +159,8 @@ void fixCamera(const Volume& seen, std::optional<int> turntable, CameraOptions& 
     double distance = 0;
     for (int frame = 0; frame < turntable.value_or(1); ++frame) {
         turned.azimuthDegrees = choice.azimuthDegrees + turnOf(frame + 1, turntable);
-        const Camera camera = makeCamera(turned, seen.box, seen.worldFromIndex, seen.space);
+        const Camera camera =
+            makeCamera(turned, seen.box, seen.worldFromIndex, seen.space).withoutOverscan();
         width = std::max(width, camera.frameWidthWorld);
         distance = std::max(distance, camera.targetDistanceWorld);
         if (!choice.targetWorld && !choice.worldFromCamera) choice.targetWorld = camera.targetWorld;
@@ -244,7 +245,6 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
         std::iota(command.frames.frames.begin(), command.frames.frames.end(), 1);
     }
     requireFramesOf(app, command.frames, command.input);
-    applySinks(app, command);
     if (!command.frames.asked()) {
         if (command.firstPass.empty()) return;
         refuseWithoutFrames("--first-pass");
@@ -276,9 +276,12 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
             frames, command.frames.keepGoing, workersFor(command, look),
             [&](std::size_t i, const Listener& part) {
                 const FrameLook frame{look, i};
-                const SequencePart sequence{&frame, prepared ? &*prepared : nullptr,
-                                            [&](const Image& image) { sinks.put(i, image); },
-                                            sinks.areWritten(), frames[i].frame};
+                SequencePart sequence{&frame,
+                                      prepared ? &*prepared : nullptr,
+                                      {},
+                                      sinks.areWritten(),
+                                      frames[i].frame};
+                if (sinks.any()) sequence.take = [&](const Image& image) { sinks.put(i, image); };
                 try {
                     makePicture(commandOf(fixed, frames[i], stats), sequence, part);
                 } catch (...) {

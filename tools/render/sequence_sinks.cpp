@@ -23,7 +23,8 @@ void checkSheet(const CLI::App& app, const RenderCommand& command) {
                dimsText(cells) + " for " + std::to_string(command.frames.frames.size()) + " frames",
                "room for all of them");
     }
-    for (const char* option : {"--aov", "--deep", "--stats"})
+    for (const char* option :
+         {"--aov", "--deep", "--stats", "--region", "--overscan", "--autocrop"})
         if (isGiven(app, option))
             refuse("--contact-sheet", option + std::string(" besides"), "one of them");
     checkImageFile(command.output, cells * command.picture.render.camera.sizePixels, command.image);

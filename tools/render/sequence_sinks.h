@@ -28,6 +28,8 @@ class SequenceSinks {
     SequenceSinks(const RenderCommand& command,
                   const std::vector<std::pair<std::string, std::string>>& metadata);
 
+    /// Whether there are any.
+    bool any() const { return !sinks_.empty(); }
     /// Whether frames have files of their own.
     bool areWritten() const { return areWritten_; }
     void put(std::size_t i, const Image& image);

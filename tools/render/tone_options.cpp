@@ -76,6 +76,7 @@ void applyTone(const RenderCommand& command, Image& image, ImageFileOptions& fil
     file.metadata.insert(file.metadata.end(), {{"exposure", numberText(choice.exposureStops)},
                                                {"tone", toneName(choice.tone)}});
     if (choice.exposureStops != 0) expose(image, choice.exposureStops);
+    if (command.color.isShown()) return ColorTransform(command.color).show(image);
     if (choice.tone == Tone::kFilmic) return toneFilmic(image);
     warnOfClipping(command, image, listener);
 }

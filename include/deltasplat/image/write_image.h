@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "deltasplat/image/exr_options.h"
 #include "deltasplat/image/image.h"
+#include "deltasplat/image/pixel_box.h"
 
 namespace deltasplat {
 
@@ -17,6 +19,7 @@ namespace deltasplat {
 struct ImageChannel {
     std::string name;
     std::vector<float> values;  ///< [height][width], from the top
+    float nothing = 0;          ///< what it tells where there is nothing
 };
 
 /// How a picture is stored. No clock time goes into a file: the same picture gives the same bytes.
@@ -35,6 +38,8 @@ struct ImageFileOptions {
     std::vector<std::pair<std::string, std::string>> metadata;
     /// .exr: stored beside R, G, B and A, always as floats, finite as these.
     std::vector<ImageChannel> channels;
+    ExrOptions exr;                  ///< without effect on others
+    std::optional<PixelBox> region;  ///< what is stored of the picture; empty: all
 };
 
 enum class ImageFormat { kExr, kPng, kTiff, kJpeg };
@@ -57,7 +62,7 @@ inline constexpr int kMaxJpegSide = 65500;
 void checkImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
                     const ImageFileOptions& options);
 
-/// Writes `.exr` (scene-linear, premultiplied, ZIP compression), `.png` or `.tif` (sRGB, straight
+/// Writes `.exr` (scene-linear, premultiplied), `.png` or `.tif` (sRGB, straight
 /// alpha, rounded to nearest, or dithered; clear where alpha is 0) or `.jpg` (sRGB, over black,
 /// quality 95 without subsampling), by extension as imageFormatOf has it. The file
 /// appears under its final name only when it is whole. Deterministic, whatever the number of

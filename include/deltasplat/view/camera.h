@@ -82,7 +82,12 @@ struct CameraOptions {
     /// each; >= 0.
     double nearWorld = 0;
     glm::ivec2 sizePixels{512, 512};
+    /// Pixels that the picture has more at its left and right, and above and below, each
+    /// 0..kMostOverscan; not kLatlong.
+    glm::ivec2 overscanPixels{0};
 };
+
+inline constexpr int kMostOverscan = 1'000'000;
 
 inline constexpr double kDefaultFov = 30;
 inline constexpr double kDefaultFocalMm = 50;
@@ -109,8 +114,9 @@ struct Camera {
     double pixelAspect = 1;  ///< as CameraOptions::pixelAspect
     /// From the camera to the plane through the target. kOrtho: it moves no pixel.
     double targetDistanceWorld = 0;
-    double nearWorld = 0;  ///< as CameraOptions::nearWorld
-    glm::ivec2 sizePixels{512, 512};
+    double nearWorld = 0;             ///< as CameraOptions::nearWorld
+    glm::ivec2 sizePixels{512, 512};  ///< overscan included, as in the frame's width
+    glm::ivec2 overscanPixels{0};     ///< as CameraOptions::overscanPixels
 
     /// Where lines of sight begin (kOrtho: the middle one).
     glm::dvec3 eyeWorld() const { return targetWorld - targetDistanceWorld * direction; }
@@ -139,10 +145,15 @@ struct Camera {
     /// OpenEXR's worldToCamera: left-handed, x right, y up, z along the line of sight, in world
     /// units; the target lies at (0, 0, targetDistanceWorld).
     glm::dmat4 cameraFromWorld() const;
-    /// OpenEXR's worldToNDC: (0, 0) is the upper left corner of the picture, (1, 1) the lower right
-    /// one; z, which has no meaning there, is that of cameraFromWorld. kLatlong, which no matrix
-    /// describes, has that of a parallel picture of its frame.
+    /// OpenEXR's worldToNDC: (0, 0) is the upper left corner of the picture without its overscan,
+    /// (1, 1) the lower right one; z, which has no meaning there, is that of cameraFromWorld.
+    /// kLatlong, which no matrix describes, has that of a parallel picture of its frame.
     glm::dmat4 ndcFromWorld() const;
+
+    /// The same camera with so many pixels more at each side, and without those that it has.
+    /// @throw Error(kUsage) for pixels that are too many, or a panorama's
+    Camera withOverscan(glm::ivec2 pixels) const;
+    Camera withoutOverscan() const;
 };
 
 /// Places the camera on a volume. What projects to one point (one voxel, an empty box, a line seen

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "deltasplat/image/deep_image.h"
+#include "deltasplat/image/image.h"
+#include "deltasplat/image/pixel_box.h"
+#include "deltasplat/image/write_image.h"
+
+namespace deltasplat {
+
+/// Returns the least box around all pixels of a part that are not clear, or at which a channel
+/// tells of something; empty if there are none. Multi-threaded.
+PixelBox seenBox(const Image& image, const PixelBox& within,
+                 std::span<const ImageChannel> channels);
+/// The same of pixels that have samples.
+PixelBox seenBox(const DeepImage& image, const PixelBox& within);
+
+/// The same of rows whose first and last pixel seen are known.
+/// @param spans  of each row from `first` on pixels [x, y), none if y <= x
+PixelBox boxOfRows(int first, std::span<const glm::ivec2> spans);
+
+}  // namespace deltasplat

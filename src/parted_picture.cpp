@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/parted_picture.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "default_floats.h"
+#include "deltasplat/error.h"
+#include "dims_text.h"
+#include "kept_memory.h"
+#include "kept_view.h"
+#include "stopwatch.h"
+
+namespace deltasplat {
+namespace {
+
+void requirePart(const PixelBox& part, glm::ivec2 size, const Image& image) {
+    const auto text = [](const PixelBox& box) {
+        return dimsText(box.size()) + " pixels from " + std::to_string(box.min.x) + "," +
+               std::to_string(box.min.y) + " on";
+    };
+    const bool isWithin = !part.empty() && part.min.x >= 0 && part.min.y >= 0 &&
+                          part.max.x <= size.x && part.max.y <= size.y;
+    if (!isWithin) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("part of a picture", text(part), "some of its " + dimsText(size)));
+    }
+    if (image.size == part.size() &&
+        image.rgba.size() == std::size_t{4} * std::size_t(image.size.x) * std::size_t(image.size.y))
+        return;
+    throw Error(ErrorCode::kUsage, gotExpected("image", dimsText(image.size) + " pixels",
+                                               dimsText(part.size()) + ", those of the part"));
+}
+
+}  // namespace
+
+struct PartedPicture::Impl {
+    Impl(const PreparedScene& ofScene, const Camera& ofCamera) : scene(ofScene), camera(ofCamera) {}
+
+    PreparedScene scene;
+    Camera camera;
+    KeptMemory memory;
+    std::vector<KeptView> views;
+    RenderStats stats;
+};
+
+PartedPicture::PartedPicture(const PreparedScene& scene, const Camera& camera,
+                             const Listener& listener)
+    : impl_(std::make_unique<Impl>(scene, camera)) {
+    const DefaultFloats floats;
+    impl_->stats =
+        renderKept(impl_->scene.impl(), impl_->camera, impl_->memory, impl_->views, listener);
+}
+PartedPicture::~PartedPicture() = default;
+PartedPicture::PartedPicture(PartedPicture&&) noexcept = default;
+PartedPicture& PartedPicture::operator=(PartedPicture&&) noexcept = default;
+
+const Camera& PartedPicture::camera() const {
+    return impl_->camera;
+}
+
+const RenderStats& PartedPicture::stats() const {
+    return impl_->stats;
+}
+
+void PartedPicture::show(const PixelBox& part, Image& image) {
+    const DefaultFloats floats;
+    requirePart(part, impl_->camera.sizePixels, image);
+    const Clock::time_point start = Clock::now();
+    std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
+    RenderStats& stats = impl_->stats;
+    for (const KeptView& view : impl_->views) {
+        const double gain = view.picture->showPart(
+            view.layer, PicturePart(image, part.min, impl_->camera.sizePixels));
+        if (stats.tolerance.isExact()) continue;
+        const ErrorBound bound = view.picture->errorBound();
+        stats.errorBoundColor = std::max(stats.errorBoundColor, bound.color * gain);
+        stats.errorBoundAlpha = std::max(stats.errorBoundAlpha, bound.alpha * gain);
+    }
+    const double seconds = secondsSince(start);
+    stats.warpSeconds += seconds;
+    stats.renderSeconds += seconds;
+}
+
+}  // namespace deltasplat

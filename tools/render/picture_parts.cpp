@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/picture_parts.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "deltasplat/atomic_file.h"
+#include "deltasplat/image/exr_rows.h"
+#include "deltasplat/image/write_image.h"
+#include "deltasplat/parted_picture.h"
+#include "dims_text.h"
+#include "image/seen_box.h"
+#include "listener_part.h"
+#include "memory.h"
+#include "render/render_modes.h"
+
+namespace deltasplat {
+namespace {
+
+// What a part takes, and from which size on a picture is made in parts.
+constexpr double kPartBytes = double(64 << 20);
+constexpr double kBytesPerPixel = 16;
+// Of the progress, what rendering takes before pixels are shown.
+constexpr double kRenderShare = 0.5;
+
+// Calls use(rows, first) with rows of a box from the top on.
+template <typename Use>
+void forParts(PartedPicture& picture, const RenderCommand& command, const PixelBox& box,
+              const Use& use) {
+    std::optional<ColorTransform> transform;
+    if (!command.color.colorSpace.empty()) transform.emplace(command.color);
+    const int most = std::max(1, int(kPartBytes / (kBytesPerPixel * box.size().x)));
+    for (int first = box.min.y; first < box.max.y; first += most) {
+        const int last = std::min(first + most, box.max.y);
+        Image rows({box.size().x, last - first});
+        picture.show({{box.min.x, first}, {box.max.x, last}}, rows);
+        if (command.picture.background) compositeOver(rows, *command.picture.background);
+        if (transform) transform->convert(rows);
+        use(rows, first);
+    }
+}
+
+// A part has at least a row, which takes memory for all that is made of it as well.
+void requireRow(glm::ivec2 size) {
+    constexpr double kTimesPixel = 3;
+    requireMemory("--size " + dimsText(size), kTimesPixel * kBytesPerPixel * size.x);
+}
+
+// What is seen of a part of the picture, at least a pixel.
+PixelBox findSeen(PartedPicture& picture, const RenderCommand& command, const PixelBox& part) {
+    PixelBox all;
+    forParts(picture, command, part, [&](const Image& rows, int first) {
+        PixelBox box = seenBox(rows, {{0, 0}, rows.size}, {});
+        if (box.empty()) return;
+        const glm::ivec2 place(part.min.x, first);
+        box = {box.min + place, box.max + place};
+        all = all.empty() ? box
+                          : PixelBox{{std::min(all.min.x, box.min.x), all.min.y},
+                                     {std::max(all.max.x, box.max.x), box.max.y}};
+    });
+    return all.empty() ? PixelBox{part.min, part.min + 1} : all;
+}
+
+}  // namespace
+
+bool isMadeInParts(const RenderCommand& command, const CameraOptions& camera) {
+    const glm::dvec2 size(camera.sizePixels + 2 * camera.overscanPixels);
+    const bool isLightAlone = isExr(command) && command.picture.render.mode == Mode::kComposite &&
+                              !command.deep && command.holdoutDepth.empty() &&
+                              !command.channels.asked() && !command.ground;
+    // What is written behind its end cannot be gone back to.
+    return isLightAlone && !AtomicFile(command.output).isDevice() &&
+           (command.region || kBytesPerPixel * size.x * size.y > kPartBytes);
+}
+
+RenderResult renderInParts(const RenderCommand& command, const PreparedScene& scene,
+                           const CameraOptions& camera,
+                           const std::function<ImageFileOptions(const RenderResult&)>& fileOptions,
+                           const Listener& listener) {
+    const Volume& seen = *scene.scene().volume;
+    RenderResult result;
+    result.camera = makeCamera(camera, seen.box, seen.worldFromIndex, seen.space);
+    requireRow(result.camera.sizePixels);
+    PartedPicture picture(scene, result.camera, partOf(listener, 0, kRenderShare));
+    ImageFileOptions file = fileOptions(result);
+    PixelBox box = file.region.value_or(PixelBox{{0, 0}, result.camera.sizePixels});
+    // How far pixels may be off stands before them in the file.
+    if (file.exr.autocrop || !picture.stats().tolerance.isExact()) {
+        const PixelBox found = findSeen(picture, command, box);
+        if (file.exr.autocrop) box = found;
+    }
+    result.stats = picture.stats();
+    file = fileOptions(result);
+    ExrRows rows(command.output, result.camera.sizePixels, box, file);
+    forParts(picture, command, box, [&](const Image& image, int first) {
+        rows.write(image);
+        const double share = double(first + image.size.y - box.min.y) / box.size().y;
+        listener.report(kRenderShare + (1 - kRenderShare) * share);
+    });
+    rows.finish();
+    result.stats = picture.stats();
+    return result;
+}
+
+}  // namespace deltasplat
