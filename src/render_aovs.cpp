@@ -406,7 +406,7 @@ std::vector<ImageChannel> renderAovs(const Volume& volume, const RenderOptions& 
     checkOpacity(aovOptions.depthOpacity);
     if (aovOptions.picture && aovOptions.picture->size != camera.sizePixels) {
         throw Error(ErrorCode::kUsage,
-                    gotExpected("picture", dimsText(aovOptions.picture->size) + " pixels",
+                    gotExpected("`picture`", dimsText(aovOptions.picture->size) + " pixels",
                                 dimsText(camera.sizePixels) + ", those of the camera"));
     }
     // A picture, and what is made of it, for each; and places.

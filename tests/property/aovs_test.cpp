@@ -96,7 +96,7 @@ TEST(Aovs, transmittanceIsReadFromThePicture) {
                   renderAovs(*volume, options, beauty.camera, std::vector{Aov::kTransmittance},
                              aovOptions);
               }),
-              "usage: picture: got 3x3 pixels; expected 90x70, those of the camera");
+              "usage: `picture`: got 3x3 pixels; expected 90x70, those of the camera");
 }
 
 // Without lights all that is shown shines.
