@@ -47,7 +47,7 @@ void applyScene(const CLI::App& app, const std::vector<int>& frames, RenderComma
     if (!camera.up) camera.up = scene.motion->upWorld;
     if (!frames.empty()) {
         // Each frame has its own; until then the first one's will do.
-        showFrame(frames.front(), scene.file, command);
+        showFrame(frames.front(), scene.moves() ? scene.file : std::filesystem::path(), command);
         return;
     }
     if (scene.motion->frames.size() > 1)

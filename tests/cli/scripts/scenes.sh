@@ -33,6 +33,14 @@ show scene.usda fit_# --frames 1-2 --range 0,1 --unit-distance 1
 show in.1.vdb alone --range 0,1 --unit-distance 1
 expect_different fit_1 alone 0.01
 
+# One that stands still, from all sides.
+sed 's/timeSamples = { 1: @in.1.vdb@.*}/timeSamples = { 1: @in.1.vdb@ }/; s/.timeSamples = { 1: (0, 0, 0).*/ = (3, 0, 0)/;
+     s/filePath.timeSamples = { 1: \(@.*@\) }/filePath = \1/' scene.usda >still.usda
+"$program" convert v1/density.raw $raw at3.vdb --background 0 -qq --spacing 1,2,1 --origin 3,0,0
+show still.usda turn_# --turntable 3
+show at3.vdb other_# --turntable 3
+expect_same turn_2 other_2 1e-6
+
 # A frame without a file is missing.
 expect_code 3 "$program" render scene.usda -o gone.#.exr --frames 3-4 -qq --size 8x8
 expect_said "deltasplat: frame 4: scene.usda: got no filePath of a volume; expected a .vdb"
