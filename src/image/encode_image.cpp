@@ -59,8 +59,6 @@ void addExrAttributes(const ImageFileOptions& options, OIIO::ImageSpec& spec) {
     spec.attribute("oiio:ColorSpace", "Linear");
     // Without a date OpenImageIO stores the clock time (as capDate).
     spec.attribute("DateTime", "");
-    if (options.pixelAspect != 1)
-        spec.attribute("PixelAspectRatio", float(options.pixelAspect));
     if (options.cameraFromWorld) setMatrix(spec, "worldToCamera", *options.cameraFromWorld);
     if (options.ndcFromWorld) setMatrix(spec, "worldToNDC", *options.ndcFromWorld);
 }

@@ -64,8 +64,10 @@ class ScatteredLight : public LookLight {
     ScatteredLight(const Scattering& scattering, const std::vector<Shine>& shines,
                    const LightDepths& depths, const glm::dvec3* factor, const ClassTable& classes,
                    const LitScene& scene)
-        : LookLight(VoxelUnits(classes, brightestOf(scattering, shines, classes, scene.camera)),
-                    dimmestOf(scattering, shines, scene.camera)),
+        : LookLight(
+              VoxelUnits(classes, brightestOf(scattering, shines, factor, classes, scene.camera)),
+              dimmestOf(scattering, shines, scene.camera) *
+                  leastOfOctaves(scattering, shines, factor, classes, scene.camera)),
           depths_(depths),
           sliceAxis_(scene.sliceAxis),
           hasFactors_(factor != nullptr),
@@ -170,20 +172,53 @@ class ScatteredLight : public LookLight {
         return dimmest;
     }
 
-    // The most that any voxel scatters.
-    static glm::dvec3 brightestOf(const Scattering& scattering, const std::vector<Shine>& shines,
-                                  const ClassTable& classes, const Camera& camera) {
+    // What those send on that send on most, each time.
+    static glm::dvec3 sentOnAtMost(const Scattering& scattering, const glm::dvec3* factor,
+                                   const ClassTable& classes) {
+        const glm::dvec3 share = scattering.albedo * deltasplat::brightestOf(classes);
+        return glm::min(factor ? share * *factor : share, glm::dvec3(1));
+    }
+
+    // The most light of octaves 0 to `octaves` that any voxel turns to the camera, before it has
+    // its own colour.
+    static glm::dvec3 turnedAtMost(const Scattering& scattering, const std::vector<Shine>& shines,
+                                   const glm::dvec3& sentOn, const Camera& camera, int octaves) {
         const bool isParallel = camera.projection == Projection::kOrtho;
-        glm::dvec3 brightest = scattering.ambient;
-        for (const ScatterPhase& phase : phasesOf(scattering)) {
+        const std::vector<ScatterPhase> phases = phasesOf(scattering);
+        glm::dvec3 most = scattering.ambient;
+        glm::dvec3 left(1);
+        for (int octave = 0; octave <= octaves; ++octave, left *= sentOn) {
+            const ScatterPhase& phase = phases[std::size_t(octave)];
             for (const Shine& shine : shines) {
                 const bool isOneWay = isParallel && !shine.isPoint();
                 const double share =
                     isOneWay ? phase.at(cosineOf(shine.light, camera)) : phase.largest();
-                brightest += share * shine.light.strength * shine.light.color;
+                most += left * share * shine.light.strength * shine.light.color;
             }
         }
-        return scattering.albedo * brightest * deltasplat::brightestOf(classes);
+        return most;
+    }
+
+    // The most that any voxel scatters.
+    static glm::dvec3 brightestOf(const Scattering& scattering, const std::vector<Shine>& shines,
+                                  const glm::dvec3* factor, const ClassTable& classes,
+                                  const Camera& camera) {
+        return scattering.albedo * deltasplat::brightestOf(classes) *
+               turnedAtMost(scattering, shines, sentOnAtMost(scattering, factor, classes), camera,
+                            scattering.octaves);
+    }
+
+    // What is dark may have hardly more than the first octave of what is brightest.
+    static double leastOfOctaves(const Scattering& scattering, const std::vector<Shine>& shines,
+                                 const glm::dvec3* factor, const ClassTable& classes,
+                                 const Camera& camera) {
+        const glm::dvec3 sentOn = sentOnAtMost(scattering, factor, classes);
+        const glm::dvec3 first = turnedAtMost(scattering, shines, sentOn, camera, 0);
+        const glm::dvec3 all = turnedAtMost(scattering, shines, sentOn, camera, scattering.octaves);
+        double least = 1;
+        for (int c = 0; c < 3; ++c)
+            if (all[c] > 0) least = std::min(least, first[c] / all[c]);
+        return least;
     }
 
     // Reads those of a word's voxels, [lights][u][v]. Of what cannot be seen they may be anything.

@@ -204,6 +204,10 @@ std::vector<FrameDiff> framesOf(const DiffOptions& options, const Listener& list
 Verdict compareFrames(const CLI::App& app, const DiffOptions& options, const Session& session) {
     ProgressDisplay display(session.common);
     std::vector<FrameDiff> frames = framesOf(options, display.stage(0, 0));
+    if (frames.empty()) {
+        throw Error(ErrorCode::kInput,
+                    gotExpected("--frames", "no frame that both have", "at least one"));
+    }
     Verdict worst = Verdict::kPass;
     double done = 0;
     for (FrameDiff& frame : frames) {

@@ -205,11 +205,13 @@ void runInfo(const CLI::App& app, const InfoOptions& asked, const Session& sessi
         }
     }
     if (!found.reports.empty()) {
-        const bool isSequence = options.frames.asked();
+        // Of several sequences there is nothing to say in common.
+        const bool isSequence = options.frames.asked() && asked.inputs.size() == 1;
         printOut(options.json
                      ? jsonText(found.reports, options.transferFunction.string(), isSequence)
                      : plainText(found.reports) +
-                           (isSequence ? "\n" + sequenceText(found.reports) : ""));
+                           (isSequence ? "\n" + sequenceText(found.reports, options.inputs.size())
+                                       : ""));
     }
     if (!options.plot.empty()) writePlot(options.plot, found);
     throwFailures(found.failures);

@@ -21,15 +21,19 @@ struct CommonGrid {
     std::string name;
     std::size_t files = 0;   // that have it
     std::size_t filled = 0;  // in which any voxel of it is active
+    std::size_t lastFile = 0, lastFilled = 0;
     double min = kInfinity;
     double max = -kInfinity;
     WorldBox box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
     std::uint64_t mostActive = 0;
 
-    void add(const Volume& volume) {
-        ++files;
+    // @param number  of its file
+    void add(const Volume& volume, std::size_t number) {
+        if (files == 0 || lastFile != number) ++files;
+        lastFile = number;
         if (volume.empty()) return;
-        ++filled;
+        if (filled == 0 || lastFilled != number) ++filled;
+        lastFilled = number;
         min = std::min(min, volume.valueMin);
         max = std::max(max, volume.valueMax);
         const WorldBox one = placeOf(volume).box;
@@ -41,14 +45,14 @@ struct CommonGrid {
 // In the order in which they are first seen.
 std::vector<CommonGrid> commonGrids(const std::vector<FileReport>& reports) {
     std::vector<CommonGrid> grids;
-    for (const FileReport& report : reports) {
-        for (const GridReport& grid : report.grids) {
+    for (std::size_t number = 0; number < reports.size(); ++number) {
+        for (const GridReport& grid : reports[number].grids) {
             // A volume that has no name but its file's is the same in all of them.
             const std::string name = grid.volume.hasBackground ? grid.volume.name : "";
             auto found = std::find_if(grids.begin(), grids.end(),
                                       [&](const CommonGrid& one) { return one.name == name; });
             if (found == grids.end()) found = grids.insert(grids.end(), CommonGrid{name});
-            found->add(grid.volume);
+            found->add(grid.volume, number);
         }
     }
     return grids;
@@ -76,8 +80,11 @@ nlohmann::ordered_json sequenceJson(const std::vector<FileReport>& reports) {
     return json;
 }
 
-std::string sequenceText(const std::vector<FileReport>& reports) {
-    std::string text = "All " + std::to_string(reports.size()) + " frames\n";
+std::string sequenceText(const std::vector<FileReport>& reports, std::size_t asked) {
+    const std::string count = std::to_string(reports.size());
+    std::string text =
+        (reports.size() == asked ? "All " + count : count + " of " + std::to_string(asked)) +
+        " frames\n";
     for (const CommonGrid& grid : commonGrids(reports)) {
         if (!grid.name.empty()) text += textLine("grid", grid.name);
         text += textLine("frames", std::to_string(grid.files) + ", with active voxels in " +

@@ -16,6 +16,7 @@ namespace deltasplat {
 nlohmann::ordered_json sequenceJson(const std::vector<FileReport>& reports);
 
 /// Returns the same as aligned lines, a block for each grid.
-std::string sequenceText(const std::vector<FileReport>& reports);
+/// @param asked  how many files there should be
+std::string sequenceText(const std::vector<FileReport>& reports, std::size_t asked);
 
 }  // namespace deltasplat

@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -13,6 +14,7 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "deltasplat/error.h"
 #include "process/peak_bytes.h"
@@ -86,10 +88,31 @@ class RunLog {
 
 std::unique_ptr<RunLog> log;
 
+// Whether a file begins as a log does, or is empty.
+bool isLog(int file) {
+    char text[64];
+    const ssize_t count = pread(file, text, sizeof text, 0);
+    if (count <= 0) return true;
+    const std::string_view begin(text, std::size_t(count));
+    const std::string_view json = R"({"time":")";
+    if (begin.substr(0, json.size()) == json) return true;
+    constexpr std::string_view kForm = "dddd-dd-ddTdd:dd:ddZ ";
+    if (begin.size() < kForm.size()) return false;
+    return std::equal(kForm.begin(), kForm.end(), begin.begin(), [](char form, char c) {
+        return form == 'd' ? c >= '0' && c <= '9' : c == form;
+    });
+}
+
 }  // namespace
 
 void openRunLog(const std::filesystem::path& file, bool asJson) {
-    const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (descriptor >= 0 && !isLog(descriptor)) {
+        close(descriptor);
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--log", file.string() + ", which holds something else",
+                                "a log, or no file yet"));
+    }
     if (descriptor < 0) {
         throw Error(ErrorCode::kOutput,
                     gotExpected("--log", file.string() + " (" + std::strerror(errno) + ")",

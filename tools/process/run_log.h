@@ -11,7 +11,7 @@ enum class LogLevel { kInfo, kWarning, kError };
 /// Opens a file to whose end lines are added that say what this process does; several processes may
 /// share it. For the whole process, once, before there are threads.
 /// @param asJson  whether each line is a JSON object
-/// @throw Error(kOutput) if it cannot be written
+/// @throw Error(kUsage) if it holds anything but a log; Error(kOutput) if it cannot be written
 void openRunLog(const std::filesystem::path& file, bool asJson);
 
 /// Adds a line, with the time (UTC) and the process' number; without a log, nothing. Thread-safe.

@@ -60,7 +60,7 @@ ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume
     setExr(command, result.camera, options);
     options.cameraFromWorld = result.camera.cameraFromWorld();
     options.ndcFromWorld = result.camera.ndcFromWorld();
-    options.pixelAspect = result.camera.pixelAspect;
+    options.exr.pixelAspect = result.camera.pixelAspect;
     options.metadata = commonMetadata(session);
     options.metadata.insert(options.metadata.end(),
                             {{"input", command.input.string()},
@@ -164,7 +164,7 @@ glm::dvec2 applyWindow(const RenderCommand& command, const Volume& volume, Rende
 
 // Makes opaque what has no alpha when it is stored.
 void fillForJpeg(const RenderCommand& command, Image& image, const Listener& listener) {
-    if (imageFormatOf(command.output) != ImageFormat::kJpeg) return;
+    if (command.isMovieAlone || imageFormatOf(command.output) != ImageFormat::kJpeg) return;
     if (isOpaque(image)) return;
     listener.warn(command.output.string() +
                   ": a .jpg has no alpha, so what is clear is black; --background gives it another "

@@ -414,7 +414,9 @@ void validate(const RenderCommand& command) {
     checkExr(command);
     checkColors(command);
     checkGround(command);
-    checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
+    if (!command.isMovieAlone) {
+        checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
+    }
     checkCamera(command.picture.render.camera);
     checkAnnotations(command);
     const Files mask = filesRead(filesOfMask(command.picture.parts), {});
@@ -428,6 +430,9 @@ void validate(const RenderCommand& command) {
     Files others =
         filesRead({command.input}, parseTransferFunction(command.picture.transferFunction).file);
     checkOutput("--output", command.output, others, "the input and the transfer function");
+    others.push_back(command.firstPass);
+    checkOutput("--movie", command.movie, others,
+                "the input, the transfer function and the first pass");
     others.push_back(command.output);
     checkOutput("--stats", command.stats, others,
                 "the input, the transfer function and the picture");

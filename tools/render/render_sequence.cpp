@@ -81,6 +81,9 @@ class Survey {
         for (const FrameFiles& one : frames_)
             if (!one.input.empty() && (command_.scene.moves() || known.insert(one.input).second))
                 files.push_back(one);
+        if (files.empty())
+            throw Error(ErrorCode::kInput,
+                        gotExpected("--frames", "no file of any frame", "at least one"));
         runFrames(
             files, false, threadCount(),
             [&](std::size_t i, const Listener& part) { add(i, files[i], look, part); }, listener);
@@ -179,6 +182,14 @@ RenderCommand fixedTo(const SequenceLook& look, RenderCommand command) {
         options.optics.unitDistance = look.smallestVoxelWorld();
     fixCamera(look.seen(), command.turntable, options.camera);
     return command;
+}
+
+void finishAfterFailure(SequenceSinks& sinks) {
+    try {
+        sinks.finish();
+    } catch (const Error& error) {
+        showError(error.what());
+    }
 }
 
 // The files of all frames; if pictures go elsewhere, all have the same output.
@@ -295,7 +306,8 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
         makeAll();
     } catch (const Error& error) {
         // What there is goes into the file of all.
-        if (command.frames.keepGoing && error.code() != ErrorCode::kInterrupted) sinks.finish();
+        if (command.frames.keepGoing && error.code() != ErrorCode::kInterrupted)
+            finishAfterFailure(sinks);
         throw;
     }
     sinks.finish();

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/sequence_sinks.h"
 
+#include <algorithm>
+#include <cstdint>
+
 #include "deltasplat/error.h"
 #include "dims_text.h"
+#include "memory.h"
+#include "render/color_options.h"
 #include "render/render_modes.h"
+#include "render/tone_options.h"
 #include "sequence/contact_sheet.h"
+#include "sequence/frame_name.h"
 #include "sequence/movie.h"
 
 namespace deltasplat {
@@ -17,26 +24,39 @@ namespace {
 
 void checkSheet(const CLI::App& app, const RenderCommand& command) {
     const glm::ivec2 cells = *command.contactSheet;
+    const std::size_t count = command.frames.frames.size();
     const auto room = std::size_t(cells.x) * std::size_t(cells.y);
-    if (command.frames.frames.size() > room) {
-        refuse("--contact-sheet",
-               dimsText(cells) + " for " + std::to_string(command.frames.frames.size()) + " frames",
+    if (count > room) {
+        refuse("--contact-sheet", dimsText(cells) + " for " + std::to_string(count) + " frames",
                "room for all of them");
     }
+    if (FrameName::find(command.output))
+        refuse("--output", command.output.string() + " with --contact-sheet", "one file");
     for (const char* option :
-         {"--aov", "--deep", "--stats", "--region", "--overscan", "--autocrop"})
+         {"--aov", "--deep", "--stats", "--region", "--overscan", "--autocrop"}) {
         if (isGiven(app, option))
             refuse("--contact-sheet", option + std::string(" besides"), "one of them");
-    checkImageFile(command.output, cells * command.picture.render.camera.sizePixels, command.image);
+    }
+    const glm::i64vec2 size =
+        glm::i64vec2(cells) * glm::i64vec2(command.picture.render.camera.sizePixels);
+    constexpr std::int64_t kMostSide = 1'000'000;
+    if (std::max(size.x, size.y) > kMostSide) {
+        refuse("--contact-sheet", dimsText(size) + " pixels",
+               "at most " + std::to_string(kMostSide) + " each way");
+    }
+    checkImageFile(command.output, glm::ivec2(size), command.image);
+    requireMemory("--contact-sheet", 16.0 * double(size.x) * double(size.y));
 }
 
-void checkMovieOf(RenderCommand& command) {
+void checkMovieOf(const CLI::App& app, RenderCommand& command) {
     checkMovie(command.movie, command.picture.render.camera.sizePixels);
     command.isMovieAlone = command.output.empty();
-    if (command.isMovieAlone)
-        command.output = std::filesystem::path(command.movie).replace_extension(".png");
+    if (command.isMovieAlone) command.output = command.movie;
     if (isExr(command))
         refuse("--movie", "an .exr besides, which shows light as it is", "-o with a .png, or none");
+    if (!command.isMovieAlone) return;
+    for (const char* option : {"--float", "--bits"})
+        if (isGiven(app, option)) refuse(option, "a movie alone", "-o with pictures");
 }
 
 }  // namespace
@@ -65,8 +85,18 @@ void applySinks(const CLI::App& app, RenderCommand& command) {
         refuse("--fps", "it without --movie", "a movie to make");
     if (command.contactSheet && !command.movie.empty())
         refuse("--contact-sheet", "--movie besides", "one of them");
+    if (command.slate && isExr(command)) {
+        refuse("--slate", command.output.string() + ", whose pixels are light or values alone",
+               "a .png (render to both)");
+    }
+    if (command.frames.missing == MissingFrames::kBlack) {
+        for (const char* option : {"--aov", "--deep", "--overscan", "--stats"}) {
+            if (isGiven(app, option))
+                refuse("--missing", std::string("black with ") + option, "error, skip or hold");
+        }
+    }
     if (command.contactSheet) checkSheet(app, command);
-    if (!command.movie.empty()) checkMovieOf(command);
+    if (!command.movie.empty()) checkMovieOf(app, command);
     if (!command.contactSheet && command.movie.empty()) return;
     for (const char* option : {"--skip-existing", "--update"})
         if (isGiven(app, option))
@@ -90,6 +120,7 @@ SequenceSinks::SequenceSinks(const RenderCommand& command,
 }
 
 void SequenceSinks::put(std::size_t i, const Image& image) {
+    isAnyPut_ = true;
     for (const auto& sink : sinks_) sink->put(i, image);
 }
 
@@ -98,13 +129,17 @@ void SequenceSinks::skip(std::size_t i) {
 }
 
 void SequenceSinks::finish() {
+    if (!isAnyPut_) return;
     for (const auto& sink : sinks_) sink->finish();
 }
 
 Image blackPicture(const RenderCommand& command) {
     Image image(command.picture.render.camera.sizePixels);
-    if (command.picture.background && !storesValues(command))
-        compositeOver(image, *command.picture.background);
+    if (storesValues(command)) return image;
+    if (command.picture.background) compositeOver(image, *command.picture.background);
+    ImageFileOptions unused;
+    applyTone(command, image, unused, {});
+    convertColors(command, image, unused);
     return image;
 }
 

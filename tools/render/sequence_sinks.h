@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -15,8 +16,8 @@ namespace deltasplat {
 /// Declares --contact-sheet, --movie, --fps and --slate.
 void addSinkOptions(CLI::App& app, RenderCommand& command);
 
-/// Gives what a movie is made of, where no pictures are wanted besides, a format; refuses a command
-/// without any output, and what cannot be made of frames.
+/// Refuses a command without any output, and what cannot be made of frames. A movie without
+/// pictures besides becomes the output.
 /// @throw Error(kUsage)
 void applySinks(const CLI::App& app, RenderCommand& command);
 
@@ -34,14 +35,16 @@ class SequenceSinks {
     bool areWritten() const { return areWritten_; }
     void put(std::size_t i, const Image& image);
     void skip(std::size_t i);
+    /// Makes the files of what has been put, if anything has been.
     void finish();
 
   private:
+    std::atomic<bool> isAnyPut_{false};
     std::vector<std::unique_ptr<FrameSink>> sinks_;
     bool areWritten_;
 };
 
-/// Returns the picture of a frame that there is none of: black, or the background.
+/// Returns the picture of a frame that there is none of: black, or the background, as it is shown.
 Image blackPicture(const RenderCommand& command);
 
 }  // namespace deltasplat

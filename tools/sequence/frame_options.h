@@ -65,7 +65,7 @@ std::vector<FrameFiles> inputsOfFrames(const FrameChoice& choice, const std::str
                                        const std::filesystem::path& input);
 
 /// Refuses names with a place for a frame's number if there is no such file and no frames are asked
-/// for; warns of options that frames alone have.
+/// for, and options that frames alone have.
 /// @throw Error(kUsage)
 void requireFramesOf(const CLI::App& app, const FrameChoice& choice,
                      const std::filesystem::path& input);

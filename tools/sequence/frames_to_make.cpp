@@ -41,6 +41,7 @@ bool isReadable(const fs::path& output) {
 
 // Whether an output is no older than any file of its input.
 bool isNew(const FrameFiles& frame) {
+    if (frame.input.empty()) return true;
     std::error_code error;
     const auto made = fs::last_write_time(frame.output, error);
     if (error) return false;
@@ -79,7 +80,7 @@ std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, Missin
             result.push_back({frame.frame, {}, frame.output});
         }
     }
-    if (!before) {
+    if (!before && missing != MissingFrames::kBlack) {
         throw Error(ErrorCode::kInput, gotExpected(frames.front().input.string(),
                                                    "no file of any frame", "at least one"));
     }

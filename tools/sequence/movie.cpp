@@ -4,12 +4,15 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -41,55 +44,26 @@ std::string formatOf(const std::filesystem::path& file) {
     return extension == ".mkv" ? "matroska" : extension == ".mov" ? "mov" : "mp4";
 }
 
+// Words between spaces.
 std::vector<std::string> argumentsFor(const std::filesystem::path& file, glm::ivec2 size,
                                       double framesPerSecond) {
     const bool proRes = isProRes(file);
-    std::vector<std::string> arguments{"ffmpeg",     "-hide_banner",
-                                       "-nostdin",   "-loglevel",
-                                       "error",      "-y",
-                                       "-f",         "rawvideo",
-                                       "-pix_fmt",   "",
-                                       "-s",         dimsText(size),
-                                       "-framerate", numberText(framesPerSecond)};
-    arguments[9] = proRes ? "rgba64" : "rgb24";
-    // Big numbers first or last, as this machine has them.
-    if (proRes) arguments[9] += std::endian::native == std::endian::little ? "le" : "be";
-    const std::string pixels = proRes ? "yuv422p10le" : "yuv420p";
-    const std::vector<std::string> rest{
-        "-i",
-        "pipe:0",
-        "-an",
-        "-threads",
-        "1",
-        "-filter_threads",
-        "1",
-        "-vf",
-        "scale=flags=accurate_rnd+full_chroma_int:out_color_matrix=bt709:out_range=tv,format=" +
-            pixels,
-        "-color_primaries",
-        "bt709",
-        "-colorspace",
-        "bt709",
-        "-color_trc",
-        "iec61966-2-1",
-        "-color_range",
-        "tv",
-        "-map_metadata",
-        "-1",
-        "-fflags",
-        "+bitexact",
-        "-flags:v",
-        "+bitexact"};
-    arguments.insert(arguments.end(), rest.begin(), rest.end());
-    const std::vector<std::string> codec =
-        proRes ? std::vector<std::string>{"-c:v", "prores_ks", "-profile:v", "3", "-vendor", "apl0"}
-               : std::vector<std::string>{"-c:v", "libx264", "-preset", "medium", "-crf", "16"};
-    arguments.insert(arguments.end(), codec.begin(), codec.end());
-    if (formatOf(file) != "matroska")
-        arguments.insert(arguments.end(), {"-movflags", "+faststart+write_colr"});
-    arguments.insert(arguments.end(),
-                     {"-f", formatOf(file), "/proc/self/fd/" + std::to_string(kOutput)});
-    return arguments;
+    // Large digits first or last, as this machine has them.
+    const std::string order = std::endian::native == std::endian::little ? "le" : "be";
+    const std::string text =
+        "ffmpeg -hide_banner -nostdin -loglevel error -xerror -y -f rawvideo -pix_fmt " +
+        (proRes ? "rgba64" + order : "rgb24") + " -s " + dimsText(size) + " -framerate " +
+        numberText(framesPerSecond) +
+        " -i pipe:0 -an -threads 1 -filter_threads 1 -vf scale=flags=accurate_rnd+full_chroma_int:"
+        "out_color_matrix=bt709:out_range=tv,format=" +
+        (proRes ? "yuv422p10le" : "yuv420p") +
+        " -color_primaries bt709 -colorspace bt709 -color_trc iec61966-2-1 -color_range tv"
+        " -map_metadata -1 -fflags +bitexact -flags:v +bitexact -c:v " +
+        (proRes ? "prores_ks -profile:v 3 -vendor apl0" : "libx264 -preset medium -crf 16") +
+        (formatOf(file) == "matroska" ? "" : " -movflags +faststart+write_colr") + " -f " +
+        formatOf(file) + " /proc/self/fd/" + std::to_string(kOutput);
+    std::istringstream words(text);
+    return {std::istream_iterator<std::string>(words), {}};
 }
 
 struct Pipe {
@@ -97,11 +71,24 @@ struct Pipe {
     int write = -1;
 };
 
+[[noreturn]] void failWithErrno(const char* what) {
+    throw Error(ErrorCode::kFailed, std::string(what) + ": " + std::strerror(errno));
+}
+
+// Returns a descriptor in place of one, which is closed, that is none of those that a program that
+// is started has: they may be free here.
+int aboveStandard(int descriptor) {
+    if (descriptor < 0) failWithErrno("no file for a movie");
+    const int other = fcntl(descriptor, F_DUPFD_CLOEXEC, kOutput + 1);
+    if (other < 0) failWithErrno("no file for a movie");
+    close(descriptor);
+    return other;
+}
+
 Pipe openPipe() {
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0)
-        throw Error(ErrorCode::kFailed, std::string("no pipe: ") + std::strerror(errno));
-    return {ends[0], ends[1]};
+    if (pipe2(ends, O_CLOEXEC) != 0) failWithErrno("no pipe for a movie");
+    return {aboveStandard(ends[0]), aboveStandard(ends[1])};
 }
 
 void closeIt(int& descriptor) {
@@ -141,9 +128,10 @@ Movie::~Movie() {
 
 void Movie::start(glm::ivec2 size, double framesPerSecond) {
     Pipe frames = openPipe();
-    Pipe messages = openPipe();
     frames_ = frames.write;
-    messages_ = messages.read;
+    // No pipe, which would have to be read while frames are written.
+    messages_ = aboveStandard(memfd_create("messages of ffmpeg", MFD_CLOEXEC));
+    int output = aboveStandard(dup(file_.descriptor()));
     std::vector<std::string> arguments = argumentsFor(file_.finalPath(), size, framesPerSecond);
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -151,9 +139,9 @@ void Movie::start(glm::ivec2 size, double framesPerSecond) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, frames.read, STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, messages.write, STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, messages.write, STDERR_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, file_.descriptor(), kOutput);
+    posix_spawn_file_actions_adddup2(&actions, messages_, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, messages_, STDERR_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, output, kOutput);
     // Interrupts are for this program to hear, which then ends that one.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
@@ -163,7 +151,7 @@ void Movie::start(glm::ivec2 size, double framesPerSecond) {
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     closeIt(frames.read);
-    closeIt(messages.write);
+    closeIt(output);
     if (error == 0) return;
     pid_ = -1;
     closeIt(frames_);
@@ -195,6 +183,7 @@ void Movie::skip(std::size_t i) {
 void Movie::pass(std::size_t i, Bytes bytes) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return i < next_ + kMostWaiting || isBroken_; });
+    if (isBroken_ && !bytes.empty()) fail();
     if (isBroken_ || i < next_) return;
     waiting_.emplace(i, std::move(bytes));
     while (!waiting_.empty() && waiting_.begin()->first == next_) {
@@ -227,22 +216,29 @@ int Movie::wait() {
     return status;
 }
 
+std::string Movie::said() const {
+    std::string text;
+    char part[4096];
+    ssize_t count = 0;
+    while ((count = pread(messages_, part, sizeof part, off_t(text.size()))) > 0)
+        text.append(part, std::size_t(count));
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    const std::size_t end = text.find_last_of('\n');
+    return end == std::string::npos ? text : text.substr(end + 1);
+}
+
 // Says the last line that ffmpeg has said.
 void Movie::fail() {
     throwIfInterrupted();
-    std::string said;
-    char part[4096];
-    ssize_t count;
-    while ((count = read(messages_, part, sizeof part)) > 0) said.append(part, std::size_t(count));
-    while (!said.empty() && said.back() == '\n') said.pop_back();
-    said.erase(0, said.find_last_of('\n') == std::string::npos ? 0 : said.find_last_of('\n') + 1);
+    const std::string why = said();
     throw Error(ErrorCode::kOutput, file_.finalPath().string() + ": ffmpeg could not make it" +
-                                        (said.empty() ? "" : ": " + said));
+                                        (why.empty() ? "" : ": " + why));
 }
 
 void Movie::finish() {
     closeIt(frames_);
-    if (wait() != 0) fail();
+    // It may end well all the same where the end of the file could not be written.
+    if (wait() != 0 || isBroken_ || !said().empty()) fail();
     file_.close();
     file_.commit();
 }

@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <map>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "deltasplat/atomic_file.h"
@@ -48,6 +49,7 @@ class Movie : public FrameSink {
     void pass(std::size_t i, Bytes bytes);
     void write(const Bytes& bytes);
     int wait();
+    std::string said() const;
     [[noreturn]] void fail();
 
     AtomicFile file_;
@@ -55,7 +57,7 @@ class Movie : public FrameSink {
     bool dither_;
     int pid_ = -1;
     int frames_ = -1;    // pipe to ffmpeg
-    int messages_ = -1;  // pipe from it
+    int messages_ = -1;  // what it says
     std::mutex mutex_;
     std::condition_variable changed_;
     std::map<std::size_t, Bytes> waiting_;  // empty: no picture

@@ -31,7 +31,6 @@ struct ImageFileOptions {
     std::optional<glm::dmat4>
         cameraFromWorld;                     ///< stored as worldToCamera, rounded to float (.exr)
     std::optional<glm::dmat4> ndcFromWorld;  ///< stored as worldToNDC, rounded to float (.exr)
-    double pixelAspect = 1;  ///< width of a pixel over its height, stored as pixelAspectRatio (.exr)
     /// Name, text; each is stored as text named `deltasplat:<name>` (.exr sorts them by name). In
     /// .tif and .jpg, which have no such names, all are lines `deltasplat:<name>: <text>` of the
     /// image description, of which a .jpg keeps the first 30000 bytes.

@@ -67,17 +67,19 @@ line 'error end exit_code=3 '
 [[ $(grep -c '^{"time":".*","process":[0-9]*,"level":".*","text":".*}$' run.json) == $(wc -l <run.json) ]] ||
     { cat run.json; exit 1; }
 tail -1 run.json | grep -q '"exit_code":0,' || { cat run.json; exit 1; }
-for arguments in "--log no/folder.log" "--json-log"; do
+cp "$fixtures/two.vdb" kept.vdb
+for arguments in "--log no/folder.log" "--json-log" "--log kept.vdb"; do
     ! "$program" render "$fixtures/two.vdb" -o other.exr -qq $arguments 2>said || exit 1
     grep -q "^deltasplat: ${arguments%% *}: got " said || { cat said; exit 1; }
 done
 [[ ! -e other.exr ]]
+cmp kept.vdb "$fixtures/two.vdb"
 
 # Asked by a signal, it says where it is and goes on.
 "$program" synth cloud big.vdb --dims 200x200x200 -qq
 "$program" render big.vdb -o big.exr --size 3000x3000 --threads 1 -qq --log big.log 2>said &
 # Before it runs, the signal would end it.
-while [[ ! -s big.log ]]; do sleep 0.01; done
+while [[ ! -s big.log ]] && kill -0 $!; do sleep 0.01; done
 while [[ ! -s said ]] && kill -USR1 $! 2>/dev/null; do sleep 0.02; done
 wait $!
 grep -qE '^deltasplat: [0-9]+% after [0-9]+ s$' said || { cat said; exit 1; }
