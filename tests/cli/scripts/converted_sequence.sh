@@ -48,6 +48,7 @@ expect_files "m.0001.vdb m.0002.vdb m.0003.vdb" 'm.*'
 expect_said "deltasplat: 2 of 5 frames failed: 4, 5"
 expect_code 4 "$program" diff in.####.vdb r.####.vdb --frames 3-4 -q
 expect_code 0 "$program" diff in.####.vdb r.####.vdb --frames 3-4 -q --missing skip
+expect_code 4 "$program" diff in.####.vdb none.####.vdb --frames 1-2 -q --missing skip
 expect_code 3 "$program" info in.####.vdb --frames 3-4 --list
 expect_code 0 "$program" info in.####.vdb --frames 3-4 --list --missing skip
 cp m.0002.vdb m.0001.vdb

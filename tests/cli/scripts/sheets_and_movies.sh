@@ -25,6 +25,13 @@ done
 "$oiiotool" -q sheet.png --cut 32x24+64+24 -o cell.png
 same cell.png one.3.png || fail "the last cell is not empty"
 
+# What is black is exposed as the others are: the background is the same.
+"$program" "${frames[@]}" --frames 2-3 --missing black -o bright.#.png --exposure 1 --tone filmic
+for number in 2 3; do "$oiiotool" -q bright.$number.png --cut 1x1+0+0 -o corner.$number.png; done
+same corner.2.png corner.3.png || fail "frames 2 and 3 have two backgrounds"
+"$oiiotool" -q one.3.png --cut 1x1+0+0 -o corner.png
+! same corner.3.png corner.png || fail "frame 3 is not exposed"
+
 # Frames that fail leave their cell empty, if the others are wanted.
 head -c 100 in.1.vdb >in.3.vdb
 expect_code 3 "$program" "${frames[@]}" --frames 1-4 -o broken.png --contact-sheet 3x2 --keep-going
@@ -60,10 +67,20 @@ if command -v ffmpeg >/dev/null; then
         "$oiiotool" -q "${pair%:*}.png" wanted.png --fail 0.06 --failpercent 3 --diff >/dev/null ||
             fail "${pair%:*} is not frame ${pair#*:}"
     done
+    # ffmpeg ends well where the end of its file cannot be written.
+    (ulimit -f 2; expect_code 4 "$program" render in.4.vdb --size 64x64 -qq --turntable 24 --movie full.mp4 \
+        --background 1,1,1; exit $failed) || fail "full.mp4: got no error"
+    expect_files "" 'full*'
     echo "not a volume" >in.3.vdb
     expect_code 3 "$program" "${frames[@]}" --frames 1-4 --movie e.mp4
     expect_files "" 'e*'
     rm in.3.vdb
+    # One that says much and does nothing.
+    mkdir path
+    printf '#!/bin/sh\nhead -c 1000000 /dev/zero >&2\ncat >/dev/null\n' >path/ffmpeg
+    chmod +x path/ffmpeg
+    expect_code 4 env PATH="$PWD/path:$PATH" "$program" render in.4.vdb --size 64x64 -qq --turntable 3 --movie loud.mp4
+    expect_files "" 'loud*'
 else
     echo "ffmpeg is not installed: no movie is looked into"
 fi
@@ -75,6 +92,13 @@ usage() { # MESSAGE ARGUMENTS...
 }
 usage "--contact-sheet: got 2x1 for 3 frames; expected room for all of them" \
     in.#.vdb -o g.png --frames 1-3 --contact-sheet 2x1
+usage "--contact-sheet: got 4294967296x32 pixels; expected at most 1000000 each way" \
+    in.1.vdb -o g.png --turntable 2 --contact-sheet 65536x2 --size 65536x16
+usage "--output: got g.#.png with --contact-sheet; expected one file" \
+    in.#.vdb -o g.#.png --frames 1-2 --contact-sheet 2x1
+usage "--float: got a movie alone; expected -o with pictures" in.#.vdb --frames 1-2 --movie g.mp4 --float
+usage "--missing: got black with --deep; expected error, skip or hold" \
+    in.#.vdb -o g.#.exr --frames 1-3 --missing black --deep
 usage "--contact-sheet: got it without --frames; expected the frames of a sequence" \
     in.1.vdb -o g.png --contact-sheet 2x1
 usage "--movie: got g.avi; expected .mp4, .m4v, .mkv or .mov" in.#.vdb --frames 1-3 --movie g.avi
