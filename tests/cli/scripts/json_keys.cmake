@@ -27,7 +27,8 @@ between;parts;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tol
 world_box;origin;directions;space;target;frame_width;camera")
 expect_keys("${stats}" seconds "read;prepare;splat;composite;warp;write;render;total")
 expect_keys("${stats}" error_bound "color;alpha")
-expect_keys("${stats}" camera "projection;direction;right;up;target;frame_width;size;options")
+expect_keys("${stats}" camera "projection;direction;right;up;target;frame_width;size;frame_offset;\
+pixel_aspect;options")
 expect_value("${stats}" 5.5 target 0)
 expect_value("${stats}" 11.0 frame_width)
 expect_value("${stats}" 9.0 world_box 1 1)
