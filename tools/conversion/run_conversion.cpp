@@ -5,10 +5,12 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include "conversion/conversion_files.h"
 #include "deltasplat/threads.h"
+#include "ingest/files/file_name.h"
 #include "memory.h"
 #include "output_files.h"
 #include "process/interrupt.h"
@@ -69,6 +71,19 @@ ConversionStats convertFrames(const ConversionFiles& files, const FrameChoice& c
 }
 
 }  // namespace
+
+bool ConversionFiles::toVdb() const {
+    return lowerExtension(output) == ".vdb";
+}
+
+void writeConverted(const ConversionFiles& files, std::vector<Volume> volumes,
+                    const WriteOptions& options, const Listener& listener, ConversionStats& stats) {
+    const WriteReport report = writeVolumes(files.output, std::move(volumes), options, listener);
+    for (const std::string& note : report.notes) listener.warn(note);
+    stats.outputBytes = bytesOf(report.files);
+    stats.maxError = std::max(stats.maxError, report.maxError);
+    stats.lossless = stats.lossless && report.lossless;
+}
 
 void addConversionOptions(CLI::App& app, const std::string& what, ConversionFiles& files,
                           FrameChoice& frames) {

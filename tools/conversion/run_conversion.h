@@ -4,8 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
+#include <vector>
 
 #include "conversion/conversion_stats.h"
+#include "deltasplat/convert/write_volume.h"
 #include "listener.h"
 #include "sequence/frame_options.h"
 
@@ -16,6 +18,8 @@ struct ConversionFiles {
     std::filesystem::path input;
     std::filesystem::path output;
     std::filesystem::path stats;  ///< empty: none
+
+    bool toVdb() const;
 };
 
 /// Converts one volume and says what came of it but for bytes and seconds. Thread-safe.
@@ -25,6 +29,10 @@ using Convert = std::function<ConversionStats(const ConversionFiles& files, cons
 /// @param what  that the file of --stats tells
 void addConversionOptions(CLI::App& app, const std::string& what, ConversionFiles& files,
                           FrameChoice& frames);
+
+/// Writes what was read, says what that took away, and notes it.
+void writeConverted(const ConversionFiles& files, std::vector<Volume> volumes,
+                    const WriteOptions& options, const Listener& listener, ConversionStats& stats);
 
 /// Converts a volume, or those of all frames, several at once; none over a file that it is made of.
 /// @return what came of all together

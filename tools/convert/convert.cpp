@@ -8,7 +8,6 @@
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/files/file_name.h"
 #include "listener_part.h"
 #include "options/input_options.h"
 #include "subcommands.h"
@@ -27,8 +26,6 @@ struct ConvertCommand {
     FrameChoice frames;
     ReadOptions read;
     WriteOptions write;
-
-    bool toVdb() const { return lowerExtension(files.output) == ".vdb"; }
 };
 
 // "auto", "none" or a number.
@@ -77,7 +74,7 @@ void warnOfUnusedOptions(const CLI::App& app, const ConvertCommand& command,
                          const std::filesystem::path& input, const Listener& listener) {
     warnOfUnusedInputOptions(app, {input}, listener);
     for (const char* const option : {"--float", "--background"}) {
-        if (isGiven(app, option) && !command.toVdb())
+        if (isGiven(app, option) && !command.files.toVdb())
             listener.warn(std::string(option) + ": has no effect without a .vdb output");
     }
 }
@@ -86,7 +83,7 @@ void warnOfUnusedOptions(const CLI::App& app, const ConvertCommand& command,
 std::vector<Volume> readInput(const ConvertCommand& command, const std::filesystem::path& input,
                               const Listener& listener, bool& complete) {
     std::vector<Volume> volumes;
-    if (!command.toVdb()) {
+    if (!command.files.toVdb()) {
         volumes.push_back(readVolume(input, command.read, listener));
         return volumes;
     }
@@ -110,12 +107,9 @@ ConversionStats convertFile(const CLI::App& app, const ConvertCommand& command,
         readInput(command, files.input, partOf(listener, 0, kReadShare), complete);
     for (const Volume& volume : volumes) stats.add(volume);
 
-    const WriteReport report = writeVolumes(files.output, std::move(volumes), command.write,
-                                            partOf(listener, kReadShare, 1));
-    for (const std::string& note : report.notes) listener.warn(note);
-    stats.outputBytes = bytesOf(report.files);
-    stats.maxError = std::max(stats.maxError, report.maxError);
-    stats.lossless = stats.lossless && report.lossless && complete;
+    writeConverted(files, std::move(volumes), command.write, partOf(listener, kReadShare, 1),
+                   stats);
+    stats.lossless = stats.lossless && complete;
     return stats;
 }
 

@@ -10,6 +10,7 @@
 
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
+#include "process/handle_signal.h"
 
 namespace deltasplat {
 namespace {
@@ -54,20 +55,11 @@ static void hear(int signal) {
 
 }  // extern "C"
 
-void handle(int signal, void (*handler)(int)) {
-    struct sigaction action {};
-    action.sa_handler = handler;
-    // What waits in a system call goes on waiting: libraries take an interrupted read for an error.
-    action.sa_flags = SA_RESTART;
-    sigemptyset(&action.sa_mask);
-    sigaction(signal, &action, nullptr);
-}
-
 void handleUnlessIgnored(int signal) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
     // A job put into the background by a script has the signal ignored, and is to keep it so.
-    if (before.sa_handler != SIG_IGN) handle(signal, hear);
+    if (before.sa_handler != SIG_IGN) handleSignal(signal, hear);
 }
 
 // From here on the outcome is decided: a file with its final name, or an interrupt.
@@ -86,7 +78,7 @@ void handleSignals() {
     handleUnlessIgnored(SIGINT);
     handleUnlessIgnored(SIGTERM);
     handleUnlessIgnored(SIGHUP);
-    handle(SIGALRM, endAtOnce);
+    handleSignal(SIGALRM, endAtOnce);
     sigset_t alarm;
     sigemptyset(&alarm);
     sigaddset(&alarm, SIGALRM);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "process/tell_place.h"
 
-#include <signal.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -10,6 +9,8 @@
 #include <cerrno>
 #include <cstddef>
 #include <string_view>
+
+#include "process/handle_signal.h"
 
 namespace deltasplat {
 namespace {
@@ -68,12 +69,7 @@ static void tell(int) {
 
 void tellPlaceOnSignal() {
     beginSecond = secondNow();
-    struct sigaction action {};
-    action.sa_handler = tell;
-    // What waits in a system call goes on waiting: libraries take an interrupted read for an error.
-    action.sa_flags = SA_RESTART;
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGUSR1, &action, nullptr);
+    handleSignal(SIGUSR1, tell);
 }
 
 void notePlace(double share) {

@@ -282,7 +282,7 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     const std::optional<FrameName> stats = FrameName::find(command.stats);
     std::optional<PreparedScene> prepared;
     if (!frames.empty() && seesOneThing(command)) prepared = prepareOnce(fixed, look, making);
-    const auto makeAll = [&] {
+    try {
         runFrames(
             frames, command.frames.keepGoing, workersFor(command, look),
             [&](std::size_t i, const Listener& part) {
@@ -301,9 +301,6 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
                 }
             },
             making);
-    };
-    try {
-        makeAll();
     } catch (const Error& error) {
         // What there is goes into the file of all.
         if (command.frames.keepGoing && error.code() != ErrorCode::kInterrupted)

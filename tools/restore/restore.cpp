@@ -8,7 +8,6 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/files/file_name.h"
 #include "ingest/files/input_files.h"
 #include "ingest/files/input_kind.h"
 #include "listener_part.h"
@@ -25,8 +24,6 @@ struct RestoreCommand {
     ConversionFiles files;
     FrameChoice frames;
     ReadOptions read;
-
-    bool toVdb() const { return lowerExtension(files.output) == ".vdb"; }
 };
 
 void declareOptions(CLI::App& app, RestoreCommand& command) {
@@ -75,12 +72,12 @@ std::vector<std::string> chooseGrids(const RestoreCommand& command,
         listener.warn(where + "left out " + joinNames(grids.ordinary) +
                       ", which are no delta grids");
     }
-    if (!command.toVdb() && grids.deltas.size() > 1) {
+    if (!command.files.toVdb() && grids.deltas.size() > 1) {
         listener.warn(where + "reading grid \"" + grids.deltas.front() + "\", the first of " +
                       std::to_string(grids.deltas.size()) + " delta grids");
         grids.deltas.resize(1);
     }
-    stats.lossless = grids.ordinary.empty() || !command.toVdb();
+    stats.lossless = grids.ordinary.empty() || !command.files.toVdb();
     return grids.deltas;
 }
 
@@ -112,12 +109,8 @@ ConversionStats restoreFile(const RestoreCommand& command, const ConversionFiles
         readInput(command, files.input, partOf(listener, 0, kReadShare), stats);
     WriteOptions writing;
     writing.keepPrecision = true;
-    const WriteReport report =
-        writeVolumes(files.output, std::move(volumes), writing, partOf(listener, kReadShare, 1));
-    for (const std::string& note : report.notes) listener.warn(note);
-    stats.outputBytes = bytesOf(report.files);
-    stats.lossless = stats.lossless && report.lossless && stats.maxError == 0;
-    stats.maxError = std::max(stats.maxError, report.maxError);
+    stats.lossless = stats.lossless && stats.maxError == 0;
+    writeConverted(files, std::move(volumes), writing, partOf(listener, kReadShare, 1), stats);
     return stats;
 }
 
