@@ -28,6 +28,20 @@ Raster rasterOf(const Layer& layer, const ClassTable& classes) {
     return raster;
 }
 
+WarpFilter warpFilterOf(PictureFilter filter) {
+    switch (filter) {
+        case PictureFilter::kCatmullRom:
+            return WarpFilter::kSharp;
+        case PictureFilter::kMitchell:
+            return WarpFilter::kMitchell;
+        case PictureFilter::kGauss:
+            return WarpFilter::kGauss;
+        case PictureFilter::kBox:
+            return WarpFilter::kBox;
+    }
+    return WarpFilter::kSharp;
+}
+
 }  // namespace
 
 std::vector<Factorization> viewsOf(const Camera& camera, const Volume& volume,
@@ -149,10 +163,11 @@ void PictureView::finish(Layer& layer) const {
 
 double PictureView::showPart(const Layer& finished, const PicturePart& part) const {
     const Raster raster = rasterOf(finished, slabs_->splat.colors.table());
-    if (view_.eye) return warpRegion(raster, camera_, view_, thinView_, *plane_, part);
+    const WarpFilter filter = warpFilterOf(scene_.options.filter);
+    if (view_.eye) return warpRegion(raster, camera_, view_, thinView_, *plane_, filter, part);
     const glm::dmat3& map = plane_->pixelFromPicture();
-    warp(raster, map, WarpFilter::kSharp, part);
-    return warpGain(map);
+    warp(raster, map, filter, part);
+    return warpGain(map, filter);
 }
 
 // Opacities are those of ways straight through the slices: makes them those of the lines of sight.

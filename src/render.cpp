@@ -38,6 +38,20 @@ std::string methodName(Method method) {
     return "auto";
 }
 
+std::string pictureFilterName(PictureFilter filter) {
+    switch (filter) {
+        case PictureFilter::kCatmullRom:
+            return "catmull-rom";
+        case PictureFilter::kMitchell:
+            return "mitchell";
+        case PictureFilter::kGauss:
+            return "gauss";
+        case PictureFilter::kBox:
+            return "box";
+    }
+    return "catmull-rom";
+}
+
 std::string modeName(Mode mode) {
     switch (mode) {
         case Mode::kComposite:

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "deltasplat/image/picture_filter.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/splat/footprint.h"
 #include "deltasplat/tolerance.h"
@@ -53,6 +54,7 @@ struct SplatOptions {
     std::optional<int> between;
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for
+    PictureFilter filter = PictureFilter::kCatmullRom;
 };
 
 /// How x-rays get through a CT scan of values in Hounsfield units: mu = muWater * (1 + HU / 1000),
@@ -63,9 +65,9 @@ struct Drr {
     std::optional<double> photons;  ///< that a pixel would get past nothing, > 0; empty: 1
 };
 
-/// What can be asked for. Under all modes but kComposite method, tolerance, resolution, extinction,
-/// unit distance and colorBy have no effect, and sigma only under kXray and kDrr in parallel
-/// projection; the transfer function has none but for the colours of `mipColors`.
+/// What can be asked for. Under all modes but kComposite method, tolerance, resolution, filter,
+/// extinction, unit distance and colorBy have no effect, and sigma only under kXray and kDrr in
+/// parallel projection; the transfer function has none but for the colours of `mipColors`.
 struct RenderOptions : SplatOptions {
     Mode mode = Mode::kComposite;
     /// kMip, kMin, kAverage: the transfer function's colour of the value, opaque, instead of the

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: Edwin Catmull and Raphael Rom, "A Class of Local Interpolating Splines", 1974; Isaac
 // Schoenberg, "Contributions to the Problem of Approximation of Equidistant Data by Analytic
-// Functions", 1946 (B-splines).
+// Functions", 1946 (B-splines); Don Mitchell and Arun Netravali, "Reconstruction Filters in
+// Computer Graphics", 1988.
 #include "image/filter_table.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+
+#include "portable_math.h"
 
 namespace deltasplat {
 namespace {
@@ -31,20 +34,55 @@ double quinticBSpline(double x) {
     return (power(3) - 6 * power(2) + 15 * power(1)) / 120;
 }
 
-// How far a filter reaches, in lattice points.
-int reachOf(WarpFilter filter) {
-    return filter == WarpFilter::kSmooth ? 3 : 2;
+double mitchell(double x) {
+    x = std::abs(x);
+    if (x < 1) return (16 + x * x * (21 * x - 36)) / 18;
+    if (x < 2) return (32 - x * (60 - x * (36 - 7 * x))) / 18;
+    return 0;
 }
 
-double weightAt(WarpFilter filter, double x) {
+constexpr double kGaussReach = 1.5;
+
+// Of standard deviation 1/2, less what it is where it ends.
+double gauss(double x) {
+    return std::max(0.0, portable::exp(-2 * x * x) - portable::exp(-2 * kGaussReach * kGaussReach));
+}
+
+// Of a square `width` wide, what it covers of one of width 1 that lies `x` beside it.
+double boxOverlap(double x, double width) {
+    return std::max(0.0, std::min(x + 0.5, 0.5 * width) - std::max(x - 0.5, -0.5 * width));
+}
+
+// How far a filter that is `stretch` times wider reaches, in lattice points.
+double reachOf(WarpFilter filter, double stretch) {
+    switch (filter) {
+        case WarpFilter::kSmooth:
+            return 3 * stretch;
+        case WarpFilter::kGauss:
+            return kGaussReach * stretch;
+        case WarpFilter::kBox:
+            return 0.5 + 0.5 * stretch;
+        default:
+            return 2 * stretch;
+    }
+}
+
+double weightAt(WarpFilter filter, double x, double stretch) {
     switch (filter) {
         case WarpFilter::kSharp:
-            return catmullRom(x);
+            return catmullRom(x / stretch);
         case WarpFilter::kSmooth:
-            return quinticBSpline(x);
-        default:
-            return std::max(0.0, 1 - std::abs(x));
+            return quinticBSpline(x / stretch);
+        case WarpFilter::kLinear:
+            return std::max(0.0, 1 - std::abs(x / stretch));
+        case WarpFilter::kMitchell:
+            return mitchell(x / stretch);
+        case WarpFilter::kGauss:
+            return gauss(x / stretch);
+        case WarpFilter::kBox:
+            return boxOverlap(x, stretch);
     }
+    return 0;
 }
 
 // A raster that is smaller than a pixel by more than this adds nothing to it that could be seen.
@@ -54,10 +92,10 @@ constexpr double kMaxStretch = 16384;
 
 FilterTable::FilterTable(WarpFilter filter, double wantedStretch) {
     const double stretch = std::min(wantedStretch, kMaxStretch);
-    taps_ = 2 * int(std::ceil(reachOf(filter) * stretch));
+    taps_ = 2 * int(std::ceil(reachOf(filter, stretch)));
     paddedTaps_ = (taps_ + 3) / 4 * 4;
-    innerTaps_ = 2 * int(std::ceil(stretch));
-    overshoots_ = filter == WarpFilter::kSharp;
+    innerTaps_ = filter == WarpFilter::kMitchell ? taps_ : 2 * int(std::ceil(stretch));
+    overshoots_ = filter == WarpFilter::kSharp || filter == WarpFilter::kMitchell;
     const int steps = int(std::bit_floor(unsigned(std::max(4.0, kStepsPerWidth / stretch))));
     shift_ = 32 - std::countr_zero(unsigned(steps));
     ownWeights_.resize(std::size_t(steps + 1) * paddedTaps_);
@@ -68,7 +106,7 @@ FilterTable::FilterTable(WarpFilter filter, double wantedStretch) {
     for (int step = 0; step <= steps; ++step) {
         double sum = 0;
         for (int tap = 0; tap < taps_; ++tap) {
-            exact[tap] = weightAt(filter, (firstTap(0) + tap - double(step) / steps) / stretch);
+            exact[tap] = weightAt(filter, firstTap(0) + tap - double(step) / steps, stretch);
             sum += exact[tap];
         }
         double magnitude = 0;

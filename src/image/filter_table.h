@@ -9,9 +9,12 @@ namespace deltasplat {
 
 /// What is between lattice points. None lets a value leave the range of its neighbours.
 enum class WarpFilter {
-    kSharp,   ///< Catmull-Rom, clamped to the nearest lattice points: for pictures
-    kSmooth,  ///< quintic B-spline: every lattice point keeps its weight, for sums
-    kLinear   ///< linear: for largest values, which stay what they are
+    kSharp,     ///< Catmull-Rom, clamped to the nearest lattice points: for pictures
+    kSmooth,    ///< quintic B-spline: every lattice point keeps its weight, for sums
+    kLinear,    ///< linear: for largest values, which stay what they are
+    kMitchell,  ///< clamped to all lattice points that it reads
+    kGauss,
+    kBox  ///< what a square as wide as the stretch covers of the lattice points' own squares
 };
 
 /// Weights of a filter along one axis, for every position between two lattice points in small
@@ -21,7 +24,8 @@ class FilterView {
     int taps() const { return taps_; }
     /// Taps rounded up to a multiple of four; the weights of the added ones are zero.
     int paddedTaps() const { return paddedTaps_; }
-    /// Taps in the middle, an even number: beyond them weights are negative if there are such.
+    /// Taps in the middle, an even number, whose range a sum is clamped to if weights may be
+    /// negative: as many as never make it jump where taps change.
     int innerTaps() const { return innerTaps_; }
     /// The first of them.
     int firstInnerTap() const { return (taps_ - innerTaps_) / 2; }

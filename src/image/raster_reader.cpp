@@ -118,10 +118,11 @@ FixedPosition fixedPosition(glm::dvec2 position) {
 }
 
 const FilterTable& narrowestFilter(WarpFilter filter) {
-    static const FilterTable sharp(WarpFilter::kSharp, 1);
-    static const FilterTable smooth(WarpFilter::kSmooth, 1);
-    static const FilterTable linear(WarpFilter::kLinear, 1);
-    return filter == WarpFilter::kSharp ? sharp : filter == WarpFilter::kSmooth ? smooth : linear;
+    // In the order of their names' declaration.
+    static const FilterTable tables[] = {{WarpFilter::kSharp, 1},  {WarpFilter::kSmooth, 1},
+                                         {WarpFilter::kLinear, 1}, {WarpFilter::kMitchell, 1},
+                                         {WarpFilter::kGauss, 1},  {WarpFilter::kBox, 1}};
+    return tables[std::size_t(filter)];
 }
 
 }  // namespace deltasplat

@@ -183,11 +183,11 @@ void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter fi
     if (raster.size.x > 0 && raster.size.y > 0) Warper(raster, rasterFromPixel, filter, part).run();
 }
 
-double warpGain(const glm::dmat3& rasterFromPixel) {
+double warpGain(const glm::dmat3& rasterFromPixel, WarpFilter filter) {
     const Raster none;
     Image picture;
     const PicturePart part(picture);
-    return Warper(none, rasterFromPixel, WarpFilter::kSharp, part).gain();
+    return Warper(none, rasterFromPixel, filter, part).gain();
 }
 
 }  // namespace deltasplat

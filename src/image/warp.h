@@ -50,7 +50,7 @@ inline void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFi
     warp(raster, rasterFromPixel, filter, PicturePart(picture));
 }
 
-/// Returns the most that `warp` with kSharp under the same map can enlarge a difference of rasters.
-double warpGain(const glm::dmat3& rasterFromPixel);
+/// Returns the most that `warp` with the same filter and map can enlarge a difference of rasters.
+double warpGain(const glm::dmat3& rasterFromPixel, WarpFilter filter);
 
 }  // namespace deltasplat

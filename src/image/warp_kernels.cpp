@@ -172,7 +172,11 @@ void sampleOf(const Sampling& what, Positions positions) {
 
 template <int kChannels, bool kClamp, class Positions>
 void sampleOf(const Sampling& what, Positions positions) {
-    const bool four = what.filterX.taps() == 4 && what.filterY.taps() == 4;
+    // Of four, two are inner ones.
+    const auto isFour = [](const FilterView& filter) {
+        return filter.taps() == 4 && filter.innerTaps() == 2;
+    };
+    const bool four = isFour(what.filterX) && isFour(what.filterY);
     return four ? sampleOf<4, kChannels, kClamp>(what, positions)
                 : sampleOf<0, kChannels, kClamp>(what, positions);
 }

@@ -29,6 +29,8 @@ namespace {
 // Filters of growing width, each made when it is first asked for.
 class FilterLadder {
   public:
+    explicit FilterLadder(WarpFilter filter) : filter_(filter) {}
+
     // Returns which filter suits so many raster pixels a picture pixel, by their square.
     static int rungOf(double squaredStretch) {
         if (!(squaredStretch > 1)) return 0;
@@ -39,18 +41,18 @@ class FilterLadder {
     }
 
     const FilterTable& at(int rung) {
-        if (rung == 0) return narrowestFilter(WarpFilter::kSharp);
+        if (rung == 0) return narrowestFilter(filter_);
         const auto i = std::size_t(rung);
         std::call_once(made_[i], [&] {
             const double stretch = portable::exp(0.69314718055994531 / kRungs * rung);
-            filters_[i] = std::make_unique<FilterTable>(WarpFilter::kSharp, stretch);
+            filters_[i] = std::make_unique<FilterTable>(filter_, stretch);
         });
         return *filters_[i];
     }
 
     // The largest gain of all that were asked for.
     double gain() const {
-        double largest = narrowestFilter(WarpFilter::kSharp).gain();
+        double largest = narrowestFilter(filter_).gain();
         for (const auto& filter : filters_) {
             if (filter) largest = std::max(largest, filter->gain());
         }
@@ -62,6 +64,7 @@ class FilterLadder {
     static constexpr double kMost = double(1 << 28);  // 16384 squared
     static constexpr std::size_t kCount = 14 * 8 + 2;
 
+    WarpFilter filter_;
     std::array<std::once_flag, kCount> made_;
     std::array<std::unique_ptr<FilterTable>, kCount> filters_;
 };
@@ -69,7 +72,8 @@ class FilterLadder {
 class RegionWarper {
   public:
     RegionWarper(const Raster& raster, const Camera& camera, const Factorization& view,
-                 const Factorization& thin, const BasePlane& plane, const PicturePart& part)
+                 const Factorization& thin, const BasePlane& plane, WarpFilter filter,
+                 const PicturePart& part)
         : raster_(raster),
           tiles_(raster),
           order_(sliceOrder(view.sliceAxis)),
@@ -77,7 +81,8 @@ class RegionWarper {
           slopeScale_(thin.slopeLimit / view.slopeLimit),
           flat_(camera.projection == Projection::kPerspective),
           plane_(plane),
-          part_(part) {}
+          part_(part),
+          ladder_(filter) {}
 
     void run() {
         const int first = part_.first.y / kBand;
@@ -219,9 +224,10 @@ class RegionWarper {
 }  // namespace
 
 double warpRegion(const Raster& raster, const Camera& camera, const Factorization& view,
-                  const Factorization& thin, const BasePlane& plane, const PicturePart& part) {
+                  const Factorization& thin, const BasePlane& plane, WarpFilter filter,
+                  const PicturePart& part) {
     if (raster.size.x <= 0 || raster.size.y <= 0) return 1;
-    RegionWarper warper(raster, camera, view, thin, plane, part);
+    RegionWarper warper(raster, camera, view, thin, plane, filter, part);
     warper.run();
     return warper.gain();
 }

@@ -125,6 +125,8 @@ deltasplat_cli_test(usage.dashes_for_outputs EXIT 2 ARGS convert -- ${cube} --fl
 # Words.
 deltasplat_refusal(method "--method: got fast; expected auto, delta, sparse or traditional"
     --method fast)
+deltasplat_refusal(filter "--filter: got lanczos; expected catmull-rom, mitchell, gauss or box"
+    --filter lanczos)
 deltasplat_refusal(mode "--mode: got depth; expected composite, xray, mip, min, average or drr"
     --mode depth)
 deltasplat_refusal(drr_and_mode "--drr: got --mode mip besides; expected --mode drr" --drr --mode mip)
@@ -549,7 +551,7 @@ deltasplat_unused(synth_spacing --spacing "without a .vdb output"
 
 foreach(mode xray mip)
     foreach(option method=delta tolerance=0.1 tolerance-value=1 resolution=2 extinction=2
-            unit-distance=3 tf=tf_good.json)
+            unit-distance=3 filter=box tf=tf_good.json)
         string(REGEX REPLACE "=.*" "" name ${option})
         deltasplat_unused(${mode}_${name} --${name} "with --mode ${mode}" CREATES out.exr
             ARGS render ${cube} -o out.exr --size 8x8 --mode ${mode} --${option})

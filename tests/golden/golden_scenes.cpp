@@ -109,6 +109,14 @@ void addViews(Scenes& scenes) {
 void addFunctions(Scenes& scenes) {
     scenes.add("one-color-thin", "cloud", turned(30, 10), oneColor(0.02));
     scenes.add("one-color-dense", "cloud", turned(30, 10), oneColor(1));
+    for (const PictureFilter filter :
+         {PictureFilter::kMitchell, PictureFilter::kGauss, PictureFilter::kBox}) {
+        const std::string name = "filter-" + pictureFilterName(filter);
+        scenes.add(name, "engine", turned(40, 20), colored()).filter = filter;
+        CameraOptions eye = turned(40, 20);
+        eye.projection = Projection::kPerspective;
+        scenes.add(name + "-eye", "engine", eye, colored()).filter = filter;
+    }
     scenes.add("bent", "hydrogen", turned(12, 34), bent());
     scenes.add("bent-axis", "marschner-lobb", cameraOf("left"), bent());
     scenes.add("bright", "marschner-lobb", turned(-50, 25), bright());

@@ -48,8 +48,13 @@ void cut(const PixelBox& box, int depth, std::mt19937& random, std::vector<Pixel
 
 TEST(PartedPicture, hasTheBitsOfTheWhole) {
     std::mt19937 random(4);
-    for (const Colors colors : {Colors::kOne, Colors::kSeveral, Colors::kLit, Colors::kFog}) {
-        const PreparedScene scene({test::someVolume(), test::someOptics(colors)}, {});
+    for (const auto& [colors, filter] : {std::pair(Colors::kOne, PictureFilter::kBox),
+                                         std::pair(Colors::kSeveral, PictureFilter::kCatmullRom),
+                                         std::pair(Colors::kLit, PictureFilter::kMitchell),
+                                         std::pair(Colors::kFog, PictureFilter::kGauss)}) {
+        SplatOptions splatting;
+        splatting.filter = filter;
+        const PreparedScene scene({test::someVolume(), test::someOptics(colors)}, splatting);
         for (const CameraOptions& options : test::someCameras()) {
             const Image whole = test::pictureOf(scene, options);
             const Camera camera = test::cameraOf(*scene.scene().volume, options);

@@ -30,6 +30,9 @@ struct OwnedRaster {
     Raster raster() const { return {min, size, rgba.data(), 4, {}}; }
 };
 
+constexpr WarpFilter kFilters[] = {WarpFilter::kSharp,    WarpFilter::kSmooth, WarpFilter::kLinear,
+                                   WarpFilter::kMitchell, WarpFilter::kGauss,  WarpFilter::kBox};
+
 glm::dmat3 affine(double xx, double xy, double x0, double yx, double yy, double y0) {
     return {xx, yx, 0, xy, yy, 0, x0, y0, 1};
 }
@@ -75,7 +78,7 @@ TEST(Warp, NoFilterOvershoots) {
     const auto high = [](int x, int y) { return (x / 5 + y / 7) % 2 == 0; };
     const OwnedRaster edges({0, 0}, {120, 120},
                             [&](int x, int y) { return high(x, y) ? 3.0f : 0.75f; });
-    for (const WarpFilter filter : {WarpFilter::kSharp, WarpFilter::kSmooth, WarpFilter::kLinear}) {
+    for (const WarpFilter filter : kFilters) {
         for (const double step : {0.1, 0.41, 0.7, 0.97, 1.3, 2.2}) {
             Image picture({25, 25});
             const double first = 60 - 12.5 * step;
@@ -113,6 +116,86 @@ TEST(Warp, SharpStaysWithinTheNearestPoints) {
         }
     }
     EXPECT_GT(clamped, 100);
+}
+
+// Where a filter is clamped it must not be to other points on the two sides of a lattice point.
+TEST(Warp, NoFilterJumps) {
+    const OwnedRaster raster({0, 0}, {60, 60},
+                             [](int x, int y) { return float((x * x * 31 + y * 17) % 23) / 22; });
+    for (const WarpFilter filter : kFilters) {
+        for (const double stretch : {1.0, 1.4}) {
+            Image fine({12000, 1});
+            // Along x in steps of a thousandth; what y's step is makes the filter along it wide.
+            warp(raster.raster(), affine(0.001, stretch, 20, 0, stretch, 30.3), filter, fine);
+            for (int x = 1; x < 12000; ++x) {
+                ASSERT_NEAR(fine.pixel(x, 0)[3], fine.pixel(x - 1, 0)[3], 0.02)
+                    << int(filter) << " " << stretch << " at " << x;
+            }
+        }
+    }
+}
+
+// The weight of a point that lies so many raster pixels away.
+double plainWeight(WarpFilter filter, double x, double stretch) {
+    x = std::abs(x);
+    if (filter == WarpFilter::kBox) return std::clamp((stretch + 1) / 2 - x, 0.0, 1.0);
+    x /= stretch;
+    if (filter == WarpFilter::kGauss)
+        return std::max(0.0, std::exp(-x * x / (2 * 0.5 * 0.5)) - std::exp(-4.5));
+    // Mitchell and Netravali's formula, as they wrote it.
+    const double b = 1.0 / 3;
+    const double c = 1.0 / 3;
+    const double x2 = x * x;
+    const double x3 = x * x * x;
+    if (x < 1) return ((12 - 9 * b - 6 * c) * x3 + (-18 + 12 * b + 6 * c) * x2 + 6 - 2 * b) / 6;
+    if (x < 2)
+        return ((-b - 6 * c) * x3 + (6 * b + 30 * c) * x2 + (-12 * b - 48 * c) * x + 8 * b +
+                24 * c) /
+               6;
+    return 0;
+}
+
+// What a filter makes of values along a line, at a place between them.
+double plainSum(WarpFilter filter, double place, double stretch,
+                const std::function<double(int)>& at) {
+    const int reach = int(std::ceil(2 * stretch));
+    const int whole = int(std::floor(place));
+    double sum = 0;
+    double weights = 0;
+    double low = 1e9;
+    double high = -1e9;
+    for (int i = whole - reach + 1; i <= whole + reach; ++i) {
+        const double weight = plainWeight(filter, i - place, stretch);
+        const double value = at(i);
+        sum += weight * value;
+        weights += weight;
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    return std::clamp(sum / weights, low, high);
+}
+
+TEST(Warp, ChosenFiltersAreTheirFormulas) {
+    const auto at = [](int x, int y) { return 0.5 + 0.2 * std::sin(0.9 * x) * std::cos(0.7 * y); };
+    const OwnedRaster raster({0, 0}, {90, 90}, [&](int x, int y) { return float(at(x, y)); });
+    for (const WarpFilter filter : {WarpFilter::kMitchell, WarpFilter::kGauss, WarpFilter::kBox}) {
+        for (const double step : {0.45, 1.0, 1.7, 3.0}) {
+            Image picture({20, 20});
+            const glm::dmat3 map = affine(step, 0, 14.3, 0, step, 12.9);
+            warp(raster.raster(), map, filter, picture);
+            const double stretch = std::max(1.0, step);
+            for (int y = 0; y < 20; ++y) {
+                for (int x = 0; x < 20; ++x) {
+                    const glm::dvec3 p = map * glm::dvec3(x + 0.5, y + 0.5, 1);
+                    const double expected = plainSum(filter, p.x, stretch, [&](int i) {
+                        return plainSum(filter, p.y, stretch, [&](int j) { return at(i, j); });
+                    });
+                    ASSERT_NEAR(picture.pixel(x, y)[3], expected, 3e-4)
+                        << int(filter) << " " << step << " " << x << "," << y;
+                }
+            }
+        }
+    }
 }
 
 // X-rays are sums: what a lattice point holds must not depend on where pixels fall.
@@ -258,7 +341,7 @@ TEST(Warp, ValuesKeepTheirRange) {
     std::vector<float> values(30 * 30);
     for (int i = 0; i < 900; ++i) values[i] = i % 30 < 15 ? -4.0f : 900.0f;
     const Raster raster{{0, 0}, {30, 30}, values.data(), 1};
-    for (const WarpFilter filter : {WarpFilter::kSharp, WarpFilter::kSmooth, WarpFilter::kLinear}) {
+    for (const WarpFilter filter : kFilters) {
         // The last columns and rows lie at the raster's edge and beyond.
         Image picture({120, 120});
         warp(raster, affine(0.3, 0, -0.1, 0, 0.3, -0.1), filter, picture);

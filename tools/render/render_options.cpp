@@ -50,6 +50,12 @@ Parser<Method> method() {
                          methodName);
 }
 
+Parser<PictureFilter> pictureFilter() {
+    return named<PictureFilter>({PictureFilter::kCatmullRom, PictureFilter::kMitchell,
+                                 PictureFilter::kGauss, PictureFilter::kBox},
+                                pictureFilterName);
+}
+
 Parser<Mode> mode() {
     return named<Mode>(
         {Mode::kComposite, Mode::kXray, Mode::kMip, Mode::kMin, Mode::kAverage, Mode::kDrr},
@@ -324,6 +330,10 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
     group.addValue("--resolution", "R", options.resolution, wholeNumber(1, kMaxResolution),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        " (default: chosen from the screen)");
+    group.addValue("--filter", "NAME", options.filter, pictureFilter(),
+                   withDefault("What makes pixels of the rendered plane: catmull-rom (sharp),\n"
+                               "mitchell, gauss (soft) or box (the mean over a pixel)",
+                               pictureFilterName(options.filter)));
 }
 
 void addRenderOptions(CLI::App& app, RenderCommand& command) {

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace deltasplat {
+
+/// How a picture is made of the base plane. Widths are in pixels of the picture, or of the base
+/// plane where those are larger.
+enum class PictureFilter {
+    kCatmullRom,  ///< sharp, and what pixels of the base plane are comes back as it was
+    kMitchell,    ///< a little softer (Mitchell and Netravali's B = C = 1/3)
+    kGauss,       ///< soft: standard deviation 1/2, ends at 3/2; no weight is negative
+    kBox          ///< the mean over a pixel's square; linear where the picture is finer
+};
+
+/// Returns "catmull-rom", "mitchell", "gauss" or "box".
+std::string pictureFilterName(PictureFilter filter);
+
+}  // namespace deltasplat
