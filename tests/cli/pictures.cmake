@@ -24,6 +24,8 @@ deltasplat_script_test(sequence sequence.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/sequence)
 deltasplat_script_test(sheets_and_movies sheets_and_movies.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/sheets_and_movies)
+deltasplat_script_test(preview preview.sh
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/preview)
 deltasplat_script_test(converted_sequence converted_sequence.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/converted_sequence)
 deltasplat_script_test(interrupt.full_pipe interrupt_full_pipe.sh

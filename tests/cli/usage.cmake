@@ -125,6 +125,9 @@ deltasplat_cli_test(usage.dashes_for_outputs EXIT 2 ARGS convert -- ${cube} --fl
 # Words.
 deltasplat_refusal(method "--method: got fast; expected auto, delta, sparse or traditional"
     --method fast)
+deltasplat_refusal(progressive_sheet
+    "--contact-sheet: got --progressive besides; expected one of them"
+    --progressive --turntable 4 --contact-sheet 2x2)
 deltasplat_refusal(filter "--filter: got lanczos; expected catmull-rom, mitchell, gauss or box"
     --filter lanczos)
 deltasplat_refusal(mode "--mode: got depth; expected composite, xray, mip, min, average or drr"

@@ -28,6 +28,7 @@
 #include "render/ground_options.h"
 #include "render/picture_legend.h"
 #include "render/picture_parts.h"
+#include "render/preview.h"
 #include "render/read_medium.h"
 #include "render/render_input.h"
 #include "render/render_modes.h"
@@ -47,7 +48,8 @@ namespace {
 
 // Shares of the progress that reading and rendering take, measured on the engine data set.
 constexpr double kReadShare = 0.3;
-constexpr double kRenderShare = 0.95;
+// Of what is left then, what rendering takes before the picture is written.
+constexpr double kRenderShare = 0.93;
 
 // What every picture says of how it was made.
 std::vector<std::pair<std::string, std::string>> commonMetadata(const Session& session) {
@@ -274,36 +276,18 @@ RenderResult makeInParts(const RenderCommand& command, const ReadScene& read,
     return result;
 }
 
-// Reads, renders and writes one picture.
-MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const Session& session,
-                        const SequencePart& part, const Listener& listener) {
+// Renders a scene and writes the picture.
+void showScene(const RenderCommand& command, const ReadScene& scene, const SequencePart& part,
+               const Session& session, const Listener& listener, MadePicture& made) {
     const PictureOptions& picture = command.picture;
-    MadePicture made;
-    const auto beginRead = std::chrono::steady_clock::now();
-    // Everything from here on is reading; what can be refused without it has been.
-    const Listener reading = partOf(listener, 0, kReadShare);
-    const ReadScene scene = sceneOf(command, part, reading);
     const RenderOptions& options = scene.options;
     const Volume& volume = *scene.volume;
-    if (!part.look) warnOfUnusedView(app, options.camera, volume, reading);
-    warnOfDetector(options.camera, volume, reading);
-    warnOfClipping(picture, part.frame, volume, reading);
-    made.times.read = secondsSince(beginRead);
-    made.codeBook = "code book " + volume.codeBook.name() + ", largest error " +
-                    codeErrorText(volume.codeError) + "\n";
-
     RenderResult& result = made.result;
-    const auto tell = [&] {
-        made.times.total = secondsSince(session.begin);
-        writeStats(command.stats, statsJson(result, volume, made.times, made.deep));
-        listener.report(1);
-    };
     if (!part.take && isMadeInParts(command, options.camera)) {
-        result = makeInParts(command, scene, part, session, partOf(listener, kReadShare, 1));
-        tell();
-        return made;
+        result = makeInParts(command, scene, part, session, listener);
+        return;
     }
-    const Listener rendering = partOf(listener, kReadShare, kRenderShare);
+    const Listener rendering = partOf(listener, 0, kRenderShare);
     DeepImage deep;
     if (command.deep) {
         result = renderDeep(volume, options, command.deepOptions, deep, rendering);
@@ -331,7 +315,60 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     if (part.take) part.take(result.image);
     if (part.isWritten) writePicture(command, deep, result.image, image);
     made.times.write = secondsSince(beginWrite);
-    tell();
+}
+
+// A small picture that is there until the one it goes before is, or has failed.
+class Preview {
+  public:
+    Preview(const RenderCommand& command, const ReadScene& scene, const PreparedScene* prepared,
+            const Session& session, const Listener& listener)
+        : file_(previewFile(command.output)) {
+        ReadScene small = scene;
+        small.options.camera = previewCamera(small.options.camera);
+        SequencePart part;
+        part.prepared = prepared;
+        MadePicture made;
+        // What there is to warn of is said of the picture.
+        Listener silent = partOf(listener, 0, 0);
+        silent.warning = {};
+        showScene(previewOf(command), small, part, session, silent, made);
+    }
+    ~Preview() {
+        std::error_code ignored;
+        std::filesystem::remove(file_, ignored);
+    }
+    Preview(const Preview&) = delete;
+    Preview& operator=(const Preview&) = delete;
+
+  private:
+    std::filesystem::path file_;
+};
+
+// Reads, renders and writes one picture.
+MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const Session& session,
+                        const SequencePart& part, const Listener& listener) {
+    const PictureOptions& picture = command.picture;
+    MadePicture made;
+    const auto beginRead = std::chrono::steady_clock::now();
+    // Everything from here on is reading; what can be refused without it has been.
+    const Listener reading = partOf(listener, 0, kReadShare);
+    const ReadScene scene = sceneOf(command, part, reading);
+    const RenderOptions& options = scene.options;
+    const Volume& volume = *scene.volume;
+    if (!part.look) warnOfUnusedView(app, options.camera, volume, reading);
+    warnOfDetector(options.camera, volume, reading);
+    warnOfClipping(picture, part.frame, volume, reading);
+    made.times.read = secondsSince(beginRead);
+    made.codeBook = "code book " + volume.codeBook.name() + ", largest error " +
+                    codeErrorText(volume.codeError) + "\n";
+
+    const Listener showing = partOf(listener, kReadShare, 1);
+    std::optional<Preview> preview;
+    if (command.progressive) preview.emplace(command, scene, part.prepared, session, showing);
+    showScene(command, scene, part, session, showing, made);
+    made.times.total = secondsSince(session.begin);
+    writeStats(command.stats, statsJson(made.result, volume, made.times, made.deep));
+    listener.report(1);
     return made;
 }
 

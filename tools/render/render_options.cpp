@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/render_options.h"
+#include "render/preview.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
@@ -136,6 +137,7 @@ void addOutputOptions(CLI::App& app, RenderCommand& command) {
                                command.image.dither ? "1" : "0"));
     group.addValue("--stats", "FILE", command.stats, anyText(),
                    "JSON file to write: what was done, how long it took in seconds");
+    addPreviewOption(app, command);
 }
 
 void addModeOption(CLI::App& app, Mode& chosen) {
@@ -424,6 +426,7 @@ void validate(const RenderCommand& command) {
     checkExr(command);
     checkColors(command);
     checkGround(command);
+    checkPreview(command);
     if (!command.isMovieAlone) {
         checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     }
@@ -446,6 +449,11 @@ void validate(const RenderCommand& command) {
     others.push_back(command.output);
     checkOutput("--stats", command.stats, others,
                 "the input, the transfer function and the picture");
+    if (!command.progressive) return;
+    others.push_back(command.stats);
+    others.push_back(command.movie);
+    checkOutput("--progressive", previewFile(command.output), others,
+                "another file of the command");
 }
 
 }  // namespace deltasplat

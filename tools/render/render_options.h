@@ -117,6 +117,7 @@ struct RenderCommand {
     std::filesystem::path firstPass;         ///< of a sequence; empty: none
     std::optional<int> turntable;            ///< frames of a turn of the camera
     std::optional<glm::ivec2> contactSheet;  ///< columns and rows; empty: none
+    bool progressive = false;                ///< whether a small picture comes before
     bool slate = false;                      ///< whether frames have their numbers drawn into them
     std::filesystem::path movie;             ///< empty: none
     bool isMovieAlone = false;               ///< made, then, without pictures besides

@@ -33,7 +33,7 @@ void checkSheet(const CLI::App& app, const RenderCommand& command) {
     if (FrameName::find(command.output))
         refuse("--output", command.output.string() + " with --contact-sheet", "one file");
     for (const char* option :
-         {"--aov", "--deep", "--stats", "--region", "--overscan", "--autocrop"}) {
+         {"--aov", "--deep", "--stats", "--region", "--overscan", "--autocrop", "--progressive"}) {
         if (isGiven(app, option))
             refuse("--contact-sheet", option + std::string(" besides"), "one of them");
     }
@@ -55,7 +55,7 @@ void checkMovieOf(const CLI::App& app, RenderCommand& command) {
     if (isExr(command))
         refuse("--movie", "an .exr besides, which shows light as it is", "-o with a .png, or none");
     if (!command.isMovieAlone) return;
-    for (const char* option : {"--float", "--bits"})
+    for (const char* option : {"--float", "--bits", "--progressive"})
         if (isGiven(app, option)) refuse(option, "a movie alone", "-o with pictures");
 }
 
