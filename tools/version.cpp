@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "version.h"
 
-#include <OpenImageIO/imageio.h>
+#include <OpenImageIO/oiioversion.h>
 #include <openvdb/version.h>
 #include <tbb/version.h>
 
@@ -24,7 +24,7 @@ std::string programVersion() {
 
 std::vector<std::pair<std::string, std::string>> libraryVersions() {
     return {{"OpenVDB", openvdb::getLibraryVersionString()},
-            {"OpenImageIO", dotted(OIIO::openimageio_version())},
+            {"OpenImageIO", dotted(OIIO_VERSION)},
             {"TBB", TBB_runtime_version()}};
 }
 

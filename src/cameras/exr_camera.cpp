@@ -13,6 +13,7 @@
 #include "deltasplat/error.h"
 #include "ingest/files/refuse_file.h"
 #include "ingest/images/image_file.h"
+#include "modules/image_module.h"
 #include "number_text.h"
 #include "view/camera_axes.h"
 
@@ -77,7 +78,8 @@ PictureMap pictureMap(const std::filesystem::path& file, const glm::dmat4& ndcFr
 
 }  // namespace
 
-CameraMotion readExrCamera(const std::filesystem::path& file, const Listener& listener) {
+CameraMotion image_module::readExrCamera(const std::filesystem::path& file,
+                                         const Listener& listener) {
     const ImageFile image(file, ImagePages(file), 0);
     const OIIO::ImageSpec& spec = image.spec();
     glm::dmat4 cameraFromWorld = readMatrix(file, spec, "worldToCamera");

@@ -10,6 +10,7 @@
 #include "deltasplat/error.h"
 #include "ingest/guards/silent_stderr.h"
 #include "ingest/images/image_file.h"
+#include "modules/image_module.h"
 
 namespace deltasplat {
 namespace {
@@ -27,7 +28,7 @@ bool isReadable(const std::filesystem::path& file, OIIO::ImageInput& input) {
 
 }  // namespace
 
-bool isWholeImage(const std::filesystem::path& file) {
+bool image_module::isWholeImage(const std::filesystem::path& file) {
     bool isWhole = false;
     const SilentStderr silent;
     try {

@@ -14,6 +14,7 @@
 #include "ingest/files/refuse_file.h"
 #include "ingest/images/image_file.h"
 #include "memory.h"
+#include "modules/image_module.h"
 #include "parallel.h"
 #include "srgb.h"
 
@@ -121,7 +122,8 @@ void mendValues(const std::filesystem::path& file, bool whole, std::vector<float
 
 }  // namespace
 
-Environment readEnvironment(const std::filesystem::path& file, const Listener& listener) {
+Environment image_module::readEnvironment(const std::filesystem::path& file,
+                                          const Listener& listener) {
     const DefaultFloats floats;
     requireKnownName(file);
     ImageFile image(file, ImagePages(file), 0);

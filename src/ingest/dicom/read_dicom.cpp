@@ -19,6 +19,7 @@
 #include "ingest/files/refuse_file.h"
 #include "ingest/placement.h"
 #include "memory.h"
+#include "modules/medical_module.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -237,8 +238,8 @@ void addFile(const std::filesystem::path& path, std::map<std::string, DicomSerie
 
 }  // namespace
 
-std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
-                                    const std::vector<std::filesystem::path>& files) {
+std::vector<DicomSeries> medical_module::findSeries(
+    const std::filesystem::path& input, const std::vector<std::filesystem::path>& files) {
     std::map<std::string, DicomSeries> byUid;
     for (const std::filesystem::path& file : files) addFile(file, byUid);
     if (byUid.empty()) refuseFile(input, "no image", "DICOM slices");
@@ -252,8 +253,8 @@ std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
     return all;
 }
 
-DenseSource openDicom(const std::filesystem::path& input, const std::string& name,
-                      DicomSeries series) {
+DenseSource medical_module::openDicom(const std::filesystem::path& input, const std::string& name,
+                                      DicomSeries series) {
     if (series.error) throw Error(*series.error);
     std::vector<DicomSlice> slices = std::move(series.slices);
     auto files = std::make_shared<DicomFiles>();

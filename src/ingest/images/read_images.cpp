@@ -19,6 +19,7 @@
 #include "ingest/readers.h"
 #include "luminance.h"
 #include "memory.h"
+#include "modules/image_module.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -209,9 +210,9 @@ Stack surveyStack(const std::vector<std::filesystem::path>& files, const Listene
 
 }  // namespace
 
-DenseSource openImages(const std::filesystem::path& input, const std::string& name,
-                       const std::vector<std::filesystem::path>& files, const RawFormat& format,
-                       const Listener& listener) {
+DenseSource image_module::openImages(const std::filesystem::path& input, const std::string& name,
+                                     const std::vector<std::filesystem::path>& files,
+                                     const RawFormat& format, const Listener& listener) {
     requireGeometry(format);
     auto stack = std::make_shared<const Stack>(surveyStack(files, listener));
     DenseSource source;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stands in for what reads through ITK, where the library is built without it.
 #include "deltasplat/error.h"
-#include "ingest/dense/dense_source.h"
-#include "ingest/dicom/dicom_series.h"
 #include "ingest/files/file_name.h"
-#include "ingest/readers.h"
+#include "modules/medical_module.h"
 
 namespace deltasplat {
 namespace {
@@ -17,18 +15,19 @@ namespace {
 
 }  // namespace
 
-DenseSource openItk(const std::filesystem::path& file) {
+DenseSource medical_module::openItk(const std::filesystem::path& file) {
     refuse(file, "extension \"" + lowerExtension(file) + "\"");
 }
 
-std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
-                                    const std::vector<std::filesystem::path>&) {
+std::vector<DicomSeries> medical_module::findSeries(const std::filesystem::path& input,
+                                                    const std::vector<std::filesystem::path>&) {
     refuse(input, "DICOM");
 }
 
 // As it is declared for those who read: they keep the series.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
-DenseSource openDicom(const std::filesystem::path& input, const std::string&, DicomSeries) {
+DenseSource medical_module::openDicom(const std::filesystem::path& input, const std::string&,
+                                      DicomSeries) {
     refuse(input, "DICOM");
 }
 

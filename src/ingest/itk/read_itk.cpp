@@ -24,6 +24,7 @@
 #include "ingest/readers.h"
 #include "lower_case.h"
 #include "memory.h"
+#include "modules/medical_module.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -221,7 +222,7 @@ void openFile(ItkFile& file) {
 
 }  // namespace
 
-DenseSource openItk(const std::filesystem::path& path) {
+DenseSource medical_module::openItk(const std::filesystem::path& path) {
     auto file = std::make_shared<ItkFile>();
     file->path = path;
     openFile(*file);

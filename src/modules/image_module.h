@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cameras/readers.h"
+#include "deltasplat/hold_out.h"
+#include "deltasplat/image/color_management.h"
+#include "deltasplat/image/write_deep_image.h"
+#include "deltasplat/image/write_image.h"
+#include "deltasplat/optics/environment.h"
+#include "ingest/readers.h"
+
+namespace deltasplat {
+
+/// What ExrRows writes to, after its checks.
+class ExrRowsFile {
+  public:
+    virtual ~ExrRowsFile() = default;
+    /// @param rows  that come next, as wide as the box
+    virtual void write(const Image& rows) = 0;
+    virtual void finish() = 0;
+};
+
+/// What ColorTransform does.
+class ColorProcessor {
+  public:
+    virtual ~ColorProcessor() = default;
+    virtual void convert(Image& image) const = 0;
+    virtual void show(Image& image) const = 0;
+};
+
+/// All that is done by OpenImageIO, which takes longer to load than most commands take: the program
+/// loads it when one of these is first called. Each is what the function of the library does that
+/// has its name, after that has checked what it was given.
+struct ImageModule {
+    std::string (*encodeImage)(const std::filesystem::path& file, const Image& image,
+                               const ImageFileOptions& options);
+    std::string (*encodeDeepImage)(const std::filesystem::path& file, const DeepImage& image,
+                                   const ImageFileOptions& options);
+    std::unique_ptr<ExrRowsFile> (*openExrRows)(const std::filesystem::path& file,
+                                                glm::ivec2 sizePixels, const PixelBox& box,
+                                                const ImageFileOptions& options);
+    std::unique_ptr<ColorProcessor> (*makeColorProcessor)(const ColorOptions& options);
+    bool (*isWholeImage)(const std::filesystem::path& file);
+    DepthImage (*readDepthImage)(const std::filesystem::path& file, const Listener& listener);
+    Environment (*readEnvironment)(const std::filesystem::path& file, const Listener& listener);
+    CameraMotion (*readExrCamera)(const std::filesystem::path& file, const Listener& listener);
+    DenseSource (*openImages)(const std::filesystem::path& input, const std::string& name,
+                              const std::vector<std::filesystem::path>& files,
+                              const RawFormat& format, const Listener& listener);
+};
+
+/// Returns the module: linked to the library (linked_image_module.cpp), or what the program loads
+/// (tools/modules/).
+/// @throw Error(kFailed) if it cannot be loaded
+const ImageModule& imageModule();
+
+/// What the module is made of.
+namespace image_module {
+
+std::string encodeImage(const std::filesystem::path& file, const Image& image,
+                        const ImageFileOptions& options);
+std::string encodeDeepImage(const std::filesystem::path& file, const DeepImage& image,
+                            const ImageFileOptions& options);
+std::unique_ptr<ExrRowsFile> openExrRows(const std::filesystem::path& file, glm::ivec2 sizePixels,
+                                         const PixelBox& box, const ImageFileOptions& options);
+std::unique_ptr<ColorProcessor> makeColorProcessor(const ColorOptions& options);
+bool isWholeImage(const std::filesystem::path& file);
+DepthImage readDepthImage(const std::filesystem::path& file, const Listener& listener);
+Environment readEnvironment(const std::filesystem::path& file, const Listener& listener);
+CameraMotion readExrCamera(const std::filesystem::path& file, const Listener& listener);
+DenseSource openImages(const std::filesystem::path& input, const std::string& name,
+                       const std::vector<std::filesystem::path>& files, const RawFormat& format,
+                       const Listener& listener);
+
+inline constexpr ImageModule kModule{encodeImage,        encodeDeepImage, openExrRows,
+                                     makeColorProcessor, isWholeImage,    readDepthImage,
+                                     readEnvironment,    readExrCamera,   openImages};
+
+}  // namespace image_module
+
+}  // namespace deltasplat

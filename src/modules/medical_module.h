@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ingest/dicom/dicom_series.h"
+#include "ingest/readers.h"
+
+namespace deltasplat {
+
+/// All that is read through ITK and GDCM, as ImageModule is of OpenImageIO.
+struct MedicalModule {
+    DenseSource (*openItk)(const std::filesystem::path& file);
+    std::vector<DicomSeries> (*findSeries)(const std::filesystem::path& input,
+                                           const std::vector<std::filesystem::path>& files);
+    DenseSource (*openDicom)(const std::filesystem::path& input, const std::string& name,
+                             DicomSeries series);
+};
+
+/// As imageModule().
+const MedicalModule& medicalModule();
+
+/// What the module is made of.
+namespace medical_module {
+
+DenseSource openItk(const std::filesystem::path& file);
+std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
+                                    const std::vector<std::filesystem::path>& files);
+DenseSource openDicom(const std::filesystem::path& input, const std::string& name,
+                      DicomSeries series);
+
+inline constexpr MedicalModule kModule{openItk, findSeries, openDicom};
+
+}  // namespace medical_module
+
+}  // namespace deltasplat

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Functions that a module does, and nothing besides.
+#include <utility>
+
+#include "image/whole_image.h"
+#include "modules/image_module.h"
+#include "modules/medical_module.h"
+
+namespace deltasplat {
+
+bool isWholeImage(const std::filesystem::path& file) {
+    return imageModule().isWholeImage(file);
+}
+
+DepthImage readDepthImage(const std::filesystem::path& file, const Listener& listener) {
+    return imageModule().readDepthImage(file, listener);
+}
+
+Environment readEnvironment(const std::filesystem::path& file, const Listener& listener) {
+    return imageModule().readEnvironment(file, listener);
+}
+
+CameraMotion readExrCamera(const std::filesystem::path& file, const Listener& listener) {
+    return imageModule().readExrCamera(file, listener);
+}
+
+DenseSource openImages(const std::filesystem::path& input, const std::string& name,
+                       const std::vector<std::filesystem::path>& files, const RawFormat& format,
+                       const Listener& listener) {
+    return imageModule().openImages(input, name, files, format, listener);
+}
+
+DenseSource openItk(const std::filesystem::path& file) {
+    return medicalModule().openItk(file);
+}
+
+std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
+                                    const std::vector<std::filesystem::path>& files) {
+    return medicalModule().findSeries(input, files);
+}
+
+DenseSource openDicom(const std::filesystem::path& input, const std::string& name,
+                      DicomSeries series) {
+    return medicalModule().openDicom(input, name, std::move(series));
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Modules are found from where the program is, by whatever link it is called; without them what does
+# not need them is done, and the rest says what is missing.
+# Usage: modules.sh PROGRAM OIIOTOOL SCRATCH
+source "${BASH_SOURCE%/*}/pictures.sh"
+source "${BASH_SOURCE%/*}/runs.sh"
+begin "$@"
+mkdir -p installed/bin installed/lib lonely/bin links
+cp "$program" installed/bin/deltasplat
+cp "$program" lonely/bin/deltasplat
+cp -r "${program%/*}/../lib/deltasplat" installed/lib/
+ln -s ../installed/bin/deltasplat links/volumes
+program=$PWD/installed/bin/deltasplat
+
+"$program" synth engine in.vdb --dims 24x24x24 -qq
+links/volumes render in.vdb -o link.jpg --size 32x32 -qq --background 0,0,0
+(cd / && "$program" render "$scratch/in.vdb" -o "$scratch/away.jpg" --size 32x32 -qq --background 0,0,0)
+expect_same link.jpg away.jpg
+
+# Only what is asked for is loaded.
+loaded() { LD_DEBUG=files "$@" 2>&1 >/dev/null | grep -o 'lib\(OpenImageIO\|ITKCommon\)\.so' | sort -u; }
+for command in --version "info in.vdb" "convert in.vdb out.nrrd"; do
+    # shellcheck disable=SC2086
+    [[ -z $(loaded "$program" $command) ]] || fail "$command: loads $(loaded "$program" $command)"
+done
+
+lonely/bin/deltasplat info in.vdb >/dev/null || fail "info needs a module"
+expect_code 1 lonely/bin/deltasplat render in.vdb -o none.jpg --size 32x32 -q --background 0,0,0
+grep -q "^deltasplat: module images: got .*; expected $PWD/lonely/lib/deltasplat/images.so, which is installed" \
+    stderr.txt || { cat stderr.txt; fail "expected to be told what is missing"; }
+expect_files "" 'none*'
