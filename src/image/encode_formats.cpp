@@ -177,14 +177,6 @@ OIIO::TypeDesc sampleType(const ImageFileOptions& options) {
     return options.bits == 16 ? OIIO::TypeUInt16 : OIIO::TypeUInt8;
 }
 
-std::string encodePng(const std::filesystem::path& file, const Image& image,
-                      const ImageFileOptions& options) {
-    OIIO::ImageSpec spec = rgbaSpec(regionOf(options, image.size).size(), sampleType(options));
-    addMetadata(options, spec);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    return encodeStraight(file, "png", image, spec, options);
-}
-
 std::string encodeTiff(const std::filesystem::path& file, const Image& image,
                        const ImageFileOptions& options) {
     OIIO::ImageSpec spec = rgbaSpec(regionOf(options, image.size).size(), sampleType(options));
@@ -211,17 +203,10 @@ std::string encodeJpeg(const std::filesystem::path& file, const Image& image,
 
 std::string image_module::encodeImage(const std::filesystem::path& file, const Image& image,
                                       const ImageFileOptions& options) {
-    switch (imageFormatOf(file)) {
-        case ImageFormat::kExr:
-            return encodeExr(file, image, options);
-        case ImageFormat::kPng:
-            return encodePng(file, image, options);
-        case ImageFormat::kTiff:
-            return encodeTiff(file, image, options);
-        case ImageFormat::kJpeg:
-            break;
-    }
-    return encodeJpeg(file, image, options);
+    const ImageFormat format = imageFormatOf(file);
+    if (format == ImageFormat::kExr) return encodeExr(file, image, options);
+    return format == ImageFormat::kTiff ? encodeTiff(file, image, options)
+                                        : encodeJpeg(file, image, options);
 }
 
 }  // namespace deltasplat

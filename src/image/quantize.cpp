@@ -2,6 +2,8 @@
 #include "image/quantize.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -24,6 +26,53 @@ Sample quantize(double unit, double threshold) {
     return Sample(std::floor(unit * std::numeric_limits<Sample>::max() + (1 - threshold)));
 }
 
+// The curve of sRGB, nearly: straight between 256 places an octave, from 2^-9 on.
+class SrgbCurve {
+  public:
+    // Farther off than this it is nowhere in 2^-9..1.
+    static constexpr double kMostOff = 1e-6;
+
+    SrgbCurve() {
+        for (int i = 0; i < kPlaces; ++i)
+            values_[std::size_t(i)] =
+                srgbFromLinear(std::ldexp(1 + i % kSteps / double(kSteps), i / kSteps - kOctaves));
+    }
+    static bool knows(double linear) { return linear >= std::ldexp(1.0, -kOctaves); }
+    double operator()(double linear) const {
+        const auto bits = std::bit_cast<std::uint64_t>(linear);
+        const auto i = std::size_t((bits >> kFractionBits) - kFirst);
+        const auto fraction = double(bits & ((std::uint64_t{1} << kFractionBits) - 1));
+        return values_[i] + std::ldexp(fraction, -kFractionBits) * (values_[i + 1] - values_[i]);
+    }
+
+  private:
+    static constexpr int kOctaves = 9;
+    static constexpr int kSteps = 256;
+    static constexpr int kPlaces = kOctaves * kSteps + 2;  // 1 itself, and one beyond
+    static constexpr int kFractionBits = 52 - 8;
+    static constexpr std::uint64_t kFirst = std::uint64_t{1023 - kOctaves} << 8;
+
+    std::array<double, kPlaces> values_{};
+};
+
+// Quantizes a level of sRGB: by the curve's table, where all that it may be off by makes no
+// difference, which saves most of the powers.
+template <typename Sample>
+Sample quantizeSrgb(const SrgbCurve& curve, double linear, double threshold) {
+    if (SrgbCurve::knows(linear)) {
+        const double level = curve(linear);
+        const Sample low = quantize<Sample>(level - SrgbCurve::kMostOff, threshold);
+        if (low == quantize<Sample>(std::min(1.0, level + SrgbCurve::kMostOff), threshold))
+            return low;
+    }
+    return quantize<Sample>(srgbFromLinear(linear), threshold);
+}
+
+const SrgbCurve& srgbCurve() {
+    static const SrgbCurve curve;
+    return curve;
+}
+
 // Spreads thresholds evenly over any neighbourhood: multiples of two numbers whose fractions come
 // close to each other as late as can be (M. Roberts, "The Unreasonable Effectiveness of
 // Quasirandom Sequences", 2018), here in fractions of 2^32.
@@ -36,11 +85,12 @@ double thresholdAt(std::size_t x, std::size_t y) {
 }
 
 template <typename Sample>
-void straightSrgbPixel(const float* rgba, double threshold, Sample* result) {
+void straightSrgbPixel(const SrgbCurve& curve, const float* rgba, double threshold,
+                       Sample* result) {
     const double alpha = clampUnit(rgba[3]);
     for (int channel = 0; channel < 3; ++channel) {
         const double straight = alpha > 0 ? clampUnit(rgba[channel] / alpha) : 0;
-        result[channel] = quantize<Sample>(srgbFromLinear(straight), threshold);
+        result[channel] = quantizeSrgb<Sample>(curve, straight, threshold);
     }
     // The other way round: where colour is rounded up, alpha rather is not.
     result[3] = quantize<Sample>(alpha, 1 - threshold);
@@ -72,18 +122,20 @@ void forThresholds(const Image& image, bool dither, const Use& use) {
 template <typename Sample>
 std::vector<Sample> straightSrgb(const Image& image, bool dither) {
     std::vector<Sample> samples(image.rgba.size());
+    const SrgbCurve& curve = srgbCurve();
     forThresholds(image, dither, [&](std::size_t pixel, double threshold) {
-        straightSrgbPixel(&image.rgba[4 * pixel], threshold, &samples[4 * pixel]);
+        straightSrgbPixel(curve, &image.rgba[4 * pixel], threshold, &samples[4 * pixel]);
     });
     return samples;
 }
 
 std::vector<std::uint8_t> opaqueSrgb(const Image& image, bool dither) {
     std::vector<std::uint8_t> samples(image.rgba.size() / 4 * 3);
+    const SrgbCurve& curve = srgbCurve();
     forThresholds(image, dither, [&](std::size_t pixel, double threshold) {
         for (std::size_t c = 0; c < 3; ++c) {
-            const double level = srgbFromLinear(clampUnit(image.rgba[4 * pixel + c]));
-            samples[3 * pixel + c] = quantize<std::uint8_t>(level, threshold);
+            const double linear = clampUnit(image.rgba[4 * pixel + c]);
+            samples[3 * pixel + c] = quantizeSrgb<std::uint8_t>(curve, linear, threshold);
         }
     });
     return samples;

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/image/write_image.h"
 
+#include <cstdint>
 #include <limits>
 
 #include "default_floats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "dims_text.h"
+#include "image/encode_png.h"
+#include "image/quantize.h"
 #include "lower_case.h"
 #include "modules/image_module.h"
 
@@ -64,6 +67,22 @@ void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
     }
 }
 
+template <typename Sample>
+std::string encodePng(const Image& image, const ImageFileOptions& options) {
+    const std::vector<Sample> samples =
+        straightSrgb<Sample>(image, options.dither && sizeof(Sample) == 1);
+    const PixelBox part = options.region.value_or(PixelBox{{0, 0}, image.size});
+    const auto width = std::size_t(image.size.x);
+    PngPicture picture{part.size(),
+                       8 * int(sizeof(Sample)),
+                       &samples[4 * (std::size_t(part.min.y) * width + std::size_t(part.min.x))],
+                       4 * sizeof(Sample) * width,
+                       {}};
+    for (const auto& [name, text] : options.metadata)
+        picture.texts.emplace_back("deltasplat:" + name, text);
+    return encodePng(picture);
+}
+
 }  // namespace
 
 ImageFormat imageFormatOf(const std::filesystem::path& file) {
@@ -90,6 +109,11 @@ std::string encodeImage(const std::filesystem::path& file, const Image& image,
     if (image.size.x < 1 || image.size.y < 1) {
         const std::string got = dimsText(image.size) + " pixels";
         throw Error(ErrorCode::kUsage, gotExpected(file.string(), got, "at least 1x1"));
+    }
+    // The one format that OpenImageIO is not loaded for, and that is packed by all threads.
+    if (imageFormatOf(file) == ImageFormat::kPng) {
+        return options.bits == 16 ? encodePng<std::uint16_t>(image, options)
+                                  : encodePng<std::uint8_t>(image, options);
     }
     return imageModule().encodeImage(file, image, options);
 }

@@ -17,6 +17,7 @@
 #include "dims_text.h"
 #include "listener.h"
 #include "listener_part.h"
+#include "modules/load_early.h"
 #include "number_text.h"
 #include "options/input_options.h"
 #include "output_files.h"
@@ -426,6 +427,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
     applyLayers(app, command.picture);
     applySurface(app, command.picture.render.mode, isFog(command.picture), command.picture.surface,
                  command.picture.read);
+    const std::jthread loading = loadEarly(command.output);
     if (command.frames.asked()) return runSequence(app, command, session);
     validate(command);
     MadePicture made;

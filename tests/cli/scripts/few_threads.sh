@@ -20,8 +20,10 @@ if [[ $(id -u) != 0 ]] || ! "${as_user[@]}" true 2>/dev/null; then
     echo "skipped: needs root and setpriv, to become a user without other processes"
     exit 77
 fi
-cp "$program" program
-if ! "${as_user[@]}" bash -c 'exec ./program --version' >/dev/null; then
+mkdir -p there/bin there/lib
+cp "$program" there/bin/program
+cp -r "${program%/*}/../lib/deltasplat" there/lib/
+if ! "${as_user[@]}" bash -c 'exec there/bin/program --version' >/dev/null; then
     echo "skipped: another user cannot reach $scratch"
     exit 77
 fi
@@ -37,7 +39,7 @@ for limit in 1 3 4 5 6 8 10 12 16 40 100; do
         for name in render version; do
             command=(render slab_8x8x8_uint8.raw -o out.exr --threads $threads -q)
             [[ $name == render ]] || command=(--version)
-            "${as_user[@]}" bash -c "ulimit -u $limit; exec ./program \"\$@\"" - "${command[@]}" \
+            "${as_user[@]}" bash -c "ulimit -u $limit; exec there/bin/program \"\$@\"" - "${command[@]}" \
                 >stdout 2>message
             code=$?
             [[ $code == 0 || $code == 1 ]] ||

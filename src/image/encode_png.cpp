@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: W3C, "Portable Network Graphics (PNG) Specification", second edition, 2003; RFC 1950
+// (zlib). Deviates from what libpng does in that blocks of rows are packed side by side: each knows
+// the 32 KiB before it, as if all were one.
+#include "image/encode_png.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+#include "deltasplat/error.h"
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+using Byte = unsigned char;
+using Bytes = std::vector<Byte>;
+
+// Filtered bytes of a block, and what deflate looks back at.
+constexpr std::size_t kBlockBytes = std::size_t{1} << 18;
+constexpr std::size_t kWindow = 32768;
+constexpr int kLevel = 6;
+
+void addNumber(std::uint32_t number, std::string& to) {
+    for (int shift = 24; shift >= 0; shift -= 8) to += char(number >> shift & 0xFF);
+}
+
+void addChunk(const char* type, const std::string& data, std::string& to) {
+    addNumber(std::uint32_t(data.size()), to);
+    const std::size_t first = to.size();
+    to.append(type, 4).append(data);
+    const uLong sum = crc32_z(0, reinterpret_cast<const Byte*>(&to[first]), data.size() + 4);
+    addNumber(std::uint32_t(sum), to);
+}
+
+void addHeader(const PngPicture& picture, std::string& to) {
+    std::string data;
+    addNumber(std::uint32_t(picture.size.x), data);
+    addNumber(std::uint32_t(picture.size.y), data);
+    data += char(picture.bits);
+    // Red, green, blue and alpha; deflate; filters by row; not interlaced.
+    data.append({6, 0, 0, 0});
+    addChunk("IHDR", data, to);
+}
+
+// What sRGB is, for readers that do not know it by its name as well.
+void addColorSpace(std::string& to) {
+    std::string gamma;
+    addNumber(45455, gamma);
+    addChunk("gAMA", gamma, to);
+    addChunk("sRGB", std::string(1, '\3'), to);  // what is measured, not what pleases
+    std::string primaries;
+    for (const std::uint32_t number :
+         {31270u, 32900u, 64000u, 33000u, 30000u, 60000u, 15000u, 6000u})
+        addNumber(number, primaries);
+    addChunk("cHRM", primaries, to);
+}
+
+void addText(const std::string& keyword, const std::string& text, std::string& to) {
+    const bool isAscii =
+        std::all_of(text.begin(), text.end(), [](char c) { return Byte(c) < 0x80; });
+    const std::string end(1, '\0');
+    if (isAscii) return addChunk("tEXt", keyword + end + text, to);
+    // Not packed; no language, and the keyword untranslated.
+    addChunk("iTXt", keyword + end + std::string(2, '\0') + end + end + text, to);
+}
+
+int paeth(int left, int above, int corner) {
+    const int toLeft = std::abs(above - corner);
+    const int toAbove = std::abs(left - corner);
+    const int toCorner = std::abs(left + above - 2 * corner);
+    if (toLeft <= toAbove && toLeft <= toCorner) return left;
+    return toAbove <= toCorner ? above : corner;
+}
+
+// Rows as they are packed: each a filter's number, and what is left when a pixel is predicted from
+// those beside and above it.
+class FilteredRows {
+  public:
+    explicit FilteredRows(const PngPicture& picture)
+        : picture_(picture),
+          pixelBytes_(std::size_t(picture.bits) / 2),
+          rowBytes_(pixelBytes_ * std::size_t(picture.size.x)),
+          bytes_((rowBytes_ + 1) * std::size_t(picture.size.y)) {
+        parallelForChunks(std::size_t(picture.size.y), [&](std::size_t begin, std::size_t end) {
+            Filter filter(rowBytes_, pixelBytes_);
+            if (begin > 0) readRow(begin - 1, filter.row());
+            for (std::size_t y = begin; y < end; ++y) {
+                filter.next();
+                readRow(y, filter.row());
+                filter.write(&bytes_[(rowBytes_ + 1) * y]);
+            }
+        });
+    }
+
+    const Bytes& bytes() const { return bytes_; }
+
+  private:
+    // Filters a row in all five ways, and takes the one that leaves least.
+    class Filter {
+      public:
+        Filter(std::size_t rowBytes, std::size_t pixelBytes)
+            : pixel_(pixelBytes), bytes_(rowBytes), row_(pixelBytes + rowBytes), above_(row_) {
+            for (Bytes& filtered : filtered_) filtered.resize(rowBytes);
+        }
+        // Where a row's bytes are put.
+        Byte* row() { return &row_[pixel_]; }
+        void next() { std::swap(row_, above_); }
+
+        void write(Byte* to) {
+            // Before a row there are pixels of zeros.
+            const Byte* const here = &row_[pixel_];
+            const Byte* const left = row_.data();
+            const Byte* const above = &above_[pixel_];
+            const Byte* const corner = above_.data();
+            for (std::size_t i = 0; i < bytes_; ++i) {
+                filtered_[0][i] = here[i];
+                filtered_[1][i] = Byte(here[i] - left[i]);
+                filtered_[2][i] = Byte(here[i] - above[i]);
+                filtered_[3][i] = Byte(here[i] - (left[i] + above[i]) / 2);
+            }
+            for (std::size_t i = 0; i < bytes_; ++i)
+                filtered_[4][i] = Byte(here[i] - paeth(left[i], above[i], corner[i]));
+            std::size_t best = 0;
+            std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+            for (std::size_t f = 0; f < filtered_.size(); ++f) {
+                const std::uint64_t sum = magnitude(filtered_[f]);
+                if (sum >= least) continue;
+                least = sum;
+                best = f;
+            }
+            *to = Byte(best);
+            std::copy(filtered_[best].begin(), filtered_[best].end(), to + 1);
+        }
+
+      private:
+        static std::uint64_t magnitude(const Bytes& bytes) {
+            std::uint64_t sum = 0;
+            for (const Byte byte : bytes) sum += byte < 128 ? byte : 256u - byte;
+            return sum;
+        }
+
+        std::size_t pixel_;
+        std::size_t bytes_;
+        Bytes row_;  // a pixel of zeros, and the row
+        Bytes above_;
+        std::array<Bytes, 5> filtered_;
+    };
+
+    // Samples are stored big-endian.
+    void readRow(std::size_t y, Byte* to) const {
+        const Byte* const from = static_cast<const Byte*>(picture_.samples) + picture_.rowBytes * y;
+        if (picture_.bits == 8 || std::endian::native == std::endian::big) {
+            std::copy(from, from + rowBytes_, to);
+            return;
+        }
+        for (std::size_t i = 0; i < rowBytes_; i += 2) {
+            to[i] = from[i + 1];
+            to[i + 1] = from[i];
+        }
+    }
+
+    const PngPicture& picture_;
+    std::size_t pixelBytes_;
+    std::size_t rowBytes_;
+    Bytes bytes_;
+};
+
+// A packed block, and its sum.
+struct Block {
+    std::string packed;
+    uLong sum = 0;
+    std::size_t bytes = 0;
+};
+
+// Packs a part of all bytes, in such a way that others can be put before and behind.
+Block pack(const Bytes& all, std::size_t begin, std::size_t end) {
+    z_stream stream{};
+    const auto check = [](int code, int expected) {
+        if (code != expected)
+            throw Error(ErrorCode::kFailed, "zlib: got " + std::to_string(code) + "; expected " +
+                                                std::to_string(expected));
+    };
+    constexpr int kRaw = -15;
+    check(deflateInit2(&stream, kLevel, Z_DEFLATED, kRaw, 8, Z_FILTERED), Z_OK);
+    const std::size_t known = std::min(begin, kWindow);
+    if (known > 0) check(deflateSetDictionary(&stream, &all[begin - known], uInt(known)), Z_OK);
+    Block block;
+    block.bytes = end - begin;
+    block.sum = adler32_z(1, &all[begin], block.bytes);
+    // Room for the mark that ends a block as well.
+    block.packed.resize(deflateBound(&stream, uLong(block.bytes)) + 16);
+    stream.next_in = const_cast<Byte*>(&all[begin]);
+    stream.avail_in = uInt(block.bytes);
+    stream.next_out = reinterpret_cast<Byte*>(block.packed.data());
+    stream.avail_out = uInt(block.packed.size());
+    const bool isLast = end == all.size();
+    const int code = deflate(&stream, isLast ? Z_FINISH : Z_SYNC_FLUSH);
+    block.packed.resize(stream.total_out);
+    deflateEnd(&stream);
+    check(code, isLast ? Z_STREAM_END : Z_OK);
+    return block;
+}
+
+void addPixels(const PngPicture& picture, std::string& to) {
+    const FilteredRows rows(picture);
+    const Bytes& all = rows.bytes();
+    std::vector<Block> blocks((all.size() + kBlockBytes - 1) / kBlockBytes);
+    parallelFor(blocks.size(), [&](std::size_t i) {
+        blocks[i] = pack(all, i * kBlockBytes, std::min((i + 1) * kBlockBytes, all.size()));
+    });
+    uLong sum = 1;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        sum = adler32_combine(sum, blocks[i].sum, z_off_t(blocks[i].bytes));
+        // A window of 32 KiB, and zlib's usual level.
+        if (i == 0) blocks[i].packed.insert(0, "\x78\x9C");
+        if (i + 1 == blocks.size()) addNumber(std::uint32_t(sum), blocks[i].packed);
+        addChunk("IDAT", blocks[i].packed, to);
+    }
+}
+
+}  // namespace
+
+std::string encodePng(const PngPicture& picture) {
+    std::string file = "\x89PNG\r\n\x1A\n";
+    addHeader(picture, file);
+    addColorSpace(file);
+    for (const auto& [keyword, text] : picture.texts) addText(keyword, text, file);
+    addPixels(picture, file);
+    addChunk("IEND", "", file);
+    return file;
+}
+
+}  // namespace deltasplat

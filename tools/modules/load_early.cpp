@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "modules/load_early.h"
+
+#include <system_error>
+
+#include "deltasplat/error.h"
+#include "deltasplat/threads.h"
+#include "lower_case.h"
+#include "modules/image_module.h"
+
+namespace deltasplat {
+
+std::jthread loadEarly(const std::filesystem::path& picture) {
+    const std::string extension = lowerCase(picture.extension().string());
+    const bool isLoaded = extension == ".exr" || extension.starts_with(".tif") ||
+                          extension == ".jpg" || extension == ".jpeg";
+    if (!isLoaded || threadCount() < 2) return {};
+    try {
+        return std::jthread([] {
+            try {
+                imageModule();
+            } catch (const Error&) {
+            }
+        });
+    } catch (const std::system_error&) {
+        return {};
+    }
+}
+
+}  // namespace deltasplat
