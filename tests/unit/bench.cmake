@@ -5,5 +5,5 @@ deltasplat_test(unit/bench_runs_test.cpp SOURCES ${tools}/bench/bench_runs.cpp
     ${tools}/volume_place.cpp ${tools}/options/parse.cpp)
 target_compile_definitions(bench_runs_test PRIVATE DELTASPLAT_VERSION="${PROJECT_VERSION}")
 deltasplat_test(unit/bench_picture_test.cpp SOURCES ${tools}/bench/bench_page_file.cpp
-    ${tools}/bench/heat_map.cpp ${tools}/bench/picture_data.cpp)
+    ${tools}/bench/heat_map.cpp ${tools}/page/picture_data.cpp)
 deltasplat_test(unit/table1_test.cpp SOURCES ${tools}/table1/ct_ramp.cpp ${tools}/table1/table1.cpp)

@@ -7,7 +7,7 @@
 
 #include "../tools/bench/bench_page_file.h"
 #include "../tools/bench/heat_map.h"
-#include "../tools/bench/picture_data.h"
+#include "../tools/page/picture_data.h"
 #include "deltasplat/error.h"
 #include "srgb.h"
 #include "unit/temp_folder.h"

@@ -6,6 +6,7 @@
 #include "bench/bench_page_style.h"
 #include "bench/bench_report.h"
 #include "bench/bench_words.h"
+#include "page/page_parts.h"
 #include "text/utf8_text.h"
 
 namespace deltasplat {
@@ -112,16 +113,12 @@ std::string footer(const BenchReport& report) {
 }  // namespace
 
 std::string pageText(const BenchReport& report, const Background& background) {
-    std::string html =
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<title>deltasplat bench</title>\n<style>" +
-        std::string(kBenchPageStyle) + "</style>\n</head>\n<body>\n<header>\n" +
-        "<h1>Four ways to splat one picture</h1>\n<p>" + markupText(hardwareText(report.machine)) +
-        "</p>\n<p class=\"quiet\">" + markupText(softwareText(report.machine)) +
-        "</p>\n</header>\n";
+    std::string html = pageBegin("deltasplat bench", kBenchPageStyle) + "<header>\n" +
+                       "<h1>Four ways to splat one picture</h1>\n<p>" +
+                       markupText(hardwareText(report.machine)) + "</p>\n<p class=\"quiet\">" +
+                       markupText(softwareText(report.machine)) + "</p>\n</header>\n";
     for (const BenchEntry& entry : report.entries) html += entryHtml(entry, background);
-    return html + footer(report) + "</body>\n</html>\n";
+    return html + footer(report) + kPageEnd;
 }
 
 }  // namespace deltasplat

@@ -4,7 +4,6 @@
 #include <glm/vec4.hpp>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "bench/bench_runs.h"
 
@@ -16,15 +15,6 @@ using Background = std::optional<glm::vec4>;
 /// Returns a rendered picture over the background, over the page's dark, as a `data:` URI.
 /// @throw Error(kOutput) if it cannot be encoded
 std::string shownPicture(Image picture, const Background& background);
-
-/// Returns a picture with a caption below.
-/// @param caption  HTML
-std::string pictureFigure(const std::string& uri, const std::string& alternative,
-                          const std::string& caption);
-
-/// Returns a row of cells, each HTML.
-/// @param tag  "th" or "td"
-std::string tableRow(const std::string& tag, const std::vector<std::string>& cells);
 
 /// Returns what the page says about a tolerance: the exact picture, the one under tolerance and
 /// where they differ, the proved bound beside what was measured.

@@ -5,7 +5,8 @@
 #include "bench/bench_page_parts.h"
 #include "bench/bench_words.h"
 #include "bench/heat_map.h"
-#include "bench/picture_data.h"
+#include "page/page_parts.h"
+#include "page/picture_data.h"
 #include "render/render_stats.h"
 
 namespace deltasplat {

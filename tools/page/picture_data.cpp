@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/picture_data.h"
+#include "page/picture_data.h"
 
 #include <algorithm>
 #include <cstdint>
