@@ -41,6 +41,7 @@ struct FrameFiles {
     int frame;
     std::filesystem::path input;
     std::filesystem::path output;
+    std::string name = {};  ///< for messages; empty: "frame" and its number
 };
 
 /// Returns the files of all frames that are asked for, in their order.

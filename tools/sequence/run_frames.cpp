@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
@@ -17,6 +18,12 @@
 
 namespace deltasplat {
 namespace {
+
+// What went wrong may begin with the name.
+std::string lineOf(const FrameFiles& files, const std::string& what) {
+    if (files.name.empty()) return "frame " + std::to_string(files.frame) + ": " + what;
+    return what.starts_with(files.name + ": ") ? what : files.name + ": " + what;
+}
 
 class FrameRun {
   public:
@@ -74,7 +81,6 @@ class FrameRun {
         double& known = shares_[i];
         done_ += share - known;
         known = share;
-        if (share >= 1) shares_.erase(i);
         // Asks about interrupts as well.
         listener_.report(done_ / double(frames_.size()));
     }
@@ -87,15 +93,15 @@ class FrameRun {
             if (at != std::string::npos) about.replace(at, file.size(), "");
         }
         const std::lock_guard lock(mutex_);
-        warnings_.warn("frame " + std::to_string(files.frame) + ": " + text, about);
+        warnings_.warn(lineOf(files, text), about);
     }
 
     void fail(std::size_t i, const Error& error) {
         const std::lock_guard lock(mutex_);
         failures_.emplace(i, error);
+        done_ += 1 - std::exchange(shares_[i], 1);
         if (!keepGoing_) stops_ = true;
-        if (error.code() != ErrorCode::kInterrupted)
-            showError("frame " + std::to_string(frames_[i].frame) + ": " + error.what());
+        if (error.code() != ErrorCode::kInterrupted) showError(lineOf(frames_[i], error.what()));
     }
 
     void finish() const {
@@ -105,13 +111,16 @@ class FrameRun {
         std::size_t named = 0;
         for (const auto& [i, error] : failures_) {
             if (error.code() == ErrorCode::kInterrupted) throw error;
-            if (named++ < kMostNamed)
-                names += (names.empty() ? "" : ", ") + std::to_string(frames_[i].frame);
+            const FrameFiles& files = frames_[i];
+            if (named++ < kMostNamed) {
+                names += (names.empty() ? "" : ", ") +
+                         (files.name.empty() ? std::to_string(files.frame) : files.name);
+            }
         }
         if (named > kMostNamed) names += ", ...";
-        throw Error(failures_.begin()->second.code(), std::to_string(failures_.size()) + " of " +
-                                                          std::to_string(frames_.size()) +
-                                                          " frames failed: " + names);
+        throw Error(failures_.begin()->second.code(),
+                    std::to_string(failures_.size()) + " of " + std::to_string(frames_.size()) +
+                        (frames_[0].name.empty() ? " frames" : " pictures") + " failed: " + names);
     }
 
     const std::vector<FrameFiles>& frames_;
@@ -121,7 +130,7 @@ class FrameRun {
     std::atomic<std::size_t> next_{0};
     std::atomic<bool> stops_{false};
     std::mutex mutex_;
-    std::map<std::size_t, double> shares_;  // of frames in work
+    std::map<std::size_t, double> shares_;  // of frames begun
     double done_ = 0;
     WarnOnce warnings_;
     std::map<std::size_t, Error> failures_;
