@@ -170,7 +170,9 @@ void refuseExtras(const CLI::App& app, const std::vector<Subcommand>& subcommand
                     "Unknown option '" + name + "'." + suggestion(name, longOptions(app)));
     }
     throw Error(ErrorCode::kUsage,
-                "Unexpected argument '" + extras.front() + "'; see '" + callOf(app) + " --help'");
+                "Unexpected argument '" + extras.front() + "'; see '" + callOf(app) + " --help'" +
+                    // A shell has put files in a pattern's place.
+                    (app.get_name() == "render" ? " (many files: a pattern in quotes)" : ""));
 }
 
 // Puts what CLI11 has to say into our words.

@@ -46,6 +46,8 @@ struct ImageModule {
                                                 const ImageFileOptions& options);
     std::unique_ptr<ColorProcessor> (*makeColorProcessor)(const ColorOptions& options);
     bool (*isWholeImage)(const std::filesystem::path& file);
+    Image (*readThumbnail)(const std::filesystem::path& file, int mostSide);
+    std::string (*encodeThumbnail)(const Image& image);
     DepthImage (*readDepthImage)(const std::filesystem::path& file, const Listener& listener);
     Environment (*readEnvironment)(const std::filesystem::path& file, const Listener& listener);
     CameraMotion (*readExrCamera)(const std::filesystem::path& file, const Listener& listener);
@@ -70,6 +72,8 @@ std::unique_ptr<ExrRowsFile> openExrRows(const std::filesystem::path& file, glm:
                                          const PixelBox& box, const ImageFileOptions& options);
 std::unique_ptr<ColorProcessor> makeColorProcessor(const ColorOptions& options);
 bool isWholeImage(const std::filesystem::path& file);
+Image readThumbnail(const std::filesystem::path& file, int mostSide);
+std::string encodeThumbnail(const Image& image);
 DepthImage readDepthImage(const std::filesystem::path& file, const Listener& listener);
 Environment readEnvironment(const std::filesystem::path& file, const Listener& listener);
 CameraMotion readExrCamera(const std::filesystem::path& file, const Listener& listener);
@@ -78,8 +82,9 @@ DenseSource openImages(const std::filesystem::path& input, const std::string& na
                        const Listener& listener);
 
 inline constexpr ImageModule kModule{encodeImage,        encodeDeepImage, openExrRows,
-                                     makeColorProcessor, isWholeImage,    readDepthImage,
-                                     readEnvironment,    readExrCamera,   openImages};
+                                     makeColorProcessor, isWholeImage,    readThumbnail,
+                                     encodeThumbnail,    readDepthImage,  readEnvironment,
+                                     readExrCamera,      openImages};
 
 }  // namespace image_module
 

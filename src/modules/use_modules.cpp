@@ -2,6 +2,7 @@
 // Functions that a module does, and nothing besides.
 #include <utility>
 
+#include "image/thumbnail.h"
 #include "image/whole_image.h"
 #include "modules/image_module.h"
 #include "modules/medical_module.h"
@@ -10,6 +11,14 @@ namespace deltasplat {
 
 bool isWholeImage(const std::filesystem::path& file) {
     return imageModule().isWholeImage(file);
+}
+
+Image readThumbnail(const std::filesystem::path& file, int mostSide) {
+    return imageModule().readThumbnail(file, mostSide);
+}
+
+std::string encodeThumbnail(const Image& image) {
+    return imageModule().encodeThumbnail(image);
 }
 
 DepthImage readDepthImage(const std::filesystem::path& file, const Listener& listener) {

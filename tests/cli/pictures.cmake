@@ -28,6 +28,7 @@ deltasplat_script_test(modules modules.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/modules)
 deltasplat_script_test(preview preview.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/preview)
+deltasplat_script_test(batch batch.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/batch)
 deltasplat_script_test(converted_sequence converted_sequence.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/converted_sequence)
 deltasplat_script_test(interrupt.full_pipe interrupt_full_pipe.sh

@@ -35,7 +35,7 @@ deltasplat_refusal(unknown_option "Unknown option '--sise'. Did you mean '--size
 deltasplat_refusal(unknown_option_equals "Unknown option '--metod'. Did you mean '--method'?"
     --metod=delta)
 deltasplat_refusal(unlike_any_option "Unknown option '--wireframe'." --wireframe)
-deltasplat_refusal(two_inputs "Unexpected argument 'ball.vdb'; see 'deltasplat render --help'"
+deltasplat_refusal(two_inputs "Unexpected argument 'ball.vdb'; see 'deltasplat render --help' (many files: a pattern in quotes)"
     ball.vdb)
 deltasplat_cli_test(usage.verbose EXIT 2 ARGS render ${cube} -o "a b.exr" --size 12x -v
     STDERR "deltasplat: --size: got 12x; expected WxH, two whole numbers from 1 to 2147483647

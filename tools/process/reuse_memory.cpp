@@ -19,4 +19,10 @@ void reuseMemory() {
 #endif
 }
 
+void giveBackMemory() {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
 }  // namespace deltasplat

@@ -8,4 +8,7 @@ namespace deltasplat {
 /// fault for every 4 KiB of the next one (docs/performance.md).
 void reuseMemory();
 
+/// Gives back to the system what is kept so, for work that takes much of what there is.
+void giveBackMemory();
+
 }  // namespace deltasplat

@@ -31,6 +31,7 @@
 #include "render/picture_parts.h"
 #include "render/preview.h"
 #include "render/read_medium.h"
+#include "render/render_batch.h"
 #include "render/render_input.h"
 #include "render/render_modes.h"
 #include "render/render_options.h"
@@ -124,10 +125,11 @@ void warnOfUnusedLight(const CLI::App& app, const PictureOptions& picture,
     }
 }
 
-void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
+// @param inputs  all that are read
+void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command, Files inputs,
                          ProgressDisplay& display) {
-    Files inputs = filesOfMask(command.picture.parts);
-    inputs.push_back(command.input);
+    const Files mask = filesOfMask(command.picture.parts);
+    inputs.insert(inputs.end(), mask.begin(), mask.end());
     warnOfUnusedInputOptions(app, inputs, display.stage(0, 0));
     if (isGiven(app, "--bits") && isExr(command)) display.warn("--bits: has no effect on an .exr");
     if (isGiven(app, "--dither") && (isExr(command) || command.image.bits == 16))
@@ -252,6 +254,7 @@ struct MadePicture {
     RenderTimes times;
     DeepStats deep;
     std::string codeBook;
+    PictureFacts facts;
 };
 
 // Renders and writes a picture some rows at a time.
@@ -362,6 +365,7 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     made.times.read = secondsSince(beginRead);
     made.codeBook = "code book " + volume.codeBook.name() + ", largest error " +
                     codeErrorText(volume.codeError) + "\n";
+    made.facts = {volume.name, volume.box.dims(), glm::dvec2(volume.valueMin, volume.valueMax)};
 
     const Listener showing = partOf(listener, kReadShare, 1);
     std::optional<Preview> preview;
@@ -390,50 +394,113 @@ void makeBlack(const RenderCommand& command, const Session& session, const Seque
     writeImage(command.output, image, options);
 }
 
-// Of a sequence, the largest bound is said.
+// Of several pictures, the largest bound is said.
+class WorstBound {
+  public:
+    void add(const RenderStats& stats) {
+        const std::lock_guard lock(mutex_);
+        if (!stats.tolerance.isExact() && !(stats.errorBoundColor <= worst_.errorBoundColor))
+            worst_ = stats;
+    }
+    void show(const Session& session) const {
+        if (!worst_.tolerance.isExact() && !session.common.quiet) showErrorBound(worst_);
+    }
+
+  private:
+    std::mutex mutex_;
+    RenderStats worst_;
+};
+
 void runSequence(const CLI::App& app, const RenderCommand& command, const Session& session) {
-    RenderStats worst;
-    std::mutex mutex;
+    WorstBound worst;
     {
         ProgressDisplay display(session.common);
-        warnOfUnusedOptions(app, command, display);
+        warnOfUnusedOptions(app, command, {command.input}, display);
         SequenceSinks sinks(command, commonMetadata(session));
         renderSequence(
             command, sinks, display.stage(0, 1),
             [&](const RenderCommand& frame, const SequencePart& part, const Listener& listener) {
                 validate(frame);
                 if (frame.input.empty()) return makeBlack(frame, session, part);
-                const MadePicture made = makePicture(app, frame, session, part, listener);
-                const std::lock_guard lock(mutex);
-                if (!made.result.stats.tolerance.isExact() &&
-                    !(made.result.stats.errorBoundColor <= worst.errorBoundColor))
-                    worst = made.result.stats;
+                worst.add(makePicture(app, frame, session, part, listener).result.stats);
             });
     }
-    if (!worst.tolerance.isExact() && !session.common.quiet) showErrorBound(worst);
+    worst.show(session);
 }
 
-void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
-    applySequence(app, command);
+// Puts together what options say, before anything but scenes and cameras is read.
+// @param pictures  of a batch, else 0
+void prepare(const CLI::App& app, RenderCommand& command, std::size_t pictures,
+             const Listener& listener) {
     applyMode(app, command);
     applyProjection(app, command.picture.render.camera);
-    {
-        ProgressDisplay display(session.common);
-        applyScene(app, command.frames.frames, command, display.stage(0, 0));
-        applyCamera(app, command.frames.frames, command.picture, display.stage(0, 0));
-    }
+    applyScene(app, command.frames.frames, command, listener);
+    applyCamera(app, command.frames.frames, command.picture, listener);
     applyOverscan(command);
-    applySinks(app, command);
+    applySinks(app, command, pictures);
     applyLayers(app, command.picture);
     applySurface(app, command.picture.render.mode, isFog(command.picture), command.picture.surface,
                  command.picture.read);
+}
+
+void runBatch(const CLI::App& app, const RenderCommand& command, const Session& session) {
+    WorstBound worst;
+    std::vector<BatchFailure> failures;
+    const std::jthread loading = loadEarly(command.output);
+    const auto run = [&] {
+        ProgressDisplay display(session.common);
+        const Listener listener = display.stage(0, 1);
+        const std::vector<BatchItem> items = findBatch(command, listener);
+        std::optional<SequenceSinks> sinks;
+        BatchWork work;
+        work.prepare = [&](RenderCommand& one, const Listener& part) {
+            prepare(app, one, items.size(), part);
+            validate(one);
+        };
+        work.begin = [&](const RenderCommand& first) {
+            Files inputs;
+            for (const BatchItem& item : items) inputs.push_back(item.input);
+            warnOfUnusedOptions(app, first, inputs, display);
+            if (first.contactSheet) sinks.emplace(first, commonMetadata(session));
+        };
+        work.make = [&](const RenderCommand& one, std::size_t i, const Listener& part) {
+            Session own = session;
+            own.begin = Clock::now();
+            SequencePart sequence;
+            sequence.isWritten = !sinks;
+            if (sinks) sequence.take = [&](const Image& image) { sinks->put(i, image); };
+            const MadePicture made = makePicture(app, one, own, sequence, part);
+            worst.add(made.result.stats);
+            return made.facts;
+        };
+        work.end = [&] {
+            if (sinks) sinks->finish();
+        };
+        renderBatch(command, items, session.commandLine, work, listener, failures);
+    };
+    try {
+        run();
+    } catch (const Error&) {
+        showFailures(failures);
+        throw;
+    }
+    worst.show(session);
+}
+
+void runRender(const CLI::App& app, RenderCommand command, const Session& session) {
+    if (isBatch(app, command)) return runBatch(app, command, session);
+    applySequence(app, command);
+    {
+        ProgressDisplay display(session.common);
+        prepare(app, command, 0, display.stage(0, 0));
+    }
     const std::jthread loading = loadEarly(command.output);
     if (command.frames.asked()) return runSequence(app, command, session);
     validate(command);
     MadePicture made;
     {
         ProgressDisplay display(session.common);
-        warnOfUnusedOptions(app, command, display);
+        warnOfUnusedOptions(app, command, {command.input}, display);
         made = makePicture(app, command, session, {}, display.stage(0, 1));
     }
     const RenderStats& stats = made.result.stats;
@@ -452,7 +519,9 @@ Subcommand addRender(CLI::App& program) {
         {"deltasplat render smoke.vdb -o smoke.png --view iso --size 1024x1024 "
          "--background 0,0,0",
          "deltasplat render engine_256x256x128_uint8.raw.gz -o engine.exr --tf examples/ct.json "
-         "--direction=-1,0.8,-0.6 --up 0,0,1"});
+         "--direction=-1,0.8,-0.6 --up 0,0,1",
+         "deltasplat render 'shots/**/*.vdb' -o 'thumbs/{dir}/{name}.png' --index "
+         "thumbs/index.html"});
     addRenderOptions(app, *command);
     return {&app, [&app, command](const Session& session) { runRender(app, *command, session); }};
 }

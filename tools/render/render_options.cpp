@@ -25,6 +25,7 @@
 #include "render/exr_options.h"
 #include "render/ground_options.h"
 #include "render/list_presets.h"
+#include "render/render_batch.h"
 #include "render/render_sequence.h"
 #include "render/tone_options.h"
 #include "view/affine.h"
@@ -343,10 +344,12 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     arguments
         .addValue(
             "INPUT", "FILE", command.input, anyText(),
-            std::string("Volume to render: ") + kInputFormats + "; or a scene with one, .usda")
+            std::string("Volume to render: ") + kInputFormats +
+                "; or a scene with one, .usda; or a pattern in quotes, 'shots/**/*.vdb'")
         .required();
     addOutputOptions(app, command);
     addSequenceOptions(app, command);
+    addBatchOptions(app, command);
     addToneOptions(app, command.tone);
     addColorOptions(app, command.color);
     addDeepOptions(app, command);

@@ -122,6 +122,7 @@ struct RenderCommand {
     std::filesystem::path movie;             ///< empty: none
     bool isMovieAlone = false;               ///< made, then, without pictures besides
     double framesPerSecond = 24;
+    std::filesystem::path index;  ///< page of a batch; empty: none
 };
 
 void addCameraOptions(CLI::App& app, PictureOptions& options);

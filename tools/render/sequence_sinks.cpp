@@ -22,12 +22,14 @@ namespace {
     throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
 }
 
-void checkSheet(const CLI::App& app, const RenderCommand& command) {
+void checkSheet(const CLI::App& app, const RenderCommand& command, std::size_t pictures) {
     const glm::ivec2 cells = *command.contactSheet;
-    const std::size_t count = command.frames.frames.size();
+    const std::size_t count = pictures > 0 ? pictures : command.frames.frames.size();
     const auto room = std::size_t(cells.x) * std::size_t(cells.y);
     if (count > room) {
-        refuse("--contact-sheet", dimsText(cells) + " for " + std::to_string(count) + " frames",
+        refuse("--contact-sheet",
+               dimsText(cells) + " for " + std::to_string(count) +
+                   (pictures > 0 ? " pictures" : " frames"),
                "room for all of them");
     }
     if (FrameName::find(command.output))
@@ -64,9 +66,11 @@ void checkMovieOf(const CLI::App& app, RenderCommand& command) {
 void addSinkOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup group(app, "Sequence");
     group.addValue("--contact-sheet", "CxR", command.contactSheet, pixelSize(),
-                   "Put all frames into one picture, the output, in so many columns and\n"
-                   "rows, each of --size");
-    group.addFlag("--slate", command.slate, "Draw the number of its frame into each, upper left");
+                   "Put all frames, or pictures of a batch, into one picture, the output,\n"
+                   "in so many columns and rows, each of --size");
+    group.addFlag("--slate", command.slate,
+                  "Draw the number of its frame into each, upper left; of a\n"
+                  "batch the name of the file");
     group.addValue("--movie", "FILE", command.movie, anyText(),
                    "Movie to make of all frames, in place of pictures or, with -o,\n"
                    "besides: .mp4, .m4v or .mkv (H.264, 8 bits) or .mov (ProRes 422 HQ,\n"
@@ -75,8 +79,8 @@ void addSinkOptions(CLI::App& app, RenderCommand& command) {
                    withDefault("Frames a second of it", "24"));
 }
 
-void applySinks(const CLI::App& app, RenderCommand& command) {
-    const bool isSingle = !command.frames.asked();
+void applySinks(const CLI::App& app, RenderCommand& command, std::size_t pictures) {
+    const bool isSingle = !command.frames.asked() && pictures == 0;
     for (const char* option : {"--contact-sheet", "--movie", "--slate"})
         if (isSingle && isGiven(app, option)) refuseWithoutFrames(option);
     if (command.output.empty() && command.movie.empty())
@@ -95,7 +99,7 @@ void applySinks(const CLI::App& app, RenderCommand& command) {
                 refuse("--missing", std::string("black with ") + option, "error, skip or hold");
         }
     }
-    if (command.contactSheet) checkSheet(app, command);
+    if (command.contactSheet) checkSheet(app, command, pictures);
     if (!command.movie.empty()) checkMovieOf(app, command);
     if (!command.contactSheet && command.movie.empty()) return;
     for (const char* option : {"--skip-existing", "--update"})

@@ -18,8 +18,9 @@ void addSinkOptions(CLI::App& app, RenderCommand& command);
 
 /// Refuses a command without any output, and what cannot be made of frames. A movie without
 /// pictures besides becomes the output.
+/// @param pictures  how many a batch makes; 0: there are frames, or a single one
 /// @throw Error(kUsage)
-void applySinks(const CLI::App& app, RenderCommand& command);
+void applySinks(const CLI::App& app, RenderCommand& command, std::size_t pictures);
 
 /// Where pictures of frames go besides, or instead of, files of their own.
 class SequenceSinks {

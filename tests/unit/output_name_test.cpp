@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/output_name.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "deltasplat/error.h"
+
+namespace deltasplat {
+namespace {
+
+std::string filled(const std::string& name, const std::string& file, const std::string& folder = "",
+                   const std::string& grid = "") {
+    try {
+        InputParts parts = partsOfInput(file, folder);
+        parts.grid = grid;
+        return OutputName("--output", name).of(parts, file).string();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::kUsage);
+        return error.what();
+    }
+}
+
+TEST(OutputName, FillsAllPlaces) {
+    EXPECT_EQ(filled("t/{name}.png", "s/a.b.vdb"), "t/a.b.png");
+    EXPECT_EQ(filled("t/{name}.png", "s/a.nii.gz"), "t/a.png");
+    EXPECT_EQ(filled("t/{dir}/{name}.png", "s/f/g/a.vdb", "f/g"), "t/f/g/a.png");
+    EXPECT_EQ(filled("{name}_{grid}.png", "a.vdb", "", "heat"), "a_heat.png");
+    EXPECT_EQ(filled("{name}{name}.png", "a.vdb"), "aa.png");
+}
+
+TEST(OutputName, TakesTheSlashOfNoFolder) {
+    EXPECT_EQ(filled("{dir}/{name}.png", "a.vdb"), "a.png");
+    EXPECT_EQ(filled("t/{dir}/{name}.png", "a.vdb"), "t/a.png");
+    EXPECT_EQ(filled("{dir}_{name}.png", "a.vdb"), "_a.png");
+}
+
+TEST(OutputName, FillsTheLastNumber) {
+    EXPECT_EQ(filled("t.{frame}.png", "puff_v2.0017.vdb"), "t.0017.png");
+    EXPECT_EQ(filled("t.{frame}.png", "12.vdb"), "t.12.png");
+    EXPECT_EQ(filled("t.{frame}.png", "s4/puff.vdb"),
+              "--output: got t.{frame}.png for s4/puff.vdb; expected inputs with a number in their "
+              "names for {frame}");
+}
+
+// Grids have names that files cannot have.
+TEST(OutputName, MakesFileNamesOfGrids) {
+    EXPECT_EQ(filled("t/{grid}.png", "a.vdb", "", "fire/heat"), "t/fire_heat.png");
+    EXPECT_EQ(filled("t/{grid}/a.png", "a.vdb", "", ".."), "t/_./a.png");
+}
+
+TEST(OutputName, KnowsBraces) {
+    EXPECT_EQ(filled("{{{name}}}.png", "a.vdb"), "{a}.png");
+    EXPECT_EQ(filled("{{x}}{name}.png", "a.vdb"), "{x}a.png");
+}
+
+TEST(OutputName, RefusesOthers) {
+    const std::string known = "{name}, {dir}, {frame} or {grid}";
+    EXPECT_EQ(filled("{nam}.png", "a.vdb"),
+              "--output: got {nam} (a brace by itself is {{); expected " + known);
+    EXPECT_EQ(filled("{}.png", "a.vdb"),
+              "--output: got {} (a brace by itself is {{); expected " + known);
+    EXPECT_EQ(filled("{name.png", "a.vdb"),
+              "--output: got { without } (a brace by itself is {{); expected " + known);
+    EXPECT_EQ(filled("a.png", "a.vdb"),
+              "--output: got a.png with a pattern of inputs; expected a name with " + known);
+    EXPECT_EQ(filled("{{name}}.png", "a.vdb"),
+              "--output: got {{name}}.png with a pattern of inputs; expected a name with " + known);
+}
+
+TEST(OutputName, KnowsWhetherThereAreAny) {
+    EXPECT_TRUE(hasPlaceholder("t/{name}.png"));
+    EXPECT_TRUE(hasPlaceholder("{grid}.png"));
+    EXPECT_FALSE(hasPlaceholder("{other}.png"));
+    EXPECT_FALSE(hasPlaceholder("t.####.png"));
+    EXPECT_TRUE(OutputName("-o", "{grid}.png").hasGrid());
+    EXPECT_FALSE(OutputName("-o", "{name}.grid.png").hasGrid());
+}
+
+}  // namespace
+}  // namespace deltasplat

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/batch_items.h"
+
+#include <sys/stat.h>
+
+#include <map>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "batch/file_pattern.h"
+#include "batch/output_name.h"
+#include "deltasplat/ingest/list_grids.h"
+#include "ingest/files/file_name.h"
+#include "ingest/files/input_files.h"
+
+namespace deltasplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> gridsOf(const fs::path& input, const RenderCommand& command) {
+    const std::string& chosen = command.picture.read.gridName;
+    if (!chosen.empty()) return {chosen};
+    std::vector<std::string> grids;
+    for (const VolumeEntry& entry : listVolumes(input, command.picture.read))
+        if (entry.scalar) grids.push_back(entry.name);
+    return grids;
+}
+
+// Finds out what names are to say, and which pictures there are.
+class Batch {
+  public:
+    explicit Batch(const RenderCommand& command) : command_(command) {
+        if (!command.contactSheet) output_.emplace("--output", command.output);
+        if (!command.stats.empty()) stats_.emplace("--stats", command.stats);
+    }
+
+    void add(const FoundFile& found) {
+        for (const fs::path& file : filesOf(found.file))
+            if (const auto place = placeOf(file)) inputs_.insert(*place);
+        const InputParts parts = partsOfInput(found.file, found.folder);
+        const bool hasGrids = lowerExtension(found.file) == ".vdb";
+        if (!output_ || !output_->hasGrid() || !hasGrids) return add(found, parts, "");
+        std::vector<std::string> grids;
+        try {
+            grids = gridsOf(found.file, command_);
+        } catch (const Error& error) {
+            return fail(found.file, error);
+        }
+        for (const std::string& grid : grids) add(found, parts, grid);
+        // What is wrong is said by who reads it.
+        if (grids.empty()) add(found, parts, "");
+    }
+
+    void fail(const fs::path& file, const Error& error) {
+        items_.push_back({file, {}, {}, {}, {}, error});
+    }
+
+    std::vector<BatchItem> take() {
+        requireOthers("--index", command_.index);
+        for (const BatchItem& item : items_) {
+            requireOthers("--output", item.output);
+            requireOthers("--stats", item.stats);
+        }
+        return std::move(items_);
+    }
+
+  private:
+    // Which file of which disk it is, whatever its names.
+    using PlaceOfFile = std::pair<dev_t, ino_t>;
+
+    static std::optional<PlaceOfFile> placeOf(const fs::path& file) {
+        struct stat status {};
+        if (::stat(file.c_str(), &status) != 0) return {};
+        return PlaceOfFile{status.st_dev, status.st_ino};
+    }
+
+    // Names that differ may lead to one file.
+    static fs::path resolved(const fs::path& file) {
+        std::error_code error;
+        const fs::path path = fs::weakly_canonical(fs::absolute(file), error);
+        return error ? fs::absolute(file).lexically_normal() : path;
+    }
+
+    void add(const FoundFile& found, InputParts parts, const std::string& grid) {
+        parts.grid = grid.empty() ? parts.name : grid;
+        BatchItem item{found.file, found.folder, command_.output, {}, grid, {}};
+        if (output_) item.output = output_->of(parts, found.file);
+        if (stats_) item.stats = stats_->of(parts, found.file);
+        if (output_) take("--output", item.output, nameOfItem(item));
+        take("--stats", item.stats, nameOfItem(item));
+        items_.push_back(std::move(item));
+    }
+
+    // No two have one file.
+    void take(const std::string& option, const fs::path& file, const std::string& name) {
+        if (file.empty()) return;
+        const auto [known, isNew] = outputs_.emplace(resolved(file), name);
+        if (isNew) return;
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(option, file.string() + " for " + known->second + " and " + name,
+                                "a file for each ({dir} tells folders apart, {grid} grids)"));
+    }
+
+    void requireOthers(const std::string& option, const fs::path& file) const {
+        if (file.empty()) return;
+        const auto refuse = [&](const std::string& names) {
+            throw Error(ErrorCode::kUsage,
+                        gotExpected(option, file.string(), "another file than " + names));
+        };
+        const auto place = placeOf(file);
+        if (place && inputs_.contains(*place)) refuse("the inputs");
+        if (option == "--index" && outputs_.contains(resolved(file))) refuse("the pictures");
+    }
+
+    const RenderCommand& command_;
+    std::optional<OutputName> output_;  // of each; empty: all are in one
+    std::optional<OutputName> stats_;
+    std::vector<BatchItem> items_;
+    std::set<PlaceOfFile> inputs_;
+    std::map<fs::path, std::string> outputs_;
+};
+
+}  // namespace
+
+std::string nameOfItem(const BatchItem& item) {
+    return item.grid.empty() ? item.input.string() : item.input.string() + ", " + item.grid;
+}
+
+std::vector<BatchItem> findBatch(const RenderCommand& command, const Listener& listener) {
+    Batch batch(command);
+    const FoundFiles found = findFiles(command.input, listener);
+    if (found.files.empty() && found.unread.empty()) {
+        throw Error(ErrorCode::kInput,
+                    gotExpected(command.input.string(), "no file that fits", "at least one"));
+    }
+    for (const FoundFile& one : found.files) {
+        listener.report(0);
+        batch.add(one);
+    }
+    for (const auto& [folder, problem] : found.unread) {
+        batch.fail(folder, Error(ErrorCode::kInput, gotExpected(folder.string(), problem,
+                                                                "a folder that can be read")));
+    }
+    return batch.take();
+}
+
+}  // namespace deltasplat
