@@ -8,9 +8,8 @@
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
-#include "kept_memory.h"
+#include "layered_views.h"
 #include "memory.h"
-#include "picture_view.h"
 
 namespace deltasplat {
 namespace {
@@ -46,66 +45,67 @@ void requireFits(const SlabLayer& layer, const PlaneBox& box, int channels) {
     }
 }
 
+// All layers by their slabs.
+std::vector<const SlabLayer*> ordered(const LayeredPicture::Impl& picture,
+                                      std::span<const SlabLayer> layers) {
+    std::vector<const SlabLayer*> bySlab(picture.slabs.size());
+    for (const SlabLayer& layer : layers) {
+        picture.placeOf(layer.slab);
+        const SlabLayer*& known = bySlab[std::size_t(layer.slab)];
+        if (known) refuse("slab " + std::to_string(layer.slab) + " twice", "each once");
+        known = &layer;
+    }
+    const auto missing = std::find(bySlab.begin(), bySlab.end(), nullptr);
+    if (missing != bySlab.end()) {
+        refuse("none for slab " + std::to_string(missing - bySlab.begin()),
+               "one for each of " + std::to_string(bySlab.size()) + " slabs");
+    }
+    return bySlab;
+}
+
 }  // namespace
 
-struct LayeredPicture::Impl {
-    // A slab of a view of which something may be seen, counted from the front.
-    struct Place {
-        std::size_t view;
-        int slab;
-    };
-
-    Impl(const PreparedScene& ofScene, const Camera& ofCamera, const Listener& listener)
-        : scene(ofScene), camera(ofCamera) {
-        const PreparedScene::Impl& prepared = scene.impl();
-        const Volume& volume = *prepared.scene.volume;
-        const std::vector<Factorization> all = viewsOf(camera, volume, prepared.options);
-        const SheetPlan plan(prepared, all.front(), listener);
-        if (volume.empty()) return;
-        for (const Factorization& view : all) {
-            views.push_back(std::make_unique<PictureView>(
-                prepared, camera, view, plan,
-                prepared.axis(view.sliceAxis, plan.partsAlong(view.sliceAxis),
-                              stepsOf(view, volume), view.eye.has_value(), listener),
-                memory));
-            seen.push_back(seenSlabs(views.back()->slabs()));
-            for (int slab = 0; slab < int(seen.back().size()); ++slab)
-                slabs.push_back({views.size() - 1, slab});
-        }
+LayeredPicture::Impl::Impl(const PreparedScene& ofScene, const Camera& ofCamera,
+                           const Listener& listener)
+    : scene(ofScene), camera(ofCamera) {
+    const PreparedScene::Impl& prepared = scene.impl();
+    const Volume& volume = *prepared.scene.volume;
+    const std::vector<Factorization> all = viewsOf(camera, volume, prepared.options);
+    const SheetPlan plan(prepared, all.front(), listener);
+    if (volume.empty()) return;
+    for (const Factorization& view : all) {
+        views.push_back(std::make_unique<PictureView>(
+            prepared, camera, view, plan,
+            prepared.axis(view.sliceAxis, plan.partsAlong(view.sliceAxis), stepsOf(view, volume),
+                          view.eye.has_value(), listener),
+            memory));
+        seen.push_back(seenSlabs(views.back()->slabs()));
+        for (int slab = 0; slab < int(seen.back().size()); ++slab)
+            slabs.push_back({views.size() - 1, slab});
     }
+}
 
-    const Place& placeOf(int slab) const {
-        if (slab < 0 || slab >= int(slabs.size())) {
-            refuse("slab " + std::to_string(slab),
-                   "one of " + std::to_string(slabs.size()) + ", counted from 0");
-        }
-        return slabs[std::size_t(slab)];
+const LayeredPicture::Impl::Place& LayeredPicture::Impl::placeOf(int slab) const {
+    if (slab < 0 || slab >= int(slabs.size())) {
+        refuse("slab " + std::to_string(slab),
+               "one of " + std::to_string(slabs.size()) + ", counted from 0");
     }
+    return slabs[std::size_t(slab)];
+}
 
-    // All layers by their slabs.
-    std::vector<const SlabLayer*> ordered(std::span<const SlabLayer> layers) const {
-        std::vector<const SlabLayer*> bySlab(slabs.size());
-        for (const SlabLayer& layer : layers) {
-            placeOf(layer.slab);
-            const SlabLayer*& known = bySlab[std::size_t(layer.slab)];
-            if (known) refuse("slab " + std::to_string(layer.slab) + " twice", "each once");
-            known = &layer;
-        }
-        const auto missing = std::find(bySlab.begin(), bySlab.end(), nullptr);
-        if (missing != bySlab.end()) {
-            refuse("none for slab " + std::to_string(missing - bySlab.begin()),
-                   "one for each of " + std::to_string(slabs.size()) + " slabs");
-        }
-        return bySlab;
-    }
+PlaneBox LayeredPicture::Impl::reachOf(const Place& place) const {
+    const PlaneBox reach = reachOfSeen(inputOf(place), seenOf(place));
+    return reach.empty() ? PlaneBox{} : reach;
+}
 
-    PreparedScene scene;
-    Camera camera;
-    mutable KeptMemory memory;
-    std::vector<std::unique_ptr<const PictureView>> views;
-    std::vector<std::vector<SeenSlab>> seen;  // [view]
-    std::vector<Place> slabs;
-};
+Layer LayeredPicture::Impl::render(int slab, const Listener& listener) const {
+    const Place& place = placeOf(slab);
+    const SlabInput& input = inputOf(place);
+    requireMemory("layer of a slab", layerBytes(reachOf(place), input.layout.channels));
+    SlabRenderer renderer(input, {seenOf(place)}, listener);
+    renderer.run();
+    return renderer.merge();
+}
 
 LayeredPicture::LayeredPicture(const PreparedScene& scene, const Camera& camera,
                                const Listener& listener) {
@@ -122,13 +122,7 @@ int LayeredPicture::slabs() const {
 
 SlabLayer LayeredPicture::render(int slab, const Listener& listener) const {
     const DefaultFloats floats;
-    const Impl::Place& place = impl_->placeOf(slab);
-    const SlabInput& input = impl_->views[place.view]->slabs();
-    const SeenSlab& seen = impl_->seen[place.view][std::size_t(place.slab)];
-    requireMemory("layer of a slab", layerBytes(reachOfSeen(input, seen), input.layout.channels));
-    SlabRenderer renderer(input, {seen}, listener);
-    renderer.run();
-    const Layer layer = renderer.merge();
+    const Layer layer = impl_->render(slab, listener);
     SlabLayer result{slab, layer.box.min, layer.box.max, layer.channels, {}, layer.spans};
     result.values.assign(layer.values.begin(), layer.values.end());
     return result;
@@ -136,25 +130,22 @@ SlabLayer LayeredPicture::render(int slab, const Listener& listener) const {
 
 void LayeredPicture::fold(std::span<const SlabLayer> layers, Image& image) const {
     const DefaultFloats floats;
-    requireSize(impl_->camera, image);
-    const std::vector<const SlabLayer*> ordered = impl_->ordered(layers);
-    for (std::size_t slab = 0; slab < ordered.size(); ++slab) {
-        const Impl::Place& place = impl_->slabs[slab];
-        const SlabInput& input = impl_->views[place.view]->slabs();
-        const SeenSlab& seen = impl_->seen[place.view][std::size_t(place.slab)];
-        const PlaneBox reach = reachOfSeen(input, seen);
-        // Of what is out of sight there is no layer.
-        requireFits(*ordered[slab], reach.empty() ? PlaneBox{} : reach, input.layout.channels);
+    const Impl& picture = *impl_;
+    requireSize(picture.camera, image);
+    const std::vector<const SlabLayer*> all = ordered(picture, layers);
+    for (std::size_t slab = 0; slab < all.size(); ++slab) {
+        const Impl::Place& place = picture.slabs[slab];
+        requireFits(*all[slab], picture.reachOf(place), picture.inputOf(place).layout.channels);
     }
     std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
     std::size_t next = 0;
-    for (std::size_t view = 0; view < impl_->views.size(); ++view) {
-        const PictureView& picture = *impl_->views[view];
-        const PlaneBox reach = reachOfAll(picture.slabs(), impl_->seen[view]);
-        requireMemory("layers of a picture", layerBytes(reach, picture.slabs().layout.channels));
-        Layer merged(reach, picture.slabs().layout.channels, impl_->memory);
-        for (; next < ordered.size() && impl_->slabs[next].view == view; ++next) {
-            const SlabLayer& layer = *ordered[next];
+    for (std::size_t view = 0; view < picture.views.size(); ++view) {
+        const SlabInput& input = picture.views[view]->slabs();
+        const PlaneBox reach = reachOfAll(input, picture.seen[view]);
+        requireMemory("layers of a picture", layerBytes(reach, input.layout.channels));
+        Layer merged(reach, input.layout.channels, picture.memory);
+        for (; next < all.size() && picture.slabs[next].view == view; ++next) {
+            const SlabLayer& layer = *all[next];
             for (int y = layer.min.y; y < layer.max.y; ++y) {
                 const auto row = std::size_t(y - layer.min.y);
                 const auto width = std::size_t(layer.max.x - layer.min.x);
@@ -164,7 +155,7 @@ void LayeredPicture::fold(std::span<const SlabLayer> layers, Image& image) const
                                y);
             }
         }
-        picture.show(merged, image);
+        picture.views[view]->show(merged, image);
     }
 }
 

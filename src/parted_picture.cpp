@@ -2,39 +2,15 @@
 #include "deltasplat/parted_picture.h"
 
 #include <algorithm>
-#include <string>
 #include <vector>
 
 #include "default_floats.h"
-#include "deltasplat/error.h"
-#include "dims_text.h"
 #include "kept_memory.h"
 #include "kept_view.h"
+#include "picture_part.h"
 #include "stopwatch.h"
 
 namespace deltasplat {
-namespace {
-
-void requirePart(const PixelBox& part, glm::ivec2 size, const Image& image) {
-    const auto text = [](const PixelBox& box) {
-        return dimsText(box.size()) + " pixels from " + std::to_string(box.min.x) + "," +
-               std::to_string(box.min.y) + " on";
-    };
-    const bool isWithin = !part.empty() && part.min.x >= 0 && part.min.y >= 0 &&
-                          part.max.x <= size.x && part.max.y <= size.y;
-    if (!isWithin) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("part of a picture", text(part), "some of its " + dimsText(size)));
-    }
-    if (image.size == part.size() &&
-        image.rgba.size() == std::size_t{4} * std::size_t(image.size.x) * std::size_t(image.size.y))
-        return;
-    throw Error(ErrorCode::kUsage, gotExpected("image", dimsText(image.size) + " pixels",
-                                               dimsText(part.size()) + ", those of the part"));
-}
-
-}  // namespace
-
 struct PartedPicture::Impl {
     Impl(const PreparedScene& ofScene, const Camera& ofCamera) : scene(ofScene), camera(ofCamera) {}
 

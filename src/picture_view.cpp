@@ -8,9 +8,6 @@
 
 #include "deltasplat/error.h"
 #include "dims_text.h"
-#include "image/warp_region.h"
-#include "optics/opacity_steps.h"
-#include "parallel.h"
 #include "view/thin_voxels.h"
 
 namespace deltasplat {
@@ -19,28 +16,6 @@ namespace {
 // Of the picture's pixels that a line of the base plane has at most, seen from an eye: about what
 // parallel projection has on average.
 constexpr double kPixelsOfScreen = 0.7;
-
-Raster rasterOf(const Layer& layer, const ClassTable& classes) {
-    Raster raster{layer.box.min, layer.box.size(), layer.values.data(), layer.channels};
-    raster.spans = layer.spans;
-    // Of one colour, every channel is a fixed share of the opacity.
-    if (classes.oneColor) raster.color = glm::dvec3(classes.scale) / classes.scale.a;
-    return raster;
-}
-
-WarpFilter warpFilterOf(PictureFilter filter) {
-    switch (filter) {
-        case PictureFilter::kCatmullRom:
-            return WarpFilter::kSharp;
-        case PictureFilter::kMitchell:
-            return WarpFilter::kMitchell;
-        case PictureFilter::kGauss:
-            return WarpFilter::kGauss;
-        case PictureFilter::kBox:
-            return WarpFilter::kBox;
-    }
-    return WarpFilter::kSharp;
-}
 
 }  // namespace
 
@@ -89,12 +64,6 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
       thinView_(subdivided(view, axis_->parts)),
       footprint_(makeViewFootprint(plan)),
       layout_(layoutSheet(axis_->deltas.box, footprint_, axis_->classes().oneColor ? 1 : 4)) {
-    if (view.eye) {
-        plane_.emplace(thinView_, camera, layout_.firstSlice, layout_.firstVoxel, 1 / densityOf());
-    } else {
-        plane_.emplace(thinView_, layout_.firstSlice, layout_.firstVoxel, layout_.resolution,
-                       layout_.offsetPixels);
-    }
     const VoxelPainter* painter = scene.painter.get();
     const bool isLit = painter && painter->dependsOnCamera();
     if (isLit || steps_ != axis_->steps) {
@@ -109,11 +78,12 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
         if (painter) light = painter->lightOf(classes, isLit ? &lit : nullptr);
         colors_.emplace(axis_->deltas, std::move(classes), std::move(light));
     }
+    plane_.emplace(camera, placePlane());
     const bool stampEmptyVoxels = scene.options.method == Method::kTraditional;
     slabs_.emplace(SlabInput{
         {axis_->deltas, colors_ ? *colors_ : axis_->colors, footprint_, stampEmptyVoxels, memory},
         layout_,
-        *plane_,
+        plane_->plane(),
         memory});
 }
 
@@ -152,40 +122,28 @@ double PictureView::densityOf() const {
     return most < kWorthMore * needed ? most : needed;
 }
 
+PlanePlace PictureView::placePlane() const {
+    PlanePlace place;
+    place.view = view_;
+    place.parts = axis_->parts;
+    place.firstSlice = layout_.firstSlice;
+    place.firstVoxel = layout_.firstVoxel;
+    if (view_.eye) {
+        place.spacing = 1 / densityOf();
+    } else {
+        place.resolution = layout_.resolution;
+        place.offsetPixels = layout_.offsetPixels;
+    }
+    place.filter = scene_.options.filter;
+    // Of one colour, every channel is a fixed share of the opacity.
+    const ClassTable& classes = colors_ ? colors_->table() : axis_->colors.table();
+    if (classes.oneColor) place.color = glm::dvec3(classes.scale) / classes.scale.a;
+    return place;
+}
+
 double PictureView::show(Layer& layer, Image& image) const {
     finish(layer);
     return showPart(layer, PicturePart(image));
-}
-
-void PictureView::finish(Layer& layer) const {
-    if (showChangesLayer()) lengthenSteps(layer);
-}
-
-double PictureView::showPart(const Layer& finished, const PicturePart& part) const {
-    const Raster raster = rasterOf(finished, slabs_->splat.colors.table());
-    const WarpFilter filter = warpFilterOf(scene_.options.filter);
-    if (view_.eye) return warpRegion(raster, camera_, view_, thinView_, *plane_, filter, part);
-    const glm::dmat3& map = plane_->pixelFromPicture();
-    warp(raster, map, filter, part);
-    return warpGain(map, filter);
-}
-
-// Opacities are those of ways straight through the slices: makes them those of the lines of sight.
-void PictureView::lengthenSteps(Layer& layer) const {
-    parallelForChunks(std::size_t(layer.box.size().y), [&](std::size_t begin, std::size_t end) {
-        std::vector<float> steps;
-        for (std::size_t row = begin; row < end; ++row) {
-            const glm::ivec2 span = layer.spans[row];
-            if (span.x >= span.y) continue;
-            const glm::ivec2 first = layer.box.min + glm::ivec2(span.x, int(row));
-            steps.clear();
-            for (int x = span.x; x < span.y; ++x)
-                steps.push_back(float(plane_->stepsAt({layer.box.min.x + x, first.y})));
-            const std::size_t count = steps.size();
-            steps.resize(count + kStepsSpare);
-            repeatOpacity(layer.pixel(first), steps.data(), count);
-        }
-    });
 }
 
 ErrorBound PictureView::errorBound() const {
@@ -197,9 +155,10 @@ ErrorBound PictureView::errorBound() const {
         brightest = std::max({color.x, color.y, color.z});
     }
     const IndexBox& box = axis_->deltas.box;
-    const Steps steps = view_.eye && plane_->cutsAny({box.min.x, box.max.x}) ? Steps::kOneShorter
-                        : view_.eye || steps_ != 1                           ? Steps::kLonger
-                                                                             : Steps::kAsClassified;
+    const Steps steps = view_.eye && plane_->plane().cutsAny({box.min.x, box.max.x})
+                            ? Steps::kOneShorter
+                        : view_.eye || steps_ != 1 ? Steps::kLonger
+                                                   : Steps::kAsClassified;
     return deltasplat::errorBound(axis_->classes(), scene_.options.tolerance, steps, brightest);
 }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "composite/slab_renderer.h"
-#include "image/warp.h"
 #include "optics/hold_rule.h"
+#include "plane_view.h"
 #include "prepared_axis.h"
 #include "sheet_plan.h"
 
@@ -41,25 +41,28 @@ class PictureView {
     const Footprint& footprint() const { return footprint_; }
     const PreparedAxis& axis() const { return *axis_; }
     const Camera& camera() const { return camera_; }
+    const PlaneView& plane() const { return *plane_; }
     /// From (slice, u, v) of the volume's own voxels to the world.
     glm::dmat4 worldFromSlices() const;
     /// Writes what is seen of the base plane into the picture. Changes the layer on the way.
     /// @return the most that this can enlarge a difference of layers
     double show(Layer& layer, Image& image) const;
     /// Makes of a layer, once, what showPart() shows.
-    void finish(Layer& layer) const;
+    void finish(Layer& layer) const { plane_->finish(layer); }
     /// Writes what is seen of a finished layer into a part of the picture.
     /// @return as show()
-    double showPart(const Layer& finished, const PicturePart& part) const;
+    double showPart(const Layer& finished, const PicturePart& part) const {
+        return plane_->showPart(finished, part);
+    }
     /// Whether show() and finish() change the layer.
-    bool showChangesLayer() const { return view_.eye && slabs_->splat.colors.table().oneColor; }
+    bool showChangesLayer() const { return plane_->finishChangesLayer(); }
     /// Most that a layer may differ from the exact one.
     ErrorBound errorBound() const;
 
   private:
     Footprint makeViewFootprint(const SheetPlan& plan) const;
     double densityOf() const;
-    void lengthenSteps(Layer& layer) const;
+    PlanePlace placePlane() const;
 
     const PreparedScene::Impl& scene_;
     const Camera& camera_;
@@ -70,7 +73,7 @@ class PictureView {
     Factorization thinView_;
     Footprint footprint_;
     SheetLayout layout_;
-    std::optional<BasePlane> plane_;
+    std::optional<PlaneView> plane_;
     std::optional<SlabInput> slabs_;
 };
 

@@ -98,6 +98,7 @@ constexpr FlagName kFlagNames[] = {
     {"shading.lights", "--light"},
     {"shading.shininess", "--shininess"},
     {"shading.specular", "--specular"},
+    {"share", "--slab-range"},
     {"sigma", "--sigma"},
     {"sizePixels", "--size"},
     {"skipBytes", "--skip-bytes"},

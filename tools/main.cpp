@@ -5,5 +5,5 @@
 int main(int argc, char** argv) {
     using namespace deltasplat;
     return runProgram({argv, argv + argc}, {addInfo, addConvert, addDelta, addRestore, addDiff,
-                                            addRender, addBench, addSynth});
+                                            addRender, addFold, addBench, addSynth});
 }

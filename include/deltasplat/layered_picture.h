@@ -46,8 +46,10 @@ class LayeredPicture {
     ///        picture's, or if the image has another size
     void fold(std::span<const SlabLayer> layers, Image& image) const;
 
-  private:
     struct Impl;
+    const Impl& impl() const { return *impl_; }
+
+  private:
     std::unique_ptr<const Impl> impl_;
 };
 

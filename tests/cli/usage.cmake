@@ -11,12 +11,14 @@ function(deltasplat_refusal name message)
                         ARGS render cube_8x8x8_uint8.raw -o out.exr ${ARGN})
 endfunction()
 
-deltasplat_cli_test(help ARGS --help STDOUT_MATCHES "Subcommands:.*info.*convert.*delta.*restore.*diff.*render.*bench.*synth")
+deltasplat_cli_test(help ARGS --help STDOUT_MATCHES "Subcommands:.*info.*convert.*delta.*restore.*diff.*render.*fold.*bench.*synth")
 deltasplat_cli_test(help_short ARGS -h STDOUT_MATCHES "Usage: deltasplat")
 deltasplat_cli_test(help_info ARGS info --help
     STDOUT_MATCHES "--level-set.*default keep.*Examples:.*deltasplat info.*deltasplat info")
 deltasplat_cli_test(help_render ARGS render --help
     STDOUT_MATCHES "default 512x512.*default: 0.3.*Examples:.*deltasplat render.*deltasplat render")
+deltasplat_cli_test(help_fold ARGS fold --help
+    STDOUT_MATCHES "PARTS.*--background.*--region.*Examples:.*deltasplat fold.*deltasplat fold")
 deltasplat_cli_test(help_synth ARGS synth -h
     STDOUT_MATCHES "default 64x64x64.*Examples:.*deltasplat synth.*deltasplat synth")
 deltasplat_cli_test(version ARGS --version
@@ -24,11 +26,11 @@ deltasplat_cli_test(version ARGS --version
 deltasplat_cli_test(version_of_subcommand ARGS render --version STDOUT_MATCHES "OpenVDB")
 
 deltasplat_cli_test(usage.no_subcommand EXIT 2 ARGS -q
-    STDERR "deltasplat: subcommand: got nothing; expected info, convert, delta, restore, diff, render, bench or synth (see 'deltasplat --help')")
+    STDERR "deltasplat: subcommand: got nothing; expected info, convert, delta, restore, diff, render, fold, bench or synth (see 'deltasplat --help')")
 deltasplat_cli_test(usage.unknown_subcommand EXIT 2 ARGS rendr ${cube} -o out.exr
-    STDERR "deltasplat: Unknown subcommand 'rendr'. Did you mean 'render'? Expected info, convert, delta, restore, diff, render, bench or synth")
+    STDERR "deltasplat: Unknown subcommand 'rendr'. Did you mean 'render'? Expected info, convert, delta, restore, diff, render, fold, bench or synth")
 deltasplat_cli_test(usage.unlike_any_subcommand EXIT 2 ARGS compress
-    STDERR "deltasplat: Unknown subcommand 'compress'. Expected info, convert, delta, restore, diff, render, bench or synth")
+    STDERR "deltasplat: Unknown subcommand 'compress'. Expected info, convert, delta, restore, diff, render, fold, bench or synth")
 deltasplat_cli_test(usage.unknown_option_before EXIT 2 ARGS --verbos info ${cube}
     STDERR "deltasplat: Unknown option '--verbos'. Did you mean '--verbose'?")
 deltasplat_refusal(unknown_option "Unknown option '--sise'. Did you mean '--size'?" --sise 8x8)
@@ -45,6 +47,10 @@ deltasplat_cli_test(usage.render_no_input EXIT 2 ARGS render -o out.exr
     STDERR "deltasplat: INPUT: got nothing; expected FILE (see 'deltasplat render --help')")
 deltasplat_cli_test(usage.render_no_output EXIT 2 ARGS render ${cube}
     STDERR "deltasplat: --output: got nothing; expected FILE (see 'deltasplat render --help')")
+deltasplat_cli_test(usage.fold_no_parts EXIT 2 ARGS fold -o out.exr
+    STDERR "deltasplat: PARTS: got nothing; expected FILE (see 'deltasplat fold --help')")
+deltasplat_cli_test(usage.fold_no_output EXIT 2 ARGS fold a.slabs
+    STDERR "deltasplat: --output: got nothing; expected FILE (see 'deltasplat fold --help')")
 deltasplat_cli_test(usage.info_no_input EXIT 2 ARGS info --json
     STDERR "deltasplat: INPUT: got nothing; expected FILE (see 'deltasplat info --help')")
 deltasplat_cli_test(usage.synth_no_output EXIT 2 ARGS synth cloud

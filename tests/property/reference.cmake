@@ -22,6 +22,7 @@ deltasplat_test(property/picture_place_test.cpp)
 deltasplat_test(property/parted_picture_test.cpp)
 deltasplat_test(property/prepared_test.cpp)
 deltasplat_test(property/layered_picture_test.cpp)
+deltasplat_test(property/slab_part_test.cpp)
 deltasplat_test(property/deep_test.cpp)
 deltasplat_test(property/perspective_test.cpp
     SOURCES ${DELTASPLAT_SCENE_SOURCES} reference/ray_marcher.cpp)

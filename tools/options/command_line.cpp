@@ -10,11 +10,6 @@
 #include "version.h"
 
 namespace deltasplat {
-namespace {
-
-constexpr const char* kCommonTitle = "Everywhere";
-
-}  // namespace
 
 bool OptionGroup::isMoreGiven(const CLI::App& app, const std::string& name) {
     const std::vector<const CLI::Option*> options = app.get_options();

@@ -13,6 +13,9 @@
 
 namespace deltasplat {
 
+/// The heading of the options that every subcommand has.
+inline constexpr const char* kCommonTitle = "Everywhere";
+
 /// Options that every subcommand has.
 struct CommonOptions {
     int quiet = 0;              ///< how often -q was given: 1 hides progress, 2 warnings as well

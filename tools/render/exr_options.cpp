@@ -94,6 +94,18 @@ void parseCompression(const std::string& option, const std::string& text, ExrOpt
 }  // namespace
 
 void addExrOptions(CLI::App& app, RenderCommand& command) {
+    addExrFileOptions(app, command);
+    OptionGroup group(app, "Output");
+    group.addFlag("--multipart", command.image.exr.multipart,
+                  "Store layers of --aov in parts of an .exr of their own, as many\n"
+                  "programs read faster, not in one part with the picture");
+    group.addValue("--overscan", "N|X,Y|P%", command.overscan,
+                   Parser<OverscanChoice>(parseOverscan),
+                   "Pixels beyond each side of the display window of an .exr, or a share\n"
+                   "of its width and height");
+}
+
+void addExrFileOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup group(app, "Output");
     ExrOptions& exr = command.image.exr;
     const Parser<std::string> compression = [&exr](const std::string& option,
@@ -106,9 +118,6 @@ void addExrOptions(CLI::App& app, RenderCommand& command) {
                    "pxr24, b44, b44a, dwaa, dwab; zip and zips have levels 1 to 9\n"
                    "(default 4), dwaa and dwab from 0 on (default 45: hardly to be seen);\n"
                    "a deep picture: zips (default: zip, of a deep one zips)");
-    group.addFlag("--multipart", exr.multipart,
-                  "Store layers of --aov in parts of an .exr of their own, as many\n"
-                  "programs read faster, not in one part with the picture");
     group.addFlag("--autocrop", exr.autocrop,
                   "Store of an .exr what is not clear, in a data window within the\n"
                   "display window of --size");
@@ -116,15 +125,11 @@ void addExrOptions(CLI::App& app, RenderCommand& command) {
                    "Only these pixels, or those from XMIN,YMIN to XMAX,YMAX, counted from\n"
                    "the upper left: as they are in the whole picture, bit for bit. Of\n"
                    "an .exr its data window, of others all of the file");
-    group.addValue("--overscan", "N|X,Y|P%", command.overscan,
-                   Parser<OverscanChoice>(parseOverscan),
-                   "Pixels beyond each side of the display window of an .exr, or a share\n"
-                   "of its width and height");
 }
 
 void applyOverscan(RenderCommand& command) {
     if (!command.overscan.asked()) return;
-    if (!isExr(command)) {
+    if (!isExr(command) && !command.slabs) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--overscan", command.output.string(), "an .exr file"));
     }

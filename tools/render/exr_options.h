@@ -11,6 +11,8 @@ namespace deltasplat {
 /// Declares the options that say how a picture lies in an .exr and is packed, and which part of it
 /// is made.
 void addExrOptions(CLI::App& app, RenderCommand& command);
+/// Those of them that are about a picture that is there.
+void addExrFileOptions(CLI::App& app, RenderCommand& command);
 
 /// Sets the camera's overscan, once its size is known.
 /// @throw Error(kUsage) for what is not an .exr

@@ -25,7 +25,7 @@ constexpr double kRenderShare = 0.5;
 
 // Calls use(rows, first) with rows of a box from the top on.
 template <typename Use>
-void forParts(PartedPicture& picture, const RenderCommand& command, const PixelBox& box,
+void forParts(const ShowPart& show, const RenderCommand& command, const PixelBox& box,
               const Use& use) {
     std::optional<ColorTransform> transform;
     if (!command.color.colorSpace.empty()) transform.emplace(command.color);
@@ -33,7 +33,7 @@ void forParts(PartedPicture& picture, const RenderCommand& command, const PixelB
     for (int first = box.min.y; first < box.max.y; first += most) {
         const int last = std::min(first + most, box.max.y);
         Image rows({box.size().x, last - first});
-        picture.show({{box.min.x, first}, {box.max.x, last}}, rows);
+        show({{box.min.x, first}, {box.max.x, last}}, rows);
         if (command.picture.background) compositeOver(rows, *command.picture.background);
         if (transform) transform->convert(rows);
         use(rows, first);
@@ -47,9 +47,9 @@ void requireRow(glm::ivec2 size) {
 }
 
 // What is seen of a part of the picture, at least a pixel.
-PixelBox findSeen(PartedPicture& picture, const RenderCommand& command, const PixelBox& part) {
+PixelBox findSeen(const ShowPart& show, const RenderCommand& command, const PixelBox& part) {
     PixelBox all;
-    forParts(picture, command, part, [&](const Image& rows, int first) {
+    forParts(show, command, part, [&](const Image& rows, int first) {
         PixelBox box = seenBox(rows, {{0, 0}, rows.size}, {});
         if (box.empty()) return;
         const glm::ivec2 place(part.min.x, first);
@@ -73,6 +73,24 @@ bool isMadeInParts(const RenderCommand& command, const CameraOptions& camera) {
            (command.region || kBytesPerPixel * size.x * size.y > kPartBytes);
 }
 
+void writeInParts(const RenderCommand& command, glm::ivec2 size, const ShowPart& show, bool isExact,
+                  const std::function<ImageFileOptions()>& fileOptions, const Listener& listener) {
+    ImageFileOptions file = fileOptions();
+    PixelBox box = file.region.value_or(PixelBox{{0, 0}, size});
+    // How far pixels may be off stands before them in the file.
+    if (file.exr.autocrop || !isExact) {
+        const PixelBox found = findSeen(show, command, box);
+        if (file.exr.autocrop) box = found;
+    }
+    file = fileOptions();
+    ExrRows rows(command.output, size, box, file);
+    forParts(show, command, box, [&](const Image& image, int first) {
+        rows.write(image);
+        listener.report(double(first + image.size.y - box.min.y) / box.size().y);
+    });
+    rows.finish();
+}
+
 RenderResult renderInParts(const RenderCommand& command, const PreparedScene& scene,
                            const CameraOptions& camera,
                            const std::function<ImageFileOptions(const RenderResult&)>& fileOptions,
@@ -82,22 +100,15 @@ RenderResult renderInParts(const RenderCommand& command, const PreparedScene& sc
     result.camera = makeCamera(camera, seen.box, seen.worldFromIndex, seen.space);
     requireRow(result.camera.sizePixels);
     PartedPicture picture(scene, result.camera, partOf(listener, 0, kRenderShare));
-    ImageFileOptions file = fileOptions(result);
-    PixelBox box = file.region.value_or(PixelBox{{0, 0}, result.camera.sizePixels});
-    // How far pixels may be off stands before them in the file.
-    if (file.exr.autocrop || !picture.stats().tolerance.isExact()) {
-        const PixelBox found = findSeen(picture, command, box);
-        if (file.exr.autocrop) box = found;
-    }
-    result.stats = picture.stats();
-    file = fileOptions(result);
-    ExrRows rows(command.output, result.camera.sizePixels, box, file);
-    forParts(picture, command, box, [&](const Image& image, int first) {
-        rows.write(image);
-        const double share = double(first + image.size.y - box.min.y) / box.size().y;
-        listener.report(kRenderShare + (1 - kRenderShare) * share);
-    });
-    rows.finish();
+    writeInParts(
+        command, result.camera.sizePixels,
+        [&](const PixelBox& part, Image& image) { picture.show(part, image); },
+        picture.stats().tolerance.isExact(),
+        [&] {
+            result.stats = picture.stats();
+            return fileOptions(result);
+        },
+        partOf(listener, kRenderShare, 1));
     result.stats = picture.stats();
     return result;
 }

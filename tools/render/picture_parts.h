@@ -13,6 +13,16 @@ namespace deltasplat {
 /// a region is wanted, or which is large.
 bool isMadeInParts(const RenderCommand& command, const CameraOptions& camera);
 
+/// Writes pixels of a picture into an image of a part's size.
+using ShowPart = std::function<void(const PixelBox& part, Image& image)>;
+
+/// Writes such a picture.
+/// @param size         of all of it
+/// @param isExact      else all of it is shown once before, to know how far it may be off
+/// @param fileOptions  returns how it is stored, by what is known by then
+void writeInParts(const RenderCommand& command, glm::ivec2 size, const ShowPart& show, bool isExact,
+                  const std::function<ImageFileOptions()>& fileOptions, const Listener& listener);
+
 /// Renders and writes such a picture.
 /// @param fileOptions  returns how it is stored, once it is known how far it may be off
 /// @return what render returns, but for the image

@@ -28,6 +28,7 @@
 #include "render/exr_options.h"
 #include "render/ground_options.h"
 #include "render/picture_legend.h"
+#include "render/picture_metadata.h"
 #include "render/picture_parts.h"
 #include "render/preview.h"
 #include "render/read_medium.h"
@@ -38,11 +39,11 @@
 #include "render/render_sequence.h"
 #include "render/render_stats.h"
 #include "render/scene_input.h"
+#include "render/slab_options.h"
 #include "render/tone_options.h"
 #include "render/value_window.h"
 #include "stopwatch.h"
 #include "subcommands.h"
-#include "version.h"
 #include "volume_place.h"
 
 namespace deltasplat {
@@ -52,65 +53,6 @@ namespace {
 constexpr double kReadShare = 0.3;
 // Of what is left then, what rendering takes before the picture is written.
 constexpr double kRenderShare = 0.93;
-
-// What every picture says of how it was made.
-std::vector<std::pair<std::string, std::string>> commonMetadata(const Session& session) {
-    return {{"version", programVersion()}, {"commandLine", session.commandLine}};
-}
-
-ImageFileOptions imageOptions(const RenderCommand& command, const Volume& volume,
-                              const RenderResult& result, const Session& session) {
-    ImageFileOptions options = command.image;
-    setExr(command, result.camera, options);
-    options.cameraFromWorld = result.camera.cameraFromWorld();
-    options.ndcFromWorld = result.camera.ndcFromWorld();
-    options.exr.pixelAspect = result.camera.pixelAspect;
-    options.metadata = commonMetadata(session);
-    options.metadata.insert(options.metadata.end(),
-                            {{"input", command.input.string()},
-                             {"mode", modeName(result.stats.mode)},
-                             {"camera", cameraOptionsText(result.camera)},
-                             {"codeBook", volume.codeBook.name()},
-                             {"codeError", codeErrorText(volume.codeError)}});
-    setColors(command, options);
-    const RenderOptions& render = command.picture.render;
-    if (result.stats.mode == Mode::kDrr) {
-        options.metadata.emplace_back("muWater", numberText(render.drr.muWater));
-        if (render.drr.photons)
-            options.metadata.emplace_back("photons", numberText(*render.drr.photons));
-    }
-    if (result.stats.mode == Mode::kMip && render.depthShade > 0)
-        options.metadata.emplace_back("depthShade", numberText(render.depthShade));
-    if (command.channels.has(Aov::kFront))
-        options.metadata.emplace_back("depthOpacity", numberText(command.aovOptions.depthOpacity));
-    if (command.deep)
-        options.metadata.emplace_back("deepSlices",
-                                      std::to_string(command.deepOptions.slicesPerSample));
-    if (result.stats.mode != Mode::kComposite) return options;
-    options.metadata.insert(options.metadata.end(),
-                            {{"method", methodName(command.picture.render.method)},
-                             {"tolerance", toleranceText(result.stats.tolerance)},
-                             {"errorBound", errorBoundText(result.stats)}});
-    return options;
-}
-
-// A background shows where the picture lets it: what may be wrong of alpha, is wrong of it as well.
-void boundOver(const std::optional<glm::vec4>& background, RenderStats& stats) {
-    if (!background || stats.tolerance.isExact()) return;
-    const glm::dvec4 color(*background);
-    stats.errorBoundColor +=
-        stats.errorBoundAlpha * color.a * std::max({color.r, color.g, color.b});
-    stats.errorBoundAlpha *= 1 - color.a;
-}
-
-// A tolerance is a promise: what it comes to is said.
-void showErrorBound(const RenderStats& stats) {
-    const std::string line =
-        "tolerance " + toleranceText(stats.tolerance) +
-        ": error of a pixel at most, scene-linear and premultiplied: " + errorBoundText(stats) +
-        "\n";
-    std::fputs(line.c_str(), stderr);
-}
 
 // Light in fog has lights as well.
 void warnOfUnusedLight(const CLI::App& app, const PictureOptions& picture,
@@ -167,16 +109,6 @@ glm::dvec2 applyWindow(const RenderCommand& command, const Volume& volume, Rende
     return window;
 }
 
-// Makes opaque what has no alpha when it is stored.
-void fillForJpeg(const RenderCommand& command, Image& image, const Listener& listener) {
-    if (command.isMovieAlone || imageFormatOf(command.output) != ImageFormat::kJpeg) return;
-    if (isOpaque(image)) return;
-    listener.warn(command.output.string() +
-                  ": a .jpg has no alpha, so what is clear is black; --background gives it another "
-                  "colour");
-    compositeOver(image, glm::vec4(0, 0, 0, 1));
-}
-
 // Makes the picture what is stored of it, and says in `image` what that took.
 // @param optics  that it was made with
 void finishPicture(const RenderCommand& command, const Volume& volume, const Optics& optics,
@@ -184,10 +116,7 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
     if (storesValues(command)) return;
     std::optional<glm::dvec2> window;
     if (showsWindow(command)) window = applyWindow(command, volume, result, image);
-    if (command.picture.background) compositeOver(result.image, *command.picture.background);
-    fillForJpeg(command, result.image, listener);
-    applyTone(command, result.image, image, listener);
-    convertColors(command, result.image, image);
+    finishLight(command, result.image, image, listener);
     std::optional<Legend> legend;
     if (optics.surface && command.annotations.legend) {
         listener.warn("--legend: left out, for what is shown is a surface, of one colour");
@@ -272,7 +201,7 @@ RenderResult makeInParts(const RenderCommand& command, const ReadScene& read,
             said.camera = known.camera;
             said.stats = known.stats;
             boundOver(command.picture.background, said.stats);
-            return imageOptions(command, *read.volume, said, session);
+            return imageOptions(command, codesOf(*read.volume), said, session);
         },
         listener);
     result.stats.prepareSeconds += sceneSeconds;
@@ -304,7 +233,7 @@ void showScene(const RenderCommand& command, const ReadScene& scene, const Seque
         result = render(volume, options, rendering);
     }
     boundOver(picture.background, result.stats);
-    ImageFileOptions image = imageOptions(command, volume, result, session);
+    ImageFileOptions image = imageOptions(command, codesOf(volume), result, session);
     const Listener writing = partOf(listener, kRenderShare, 1);
     warnOfDepths(command.channels, options.optics, writing);
     AovOptions aovOptions = command.aovOptions;
@@ -428,6 +357,18 @@ void runSequence(const CLI::App& app, const RenderCommand& command, const Sessio
     worst.show(session);
 }
 
+// Writes what others fold into a picture.
+void runSlabs(const CLI::App& app, const RenderCommand& command, const Session& session) {
+    ProgressDisplay display(session.common);
+    warnOfUnusedOptions(app, command, {command.input}, display);
+    const Listener all = display.stage(0, 1);
+    const Listener reading = partOf(all, 0, kReadShare);
+    const ReadScene scene = sceneOf(command, {}, reading);
+    warnOfUnusedView(app, scene.options.camera, *scene.volume, reading);
+    warnOfClipping(command.picture, SequencePart().frame, *scene.volume, reading);
+    writeSlabs(app, command, scene, session, partOf(all, kReadShare, 1));
+}
+
 // Puts together what options say, before anything but scenes and cameras is read.
 // @param pictures  of a batch, else 0
 void prepare(const CLI::App& app, RenderCommand& command, std::size_t pictures,
@@ -438,6 +379,7 @@ void prepare(const CLI::App& app, RenderCommand& command, std::size_t pictures,
     applyCamera(app, command.frames.frames, command.picture, listener);
     applyOverscan(command);
     applySinks(app, command, pictures);
+    applySlabs(app, command);
     applyLayers(app, command.picture);
     applySurface(app, command.picture.render.mode, isFog(command.picture), command.picture.surface,
                  command.picture.read);
@@ -497,6 +439,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
     const std::jthread loading = loadEarly(command.output);
     if (command.frames.asked()) return runSequence(app, command, session);
     validate(command);
+    if (command.slabs) return runSlabs(app, command, session);
     MadePicture made;
     {
         ProgressDisplay display(session.common);

@@ -27,6 +27,7 @@
 #include "render/list_presets.h"
 #include "render/render_batch.h"
 #include "render/render_sequence.h"
+#include "render/slab_options.h"
 #include "render/tone_options.h"
 #include "view/affine.h"
 
@@ -127,18 +128,12 @@ void addOutputOptions(CLI::App& app, RenderCommand& command) {
     group.addValue("-o,--output", "FILE", command.output, anyText(),
                    "Picture to write: .exr (scene-linear, premultiplied) or .png, .tif\n"
                    "or .jpg (sRGB; a .jpg without alpha: over --background or black);\n"
-                   "has to be given, but for a --movie");
-    group.addFlag("--float", command.image.floatExr, "Store 32-bit floats in an .exr, not halves");
-    group.addValue("--bits", "8|16", command.image.bits, bits(),
-                   withDefault("Bits per channel of a .png or .tif; of a .jpg 8",
-                               std::to_string(command.image.bits)));
-    group.addValue("--dither", "0|1", command.image.dither, zeroOrOne(),
-                   withDefault("Round up and down in a fixed pattern in pictures of 8 bits, so\n"
-                               "that slow ramps show no steps",
-                               command.image.dither ? "1" : "0"));
+                   "has to be given, but for a --movie; with --slab-range a .slabs");
+    addStorageOptions(app, command.image);
     group.addValue("--stats", "FILE", command.stats, anyText(),
                    "JSON file to write: what was done, how long it took in seconds");
     addPreviewOption(app, command);
+    addSlabOption(app, command.slabs);
 }
 
 void addModeOption(CLI::App& app, Mode& chosen) {
@@ -192,6 +187,23 @@ void addMethodOption(CLI::App& app, Method& chosen) {
 }
 
 }  // namespace
+
+void addStorageOptions(CLI::App& app, ImageFileOptions& image) {
+    OptionGroup group(app, "Output");
+    group.addFlag("--float", image.floatExr, "Store 32-bit floats in an .exr, not halves");
+    group.addValue(
+        "--bits", "8|16", image.bits, bits(),
+        withDefault("Bits per channel of a .png or .tif; of a .jpg 8", std::to_string(image.bits)));
+    group.addValue("--dither", "0|1", image.dither, zeroOrOne(),
+                   withDefault("Round up and down in a fixed pattern in pictures of 8 bits, so\n"
+                               "that slow ramps show no steps",
+                               image.dither ? "1" : "0"));
+}
+
+void addBackgroundOption(OptionGroup& group, std::optional<glm::vec4>& background) {
+    group.addValue("--background", "R,G,B[,A]", background, color(),
+                   "Scene-linear colour behind the volume (default: transparent)");
+}
 
 void addCameraOptions(CLI::App& app, PictureOptions& options) {
     CameraOptions& camera = options.render.camera;
@@ -297,8 +309,7 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
                                "one's way by x, y, z, from blue to red along the world's axis, or\n"
                                "index, which grows along i, j and k in red, green and blue",
                                colorByName(optics.colorBy)));
-    group.addValue("--background", "R,G,B[,A]", options.background, color(),
-                   "Scene-linear colour behind the volume (default: transparent)");
+    addBackgroundOption(group, options.background);
 }
 
 void addPartOptions(CLI::App& app, PictureOptions& options) {
@@ -430,7 +441,7 @@ void validate(const RenderCommand& command) {
     checkColors(command);
     checkGround(command);
     checkPreview(command);
-    if (!command.isMovieAlone) {
+    if (!command.isMovieAlone && !command.slabs) {
         checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     }
     checkCamera(command.picture.render.camera);

@@ -18,6 +18,7 @@
 #include "deltasplat/render.h"
 #include "deltasplat/render_aovs.h"
 #include "deltasplat/render_deep.h"
+#include "deltasplat/slab_part.h"
 #include "listener.h"
 #include "options/command_line.h"
 #include "options/cut_options.h"
@@ -111,6 +112,7 @@ struct RenderCommand {
     std::filesystem::path holdoutDepth;  ///< of solid things before what is left out; empty: none
     bool deep = false;                   ///< samples with depths instead of a flat picture
     DeepOptions deepOptions;
+    std::optional<SlabShare> slabs;  ///< to write in place of a picture
     AnnotationChoice annotations;
     FrameChoice frames;
     SceneChoice scene;
@@ -125,6 +127,9 @@ struct RenderCommand {
     std::filesystem::path index;  ///< page of a batch; empty: none
 };
 
+/// Declares the options of pixels in a file.
+void addStorageOptions(CLI::App& app, ImageFileOptions& image);
+void addBackgroundOption(OptionGroup& group, std::optional<glm::vec4>& background);
 void addCameraOptions(CLI::App& app, PictureOptions& options);
 void addOpticsOptions(CLI::App& app, PictureOptions& options);
 /// Declares the options that say which parts of the volume are shown.

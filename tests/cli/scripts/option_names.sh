@@ -39,7 +39,7 @@ while read -r name; do
     grep -rqw --include='*.h' -- "${field%%=*}" include src || fail "$name: no header knows it"
 done <"$scratch/fields"
 
-for subcommand in info convert delta restore diff render bench synth; do
+for subcommand in info convert delta restore diff render fold bench synth; do
     "$program" "$subcommand" --help
 done >"$scratch/help"
 while IFS=$'\t' read -r name flag; do

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include "composite/layer.h"
+#include "deltasplat/image/picture_filter.h"
+#include "deltasplat/view/camera.h"
+#include "deltasplat/view/factorization.h"
+#include "image/warp.h"
+#include "view/base_plane.h"
+
+namespace deltasplat {
+
+/// Where the base plane of a view lies, in plain numbers.
+struct PlanePlace {
+    Factorization view;        ///< of the volume's own voxels
+    Subdivision parts;         ///< what these are divided into
+    int firstSlice = 0;        ///< as SheetLayout::firstSlice
+    glm::ivec2 firstVoxel{0};  ///< as SheetLayout::firstVoxel
+    int resolution = 1;        ///< parallel: as SheetLayout::resolution
+    double offsetPixels = 0;   ///< parallel: as SheetLayout::offsetPixels
+    double spacing = 1;        ///< from an eye: from one pixel to the next, in slopes
+    PictureFilter filter = PictureFilter::kCatmullRom;  ///< as SplatOptions::filter
+    /// The colour that opacity 1 has, where opacity is all that layers hold.
+    std::optional<glm::dvec3> color;
+};
+
+/// How the base plane of a view is seen: all that showing it takes once its slabs are rendered,
+/// whoever did that.
+class PlaneView {
+  public:
+    PlaneView(const Camera& camera, const PlanePlace& place);
+
+    const PlanePlace& place() const { return place_; }
+    const BasePlane& plane() const { return plane_; }
+    /// Makes of a layer, once, what showPart() shows.
+    void finish(Layer& layer) const;
+    /// Whether finish() changes the layer.
+    bool finishChangesLayer() const { return place_.view.eye && place_.color; }
+    /// Writes what is seen of a finished layer into a part of the picture.
+    /// @return the most that this can enlarge a difference of layers
+    double showPart(const Layer& finished, const PicturePart& part) const;
+
+  private:
+    BasePlane makePlane() const;
+    void lengthenSteps(Layer& layer) const;
+
+    Camera camera_;
+    PlanePlace place_;
+    Factorization thin_;
+    BasePlane plane_;
+};
+
+}  // namespace deltasplat

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "deltasplat/error.h"
+#include "deltasplat/slab_part.h"
+#include "listener.h"
+#include "listener_part.h"
+#include "memory.h"
+#include "output_files.h"
+#include "process/interrupt.h"
+#include "render/color_options.h"
+#include "render/exr_options.h"
+#include "render/picture_metadata.h"
+#include "render/picture_parts.h"
+#include "render/render_modes.h"
+#include "render/tone_options.h"
+#include "subcommands.h"
+#include "version.h"
+
+namespace deltasplat {
+namespace {
+
+// Of the progress, what putting layers together takes before pixels are shown.
+constexpr double kFoldShare = 0.6;
+
+struct FoldCommand {
+    std::vector<std::string> parts;
+    RenderCommand picture;  ///< as render would have been asked for it
+};
+
+void declareOptions(CLI::App& app, FoldCommand& command) {
+    app.add_option("PARTS", command.parts,
+                   "Parts of a picture, all of them, in any order: .slabs files that\n"
+                   "render --slab-range has written")
+        ->type_name("FILE")
+        ->required()
+        ->group("Arguments");
+    OptionGroup output(app, "Output");
+    output.addValue("-o,--output", "FILE", command.picture.output, anyText(),
+                    "Picture to write: .exr (scene-linear, premultiplied) or .png, .tif\n"
+                    "or .jpg (sRGB; a .jpg without alpha: over --background or black)");
+    addStorageOptions(app, command.picture.image);
+    addBackgroundOption(output, command.picture.picture.background);
+    addToneOptions(app, command.picture.tone);
+    addColorOptions(app, command.picture.color);
+    addExrFileOptions(app, command.picture);
+}
+
+std::string noteOf(const Notes& notes, const std::string& name) {
+    const auto found = std::find_if(notes.begin(), notes.end(),
+                                    [&](const auto& note) { return note.first == name; });
+    return found == notes.end() ? "" : found->second;
+}
+
+// Takes from a part what a picture has of its scene, and checks what is asked for of it.
+void applyParts(const FoldedPicture& folded, const std::string& file, RenderCommand& command) {
+    const std::string version = noteOf(folded.notes().picture, "version");
+    if (version != programVersion()) {
+        throw Error(ErrorCode::kInput,
+                    gotExpected(file, "a part that version " + version + " wrote",
+                                "one of version " + programVersion()));
+    }
+    const Camera& camera = folded.camera();
+    command.input = noteOf(folded.notes().part, "input");
+    CameraOptions& options = command.picture.render.camera;
+    options.overscanPixels = camera.overscanPixels;
+    options.sizePixels = camera.sizePixels - 2 * camera.overscanPixels;
+    if (camera.overscanPixels != glm::ivec2(0) && !isExr(command)) {
+        throw Error(ErrorCode::kUsage, gotExpected("--output", command.output.string(),
+                                                   "an .exr file, for its parts have --overscan"));
+    }
+    checkExr(command);
+    checkImageFile(command.output, options.sizePixels, command.image);
+}
+
+void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
+                         ProgressDisplay& display) {
+    if (isGiven(app, "--bits") && isExr(command)) display.warn("--bits: has no effect on an .exr");
+    if (isGiven(app, "--dither") && (isExr(command) || command.image.bits == 16))
+        display.warn("--dither: has no effect but in pictures of 8 bits");
+    warnOfUnusedTone(app, command, display);
+    warnOfUnusedExrOptions(app, command, display);
+    warnOfUnusedColorOptions(app, command, display);
+}
+
+ImageFileOptions fileOptions(const RenderCommand& command, const FoldedPicture& folded,
+                             const Session& session) {
+    RenderResult said;
+    said.camera = folded.camera();
+    said.stats = folded.stats();
+    boundOver(command.picture.background, said.stats);
+    const Notes& notes = folded.notes().picture;
+    ImageFileOptions file = imageOptions(
+        command, {noteOf(notes, "codeBook"), noteOf(notes, "codeError")}, said, session);
+    file.metadata.emplace_back("partCommandLine", noteOf(folded.notes().part, "commandLine"));
+    return file;
+}
+
+void writeWhole(const RenderCommand& command, FoldedPicture& folded, const Session& session,
+                const Listener& listener) {
+    const glm::ivec2 size = folded.camera().sizePixels;
+    constexpr double kBytesPerPixel = 16;
+    requireMemory("picture", kBytesPerPixel * size.x * size.y);
+    Image image(size);
+    folded.show({{0, 0}, size}, image);
+    ImageFileOptions file = fileOptions(command, folded, session);
+    finishLight(command, image, file, listener);
+    writeImage(command.output, image, file);
+}
+
+void runFold(const CLI::App& app, const FoldCommand& asked, const Session& session) {
+    RenderCommand command = asked.picture;
+    requireArgument(!command.output.empty(), "--output", "FILE (see 'deltasplat fold --help')");
+    imageFormatOf(command.output);
+    const Files parts(asked.parts.begin(), asked.parts.end());
+    checkOutput("--output", command.output, parts, "the parts");
+    checkColors(command);
+    FoldedPicture folded(parts);
+    applyParts(folded, asked.parts.front(), command);
+    {
+        ProgressDisplay display(session.common);
+        warnOfUnusedOptions(app, command, display);
+        const Listener all = display.stage(0, 1);
+        folded.fold(partOf(all, 0, kFoldShare));
+        const Listener writing = partOf(all, kFoldShare, 1);
+        if (isMadeInParts(command, command.picture.render.camera)) {
+            writeInParts(
+                command, folded.camera().sizePixels,
+                [&](const PixelBox& part, Image& image) { folded.show(part, image); },
+                folded.stats().tolerance.isExact(),
+                [&] { return fileOptions(command, folded, session); }, writing);
+        } else {
+            writeWhole(command, folded, session, writing);
+        }
+        all.report(1);
+        allIsWritten();
+    }
+    RenderStats stats = folded.stats();
+    boundOver(command.picture.background, stats);
+    if (!stats.tolerance.isExact() && !session.common.quiet) showErrorBound(stats);
+}
+
+}  // namespace
+
+Subcommand addFold(CLI::App& program) {
+    const auto command = std::make_shared<FoldCommand>();
+    CLI::App& app = addSubcommand(
+        program, "fold", "Makes a picture of parts that render --slab-range has written.",
+        {"deltasplat fold smoke.1.slabs smoke.2.slabs -o smoke.exr",
+         "deltasplat fold smoke.*.slabs -o smoke.png --background 0,0,0"});
+    declareOptions(app, *command);
+    return {&app, [&app, command](const Session& session) { runFold(app, *command, session); }};
+}
+
+}  // namespace deltasplat
