@@ -129,7 +129,7 @@ void addExrFileOptions(CLI::App& app, RenderCommand& command) {
 
 void applyOverscan(RenderCommand& command) {
     if (!command.overscan.asked()) return;
-    if (!isExr(command) && !command.slabs) {
+    if (!isExr(command) && !command.slabs && !command.output.empty()) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--overscan", command.output.string(), "an .exr file"));
     }

@@ -192,6 +192,11 @@ void finishAfterFailure(SequenceSinks& sinks) {
     }
 }
 
+// Whether nothing but --first-pass is to be made.
+bool isLookAlone(const RenderCommand& command) {
+    return command.output.empty();
+}
+
 // The files of all frames; if pictures go elsewhere, all have the same output.
 std::vector<FrameFiles> filesFor(const RenderCommand& command, bool areWritten) {
     const bool mayStand =
@@ -233,8 +238,9 @@ void addSequenceOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup group(app, "Sequence");
     group.addValue("--first-pass", "FILE", command.firstPass, anyText(),
                    "JSON file of what all frames are shown by alike: the values and the\n"
-                   "place of all of them. Made from --frames if it is not there; tasks\n"
-                   "of a farm that have some of the frames each share one");
+                   "place of all of them. Made from --frames if it is not there, without\n"
+                   "-o that alone; tasks of a farm that have some of the frames each\n"
+                   "share one");
     addSinkOptions(app, command);
     group.addValue("--turntable", "N", command.turntable, wholeNumber(1, 1'000'000),
                    "Turns the camera once around in N frames, 1 to N if --frames names\n"
@@ -268,7 +274,7 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     interruptBetweenFiles();
     warnOfWindows(command, listener);
     const std::vector<FrameFiles> all =
-        withScene(command.scene, filesFor(command, sinks.areWritten()));
+        withScene(command.scene, filesFor(command, sinks.areWritten() && !isLookAlone(command)));
     SequenceLook look(kKeptShare * double(availableMemory()));
     const std::vector<FrameFiles> present = withInputs(all, command.frames.missing, listener);
     const bool isKnown = !command.firstPass.empty() && readFirstPass(command.firstPass, look);
@@ -276,6 +282,7 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
         Survey(command, present).run(look, partOf(listener, 0, kSurveyShare));
         if (!command.firstPass.empty()) writeFirstPass(command.firstPass, look);
     }
+    if (isLookAlone(command)) return listener.report(1);
     const Listener making = partOf(listener, kSurveyShare, 1);
     const std::vector<FrameFiles> frames = framesToMake(present, command.frames);
     const RenderCommand fixed = fixedTo(look, command);

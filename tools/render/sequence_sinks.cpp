@@ -83,7 +83,8 @@ void applySinks(const CLI::App& app, RenderCommand& command, std::size_t picture
     const bool isSingle = !command.frames.asked() && pictures == 0;
     for (const char* option : {"--contact-sheet", "--movie", "--slate"})
         if (isSingle && isGiven(app, option)) refuseWithoutFrames(option);
-    if (command.output.empty() && command.movie.empty())
+    const bool isLookAlone = command.frames.asked() && !command.firstPass.empty();
+    if (command.output.empty() && command.movie.empty() && !isLookAlone)
         refuse("--output", "nothing", "FILE (see 'deltasplat render --help')");
     if (isGiven(app, "--fps") && command.movie.empty())
         refuse("--fps", "it without --movie", "a movie to make");

@@ -60,6 +60,12 @@ for number in 8 9 10; do
     "$program" "${frames[@]}" --first-pass first.json --frames $number -o part.####.exr
 done
 ran part
+# The look at all frames by itself.
+"$program" "${frames[@]}" --first-pass alone.json
+cmp alone.json first.json || fail "alone.json is not first.json"
+"$program" "${frames[@]}" --first-pass alone.json
+expect_code 2 "$program" render in.0008.vdb --first-pass no.json
+expect_said "deltasplat: --first-pass: got it without --frames; expected the frames of a sequence"
 echo '{}' >other.json
 expect_code 3 "$program" "${frames[@]}" --first-pass other.json -o part.####.exr
 expect_said "deltasplat: other.json: got something else; expected what --first-pass has written"
