@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: Linux manual pages cgroups(7), proc_pid_cgroup(5), proc_pid_mountinfo(5);
-// Documentation/admin-guide/cgroup-v1/memory.rst and cgroup-v2.rst of the kernel.
+// Documentation/admin-guide/cgroup-v1/memory.rst and cgroup-v2.rst and
+// Documentation/scheduler/sched-bwc.rst of the kernel.
 #include "cgroup.h"
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -64,8 +66,30 @@ std::uint64_t leftInGroup(const fs::path& group, const Version& version) {
     return *limit - std::min(*limit, fixed);
 }
 
-// Returns the path of the process within the hierarchy that limits memory.
-std::optional<std::string> ownPath(const fs::path& root, const Version& version) {
+// Processors of a group's time, or as many as there can be.
+int processorsOf(const fs::path& group, const Version& version) {
+    constexpr int kMost = std::numeric_limits<int>::max();
+    std::optional<std::uint64_t> quota, period;
+    if (&version == &kVersion1) {
+        // Without a limit the quota is -1.
+        std::ifstream in(group / "cpu.cfs_quota_us");
+        std::int64_t number = 0;
+        if (in >> number && number > 0) quota = std::uint64_t(number);
+        period = readNumber(group / "cpu.cfs_period_us");
+    } else {
+        // "200000 100000", or "max 100000".
+        std::ifstream in(group / "cpu.max");
+        std::uint64_t first = 0, second = 0;
+        if (in >> first >> second) quota = first, period = second;
+    }
+    if (!quota || !period || *period == 0) return kMost;
+    const std::uint64_t whole = *quota / *period + (*quota % *period != 0 ? 1 : 0);
+    return int(std::clamp<std::uint64_t>(whole, 1, kMost));
+}
+
+// Returns the path of the process within the hierarchy of a controller.
+std::optional<std::string> ownPath(const fs::path& root, const Version& version,
+                                   const std::string& controller) {
     std::ifstream in(root / "proc/self/cgroup");
     for (std::string line; std::getline(in, line);) {
         // "4:memory,cpu:/a/b", in the second version "0::/a/b"; a path may hold colons.
@@ -74,7 +98,7 @@ std::optional<std::string> ownPath(const fs::path& root, const Version& version)
         if (second == line.npos) continue;
         const std::string controllers = line.substr(first + 1, second - first - 1);
         const bool isOne = &version == &kVersion1;
-        if (isOne ? contains(split(controllers, ','), "memory") : line.rfind("0::", 0) == 0)
+        if (isOne ? contains(split(controllers, ','), controller) : line.rfind("0::", 0) == 0)
             return line.substr(second + 1);
     }
     return {};
@@ -99,7 +123,8 @@ struct Mount {
     std::string point;
 };
 
-std::optional<Mount> findMount(const fs::path& root, const Version& version) {
+std::optional<Mount> findMount(const fs::path& root, const Version& version,
+                               const std::string& controller) {
     std::ifstream in(root / "proc/self/mountinfo");
     for (std::string line; std::getline(in, line);) {
         const std::size_t dash = line.find(" - ");
@@ -107,7 +132,7 @@ std::optional<Mount> findMount(const fs::path& root, const Version& version) {
         const std::vector<std::string> where = split(line.substr(0, dash), ' ');
         const std::vector<std::string> what = split(line.substr(dash + 3), ' ');
         if (where.size() < 5 || what.size() < 3 || what[0] != version.fileSystem) continue;
-        if (&version == &kVersion1 && !contains(split(what[2], ','), "memory")) continue;
+        if (&version == &kVersion1 && !contains(split(what[2], ','), controller)) continue;
         return Mount{unescaped(where[3]), unescaped(where[4])};
     }
     return {};
@@ -122,24 +147,40 @@ std::string below(const Mount& mount, const std::string& path) {
     return inside && path.find("/..") == path.npos ? path.substr(start.size()) : "";
 }
 
-std::uint64_t leftIn(const fs::path& root, const Version& version) {
-    const std::optional<std::string> path = ownPath(root, version);
-    const std::optional<Mount> mount = findMount(root, version);
-    if (!path || !mount) return kNoLimit;
-    const fs::path top = root / fs::path(mount->point).relative_path();
-    std::uint64_t left = leftInGroup(top, version);
-    fs::path group = top;
+// Calls visit(group) for all groups that the process is in, from the outermost on.
+void forGroups(const fs::path& root, const Version& version, const std::string& controller,
+               const std::function<void(const fs::path& group)>& visit) {
+    const std::optional<std::string> path = ownPath(root, version, controller);
+    const std::optional<Mount> mount = findMount(root, version, controller);
+    if (!path || !mount) return;
+    fs::path group = root / fs::path(mount->point).relative_path();
+    visit(group);
     for (const fs::path& name : fs::path(below(*mount, *path)).relative_path()) {
         group /= name;
-        left = std::min(left, leftInGroup(group, version));
+        visit(group);
     }
-    return left;
 }
 
 }  // namespace
 
 std::uint64_t cgroupAvailable(const fs::path& root) {
-    return std::min(leftIn(root, kVersion1), leftIn(root, kVersion2));
+    std::uint64_t left = kNoLimit;
+    for (const Version* version : {&kVersion1, &kVersion2}) {
+        forGroups(root, *version, "memory", [&](const fs::path& group) {
+            left = std::min(left, leftInGroup(group, *version));
+        });
+    }
+    return left;
+}
+
+int cgroupProcessors(const fs::path& root) {
+    int processors = std::numeric_limits<int>::max();
+    for (const Version* version : {&kVersion1, &kVersion2}) {
+        forGroups(root, *version, "cpu", [&](const fs::path& group) {
+            processors = std::min(processors, processorsOf(group, *version));
+        });
+    }
+    return processors;
 }
 
 }  // namespace deltasplat

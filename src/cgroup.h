@@ -13,4 +13,8 @@ namespace deltasplat {
 /// @param root  "/", or where a test keeps what stands there
 std::uint64_t cgroupAvailable(const std::filesystem::path& root);
 
+/// Returns how many processors' time those cgroups leave the process, rounded up: the least of all
+/// limits. The largest number if there is no limit.
+int cgroupProcessors(const std::filesystem::path& root);
+
 }  // namespace deltasplat

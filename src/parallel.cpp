@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "cgroup.h"
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
@@ -143,7 +144,9 @@ ThreadLimit::ThreadLimit(int threads) {
 }
 
 int ThreadLimit::hardwareThreads() {
-    return tbb::info::default_concurrency();
+    // TBB knows the affinity; what time a cgroup leaves is no number of cores to it.
+    static const int processors = std::min(tbb::info::default_concurrency(), cgroupProcessors("/"));
+    return processors;
 }
 
 ThreadLimit::~ThreadLimit() {

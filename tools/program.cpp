@@ -229,15 +229,14 @@ int threadsFor(const CommonOptions& options) {
     // of OpenEXR's.
     const int startable = wanted > 1 ? startableThreads(3 * wanted - 2) : 0;
     const int threads = std::clamp((startable + 2) / 3, 1, wanted);
-    if (threads == wanted) return wanted;
-    if (!options.quiet) {
+    // What OpenImageIO makes for itself when it is first used: as many as there are cores, else.
+    ::setenv("OPENIMAGEIO_THREADS", std::to_string(threads).c_str(), 1);
+    if (threads < wanted && !options.quiet) {
         std::fprintf(stderr,
                      "deltasplat: warning: threads: %d instead of %d, for no more can be "
                      "started\n",
                      threads, wanted);
     }
-    // What OpenImageIO makes for itself when it is first used.
-    ::setenv("OPENIMAGEIO_THREADS", std::to_string(threads).c_str(), 1);
     return threads;
 }
 

@@ -17,7 +17,7 @@ class ThreadLimit {
     ThreadLimit(const ThreadLimit&) = delete;
     ThreadLimit& operator=(const ThreadLimit&) = delete;
 
-    /// Returns how many threads 0 stands for.
+    /// Returns how many threads 0 stands for: the cores of its affinity, or of its cgroup if fewer.
     static int hardwareThreads();
 
     struct Impl;

@@ -25,6 +25,7 @@ class Machine {
         write("proc/self/mountinfo", mountinfo);
     }
     std::uint64_t available() const { return cgroupAvailable(folder_.path()); }
+    int processors() const { return cgroupProcessors(folder_.path()); }
 
   private:
     test::TempFolder folder_;
@@ -114,6 +115,41 @@ TEST(Cgroup, FindsMountPointsWithBlanks) {
     machine.process("0::/a\n", "31 23 0:27 / /my\\040groups rw - cgroup2 cgroup2 rw\n");
     machine.write("my groups/a/memory.max", "77\n");
     EXPECT_EQ(machine.available(), 77u);
+}
+
+TEST(Cgroup, FindsTheProcessorsOfVersion2) {
+    constexpr int kAll = std::numeric_limits<int>::max();
+    const Machine machine;
+    EXPECT_EQ(machine.processors(), kAll);
+    machine.process("0::/slurm/job\n", kUnified);
+    EXPECT_EQ(machine.processors(), kAll);
+    machine.write("sys/fs/cgroup/slurm/job/cpu.max", "max 100000\n");
+    EXPECT_EQ(machine.processors(), kAll);
+    machine.write("sys/fs/cgroup/slurm/cpu.max", "400000 100000\n");
+    EXPECT_EQ(machine.processors(), 4);
+    // A part of one is one.
+    machine.write("sys/fs/cgroup/slurm/job/cpu.max", "110000 100000\n");
+    EXPECT_EQ(machine.processors(), 2);
+    machine.write("sys/fs/cgroup/slurm/job/cpu.max", "1000 100000\n");
+    EXPECT_EQ(machine.processors(), 1);
+    machine.write("sys/fs/cgroup/slurm/job/cpu.max", "1000 0\n");
+    EXPECT_EQ(machine.processors(), 4);
+}
+
+TEST(Cgroup, FindsTheProcessorsOfVersion1) {
+    constexpr int kAll = std::numeric_limits<int>::max();
+    const Machine machine;
+    machine.process("5:cpu,cpuacct:/job\n4:memory:/other\n0::/init\n", kSplit);
+    const std::string cpu = "sys/fs/cgroup/cpu,cpuacct/";
+    machine.write(cpu + "job/cpu.cfs_quota_us", "-1\n");
+    machine.write(cpu + "job/cpu.cfs_period_us", "50000\n");
+    EXPECT_EQ(machine.processors(), kAll);
+    machine.write(cpu + "job/cpu.cfs_quota_us", "150000\n");
+    EXPECT_EQ(machine.processors(), 3);
+    machine.write(cpu + "cpu.cfs_quota_us", "100000\n");
+    EXPECT_EQ(machine.processors(), 3);
+    machine.write(cpu + "cpu.cfs_period_us", "100000\n");
+    EXPECT_EQ(machine.processors(), 1);
 }
 
 }  // namespace
