@@ -92,6 +92,17 @@ struct AtomicFile::Impl {
         }
     }
 
+    // Whether the file had its final name, and has been replaced since by one of the same owner: by
+    // another process that writes the same, and has as much right to it.
+    bool isReplacedByOwn() const {
+        struct stat own {
+        }, there{};
+        return ::fstat(temporary->descriptor(), &own) == 0 && own.st_nlink == 0 &&
+               ::fstatat(target.folder.get(), target.name.c_str(), &there, AT_SYMLINK_NOFOLLOW) ==
+                   0 &&
+               S_ISREG(there.st_mode) && there.st_uid == own.st_uid;
+    }
+
     NameInFolder place() const { return {target.folder.get(), target.name}; }
 
     fs::path finalPath;
@@ -157,7 +168,8 @@ void AtomicFile::commit() {
     file.temporary->release();
     file.committed = true;
     // In a folder that others may write, somebody may have been quicker.
-    file.requireAt(file.target.name);
+    if (!file.temporary->isAt(file.target.name) && !file.isReplacedByOwn())
+        file.requireAt(file.target.name);
     // The next one who replaces it locks it while it is set aside.
     file.temporary->unlock();
     file.syncFolder();

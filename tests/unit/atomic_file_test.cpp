@@ -6,6 +6,10 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <string>
+#include <thread>
+#include <vector>
+
 #include "deltasplat/error.h"
 #include "support/error_of.h"
 #include "unit/file_limits.h"
@@ -64,6 +68,23 @@ TEST(AtomicFile, TwoAtOnceDoNotShareAName) {
     EXPECT_EQ(readBytes(folder / "out.raw"), "second");
     first.commit();
     EXPECT_EQ(readBytes(folder / "out.raw"), "first");
+    EXPECT_EQ(folder.count(), 1);
+}
+
+TEST(AtomicFile, ManyWritersOfOneFileAllEndWell) {
+    const test::TempFolder folder;
+    constexpr int kWriters = 4;
+    std::vector<std::string> problems(kWriters, "no error");
+    std::vector<std::thread> writers;
+    for (std::string& problem : problems) {
+        writers.emplace_back([&] {
+            for (int i = 0; i < 500 && problem == "no error"; ++i)
+                problem = errorOf([&] { writeFileAtomically(folder / "out", "whole"); });
+        });
+    }
+    for (std::thread& writer : writers) writer.join();
+    for (const std::string& problem : problems) EXPECT_EQ(problem, "no error");
+    EXPECT_EQ(readBytes(folder / "out"), "whole");
     EXPECT_EQ(folder.count(), 1);
 }
 

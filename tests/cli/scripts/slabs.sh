@@ -41,7 +41,7 @@ folds "${ball[@]}" --method sparse --resolution 2 --between 1
 folds "${ball[@]}" --method traditional --overscan 4,2
 folds "${ball[@]}" --shade --tolerance 0.1 --crop 4:40,:,2:20
 folds "${cloud[@]}" --lighting scatter --light 1,-1,0
-folds "${cloud[@]}" --color-by index
+folds "${cloud[@]}" --color-by index --filter gauss
 "$oiiotool" --info -v one7.exr | grep -q 'pixel data origin: x=-4, y=-2' || fail "no overscan"
 
 # What a picture says of how it was made, but for the command lines.
