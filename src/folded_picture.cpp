@@ -43,7 +43,8 @@ OpenPart openPart(const std::filesystem::path& path) {
 // @return parts in the order of their shares
 std::vector<OpenPart> openAll(std::span<const std::filesystem::path> paths) {
     if (paths.empty())
-        throw Error(ErrorCode::kUsage, gotExpected("parts of a picture", "none", "all of a picture"));
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("parts of a picture", "none", "all of a picture"));
     std::vector<OpenPart> parts;
     for (const std::filesystem::path& path : paths) {
         parts.push_back(openPart(path));
