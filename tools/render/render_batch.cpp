@@ -264,9 +264,10 @@ bool isBatch(const CLI::App& app, const RenderCommand& command) {
     if (!hasFrames && isPattern(command.input)) {
         if (command.frames.asked())
             refuse("--frames", "it with a pattern of inputs", "one or the other");
-        for (const char* option : {"--turntable", "--first-pass", "--missing", "--movie", "--fps"})
+        for (const char* option :
+             {"--turntable", "--first-pass", "--missing", "--movie", "--fps", "--slab-range"})
             if (isGiven(app, option))
-                refuse(option, "it with a pattern of inputs", "the frames of a sequence");
+                refuse(option, "it with a pattern of inputs", "a sequence or one volume");
         if (command.output.empty())
             refuse("--output", "nothing", "FILE (see 'deltasplat render --help')");
         if (command.contactSheet && hasPlaceholder(command.output))

@@ -353,10 +353,9 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
 void addRenderOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup arguments(app, "Arguments");
     arguments
-        .addValue(
-            "INPUT", "FILE", command.input, anyText(),
-            std::string("Volume to render: ") + kInputFormats +
-                "; or a scene with one, .usda; or a pattern in quotes, 'shots/**/*.vdb'")
+        .addValue("INPUT", "FILE", command.input, anyText(),
+                  std::string("Volume to render: ") + kInputFormats +
+                      "; or a scene with one, .usda; or a pattern in quotes, 'shots/**/*.vdb'")
         .required();
     addOutputOptions(app, command);
     addSequenceOptions(app, command);

@@ -227,9 +227,9 @@ usage "--index: got --contact-sheet besides; expected one of them" 'shots/*.vdb'
     --contact-sheet 2x2 --index u.html
 usage "--skip-existing: got a sheet or movie of all frames; expected pictures of their own" 'shots/*.vdb' \
     -o u.png --contact-sheet 2x2 --skip-existing
-for option in '--turntable 3' '--first-pass u.json' '--missing skip' '--movie u.mp4' '--fps 3'; do
+for option in '--turntable 3' '--first-pass u.json' '--missing skip' '--movie u.mp4' '--fps 3' '--slab-range 1/2'; do
     # shellcheck disable=SC2086
-    usage "${option%% *}: got it with a pattern of inputs; expected the frames of a sequence" \
+    usage "${option%% *}: got it with a pattern of inputs; expected a sequence or one volume" \
         'shots/*.vdb' -o 'u/{name}.png' $option
 done
 usage "--bits: got 16; expected 8 in a .jpg" 'shots/*.vdb' -o 'u/{name}.jpg' --bits 16 --stats 'u/s/{name}.json'
