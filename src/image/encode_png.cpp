@@ -26,7 +26,9 @@ using Bytes = std::vector<Byte>;
 // Filtered bytes of a block, and what deflate looks back at.
 constexpr std::size_t kBlockBytes = std::size_t{1} << 18;
 constexpr std::size_t kWindow = 32768;
-constexpr int kLevel = 6;
+// Takes two thirds of the time of zlib's usual level, for files 2 % (surfaces) to 19 % (dithered
+// fog) larger.
+constexpr int kLevel = 4;
 
 void addNumber(std::uint32_t number, std::string& to) {
     for (int shift = 24; shift >= 0; shift -= 8) to += char(number >> shift & 0xFF);
@@ -219,8 +221,8 @@ void addPixels(const PngPicture& picture, std::string& to) {
     uLong sum = 1;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         sum = adler32_combine(sum, blocks[i].sum, z_off_t(blocks[i].bytes));
-        // A window of 32 KiB, and zlib's usual level.
-        if (i == 0) blocks[i].packed.insert(0, "\x78\x9C");
+        // A window of 32 KiB, and a quick level.
+        if (i == 0) blocks[i].packed.insert(0, "\x78\x5E");
         if (i + 1 == blocks.size()) addNumber(std::uint32_t(sum), blocks[i].packed);
         addChunk("IDAT", blocks[i].packed, to);
     }

@@ -37,19 +37,21 @@ class SrgbCurve {
             values_[std::size_t(i)] =
                 srgbFromLinear(std::ldexp(1 + i % kSteps / double(kSteps), i / kSteps - kOctaves));
     }
-    static bool knows(double linear) { return linear >= std::ldexp(1.0, -kOctaves); }
+    static bool knows(double linear) { return linear >= kLeast; }
     double operator()(double linear) const {
         const auto bits = std::bit_cast<std::uint64_t>(linear);
         const auto i = std::size_t((bits >> kFractionBits) - kFirst);
         const auto fraction = double(bits & ((std::uint64_t{1} << kFractionBits) - 1));
-        return values_[i] + std::ldexp(fraction, -kFractionBits) * (values_[i + 1] - values_[i]);
+        return values_[i] + kStep * fraction * (values_[i + 1] - values_[i]);
     }
 
   private:
     static constexpr int kOctaves = 9;
+    static constexpr double kLeast = 1.0 / (1 << kOctaves);
     static constexpr int kSteps = 256;
     static constexpr int kPlaces = kOctaves * kSteps + 2;  // 1 itself, and one beyond
     static constexpr int kFractionBits = 52 - 8;
+    static constexpr double kStep = 1.0 / double(std::uint64_t{1} << kFractionBits);
     static constexpr std::uint64_t kFirst = std::uint64_t{1023 - kOctaves} << 8;
 
     std::array<double, kPlaces> values_{};
