@@ -25,10 +25,11 @@ std::vector<DicomSeries> medical_module::findSeries(const std::filesystem::path&
 }
 
 // As it is declared for those who read: they keep the series.
-// NOLINTNEXTLINE(performance-unnecessary-value-param)
+// NOLINTBEGIN(performance-unnecessary-value-param)
 DenseSource medical_module::openDicom(const std::filesystem::path& input, const std::string&,
                                       DicomSeries) {
     refuse(input, "DICOM");
 }
+// NOLINTEND(performance-unnecessary-value-param)
 
 }  // namespace deltasplat
