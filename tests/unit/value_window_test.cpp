@@ -11,7 +11,8 @@ std::pair<float, glm::dvec2> greyOf(float value) {
     Image image;
     image.size = {2, 1};
     image.rgba = {value, 0, 0, 1, value, 0, 0, 1};
-    const glm::dvec2 window = greyMip({}, image);
+    const glm::dvec2 window = defaultWindow(Mode::kMip, middleValues(Mode::kMip, image));
+    showGreys(window, image);
     return {image.rgba[4], window};
 }
 

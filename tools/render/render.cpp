@@ -99,11 +99,11 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command, File
 glm::dvec2 applyWindow(const RenderCommand& command, const Volume& volume, RenderResult& result,
                        ImageFileOptions& image) {
     const RenderOptions& options = command.picture.render;
+    readyForGreys(options, volume, result.camera, result.image);
+    const std::optional<glm::dvec2> asked = windowAsked(command);
     const glm::dvec2 window =
-        options.mode == Mode::kXray ? greyXray(volume, result.camera, command.window, result.image)
-        : options.mode == Mode::kDrr
-            ? greyRadiograph(options.drr, command.window, result.image)
-            : greyMip(command.window ? command.window : options.optics.range, result.image);
+        asked ? *asked : defaultWindow(options.mode, middleValues(options.mode, result.image));
+    showGreys(window, result.image);
     image.metadata.emplace_back("window", numberText(window));
     if (options.mode == Mode::kXray) image.metadata.emplace_back("xrayScale", numberText(window.y));
     return window;

@@ -93,7 +93,7 @@ std::string thumbnailOfFile(const fs::path& file, bool holdsValues) {
     if (holdsValues && !image.rgba.empty()) {
         for (std::size_t i = 3; i < image.rgba.size(); i += 4)
             image.rgba[i] = image.rgba[i] > 0 ? 1 : 0;
-        greyMip({}, image);
+        showGreys(defaultWindow(Mode::kMip, middleValues(Mode::kMip, image)), image);
     }
     return thumbnailOf(std::move(image));
 }

@@ -46,6 +46,12 @@ bool showsWindow(const RenderCommand& command) {
     return !colorsValues(command) || command.picture.transferFunction.empty();
 }
 
+std::optional<glm::dvec2> windowAsked(const RenderCommand& command) {
+    const RenderOptions& options = command.picture.render;
+    const bool addsUp = options.mode == Mode::kXray || options.mode == Mode::kDrr;
+    return command.window || addsUp ? command.window : options.optics.range;
+}
+
 void applyMode(const CLI::App& app, RenderCommand& command) {
     Mode& mode = command.picture.render.mode;
     if (command.drr && isGiven(app, "--mode") && mode != Mode::kDrr) {

@@ -20,6 +20,10 @@ bool storesValues(const RenderCommand& command);
 /// Whether the picture is to show values as greys.
 bool showsWindow(const RenderCommand& command);
 
+/// Returns the values of black and white that were asked for: --window or, unless values are added
+/// up, --range. Empty: neither.
+std::optional<glm::dvec2> windowAsked(const RenderCommand& command);
+
 /// Sets what follows from mode and file format: values are stored as 32-bit floats, and formats of
 /// 8 or 16 bits show the transfer function's colours of values, if one is given.
 /// @throw Error(kUsage) if two modes are asked for

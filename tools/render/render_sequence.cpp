@@ -22,6 +22,7 @@
 #include "render/render_input.h"
 #include "render/render_modes.h"
 #include "render/scene_input.h"
+#include "render/sequence_window.h"
 #include "sequence/frame_name.h"
 #include "sequence/frames_to_make.h"
 #include "sequence/run_frames.h"
@@ -222,13 +223,27 @@ int workersFor(const RenderCommand& command, const SequenceLook& look) {
         1, int(std::min(double(threadCount()), kWorkShare * double(availableMemory()) / bytes)));
 }
 
-// Greys that are chosen for each picture change from one to the next.
-void warnOfWindows(const RenderCommand& command, const Listener& listener) {
-    const bool isOfValues =
-        command.picture.render.mode != Mode::kXray && command.picture.render.mode != Mode::kDrr;
-    const bool isGiven = command.window || (isOfValues && command.picture.render.optics.range);
-    if (showsWindow(command) && !isGiven)
-        listener.warn("--frames: each has greys for its own values; --window LO,HI gives all one");
+// Whether greys are chosen by what is in the pictures.
+bool choosesWindow(const RenderCommand& command) {
+    return showsWindow(command) && !windowAsked(command);
+}
+
+// Puts into a look, and into `command`, the greys that all frames are shown in.
+// @param isKnown  whether what there is to know of all frames is known already
+void fixWindow(const std::vector<FrameFiles>& frames, bool isKnown, SequenceLook& look,
+               RenderCommand& command, const Listener& listener) {
+    if (!choosesWindow(command)) return;
+    if (!look.window()) {
+        if (isKnown) {
+            throw Error(ErrorCode::kInput,
+                        gotExpected(command.firstPass.string(), "no values of black and white",
+                                    "what --first-pass has written with the same --mode"));
+        }
+        look.setWindow(sequenceWindow(
+            frames, [&](std::size_t i) { return commandOf(command, frames[i], {}); }, look,
+            workersFor(command, look), listener));
+    }
+    command.window = look.window();
 }
 
 }  // namespace
@@ -272,20 +287,19 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
 void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Listener& listener,
                     const MakePicture& makePicture) {
     interruptBetweenFiles();
-    warnOfWindows(command, listener);
     const std::vector<FrameFiles> all =
         withScene(command.scene, filesFor(command, sinks.areWritten() && !isLookAlone(command)));
     SequenceLook look(kKeptShare * double(availableMemory()));
     const std::vector<FrameFiles> present = withInputs(all, command.frames.missing, listener);
     const bool isKnown = !command.firstPass.empty() && readFirstPass(command.firstPass, look);
-    if (!isKnown) {
-        Survey(command, present).run(look, partOf(listener, 0, kSurveyShare));
-        if (!command.firstPass.empty()) writeFirstPass(command.firstPass, look);
-    }
+    const double readShare = choosesWindow(command) ? kSurveyShare / 2 : kSurveyShare;
+    if (!isKnown) Survey(command, present).run(look, partOf(listener, 0, readShare));
+    RenderCommand fixed = fixedTo(look, command);
+    fixWindow(present, isKnown, look, fixed, partOf(listener, readShare, kSurveyShare));
+    if (!isKnown && !command.firstPass.empty()) writeFirstPass(command.firstPass, look);
     if (isLookAlone(command)) return listener.report(1);
     const Listener making = partOf(listener, kSurveyShare, 1);
     const std::vector<FrameFiles> frames = framesToMake(present, command.frames);
-    const RenderCommand fixed = fixedTo(look, command);
     const std::optional<FrameName> stats = FrameName::find(command.stats);
     std::optional<PreparedScene> prepared;
     if (!frames.empty() && seesOneThing(command)) prepared = prepareOnce(fixed, look, making);

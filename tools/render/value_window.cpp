@@ -65,64 +65,8 @@ void coverBox(const Volume& volume, const Camera& camera, Image& image) {
     });
 }
 
-std::vector<float> opaqueValues(const Image& image) {
-    std::vector<float> values;
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-        if (image.rgba[i + 3] > 0) values.push_back(image.rgba[i]);
-    }
-    return values;
-}
-
-// From the 0.5th to the 99.5th percentile.
-glm::dvec2 middleOf(std::vector<float> values) {
-    if (values.empty()) return {0, 1};
-    const std::size_t rank = (values.size() - 1) / 200;  // from either end
-    const auto at = [&](std::size_t i) {
-        std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(i), values.end());
-        return double(values[i]);
-    };
-    return {at(rank), at(values.size() - 1 - rank)};
-}
-
-// One value only is white if it is above 0, for black is nothing; otherwise it is black, and
-// nothing is white.
-glm::dvec2 widened(glm::dvec2 window) {
-    if (window.x < window.y) return window;
-    if (window.y > 0) return {0, window.y};
-    return {window.y, window.y < 0 ? 0 : 1};
-}
-
-void showWindow(glm::dvec2 window, Image& image) {
-    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
-        float* rgba = image.pixel(0, int(y));
-        for (int x = 0; x < image.size.x; ++x, rgba += 4) {
-            const double level = (rgba[0] - window.x) / (window.y - window.x);
-            const double grey = rgba[3] > 0 ? linearFromSrgb(std::clamp(level, 0.0, 1.0)) : 0;
-            for (int c = 0; c < 3; ++c) rgba[c] = float(grey);
-        }
-    });
-}
-
-// Shows values of which 0 is that of nothing, which is black unless there is less.
-glm::dvec2 greySums(const std::optional<glm::dvec2>& window, Image& image) {
-    std::vector<float> values = opaqueValues(image);
-    std::erase(values, 0.0f);
-    glm::dvec2 chosen = middleOf(std::move(values));
-    chosen = window.value_or(widened({std::min(chosen.x, 0.0), chosen.y}));
-    showWindow(chosen, image);
-    return chosen;
-}
-
-}  // namespace
-
-glm::dvec2 greyXray(const Volume& volume, const Camera& camera,
-                    const std::optional<glm::dvec2>& window, Image& image) {
-    if (volume.empty()) return window.value_or(glm::dvec2(0, 1));
-    coverBox(volume, camera, image);
-    return greySums(window, image);
-}
-
-glm::dvec2 greyRadiograph(const Drr& drr, const std::optional<glm::dvec2>& window, Image& image) {
+// -ln of the share of photons that gets through.
+void attenuate(const Drr& drr, Image& image) {
     const double photons = drr.photons.value_or(1);
     parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
         float* rgba = image.pixel(0, int(y));
@@ -133,13 +77,55 @@ glm::dvec2 greyRadiograph(const Drr& drr, const std::optional<glm::dvec2>& windo
             std::fill_n(rgba, 3, float(-portable::log(share) + 0.0));
         }
     });
-    return greySums(window, image);
 }
 
-glm::dvec2 greyMip(const std::optional<glm::dvec2>& window, Image& image) {
-    const glm::dvec2 chosen = window.value_or(widened(middleOf(opaqueValues(image))));
-    showWindow(chosen, image);
-    return chosen;
+// Whether 0 is the value of nothing, which is black unless there is less.
+bool addsUp(Mode mode) {
+    return mode == Mode::kXray || mode == Mode::kDrr;
+}
+
+}  // namespace
+
+void readyForGreys(const RenderOptions& options, const Volume& volume, const Camera& camera,
+                   Image& image) {
+    if (options.mode == Mode::kXray && !volume.empty()) coverBox(volume, camera, image);
+    if (options.mode == Mode::kDrr) attenuate(options.drr, image);
+}
+
+std::optional<glm::dvec2> middleValues(Mode mode, const Image& image) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        const bool isOne = image.rgba[i + 3] > 0 && !(addsUp(mode) && image.rgba[i] == 0);
+        if (isOne) values.push_back(image.rgba[i]);
+    }
+    if (values.empty()) return {};
+    const std::size_t rank = (values.size() - 1) / 200;  // from either end
+    const auto at = [&](std::size_t i) {
+        std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(i), values.end());
+        return double(values[i]);
+    };
+    return glm::dvec2(at(rank), at(values.size() - 1 - rank));
+}
+
+glm::dvec2 defaultWindow(Mode mode, const std::optional<glm::dvec2>& middle) {
+    glm::dvec2 window = middle.value_or(glm::dvec2(0, 1));
+    if (addsUp(mode)) window.x = std::min(window.x, 0.0);
+    if (window.x < window.y) return window;
+    // One value only is white if it is above 0, for black is nothing; otherwise it is black, and
+    // nothing is white.
+    if (window.y > 0) return {0, window.y};
+    return {window.y, window.y < 0 ? 0 : 1};
+}
+
+void showGreys(glm::dvec2 window, Image& image) {
+    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
+        float* rgba = image.pixel(0, int(y));
+        for (int x = 0; x < image.size.x; ++x, rgba += 4) {
+            const double level = (rgba[0] - window.x) / (window.y - window.x);
+            const double grey = rgba[3] > 0 ? linearFromSrgb(std::clamp(level, 0.0, 1.0)) : 0;
+            for (int c = 0; c < 3; ++c) rgba[c] = float(grey);
+        }
+    });
 }
 
 }  // namespace deltasplat

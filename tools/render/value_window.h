@@ -11,21 +11,22 @@
 
 namespace deltasplat {
 
-/// Shows the line integrals of an x-ray as greys, for formats of 8 or 16 bits: sRGB levels in
-/// proportion to values, opaque where the line of sight meets the volume's box, else clear.
-/// @param window  what black (x) and white (y) stand for; empty: the 0.5th and the 99.5th
-/// percentile
-///                of the integrals that are not 0, or 0 for black where that is above 0
-/// @return        the window
-glm::dvec2 greyXray(const Volume& volume, const Camera& camera,
-                    const std::optional<glm::dvec2>& window, Image& image);
+/// Makes the values of a picture, of any mode but composite, what is to be shown as greys: of an
+/// x-ray the line integrals, opaque where the line of sight meets the volume's box, else clear; of
+/// a radiograph the attenuation, -ln of the share that gets through, all opaque, so that white is
+/// where little does, as on a light box; of others values as they are, opaque where a voxel is met.
+void readyForGreys(const RenderOptions& options, const Volume& volume, const Camera& camera,
+                   Image& image);
 
-/// Shows a radiograph as light boxes do, white where little gets through: greys of the attenuation,
-/// -ln of the share that gets through, all opaque. The window is as of `greyXray`.
-glm::dvec2 greyRadiograph(const Drr& drr, const std::optional<glm::dvec2>& window, Image& image);
+/// Returns the 0.5th and the 99.5th percentile of a picture's values, of integrals and attenuations
+/// those that are not 0; empty if there are none.
+std::optional<glm::dvec2> middleValues(Mode mode, const Image& image);
 
-/// The same of values that are met, which are opaque where a voxel is met. By default the window
-/// goes from the 0.5th to the 99.5th percentile of the pixels' values.
-glm::dvec2 greyMip(const std::optional<glm::dvec2>& window, Image& image);
+/// Returns what black (x) and white (y) stand for where nobody says: `middle` or, for integrals and
+/// attenuations, 0 for black where `middle` begins above 0. White lies above black.
+glm::dvec2 defaultWindow(Mode mode, const std::optional<glm::dvec2>& middle);
+
+/// Shows values as greys, for formats of 8 or 16 bits: sRGB levels in proportion to them.
+void showGreys(glm::dvec2 window, Image& image);
 
 }  // namespace deltasplat

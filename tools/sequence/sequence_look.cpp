@@ -265,13 +265,20 @@ SequenceLook::Grid SequenceLook::gridOf(const Json& json) {
 Json SequenceLook::toJson() const {
     Json grids = Json::object();
     for (const auto& [name, grid] : grids_) grids[name] = json(grid);
-    return {{"smallest_voxel", smallestVoxel_}, {"seen", json(seenGrid_)}, {"grids", grids}};
+    Json look{{"smallest_voxel", smallestVoxel_}, {"seen", json(seenGrid_)}, {"grids", grids}};
+    if (window_) look["window"] = {window_->x, window_->y};
+    return look;
 }
 
 void SequenceLook::takeJson(const Json& json) {
     json.at("smallest_voxel").get_to(smallestVoxel_);
     seenGrid_ = gridOf(json.at("seen"));
     for (const auto& [name, grid] : json.at("grids").items()) grids_[name] = gridOf(grid);
+    if (json.contains("window")) {
+        const glm::dvec2 window(json.at("window").at(0), json.at("window").at(1));
+        if (!(window.x < window.y)) throw std::invalid_argument("window");
+        window_ = window;
+    }
     finish();
 }
 

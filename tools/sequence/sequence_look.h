@@ -66,6 +66,10 @@ class SequenceLook {
     /// Returns the least smallestSize() that kMainGrid has in any frame.
     double smallestVoxelWorld() const { return smallestVoxel_; }
 
+    /// Values that black and white stand for in all frames; empty: they are no greys.
+    const std::optional<glm::dvec2>& window() const { return window_; }
+    void setWindow(glm::dvec2 window) { window_ = window; }
+
     /// Returns what the largest volume takes that a survey has read; 0 without one.
     double largestBytes() const { return largestBytes_; }
 
@@ -96,6 +100,7 @@ class SequenceLook {
     std::map<std::string, Volume> wholes_;
     Volume seen_;
     double smallestVoxel_ = 0;
+    std::optional<glm::dvec2> window_;
     double keptBytes_;
     double largestBytes_ = 0;
     std::map<std::string, Volume> kept_;  // by input and grid

@@ -47,6 +47,20 @@ done
 ! same alone.exr all.0008.exr ||
     fail "got a frame as it is by itself; expected what it is in the sequence"
 
+# So are the greys of values, each picture's own or those of all.
+greys=(render in.####.vdb --size 48x48 -qq)
+for mode in mip xray; do
+    "$program" "${greys[@]}" --frames 8-10 --mode $mode -o $mode.####.png --first-pass $mode.json
+    for number in 0008 0009; do
+        "$oiiotool" -q $mode.$number.png --cut $cube $mode.0010.png --cut $cube --fail 0 --diff \
+            >/dev/null || fail "--mode $mode: frame $number has other greys than frame 0010"
+    done
+    "$program" "${greys[@]}" --frames 9 --mode $mode -o task.####.png --first-pass $mode.json
+    same task.0009.png $mode.0009.png || fail "--mode $mode: a task has other greys than all"
+    "$program" render in.0008.vdb --size 48x48 -qq --mode $mode -o alone.png
+    ! same alone.png $mode.0008.png || fail "--mode $mode: got greys of one frame, not of all"
+done
+
 # Whatever the threads, the order, the names, and which task of a farm has which.
 "$program" "${frames[@]}" -o two.%04d.exr --threads 2
 ran two
@@ -66,6 +80,9 @@ cmp alone.json first.json || fail "alone.json is not first.json"
 "$program" "${frames[@]}" --first-pass alone.json
 expect_code 2 "$program" render in.0008.vdb --first-pass no.json
 expect_said "deltasplat: --first-pass: got it without --frames; expected the frames of a sequence"
+expect_code 3 "$program" "${greys[@]}" --frames 8 --mode mip --first-pass first.json -o g.####.png
+said="deltasplat: first.json: got no values of black and white; expected what --first-pass has"
+expect_said "$said written with the same --mode"
 echo '{}' >other.json
 expect_code 3 "$program" "${frames[@]}" --first-pass other.json -o part.####.exr
 expect_said "deltasplat: other.json: got something else; expected what --first-pass has written"
