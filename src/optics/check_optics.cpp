@@ -65,6 +65,10 @@ void checkShading(const Shading& shading) {
     checkLight("`shading.diffuse`", shading.diffuse);
     checkLight("`shading.specular`", shading.specular);
     checkLight("`shading.shininess`", shading.shininess);
+    if (shading.noise) {
+        requireThat(std::isfinite(*shading.noise) && *shading.noise > 0, "`shading.noise`",
+                    numberText(*shading.noise), "a number > 0");
+    }
     checkLights("`shading.lights`", shading.lights);
     for (const Light& light : shading.lights) {
         requireThat(!light.positionWorld, "`shading.lights`", "a point light",

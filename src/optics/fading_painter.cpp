@@ -19,7 +19,9 @@ class FadingPainter : public VoxelPainter {
     FadingPainter(const Volume& volume, std::vector<glm::dvec2> factors,
                   std::unique_ptr<const VoxelPainter> inner)
         : inner_(std::move(inner)),
-          scale_(scaledValues(volume, 0.5 * volume.valueMin + 0.5 * volume.valueMax)),
+          scale_(inner_ && inner_->gradientScale()
+                     ? *inner_->gradientScale()
+                     : scaledValues(volume, 0.5 * volume.valueMin + 0.5 * volume.valueMax)),
           worldFromGradient_(worldFromIndexGradient(volume)),
           factors_(std::move(factors)) {
         unit_ = scale_.unit / smallestSize(volume);
@@ -28,7 +30,6 @@ class FadingPainter : public VoxelPainter {
     bool needsColors() const override { return !inner_ || inner_->needsColors(); }
     bool dependsOnCamera() const override { return inner_ && inner_->dependsOnCamera(); }
     bool mayHold() const override { return false; }
-    // Whoever paints takes gradients of the same.
     const GradientScale* gradientScale() const override { return &scale_; }
 
     void paint(const BlockPlace& place, const BlockField* field,

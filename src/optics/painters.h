@@ -32,8 +32,7 @@ std::unique_ptr<const VoxelPainter> makeScatterPainter(const Volume& volume, con
 
 /// Returns who makes voxels less opaque by how much values change there.
 /// @param factors  Optics::gradientOpacity, not empty
-/// @param inner    who paints them otherwise, if by gradients those of scaledValues about the
-///                 middle of all values; null: they look as their classes do
+/// @param inner    who paints them otherwise; null: they look as their classes do
 std::unique_ptr<const VoxelPainter> makeFadingPainter(const Volume& volume,
                                                       const std::vector<glm::dvec2>& factors,
                                                       std::unique_ptr<const VoxelPainter> inner);

@@ -12,7 +12,9 @@ namespace {
 // Far more than any value that counts, and its square is a float.
 constexpr double kMost = 1e15;
 
-double noiseOf(const Volume& volume) {
+}  // namespace
+
+double gradientNoise(const Volume& volume) {
     constexpr double kShareOfNoise = 0.01;
     const glm::dvec2 bulk = bulkRange(volume);
     const double most = kShareOfNoise * (bulk.y - bulk.x);
@@ -21,10 +23,8 @@ double noiseOf(const Volume& volume) {
     return all > 0 ? all : 1;
 }
 
-}  // namespace
-
-GradientScale scaledValues(const Volume& volume, double zero) {
-    const double noise = noiseOf(volume);
+GradientScale scaledValues(const Volume& volume, double zero, const std::optional<double>& asked) {
+    const double noise = asked ? *asked : gradientNoise(volume);
     const auto scaled = [&](double value) {
         return float(std::clamp((value - zero) / noise, -kMost, kMost));
     };

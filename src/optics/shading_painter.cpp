@@ -13,7 +13,8 @@ class ShadingPainter : public VoxelPainter {
   public:
     ShadingPainter(const Volume& volume, const Shading& shading)
         : shading_(shading),
-          scale_(scaledValues(volume, 0.5 * volume.valueMin + 0.5 * volume.valueMax)),
+          scale_(
+              scaledValues(volume, 0.5 * volume.valueMin + 0.5 * volume.valueMax, shading.noise)),
           worldFromGradient_(worldFromIndexGradient(volume)) {}
 
     bool needsColors() const override { return true; }

@@ -24,7 +24,7 @@ class SurfacePainter : public VoxelPainter {
   public:
     SurfacePainter(const Volume& volume, const Surface& surface, const Shading& shading)
         : shading_(shading),
-          scale_(scaledValues(volume, surface.isovalue)),
+          scale_(scaledValues(volume, surface.isovalue, shading.noise)),
           worldFromGradient_(worldFromIndexGradient(volume)) {
         scale_.withValues = true;
         if (isLevelSet(volume)) {

@@ -11,6 +11,7 @@
 #include "ingest/label_claim.h"
 #include "number_text.h"
 #include "optics/label_changes.h"
+#include "optics/scaled_values.h"
 #include "optics/value_colors.h"
 #include "options/transfer_function_option.h"
 #include "render/read_medium.h"
@@ -275,6 +276,7 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
         options.optics.scattering =
             picture.scatter.of(picture.shading, picture.medium.emissionLights.has_value(),
                                upOf(picture, volume), listener);
+    if (options.optics.shading && !isWhole) options.optics.shading->noise = gradientNoise(volume);
     if (preset && !options.optics.surface) warnOfOtherData(*preset, volume, listener);
     if (picture.transferFunction.empty()) {
         const bool isOfValues = picture.render.mode != Mode::kComposite;

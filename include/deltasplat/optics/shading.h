@@ -44,16 +44,18 @@ inline constexpr double kFarthestLight = 1e30;
 /// between l and the way to the camera. Of the two sides of n the one counts that faces the camera.
 ///
 /// n is the gradient of the volume, by central differences in the world. Where there is little of
-/// it, n is noise: with g its length times the smallest voxel size, and b a hundredth of where most
-/// values lie (bulkRange, default_ramp.h), a share of g^2 / (g^2 + b^2) is shaded so. The rest is
-/// lit as surfaces of all directions are on average: I (1 + l v) / 4 in place of I max(0, n l), v
-/// being the way to the camera, and nothing specular.
+/// it, n is noise: with g its length times the smallest voxel size, and b the `noise`, a share of
+/// g^2 / (g^2 + b^2) is shaded so. The rest is lit as surfaces of all directions are on average: I
+/// (1 + l v) / 4 in place of I max(0, n l), v being the way to the camera, and nothing specular.
 struct Shading {
     double ambient = 0.15;  ///< 0..kMostLight, as the others
     double diffuse = 0.85;
     double specular = 0.15;
     double shininess = 20;  ///< the larger, the smaller highlights are
     std::vector<Light> lights{Light{}};
+    /// Data units, above 0; empty: a hundredth of where most values lie (bulkRange,
+    /// default_ramp.h), which changes from one volume of a sequence to the next.
+    std::optional<double> noise = std::nullopt;
 };
 
 }  // namespace deltasplat

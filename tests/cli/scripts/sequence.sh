@@ -37,9 +37,12 @@ ran() { # LIKE: frames made with other options are the same, byte for byte
 "$program" "${frames[@]}" -o all.####.exr
 expect_files "all.0008.exr all.0009.exr all.0010.exr" 'all.*'
 cube=10x10+4+34
-for number in 0008 0009; do
-    "$oiiotool" -q "all.$number.exr" --cut $cube all.0010.exr --cut $cube --fail 0 --diff \
-        >/dev/null || fail "frame $number shows the cube otherwise than frame 0010"
+"$program" "${frames[@]}" -o lit.####.exr --shade
+for name in all lit; do
+    for number in 0008 0009; do
+        "$oiiotool" -q $name.$number.exr --cut $cube $name.0010.exr --cut $cube --fail 0 --diff \
+            >/dev/null || fail "$name: frame $number shows the cube otherwise than frame 0010"
+    done
 done
 [[ $("$oiiotool" all.0010.exr --cut $cube --printstats | grep -c "Stats Max: 0.000000") == 0 ]] ||
     fail "the cube is not where it is looked for"
