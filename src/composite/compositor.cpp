@@ -13,18 +13,21 @@
 
 namespace deltasplat {
 
-void Compositor::composite(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
-                           Layer& layer) {
+std::size_t Compositor::composite(Sheets sheets, const SheetReading& shift, int firstRow,
+                                  int lastRow, const SheetCover* cover, Layer& layer) {
     const OverWeights weights(glm::vec2(shift.fraction), scales_, layer.channels, frontToBack_);
-    findSpans(sheets, shift, firstRow, lastRow, weights.straight, layer);
+    findSpans(sheets, shift, firstRow, lastRow, weights.straight, cover, layer);
     OverSheets pixels{{}, sheets.front()->pitch()};
     for (std::size_t p = 0; p < sheets.size(); ++p) pixels.pixels[p] = sheets[p]->row(0);
     overSpans(spans_, pixels, weights);
+    std::size_t count = 0;
+    for (const OverSpan& span : spans_) count += span.pixels;
+    return count;
 }
 
 // Finds the runs of pixels that the sheets reach.
 void Compositor::findSpans(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
-                           bool straight, Layer& layer) {
+                           bool straight, const SheetCover* cover, Layer& layer) {
     const Sheet& sheet = *sheets.front();
     words_ = wordsOfRow(sheet);
     rows_.resize(sheets.size());
@@ -43,6 +46,7 @@ void Compositor::findSpans(Sheets sheets, const SheetReading& shift, int firstRo
             const std::span ofTiles = std::span(rows_[p]).subspan(words_);
             std::fill(ofTiles.begin(), ofTiles.end(), 0);
             rows |= findFullRows(*sheets[p], tileRow, words_, ofTiles) << 1;
+            if (cover) cover->clearHidden(tileRow, words_, ofTiles);
         }
         const int first = kTilePixels * tileRow - 1;
         for (unsigned rest = (straight ? rows : rows | rows >> 1) & 0xFF; rest != 0;

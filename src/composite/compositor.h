@@ -10,7 +10,7 @@
 
 #include "composite/layer.h"
 #include "composite/over_kernels.h"
-#include "splat/sheet_reading.h"
+#include "splat/sheet_cover.h"
 
 namespace deltasplat {
 
@@ -29,15 +29,17 @@ class Compositor {
     /// behind what the layer holds (front to back) or in front of it. Only what the sheets' full
     /// rows reach is touched; of that, rows [firstRow, lastRow) of the base plane, which the layer
     /// has.
-    void composite(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
-                   Layer& layer);
+    /// @param cover  of the slice: what it hides is left out; null: nothing is hidden
+    /// @return       how many pixels of the layer it went over
+    std::size_t composite(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
+                          const SheetCover* cover, Layer& layer);
 
   private:
     // Rows of tiles as bits, 64 tiles a word.
     using Rows = std::vector<std::uint64_t>;
 
     void findSpans(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
-                   bool straight, Layer& layer);
+                   bool straight, const SheetCover* cover, Layer& layer);
     void addSpans(const Sheet& sheet, const SheetReading& shift, int y, std::size_t row,
                   bool straight, Layer& layer);
     void addRun(int firstTile, int lastTile, bool straight, OverSpan span, int channels);

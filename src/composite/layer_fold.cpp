@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "composite/find_covered.h"
+
 namespace deltasplat {
 
 Layer LayerFold::take(const PlaneBox& box) {
@@ -23,6 +25,11 @@ Layer LayerFold::take(const PlaneBox& box) {
     return layer;
 }
 
+std::shared_ptr<const CoveredCells> LayerFold::covered() {
+    const std::lock_guard lock(mutex_);
+    return covered_;
+}
+
 void LayerFold::addFront() {
     std::unique_lock lock(mutex_);
     hasFront_ = true;
@@ -38,15 +45,29 @@ void LayerFold::add(std::size_t number, Layer layer) {
 
 void LayerFold::mergeReady(std::unique_lock<std::mutex>& lock) {
     merging_ = true;
-    while (next_ < done_.size() && done_[next_]) {
-        Layer layer = std::move(*done_[next_]);
-        done_[next_++].reset();
-        lock.unlock();
-        for (int y = layer.box.min.y; y < layer.box.max.y; ++y) mergeRowBehind(front_, layer, y);
-        lock.lock();
-        idle_.push_back(std::move(layer));
-    }
+    const auto isNextReady = [&] { return next_ < done_.size() && done_[next_]; };
+    do {
+        while (isNextReady()) {
+            Layer layer = std::move(*done_[next_]);
+            done_[next_++].reset();
+            lock.unlock();
+            for (int y = layer.box.min.y; y < layer.box.max.y; ++y)
+                mergeRowBehind(front_, layer, y);
+            lock.lock();
+            idle_.push_back(std::move(layer));
+        }
+        findCovered(lock);
+    } while (isNextReady());
     merging_ = false;
+}
+
+// Nobody else merges meanwhile.
+void LayerFold::findCovered(std::unique_lock<std::mutex>& lock) {
+    CoveredCells cells = *covered_;
+    lock.unlock();
+    addCovered(front_, cells);
+    lock.lock();
+    covered_ = std::make_shared<const CoveredCells>(std::move(cells));
 }
 
 void LayerFold::finishRow(int y) {

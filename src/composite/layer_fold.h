@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include "composite/layer.h"
+#include "splat/covered_cells.h"
 
 namespace deltasplat {
 
@@ -18,11 +20,18 @@ class LayerFold {
     /// @param count  layers to come, numbered from the front
     /// @param front  what they are put behind, once addFront() is called; folds may share it if
     /// their layers share no row
-    LayerFold(std::size_t count, Layer& front)
-        : front_(front), channels_(front.channels), done_(count) {}
+    /// @param part   of the base plane, in which its layers lie
+    LayerFold(std::size_t count, Layer& front, const PlaneBox& part)
+        : front_(front),
+          channels_(front.channels),
+          covered_(std::make_shared<const CoveredCells>(part)),
+          done_(count) {}
 
     /// Returns an empty layer. Call it once for each number.
     Layer take(const PlaneBox& box);
+    /// Returns what is covered by the layers that are merged by now: whatever a later one has there
+    /// changes nothing.
+    std::shared_ptr<const CoveredCells> covered();
     /// Says that the front layer is finished, and may be written to from now on by others than who
     /// made it. Call it once.
     void addFront();
@@ -33,10 +42,12 @@ class LayerFold {
 
   private:
     void mergeReady(std::unique_lock<std::mutex>& lock);
+    void findCovered(std::unique_lock<std::mutex>& lock);
 
     Layer& front_;
     int channels_;
-    std::mutex mutex_;                        // guards all below
+    std::mutex mutex_;  // guards all below
+    std::shared_ptr<const CoveredCells> covered_;
     std::vector<std::optional<Layer>> done_;  // [count]: not yet merged
     std::vector<Layer> idle_;
     std::size_t taken_ = 0;

@@ -17,25 +17,14 @@ namespace {
 // Pixels between two runs that are not worth an end and a beginning.
 constexpr int kShortGap = 12;
 
-// Returns the base pixels [x, y) along an axis, of those of a box, that read any of the sheet
-// pixels [first, last).
-glm::ivec2 readersOf(const SheetReading& reading, int axis, int first, int last,
-                     const PlaneBox& box) {
-    const double start = reading.offset[axis] + reading.fraction[axis];
-    const double reach = readingReach(reading);
-    const auto bounded = [&](double pixel) {
-        return int(std::clamp(pixel, double(box.min[axis]), double(box.max[axis])));
-    };
-    return {bounded(std::floor((first - reach - start) / reading.scale)),
-            bounded(std::ceil((last - 1 + reach - start) / reading.scale) + 1)};
-}
-
 }  // namespace
 
-void PerspectiveCompositor::composite(Sheets sheets, int slice, const SheetReading& reading,
-                                      const PlaneBox& box, Layer& layer) {
-    box_ = seenBox(sheets, reading, box);
-    if (box_.empty()) return;
+std::size_t PerspectiveCompositor::composite(Sheets sheets, int slice, const SheetReading& reading,
+                                             const PlaneBox& box, const SheetCover* cover,
+                                             Layer& layer) {
+    box_ = seenBox(sheets, reading, box, cover);
+    if (box_.empty()) return 0;
+    pixels_ = 0;
     const SheetLayout& layout = sheets.front()->layout();
     const glm::dvec2 start = glm::dvec2(reading.offset) + reading.fraction;
     const glm::ivec2 size = box_.size();
@@ -52,15 +41,16 @@ void PerspectiveCompositor::composite(Sheets sheets, int slice, const SheetReadi
     findTiles(reading, layout.tiles().x);
     for (int y = box_.min.y; y < box_.max.y; ++y) addRow(slice, y, layer);
     flush();
+    return pixels_;
 }
 
 // Of a box, the pixels that read rows and columns of tiles which may be other than zero.
 PlaneBox PerspectiveCompositor::seenBox(Sheets sheets, const SheetReading& reading,
-                                        const PlaneBox& box) {
+                                        const PlaneBox& box, const SheetCover* cover) {
     if (box.empty()) return {};
     const SheetBox read = readBox(reading, box, sheets.front()->layout());
     if (read.min.y >= read.max.y) return {};
-    findFull(sheets, read.min.y, read.max.y);
+    findFull(sheets, read.min.y, read.max.y, cover);
     std::uint64_t any = 0;
     int firstTile = 0, lastTile = 0;
     for (std::size_t i = 0; i < words_; ++i) {
@@ -78,7 +68,8 @@ PlaneBox PerspectiveCompositor::seenBox(Sheets sheets, const SheetReading& readi
 }
 
 // Looks at all rows of tiles in which any of the sheet rows [firstRow, lastRow) lies.
-void PerspectiveCompositor::findFull(Sheets sheets, int firstRow, int lastRow) {
+void PerspectiveCompositor::findFull(Sheets sheets, int firstRow, int lastRow,
+                                     const SheetCover* cover) {
     words_ = wordsOfRow(*sheets.front());
     firstTileRow_ = firstRow / kTilePixels;
     const int lastTileRow = (lastRow - 1) / kTilePixels;
@@ -91,6 +82,7 @@ void PerspectiveCompositor::findFull(Sheets sheets, int firstRow, int lastRow) {
         unsigned any = 0;
         for (const Sheet* sheet : sheets) any |= findFullRows(*sheet, row, words_, rows);
         if (any == 0) continue;
+        if (cover) cover->clearHidden(row, words_, rows);
         if (lastFull_ == 0) firstFull_ = kTilePixels * row + std::countr_zero(any);
         lastFull_ = kTilePixels * row + int(std::bit_width(any));
     }
@@ -137,6 +129,7 @@ void PerspectiveCompositor::findTiles(const SheetReading& reading, int tiles) {
 void PerspectiveCompositor::addRun(int slice, glm::ivec2 first, int last, Layer& layer) {
     if (first.x >= last) return;
     layer.extend(first.y, first.x, last);
+    pixels_ += std::size_t(last - first.x);
     const auto row = std::size_t(first.y - box_.min.y);
     const std::size_t firstOfRow = slice_.pitch * std::size_t(rows_.first[row]);
     for (int x = first.x; x < last;) {

@@ -9,7 +9,7 @@
 
 #include "composite/layer.h"
 #include "composite/scaled_kernels.h"
-#include "splat/sheet_reading.h"
+#include "splat/sheet_cover.h"
 
 namespace deltasplat {
 
@@ -29,12 +29,15 @@ class PerspectiveCompositor {
 
     /// Composites what the base plane's pixels of a box, which the layer has, see of one slice. A
     /// slice that the eye or the near plane cuts counts as far as it lies beyond.
-    void composite(Sheets sheets, int slice, const SheetReading& reading, const PlaneBox& box,
-                   Layer& layer);
+    /// @param cover  of the slice: what it hides is left out; null: nothing is hidden
+    /// @return       how many pixels of the layer it went over
+    std::size_t composite(Sheets sheets, int slice, const SheetReading& reading,
+                          const PlaneBox& box, const SheetCover* cover, Layer& layer);
 
   private:
-    void findFull(Sheets sheets, int firstRow, int lastRow);
-    PlaneBox seenBox(Sheets sheets, const SheetReading& reading, const PlaneBox& box);
+    void findFull(Sheets sheets, int firstRow, int lastRow, const SheetCover* cover);
+    PlaneBox seenBox(Sheets sheets, const SheetReading& reading, const PlaneBox& box,
+                     const SheetCover* cover);
     void findTiles(const SheetReading& reading, int tiles);
     void addRow(int slice, int y, Layer& layer);
     void addRun(int slice, glm::ivec2 first, int last, Layer& layer);
@@ -56,6 +59,7 @@ class PerspectiveCompositor {
     std::vector<std::uint64_t> seen_;  // [words_]: of the rows that a base plane row reads
     ScaledSlice slice_{};
     std::vector<ScaledRun> runs_;  // that wait to be composited
+    std::size_t pixels_ = 0;       // of the slice in hand, that are composited
     std::vector<float> shares_;    // steps of a run through a slice that is cut
 };
 

@@ -69,11 +69,28 @@ void SlabRenderer::run() {
     parallelFor(workers, [&](std::size_t) {
         // Whoever comes too late needs none.
         std::optional<Splatter> splatter;
-        for (std::size_t i = next_++; i < pieces; i = next_++) {
+        Strip* own = nullptr;
+        while (const std::optional<Piece> piece = takePiece(own)) {
             if (!splatter) splatter.emplace(input_.splat, largest_);
-            renderPiece(i, *splatter);
+            renderPiece(*piece, *splatter);
         }
     });
+}
+
+// Who has a strip for their own knows at each slab what the slabs before it cover. When none is
+// left, the others' are shared.
+std::optional<SlabRenderer::Piece> SlabRenderer::takePiece(Strip*& own) {
+    const std::lock_guard lock(mutex_);
+    const auto isLeft = [&](const Strip& strip) { return strip.next < seen_.size(); };
+    if (!own || !isLeft(*own)) own = nextStrip_ < strips_.size() ? &strips_[nextStrip_++] : nullptr;
+    if (!own) {
+        const auto most =
+            std::min_element(strips_.begin(), strips_.end(),
+                             [](const Strip& a, const Strip& b) { return a.next < b.next; });
+        if (most == strips_.end() || !isLeft(*most)) return {};
+        own = &*most;
+    }
+    return Piece{*own, own->next++};
 }
 
 Layer SlabRenderer::merge() {
@@ -113,8 +130,9 @@ void SlabRenderer::cutIntoStrips() {
     const int count = stripCount();
     for (int i = 0; i < count; ++i) {
         const auto edge = [&](int n) { return reach_.min.y + int(std::int64_t{rows} * n / count); };
+        const PlaneBox part{{reach_.min.x, edge(i)}, {reach_.max.x, edge(i + 1)}};
         strips_.push_back(
-            {edge(i), edge(i + 1), std::make_unique<LayerFold>(seen_.size() - 1, merged_)});
+            {part.min.y, part.max.y, std::make_unique<LayerFold>(seen_.size() - 1, merged_, part)});
     }
 }
 
@@ -169,11 +187,11 @@ void SlabRenderer::requireSlabMemory() const {
 }
 
 // The front slab goes straight into the merged layer, the others into layers of their own.
-void SlabRenderer::renderPiece(std::size_t piece, Splatter& splatter) {
+void SlabRenderer::renderPiece(const Piece& piece, Splatter& splatter) {
     const Clock::time_point start = Clock::now();
-    const std::size_t number = piece / strips_.size();
+    const std::size_t number = piece.slab;
     const SeenSlab& seen = seen_[number];
-    const Strip& strip = strips_[piece % strips_.size()];
+    const Strip& strip = piece.strip;
     const PlaneBox box = boxOf(strip, seen);
     double compositeSeconds = 0;
     const auto timed = [&](const auto& use) {
@@ -199,38 +217,44 @@ double SlabRenderer::renderSlab(const SeenSlab& seen, const Strip& strip, const 
                                 Splatter& splatter, Layer& layer) {
     const SheetLayout layout = layoutOf(strip, seen);
     if (box.empty() || layout.blocks.x == 0 || layout.blocks.y == 0) return 0;
+    SlabCover cover(input_.plane, seen.lastSlice, strip.layers->covered(), layer);
+    if (cover.all()) return 0;
     if (input_.plane.isParallel()) {
         Compositor compositor(scales_, input_.plane.frontToBack());
-        return walkSlices(seen, layout, box, splatter,
-                          [&](const auto& sheets, int, const SheetReading& reading) {
-                              compositor.composite(sheets, reading, box.min.y, box.max.y, layer);
-                          });
+        return walkSlices(
+            seen, layout, box, cover, splatter,
+            [&](const auto& sheets, int, const SheetReading& reading, const SheetCover* hidden) {
+                return compositor.composite(sheets, reading, box.min.y, box.max.y, hidden, layer);
+            });
     }
     PerspectiveCompositor compositor(input_.plane, scales_, steps_ ? &*steps_ : nullptr);
-    return walkSlices(seen, layout, box, splatter,
-                      [&](const auto& sheets, int slice, const SheetReading& reading) {
-                          compositor.composite(sheets, slice, reading, box, layer);
-                      });
+    return walkSlices(
+        seen, layout, box, cover, splatter,
+        [&](const auto& sheets, int slice, const SheetReading& reading, const SheetCover* hidden) {
+            return compositor.composite(sheets, slice, reading, box, hidden, layer);
+        });
 }
 
-// Calls composite(sheets, slice, reading) for all slices that are seen.
+// Calls composite(sheets, slice, reading, hidden), which returns how many pixels it went over, for
+// all slices that are seen.
 template <typename Composite>
 double SlabRenderer::walkSlices(const SeenSlab& seen, const SheetLayout& layout,
-                                const PlaneBox& box, Splatter& splatter,
+                                const PlaneBox& box, SlabCover& cover, Splatter& splatter,
                                 const Composite& composite) {
     double compositeSeconds = 0;
     splatter.begin(*seen.slab, layout);
     for (int slice = seen.slab->firstSlice; slice <= seen.lastSlice; ++slice) {
         if (slice < seen.firstSlice) {
             // What changes before the first that is seen is needed; nothing of it is read.
-            if (!seen.slab->whole) splatter.splat(slice, 0, 0);
+            if (!seen.slab->whole) splatter.splat(slice, {0, 0});
             continue;
         }
         const SheetReading reading = readingOf(input_.plane, layout, slice);
         const SheetBox read = readBox(reading, box, layout);
-        const auto sheets = splatter.splat(slice, read.min.y, read.max.y);
+        const NeededPixels needed = cover.next(reading, read, layout);
+        const auto sheets = splatter.splat(slice, needed);
         const Clock::time_point before = Clock::now();
-        composite(sheets, slice, reading);
+        cover.add(composite(sheets, slice, reading, needed.cover));
         compositeSeconds += secondsSince(before);
     }
     splatter.end();

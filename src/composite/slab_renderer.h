@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <mutex>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "composite/layer_fold.h"
+#include "composite/slab_cover.h"
 #include "kept_memory.h"
 #include "shared_progress.h"
 #include "splat/splatter.h"
@@ -62,6 +62,11 @@ class SlabRenderer {
         int first;
         int last;
         std::unique_ptr<LayerFold> layers;
+        std::size_t next = 0;  // of its slabs, that nobody has begun; guarded by mutex_
+    };
+    struct Piece {
+        Strip& strip;
+        std::size_t slab;
     };
     void cutIntoStrips();
     int stripCount() const;
@@ -69,12 +74,13 @@ class SlabRenderer {
     PlaneBox boxOf(const Strip& strip, const SeenSlab& seen) const;
     void findLargest();
     void requireSlabMemory() const;
-    void renderPiece(std::size_t piece, Splatter& splatter);
+    std::optional<Piece> takePiece(Strip*& own);
+    void renderPiece(const Piece& piece, Splatter& splatter);
     double renderSlab(const SeenSlab& seen, const Strip& strip, const PlaneBox& box,
                       Splatter& splatter, Layer& layer);
     template <typename Composite>
     double walkSlices(const SeenSlab& seen, const SheetLayout& layout, const PlaneBox& box,
-                      Splatter& splatter, const Composite& composite);
+                      SlabCover& cover, Splatter& splatter, const Composite& composite);
     void count(const SeenSlab& seen, double compositeSeconds, double pieceSeconds);
 
     const SlabInput& input_;
@@ -88,8 +94,8 @@ class SlabRenderer {
     SheetLayout largest_;  // holds the part of any piece
     Layer merged_;
     std::once_flag mergedOnce_;
-    std::atomic<std::size_t> next_ = 0;
-    std::mutex mutex_;  // guards all below
+    std::mutex mutex_;           // guards all below
+    std::size_t nextStrip_ = 0;  // that nobody has for its own
     double compositeSeconds_ = 0;
     double pieceSeconds_ = 0;
     double slicesDone_ = 0;

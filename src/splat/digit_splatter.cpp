@@ -22,11 +22,11 @@ void DigitSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     }
 }
 
-const Sheet& DigitSplatter::splat(int slice, int firstRow, int lastRow, const Sheet* low) {
+const Sheet& DigitSplatter::splat(int slice, const NeededPixels& needed, const Sheet* low) {
     if (stamping_) {
-        stamps_->splat(slice, whole_, firstRow, lastRow);
+        stamps_->splat(slice, whole_, needed);
     } else {
-        tiles_->splat(slice, whole_, firstRow, lastRow, low);
+        tiles_->splat(slice, whole_, needed, low);
     }
     return sheet_;
 }

@@ -33,10 +33,9 @@ class DigitSplatter {
     void begin(const PlannedSlab& slab, const SheetLayout& layout);
     /// Makes the sheet of the slab's next slice, and returns it. Deltas are added to what the slice
     /// before left; of a whole slab, each slice starts anew.
-    /// @param firstRow,lastRow  rows of the sheet that are needed: [firstRow, lastRow). Others may
-    /// hold an earlier slice, or part of this one
-    /// @param low  the sheet of the low digit, or null
-    const Sheet& splat(int slice, int firstRow, int lastRow, const Sheet* low = nullptr);
+    /// @param needed  others may hold an earlier slice, or part of this one
+    /// @param low     the sheet of the low digit, or null
+    const Sheet& splat(int slice, const NeededPixels& needed, const Sheet* low = nullptr);
     /// Ends a slab.
     void end();
 

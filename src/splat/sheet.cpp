@@ -110,7 +110,8 @@ Sheet::Sheet(const SheetLayout& layout, std::pmr::memory_resource& memory)
       pixels_(layout.bytes() / sizeof(std::int32_t), &memory),
       full_(bytesPerRow_ * layout.tiles().y + sizeof(std::uint64_t)),
       touched_(full_.size()),
-      touchedRows_(layout.tiles().y) {}
+      touchedRows_(layout.tiles().y),
+      left_(bytesPerRow_) {}
 
 // Blocks and margins begin at tiles.
 glm::ivec2 Sheet::firstTileOf(glm::ivec2 block) const {

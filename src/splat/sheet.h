@@ -6,11 +6,14 @@
 #include <glm/vec2.hpp>
 #include <memory_resource>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/splat/footprint.h"
 #include "splat/block_reach.h"
+#include "splat/tile_bytes.h"
 #include "splat/tile_kernels.h"
 
 namespace deltasplat {
@@ -93,8 +96,13 @@ class Sheet {
     /// which any of the pixel rows [first, last) lies; others stay touched. Of each tile there is a
     /// byte, bit y for its row y: where `touched` has bits, `refill` puts into `full` whether those
     /// rows are not all zero now.
+    /// @param isHidden  whether a tile (column, row) may stay as it is, touched; null: none may
+    template <typename IsHidden, typename Refill>
+    void refillTouched(int first, int last, const IsHidden& isHidden, const Refill& refill);
     template <typename Refill>
-    void refillTouched(int first, int last, const Refill& refill);
+    void refillTouched(int first, int last, const Refill& refill) {
+        refillTouched(first, last, nullptr, refill);
+    }
     /// Finds out which of the touched rows are zero. Call it when all stamps of a slice are in.
     void settle();
     /// Becomes the sum of the sheets of both digits of a colour (addLowDigits), of the same layout,
@@ -124,18 +132,30 @@ class Sheet {
     std::vector<std::uint8_t> full_;         // [tile row][bytesPerRow_], and a word more
     std::vector<std::uint8_t> touched_;      // likewise
     std::vector<std::uint8_t> touchedRows_;  // [tile row]: whether any is
+    std::vector<std::uint8_t> left_;         // [bytesPerRow_], zeros: touched ones that stay so
 };
 
-template <typename Refill>
-void Sheet::refillTouched(int first, int last, const Refill& refill) {
+template <typename IsHidden, typename Refill>
+void Sheet::refillTouched(int first, int last, const IsHidden& isHidden, const Refill& refill) {
     if (last <= first) return;
     const int end = (std::min(last, layout_.sizePixels.y) + kTilePixels - 1) / kTilePixels;
     for (int row = std::max(first, 0) / kTilePixels; row < end; ++row) {
         if (touchedRows_[row] == 0) continue;
         touchedRows_[row] = 0;
         const std::span touched(&touched_[bytesPerRow_ * row], bytesPerRow_);
+        bool isLeft = false;
+        if constexpr (!std::is_null_pointer_v<IsHidden>) {
+            forTiles(touched, [&](std::size_t i) {
+                if (!isHidden(glm::ivec2(int(i), row))) return;
+                std::swap(left_[i], touched[i]);
+                isLeft = true;
+            });
+        }
         refill(row, touched, std::span(&full_[bytesPerRow_ * row], bytesPerRow_));
         std::fill(touched.begin(), touched.end(), std::uint8_t{0});
+        if (!isLeft) continue;
+        touchedRows_[row] = 1;
+        std::swap_ranges(touched.begin(), touched.end(), left_.begin());
     }
 }
 

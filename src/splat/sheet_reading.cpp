@@ -74,4 +74,15 @@ SheetBox readBox(const SheetReading& reading, const PlaneBox& box, const SheetLa
     return read;
 }
 
+glm::ivec2 readersOf(const SheetReading& reading, int axis, int first, int last,
+                     const PlaneBox& box) {
+    const double start = reading.offset[axis] + reading.fraction[axis];
+    const double reach = readingReach(reading);
+    const auto bounded = [&](double pixel) {
+        return int(std::clamp(pixel, double(box.min[axis]), double(box.max[axis])));
+    };
+    return {bounded(std::floor((first - reach - start) / reading.scale)),
+            bounded(std::ceil((last - 1 + reach - start) / reading.scale) + 1)};
+}
+
 }  // namespace deltasplat

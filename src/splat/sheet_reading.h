@@ -24,6 +24,11 @@ PlaneBox reachOf(const BasePlane& plane, const SheetLayout& layout, int firstSli
 /// Returns the sheet pixels, of those that there are, that the pixels of a box read.
 SheetBox readBox(const SheetReading& reading, const PlaneBox& box, const SheetLayout& layout);
 
+/// Returns the base plane pixels [x, y) along an axis, of those of a box, that read any of the
+/// sheet pixels [first, last).
+glm::ivec2 readersOf(const SheetReading& reading, int axis, int first, int last,
+                     const PlaneBox& box);
+
 /// How far a reading reaches to both sides of a position, in sheet pixels: to the neighbours, or,
 /// where base pixels lie farther apart, to the next of those.
 inline double readingReach(const SheetReading& reading) {

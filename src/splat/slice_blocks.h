@@ -13,6 +13,7 @@
 #include "deltasplat/splat/footprint.h"
 #include "splat/lit_slice.h"
 #include "splat/sheet.h"
+#include "splat/sheet_cover.h"
 #include "splat/step_colors.h"
 
 namespace deltasplat {
@@ -64,15 +65,12 @@ class SliceBlocks {
     /// Calls `use(block, voxels, word)` for the blocks (v, u) of a slice that have something to
     /// stamp: a mask word of voxels, and a SeenWord of what else is known of them, as far as the
     /// digit goes.
-    /// Where colours have several, slices that are not whole come in order, with all their rows.
-    /// @param rows  of blocks, [x, y)
+    /// Blocks that reach nothing that is needed are left out; changes, which come in order, only
+    /// where nothing will be needed later either.
     template <typename Use>
-    void forEach(int slice, bool whole, glm::ivec2 rows, const Use& use);
+    void forEach(int slice, bool whole, const NeededPixels& needed, const Use& use);
     /// Makes everything as it was before the first slice.
     void clear();
-    /// All rows of blocks.
-    glm::ivec2 rows() const { return {0, layout_.blocks.y}; }
-
     std::size_t count() const { return std::size_t(layout_.blocks.x) * layout_.blocks.y; }
     /// Returns where what is kept of a block lies in an array of count().
     std::size_t placeOf(glm::ivec2 block) const {
@@ -106,14 +104,17 @@ class SliceBlocks {
 };
 
 template <typename Use>
-void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use) {
+void SliceBlocks::forEach(int slice, bool whole, const NeededPixels& needed, const Use& use) {
+    const glm::ivec2 rows = whole ? blocksReaching(layout_, needed.firstRow, needed.lastRow)
+                                  : glm::ivec2(0, layout_.blocks.y);
+    const SheetCover* cover = whole ? needed.cover : needed.fromNowOn;
     const std::span<const DeltaWord> words = wordsOf(slice, rows);
     if (input_.lit) input_.lit->begin(slice);
     if (!stampEmptyVoxels_) {
         for (const DeltaWord& word : words) {
             if (!input_.lit) prefetchClasses(&word, words);
             const glm::ivec2 block = blockOf(word);
-            if (!hasColumn(block)) continue;
+            if (!hasColumn(block) || (cover && cover->hidesBlock(block))) continue;
             SeenWord seen = seenOf(word);
             if (takesDigit_) takeDigit(word, whole, seen);
             const std::uint64_t voxels = whole ? seen.visible : seen.changed;
@@ -127,7 +128,8 @@ void SliceBlocks::forEach(int slice, bool whole, glm::ivec2 rows, const Use& use
         for (int v = 0; v < layout_.blocks.x; ++v) {
             while (word != words.end() && !hasColumn(blockOf(*word))) ++word;
             const bool has = word != words.end() && blockOf(*word) == glm::ivec2(v, u);
-            use(glm::ivec2(v, u), voxelsInBox({v, u}), has ? seenOf(*word) : nothing);
+            if (!cover || !cover->hidesBlock({v, u}))
+                use(glm::ivec2(v, u), voxelsInBox({v, u}), has ? seenOf(*word) : nothing);
             if (has) ++word;
         }
     }

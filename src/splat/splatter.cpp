@@ -23,12 +23,12 @@ void PlaneSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     if (sum_) sum_->setLayout(layout);
 }
 
-const Sheet& PlaneSplatter::splat(int slice, int firstRow, int lastRow) {
-    if (!low_) return high_.splat(slice, firstRow, lastRow);
-    const Sheet& low = low_->splat(slice, firstRow, lastRow);
-    const Sheet& high = high_.splat(slice, firstRow, lastRow, sum_ ? nullptr : &low);
+const Sheet& PlaneSplatter::splat(int slice, const NeededPixels& needed) {
+    if (!low_) return high_.splat(slice, needed);
+    const Sheet& low = low_->splat(slice, needed);
+    const Sheet& high = high_.splat(slice, needed, sum_ ? nullptr : &low);
     if (!sum_) return high;
-    sum_->addDigits(high, low, firstRow, lastRow);
+    sum_->addDigits(high, low, needed.firstRow, needed.lastRow);
     return *sum_;
 }
 
@@ -55,9 +55,8 @@ void Splatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     for (const auto& plane : planes_) plane->begin(slab, layout);
 }
 
-std::span<const Sheet* const> Splatter::splat(int slice, int firstRow, int lastRow) {
-    for (std::size_t p = 0; p < planes_.size(); ++p)
-        sheets_[p] = &planes_[p]->splat(slice, firstRow, lastRow);
+std::span<const Sheet* const> Splatter::splat(int slice, const NeededPixels& needed) {
+    for (std::size_t p = 0; p < planes_.size(); ++p) sheets_[p] = &planes_[p]->splat(slice, needed);
     return sheets_;
 }
 

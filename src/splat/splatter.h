@@ -20,7 +20,7 @@ class PlaneSplatter {
 
     /// As those of DigitSplatter.
     void begin(const PlannedSlab& slab, const SheetLayout& layout);
-    const Sheet& splat(int slice, int firstRow, int lastRow);
+    const Sheet& splat(int slice, const NeededPixels& needed);
     void end();
 
     static double bytes(const SplatInput& input, const SheetLayout& layout, int plane);
@@ -39,7 +39,7 @@ class Splatter {
 
     /// As those of DigitSplatter; there is a sheet for each plane, valid until the next call.
     void begin(const PlannedSlab& slab, const SheetLayout& layout);
-    std::span<const Sheet* const> splat(int slice, int firstRow, int lastRow);
+    std::span<const Sheet* const> splat(int slice, const NeededPixels& needed);
     void end();
 
     /// Bytes that a splatter takes.

@@ -30,7 +30,7 @@ void StampSplatter::setLayout(const SheetLayout& layout) {
 }
 
 // Changes have to be added wherever they are, for what is not read now may be later.
-void StampSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
+void StampSplatter::splat(int slice, bool whole, const NeededPixels& needed) {
     if (whole) {
         sheet_.clear();
     } else if (hasOwn_ && shownColors_.empty()) {
@@ -41,9 +41,8 @@ void StampSplatter::splat(int slice, bool whole, int firstRow, int lastRow) {
     const SheetLayout& layout = sheet_.layout();
     stamped_.clear();
     stampedColors_.clear();
-    const glm::ivec2 rows = whole ? blocksReaching(layout, firstRow, lastRow) : blocks_.rows();
     blocks_.forEach(
-        slice, whole, rows, [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
+        slice, whole, needed, [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
             sheet_.show(block, word.visible, whole ? 0 : active & ~word.visible);
             const std::size_t place = layout.stampPlace(layout.firstVoxel + 8 * block);
             std::int32_t* first = sheet_.pixels() + layout.channels * place;

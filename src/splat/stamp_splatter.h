@@ -22,8 +22,7 @@ class StampSplatter {
     /// Takes on a layout, which the sheet must have by then.
     void setLayout(const SheetLayout& layout);
     /// Makes the sheet that of the slice, after the one before it if it is not whole.
-    /// @param firstRow,lastRow  what will be read: rows of the sheet [firstRow, lastRow)
-    void splat(int slice, bool whole, int firstRow, int lastRow);
+    void splat(int slice, bool whole, const NeededPixels& needed);
     /// Makes everything as it was before the first slice.
     void clear();
 

@@ -45,18 +45,20 @@ TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, 
     for (const ClassTable::Color& color : colors_) opacities_.push_back(color[3]);
 }
 
-void TileSplatter::splat(int slice, bool whole, int firstRow, int lastRow, const Sheet* low) {
+void TileSplatter::splat(int slice, bool whole, const NeededPixels& needed, const Sheet* low) {
     if (whole) {
-        paintWhole(slice, blocksReaching(sheet_.layout(), firstRow, lastRow));
+        paintWhole(slice, needed);
     } else {
-        paintChanges(slice);
+        paintChanges(slice, needed);
     }
-    sheet_.refillTouched(
-        firstRow, lastRow,
-        [&](int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-            sumTiles(row, touched, full);
-            if (low) addLow(*low, row, touched, full);
-        });
+    const auto refill = [&](int row, std::span<const std::uint8_t> touched,
+                            std::span<std::uint8_t> full) {
+        sumTiles(row, touched, full);
+        if (low) addLow(*low, row, touched, full);
+    };
+    if (!needed.cover) return sheet_.refillTouched(needed.firstRow, needed.lastRow, refill);
+    const auto isHidden = [&](glm::ivec2 tile) { return needed.cover->hidesTile(tile); };
+    sheet_.refillTouched(needed.firstRow, needed.lastRow, isHidden, refill);
 }
 
 // Rows between touched ones were made too.
@@ -96,8 +98,8 @@ void TileSplatter::clear() {
     sheet_.clear();
 }
 
-void TileSplatter::paintChanges(int slice) {
-    blocks_.forEach(slice, false, blocks_.rows(),
+void TileSplatter::paintChanges(int slice, const NeededPixels& needed) {
+    blocks_.forEach(slice, false, needed,
                     [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
                         Shown& shown = shown_[blocks_.placeOf(block)];
                         if (shown.voxels == 0) shownBlocks_.push_back(block);
@@ -107,10 +109,10 @@ void TileSplatter::paintChanges(int slice) {
 }
 
 // Only what the slice before showed and this one does not paint over has to be taken away.
-void TileSplatter::paintWhole(int slice, glm::ivec2 rows) {
+void TileSplatter::paintWhole(int slice, const NeededPixels& needed) {
     before_.swap(shownBlocks_);
     shownBlocks_.clear();
-    blocks_.forEach(slice, true, rows,
+    blocks_.forEach(slice, true, needed,
                     [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
                         Shown& shown = shown_[blocks_.placeOf(block)];
                         paint(block, active | shown.voxels, word.classes, word.colors);

@@ -35,10 +35,9 @@ class TileSplatter {
     /// Takes on a layout, which the sheet must have by then.
     void setLayout(const SheetLayout& layout) { blocks_.setLayout(layout); }
     /// Makes the sheet that of the slice, after the one before it if it is not whole.
-    /// @param firstRow,lastRow  what will be read: rows of the sheet [firstRow, lastRow); others
-    /// are made when they are
-    /// @param low  if not null, these rows of the sheet of the low digit, which is added
-    void splat(int slice, bool whole, int firstRow, int lastRow, const Sheet* low);
+    /// @param needed  what will be read; the rest is made when it is
+    /// @param low     if not null, the sheet of the low digit, which is added
+    void splat(int slice, bool whole, const NeededPixels& needed, const Sheet* low);
     /// Makes everything as it was before the first slice.
     void clear();
 
@@ -49,8 +48,8 @@ class TileSplatter {
         int slice = 0;             // that last painted it, in a slab that is whole
     };
 
-    void paintChanges(int slice);
-    void paintWhole(int slice, glm::ivec2 rows);
+    void paintChanges(int slice, const NeededPixels& needed);
+    void paintWhole(int slice, const NeededPixels& needed);
     void takeAway(glm::ivec2 block);
     void sumTiles(int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
     void addLow(const Sheet& low, int row, std::span<const std::uint8_t> touched,

@@ -80,7 +80,7 @@ Layer compositeSlices(glm::dvec2 d, bool frontToBack, int channels, int first = 
         const Sheet sheet = randomSheet(std::uint32_t(slice), channels);
         const Sheet* const sheets[] = {&sheet};
         compositor.composite(sheets, readingOf(planeOf(sheet.layout(), d), sheet.layout(), slice),
-                             layer.box.min.y, layer.box.max.y, layer);
+                             layer.box.min.y, layer.box.max.y, nullptr, layer);
     }
     return layer;
 }
@@ -128,7 +128,7 @@ Layer compositePlanes(glm::dvec2 d, bool frontToBack, int channels) {
         const Sheet second = randomSheet(std::uint32_t(slice + 50), channels);
         const Sheet* const sheets[] = {&first, &second};
         compositor.composite(sheets, readingOf(planeOf(first.layout(), d), first.layout(), slice),
-                             layer.box.min.y, layer.box.max.y, layer);
+                             layer.box.min.y, layer.box.max.y, nullptr, layer);
     }
     return layer;
 }
@@ -186,7 +186,7 @@ TEST_P(LayerOfChannels, PlanesOfZerosChangeNothing) {
                                            slice == 2 ? &sheet : &zeros};
             compositor.composite(sheets,
                                  readingOf(planeOf(sheet.layout(), d), sheet.layout(), slice),
-                                 layer.box.min.y, layer.box.max.y, layer);
+                                 layer.box.min.y, layer.box.max.y, nullptr, layer);
         }
         EXPECT_EQ(layer.values, compositeSlices(d, true, channels).values);
     }
@@ -256,7 +256,7 @@ TEST(LayerFold, IsOverFromTheFront) {
         for (const auto& order : orders) {
             for (const bool takeAllFirst : {false, true}) {
                 Layer merged(all, channels);
-                LayerFold fold(4, merged);
+                LayerFold fold(4, merged, all);
                 std::size_t taken = takeAllFirst ? 4 : 0;
                 if (takeAllFirst) {
                     for (const PlaneBox& box : boxes) fold.take(box);
@@ -308,7 +308,7 @@ TEST(LayerFold, IsOverFromTheFront) {
 TEST(Layer, OverIsAssociativeWithinRounding) {
     const glm::dvec2 d(0.25, 0.5);
     Layer merged = compositeSlices(d, true, 4, 0, 3, kScale / 8);
-    LayerFold halves(1, merged);
+    LayerFold halves(1, merged, merged.box);
     halves.addFront();
     halves.add(0, compositeSlices(d, true, 4, 3, 3, kScale / 8));
     for (int y = merged.box.min.y; y < merged.box.max.y; ++y) halves.finishRow(y);

@@ -139,7 +139,7 @@ void expectMovingWindow(const Volume& volume, bool oneColor, const Footprint& fo
             for (int i = 0; i < slab.sliceCount; ++i) {
                 const int first = 11 * i % (height - 15);
                 const int slice = slab.firstSlice + i;
-                sheets = splatter.splat(slice, first, first + 15);
+                sheets = splatter.splat(slice, {first, first + 15});
                 ASSERT_EQ(sheets.size(), scene.classes.planes.size());
                 for (std::size_t p = 0; p < sheets.size(); ++p) {
                     for (int y = first; y < first + 15; ++y) {
@@ -172,6 +172,109 @@ TEST(Splatter, RowsOfAMovingWindowAreThoseOfTheSlice) {
     }
 }
 
+// Whether a sheet pixel is read by a pixel of the base plane that is not covered.
+bool isSeen(const CoveredCells& cells, const SheetReading& reading, glm::ivec2 pixel) {
+    const PlaneBox readers{{readersOf(reading, 0, pixel.x, pixel.x + 1, cells.box()).x,
+                            readersOf(reading, 1, pixel.y, pixel.y + 1, cells.box()).x},
+                           {readersOf(reading, 0, pixel.x, pixel.x + 1, cells.box()).y,
+                            readersOf(reading, 1, pixel.y, pixel.y + 1, cells.box()).y}};
+    for (int y = readers.min.y; y < readers.max.y; ++y)
+        for (int x = readers.min.x; x < readers.max.x; ++x)
+            if (!cells.isCovered((glm::ivec2(x, y) - cells.box().min) / CoveredCells::kCellPixels))
+                return true;
+    return false;
+}
+
+// What is covered moves over the sheet from slice to slice, and there is more of it later.
+void expectCovered(const Volume& volume, bool oneColor, const Footprint& footprint, Range range) {
+    const Scene whole(volume, Encoding::kWhole, footprint, oneColor, range);
+    for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole}) {
+        const Scene scene(volume, encoding, footprint, oneColor, range);
+        const SheetLayout& layout = scene.layout;
+        Splatter splatter(scene.input, layout);
+        const auto readingOfSlice = [](int slice) {
+            return SheetReading{{2 * slice, -slice}, {0.5, 0}, 1};
+        };
+        for (const PlannedSlab& slab : scene.deltas.slabs) {
+            CoveredCells cells({glm::ivec2(-60), layout.sizePixels + 60});
+            splatter.begin(slab, layout);
+            SheetCover fromNowOn;
+            for (int i = 0; i < slab.sliceCount; ++i) {
+                const int slice = slab.firstSlice + i;
+                if (i % 8 == 0) {
+                    for (int y = 0; y < cells.size().y; ++y)
+                        for (int x = 0; x < cells.size().x; ++x)
+                            if ((x + i) / 7 % 2 == 0 && y > 5) cells.cover({x, y});
+                    cells.settle();
+                    fromNowOn.set(cells, readingOfSlice(slice),
+                                  readingOfSlice(slab.firstSlice + slab.sliceCount - 1), layout);
+                }
+                SheetCover cover;
+                cover.set(cells, readingOfSlice(slice), readingOfSlice(slice), layout);
+                const auto sheets =
+                    splatter.splat(slice, {0, layout.sizePixels.y, &cover, &fromNowOn});
+                const auto expected = plainSheets(whole, slice);
+                for (int y = 0; y < layout.sizePixels.y; ++y) {
+                    for (int x = 0; x < layout.sizePixels.x; ++x) {
+                        if (!isSeen(cells, readingOfSlice(slice), {x, y})) continue;
+                        for (std::size_t p = 0; p < sheets.size(); ++p) {
+                            const std::size_t place = layout.channels * std::size_t(x);
+                            const std::int32_t* pixel = sheets[p]->row(y) + place;
+                            ASSERT_TRUE(std::equal(pixel, pixel + layout.channels,
+                                                   &expected[p][sheets[p]->pitch() * y + place]))
+                                << slice << ": " << x << ' ' << y << " width " << footprint.width;
+                        }
+                    }
+                }
+            }
+            splatter.end();
+        }
+    }
+}
+
+TEST(Splatter, WhatIsNotCoveredIsThatOfTheSlice) {
+    for (const Volume& volume : volumes()) {
+        for (const bool oneColor : {false, true}) {
+            for (const Kind kind : {Kind{1, 3}, {1, 6}, {2, 5}, {3, 9}}) {
+                const Footprint footprint =
+                    makeFootprint(0.5, {0.3, -0.6}, kind.resolution, kind.width);
+                for (const Range range : {Range::kOneDigit, Range::kTwoDigits, Range::kTwoPlanes})
+                    expectCovered(volume, oneColor, footprint, range);
+            }
+        }
+    }
+}
+
+// Nothing is made where all is covered.
+TEST(Splatter, MakesNothingThatIsCovered) {
+    const Volume volume = volumes()[0];
+    for (const Kind kind : {Kind{1, 3}, {1, 6}}) {
+        const Footprint footprint = makeFootprint(0.5, {0, 0}, kind.resolution, kind.width);
+        for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole}) {
+            const Scene scene(volume, encoding, footprint, false);
+            CoveredCells cells({{0, 0}, scene.layout.sizePixels});
+            for (int y = 0; y < cells.size().y; ++y)
+                for (int x = 0; x < cells.size().x; ++x) cells.cover({x, y});
+            cells.settle();
+            SheetCover cover;
+            cover.set(cells, {}, {}, scene.layout);
+            Splatter splatter(scene.input, scene.layout);
+            const PlannedSlab& slab = scene.deltas.slabs.front();
+            splatter.begin(slab, scene.layout);
+            for (int i = 0; i < slab.sliceCount; ++i) {
+                const Sheet& sheet =
+                    *splatter
+                         .splat(slab.firstSlice + i, {0, scene.layout.sizePixels.y, &cover, &cover})
+                         .front();
+                const std::size_t length = sheet.pitch() * std::size_t(scene.layout.sizePixels.y);
+                EXPECT_TRUE(std::all_of(sheet.row(0), sheet.row(0) + length,
+                                        [](std::int32_t value) { return value == 0; }));
+            }
+            splatter.end();
+        }
+    }
+}
+
 // Without a volume's words, so that every mask is that of the box alone.
 TEST(SliceBlocks, TraditionalTakesEveryVoxelOfTheBox) {
     const Volume volume = test::makeVolume(kBox, [](int, int, int) { return 200; });
@@ -182,7 +285,7 @@ TEST(SliceBlocks, TraditionalTakesEveryVoxelOfTheBox) {
     const SplatInput input{nothing, scene.colors, scene.footprint, true};
     SliceBlocks blocks(input, scene.layout);
     std::vector<glm::ivec2> found;
-    blocks.forEach(kBox.min.x, true, blocks.rows(),
+    blocks.forEach(kBox.min.x, true, NeededPixels{0, scene.layout.sizePixels.y},
                    [&](glm::ivec2 block, std::uint64_t voxels, const SeenWord&) {
                        const glm::ivec2 first = scene.layout.firstVoxel + 8 * block;
                        for (int n = 0; n < 64; ++n) {

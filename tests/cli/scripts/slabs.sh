@@ -42,6 +42,11 @@ folds "${ball[@]}" --method traditional --overscan 4,2
 folds "${ball[@]}" --shade --tolerance 0.1 --crop 4:40,:,2:20
 folds "${cloud[@]}" --lighting scatter --light 1,-1,0
 folds "${cloud[@]}" --color-by index --filter gauss
+# Parts by themselves know nothing of what others cover.
+for view in front back "iso --projection perspective"; do
+    # shellcheck disable=SC2086
+    folds "${ball[@]}" --extinction 50 --view $view
+done
 "$oiiotool" --info -v one7.exr | grep -q 'pixel data origin: x=-4, y=-2' || fail "no overscan"
 
 # What a picture says of how it was made, but for the command lines.

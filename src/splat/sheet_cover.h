@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+#include "splat/covered_cells.h"
+#include "splat/sheet_reading.h"
+
+namespace deltasplat {
+
+/// What of a slice's sheet is read by covered pixels of the base plane alone, so that it need not
+/// be made.
+class SheetCover {
+  public:
+    /// Takes on a slice, or what is the same in several, of which one is the first and one the
+    /// last: those between are read from between.
+    /// @param cells  must outlive the use
+    void set(const CoveredCells& cells, const SheetReading& first, const SheetReading& last,
+             const SheetLayout& layout);
+
+    /// Whether all readers are covered of what the voxels of a block (v, u) reach.
+    bool hidesBlock(glm::ivec2 block) const {
+        return cells_->cover(blocks_[0][std::size_t(block.x)], blocks_[1][std::size_t(block.y)]);
+    }
+    /// The same of a tile's pixels.
+    bool hidesTile(glm::ivec2 tile) const {
+        return cells_->cover(tiles_[0][std::size_t(tile.x)], tiles_[1][std::size_t(tile.y)]);
+    }
+    /// Clears in rows of bits, a bit for each tile of a row of tiles, those of hidden ones.
+    /// @param rows   [any number][words]
+    void clearHidden(int tileRow, std::size_t words, std::span<std::uint64_t> rows) const;
+
+  private:
+    const CoveredCells* cells_ = nullptr;
+    // Of each column (v) and each row (u) of blocks, and of tiles, the cells [x, y) that read it.
+    std::vector<glm::ivec2> blocks_[2];
+    std::vector<glm::ivec2> tiles_[2];
+};
+
+/// What of a sheet will be read.
+struct NeededPixels {
+    /// Rows [firstRow, lastRow).
+    int firstRow;
+    int lastRow;
+    /// Of these, what it hides is not; null: nothing is hidden.
+    const SheetCover* cover = nullptr;
+    /// What is not needed in this slice, and in none of those to come; null likewise.
+    const SheetCover* fromNowOn = nullptr;
+};
+
+}  // namespace deltasplat
