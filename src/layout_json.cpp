@@ -179,6 +179,30 @@ bool holds(const PlaneBox& all, const PlaneBox& box) {
                            box.max.x <= all.max.x && box.max.y <= all.max.y);
 }
 
+template <glm::length_t N>
+bool isFinite(const glm::vec<N, double>& vector) {
+    for (glm::length_t i = 0; i < N; ++i)
+        if (!std::isfinite(vector[i])) return false;
+    return true;
+}
+
+void check(const Camera& camera) {
+    require(isFinite(camera.direction) && isFinite(camera.right) && isFinite(camera.up) &&
+                isFinite(camera.targetWorld) && isFinite(camera.targetInFrame) &&
+                std::isfinite(camera.targetDistanceWorld) && std::isfinite(camera.nearWorld),
+            "a camera that is nowhere");
+    require(camera.frameWidthWorld > 0 && std::isfinite(camera.frameWidthWorld) &&
+                camera.pixelAspect > 0 && std::isfinite(camera.pixelAspect),
+            "a frame of no size");
+    constexpr int kMost = 1 << 20;  // more than any file format has
+    for (int axis = 0; axis < 2; ++axis) {
+        const int pixels = camera.sizePixels[axis];
+        const int overscan = camera.overscanPixels[axis];
+        require(pixels >= 1 && pixels <= kMost, "a picture of no size");
+        require(overscan >= 0 && overscan < pixels - overscan, "overscan without a picture");
+    }
+}
+
 void check(const ViewLayout& layout) {
     const PlanePlace& place = layout.place;
     const Factorization& view = place.view;
@@ -192,6 +216,7 @@ void check(const ViewLayout& layout) {
     require(isFinite(view.baseFromPixel) && isFinite(view.worldFromStep) &&
                 view.slopeMin.x <= view.slopeMax.x && view.slopeMin.y <= view.slopeMax.y,
             "a view of nothing");
+    require(view.sliceStepWorld > 0 && std::isfinite(view.sliceStepWorld), "slices of no depth");
     require(isSane(layout.reach), "slabs that are out of reach");
     for (const PlaneBox& slab : layout.slabs)
         require(isSane(slab) && holds(layout.reach, slab), "slabs that are out of reach");
@@ -218,16 +243,23 @@ Json layoutJson(const PictureLayout& layout) {
     return {{"camera", std::move(camera.json)}, {"views", std::move(views)}};
 }
 
+namespace {
+
+Projection projectionOf(const std::string& name) {
+    for (const Projection projection :
+         {Projection::kOrtho, Projection::kPerspective, Projection::kLatlong})
+        if (projectionName(projection) == name) return projection;
+    throw Error(ErrorCode::kInput, "a projection that there is not");
+}
+
+}  // namespace
+
 PictureLayout layoutOf(const Json& json) {
     PictureLayout layout;
     Reader camera(json.at("camera"));
     visitCamera(camera, layout.camera);
-    const auto name = json.at("camera").at("projection").get<std::string>();
-    for (const Projection projection :
-         {Projection::kOrtho, Projection::kPerspective, Projection::kLatlong})
-        if (projectionName(projection) == name) layout.camera.projection = projection;
-    require(layout.camera.sizePixels.x >= 1 && layout.camera.sizePixels.y >= 1,
-            "a picture of no pixels");
+    layout.camera.projection = projectionOf(json.at("camera").at("projection").get<std::string>());
+    check(layout.camera);
     for (const Json& view : json.at("views")) {
         Reader reader(view);
         visitView(reader, layout.views.emplace_back());

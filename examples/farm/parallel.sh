@@ -8,7 +8,7 @@ set -euo pipefail
 input=$1 output=$2 frames=$3
 shift 3
 program=${DELTASPLAT:-deltasplat} chunk=${CHUNK:-10} jobs=${JOBS:-$(nproc)}
-first_pass=${FIRST_PASS:-first_pass.json}
+first_pass=${FIRST_PASS:-$output.json}
 
 "$program" render "$input" --frames "1-$frames" --first-pass "$first_pass" "$@"
 seq 1 "$chunk" "$frames" |

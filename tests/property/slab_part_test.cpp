@@ -8,10 +8,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "deltasplat/error.h"
 #include "deltasplat/threads.h"
+#include "picture_layout.h"
 #include "support/error_of.h"
 #include "support/some_scene.h"
 #include "unit/temp_folder.h"
@@ -217,6 +221,23 @@ TEST(SlabPart, refusesWhatIsNotWhole) {
         damaged[place] = char(damaged[place] ^ 4);
         const std::string message = messageFor(damaged);
         EXPECT_EQ(message.substr(0, begin.size()), begin) << place << ": " << message;
+    }
+}
+
+// Whoever has written it, and made a checksum for it.
+TEST(SlabPart, refusesCamerasThatNoneIs) {
+    const nlohmann::ordered_json sound = layoutJson({});
+    EXPECT_NO_THROW(layoutOf(sound));
+    const std::pair<const char*, const char*> changes[] = {
+        {"/camera/projection", "\"fisheye\""}, {"/camera/direction", "[null, 0, 1]"},
+        {"/camera/frame_width", "null"},       {"/camera/frame_width", "0"},
+        {"/camera/pixel_aspect", "-1"},        {"/camera/size", "[0, 10]"},
+        {"/camera/size", "[2000000000, 10]"},  {"/camera/overscan", "[1073741824, 0]"},
+        {"/camera/overscan", "[-1, 0]"},       {"/camera/overscan", "[0, 256]"}};
+    for (const auto& [place, value] : changes) {
+        nlohmann::ordered_json changed = sound;
+        changed[nlohmann::ordered_json::json_pointer(place)] = nlohmann::ordered_json::parse(value);
+        EXPECT_THROW(layoutOf(changed), Error) << place << ' ' << value;
     }
 }
 

@@ -121,13 +121,53 @@ class Survey {
 };
 
 constexpr const char* kFirstPass = "deltasplat_first_pass";
+// In it, what it was made of.
+constexpr const char* kInput = "input";
+constexpr const char* kFrames = "frames";
 
-bool readFirstPass(const std::filesystem::path& file, SequenceLook& look) {
+using Json = nlohmann::ordered_json;
+
+// Runs [first, last] of frames.
+Json runsOf(std::vector<int> frames) {
+    std::sort(frames.begin(), frames.end());
+    Json runs = Json::array();
+    for (const int frame : frames) {
+        if (!runs.empty() && runs.back()[1] == frame - 1)
+            runs.back()[1] = frame;
+        else
+            runs.push_back({frame, frame});
+    }
+    return runs;
+}
+
+// What was made of other frames, or of another thing, may not suit those in hand.
+void warnOfOthers(const Json& json, const RenderCommand& command, const Listener& listener) {
+    const std::string begin = "--first-pass: " + command.firstPass.string() + " was made ";
+    const auto input = json.at(kInput).get<std::string>();
+    const std::string name = command.input.filename().string();
+    if (input != name)
+        return listener.warn(begin + "of " + input + ", and is taken as it is for " + name);
+    std::vector<int> absent;
+    for (const int frame : command.frames.frames) {
+        const bool isKnown =
+            std::any_of(json.at(kFrames).begin(), json.at(kFrames).end(),
+                        [&](const Json& run) { return frame >= run.at(0) && frame <= run.at(1); });
+        if (!isKnown) absent.push_back(frame);
+    }
+    if (absent.empty()) return;
+    listener.warn(begin + "without frame " + std::to_string(absent.front()) +
+                  (absent.size() > 1 ? " and " + std::to_string(absent.size() - 1) + " more" : "") +
+                  ", and is taken as it is");
+}
+
+bool readFirstPass(const RenderCommand& command, SequenceLook& look, const Listener& listener) {
+    const std::filesystem::path& file = command.firstPass;
     std::ifstream in(file);
     if (!in) return false;
     try {
-        const auto json = nlohmann::ordered_json::parse(in);
-        look.takeJson(json.at(kFirstPass));
+        const Json json = Json::parse(in).at(kFirstPass);
+        look.takeJson(json);
+        warnOfOthers(json, command, listener);
     } catch (const std::exception&) {
         throw Error(ErrorCode::kInput,
                     gotExpected(file.string(), "something else", "what --first-pass has written"));
@@ -135,9 +175,11 @@ bool readFirstPass(const std::filesystem::path& file, SequenceLook& look) {
     return true;
 }
 
-void writeFirstPass(const std::filesystem::path& file, const SequenceLook& look) {
-    const nlohmann::ordered_json json{{kFirstPass, look.toJson()}};
-    writeFileAtomically(file, json.dump(1) + "\n");
+void writeFirstPass(const RenderCommand& command, const SequenceLook& look) {
+    Json json{{kInput, command.input.filename().string()},
+              {kFrames, runsOf(command.frames.frames)}};
+    json.update(look.toJson());
+    writeFileAtomically(command.firstPass, Json{{kFirstPass, json}}.dump(1) + "\n");
 }
 
 // Whether all frames show the same, which then is made ready once.
@@ -291,12 +333,12 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
         withScene(command.scene, filesFor(command, sinks.areWritten() && !isLookAlone(command)));
     SequenceLook look(kKeptShare * double(availableMemory()));
     const std::vector<FrameFiles> present = withInputs(all, command.frames.missing, listener);
-    const bool isKnown = !command.firstPass.empty() && readFirstPass(command.firstPass, look);
+    const bool isKnown = !command.firstPass.empty() && readFirstPass(command, look, listener);
     const double readShare = choosesWindow(command) ? kSurveyShare / 2 : kSurveyShare;
     if (!isKnown) Survey(command, present).run(look, partOf(listener, 0, readShare));
     RenderCommand fixed = fixedTo(look, command);
     fixWindow(present, isKnown, look, fixed, partOf(listener, readShare, kSurveyShare));
-    if (!isKnown && !command.firstPass.empty()) writeFirstPass(command.firstPass, look);
+    if (!isKnown && !command.firstPass.empty()) writeFirstPass(command, look);
     if (isLookAlone(command)) return listener.report(1);
     const Listener making = partOf(listener, kSurveyShare, 1);
     const std::vector<FrameFiles> frames = framesToMake(present, command.frames);

@@ -102,12 +102,13 @@ void applySlabs(const CLI::App& app, const RenderCommand& command) {
 
 void writeSlabs(const CLI::App& app, const RenderCommand& command, const ReadScene& scene,
                 const Session& session, const Listener& listener) {
-    const Volume& volume = *scene.volume;
     const PreparedScene prepared({scene.volume, scene.options.optics}, scene.options);
+    // Of all grids of a medium.
+    const Volume& seen = *prepared.scene().volume;
     const Camera camera =
-        makeCamera(scene.options.camera, volume.box, volume.worldFromIndex, volume.space);
+        makeCamera(scene.options.camera, seen.box, seen.worldFromIndex, seen.space);
     const LayeredPicture picture(prepared, camera, partOf(listener, 0, kPrepareShare));
-    const CodeText codes = codesOf(volume);
+    const CodeText codes = codesOf(*scene.volume);
     PartNotes notes{optionsOf(app), commonMetadata(session)};
     notes.picture.insert(notes.picture.begin(), notes.part.front());
     notes.picture.insert(notes.picture.end(),

@@ -81,6 +81,13 @@ ran part
 "$program" "${frames[@]}" --first-pass alone.json
 cmp alone.json first.json || fail "alone.json is not first.json"
 "$program" "${frames[@]}" --first-pass alone.json
+# Of other frames, or another thing, it is taken all the same, which is said.
+"$program" render in.####.vdb --size 48x48 -qq --frames 8-9 --first-pass few.json
+expect_code 0 "$program" render in.####.vdb --size 48x48 --frames 8-10 --first-pass few.json -o few.####.exr
+expect_said "deltasplat: warning: --first-pass: few.json was made without frame 10, and is taken as it is"
+cp in.0008.vdb other.0008.vdb
+expect_code 0 "$program" render other.####.vdb --size 48x48 --frames 8 --first-pass few.json -o few.####.exr
+expect_said "deltasplat: warning: --first-pass: few.json was made of in.####.vdb, and is taken as it is for other.####.vdb"
 expect_code 2 "$program" render in.0008.vdb --first-pass no.json
 expect_said "deltasplat: --first-pass: got it without --frames; expected the frames of a sequence"
 expect_code 3 "$program" "${greys[@]}" --frames 8 --mode mip --first-pass first.json -o g.####.png

@@ -42,6 +42,9 @@ folds "${ball[@]}" --method traditional --overscan 4,2
 folds "${ball[@]}" --shade --tolerance 0.1 --crop 4:40,:,2:20
 folds "${cloud[@]}" --lighting scatter --light 1,-1,0
 folds "${cloud[@]}" --color-by index --filter gauss
+"$program" synth fire fire.vdb --dims 32x32x32 --seed 3 -q
+folds fire.vdb --grid density --size 60x50 --view iso --tf fire --emission-grid flame
+folds fire.vdb --size 60x50 --projection perspective --tf fire --emission-grid temperature
 # Parts by themselves know nothing of what others cover.
 for view in front back "iso --projection perspective"; do
     # shellcheck disable=SC2086
