@@ -19,9 +19,11 @@
 #include "deltasplat/error.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/read_delta_grid.h"
+#include "ingest/delta/zigzag.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "number_text.h"
+#include "parallel.h"
 #include "view/affine.h"
 #include "write_vdb.h"
 
@@ -120,6 +122,19 @@ openvdb::math::Transform::Ptr permutedTransform(const glm::dmat4& worldFromIndex
     return makeTransformOfType("AffineMap", permuted);
 }
 
+// Deltas go into files as numbers without sign.
+void removeSigns(openvdb::Int32Grid& grid) {
+    std::vector<DeltaTree::Leaf*> leaves;
+    grid.tree().getNodes(leaves);
+    parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            std::int32_t* const values = leaves[i]->buffer().data();
+            for (auto on = leaves[i]->valueMask().beginOn(); on; ++on)
+                values[on.pos()] = toZigzag(values[on.pos()]);
+        }
+    });
+}
+
 DeltaHeader headerOf(const Volume& volume, const DeltaGrid& deltas, const Rest& rest,
                      const InactiveValues& inactive, const Tolerance& tolerance) {
     DeltaHeader header;
@@ -188,6 +203,7 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     listener.report(0.7);
 
     const openvdb::Int32Grid::Ptr& grid = deltas.tree->grid;
+    removeSigns(*grid);
     DeltaHeader header = headerOf(held, deltas, rest, inactive, options.tolerance);
     header.box = held.box;
     if (source && volume.hasBackground) {

@@ -140,7 +140,7 @@ std::uint64_t DeltaGrid::deltas() const {
 }
 
 int defaultKeyInterval(int sliceCount) {
-    return 8 * std::max(1, sliceCount / 128 + (sliceCount % 128 != 0));
+    return 8 * std::max(16, sliceCount / 128 + (sliceCount % 128 != 0));
 }
 
 DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options) {

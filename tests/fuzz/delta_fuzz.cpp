@@ -21,6 +21,7 @@ void makePieces(openvdb::Int32Grid& grid) {
     grid.removeMeta("delta_table");
     grid.insertMeta("delta_pieces", openvdb::StringMetadata(pieces));
     grid.insertMeta("delta_code_book", openvdb::StringMetadata("pieces"));
+    // Any number is a delta, with a sign or without.
     grid.insertMeta("delta_version", openvdb::Int32Metadata(2));
 }
 

@@ -470,11 +470,6 @@ TEST(DeltaFile, FloatsBesideAnOutlierComeBackAsTheirCodes) {
     const DeltaFileEntry entry = file.add(volume, {});
     file.write("delta.vdb");
     EXPECT_EQ(entry.maxError, volume.codeError.absolute);
-    openvdb::io::File input("delta.vdb");
-    input.open();
-    const auto metadata = input.readGridMetadata("fog_50x48x40_float32");
-    EXPECT_EQ(metadata->metaValue<std::int32_t>("delta_version"), 2);
-    input.close();
     const Volume restored = readVolume("delta.vdb");
     EXPECT_EQ(*restored.codeBook.table, *volume.codeBook.table);
     EXPECT_EQ(restored.codeBook.largestErrorOf(9), volume.codeBook.largestErrorOf(9));
@@ -485,6 +480,52 @@ TEST(DeltaFile, FloatsBesideAnOutlierComeBackAsTheirCodes) {
         ASSERT_LE(std::fabs(plain.valueAt(at) - own),
                   std::max(2e-4 * std::fabs(own), 0x1p-16 * 0.006));
         ASSERT_EQ(plain.valueAt(at), volume.codeBook.valueOf(volume.codes->tree.getValue(at)));
+    }
+}
+
+// Makes a grid one of the older versions, whose deltas have a sign.
+void makeOlder(openvdb::Int32Grid& grid) {
+    ASSERT_EQ(grid.metaValue<std::int32_t>("delta_version"), 3);
+    const bool pieces = grid.metaValue<std::string>("delta_code_book") == "pieces";
+    grid.insertMeta("delta_version", openvdb::Int32Metadata(pieces ? 2 : 1));
+    std::uint64_t negative = 0;
+    for (auto delta = grid.beginValueOn(); delta; ++delta) {
+        const std::int32_t number = *delta;
+        ASSERT_GE(number, 0);
+        negative += unsigned(number % 2);
+        delta.setValue(number % 2 == 0 ? number / 2 : -(number / 2) - 1);
+    }
+    ASSERT_GT(negative, 100u);
+}
+
+TEST(DeltaFile, OlderVersionsAreRead) {
+    for (const bool pieces : {false, true}) {
+        SCOPED_TRACE(pieces);
+        const TempFolder folder;
+        std::mt19937 random(6);
+        std::vector<float> values = waves(random, 20);
+        if (!pieces)
+            for (float& value : values) value = std::round(value);
+        values[777] = 40000;
+        testing::writeBytes(kWavesFile, testing::bytesOf(values));
+        const Volume volume = readKept(kWavesFile);
+        ASSERT_EQ(bool(volume.codeBook.pieces), pieces);
+        DeltaFile file;
+        file.add(volume, {});
+        file.write("delta.vdb");
+        openvdb::io::File input("delta.vdb");
+        input.open();
+        const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid(volume.name));
+        makeOlder(*grid);
+        openvdb::io::File("older.vdb").write({grid});
+        const Volume restored = readVolume("older.vdb");
+        const PlainVolume plain = testing::readPlainDeltas("older.vdb", volume.name);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const Coord at(int(i % 95), int(i / 95 % 41), int(i / 95 / 41));
+            const double own = volume.codeBook.valueOf(volume.codes->tree.getValue(at));
+            ASSERT_EQ(restored.codeBook.valueOf(restored.codes->tree.getValue(at)), own);
+            ASSERT_EQ(plain.valueAt(at), own);
+        }
     }
 }
 

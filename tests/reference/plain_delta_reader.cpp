@@ -76,7 +76,7 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
     input.open();
     const auto deltas = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid(name));
     const int version = entry<std::int32_t>(*deltas, "delta_version");
-    if (version != 1 && version != 2) throw std::runtime_error("version");
+    if (version < 1 || version > 3) throw std::runtime_error("version");
 
     // Axis of the source that slices, u and v run along.
     const int axis = entry<std::string>(*deltas, "delta_slice_axis")[0] - 'x';
@@ -118,7 +118,15 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
                 // A key slice is a change from nothing.
                 if ((s - firstSlab) % interval == 0) slot = 0;
                 std::int32_t delta = 0;
-                if (accessor.probeValue(openvdb::Coord(s, u, v), delta)) slot += delta;
+                if (accessor.probeValue(openvdb::Coord(s, u, v), delta)) {
+                    // Section "Reading it".
+                    const auto z = std::int64_t(std::uint32_t(delta));
+                    if (version < 3) {
+                        slot += delta;
+                    } else {
+                        slot += z % 2 == 0 ? z / 2 : -(z + 1) / 2;
+                    }
+                }
                 openvdb::Coord xyz;
                 xyz[order[0]] = s;
                 xyz[order[1]] = u;

@@ -194,11 +194,10 @@ TEST(DeltaGrid, RefusesKeyIntervalsThatCutLeaves) {
 }
 
 TEST(DeltaGrid, DefaultKeyIntervalDependsOnSlicesAlone) {
-    EXPECT_EQ(defaultKeyInterval(1), 8);
-    EXPECT_EQ(defaultKeyInterval(128), 8);
-    EXPECT_EQ(defaultKeyInterval(129), 16);
-    EXPECT_EQ(defaultKeyInterval(512), 32);
-    EXPECT_EQ(defaultKeyInterval(1024), 64);
+    EXPECT_EQ(defaultKeyInterval(1), 128);
+    EXPECT_EQ(defaultKeyInterval(512), 128);
+    EXPECT_EQ(defaultKeyInterval(2048), 128);
+    EXPECT_EQ(defaultKeyInterval(2049), 136);
     EXPECT_EQ(defaultKeyInterval(100000), 6256);
 }
 

@@ -66,8 +66,8 @@ std::function<void(openvdb::Int32Grid&)> without(const std::string& key) {
 }
 
 TEST(ReadDeltaError, UnknownVersion) {
-    expectRefused(": metadata \"delta_version\": got 3; expected an int32 within 1..2",
-                  with<std::int32_t>("delta_version", 3));
+    expectRefused(": metadata \"delta_version\": got 4; expected an int32 within 1..3",
+                  with<std::int32_t>("delta_version", 4));
 }
 
 TEST(ReadDeltaError, MetadataMissingOrOfAnotherType) {
@@ -163,15 +163,16 @@ TEST(ReadDeltaError, MissingKeySlice) {
 }
 
 TEST(ReadDeltaError, CodesOutsideOfTheBook) {
-    // Voxel (0, 0, 0) has code 0, the most frequent one; (7, 0, 0) has code 7.
+    // Voxel (0, 0, 0) has code 0, the most frequent one; (7, 0, 0) has code 7. Deltas have no
+    // sign: 1 is -1.
     expectRefused(
         ": got deltas that lead to 251 at (0, 7, 0); expected 0..250, the codes of "
         "its integer code book",
-        [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), 251); });
+        [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), 2 * 251); });
     expectRefused(
         ": got deltas that lead to -1 at (0, 7, 0); expected 0..250, the codes of its "
         "integer code book",
-        [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), -1); });
+        [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), 1); });
 }
 
 // Sums of deltas that no 32 bits hold.
@@ -179,7 +180,7 @@ TEST(ReadDeltaError, ChainsBeyondIntegers) {
     expectRefused(
         ": got deltas that lead to 2147483647 at (0, 7, 0); expected 0..250, the codes "
         "of its integer code book",
-        [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), 2147483647); });
+        [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), -2); });
 }
 
 TEST(ReadDeltaError, DeltasOutsideOfTheBox) {

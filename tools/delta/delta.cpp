@@ -69,7 +69,7 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
                                 "auto"));
     deltas.addValue("--key-interval", "N", command.file.keyInterval, keyInterval(),
                     withDefault("Slices from one key slice to the next, a multiple of 8;\n"
-                                "0: a sixteenth of the volume, at least 8",
+                                "0: a sixteenth of the volume, at least 128",
                                 std::to_string(command.file.keyInterval)));
     deltas.addValue("--bits", "N", command.read.bits, wholeNumber(8, 16),
                     "Store real values in 2^N even steps, 8..16 (default: exactly if\n"

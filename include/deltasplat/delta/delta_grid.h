@@ -45,7 +45,7 @@ struct DeltaOptions {
     const CodeTree* inactive = nullptr;
 };
 
-/// Returns the slices a slab gets by default: at least 8, and never more than 16 slabs.
+/// Returns the slices a slab gets by default: at least 128, and never more than 16 slabs.
 int defaultKeyInterval(int sliceCount);
 
 /// Takes the differences of consecutive slices. Linear in the active voxels; deterministic;

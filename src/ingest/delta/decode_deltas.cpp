@@ -13,6 +13,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/codes/leaf_slices.h"
+#include "ingest/delta/zigzag.h"
 #include "memory.h"
 #include "parallel.h"
 #include "run_begins.h"
@@ -116,7 +117,8 @@ class Decoder {
         const auto slice = glm::ivec3(8 * blockOf(leaf)) + glm::ivec3(s, 0, 0);
         for (; word != 0; word &= word - 1) {
             const int n = std::countr_zero(word);
-            const std::int64_t slot = std::int64_t{slots[n]} + deltas[n];
+            const std::int32_t delta = header_.hasZigzag() ? fromZigzag(deltas[n]) : deltas[n];
+            const std::int64_t slot = std::int64_t{slots[n]} + delta;
             const glm::ivec3 place = slice + glm::ivec3(0, n >> 3, n & 7);
             requireSlot(slot, place);
             slots[n] = Slot(slot);

@@ -214,7 +214,7 @@ bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata)
 void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
     using namespace openvdb;
     const auto vector = [](const glm::ivec3& v) { return Vec3IMetadata({v.x, v.y, v.z}); };
-    metadata.insertMeta(kVersionKey, Int32Metadata(header.book.pieces ? 2 : 1));
+    metadata.insertMeta(kVersionKey, Int32Metadata(header.version));
     metadata.insertMeta("delta_slice_axis", StringMetadata(kAxisNames[header.sliceAxis]));
     metadata.insertMeta("delta_key_interval", Int32Metadata(header.keyInterval));
     metadata.insertMeta("delta_box_min", vector(header.box.min));
@@ -249,7 +249,7 @@ void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
 DeltaHeader takeDeltaHeader(const openvdb::MetaMap& metadata, const std::string& where) {
     const Entries entries(metadata, where);
     DeltaHeader header;
-    entries.whole(kVersionKey, 1, DeltaHeader::kVersion);
+    header.version = entries.whole(kVersionKey, 1, DeltaHeader::kVersion);
     header.sliceAxis = entries.choice("delta_slice_axis", {"x", "y", "z"});
     header.keyInterval = entries.whole("delta_key_interval", 8, 1 << 30);
     if (header.keyInterval % 8 != 0)

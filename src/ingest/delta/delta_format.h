@@ -14,8 +14,11 @@ namespace deltasplat {
 
 /// What a delta grid's metadata says; docs/delta-grid.md specifies it.
 struct DeltaHeader {
-    static constexpr int kVersion = 2;  ///< the largest; 1 is all but books of pieces
+    /// The one that is written, and the largest that is read. Of 1 and 2 (books of pieces) deltas
+    /// are plain numbers; from 3 on they are without sign (ingest/delta/zigzag.h).
+    static constexpr int kVersion = 3;
 
+    int version = kVersion;
     int sliceAxis = 2;
     int keyInterval = 8;
     IndexBox box;  ///< in the source's index space
@@ -34,6 +37,7 @@ struct DeltaHeader {
     double toleranceValue = 0;
     double maxError = 0;
 
+    bool hasZigzag() const { return version >= 3; }
     /// Largest slot + 1.
     Slot slotCount() const { return kSlotCount + Slot(inactiveValues.size()); }
 };
