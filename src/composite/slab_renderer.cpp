@@ -122,7 +122,23 @@ int SlabRenderer::stripCount() const {
     const double bytes = 2.0 * sizeof(float) * channels_ * input_.layout.sizePixels.x * rows;
     const double forCache = bytes > kMostWholeBytes ? bytes / kStripBytes : 1;
     const double wanted = std::min(std::max(double(forThreads), forCache), 1024.0);
-    return std::clamp(int(std::lround(wanted)), 1, std::max(1, rows / kLeastRows));
+    return std::clamp(int(std::lround(wanted)), 1,
+                      std::max(1, rows / std::max(kLeastRows, travel())));
+}
+
+// How many rows a strip moves along the sheet in a slab of changes: all that it passes over is kept
+// up to date, for each strip anew.
+int SlabRenderer::travel() const {
+    if (!input_.plane.isParallel()) return 0;
+    int rows = 0;
+    for (const SeenSlab& seen : seen_) {
+        if (seen.slab->whole) continue;
+        const auto rowOf = [&](int slice) {
+            return readingOf(input_.plane, input_.layout, slice).offset.y;
+        };
+        rows = std::max(rows, std::abs(rowOf(seen.lastSlice) - rowOf(seen.firstSlice)));
+    }
+    return rows;
 }
 
 void SlabRenderer::cutIntoStrips() {

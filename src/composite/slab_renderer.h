@@ -70,6 +70,7 @@ class SlabRenderer {
     };
     void cutIntoStrips();
     int stripCount() const;
+    int travel() const;
     SheetLayout layoutOf(const Strip& strip, const SeenSlab& seen) const;
     PlaneBox boxOf(const Strip& strip, const SeenSlab& seen) const;
     void findLargest();
