@@ -135,6 +135,25 @@ TEST_F(FindFiles, TakesFilesAndBrokenLinks) {
     EXPECT_EQ(find("*.vdb"), (Names{":a.vdb", ":b.vdb", ":c.vdb", ":d.vdb"}));
 }
 
+// What cannot be looked into keeps nothing else from being found.
+TEST_F(FindFiles, TellsOfWhatIsNoFolder) {
+    put("d1/a.vdb");
+    put("d2/loop/x.vdb");
+    fs::create_directory_symlink("loop", folder_ / "d1/loop");
+    const std::string name(300, 'x');
+    for (const std::string last : {"x.vdb", "*.vdb"}) {
+        const FoundFiles found = findFiles(folder_ / "d*/loop" / last, {});
+        ASSERT_EQ(found.files.size(), 1U) << last;
+        EXPECT_EQ(found.files[0].file, folder_ / "d2/loop/x.vdb");
+        ASSERT_EQ(found.unread.size(), 1U) << last;
+        EXPECT_EQ(found.unread[0].first, folder_ / "d1/loop");
+        EXPECT_EQ(found.unread[0].second, std::make_error_code(std::errc(ELOOP)).message());
+    }
+    EXPECT_EQ(findFiles(folder_ / "d*" / name, {}).unread.size(), 2U);
+    EXPECT_TRUE(findFiles(folder_ / "d*/none", {}).unread.empty());
+    EXPECT_TRUE(findFiles(folder_ / "d*/a.vdb/x.vdb", {}).unread.empty());
+}
+
 TEST_F(FindFiles, TakesNamesOfAllKinds) {
     for (const char* name : {"a b.vdb", "a\nb.vdb", "a\xff.vdb", "a*b.vdb"}) put(name);
     EXPECT_EQ(find("a*.vdb").size(), 4U);

@@ -173,7 +173,7 @@ class Search {
         } else if (!hasWildcards(wanted)) {
             const std::string name = withoutEscapes(wanted);
             if (isLast)
-                take(fs::directory_entry(folder / name), folder / name, within);
+                takeNamed(folder, name, within);
             else
                 look(folder / name, within / name, part + 1);
         } else {
@@ -194,6 +194,14 @@ class Search {
         return !isHidden && !name.starts_with(kTemporary) && fitsPattern(name, wanted);
     }
 
+    void takeNamed(const fs::path& folder, const fs::path& name, const fs::path& within) {
+        fs::directory_entry entry;
+        std::error_code error;
+        entry.assign(folder / name, error);
+        noteUnread(folder, error);
+        if (!error) take(entry, folder / name, within);
+    }
+
     // A link that leads nowhere is a file that cannot be read, which has to be said.
     void take(const fs::directory_entry& entry, const fs::path& name, const fs::path& within) {
         std::error_code error;
@@ -209,10 +217,15 @@ class Search {
         fs::directory_iterator next(folder.empty() ? "." : folder, error);
         for (; !error && next != fs::directory_iterator(); next.increment(error))
             entries.push_back(*next);
+        noteUnread(folder, error);
+        return entries;
+    }
+
+    // What is not there holds nothing.
+    void noteUnread(const fs::path& folder, const std::error_code& error) {
         const bool isAbsent =
             error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
-        if (error && !isAbsent) unread_.emplace(folder, error.message());
-        return entries;
+        if (error && !isAbsent) unread_.emplace(folder.empty() ? "." : folder, error.message());
     }
 
     const Listener& listener_;
