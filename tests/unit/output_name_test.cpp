@@ -33,7 +33,13 @@ TEST(OutputName, FillsAllPlaces) {
 TEST(OutputName, TakesTheSlashOfNoFolder) {
     EXPECT_EQ(filled("{dir}/{name}.png", "a.vdb"), "a.png");
     EXPECT_EQ(filled("t/{dir}/{name}.png", "a.vdb"), "t/a.png");
+    EXPECT_EQ(filled("{dir}/{dir}/{name}.png", "a.vdb"), "a.png");
+}
+
+TEST(OutputName, KeepsTheSlashOfAnotherFolder) {
     EXPECT_EQ(filled("{dir}_{name}.png", "a.vdb"), "_a.png");
+    EXPECT_EQ(filled("sub{dir}/{name}.png", "a.vdb"), "sub/a.png");
+    EXPECT_EQ(filled("t/{name}{dir}/b.png", "a.vdb"), "t/a/b.png");
 }
 
 TEST(OutputName, FillsTheLastNumber) {

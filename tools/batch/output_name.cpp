@@ -96,6 +96,9 @@ std::filesystem::path OutputName::of(const InputParts& parts,
     std::string text;
     bool dropsSlash = false;
     for (const Piece& piece : pieces_) {
+        // A folder that is all of what stands between slashes.
+        const bool isFolder =
+            piece.isPlace && piece.text == "dir" && (text.empty() || text.ends_with('/'));
         if (!piece.isPlace) {
             text += piece.text.substr(dropsSlash && piece.text.starts_with('/') ? 1 : 0);
         } else if (piece.text == "name") {
@@ -111,7 +114,7 @@ std::filesystem::path OutputName::of(const InputParts& parts,
                         gotExpected(option_, file_ + " for " + input.string(),
                                     "inputs with a number in their names for {frame}"));
         }
-        dropsSlash = piece.isPlace && piece.text == "dir" && parts.folder.empty();
+        dropsSlash = isFolder && parts.folder.empty();
     }
     return text;
 }

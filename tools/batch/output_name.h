@@ -31,7 +31,8 @@ class OutputName {
 
     bool hasGrid() const;
     /// Returns the file of an input. Slashes in the name of a grid, and a dot before it, become
-    /// `_`; a folder that is empty takes the slash behind it with it.
+    /// `_`; a folder that is empty and has nothing beside it between slashes takes the one behind
+    /// it with it.
     /// @throw Error(kUsage) naming `input` if a frame is asked for and it has none
     std::filesystem::path of(const InputParts& parts, const std::filesystem::path& input) const;
 
