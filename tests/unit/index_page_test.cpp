@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
+
+#include "unit/temp_folder.h"
 
 namespace deltasplat {
 namespace {
@@ -55,6 +58,27 @@ TEST(IndexText, SaysWhatFailed) {
 TEST(IndexText, LinksFromWhereItIs) {
     expectHas(indexText(twoPictures(), "index.html"), "href=\"t/a.png\"");
     expectHas(indexText(twoPictures(), "page/index.html"), "href=\"../t/a.png\"");
+}
+
+// Who reads a link takes `..` off the names, wherever they lead.
+TEST(IndexText, LinksByNamesOfFolders) {
+    namespace fs = std::filesystem;
+    const test::TempFolder folder;
+    fs::create_directories(folder / "far/away/pages");
+    fs::create_directories(folder / "t");
+    fs::create_directory_symlink("far/away/pages", folder / "p");
+    Index index = twoPictures();
+    const auto linkTo = [&](const char* picture, const char* page) {
+        index.entries[0].picture = folder / picture;
+        const std::string html = indexText(index, folder / page);
+        const std::size_t begin = html.find("<a href=\"") + 9;
+        return html.substr(begin, html.find('"', begin) - begin);
+    };
+    EXPECT_EQ(linkTo("t/a.png", "p/index.html"), "../t/a.png");
+    EXPECT_EQ(linkTo("p/a.png", "p/index.html"), "a.png");
+    EXPECT_EQ(linkTo("p/a.png", "index.html"), "p/a.png");
+    EXPECT_EQ(linkTo("t/../t/./a.png", "p/index.html"), "../t/a.png");
+    EXPECT_EQ(linkTo("p/../a.png", "index.html"), "far/away/a.png");
 }
 
 TEST(IndexText, SpellsOutWhatIsNoPlainCharacter) {

@@ -38,6 +38,23 @@ std::string linkText(const std::filesystem::path& path) {
     return link;
 }
 
+// Folders as their names say, which is how readers of links see them: what leads elsewhere stays a
+// name, and counts only where `..` goes back from it.
+std::filesystem::path named(const std::filesystem::path& path) {
+    std::filesystem::path result;
+    for (const std::filesystem::path& part : std::filesystem::absolute(path)) {
+        std::error_code ignored;
+        if (part == "..") {
+            if (std::filesystem::is_symlink(result, ignored))
+                result = std::filesystem::canonical(result, ignored);
+            result = result.parent_path();
+        } else if (part != ".") {
+            result /= part;
+        }
+    }
+    return result;
+}
+
 std::string secondsText(double seconds) {
     char text[32];
     std::snprintf(text, sizeof text, seconds < 10 ? "%.2f" : "%.1f", seconds);
@@ -62,9 +79,7 @@ std::string factsText(const IndexEntry& entry) {
 std::string figure(const IndexEntry& entry, const std::filesystem::path& from) {
     const std::string name = markupText(entry.input.filename().string());
     const std::string folder = markupText(entry.folder.string());
-    std::error_code ignored;
-    const std::string link = linkText(std::filesystem::relative(
-        std::filesystem::absolute(entry.picture), std::filesystem::absolute(from), ignored));
+    const std::string link = linkText(named(entry.picture).lexically_relative(from));
     const std::string shown =
         entry.thumbnail.empty()
             ? "<span class=\"none\">no thumbnail</span>"
@@ -126,7 +141,7 @@ std::string indexText(const Index& index, const std::filesystem::path& file) {
                        std::to_string(index.shape.x) + "/" + std::to_string(index.shape.y) +
                        "\">\n";
     for (const IndexEntry& entry : index.entries)
-        if (!hasFailed(entry)) html += figure(entry, std::filesystem::absolute(file).parent_path());
+        if (!hasFailed(entry)) html += figure(entry, named(file).parent_path());
     return html + "</main>\n" + failures(index) + "<footer class=\"quiet\">\n<p><code>" +
            markupText(index.commandLine) + "</code></p>\n</footer>\n<script>" + kIndexPageScript +
            "</script>\n" + kPageEnd;
