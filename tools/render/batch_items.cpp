@@ -13,6 +13,7 @@
 #include "deltasplat/ingest/list_grids.h"
 #include "ingest/files/file_name.h"
 #include "ingest/files/input_files.h"
+#include "render/preview.h"
 
 namespace deltasplat {
 namespace {
@@ -61,12 +62,18 @@ class Batch {
         requireOthers("--index", command_.index);
         for (const BatchItem& item : items_) {
             requireOthers("--output", item.output);
+            requireOthers("--progressive", previewOf(item));
             requireOthers("--stats", item.stats);
         }
         return std::move(items_);
     }
 
   private:
+    fs::path previewOf(const BatchItem& item) const {
+        const bool hasOne = command_.progressive && output_ && !item.output.empty();
+        return hasOne ? previewFile(item.output) : fs::path();
+    }
+
     // Which file of which disk it is, whatever its names.
     using PlaceOfFile = std::pair<dev_t, ino_t>;
 
@@ -89,6 +96,7 @@ class Batch {
         if (output_) item.output = output_->of(parts, found.file);
         if (stats_) item.stats = stats_->of(parts, found.file);
         if (output_) take("--output", item.output, nameOfItem(item));
+        take("--progressive", previewOf(item), nameOfItem(item));
         take("--stats", item.stats, nameOfItem(item));
         items_.push_back(std::move(item));
     }

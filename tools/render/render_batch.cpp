@@ -239,6 +239,8 @@ RenderCommand checkFirst(const RenderCommand& command, const std::vector<BatchIt
 
 void checkIndex(const fs::path& index) {
     if (index.empty()) return;
+    if (hasPlaceholder(index))
+        throw Error(ErrorCode::kUsage, gotExpected("--index", index.string(), "one file"));
     const std::string extension = lowerCase(index.extension().string());
     if (extension != ".html" && extension != ".htm")
         throw Error(ErrorCode::kUsage, gotExpected("--index", index.string(), ".html"));

@@ -93,6 +93,14 @@ for tag in html head body header main figure figcaption section table tr td div 
         fail "closing tags of $tag are missing"
 done
 
+# Nor what leads to itself.
+mkdir -p round/d1 round/d2/loop
+ln -s loop round/d1/loop
+cp shots/a.1.vdb round/d2/loop/x.vdb
+expect_code 3 "$program" render 'round/d*/loop/x.vdb' -o 'rounds/{dir}.png' "${small[@]}"
+expect_said "deltasplat: round/d1/loop: got Too many levels of symbolic links; expected a folder that can be read"
+expect_tree "d2/loop.png" rounds
+
 # Without what takes rights from root all folders can be read.
 if setpriv --bounding-set=-dac_override,-dac_read_search --inh-caps=-dac_override,-dac_read_search \
     true 2>/dev/null || [[ $EUID != 0 ]]; then
@@ -203,11 +211,18 @@ usage "--output: got u/density.png for shots/a.1.vdb, density and shots/a.2.vdb,
     'shots/a.?.vdb' -o 'u/{grid}.png'
 usage "--stats: got u/a.1.json for shots/a.1.vdb and shots/fire/a.1.vdb; expected $each" \
     'shots/**/a.1.vdb' -o 'u/{dir}/{name}.png' --stats 'u/{name}.json'
+mkdir previews
+for name in a a.preview; do cp shots/a.1.vdb previews/$name.vdb; done
+usage "--progressive: got u/a.preview.png for previews/a.preview.vdb and previews/a.vdb; expected $each" \
+    'previews/*.vdb' -o 'u/{name}.png' --progressive
+usage "--stats: got u/a.preview.png for previews/a.vdb and previews/a.vdb; expected $each" \
+    'previews/a.[v]db' -o 'u/{name}.png' --stats 'u/{name}.preview.png' --progressive
 usage "--stats: got u.json with a pattern of inputs; expected a name with $known" \
     'shots/*.vdb' -o 'u/{name}.png' --stats u.json
 usage "--output: got u/{frame}.png for plain.vdb; expected inputs with a number in their names for {frame}" \
     'pla*.vdb' -o 'u/{frame}.png'
 usage "--index: got u.txt; expected .html" 'shots/*.vdb' -o 'u/{name}.png' --index u.txt
+usage "--index: got u/{name}.html; expected one file" 'shots/*.vdb' -o 'u/{name}.png' --index 'u/{name}.html'
 usage "--index: got u/a.1.html; expected another file than the pictures" \
     'shots/*.1.vdb' -o 'u/{name}.png' --stats 'u/{name}.html' --index u/a.1.html
 usage "--output: got kept.png; expected another file than the inputs" 'kept*.png' -o '{name}.png'
