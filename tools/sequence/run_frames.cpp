@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -19,10 +20,13 @@
 namespace deltasplat {
 namespace {
 
-// What went wrong may begin with the name.
+// What went wrong may begin with the name, or that of the file, and perhaps a line in it.
 std::string lineOf(const FrameFiles& files, const std::string& what) {
     if (files.name.empty()) return "frame " + std::to_string(files.frame) + ": " + what;
-    return what.starts_with(files.name + ": ") ? what : files.name + ": " + what;
+    const std::string input = files.input.string();
+    if (!input.empty() && what.starts_with(input + ":"))
+        return files.name + what.substr(input.size());
+    return what.starts_with(files.name + ":") ? what : files.name + ": " + what;
 }
 
 class FrameRun {
@@ -39,11 +43,16 @@ class FrameRun {
     void run(int workers) {
         workers = int(std::clamp<std::size_t>(std::size_t(workers), 1, frames_.size()));
         const int threadsEach = std::max(1, threadCount() / workers);
-        std::vector<std::thread> threads;
-        for (int i = 1; i < workers; ++i)
-            threads.emplace_back([this, threadsEach] { takeFrames(threadsEach); });
-        takeFrames(threadsEach);
-        for (std::thread& thread : threads) thread.join();
+        {
+            std::vector<std::jthread> threads;
+            try {
+                for (int i = 1; i < workers; ++i)
+                    threads.emplace_back([this, threadsEach] { takeFrames(threadsEach); });
+            } catch (const std::system_error&) {
+                // Where there are no more threads, those there are take all.
+            }
+            takeFrames(threadsEach);
+        }
         finish();
     }
 
