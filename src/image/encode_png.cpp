@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <memory>
 
 #include "deltasplat/error.h"
 #include "parallel.h"
@@ -182,6 +183,11 @@ struct Block {
     std::size_t bytes = 0;
 };
 
+// Gives back what deflate takes.
+struct EndDeflate {
+    void operator()(z_stream* stream) const { deflateEnd(stream); }
+};
+
 // Packs a part of all bytes, in such a way that others can be put before and behind.
 Block pack(const Bytes& all, std::size_t begin, std::size_t end) {
     z_stream stream{};
@@ -192,6 +198,7 @@ Block pack(const Bytes& all, std::size_t begin, std::size_t end) {
     };
     constexpr int kRaw = -15;
     check(deflateInit2(&stream, kLevel, Z_DEFLATED, kRaw, 8, Z_FILTERED), Z_OK);
+    const std::unique_ptr<z_stream, EndDeflate> open(&stream);
     const std::size_t known = std::min(begin, kWindow);
     if (known > 0) check(deflateSetDictionary(&stream, &all[begin - known], uInt(known)), Z_OK);
     Block block;
@@ -206,7 +213,6 @@ Block pack(const Bytes& all, std::size_t begin, std::size_t end) {
     const bool isLast = end == all.size();
     const int code = deflate(&stream, isLast ? Z_FINISH : Z_SYNC_FLUSH);
     block.packed.resize(stream.total_out);
-    deflateEnd(&stream);
     check(code, isLast ? Z_STREAM_END : Z_OK);
     return block;
 }

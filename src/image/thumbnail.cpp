@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "default_floats.h"
@@ -47,19 +48,19 @@ class Shrinker {
   public:
     Shrinker(const OIIO::ImageSpec& spec, int mostSide)
         : size_(std::max(spec.full_width, 1), std::max(spec.full_height, 1)),
-          first_(spec.x - spec.full_x, spec.y - spec.full_y),
-          step_(std::max(1, (std::max(size_.x, size_.y) + mostSide - 1) / mostSide)),
-          image_((size_ + step_ - 1) / step_) {}
+          first_(glm::i64vec2(spec.x, spec.y) - glm::i64vec2(spec.full_x, spec.full_y)),
+          step_((std::max(size_.x, size_.y) - 1) / mostSide + 1),
+          image_((size_ - 1) / step_ + 1) {}
 
     // @param y  of a row, from the first that the file holds on
     void add(int y, const float* row, int width, int channels, bool isLight) {
-        const int line = first_.y + y;
+        const std::int64_t line = first_.y + y;
         if (line < 0 || line >= size_.y) return;
         for (int x = 0; x < width; ++x) {
-            const int column = first_.x + x;
+            const std::int64_t column = first_.x + x;
             if (column < 0 || column >= size_.x) continue;
             const auto rgba = lightOf(row + std::ptrdiff_t{channels} * x, channels, isLight);
-            float* sum = image_.pixel(column / step_, line / step_);
+            float* sum = image_.pixel(int(column / step_), int(line / step_));
             for (std::size_t c = 0; c < 4; ++c) sum[c] += rgba[c];
         }
     }
@@ -68,8 +69,8 @@ class Shrinker {
         for (int y = 0; y < image_.size.y; ++y) {
             for (int x = 0; x < image_.size.x; ++x) {
                 const glm::ivec2 rest = size_ - step_ * glm::ivec2(x, y);
-                const int count = std::min(step_, rest.x) * std::min(step_, rest.y);
-                for (int c = 0; c < 4; ++c) image_.pixel(x, y)[c] /= float(count);
+                const float count = float(std::min(step_, rest.x)) * float(std::min(step_, rest.y));
+                for (int c = 0; c < 4; ++c) image_.pixel(x, y)[c] /= count;
             }
         }
         return std::move(image_);
@@ -77,7 +78,7 @@ class Shrinker {
 
   private:
     glm::ivec2 size_;
-    glm::ivec2 first_;
+    glm::i64vec2 first_;
     int step_;
     Image image_;
 };

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include "deltasplat/image/write_deep_image.h"
 #include "deltasplat/image/write_image.h"
@@ -68,6 +71,22 @@ TEST(Thumbnail, ShowsTheWindowOfTheFrame) {
     ASSERT_EQ(whole.size, glm::ivec2(10, 6));
     expectPixel(whole, 7, 2, color);
     expectPixel(whole, 0, 0, glm::vec4(0));
+}
+
+// Frames may be as large as numbers are.
+TEST(Thumbnail, KnowsFramesOfAnySize) {
+    const test::TempFolder folder;
+    writeImage(folder / "a.exr", halfFull({1000, 4}, glm::vec4(1)), {});
+    std::string bytes = test::readBytes(folder / "a.exr");
+    const std::string name("displayWindow\0box2i\0\20\0\0\0", 24);
+    const std::size_t box = bytes.find(name);
+    ASSERT_NE(box, std::string::npos);
+    const std::int32_t last = 2'147'483'600 / 2;
+    for (const auto& [corner, value] : {std::pair(0, -last), std::pair(2, last - 1)})
+        std::memcpy(&bytes[box + name.size() + sizeof last * std::size_t(corner)], &value, 4);
+    std::ofstream(folder / "wide.exr", std::ios::binary) << bytes;
+    const Image image = readThumbnail(folder / "wide.exr", 320);
+    EXPECT_EQ(image.size, glm::ivec2(320, 1));
 }
 
 TEST(Thumbnail, IsNoneOfWhatCannotBeRead) {
