@@ -369,13 +369,13 @@ void runSlabs(const CLI::App& app, const RenderCommand& command, const Session& 
     writeSlabs(app, command, scene, session, partOf(all, kReadShare, 1));
 }
 
-// Puts together what options say, before anything but scenes and cameras is read.
+// Puts together what options say, before anything but cameras is read; of a scene the volume is
+// known.
 // @param pictures  of a batch, else 0
 void prepare(const CLI::App& app, RenderCommand& command, std::size_t pictures,
              const Listener& listener) {
     applyMode(app, command);
     applyProjection(app, command.picture.render.camera);
-    applyScene(app, command.frames.frames, command, listener);
     applyCamera(app, command.frames.frames, command.picture, listener);
     applyOverscan(command);
     applySinks(app, command, pictures);
@@ -395,6 +395,9 @@ void runBatch(const CLI::App& app, const RenderCommand& command, const Session& 
         const std::vector<BatchItem> items = findBatch(command, listener);
         std::optional<SequenceSinks> sinks;
         BatchWork work;
+        work.open = [&](RenderCommand& one, const Listener& part) {
+            applyScene(app, one.frames.frames, one, part);
+        };
         work.prepare = [&](RenderCommand& one, const Listener& part) {
             prepare(app, one, items.size(), part);
             validate(one);
@@ -409,7 +412,7 @@ void runBatch(const CLI::App& app, const RenderCommand& command, const Session& 
             Session own = session;
             own.begin = Clock::now();
             SequencePart sequence;
-            sequence.isWritten = !sinks;
+            sequence.isWritten = !one.contactSheet;
             if (sinks) sequence.take = [&](const Image& image) { sinks->put(i, image); };
             const MadePicture made = makePicture(app, one, own, sequence, part);
             worst.add(made.result.stats);
@@ -434,6 +437,7 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
     applySequence(app, command);
     {
         ProgressDisplay display(session.common);
+        applyScene(app, command.frames.frames, command, display.stage(0, 0));
         prepare(app, command, 0, display.stage(0, 0));
     }
     const std::jthread loading = loadEarly(command.output);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -98,10 +99,13 @@ std::string thumbnailOfFile(const fs::path& file, bool holdsValues) {
     return thumbnailOf(std::move(image));
 }
 
-// What went wrong, without the name that it begins with.
-std::string withoutName(const std::string& what, const std::string& name) {
-    return printable(
-        withFlagNames(what.starts_with(name + ": ") ? what.substr(name.size() + 2) : what));
+// What went wrong, without the name that it begins with, though with the line.
+std::string withoutName(std::string what, const std::string& name) {
+    if (what.starts_with(name + ": "))
+        what.erase(0, name.size() + 2);
+    else if (what.starts_with(name + ":"))
+        what.replace(0, name.size() + 1, "line ");
+    return printable(withFlagNames(what));
 }
 
 class BatchRun {
@@ -179,6 +183,7 @@ class BatchRun {
         IndexEntry& entry = entries_[i];
         if (item.failure) throw *item.failure;
         RenderCommand one = commandOf(command_, item);
+        work_.open(one, listener);
         makeFolderOf(one.output);
         makeFolderOf(one.stats);
         work_.prepare(one, listener);
@@ -212,29 +217,41 @@ void writeIndex(const RenderCommand& command, glm::ivec2 shape, const std::strin
     writeFileAtomically(command.index, indexText(index, command.index));
 }
 
+// The command of an item, or nothing if that cannot be opened, which is said when it is its turn.
+std::optional<RenderCommand> tryOpen(const RenderCommand& command, const BatchItem& item,
+                                     const BatchWork& work) {
+    if (item.failure) return {};
+    RenderCommand one = commandOf(command, item);
+    try {
+        work.open(one, {});
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::kInput) return {};
+        throw;
+    }
+    return one;
+}
+
 // Says what is wrong with all pictures before any is made. Returns the command of the first.
 RenderCommand checkFirst(const RenderCommand& command, const std::vector<BatchItem>& items,
                          const BatchWork& work) {
-    const auto first = std::find_if(items.begin(), items.end(),
-                                    [](const BatchItem& item) { return !item.failure; });
-    if (first == items.end()) return command;
-    RenderCommand one = commandOf(command, *first);
+    std::optional<RenderCommand> first;
+    for (auto item = items.begin(); item != items.end() && !first; ++item)
+        first = tryOpen(command, *item, work);
+    if (!first) return command;
     std::vector<fs::path> made;
     try {
-        made = makeFolderOf(one.output);
-        const std::vector<fs::path> others = makeFolderOf(one.stats);
+        made = makeFolderOf(first->output);
+        const std::vector<fs::path> others = makeFolderOf(first->stats);
         made.insert(made.begin(), others.begin(), others.end());
-        work.prepare(one, {});
-        work.begin(one);
-        readOptics(one.picture, {});
-    } catch (const Error& error) {
-        // What is wrong with a file is said when it is its turn.
-        if (std::string(error.what()).starts_with(first->input.string() + ": ")) return one;
+        work.prepare(*first, {});
+        work.begin(*first);
+        readOptics(first->picture, {});
+    } catch (const Error&) {
         std::error_code ignored;
         for (const fs::path& folder : made) fs::remove(folder, ignored);
         throw;
     }
-    return one;
+    return *first;
 }
 
 void checkIndex(const fs::path& index) {

@@ -20,9 +20,13 @@ struct BatchFailure {
 
 /// How pictures of a batch are made.
 struct BatchWork {
-    /// Makes a command ready that is about one volume, and checks it.
+    /// Finds the volume of an input that only says where one is: all that is read of an input
+    /// before it is rendered, so that an Error(kInput) is about this one.
+    std::function<void(RenderCommand& command, const Listener& listener)> open;
+    /// Makes a command ready that is about one volume, and checks it: what is wrong here is wrong
+    /// with all.
     std::function<void(RenderCommand& command, const Listener& listener)> prepare;
-    /// Is told of the command that makes the first, before any is made.
+    /// Is told of the command that makes the first that can be opened, before any is made.
     std::function<void(const RenderCommand& first)> begin;
     /// Makes the picture of the item with this number.
     std::function<PictureFacts(const RenderCommand& command, std::size_t i,

@@ -156,6 +156,25 @@ same cell.png cell/a.2.png || fail "the second of the broken ones is not in its 
 "$oiiotool" -q sheet.png --cut 40x32+0+0 -o cell.png
 "$oiiotool" --stats cell.png 2>&1 | grep -q "Constant: Yes" ||
     fail "the cell of what failed is not empty"
+# The same whichever failed: a scene that comes first as well.
+mkdir scenes
+echo garbage >scenes/aa.usda
+cp scenes/aa.usda scenes/zz.usda
+cp shots/a.1.vdb scenes/b.vdb
+expect_code 3 "$program" render 'scenes/*' -o sheet.png --contact-sheet 2x2 --size 40x32 --bits 16 \
+    --background 0.1,0.2,0.3 --shade --mode mip
+expect_said "deltasplat: warning: --shade: has no effect with --mode mip"
+[[ $("$oiiotool" --info sheet.png) == *" 80 x   64, "* ]] || fail "sheet.png is no sheet of four"
+"$program" render scenes/b.vdb -o one.png --bits 16 --mode mip --background 0.1,0.2,0.3 --size 40x32 -qq
+"$oiiotool" -q sheet.png --cut 40x32+40+0 -o cell.png
+same cell.png one.png || fail "the second of the scenes is not in its cell"
+expect_code 3 "$program" render 'scenes/*' -o 'scene/{name}.png' --size 40x32 --index scene/index.html
+expect_tree "b.png index.html" scene
+expect_said "deltasplat: 2 of 3 pictures failed: scenes/aa.usda, scenes/zz.usda"
+for name in aa zz; do
+    grep -q "^deltasplat: scenes/$name.usda:1: got " stderr.txt || fail "$name.usda is not told of"
+    grep -q "^  scenes/$name.usda  line 1: got " stderr.txt || fail "$name.usda is not in the table"
+done
 "$program" render 'shots/a.?.vdb' -o 'slate/{name}.png' --slate "${cells[@]}" --size 160x120
 "$program" render shots/a.2.vdb -o one.png --annotate a.2.vdb "${cells[@]}" --size 160x120
 same one.png slate/a.2.png || fail "the name of the file is not drawn"
@@ -254,6 +273,9 @@ expect_code 3 "$program" render 'shots/*.none' -o 'u/{name}.png'
 expect_said "deltasplat: shots/*.none: got no file that fits; expected at least one"
 expect_files "" 'u*'
 # What is wrong with all of them is said once.
+expect_code 3 "$program" render 'shots/*.vdb' -o 'u/{name}.png' --camera none.json
+[[ $(<stderr.txt) == "deltasplat: none.json: "* && $(wc -l <stderr.txt) == 1 ]] ||
+    fail "got $(<stderr.txt); expected to be told of none.json alone"
 expect_code 3 "$program" render 'shots/*.vdb' -o 'u/{name}.png' --tf none.json
 [[ $(<stderr.txt) == "deltasplat: none.json: "* && $(wc -l <stderr.txt) == 1 ]] ||
     fail "got $(<stderr.txt); expected to be told of none.json alone"
