@@ -13,7 +13,7 @@
 #include "deltasplat/ingest/list_grids.h"
 #include "ingest/files/file_name.h"
 #include "ingest/files/input_files.h"
-#include "render/preview.h"
+#include "render/preview_file.h"
 
 namespace deltasplat {
 namespace {

@@ -43,7 +43,8 @@ ImageFileOptions imageOptions(const RenderCommand& command, const CodeText& code
     options.cameraFromWorld = result.camera.cameraFromWorld();
     options.ndcFromWorld = result.camera.ndcFromWorld();
     options.exr.pixelAspect = result.camera.pixelAspect;
-    options.metadata = commonMetadata(session);
+    const Metadata common = commonMetadata(session);
+    options.metadata.insert(options.metadata.end(), common.begin(), common.end());
     options.metadata.insert(options.metadata.end(), {{"input", command.input.string()},
                                                      {"mode", modeName(result.stats.mode)},
                                                      {"camera", cameraOptionsText(result.camera)},

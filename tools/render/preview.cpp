@@ -6,6 +6,7 @@
 
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
+#include "render/preview_file.h"
 
 namespace deltasplat {
 namespace {
@@ -32,11 +33,6 @@ void checkPreview(const RenderCommand& command) {
         refuse(command.output.string() + ", which is no file", "one to write beside");
 }
 
-std::filesystem::path previewFile(const std::filesystem::path& output) {
-    std::filesystem::path file = output;
-    return file.replace_extension(".preview" + output.extension().string());
-}
-
 CameraOptions previewCamera(CameraOptions camera) {
     const glm::ivec2 size = camera.sizePixels;
     glm::ivec2 small = glm::max((size + kSmaller / 2) / kSmaller, glm::ivec2(1));
@@ -55,6 +51,7 @@ CameraOptions previewCamera(CameraOptions camera) {
 }
 
 RenderCommand previewOf(RenderCommand command) {
+    command.image.metadata = {{kPreviewMark, command.output.filename().string()}};
     command.output = previewFile(command.output);
     command.stats.clear();
     command.picture.render.camera = previewCamera(command.picture.render.camera);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 
 #include "render/render_options.h"
 
@@ -14,14 +13,11 @@ void addPreviewOption(CLI::App& app, RenderCommand& command);
 /// @throw Error(kUsage) if a preview is asked for that cannot be shown, or beside what is no file
 void checkPreview(const RenderCommand& command);
 
-/// Returns the name of a picture's preview, which lies beside it: `smoke.preview.exr`.
-std::filesystem::path previewFile(const std::filesystem::path& output);
-
 /// Returns the camera of a picture that shows the same in an eighth of its pixels each way.
 CameraOptions previewCamera(CameraOptions camera);
 
 /// Returns the command that makes the preview of a picture: the same light, with nothing beside it
-/// or drawn over it.
+/// or drawn over it, and marked as one.
 RenderCommand previewOf(RenderCommand command);
 
 }  // namespace deltasplat

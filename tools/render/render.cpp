@@ -31,6 +31,7 @@
 #include "render/picture_metadata.h"
 #include "render/picture_parts.h"
 #include "render/preview.h"
+#include "render/preview_file.h"
 #include "render/read_medium.h"
 #include "render/render_batch.h"
 #include "render/render_input.h"
@@ -265,16 +266,11 @@ class Preview {
         Listener silent = partOf(listener, 0, 0);
         silent.warning = {};
         showScene(previewOf(command), small, part, session, silent, made);
+        file_.noteWritten();
     }
-    ~Preview() {
-        std::error_code ignored;
-        std::filesystem::remove(file_, ignored);
-    }
-    Preview(const Preview&) = delete;
-    Preview& operator=(const Preview&) = delete;
 
   private:
-    std::filesystem::path file_;
+    PreviewFile file_;
 };
 
 // Reads, renders and writes one picture.

@@ -54,3 +54,35 @@ expect_files "seq.1.png seq.2.png" 'seq*'
     exit $failed
 ) || failed=1
 expect_files "" 'full*'
+
+# Nothing that others have made is overwritten or removed, nor anything that is read.
+"$program" render in.1.vdb -o frame.exr --size 80x60 "${view[@]}"
+refused() { # CODE NAME MESSAGE ARGUMENTS: NAME is a file that stays as it is
+    cp "$2" before
+    expect_code "$1" "$program" render in.1.vdb --size 80x60 --background 0,0,0 -qq --progressive "${@:4}"
+    expect_said "deltasplat: --progressive: got $2$3"
+    cmp "$2" before || fail "$2 is another file than before"
+    expect_files "" "${2/.preview/}"
+}
+for given in "--camera exr" "--env exr" "--tf exr" "--ocio png" "--look png"; do
+    name=shot.preview.${given#* }
+    cp frame.exr $name
+    # A table is read before it is known what it is called.
+    [[ $given != --look* ]] || printf '%s\n' 'LUT_1D_SIZE 2' '0 0 0' '1 1 1' >$name
+    more=()
+    [[ $given != --env* ]] || more=(--lighting scatter)
+    refused 2 $name "; expected another file than those that the command reads or writes" \
+        -o ${name/.preview/} ${given% *} $name "${more[@]}"
+done
+cp in.1.vdb mask.preview.png
+refused 2 mask.preview.png "; expected another file than those that the command reads or writes" -o mask.png \
+    --mask mask.preview.png
+other=", a file that is no preview; expected no file of this name, or what a preview has left"
+echo precious >z.preview.png
+refused 4 z.preview.png "$other" -o z.png
+"$program" render in.1.vdb -o z.preview.png --size 80x60 "${view[@]}"
+refused 4 z.preview.png "$other" -o z.png
+# What a program that was killed has left is replaced, and goes.
+cp kept.out.preview.png z.preview.png
+"$program" render in.1.vdb -o z.png --size 80x60 --progressive "${view[@]}"
+expect_files z.png 'z*'
