@@ -3,7 +3,6 @@
 
 #include <system_error>
 
-#include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "lower_case.h"
 #include "modules/image_module.h"
@@ -19,7 +18,8 @@ std::jthread loadEarly(const std::filesystem::path& picture) {
         return std::jthread([] {
             try {
                 imageModule();
-            } catch (const Error&) {
+            } catch (...) {
+                // Whoever needs it is told.
             }
         });
     } catch (const std::system_error&) {

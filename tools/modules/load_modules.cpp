@@ -2,31 +2,55 @@
 // Modules lie where the program's installation has them, as seen from the program itself.
 #include <dlfcn.h>
 
+#include <cstring>
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 #include "deltasplat/error.h"
 #include "modules/image_module.h"
 #include "modules/medical_module.h"
+#include "modules/module_version.h"
 #include "printable.h"
 
 namespace deltasplat {
 namespace {
 
+[[noreturn]] void refuse(const std::string& name, const std::string& got,
+                         const std::string& expected) {
+    throw Error(ErrorCode::kFailed,
+                gotExpected("module " + name, got, expected + ", installed with the program"));
+}
+
+std::filesystem::path fileOf(const std::string& name) {
+    std::error_code error;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+    if (error) refuse(name, "/proc/self/exe: " + error.message(), "the place of the program");
+    return (program.parent_path() / DELTASPLAT_MODULES / (name + ".so")).lexically_normal();
+}
+
+// An installation may be replaced while a program of the one before runs.
+void requireSameVersion(const std::string& name, const std::filesystem::path& file, void* library) {
+    const std::string expected = DELTASPLAT_MODULE_VERSION;
+    const auto* const version =
+        static_cast<const char*>(::dlsym(library, "deltasplat_module_version"));
+    const std::string got = version ? std::string(version, ::strnlen(version, 100)) : "no version";
+    if (got != expected)
+        refuse(name, file.string() + " of \"" + printable(got) + '"', '"' + expected + '"');
+}
+
 template <typename Module>
 const Module& load(const char* name) {
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
-    const std::filesystem::path file =
-        (program.parent_path() / DELTASPLAT_MODULES / (std::string(name) + ".so"))
-            .lexically_normal();
+    const std::filesystem::path file = fileOf(name);
     void* const library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     const auto module = reinterpret_cast<const Module* (*)()>(
         library ? ::dlsym(library, "deltasplat_module") : nullptr);
-    if (module) return *module();
-    const char* const why = ::dlerror();
-    throw Error(ErrorCode::kFailed,
-                gotExpected("module " + std::string(name), printable(why ? why : "nothing"),
-                            file.string() + ", which is installed with the program"));
+    if (!module) {
+        const char* const why = ::dlerror();
+        refuse(name, printable(why ? why : "nothing"), file.string());
+    }
+    requireSameVersion(name, file, library);
+    return *module();
 }
 
 }  // namespace

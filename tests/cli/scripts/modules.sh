@@ -27,6 +27,14 @@ done
 
 lonely/bin/deltasplat info in.vdb >/dev/null || fail "info needs a module"
 expect_code 1 lonely/bin/deltasplat render in.vdb -o none.jpg --size 32x32 -q --background 0,0,0
-grep -q "^deltasplat: module images: got .*; expected $PWD/lonely/lib/deltasplat/images.so, which is installed" \
+grep -q "^deltasplat: module images: got .*; expected $PWD/lonely/lib/deltasplat/images.so, installed with" \
     stderr.txt || { cat stderr.txt; fail "expected to be told what is missing"; }
+expect_files "" 'none*'
+
+# Nor is one of another version taken.
+mkdir -p lonely/lib/deltasplat
+sed 's/deltasplat module 0/deltasplat module 9/' installed/lib/deltasplat/images.so >lonely/lib/deltasplat/images.so
+expect_code 1 lonely/bin/deltasplat render in.vdb -o none.jpg --size 32x32 -q --background 0,0,0
+grep -q '^deltasplat: module images: got .*/images.so of "deltasplat module 9.*; expected "deltasplat module 0' \
+    stderr.txt || { cat stderr.txt; fail "expected to be told of the other version"; }
 expect_files "" 'none*'
