@@ -139,7 +139,7 @@ echo "one picture of 4 parts, pixels as of one process"
 # GNU parallel, killed half way, and sent again.
 rm turn.*.png parallel.log 2>/dev/null || true
 export OPTIONS=''
-setsid bash "$farm/parallel.sh" cloud.vdb 'turn.####.png' 100 --turntable 100 --size 300x300 \
+setsid bash "$farm/parallel.sh" cloud.vdb 'turn.####.png' 1-100 --turntable 100 --size 300x300 \
     --view iso -qq 2>/dev/null &
 job=$!
 for ((i = 0; i < 6000; ++i)); do
@@ -152,7 +152,7 @@ sleep 1
 before=$(frames | wc -l)
 ((before >= 30 && before < 100)) || fail "$before frames were there when parallel was killed"
 stat -c '%n %i %y' turn.*.png >before.txt
-bash "$farm/parallel.sh" cloud.vdb 'turn.####.png' 100 --turntable 100 --size 300x300 --view iso -qq
+bash "$farm/parallel.sh" cloud.vdb 'turn.####.png' 1-100 --turntable 100 --size 300x300 --view iso -qq
 stat -c '%n %i %y' turn.*.png | grep -xFf before.txt | cmp - before.txt ||
     fail "parallel: a frame was rendered twice"
 [[ $(hashes turn.*.png) == "$(hashes one/turn.*.png)" ]] || fail "parallel: other pixels"
