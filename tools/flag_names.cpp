@@ -96,6 +96,7 @@ constexpr FlagName kFlagNames[] = {
     {"shading.ambient", "--ambient"},
     {"shading.diffuse", "--diffuse"},
     {"shading.lights", "--light"},
+    {"shading.noise", "--shade"},
     {"shading.shininess", "--shininess"},
     {"shading.specular", "--specular"},
     {"share", "--slab-range"},

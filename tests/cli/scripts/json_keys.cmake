@@ -136,7 +136,7 @@ run(delta slab_12x10x8_uint8.raw slab_delta.vdb -q)
 run(info slab_delta.vdb --json -q)
 expect_keys("${text}" "files;0;grids;0;delta"
     "slice_axis;key_interval;deltas;tolerance;tolerance_value;max_error")
-expect_value("${text}" 8 files 0 grids 0 delta key_interval)
+expect_value("${text}" 128 files 0 grids 0 delta key_interval)
 expect_value("${text}" 0.0 files 0 grids 0 delta max_error)
 
 run(diff slab_12x10x8_uint8.raw slab_12x10x8_uint8.raw --json -q)
