@@ -27,7 +27,7 @@ glm::ivec2 CoveredCells::cellsOf(int axis, glm::ivec2 pixels) const {
 }
 
 void CoveredCells::settle() {
-    const auto width = std::size_t(size_.x + 1);
+    const std::size_t width = std::size_t(size_.x) + 1;
     for (int y = 0; y < size_.y; ++y) {
         std::uint32_t ofRow = 0;
         for (int x = 0; x < size_.x; ++x) {
