@@ -15,6 +15,7 @@ glm::ivec2 columnsOf(const Layer& layer, int first, int last) {
         const glm::ivec2 span = layer.spans[std::size_t(y - layer.box.min.y)];
         columns = {std::max(columns.x, span.x), std::min(columns.y, span.y)};
     }
+    if (columns.x >= columns.y) return {0, 0};
     return columns + layer.box.min.x;
 }
 

@@ -20,8 +20,11 @@ PlaneBox CoveredCells::pixelsOf(glm::ivec2 cell) const {
 }
 
 glm::ivec2 CoveredCells::cellsOf(int axis, glm::ivec2 pixels) const {
-    const int first = std::max(pixels.x, box_.min[axis]) - box_.min[axis];
-    const int last = std::min(pixels.y, box_.max[axis]) - box_.min[axis];
+    const auto placeOf = [&](int pixel) {
+        return std::clamp(pixel, box_.min[axis], box_.max[axis]) - box_.min[axis];
+    };
+    const int first = placeOf(pixels.x);
+    const int last = placeOf(pixels.y);
     if (last <= first) return {0, 0};
     return {first / kCellPixels, (last - 1) / kCellPixels + 1};
 }

@@ -2,6 +2,7 @@
 // What is covered, and what of a sheet nobody sees for that, beside plain loops.
 #include <gtest/gtest.h>
 
+#include <climits>
 #include <cmath>
 #include <random>
 
@@ -57,8 +58,10 @@ TEST(CoveredCells, KnowTheirPixels) {
     EXPECT_EQ(cells.cellsOf(0, {0, 1}), glm::ivec2(0, 1));
     EXPECT_EQ(cells.cellsOf(0, {1, 2}), glm::ivec2(1, 2));
     EXPECT_EQ(cells.cellsOf(1, {10, 12}), glm::ivec2(0, 2));
-    const glm::ivec2 none = cells.cellsOf(1, {100, 120});
-    EXPECT_EQ(none.x, none.y);
+    for (const glm::ivec2 pixels : {glm::ivec2(100, 120), {INT_MAX, 0}, {INT_MIN, INT_MIN}}) {
+        const glm::ivec2 none = cells.cellsOf(1, pixels);
+        EXPECT_EQ(none.x, none.y);
+    }
     for (int y = 0; y < cells.size().y; ++y)
         for (int x = 0; x < cells.size().x; ++x) cells.cover({x, y});
     cells.settle();
