@@ -8,6 +8,7 @@
 #include "deltasplat/error.h"
 #include "lower_case.h"
 #include "options/input_options.h"
+#include "render/value_window.h"
 
 namespace deltasplat {
 namespace {
@@ -48,8 +49,7 @@ bool showsWindow(const RenderCommand& command) {
 
 std::optional<glm::dvec2> windowAsked(const RenderCommand& command) {
     const RenderOptions& options = command.picture.render;
-    const bool addsUp = options.mode == Mode::kXray || options.mode == Mode::kDrr;
-    return command.window || addsUp ? command.window : options.optics.range;
+    return command.window || addsUp(options.mode) ? command.window : options.optics.range;
 }
 
 void applyMode(const CLI::App& app, RenderCommand& command) {

@@ -79,12 +79,11 @@ void attenuate(const Drr& drr, Image& image) {
     });
 }
 
-// Whether 0 is the value of nothing, which is black unless there is less.
+}  // namespace
+
 bool addsUp(Mode mode) {
     return mode == Mode::kXray || mode == Mode::kDrr;
 }
-
-}  // namespace
 
 void readyForGreys(const RenderOptions& options, const Volume& volume, const Camera& camera,
                    Image& image) {

@@ -11,6 +11,10 @@
 
 namespace deltasplat {
 
+/// Whether a mode sums along the line of sight: 0 is then the value of nothing, which is black
+/// unless there is less.
+bool addsUp(Mode mode);
+
 /// Makes the values of a picture, of any mode but composite, what is to be shown as greys: of an
 /// x-ray the line integrals, opaque where the line of sight meets the volume's box, else clear; of
 /// a radiograph the attenuation, -ln of the share that gets through, all opaque, so that white is
