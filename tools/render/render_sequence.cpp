@@ -26,6 +26,7 @@
 #include "sequence/frame_name.h"
 #include "sequence/frames_to_make.h"
 #include "sequence/run_frames.h"
+#include "text/utf8_text.h"
 
 namespace deltasplat {
 namespace {
@@ -140,11 +141,16 @@ Json runsOf(std::vector<int> frames) {
     return runs;
 }
 
+// As a first pass names it: JSON is UTF-8, which a file's name need not be.
+std::string inputName(const RenderCommand& command) {
+    return utf8(codePoints(command.input.filename().string()));
+}
+
 // What was made of other frames, or of another thing, may not suit those in hand.
 void warnOfOthers(const Json& json, const RenderCommand& command, const Listener& listener) {
     const std::string begin = "--first-pass: " + command.firstPass.string() + " was made ";
     const auto input = json.at(kInput).get<std::string>();
-    const std::string name = command.input.filename().string();
+    const std::string name = inputName(command);
     if (input != name)
         return listener.warn(begin + "of " + input + ", and is taken as it is for " + name);
     std::vector<int> absent;
@@ -176,8 +182,7 @@ bool readFirstPass(const RenderCommand& command, SequenceLook& look, const Liste
 }
 
 void writeFirstPass(const RenderCommand& command, const SequenceLook& look) {
-    Json json{{kInput, command.input.filename().string()},
-              {kFrames, runsOf(command.frames.frames)}};
+    Json json{{kInput, inputName(command)}, {kFrames, runsOf(command.frames.frames)}};
     json.update(look.toJson());
     writeFileAtomically(command.firstPass, Json{{kFirstPass, json}}.dump(1) + "\n");
 }
