@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <numbers>
 #include <utility>
 
@@ -283,6 +284,24 @@ bool areParallel(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::length(glm::cross(a, b)) < 1e-9;
 }
 
+// Returns the shortest turn that takes one unit vector to another, exact between axes; of opposite
+// ones half a turn about `halfTurn`.
+glm::dmat3 turnBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& halfTurn) {
+    if (areParallel(from, to) && glm::dot(from, to) < 0)
+        return 2.0 * glm::outerProduct(halfTurn, halfTurn) - glm::dmat3(1.0);
+    const glm::dvec3 v = glm::cross(from, to);
+    const glm::dmat3 cross(0, v.z, -v.y, -v.z, 0, v.x, v.y, -v.x, 0);
+    return glm::dmat3(1.0) + cross + cross * cross / (1 + glm::dot(from, to));
+}
+
+// Who stands in a world where `up` is up.
+Viewer standingIn(const Viewer& viewer, const glm::dvec3& up) {
+    const NamedView& front = namedView("front");
+    const glm::dvec3 seen = viewer.toWorld(front.direction);
+    const glm::dmat3 turn = turnBetween(viewer.toWorld(front.up), unitVector("`up`", up), seen);
+    return {turn * viewer.worldFromViewer, viewer.facesPatient};
+}
+
 // What is up where nobody says: of somebody who looks straight up or down, as the views have it.
 glm::dvec3 defaultUp(const Viewer& viewer, const glm::dvec3& direction) {
     const glm::dvec3 up = viewer.toWorld(namedView("front").up);
@@ -291,15 +310,16 @@ glm::dvec3 defaultUp(const Viewer& viewer, const glm::dvec3& direction) {
 }
 
 // Sets the three axes as a person turns a camera that looks along `pointed`, or else as the view
-// says, head towards `up`.
-void orient(Camera& camera, const CameraOptions& options, const Viewer& viewer,
+// says, which stands on what is `up`; head towards `up`.
+void orient(Camera& camera, const CameraOptions& options, const Viewer& atFront,
             const std::optional<glm::dvec3>& pointed) {
-    const NamedView& view = namedView(viewFrom(viewer, options.view));
+    const NamedView& view = namedView(viewFrom(atFront, options.view));
+    const Viewer viewer = options.up && !pointed ? standingIn(atFront, *options.up) : atFront;
     glm::dvec3 direction =
         unitVector("`direction`", pointed.value_or(viewer.toWorld(view.direction)));
-    const glm::dvec3 up = unitVector(
-        "`up`",
-        options.up.value_or(pointed ? defaultUp(viewer, direction) : viewer.toWorld(view.up)));
+    const glm::dvec3 up =
+        unitVector("`up`", pointed ? options.up.value_or(defaultUp(viewer, direction))
+                                   : viewer.toWorld(view.up));
     if (areParallel(direction, up)) {
         refuse("`up`",
                numberText(*options.up) + ", parallel to the line of sight " + numberText(direction),

@@ -279,6 +279,45 @@ TEST(Camera, directionsStayTheWorldsForAPatient) {
     EXPECT_EQ(makeCamera(options, kBox, kUnit, "RAS").up, makeCamera(top, kBox, kUnit, "RAS").up);
 }
 
+// As in Blender, whose front view looks along +y.
+TEST(Camera, viewsStandOnWhatIsUp) {
+    const struct {
+        const char* name;
+        glm::dvec3 direction, up;
+    } views[] = {
+        {"front", {0, 1, 0}, {0, 0, 1}}, {"back", {0, -1, 0}, {0, 0, 1}},
+        {"left", {1, 0, 0}, {0, 0, 1}},  {"right", {-1, 0, 0}, {0, 0, 1}},
+        {"top", {0, 0, -1}, {0, 1, 0}},  {"bottom", {0, 0, 1}, {0, -1, 0}},
+    };
+    CameraOptions options;
+    for (const auto& view : views) {
+        options.view = view.name;
+        options.up = glm::dvec3(0, 0, 5);
+        const Camera camera = makeCamera(options, kBox, kUnit);
+        EXPECT_EQ(camera.direction, view.direction) << view.name;
+        EXPECT_EQ(camera.up, view.up) << view.name;
+        options.up = glm::dvec3(0, 1, 0);  // what is up anyway
+        const Camera stated = makeCamera(options, kBox, kUnit);
+        options.up.reset();
+        const Camera plain = makeCamera(options, kBox, kUnit);
+        EXPECT_EQ(stated.direction, plain.direction) << view.name;
+        EXPECT_EQ(stated.up, plain.up) << view.name;
+        options.up = glm::dvec3(0, -1, 0);  // the front on its head
+        expectNear(makeCamera(options, kBox, kUnit).up, plain.up * glm::dvec3(-1, -1, 1));
+    }
+    options.view = "iso";
+    options.up = glm::dvec3(0, 0, 1);
+    expectNear(makeCamera(options, kBox, kUnit).direction, glm::dvec3(-1, 1, -1) / std::sqrt(3.0));
+    options.view = "front";
+    options.up = glm::dvec3(3, 4, 0);  // across the line of sight: it does not turn
+    EXPECT_EQ(makeCamera(options, kBox, kUnit).direction, glm::dvec3(0, 0, -1));
+    expectNear(makeCamera(options, kBox, kUnit).up, {0.6, 0.8, 0});
+    options.up = glm::dvec3(0, 0, 1);  // the head's direction as it is
+    const Camera patient = makeCamera(options, kBox, kUnit, "RAS");
+    options.up.reset();
+    EXPECT_EQ(patient.direction, makeCamera(options, kBox, kUnit, "RAS").direction);
+}
+
 // Straight down and up as the views top and bottom.
 TEST(Camera, whoLooksStraightDownNeedNotSayWhatIsUp) {
     for (const double y : {9.0, -9.0}) {
@@ -630,7 +669,10 @@ TEST(Camera, refusesWhatCannotBeMeant) {
               "`direction`: got 1,nan,0; expected three finite numbers, not all of them 0");
     EXPECT_EQ(messageOf([](CameraOptions& o) { o.up = glm::dvec3(0); }),
               "`up`: got 0,0,0; expected three finite numbers, not all of them 0");
-    EXPECT_EQ(messageOf([](CameraOptions& o) { o.up = glm::dvec3(0, 0, 2); }),
+    EXPECT_EQ(messageOf([](CameraOptions& o) {
+                  o.direction = glm::dvec3(0, 0, -3);
+                  o.up = glm::dvec3(0, 0, 2);
+              }),
               "`up`: got 0,0,2, parallel to the line of sight 0,0,-1; expected a direction that "
               "differs from it");
     EXPECT_EQ(messageOf([](CameraOptions& o) { o.frameWidthWorld = 0; }),

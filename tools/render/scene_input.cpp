@@ -33,6 +33,11 @@ UsdVolume volumeAt(const SceneChoice& scene, std::optional<int> frame) {
     return scene.motion->at(frame ? *frame : frames.empty() ? 0 : frames.front());
 }
 
+// Who looks straight down or up has something else at the top of the picture.
+bool looksAlong(const CameraOptions& camera, const std::optional<glm::dvec3>& up) {
+    return camera.direction && up && glm::cross(*camera.direction, *up) == glm::dvec3(0);
+}
+
 }  // namespace
 
 void applyScene(const CLI::App& app, const std::vector<int>& frames, RenderCommand& command,
@@ -44,7 +49,7 @@ void applyScene(const CLI::App& app, const std::vector<int>& frames, RenderComma
     scene.motion = readUsdVolume(found->file, found->name, listener);
     scene.isGridGiven = isGiven(app, "--grid");
     CameraOptions& camera = command.picture.render.camera;
-    if (!camera.up) camera.up = scene.motion->upWorld;
+    if (!camera.up && !looksAlong(camera, scene.motion->upWorld)) camera.up = scene.motion->upWorld;
     if (!frames.empty()) {
         // Each frame has its own; until then the first one's will do.
         showFrame(frames.front(), scene.moves() ? scene.file : std::filesystem::path(), command);

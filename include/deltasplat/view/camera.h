@@ -38,9 +38,9 @@ struct CameraOptions {
     double elevationDegrees = 0;
     double rollDegrees = 0;  ///< then turns it clockwise (seen from behind) about the line of sight
     std::optional<glm::dvec3> direction;  ///< the way the line of sight travels; replaces `view`
-    /// Default: the view's; where `direction` or `eyeWorld` is given +y, or in a patient's space
-    /// the head's direction, and straight down or up as in top or bottom. Not parallel to the
-    /// direction.
+    /// What is up: views turn with it, the shortest way. Default: +y, or in a patient's space the
+    /// head's direction; of a `direction` or `eyeWorld` straight down or up as in top or bottom.
+    /// Not parallel to those.
     std::optional<glm::dvec3> up;
     std::optional<glm::dvec3>
         targetWorld;  ///< falls on the middle of the picture; default: middle of the box

@@ -41,6 +41,15 @@ show still.usda turn_# --turntable 3
 show at3.vdb other_# --turntable 3
 expect_same turn_2 other_2 1e-6
 
+# Where z is up, views stand on that, and who looks straight down has y at the top.
+sed 's/#usda 1.0/&\n( upAxis = "Z" )/' still.usda >upright.usda
+show upright.usda upright
+show at3.vdb standing --direction 0,1,0 --up 0,0,1
+expect_same upright standing 1e-6
+show upright.usda down --direction 0,0,-1
+show at3.vdb flat
+expect_same down flat 1e-6
+
 # A frame without a file is missing.
 expect_code 3 "$program" render scene.usda -o gone.#.exr --frames 3-4 -qq --size 8x8
 expect_said "deltasplat: frame 4: scene.usda: got no filePath of a volume; expected a .vdb"
