@@ -42,6 +42,7 @@
 #include "render/scene_input.h"
 #include "render/slab_options.h"
 #include "render/tone_options.h"
+#include "render/validate.h"
 #include "render/value_window.h"
 #include "stopwatch.h"
 #include "subcommands.h"

@@ -154,8 +154,4 @@ void warnOfUnusedView(const CLI::App& app, const CameraOptions& options, const V
 /// Warns of a detector that stands within the volume.
 void warnOfDetector(const CameraOptions& options, const Volume& volume, const Listener& listener);
 
-/// Checks what can be checked before anything is read.
-/// @throw Error(kUsage) or, for a folder that cannot be written to, Error(kOutput)
-void validate(const RenderCommand& command);
-
 }  // namespace deltasplat

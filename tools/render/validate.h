@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "render/render_options.h"
+
+namespace deltasplat {
+
+/// Checks what can be checked before anything is read.
+/// @throw Error(kUsage) or, for a folder that cannot be written to, Error(kOutput)
+void validate(const RenderCommand& command);
+
+}  // namespace deltasplat
