@@ -210,8 +210,7 @@ void check(const ViewLayout& layout) {
     require(layout.channels == (place.color ? 1 : 4), "channels that no layer has");
     require(place.parts.slices >= 1 && place.parts.within >= 1 && place.parts.within <= 2,
             "voxels in parts that there are not");
-    require(place.resolution >= 1 && place.resolution <= kMaxResolution && place.spacing > 0 &&
-                std::isfinite(place.spacing),
+    require(isResolution(place.resolution) && place.spacing > 0 && std::isfinite(place.spacing),
             "a base plane of no pixels");
     require(isFinite(view.baseFromPixel) && isFinite(view.worldFromStep) &&
                 view.slopeMin.x <= view.slopeMax.x && view.slopeMin.y <= view.slopeMax.y,

@@ -8,6 +8,7 @@
 
 #include "deltasplat/error.h"
 #include "dims_text.h"
+#include "number_text.h"
 #include "view/thin_voxels.h"
 
 namespace deltasplat {
@@ -16,6 +17,12 @@ namespace {
 // Of the picture's pixels that a line of the base plane has at most, seen from an eye: about what
 // parallel projection has on average.
 constexpr double kPixelsOfScreen = 0.7;
+
+[[noreturn]] void refuseWithCoarse(const std::string& option, const std::string& got) {
+    throw Error(ErrorCode::kUsage,
+                gotExpected(option, got + " with a `resolution` below 1",
+                            "none: voxels that share a sheet pixel have a kernel of its width"));
+}
 
 }  // namespace
 
@@ -92,15 +99,22 @@ glm::dmat4 PictureView::worldFromSlices() const {
 }
 
 Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
+    const SplatOptions& options = scene_.options;
+    if (plan.resolution() < 1) {
+        if (options.sigma) refuseWithCoarse("`sigma`", numberText(*options.sigma));
+        if (options.footprintWidth)
+            refuseWithCoarse("footprint width", std::to_string(*options.footprintWidth));
+        return makeCoarseFootprint(int(1 / plan.resolution()));
+    }
     const int within = axis_->parts.within;
     const double pixels = view_.pixelsPerVoxel / within;
-    const double sigma = scene_.options.sigma.value_or(defaultSigma(pixels) / within);
+    const double sigma = options.sigma.value_or(defaultSigma(pixels) / within);
     // The kernel is round in voxels, however many slices there are; seen along the middle line of
     // sight.
     const glm::dvec2 shift =
         view_.eye ? 0.5 * (view_.slopeMin + view_.slopeMax) : view_.shiftPerSlice;
-    return makeFootprint(sigma, {shift.y, shift.x}, plan.resolution(),
-                         scene_.options.footprintWidth, within);
+    return makeFootprint(sigma, {shift.y, shift.x}, int(plan.resolution()), options.footprintWidth,
+                         within);
 }
 
 // Base plane pixels that a slope of 1 takes: as many as the farthest slice has sheet pixels, which
@@ -115,8 +129,9 @@ double PictureView::densityOf() const {
         std::max(0.0, view.frontToBack ? box.min.x - view.eye->x : view.eye->x - box.max.x);
     const double middle = 0.5 * (nearest + farthest);
     const double needed =
-        std::max(kPixelsOfScreen * view.pixelsPerSlope, middle / axis_->parts.within);
-    const double most = layout_.resolution * std::max(farthest, 1.0);
+        std::max(kPixelsOfScreen * view.pixelsPerSlope,
+                 middle * std::min(layout_.pixelsPerVoxel(), 1.0) / axis_->parts.within);
+    const double most = layout_.pixelsPerVoxel() * std::max(farthest, 1.0);
     // Reading sheets that are not averaged takes so much less time.
     constexpr double kWorthMore = 1.3;
     return most < kWorthMore * needed ? most : needed;
@@ -131,7 +146,7 @@ PlanePlace PictureView::placePlane() const {
     if (view_.eye) {
         place.spacing = 1 / densityOf();
     } else {
-        place.resolution = layout_.resolution;
+        place.resolution = layout_.pixelsPerVoxel();
         place.offsetPixels = layout_.offsetPixels;
     }
     place.filter = scene_.options.filter;

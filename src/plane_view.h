@@ -20,7 +20,7 @@ struct PlanePlace {
     Subdivision parts;         ///< what these are divided into
     int firstSlice = 0;        ///< as SheetLayout::firstSlice
     glm::ivec2 firstVoxel{0};  ///< as SheetLayout::firstVoxel
-    int resolution = 1;        ///< parallel: as SheetLayout::resolution
+    double resolution = 1;     ///< parallel: sheet pixels a voxel
     double offsetPixels = 0;   ///< parallel: as SheetLayout::offsetPixels
     double spacing = 1;        ///< from an eye: from one pixel to the next, in slopes
     PictureFilter filter = PictureFilter::kCatmullRom;  ///< as SplatOptions::filter

@@ -193,7 +193,7 @@ void renderRays(const Volume& volume, const RenderOptions& options, const Listen
     const bool parallel = options.camera.projection == Projection::kOrtho;
     // Of pictures from an eye, where it goes from region to region, the middle's.
     const Factorization view = factorize(result.camera, volume.worldFromIndex,
-                                         parallel ? options.resolution : std::optional<int>(1));
+                                         parallel ? options.resolution : std::optional<double>(1));
     result.stats.sliceAxis = view.sliceAxis;
     result.stats.slices = volume.box.dims()[view.sliceAxis];
     if (!volume.empty()) {

@@ -143,7 +143,7 @@ class CompositeRender {
 
     void countIn(const PictureView& picture) {
         const Footprint& footprint = picture.footprint();
-        stats_.resolution = footprint.resolution * picture.axis().parts.within;
+        stats_.resolution = footprint.pixelsPerVoxel() * picture.axis().parts.within;
         stats_.footprint = std::max(stats_.footprint, footprint.width);
     }
 

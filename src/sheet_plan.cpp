@@ -2,6 +2,7 @@
 #include "sheet_plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "deltasplat/error.h"
@@ -66,7 +67,10 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view
     const SplatOptions& options = scene.options;
     // Where the screen asks for two sheet pixels a voxel, but not for more, what is thin gets one.
     const bool few = view.pixelsPerVoxel < 2.5;
-    if (!options.resolution && few && scene.isThin) resolution_ = 1;
+    if (!options.resolution && few && scene.isThin) resolution_ = std::min(resolution_, 1.0);
+    // What voxels share has one kernel.
+    if (!options.resolution && (options.sigma || options.footprintWidth))
+        resolution_ = std::max(resolution_, 1.0);
     int between = 0;
     if (options.between) {
         between = *options.between;
@@ -85,7 +89,7 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view
         between = 1;
     }
     if (between > 0 && !options.resolution) resolution_ = 2;
-    parts_ = {between + 1, between > 0 && resolution_ % 2 == 0 ? 2 : 1, {}};
+    parts_ = {between + 1, between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1, {}};
 }
 
 Subdivision SheetPlan::partsAlong(int sliceAxis) const {

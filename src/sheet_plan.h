@@ -16,12 +16,12 @@ class SheetPlan {
     /// The same along another slice axis.
     Subdivision partsAlong(int sliceAxis) const;
     /// Sheet pixels of what voxels are divided into.
-    int resolution() const { return resolution_ / parts_.within; }
+    double resolution() const { return resolution_ / parts_.within; }
 
   private:
     Subdivision parts_;
     glm::ivec3 firstVoxel_;
-    int resolution_;  // of undivided voxels
+    double resolution_;  // of undivided voxels
 };
 
 }  // namespace deltasplat

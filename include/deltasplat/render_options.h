@@ -43,7 +43,7 @@ struct SplatOptions {
     Method method = Method::kAuto;
     /// Footprint's standard deviation in voxels, kMinSigma..kMaxSigma; empty: defaultSigma.
     std::optional<double> sigma;
-    std::optional<int> resolution;  ///< sheet pixels a voxel; empty: chosen from the screen
+    std::optional<double> resolution;  ///< as in factorize(); empty: chosen from the screen
     /// Slices put between two neighbouring ones, 0..kMostBetween, with values mixed. If any, then
     /// voxels have two sheet pixels if nothing else is asked for; and if their number is even, two
     /// values along u and v as well. Empty: 1 where the screen asks for two sheet pixels a voxel
@@ -99,7 +99,7 @@ struct RenderStats {
     int parts = 1;             ///< voxels that each was divided into: those are what is counted
     int slabs = 0;
     int sliceAxis = 2;
-    int resolution = 1;
+    double resolution = 1;
     int footprint = 0;            ///< width and height of the footprint in sheet pixels
     double prepareSeconds = 0;    ///< classification and taking differences
     double splatSeconds = 0;      ///< walking and stamping, its share of the wall time of all

@@ -12,6 +12,7 @@
 #include "composite/perspective_compositor.h"
 #include "deltasplat/threads.h"
 #include "memory.h"
+#include "number_text.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -53,7 +54,7 @@ SlabRenderer::SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen,
       merged_({}, channels_, input.memory) {
     const ClassTable& table = input.splat.colors.table();
     for (int plane = 0; plane < int(table.planes.size()); ++plane)
-        scales_.emplace_back(table.scaleOf(plane) / double(Footprint::kOne));
+        scales_.emplace_back(table.scaleOf(plane) / input.splat.footprint.one());
     for (const SeenSlab& one : seen_) slices_ += one.slab->sliceCount;
     if (seen_.empty() || reach_.empty()) return;
     cutIntoStrips();
@@ -198,8 +199,8 @@ void SlabRenderer::requireSlabMemory() const {
     if (!input_.plane.isParallel()) bytes += layerBytes(reach_, 1);
     // What is kept is there already.
     bytes = std::max(0.0, bytes - double(input_.memory.idleBytes()));
-    requireMemory("sheets and layers at " + std::to_string(largest_.resolution) + " pixels a voxel",
-                  bytes);
+    requireMemory(
+        "sheets and layers at " + numberText(largest_.pixelsPerVoxel()) + " pixels a voxel", bytes);
 }
 
 // The front slab goes straight into the merged layer, the others into layers of their own.

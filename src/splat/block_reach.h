@@ -8,37 +8,47 @@
 namespace deltasplat {
 
 /// Which rows of which tiles the footprints of a block's 8x8 voxels reach. Tiles are counted from
-/// the first that any of them reaches.
+/// the first that any of them reaches. Where blocks share a tile, each of them is a *phase*: the
+/// number, along an axis, of the block in its tile; else all are phase 0.
 class BlockReach {
   public:
     /// @param resolution   sheet pixels a voxel
     /// @param reachPixels  as Footprint::reach
     /// @param width        of the footprint, in pixels
     BlockReach(int resolution, int reachPixels, int width);
+    /// As Footprint::voxelsPerPixel: so many blocks share a tile along each axis.
+    explicit BlockReach(int voxelsPerPixel);
 
     /// The first tile reached, counted from the one in which the block's first voxel lies; <= 0.
     int firstTile() const { return firstTile_; }
     /// Tiles reached along a row, and along a column.
-    int tiles() const { return int(columns_.size()); }
+    int tiles() const { return tiles_; }
 
     /// Returns the rows of voxels, bit u, in which any of `voxels` (bit 8 * u + v) reaches a column
     /// of tiles.
-    std::uint8_t rowsReaching(int tileColumn, std::uint64_t voxels) const {
+    std::uint8_t rowsReaching(int phase, int tileColumn, std::uint64_t voxels) const {
         // Into the highest bit of each byte whether it is not zero, then the eight together.
         constexpr std::uint64_t kLow = 0x7F7F7F7F7F7F7F7F;
-        const std::uint64_t reaching = voxels & columns_[tileColumn];
+        const std::uint64_t reaching = voxels & phases_[phase].columns[tileColumn];
         const std::uint64_t any = (((reaching & kLow) + kLow) | reaching) & ~kLow;
         return std::uint8_t((any >> 7) * 0x0102040810204080 >> 56);
     }
     /// Returns the pixel rows of a tile, bit y, that footprints reach from rows of voxels.
-    std::uint8_t pixelRows(int tileRow, std::uint8_t voxelRows) const {
-        return pixelRows_[tileRow][voxelRows];
+    std::uint8_t pixelRows(int phase, int tileRow, std::uint8_t voxelRows) const {
+        return phases_[phase].pixelRows[tileRow][voxelRows];
     }
 
   private:
+    struct Phase {
+        std::vector<std::uint64_t> columns;  // [tile column]: the voxels that reach it
+        std::vector<std::array<std::uint8_t, 256>> pixelRows;  // [tile row][rows of voxels]
+    };
+    template <typename PixelsOf>
+    Phase phaseOf(const PixelsOf& pixelsOf) const;
+
     int firstTile_;
-    std::vector<std::uint64_t> columns_;  // [tile column]: the voxels that reach it
-    std::vector<std::array<std::uint8_t, 256>> pixelRows_;  // [tile row][rows of voxels]
+    int tiles_;
+    std::vector<Phase> phases_;
 };
 
 }  // namespace deltasplat

@@ -44,8 +44,10 @@ double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout) 
     // What stamps show, and their list as it grows.
     const double shownBytes = input.colors.own() ? sizeof(ClassTable::Color) : sizeof(ClassIndex);
     const double stamps = blocks * (64 * shownBytes + 3 * sizeof(BlockStamps));
-    // The plane, which is at most half as large as the sheet, and two lists of blocks.
-    const double tiles = 0.5 * double(layout.bytes()) + 48 * blocks;
+    // The plane, which is at most half as large as a sheet of one pixel a voxel, and two lists of
+    // blocks.
+    const double voxels = layout.voxelsPerPixel * layout.voxelsPerPixel;
+    const double tiles = 0.5 * double(layout.bytes()) * voxels + 48 * blocks;
     const double shown = input.colors.table().oneDigit() ? 0 : sizeof(std::uint64_t) * blocks;
     return double(layout.bytes()) + stamps + shown +
            (TileSplatter::fits(input.footprint) ? tiles : 0);

@@ -50,6 +50,7 @@ void addBytes(std::uint8_t* first, std::uint64_t bits) {
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels) {
     SheetLayout layout;
     layout.resolution = footprint.resolution;
+    layout.voxelsPerPixel = footprint.voxelsPerPixel;
     layout.reachPixels = footprint.reach();
     layout.footprintPixels = footprint.width;
     layout.offsetPixels = footprint.offsetPixels();
@@ -58,12 +59,17 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int cha
     // occupied ones.
     layout.marginPixels = roundUpToTile(footprint.reach()) + kTilePixels;
     layout.firstSlice = box.min.x;
-    const glm::ivec2 firstBlock{box.min.z >> 3, box.min.y >> 3};
-    const glm::i64vec2 blocks =
-        glm::i64vec2{box.max.z >> 3, box.max.y >> 3} - glm::i64vec2(firstBlock) + std::int64_t{1};
-    layout.firstVoxel = 8 * firstBlock;
+    // As many blocks together as begin with a tile.
+    const int group = layout.voxelsPerPixel;
+    const auto groupOf = [&](int v, int u) {
+        return glm::ivec2(floorDiv(v, 8 * group), floorDiv(u, 8 * group));
+    };
+    const glm::ivec2 first = groupOf(box.min.z, box.min.y);
+    const glm::i64vec2 blocks = std::int64_t{group} * (glm::i64vec2(groupOf(box.max.z, box.max.y)) -
+                                                       glm::i64vec2(first) + std::int64_t{1});
+    layout.firstVoxel = 8 * group * first;
     const glm::i64vec2 size =
-        std::int64_t{8 * footprint.resolution} * blocks + std::int64_t{2 * layout.marginPixels};
+        std::int64_t{layout.blockPixels()} * blocks + std::int64_t{2 * layout.marginPixels};
     const std::int64_t slices = std::int64_t{box.max.x} - box.min.x + 1;
     requireCountable(size, slices * footprint.resolution);
     layout.blocks = glm::ivec2(blocks);
@@ -71,16 +77,19 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int cha
     return layout;
 }
 
+glm::ivec2 pixelsReached(const SheetLayout& layout, int block) {
+    const int begin = layout.marginPixels - layout.reachPixels + block * layout.blockPixels();
+    return {begin, begin + layout.blockPixels() - layout.resolution + layout.footprintPixels};
+}
+
 namespace {
 
 // Of one axis, which has so many blocks.
 glm::ivec2 reachingOf(const SheetLayout& layout, int blocks, int first, int last) {
-    const int blockPixels = 8 * layout.resolution;
-    // Of block b: [begin + b * blockPixels, end + b * blockPixels).
-    const int begin = layout.marginPixels - layout.reachPixels;
-    const int end = begin + blockPixels - layout.resolution + layout.footprintPixels;
-    return {std::max(floorDiv(first - end, blockPixels) + 1, 0),
-            std::min(floorDiv(last - 1 - begin, blockPixels) + 1, blocks)};
+    const int blockPixels = layout.blockPixels();
+    const glm::ivec2 reached = pixelsReached(layout, 0);
+    return {std::max(floorDiv(first - reached.y, blockPixels) + 1, 0),
+            std::min(floorDiv(last - 1 - reached.x, blockPixels) + 1, blocks)};
 }
 
 }  // namespace
@@ -90,11 +99,12 @@ glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last) {
 }
 
 SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box) {
-    const int blockPixels = 8 * whole.resolution;
+    const int blockPixels = whole.blockPixels();
+    const int group = whole.voxelsPerPixel;
     SheetLayout part = whole;
     for (int axis = 0; axis < 2; ++axis) {
-        const glm::ivec2 blocks =
-            reachingOf(whole, whole.blocks[axis], box.min[axis], box.max[axis]);
+        glm::ivec2 blocks = reachingOf(whole, whole.blocks[axis], box.min[axis], box.max[axis]);
+        blocks = {blocks.x / group * group, (blocks.y + group - 1) / group * group};
         part.blocks[axis] = std::max(blocks.y - blocks.x, 0);
         part.firstVoxel[axis] += 8 * blocks.x;
         part.origin[axis] = blockPixels * blocks.x;
@@ -105,7 +115,9 @@ SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box) {
 
 Sheet::Sheet(const SheetLayout& layout, std::pmr::memory_resource& memory)
     : layout_(layout),
-      reach_(layout.resolution, layout.reachPixels, layout.footprintPixels),
+      reach_(layout.pixelsPerVoxel() < 1
+                 ? BlockReach(layout.voxelsPerPixel)
+                 : BlockReach(layout.resolution, layout.reachPixels, layout.footprintPixels)),
       bytesPerRow_((layout.tiles().x + 7) / 8 * 8),
       pixels_(layout.bytes() / sizeof(std::int32_t), &memory),
       full_(bytesPerRow_ * layout.tiles().y + sizeof(std::uint64_t)),
@@ -113,9 +125,10 @@ Sheet::Sheet(const SheetLayout& layout, std::pmr::memory_resource& memory)
       touchedRows_(layout.tiles().y),
       left_(bytesPerRow_) {}
 
-// Blocks and margins begin at tiles.
+// Margins begin at tiles, and so do blocks, or as many as share one.
 glm::ivec2 Sheet::firstTileOf(glm::ivec2 block) const {
-    return layout_.resolution * block + layout_.marginPixels / kTilePixels + reach_.firstTile();
+    return layout_.resolution * block / layout_.voxelsPerPixel +
+           layout_.marginPixels / kTilePixels + reach_.firstTile();
 }
 
 void Sheet::touch(glm::ivec2 block, std::uint64_t voxels) {
@@ -138,17 +151,19 @@ void Sheet::show(glm::ivec2 block, std::uint64_t visible, std::uint64_t vanished
 template <std::size_t kMasks, typename Use>
 void Sheet::forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks], const Use& use) {
     const glm::ivec2 first = firstTileOf(block);
+    const glm::ivec2 phase = block % layout_.voxelsPerPixel;
     for (int column = 0; column < reach_.tiles(); column += 8) {
         const int count = std::min(reach_.tiles() - column, 8);
         std::array<std::array<std::uint8_t, 8>, kMasks> rows;
         for (std::size_t i = 0; i < kMasks; ++i) {
-            for (int x = 0; x < count; ++x) rows[i][x] = reach_.rowsReaching(column + x, voxels[i]);
+            for (int x = 0; x < count; ++x)
+                rows[i][x] = reach_.rowsReaching(phase.x, column + x, voxels[i]);
         }
         for (int y = 0; y < reach_.tiles(); ++y) {
             std::array<std::uint64_t, kMasks> reached{};
             for (std::size_t i = 0; i < kMasks; ++i) {
                 for (int x = 0; x < count; ++x)
-                    reached[i] |= std::uint64_t{reach_.pixelRows(y, rows[i][x])} << 8 * x;
+                    reached[i] |= std::uint64_t{reach_.pixelRows(phase.y, y, rows[i][x])} << 8 * x;
             }
             use(bytesPerRow_ * (first.y + y) + first.x + column, reached);
         }

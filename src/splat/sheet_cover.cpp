@@ -9,22 +9,21 @@ namespace deltasplat {
 void SheetCover::set(const CoveredCells& cells, const SheetReading& first, const SheetReading& last,
                      const SheetLayout& layout) {
     cells_ = &cells;
-    const int blockPixels = 8 * layout.resolution;
-    const int begin = layout.marginPixels - layout.reachPixels;
-    const int end = begin + blockPixels - layout.resolution + layout.footprintPixels;
     for (int axis = 0; axis < 2; ++axis) {
-        const auto cellsReading = [&](int from, int to) {
-            const glm::ivec2 one = readersOf(first, axis, from, to, cells.box());
-            const glm::ivec2 other = readersOf(last, axis, from, to, cells.box());
-            return cells.cellsOf(axis, {std::min(one.x, other.x), std::max(one.y, other.y)});
+        const auto cellsReading = [&](glm::ivec2 pixels) {
+            glm::ivec2 readers = readersOf(first, axis, pixels.x, pixels.y, cells.box());
+            if (&first != &last) {
+                const glm::ivec2 others = readersOf(last, axis, pixels.x, pixels.y, cells.box());
+                readers = {std::min(readers.x, others.x), std::max(readers.y, others.y)};
+            }
+            return cells.cellsOf(axis, readers);
         };
         blocks_[axis].clear();
-        for (int i = 0; i < layout.blocks[axis]; ++i) {
-            blocks_[axis].push_back(cellsReading(begin + i * blockPixels, end + i * blockPixels));
-        }
+        for (int i = 0; i < layout.blocks[axis]; ++i)
+            blocks_[axis].push_back(cellsReading(pixelsReached(layout, i)));
         tiles_[axis].clear();
         for (int i = 0; i < layout.tiles()[axis]; ++i)
-            tiles_[axis].push_back(cellsReading(kTilePixels * i, kTilePixels * (i + 1)));
+            tiles_[axis].push_back(cellsReading({kTilePixels * i, kTilePixels * (i + 1)}));
     }
 }
 

@@ -11,7 +11,10 @@
 namespace deltasplat {
 namespace {
 
-std::variant<TileWeights, CellWeights> weightsOf(const Footprint& footprint, int channels) {
+using Weights = std::variant<TileWeights, CellWeights, CoarseWeights>;
+
+Weights weightsOf(const Footprint& footprint, int channels) {
+    if (CoarseWeights::fits(footprint)) return CoarseWeights(footprint, channels);
     if (TileWeights::fits(footprint)) return TileWeights(footprint, channels);
     return CellWeights(footprint, channels);
 }
@@ -20,13 +23,15 @@ std::variant<TileWeights, CellWeights> weightsOf(const Footprint& footprint, int
 // the outermost, never touched, leaves room for. Cells need not begin where tiles do, and take up
 // to three more.
 int marginOf(const SheetLayout& layout, bool ofCells) {
-    return layout.marginPixels / layout.resolution + (ofCells ? CellWeights::kTaps : 0);
+    const int margin = layout.marginPixels / layout.resolution * layout.voxelsPerPixel;
+    return margin + (ofCells ? CellWeights::kTaps : 0);
 }
 
 }  // namespace
 
 // Measured (docs/decisions.md, "Few changes are stamped").
 std::uint64_t TileSplatter::leastChanges(const Footprint& footprint, int channels) {
+    if (CoarseWeights::fits(footprint)) return 0;
     if (TileWeights::fits(footprint)) return 12;
     return channels == 4 ? 14 : 28;
 }
@@ -85,8 +90,13 @@ void TileSplatter::sumTiles(int row, std::span<const std::uint8_t> touched,
         const CellPlane plane{planeAt(glm::ivec2(marginVoxels_)), pitch_,
                               pixel - layout.marginPixels};
         splatCells(*cells, plane, tiles, touched, full);
+        return;
+    }
+    const int voxel = kTilePixels * row * layout.voxelsPerPixel / layout.resolution;
+    const PlaneRow plane{planeAt({0, voxel}), pitch_};
+    if (const auto* coarse = std::get_if<CoarseWeights>(&weights_)) {
+        splatCoarse(*coarse, plane, tiles, touched, full);
     } else {
-        const PlaneRow plane{planeAt({0, kTilePixels * row / layout.resolution}), pitch_};
         splatTiles(std::get<TileWeights>(weights_), plane, tiles, touched, full);
     }
 }

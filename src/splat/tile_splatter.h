@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "splat/cell_kernels.h"
+#include "splat/coarse_kernels.h"
 #include "splat/slice_blocks.h"
 #include "splat/tile_kernels.h"
 
@@ -16,13 +17,14 @@ namespace deltasplat {
 /// sums up the tiles of the sheet that it reaches.
 class TileSplatter {
   public:
-    /// Whether a footprint is small enough: as TileWeights or CellWeights say.
+    /// Whether a footprint is small enough: as one of the weights says.
     static bool fits(const Footprint& footprint) {
-        return TileWeights::fits(footprint) || CellWeights::fits(footprint);
+        return TileWeights::fits(footprint) || CellWeights::fits(footprint) ||
+               CoarseWeights::fits(footprint);
     }
 
     /// Returns how many voxels of a block have to change in a slice for it to be faster than
-    /// stamping them.
+    /// stamping them: none where voxels share pixels, which nobody stamps.
     static std::uint64_t leastChanges(const Footprint& footprint, int channels);
 
     /// @param input    with a footprint that fits
@@ -64,7 +66,7 @@ class TileSplatter {
     const std::vector<ClassTable::Color>& colors_;
     SliceBlocks blocks_;
     Sheet& sheet_;
-    std::variant<TileWeights, CellWeights> weights_;
+    std::variant<TileWeights, CellWeights, CoarseWeights> weights_;
     int marginVoxels_;                      // of the plane
     std::size_t pitch_;                     // likewise
     std::pmr::vector<std::int16_t> plane_;  // colours shown, a margin around them

@@ -28,7 +28,7 @@ constexpr int kBorder = 8;
 }  // namespace
 
 BasePlane::BasePlane(const Factorization& view, int firstSlice, glm::ivec2 firstVoxel,
-                     int resolution, double offsetPixels)
+                     double resolution, double offsetPixels)
     : frontToBack_(view.frontToBack),
       firstSlice_(firstSlice),
       spacing_(1.0 / resolution),

@@ -39,7 +39,7 @@ class BasePlane {
     /// @param firstVoxel    (v, u)
     /// @param resolution    pixels a voxel
     /// @param offsetPixels  how far pixels lie behind voxels
-    BasePlane(const Factorization& view, int firstSlice, glm::ivec2 firstVoxel, int resolution,
+    BasePlane(const Factorization& view, int firstSlice, glm::ivec2 firstVoxel, double resolution,
               double offsetPixels);
     /// Of lines of sight from an eye: pixels of what the picture shows and a few around it.
     /// @param spacing    from one pixel to the next, in slopes

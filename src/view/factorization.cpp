@@ -60,10 +60,13 @@ double largestSingularValue(const glm::dmat2& m) {
     return std::sqrt(half + portable::hypot(difference, glm::dot(m[0], m[1])));
 }
 
-int screenResolution(double pixelsPerVoxel) {
+double screenResolution(double pixelsPerVoxel) {
     // Asked this way round because a frame too narrow for double arithmetic stretches by NaN.
     if (!(pixelsPerVoxel < kMaxAutomaticResolution)) return kMaxAutomaticResolution;
-    return int(std::lround(std::max(pixelsPerVoxel, 1.0)));
+    if (pixelsPerVoxel >= 0.5) return double(std::lround(std::max(pixelsPerVoxel, 1.0)));
+    // Coarser sheets save little more than what compositing takes, which is little then.
+    if (pixelsPerVoxel >= 0.125) return 0.5;
+    return pixelsPerVoxel >= 0.0625 ? 0.25 : 1.0 / kMostVoxelsPerPixel;
 }
 
 void requireFinite(const glm::dvec3& eye) {
@@ -72,11 +75,12 @@ void requireFinite(const glm::dvec3& eye) {
                                                "a place that numbers can hold"));
 }
 
-void checkResolution(int resolution) {
-    if (resolution >= 1 && resolution <= kMaxResolution) return;
+void checkResolution(double resolution) {
+    if (isResolution(resolution)) return;
     throw Error(ErrorCode::kUsage,
-                gotExpected("`resolution`", std::to_string(resolution),
-                            "a whole number within 1.." + std::to_string(kMaxResolution)));
+                gotExpected("`resolution`", numberText(resolution),
+                            "a whole number within 1.." + std::to_string(kMaxResolution) +
+                                ", or 1/2, 1/4 or 1/8"));
 }
 
 // Lines of sight of one axis, in steps (away, u, v), of which one shows a corner of the picture's
@@ -183,8 +187,14 @@ double pixelsAtMiddle(const Camera& camera, const IndexBox& box, const glm::dmat
 
 }  // namespace
 
+bool isResolution(double resolution) {
+    if (!(resolution > 0 && resolution <= kMaxResolution)) return false;
+    if (resolution >= 1) return resolution == std::floor(resolution);
+    return resolution == 0.5 || resolution == 0.25 || resolution == 1.0 / kMostVoxelsPerPixel;
+}
+
 Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
-                        std::optional<int> resolution) {
+                        std::optional<double> resolution) {
     const DefaultFloats floats;
     if (resolution) checkResolution(*resolution);
     requireInvertible(worldFromIndex);
@@ -231,7 +241,7 @@ double planeDistance(const glm::dmat4& worldFromIndex, int sliceAxis) {
 
 std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox& box,
                                             const glm::dmat4& worldFromIndex,
-                                            std::optional<int> resolution) {
+                                            std::optional<double> resolution) {
     const DefaultFloats floats;
     if (resolution) checkResolution(*resolution);
     requireInvertible(worldFromIndex);

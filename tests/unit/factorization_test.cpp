@@ -9,6 +9,7 @@
 
 #include "deltasplat/delta/delta_grid.h"
 #include "deltasplat/error.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {
@@ -164,8 +165,10 @@ TEST(Factorization, wholeLinesOfSightFallOnOnePoint) {
 TEST(Factorization, resolutionFollowsTheScreen) {
     const struct {
         double pixelsPerVoxel;
-        int resolution;
-    } cases[] = {{0.01, 1}, {1, 1}, {1.4, 1}, {1.6, 2}, {3.4, 2}, {50, 2}};
+        double resolution;
+    } cases[] = {{0.001, 0.125}, {0.06, 0.125}, {0.07, 0.25}, {0.12, 0.25}, {0.13, 0.5},
+                 {0.49, 0.5},    {0.51, 1},    {1, 1},       {1.4, 1},     {1.6, 2},
+                 {3.4, 2},       {50, 2}};
     for (const auto& c : cases) {
         CameraOptions options;
         options.sizePixels = {1000, 500};
@@ -193,14 +196,15 @@ TEST(Factorization, resolutionIsTheLargestStretchOfARotatedScreen) {
 
 TEST(Factorization, refusesResolutionsOutOfRangeAndFlatWorlds) {
     const Camera camera = makeCamera(CameraOptions(), kBox, glm::dmat4(1));
-    for (const int resolution : {0, -1, 17}) {
+    for (const double resolution : {0.0, -1.0, 17.0, 1.5, 0.3, 0.0625}) {
         try {
             factorize(camera, glm::dmat4(1), resolution);
             ADD_FAILURE() << resolution;
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::kUsage);
-            EXPECT_EQ(std::string(error.what()), "`resolution`: got " + std::to_string(resolution) +
-                                                     "; expected a whole number within 1..16");
+            EXPECT_EQ(std::string(error.what()),
+                      "`resolution`: got " + numberText(resolution) +
+                          "; expected a whole number within 1..16, or 1/2, 1/4 or 1/8");
         }
     }
     try {

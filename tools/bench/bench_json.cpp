@@ -3,6 +3,7 @@
 
 #include "text/axis_name.h"
 #include "text/json_text.h"
+#include "text/resolution_text.h"
 #include "version.h"
 
 namespace deltasplat {
@@ -80,7 +81,7 @@ Json runJson(const BenchEntry& entry) {
                  {"parts", stats.parts},
                  {"slabs", stats.slabs},
                  {"slice_axis", axisName(stats.sliceAxis)},
-                 {"resolution", stats.resolution},
+                 {"resolution", resolutionJson(stats.resolution)},
                  {"footprint", stats.footprint},
                  {"methods", methods},
                  {"prepare", toJson(run.prepare)},

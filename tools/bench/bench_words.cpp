@@ -8,6 +8,7 @@
 #include "memory.h"
 #include "number_text.h"
 #include "text/axis_name.h"
+#include "text/resolution_text.h"
 #include "version.h"
 
 namespace deltasplat {
@@ -86,7 +87,7 @@ std::string pictureText(const BenchEntry& entry) {
     return by(run.picture.size.x, run.picture.size.y) + " pixels, " + entry.mode + ", " +
            counted(run.threads, "thread") + "; " + counted(stats.slices, "slice") + " along " +
            axisName(stats.sliceAxis) + " in " + counted(stats.slabs, "slab") + ", " +
-           counted(stats.resolution, "sheet pixel") + " a voxel, footprint " +
+           sheetPixelsText(stats.resolution) + " a voxel, footprint " +
            by(stats.footprint, stats.footprint);
 }
 

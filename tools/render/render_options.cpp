@@ -79,6 +79,21 @@ Parser<std::int64_t> bits() {
     };
 }
 
+Parser<double> resolution() {
+    return [](const std::string& option, const std::string& text) {
+        for (int voxels = 2; voxels <= kMostVoxelsPerPixel; voxels *= 2)
+            if (text == "1/" + std::to_string(voxels)) return 1.0 / voxels;
+        try {
+            return double(wholeNumber(1, kMaxResolution)(option, text));
+        } catch (const Error&) {
+            throw Error(ErrorCode::kUsage,
+                        gotExpected(option, text,
+                                    "a whole number from 1 to " + std::to_string(kMaxResolution) +
+                                        ", or 1/2, 1/4 or 1/8"));
+        }
+    };
+}
+
 Parser<bool> zeroOrOne() {
     return [](const std::string& option, const std::string& text) {
         return choice({"0", "1"})(option, text) == "1";
@@ -339,9 +354,9 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
             "--resolution is given, but not for thin fog (opacities up to\n0.25 a voxel), "
             "labels and colours that jump, nor more\nthan " +
             std::to_string(kMostDivided) + " blocks of voxels; else 0)");
-    group.addValue("--resolution", "R", options.resolution, wholeNumber(1, kMaxResolution),
+    group.addValue("--resolution", "R", options.resolution, resolution(),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
-                       " (default: chosen from the screen)");
+                       ", or 1/2, 1/4 or 1/8\n(default: chosen from the screen)");
     group.addValue("--filter", "NAME", options.filter, pictureFilter(),
                    withDefault("What makes pixels of the rendered plane: catmull-rom (sharp),\n"
                                "mitchell, gauss (soft) or box (the mean over a pixel)",

@@ -12,6 +12,7 @@
 #include "process/peak_bytes.h"
 #include "text/axis_name.h"
 #include "text/json_text.h"
+#include "text/resolution_text.h"
 #include "volume_place.h"
 
 namespace deltasplat {
@@ -83,7 +84,7 @@ std::string statsJson(const RenderResult& result, const Volume& volume, const Re
         {"parts", stats.parts},
         {"slabs", stats.slabs},
         {"slice_axis", axisName(stats.sliceAxis)},
-        {"resolution", stats.resolution},
+        {"resolution", resolutionJson(stats.resolution)},
         {"footprint", stats.footprint},
         {"seconds", seconds},
         {"peak_bytes", peakBytes()},
@@ -133,11 +134,11 @@ std::string statsSummary(const RenderResult& result, const RenderTimes& times,
     const RenderStats& stats = result.stats;
     char text[512];
     std::snprintf(text, sizeof text,
-                  "%s%d slices along %s in %d slabs, %d sheet pixel%s a voxel, footprint %dx%d\n"
+                  "%s%d slices along %s in %d slabs, %s a voxel, footprint %dx%d\n"
                   "seconds: read %.3f, prepare %.3f, render %.3f (splat %.3f, composite %.3f, "
                   "warp %.3f), write %.3f, total %.3f\n",
                   workSummary(stats).c_str(), stats.slices, axisName(stats.sliceAxis).c_str(),
-                  stats.slabs, stats.resolution, stats.resolution == 1 ? "" : "s", stats.footprint,
+                  stats.slabs, sheetPixelsText(stats.resolution).c_str(), stats.footprint,
                   stats.footprint, times.read, stats.prepareSeconds, stats.renderSeconds,
                   stats.splatSeconds, stats.compositeSeconds, stats.warpSeconds, times.write,
                   times.total);

@@ -22,7 +22,7 @@ struct Factorization {
     /// World distance between consecutive slices along the line of sight; from an eye, where it
     /// differs from pixel to pixel, between their planes.
     double sliceStepWorld = 1;
-    int resolution = 1;         ///< r: sheet pixels a voxel, the same along u and v
+    double resolution = 1;      ///< r: sheet pixels a voxel, the same along u and v
     double pixelsPerVoxel = 1;  ///< of the screen, along the base plane's longest stretch; from an
                                 ///< eye, of a voxel in the middle of the volume
 
@@ -44,18 +44,24 @@ struct Factorization {
 };
 
 inline constexpr int kMaxResolution = 16;
+/// Most voxels that a sheet pixel has along an axis.
+inline constexpr int kMostVoxelsPerPixel = 8;
+
+/// Whether a sheet may have so many pixels a voxel: 1/8, 1/4, 1/2 or 1..kMaxResolution.
+bool isResolution(double resolution);
 
 /// Factors the camera's projection of a volume.
 /// Ties between axes go to the later one (z before y before x), so that a diagonal view is well
 /// defined; what is within 1e-9 of a tie is one, and shifts within 1e-9 of 0 or 1 are 0 or 1, so
 /// that rounding neither chooses an axis nor tilts a straight view.
 /// @param camera      a parallel one
-/// @param resolution  1..kMaxResolution, or empty: 1 where the screen has fewer than one and a half
-/// pixels a voxel, else 2
+/// @param resolution  as isResolution says, or empty: 2 where the screen has one and a half pixels
+/// a voxel or more; 1/2 where it has less than half a pixel, 1/4 below 1/8 of one and 1/8 below
+/// 1/16; else 1
 /// @throw Error(kUsage) if the resolution is out of range;
 ///        Error(kInput) if worldFromIndex is not finite or cannot be inverted
 Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
-                        std::optional<int> resolution = {});
+                        std::optional<double> resolution = {});
 
 /// Factors the projection of a camera that looks from an eye: for each of the up to six ways along
 /// an axis that lines of sight may be most parallel to, in index space, if the picture shows such
@@ -64,7 +70,7 @@ Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
 /// @throw as `factorize`
 std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox& box,
                                             const glm::dmat4& worldFromIndex,
-                                            std::optional<int> resolution = {});
+                                            std::optional<double> resolution = {});
 
 /// Returns the world distance between the planes of slices, the least that a line of sight goes
 /// from one to the next.
