@@ -12,7 +12,8 @@ headers=(libglm-dev libcli11-dev nlohmann-json3-dev)
 # OpenImageIO's CMake files ask for its programs, used or not.
 libraries=(
     libopenvdb-dev libboost-dev libboost-iostreams-dev libblosc-dev libimath-dev libtbb-dev
-    libopenimageio-dev openimageio-tools libhwy-dev zlib1g-dev libgtest-dev libbenchmark-dev
+    libopenexr-dev libopenimageio-dev openimageio-tools libhwy-dev zlib1g-dev libgtest-dev
+    libbenchmark-dev
 )
 packages=("${tools[@]}" "${headers[@]}")
 case ${1:-} in

@@ -1,101 +1,140 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <OpenImageIO/deepdata.h>
-#include <OpenImageIO/imageio.h>
+#include <Imath/half.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDeepFrameBuffer.h>
+#include <OpenEXR/ImfDeepScanLineOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "image/encode_image.h"
+#include "image/exr_header.h"
+#include "image/exr_stream.h"
 #include "image/seen_box.h"
 #include "image/stored_samples.h"
-#include "modules/image_module.h"
+#include "modules/exr_module.h"
 #include "parallel.h"
 
 namespace deltasplat {
 namespace {
 
-constexpr int kChannels = 6;
+constexpr std::array<const char*, 6> kChannels{"R", "G", "B", "A", "Z", "ZBack"};
+constexpr std::size_t kColors = 4;
 // Rows that are handed over at once: enough for all threads to pack some.
 constexpr int kBand = 64;
 
-OIIO::ImageSpec deepSpec(glm::ivec2 size, const ImageFileOptions& options) {
-    const OIIO::TypeDesc color = options.floatExr ? OIIO::TypeFloat : OIIO::TypeHalf;
-    OIIO::ImageSpec spec(size.x, size.y, kChannels, color);
-    spec.deep = true;
-    spec.channelnames = {"R", "G", "B", "A", "Z", "ZBack"};
-    spec.channelformats = {color, color, color, color, OIIO::TypeFloat, OIIO::TypeFloat};
-    spec.alpha_channel = 3;
-    spec.z_channel = 4;
-    addExrAttributes(options, spec);
-    return spec;
+// A sample as the file has it.
+template <typename Color>
+struct StoredSample {
+    std::array<Color, kColors> rgba;
+    std::array<float, 2> z;
+};
+
+Imf::PixelType typeOf(half) {
+    return Imf::HALF;
+}
+Imf::PixelType typeOf(float) {
+    return Imf::FLOAT;
 }
 
-// Pixels as OpenImageIO has them.
+// Rows as OpenEXR takes them: for each pixel how many samples there are and, channel by channel,
+// where the first one's is.
+template <typename Color>
 class Band {
   public:
-    Band(const DeepImage& image, const PixelBox& part, const OIIO::ImageSpec& spec, bool asFloat)
-        : width_(part.size().x), rows_(std::size_t(part.size().y)) {
-        data_.init(std::int64_t{width_} * part.size().y, kChannels, spec.channelformats,
-                   spec.channelnames);
-        std::vector<unsigned> counts(rows_.size() * std::size_t(width_));
-        parallelFor(rows_.size(), [&](std::size_t y) {
-            unsigned* count = &counts[y * std::size_t(width_)];
-            for (int x = 0; x < width_; ++x) {
-                const std::size_t before = rows_[y].size();
-                addStored(image.pixel(part.min.x + x, part.min.y + int(y)), asFloat, rows_[y]);
-                *count++ = unsigned(rows_[y].size() - before);
-            }
-        });
-        data_.set_all_samples(counts);
-        // Makes room for all at once, before threads ask for some.
-        data_.all_data();
-        parallelFor(rows_.size(), [&](std::size_t y) { fillRow(y); });
+    Band(const DeepImage& image, const PixelBox& part)
+        : width_(std::size_t(part.size().x)), rows_(std::size_t(part.size().y)) {
+        counts_.resize(width_ * rows_.size());
+        for (auto& first : firsts_) first.resize(counts_.size());
+        parallelFor(rows_.size(), [&](std::size_t y) { fillRow(image, part, y); });
     }
 
-    const OIIO::DeepData& data() const { return data_; }
+    // @param first  where the first pixel lies in the file's data window
+    Imf::DeepFrameBuffer at(const Imath::V2i& first) {
+        // OpenEXR counts from the pixel at 0, 0 on.
+        const auto base = [&](auto& values) {
+            const std::ptrdiff_t before = first.y * std::ptrdiff_t(width_) + first.x;
+            return reinterpret_cast<char*>(values.data()) -
+                   before * std::ptrdiff_t(sizeof values[0]);
+        };
+        const auto strides = [&](const auto& values) {
+            return std::array{sizeof values[0], sizeof values[0] * width_};
+        };
+        Imf::DeepFrameBuffer pixels;
+        const auto [countX, countY] = strides(counts_);
+        pixels.insertSampleCountSlice({Imf::UINT, base(counts_), countX, countY});
+        for (std::size_t c = 0; c < kChannels.size(); ++c) {
+            const auto [x, y] = strides(firsts_[c]);
+            const Imf::PixelType type = c < kColors ? typeOf(Color()) : Imf::FLOAT;
+            pixels.insert(kChannels[c], Imf::DeepSlice(type, base(firsts_[c]), x, y,
+                                                       sizeof(StoredSample<Color>)));
+        }
+        return pixels;
+    }
 
   private:
-    void fillRow(std::size_t y) {
-        const DeepSample* sample = rows_[y].data();
-        for (int x = 0; x < width_; ++x) {
-            const std::int64_t pixel = std::int64_t(y) * width_ + x;
-            const int count = data_.samples(pixel);
-            for (int s = 0; s < count; ++s, ++sample) {
-                for (int c = 0; c < 4; ++c) data_.set_deep_value(pixel, c, s, sample->rgba[c]);
-                data_.set_deep_value(pixel, 4, s, sample->z);
-                data_.set_deep_value(pixel, 5, s, sample->zBack);
-            }
+    void fillRow(const DeepImage& image, const PixelBox& part, std::size_t y) {
+        std::vector<DeepSample> samples;
+        for (std::size_t x = 0; x < width_; ++x) {
+            const std::size_t before = samples.size();
+            addStored(image.pixel(part.min.x + int(x), part.min.y + int(y)),
+                      std::is_same_v<Color, float>, samples);
+            counts_[y * width_ + x] = unsigned(samples.size() - before);
+        }
+        std::vector<StoredSample<Color>>& row = rows_[y];
+        for (const DeepSample& sample : samples) {
+            const glm::vec4& c = sample.rgba;
+            row.push_back(
+                {{Color(c.r), Color(c.g), Color(c.b), Color(c.a)}, {sample.z, sample.zBack}});
+        }
+        StoredSample<Color>* next = row.data();
+        for (std::size_t i = y * width_; i < (y + 1) * width_; next += counts_[i++]) {
+            if (counts_[i] == 0) continue;
+            for (std::size_t c = 0; c < kColors; ++c) firsts_[c][i] = &next->rgba[c];
+            for (std::size_t c = 0; c < 2; ++c) firsts_[kColors + c][i] = &next->z[c];
         }
     }
 
-    int width_;
-    std::vector<std::vector<DeepSample>> rows_;
-    OIIO::DeepData data_;
+    std::size_t width_;
+    std::vector<std::vector<StoredSample<Color>>> rows_;
+    std::vector<unsigned> counts_;                             // [height][width]
+    std::array<std::vector<void*>, kChannels.size()> firsts_;  // the same
 };
 
-bool writeBands(OIIO::ImageOutput& output, const DeepImage& image, const PixelBox& box,
-                const OIIO::ImageSpec& spec, bool asFloat) {
+template <typename Color>
+void writeBands(const DeepImage& image, const PixelBox& box, Imf::Header header, Imf::OStream& to) {
+    header.setType(Imf::DEEPSCANLINE);
+    for (std::size_t c = 0; c < kChannels.size(); ++c)
+        header.channels().insert(kChannels[c],
+                                 Imf::Channel(c < kColors ? typeOf(Color()) : Imf::FLOAT));
+    Imf::DeepScanLineOutputFile file(to, header);
+    Imath::V2i place = header.dataWindow().min;
     for (int first = box.min.y; first < box.max.y; first += kBand) {
         const int last = std::min(first + kBand, box.max.y);
-        const Band band(image, {{box.min.x, first}, {box.max.x, last}}, spec, asFloat);
-        const int y = spec.y - box.min.y;
-        if (!output.write_deep_scanlines(y + first, y + last, 0, band.data())) return false;
+        Band<Color> band(image, {{box.min.x, first}, {box.max.x, last}});
+        file.setFrameBuffer(band.at(place));
+        file.writePixels(last - first);
+        place.y += last - first;
     }
-    return true;
 }
 
 }  // namespace
 
-std::string image_module::encodeDeepImage(const std::filesystem::path& file, const DeepImage& image,
-                                          const ImageFileOptions& options) {
+std::string exr_module::encodeDeepImage(const std::filesystem::path& file, const DeepImage& image,
+                                        const ImageFileOptions& options) {
     const PixelBox box =
         storedBox(options, image.size, [&](const PixelBox& part) { return seenBox(image, part); });
-    OIIO::ImageSpec spec = deepSpec(box.size(), options);
-    setWindows(options.exr, image.size, box.min, spec);
-    return encodeInMemory(file, "openexr", spec, [&](OIIO::ImageOutput& output) {
-        return writeBands(output, image, box, spec, options.floatExr);
+    ExrMemoryStream memory;
+    writeExr(file, [&] {
+        // Of what deep pictures may have, zips packs best.
+        const Imf::Header header = exrHeader(options, image.size, box, "zips");
+        options.floatExr ? writeBands<float>(image, box, header, memory)
+                         : writeBands<half>(image, box, header, memory);
     });
+    return memory.takeBytes();
 }
 
 }  // namespace deltasplat

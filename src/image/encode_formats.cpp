@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <OpenImageIO/imageio.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "image/encode_image.h"
 #include "image/quantize.h"
-#include "image/seen_box.h"
 #include "modules/image_module.h"
 
 namespace deltasplat {
@@ -52,108 +50,6 @@ std::string encode(const std::filesystem::path& file, const char* formatName,
     });
 }
 
-void addChannels(const std::vector<ImageChannel>& channels, OIIO::ImageSpec& spec) {
-    spec.channelformats.assign(4, spec.format);
-    for (const ImageChannel& channel : channels) {
-        spec.channelnames.push_back(channel.name);
-        spec.channelformats.push_back(OIIO::TypeFloat);
-        if (channel.name == "Z") spec.z_channel = spec.nchannels;
-        ++spec.nchannels;
-    }
-}
-
-// Returns all channels of each pixel after the other.
-std::vector<float> besideChannels(const std::vector<float>& rgba,
-                                  const std::vector<ImageChannel>& channels) {
-    const std::size_t pixels = rgba.size() / 4;
-    std::vector<float> all;
-    all.reserve(pixels * (4 + channels.size()));
-    for (std::size_t i = 0; i < pixels; ++i) {
-        all.insert(all.end(), &rgba[4 * i], &rgba[4 * i] + 4);
-        for (const ImageChannel& channel : channels) all.push_back(finiteValue(channel.values[i]));
-    }
-    return all;
-}
-
-// Channels of one name before the dot.
-struct ExrLayer {
-    std::string name;
-    std::vector<const ImageChannel*> channels;
-};
-
-std::vector<ExrLayer> layersOf(const std::vector<ImageChannel>& channels) {
-    std::vector<ExrLayer> layers;
-    for (const ImageChannel& channel : channels) {
-        const std::string name =
-            channel.name == "Z" ? "depth" : channel.name.substr(0, channel.name.find('.'));
-        if (layers.empty() || layers.back().name != name) layers.push_back({name, {}});
-        layers.back().channels.push_back(&channel);
-    }
-    return layers;
-}
-
-// Values of channels, pixel by pixel of a part.
-std::vector<float> valuesIn(const PixelBox& box, int width, const ExrLayer& layer) {
-    std::vector<float> values;
-    for (int y = box.min.y; y < box.max.y; ++y) {
-        for (int x = box.min.x; x < box.max.x; ++x) {
-            const auto i = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            for (const ImageChannel* channel : layer.channels)
-                values.push_back(finiteValue(channel->values[i]));
-        }
-    }
-    return values;
-}
-
-// The picture in one part, and its layers in others.
-std::string encodeMultipart(const std::filesystem::path& file, const Image& image,
-                            const PixelBox& box, OIIO::ImageSpec spec,
-                            const ImageFileOptions& options) {
-    spec.attribute("oiio:subimagename", "rgba");
-    std::vector<OIIO::ImageSpec> specs{spec};
-    const std::vector<ExrLayer> layers = layersOf(options.channels);
-    for (const ExrLayer& layer : layers) {
-        OIIO::ImageSpec& part = specs.emplace_back(spec);
-        part.attribute("oiio:subimagename", layer.name);
-        part.set_format(OIIO::TypeFloat);
-        part.nchannels = int(layer.channels.size());
-        part.alpha_channel = -1;
-        part.channelnames.clear();
-        for (const ImageChannel* channel : layer.channels)
-            part.channelnames.push_back(channel->name);
-        if (layer.channels[0]->name == "Z") part.z_channel = 0;
-    }
-    return encodeParts(file, specs, [&](OIIO::ImageOutput& output, std::size_t i) {
-        if (i > 0) {
-            const std::vector<float> values = valuesIn(box, image.size.x, layers[i - 1]);
-            return output.write_image(OIIO::TypeFloat, values.data());
-        }
-        const std::vector<float> values = finiteValues(image, options.floatExr);
-        const OIIO::stride_t stride = 4 * sizeof(float);
-        const auto first =
-            std::size_t(box.min.y) * std::size_t(image.size.x) + std::size_t(box.min.x);
-        return output.write_image(OIIO::TypeFloat, &values[4 * first], stride,
-                                  stride * image.size.x);
-    });
-}
-
-std::string encodeExr(const std::filesystem::path& file, const Image& image,
-                      const ImageFileOptions& options) {
-    const PixelBox box = storedBox(options, image.size, [&](const PixelBox& part) {
-        return seenBox(image, part, options.channels);
-    });
-    OIIO::ImageSpec spec = exrSpec(box.size(), options);
-    setWindows(options.exr, image.size, box.min, spec);
-    if (options.exr.multipart && !options.channels.empty())
-        return encodeMultipart(file, image, box, spec, options);
-    std::vector<float> values = finiteValues(image, options.floatExr);
-    if (!options.channels.empty()) {
-        addChannels(options.channels, spec);
-        values = besideChannels(values, options.channels);
-    }
-    return encode(file, "openexr", spec, values, image.size.x, box.min);
-}
-
 template <typename Sample>
 std::string encodeStraight(const std::filesystem::path& file, const char* formatName,
                            const Image& image, OIIO::ImageSpec spec,
@@ -179,7 +75,10 @@ OIIO::TypeDesc sampleType(const ImageFileOptions& options) {
 
 std::string encodeTiff(const std::filesystem::path& file, const Image& image,
                        const ImageFileOptions& options) {
-    OIIO::ImageSpec spec = rgbaSpec(regionOf(options, image.size).size(), sampleType(options));
+    const glm::ivec2 size = regionOf(options, image.size).size();
+    OIIO::ImageSpec spec(size.x, size.y, 4, sampleType(options));
+    spec.channelnames = {"R", "G", "B", "A"};
+    spec.alpha_channel = 3;
     spec.attribute("compression", "zip");
     addDescription(description(options), spec);
     // Without a date OpenImageIO stores the clock time. A colour space it would put into a second
@@ -203,10 +102,8 @@ std::string encodeJpeg(const std::filesystem::path& file, const Image& image,
 
 std::string image_module::encodeImage(const std::filesystem::path& file, const Image& image,
                                       const ImageFileOptions& options) {
-    const ImageFormat format = imageFormatOf(file);
-    if (format == ImageFormat::kExr) return encodeExr(file, image, options);
-    return format == ImageFormat::kTiff ? encodeTiff(file, image, options)
-                                        : encodeJpeg(file, image, options);
+    return imageFormatOf(file) == ImageFormat::kTiff ? encodeTiff(file, image, options)
+                                                     : encodeJpeg(file, image, options);
 }
 
 }  // namespace deltasplat

@@ -6,7 +6,7 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "dims_text.h"
-#include "modules/image_module.h"
+#include "modules/exr_module.h"
 
 namespace deltasplat {
 
@@ -29,7 +29,7 @@ ExrRows::ExrRows(const std::filesystem::path& file, glm::ivec2 sizePixels, const
     checkImageFile(file, sizePixels, stored);
     impl_ = std::make_unique<Impl>();
     impl_->box = box;
-    impl_->file = imageModule().openExrRows(file, sizePixels, box, stored);
+    impl_->file = exrModule().openExrRows(file, sizePixels, box, stored);
 }
 ExrRows::~ExrRows() = default;
 

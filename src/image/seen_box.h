@@ -21,4 +21,15 @@ PixelBox seenBox(const DeepImage& image, const PixelBox& within);
 /// @param spans  of each row from `first` on pixels [x, y), none if y <= x
 PixelBox boxOfRows(int first, std::span<const glm::ivec2> spans);
 
+/// Returns the part of a picture that is stored: all of it, its region, or what is seen of that, at
+/// least one pixel.
+/// @param seenIn  what is seen in a box
+template <typename SeenIn>
+PixelBox storedBox(const ImageFileOptions& options, glm::ivec2 size, const SeenIn& seenIn) {
+    const PixelBox part = options.region.value_or(PixelBox{{0, 0}, size});
+    if (!options.exr.autocrop) return part;
+    const PixelBox seen = seenIn(part);
+    return seen.empty() ? PixelBox{part.min, part.min + 1} : seen;
+}
+
 }  // namespace deltasplat

@@ -8,7 +8,7 @@
 #include "deltasplat/error.h"
 #include "dims_text.h"
 #include "memory.h"
-#include "modules/image_module.h"
+#include "modules/exr_module.h"
 
 namespace deltasplat {
 namespace {
@@ -42,7 +42,7 @@ std::string encodeDeepImage(const std::filesystem::path& file, const DeepImage& 
     const double sampleBytes = options.floatExr ? 24 : 16;
     requireMemory(file.string() + ", " + std::to_string(image.samples()) + " samples",
                   kEncodedCopies * sampleBytes * double(image.samples()));
-    return imageModule().encodeDeepImage(file, image, options);
+    return exrModule().encodeDeepImage(file, image, options);
 }
 
 void writeDeepImage(const std::filesystem::path& file, const DeepImage& image,

@@ -11,6 +11,7 @@
 #include "image/encode_png.h"
 #include "image/quantize.h"
 #include "lower_case.h"
+#include "modules/exr_module.h"
 #include "modules/image_module.h"
 
 namespace deltasplat {
@@ -110,8 +111,10 @@ std::string encodeImage(const std::filesystem::path& file, const Image& image,
         const std::string got = dimsText(image.size) + " pixels";
         throw Error(ErrorCode::kUsage, gotExpected(file.string(), got, "at least 1x1"));
     }
-    // The one format that OpenImageIO is not loaded for, and that is packed by all threads.
-    if (imageFormatOf(file) == ImageFormat::kPng) {
+    const ImageFormat format = imageFormatOf(file);
+    if (format == ImageFormat::kExr) return exrModule().encodeExr(file, image, options);
+    // The one format that nothing is loaded for, and that is packed by all threads.
+    if (format == ImageFormat::kPng) {
         return options.bits == 16 ? encodePng<std::uint16_t>(image, options)
                                   : encodePng<std::uint8_t>(image, options);
     }

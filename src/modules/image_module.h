@@ -9,21 +9,11 @@
 #include "cameras/readers.h"
 #include "deltasplat/hold_out.h"
 #include "deltasplat/image/color_management.h"
-#include "deltasplat/image/write_deep_image.h"
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/optics/environment.h"
 #include "ingest/readers.h"
 
 namespace deltasplat {
-
-/// What ExrRows writes to, after its checks.
-class ExrRowsFile {
-  public:
-    virtual ~ExrRowsFile() = default;
-    /// @param rows  that come next, as wide as the box
-    virtual void write(const Image& rows) = 0;
-    virtual void finish() = 0;
-};
 
 /// What ColorTransform does.
 class ColorProcessor {
@@ -37,13 +27,9 @@ class ColorProcessor {
 /// loads it when one of these is first called. Each is what the function of the library does that
 /// has its name, after that has checked what it was given.
 struct ImageModule {
+    /// Of .tif and .jpg alone.
     std::string (*encodeImage)(const std::filesystem::path& file, const Image& image,
                                const ImageFileOptions& options);
-    std::string (*encodeDeepImage)(const std::filesystem::path& file, const DeepImage& image,
-                                   const ImageFileOptions& options);
-    std::unique_ptr<ExrRowsFile> (*openExrRows)(const std::filesystem::path& file,
-                                                glm::ivec2 sizePixels, const PixelBox& box,
-                                                const ImageFileOptions& options);
     std::unique_ptr<ColorProcessor> (*makeColorProcessor)(const ColorOptions& options);
     bool (*isWholeImage)(const std::filesystem::path& file);
     Image (*readThumbnail)(const std::filesystem::path& file, int mostSide);
@@ -66,10 +52,6 @@ namespace image_module {
 
 std::string encodeImage(const std::filesystem::path& file, const Image& image,
                         const ImageFileOptions& options);
-std::string encodeDeepImage(const std::filesystem::path& file, const DeepImage& image,
-                            const ImageFileOptions& options);
-std::unique_ptr<ExrRowsFile> openExrRows(const std::filesystem::path& file, glm::ivec2 sizePixels,
-                                         const PixelBox& box, const ImageFileOptions& options);
 std::unique_ptr<ColorProcessor> makeColorProcessor(const ColorOptions& options);
 bool isWholeImage(const std::filesystem::path& file);
 Image readThumbnail(const std::filesystem::path& file, int mostSide);
@@ -81,10 +63,9 @@ DenseSource openImages(const std::filesystem::path& input, const std::string& na
                        const std::vector<std::filesystem::path>& files, const RawFormat& format,
                        const Listener& listener);
 
-inline constexpr ImageModule kModule{encodeImage,        encodeDeepImage, openExrRows,
-                                     makeColorProcessor, isWholeImage,    readThumbnail,
-                                     encodeThumbnail,    readDepthImage,  readEnvironment,
-                                     readExrCamera,      openImages};
+inline constexpr ImageModule kModule{encodeImage,     makeColorProcessor, isWholeImage,
+                                     readThumbnail,   encodeThumbnail,    readDepthImage,
+                                     readEnvironment, readExrCamera,      openImages};
 
 }  // namespace image_module
 

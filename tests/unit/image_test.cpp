@@ -357,7 +357,6 @@ TEST(WriteImage, SamePictureGivesSameBytesOnAnyNumberOfThreads) {
         for (const int threads : {1, 2, 8}) {
             const ThreadLimit limit(threads);
             OIIO::attribute("threads", threads);
-            OIIO::attribute("exr_threads", threads);
             writeImage(folder / (std::to_string(threads) + extension), image, {});
         }
         const std::string bytes = readBytes(folder / ("1" + extension));

@@ -5,19 +5,21 @@
 
 #include "deltasplat/threads.h"
 #include "lower_case.h"
+#include "modules/exr_module.h"
 #include "modules/image_module.h"
 
 namespace deltasplat {
 
 std::jthread loadEarly(const std::filesystem::path& picture) {
     const std::string extension = lowerCase(picture.extension().string());
-    const bool isLoaded = extension == ".exr" || extension.starts_with(".tif") ||
-                          extension == ".jpg" || extension == ".jpeg";
+    const bool isExr = extension == ".exr";
+    const bool isLoaded =
+        isExr || extension.starts_with(".tif") || extension == ".jpg" || extension == ".jpeg";
     if (!isLoaded || threadCount() < 2) return {};
     try {
-        return std::jthread([] {
+        return std::jthread([isExr] {
             try {
-                imageModule();
+                isExr ? void(exrModule()) : void(imageModule());
             } catch (...) {
                 // Whoever needs it is told.
             }

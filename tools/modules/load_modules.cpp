@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "deltasplat/error.h"
+#include "modules/exr_module.h"
 #include "modules/image_module.h"
 #include "modules/medical_module.h"
 #include "modules/module_version.h"
@@ -54,6 +55,11 @@ const Module& load(const char* name) {
 }
 
 }  // namespace
+
+const ExrModule& exrModule() {
+    static const ExrModule& module = load<ExrModule>("exr");
+    return module;
+}
 
 const ImageModule& imageModule() {
     static const ImageModule& module = load<ImageModule>("images");

@@ -101,6 +101,11 @@ size() { stat -c %s "$1"; }
 render fine.exr "${near[@]}" --compression dwaa:1
 render coarse.exr "${near[@]}" --compression dwaa:2000
 ((  $(size coarse.exr) < $(size fine.exr) )) || fail "dwaa:2000 is no smaller than dwaa:1"
+render most.exr "${near[@]}" --compression dwaa:0
+(( $(size most.exr) > $(size fine.exr) )) || fail "dwaa:0 is no larger than dwaa:1"
+render half.exr "${near[@]}" --compression dwaa:1.5
+info half.exr | grep >/dev/null 'dwaCompressionLevel: 1.5$' || fail "dwaa:1.5: got another level"
+grep -qa capDate whole.exr deep.exr && fail "got a date"
 info whole.exr | grep >/dev/null 'chromaticities: 0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329' ||
     fail "whole.exr: got other colours than those of Rec. 709"
 info values_whole.exr | grep >/dev/null chromaticities && fail "values_whole.exr: got colours of values"

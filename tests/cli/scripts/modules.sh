@@ -19,15 +19,23 @@ links/volumes render in.vdb -o link.jpg --size 32x32 -qq --background 0,0,0
 expect_same link.jpg away.jpg
 
 # Only what is asked for is loaded.
-loaded() { LD_DEBUG=files "$@" 2>&1 >/dev/null | grep -o 'lib\(OpenImageIO\|ITKCommon\)\.so' | sort -u; }
-for command in --version "info in.vdb" "convert in.vdb out.nrrd"; do
+loaded() { LD_DEBUG=files "$@" 2>&1 >/dev/null | grep -o 'lib\(OpenEXR\|OpenImageIO\|ITKCommon\)\b' | sort -u; }
+for command in --version "info in.vdb" "convert in.vdb out.nrrd" "render in.vdb -o out.png --size 32x32"; do
     # shellcheck disable=SC2086
     [[ -z $(loaded "$program" $command) ]] || fail "$command: loads $(loaded "$program" $command)"
+done
+for options in "" --float "--aov depth --multipart" --deep "--size 2304x1900 --tf grey"; do
+    # shellcheck disable=SC2086
+    got=$(loaded "$program" render in.vdb -o out.exr --size 32x32 $options)
+    [[ $got == libOpenEXR ]] || fail "render to .exr $options: loads $got"
 done
 
 lonely/bin/deltasplat info in.vdb >/dev/null || fail "info needs a module"
 expect_code 1 lonely/bin/deltasplat render in.vdb -o none.jpg --size 32x32 -q --background 0,0,0
 grep -q "^deltasplat: module images: got .*; expected $PWD/lonely/lib/deltasplat/images.so, installed with" \
+    stderr.txt || { cat stderr.txt; fail "expected to be told what is missing"; }
+expect_code 1 lonely/bin/deltasplat render in.vdb -o none.exr --size 32x32 -q
+grep -q "^deltasplat: module exr: got .*; expected $PWD/lonely/lib/deltasplat/exr.so, installed with" \
     stderr.txt || { cat stderr.txt; fail "expected to be told what is missing"; }
 expect_files "" 'none*'
 

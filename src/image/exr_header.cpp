@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/exr_header.h"
+
+#include <OpenEXR/ImfChromaticities.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+
+#include <algorithm>
+#include <glm/gtc/type_ptr.hpp>
+#include <mutex>
+#include <optional>
+
+#include "deltasplat/threads.h"
+
+namespace deltasplat {
+namespace {
+
+// In the order of exrCompressions().
+constexpr Imf::Compression kCompressions[]{
+    Imf::NO_COMPRESSION,   Imf::RLE_COMPRESSION,   Imf::ZIP_COMPRESSION, Imf::ZIPS_COMPRESSION,
+    Imf::PIZ_COMPRESSION,  Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::B44A_COMPRESSION,
+    Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION};
+// OpenEXR's own ones differ from version to version.
+constexpr int kZipLevel = 4;
+constexpr float kDwaLevel = 45;
+
+Imath::Box2i boxOf(glm::ivec2 first, glm::ivec2 size) {
+    return {{first.x, first.y}, {first.x + size.x - 1, first.y + size.y - 1}};
+}
+
+void setCompression(const ExrOptions& options, const std::string& usual, Imf::Header& header) {
+    const std::string& name = options.compression.empty() ? usual : options.compression;
+    const auto& names = exrCompressions();
+    header.compression() =
+        kCompressions[std::find(names.begin(), names.end(), name) - names.begin()];
+    const bool isDwa = name.starts_with("dwa");
+    header.zipCompressionLevel() = isDwa ? kZipLevel : int(options.level.value_or(kZipLevel));
+    if (!isDwa) return;
+    header.dwaCompressionLevel() = float(options.level.value_or(kDwaLevel));
+    // What readers are told.
+    header.insert("dwaCompressionLevel", Imf::FloatAttribute(header.dwaCompressionLevel()));
+}
+
+void setMatrix(const char* name, const std::optional<glm::dmat4>& matrix, Imf::Header& header) {
+    if (!matrix) return;
+    // OpenEXR multiplies row vectors and stores rows, GLM multiplies columns and stores columns:
+    // the transposed matrix stored the other way round is the same sixteen numbers.
+    const glm::mat4 rounded(*matrix);
+    Imath::M44f rows;
+    std::copy_n(glm::value_ptr(rounded), 16, rows.getValue());
+    header.insert(name, Imf::M44fAttribute(rows));
+}
+
+Imf::Chromaticities chromaticitiesOf(const Chromaticities& numbers) {
+    const auto at = [&](std::size_t i) { return Imath::V2f(numbers[i], numbers[i + 1]); };
+    return {at(0), at(2), at(4), at(6)};
+}
+
+}  // namespace
+
+Imf::Header exrHeader(const ImageFileOptions& options, glm::ivec2 sizePixels, const PixelBox& box,
+                      const std::string& usualCompression) {
+    const ExrOptions& exr = options.exr;
+    Imf::Header header(boxOf({0, 0}, exr.displaySize.value_or(sizePixels)),
+                       boxOf(exr.dataMin + box.min, box.size()), float(exr.pixelAspect));
+    setCompression(exr, usualCompression, header);
+    for (const auto& [name, text] : options.metadata)
+        header.insert("deltasplat:" + name, Imf::StringAttribute(text));
+    if (exr.chromaticities) Imf::addChromaticities(header, chromaticitiesOf(*exr.chromaticities));
+    setMatrix("worldToCamera", options.cameraFromWorld, header);
+    setMatrix("worldToNDC", options.ndcFromWorld, header);
+    return header;
+}
+
+// OpenEXR's threads are those of the process, and as many as there are cores unless it is told.
+void useExrThreads() {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    // None but the caller.
+    const int threads = threadCount() > 1 ? threadCount() : 0;
+    if (Imf::globalThreadCount() != threads) Imf::setGlobalThreadCount(threads);
+}
+
+}  // namespace deltasplat
