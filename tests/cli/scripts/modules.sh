@@ -41,8 +41,12 @@ expect_files "" 'none*'
 
 # Nor is one of another version taken.
 mkdir -p lonely/lib/deltasplat
-sed 's/deltasplat module 0/deltasplat module 9/' installed/lib/deltasplat/images.so >lonely/lib/deltasplat/images.so
-expect_code 1 lonely/bin/deltasplat render in.vdb -o none.jpg --size 32x32 -q --background 0,0,0
-grep -q '^deltasplat: module images: got .*/images.so of "deltasplat module 9.*; expected "deltasplat module 0' \
-    stderr.txt || { cat stderr.txt; fail "expected to be told of the other version"; }
+for module in images exr; do
+    sed 's/deltasplat module 0/deltasplat module 9/' installed/lib/deltasplat/$module.so >lonely/lib/deltasplat/$module.so
+    suffix=jpg
+    [[ $module == images ]] || suffix=exr
+    expect_code 1 lonely/bin/deltasplat render in.vdb -o none.$suffix --size 32x32 -q --background 0,0,0
+    grep -q "^deltasplat: module $module: got .*/$module.so of \"deltasplat module 9.*; expected \"deltasplat module 0" \
+        stderr.txt || { cat stderr.txt; fail "$module: expected to be told of the other version"; }
+done
 expect_files "" 'none*'
