@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "image/exr_header.h"
@@ -127,7 +128,7 @@ std::string exr_module::encodeDeepImage(const std::filesystem::path& file, const
                                         const ImageFileOptions& options) {
     const PixelBox box =
         storedBox(options, image.size, [&](const PixelBox& part) { return seenBox(image, part); });
-    ExrMemoryStream memory;
+    ExrMemoryStream memory(file);
     writeExr(file, [&] {
         // Of what deep pictures may have, zips packs best.
         const Imf::Header header = exrHeader(options, image.size, box, "zips");

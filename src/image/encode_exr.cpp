@@ -79,7 +79,7 @@ std::string exr_module::encodeExr(const std::filesystem::path& file, const Image
     });
     const ExrRgba rgba(image, box, options.floatExr);
     const ChannelPlanes planes(options.channels, box, image.size.x);
-    ExrMemoryStream memory;
+    ExrMemoryStream memory(file);
     writeExr(file, [&] {
         const Imf::Header header = exrHeader(options, image.size, box, "zip");
         std::vector<Part> parts{{"rgba", header, rgba.at(header.dataWindow().min)}};

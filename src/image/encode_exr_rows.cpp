@@ -17,7 +17,7 @@ class RowsFile : public ExrRowsFile {
   public:
     RowsFile(const std::filesystem::path& path, glm::ivec2 sizePixels, const PixelBox& box,
              const ImageFileOptions& options)
-        : file_(path), asFloat_(options.floatExr), stream_(file_.descriptor()) {
+        : file_(path), asFloat_(options.floatExr), stream_(path, file_.descriptor()) {
         if (file_.isDevice()) {
             throw Error(ErrorCode::kOutput,
                         gotExpected(path.string(), "a device", "a file, for a picture in parts"));

@@ -50,7 +50,7 @@ void checkExrOptions(const ExrOptions& options, bool isDeep) {
     const std::vector<std::string>& names = exrCompressions();
     if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
         refuse("`compression`", name, namesText());
-    // OpenImageIO 2.4 stores no others.
+    // OpenEXR has none and rle for these as well, which pack worse.
     if (isDeep && !name.empty() && name != "zips")
         refuse("`compression`", name + " of a deep picture", "zips");
     checkLevel(options);

@@ -22,7 +22,7 @@ void ExrMemoryStream::write(const char text[], int size) {
 void ExrFileStream::write(const char text[], int size) {
     int left = problem_ == 0 ? size : 0;
     for (std::uint64_t to = at_; left > 0;) {
-        const ssize_t count = ::pwrite(file_, text, std::size_t(left), off_t(to));
+        const ssize_t count = ::pwrite(descriptor_, text, std::size_t(left), off_t(to));
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0) {
             problem_ = count < 0 ? errno : ENOSPC;

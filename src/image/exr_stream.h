@@ -4,14 +4,17 @@
 #include <OpenEXR/ImfIO.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <utility>
 
 namespace deltasplat {
 
 /// Where OpenEXR writes to a string.
 class ExrMemoryStream : public Imf::OStream {
   public:
-    ExrMemoryStream() : OStream("memory") {}
+    /// @param file  for messages
+    explicit ExrMemoryStream(const std::filesystem::path& file) : OStream(file.c_str()) {}
 
     void write(const char text[], int size) override;
     std::uint64_t tellp() override { return at_; }
@@ -28,7 +31,9 @@ class ExrMemoryStream : public Imf::OStream {
 /// when it ends a file: problem() does.
 class ExrFileStream : public Imf::OStream {
   public:
-    explicit ExrFileStream(int file) : OStream("file"), file_(file) {}
+    /// @param file  for messages
+    ExrFileStream(const std::filesystem::path& file, int descriptor)
+        : OStream(file.c_str()), descriptor_(descriptor) {}
 
     void write(const char text[], int size) override;
     std::uint64_t tellp() override { return at_; }
@@ -37,7 +42,7 @@ class ExrFileStream : public Imf::OStream {
     int problem() const { return problem_; }
 
   private:
-    int file_;
+    int descriptor_;
     std::uint64_t at_ = 0;
     int problem_ = 0;
 };

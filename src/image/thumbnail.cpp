@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "default_floats.h"
+#include "exr_threads.h"
 #include "image/encode_image.h"
 #include "image/quantize.h"
 #include "modules/image_module.h"
@@ -111,6 +112,7 @@ Image image_module::readThumbnail(const std::filesystem::path& file, int mostSid
     const DefaultFloats floats;
     OIIO::ImageSpec asStored;
     asStored.attribute("oiio:UnassociatedAlpha", 1);
+    limitExrThreads();
     const auto input = OIIO::ImageInput::open(file.string(), &asStored);
     Image image = input ? shrunk(*input, mostSide) : Image();
     // What is not asked for is printed when the thread ends.

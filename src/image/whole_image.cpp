@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "deltasplat/error.h"
+#include "exr_threads.h"
 #include "ingest/guards/silent_stderr.h"
 #include "ingest/images/image_file.h"
 #include "modules/image_module.h"
@@ -32,6 +33,7 @@ bool image_module::isWholeImage(const std::filesystem::path& file) {
     bool isWhole = false;
     const SilentStderr silent;
     try {
+        limitExrThreads();
         const auto input = OIIO::ImageInput::open(file.string());
         isWhole = input && isReadable(file, *input) && !input->has_error();
         if (input) (void)input->geterror();

@@ -13,7 +13,8 @@
 namespace deltasplat {
 namespace {
 
-// The encoded samples, and their copy that is written: each takes no more than the samples do.
+// The encoded samples, and their copy as the string of them grows: each takes no more than the
+// samples do.
 constexpr double kEncodedCopies = 2;
 
 void requireExr(const std::filesystem::path& file) {
