@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -222,6 +224,27 @@ TEST(ExrOptions, compressionsKeepWhatTheyCan) {
     EXPECT_LT(bytes("zip", 9), bytes("zip", 1));
 }
 
+// As small and as noisy as they may be.
+TEST(ExrOptions, partsOfOneChannelArePackedAsAskedFor) {
+    std::mt19937 random(7);
+    for (const glm::ivec2 size : {glm::ivec2(1, 1), glm::ivec2(15, 9), glm::ivec2(70, 40)}) {
+        ImageFileOptions options = floats();
+        options.exr.compression = "dwaa";
+        options.exr.multipart = true;
+        options.channels = {{"Z", {}}};
+        for (int i = 0; i < size.x * size.y; ++i)
+            options.channels[0].values.push_back(std::ldexp(float(random()), int(random() % 64)));
+        const test::TempFolder folder;
+        writeImage(folder / "out.exr", Image(size), options);
+        const auto input = OIIO::ImageInput::open((folder / "out.exr").string());
+        ASSERT_TRUE(input && input->seek_subimage(1, 0));
+        EXPECT_EQ(input->spec().get_string_attribute("compression"), "dwaa");
+        std::vector<float> values(options.channels[0].values.size());
+        ASSERT_TRUE(input->read_image(1, 0, 0, 1, OIIO::TypeFloat, values.data()));
+        EXPECT_EQ(values, options.channels[0].values);
+    }
+}
+
 TEST(ExrOptions, saysWhatColoursAndPixelsAre) {
     const Image image = boxImage({4, 4}, {{0, 0}, {4, 4}});
     ImageFileOptions options;
@@ -267,6 +290,9 @@ TEST(ExrOptions, refusesWhatCannotBe) {
                   o.region = PixelBox{{1, 0}, {5, 2}};
               }),
               "usage: `region`: got 4x2 pixels from 1,0 on; expected some of the picture's 4x3");
+    EXPECT_EQ(message([](auto& o) { o.exr.displaySize = glm::ivec2(2'000'000'000, 3); }),
+              "output: out.exr: cannot be encoded: Cannot open image file \"out.exr\". Invalid "
+              "display window in image header.");
     ImageFileOptions options;
     options.exr.compression = "zip";
     EXPECT_EQ(errorOf([&] { encodeDeepImage("out.exr", DeepImage(), options); }),
