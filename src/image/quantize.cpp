@@ -104,13 +104,6 @@ float finiteValue(float value, float largest) {
     return std::isnan(value) ? 0.0f : std::clamp(value, -largest, largest);
 }
 
-std::vector<float> finiteValues(const Image& image, bool forFloat) {
-    const float largest = forFloat ? std::numeric_limits<float>::max() : kLargestHalf;
-    std::vector<float> values = image.rgba;
-    for (float& value : values) value = finiteValue(value, largest);
-    return values;
-}
-
 // Calls use(pixel, threshold) for each pixel's number.
 template <typename Use>
 void forThresholds(const Image& image, bool dither, const Use& use) {

@@ -15,10 +15,6 @@ inline constexpr float kLargestHalf = 65504;
 /// Returns a number that files hold: NaN as 0, and what is larger than they know as the largest.
 float finiteValue(float value, float largest = std::numeric_limits<float>::max());
 
-/// Returns the picture's values with NaN as 0 and the rest clamped to the finite numbers of float
-/// (`forFloat`) or half.
-std::vector<float> finiteValues(const Image& image, bool forFloat);
-
 /// Returns the picture as `[height][width][4]` samples with straight alpha and sRGB colour, rounded
 /// to nearest: 0 is 0 and 1 is the largest number of `Sample` (uint8_t or uint16_t).
 /// @param dither  round up or down instead, by a fixed pattern of places in the picture, so that
