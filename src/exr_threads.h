@@ -8,7 +8,8 @@
 namespace deltasplat {
 
 /// Makes OpenEXR use as many threads as the library where OpenImageIO reads with it, which would
-/// start as many as there are cores. For who writes with it there is useExrThreads().
+/// start as many as there are cores. For who writes with it there is ExrThreads
+/// (image/exr_header.h).
 inline void limitExrThreads() {
     constexpr int kNone = -1;  // but the caller
     OIIO::attribute("exr_threads", threadCount() > 1 ? threadCount() : kNone);

@@ -27,6 +27,9 @@ constexpr Imf::Compression kCompressions[]{
 constexpr int kZipLevel = 4;
 constexpr float kDwaLevel = 45;
 
+std::mutex writersMutex;
+int writers = 0;
+
 Imath::Box2i boxOf(glm::ivec2 first, glm::ivec2 size) {
     return {{first.x, first.y}, {first.x + size.x - 1, first.y + size.y - 1}};
 }
@@ -76,12 +79,18 @@ Imf::Header exrHeader(const ImageFileOptions& options, glm::ivec2 sizePixels, co
 }
 
 // OpenEXR's threads are those of the process, and as many as there are cores unless it is told.
-void useExrThreads() {
-    static std::mutex mutex;
-    const std::lock_guard lock(mutex);
+// OpenEXR 3.1 may wait for ever if some are taken away while others write: only more are made then.
+ExrThreads::ExrThreads() {
+    const std::lock_guard lock(writersMutex);
     // None but the caller.
     const int threads = threadCount() > 1 ? threadCount() : 0;
-    if (Imf::globalThreadCount() != threads) Imf::setGlobalThreadCount(threads);
+    const int before = Imf::globalThreadCount();
+    if (threads > before || (threads < before && writers == 0)) Imf::setGlobalThreadCount(threads);
+    ++writers;
+}
+ExrThreads::~ExrThreads() {
+    const std::lock_guard lock(writersMutex);
+    --writers;
 }
 
 }  // namespace deltasplat

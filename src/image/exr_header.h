@@ -23,15 +23,22 @@ namespace deltasplat {
 Imf::Header exrHeader(const ImageFileOptions& options, glm::ivec2 sizePixels, const PixelBox& box,
                       const std::string& usualCompression);
 
-/// Makes OpenEXR use as many threads as the library.
-void useExrThreads();
+/// While this object lives, OpenEXR has as many threads as the library uses for what the calling
+/// thread asks of it, or more that others need at the time.
+class ExrThreads {
+  public:
+    ExrThreads();
+    ~ExrThreads();
+    ExrThreads(const ExrThreads&) = delete;
+    ExrThreads& operator=(const ExrThreads&) = delete;
+};
 
 /// Writes by OpenEXR, on as many threads as the library has.
 /// @param file   for messages
 /// @param write  may throw what OpenEXR throws
 template <typename Write>
 void writeExr(const std::filesystem::path& file, const Write& write) {
-    useExrThreads();
+    const ExrThreads threads;
     try {
         write();
     } catch (const Error&) {

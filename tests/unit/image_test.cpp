@@ -2,6 +2,7 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -9,6 +10,8 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <thread>
+#include <vector>
 
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/threads.h"
@@ -364,6 +367,25 @@ TEST(WriteImage, SamePictureGivesSameBytesOnAnyNumberOfThreads) {
         EXPECT_TRUE(bytes == readBytes(folder / ("2" + extension))) << extension;
         EXPECT_TRUE(bytes == readBytes(folder / ("8" + extension))) << extension;
     }
+}
+
+// OpenEXR's threads are those of the process.
+TEST(WriteImage, ExrIsWrittenByThreadsOfDifferentLimitsAtOnce) {
+    const Image image = randomImage({60, 200});
+    const std::string expected = encodeImage("out.exr", image, {});
+    std::atomic<int> different = 0;
+    {
+        std::vector<std::jthread> writers;
+        for (int first = 0; first < 6; ++first) {
+            writers.emplace_back([&, first] {
+                for (int i = 0; i < 150; ++i) {
+                    const ThreadLimit limit(1 + (7 * first + 3 * i) % 5);
+                    if (encodeImage("out.exr", image, {}) != expected) ++different;
+                }
+            });
+        }
+    }
+    EXPECT_EQ(different, 0);
 }
 
 TEST(WriteImage, NoticesAFullDisk) {
