@@ -12,4 +12,9 @@ void throwCannotWrite(const std::filesystem::path& file, int systemError) {
                                         std::generic_category().message(systemError));
 }
 
+void throwNoFolder(const std::filesystem::path& file, const std::filesystem::path& folder) {
+    throw Error(ErrorCode::kOutput,
+                file.string() + ": cannot be written: there is no folder " + folder.string());
+}
+
 }  // namespace deltasplat

@@ -52,6 +52,7 @@ Descriptor enterFolder(const fs::path& path, const fs::path& file, OutputTarget&
     const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
     const int base = target.folder ? target.folder.get() : AT_FDCWD;
     Descriptor folder(::openat(base, parent.c_str(), kFolder));
+    if (!folder && errno == ENOENT && path == file) throwNoFolder(file, parent);
     if (!folder) throwCannotWrite(file, errno);
     target.folder = std::move(folder);
     target.name = path.filename().string();

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <tuple>
 
+#include "cannot_write.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "ingest/files/input_files.h"
@@ -58,6 +59,18 @@ void checkOutput(const std::string& option, const std::filesystem::path& file, c
     }
     // Asked now, rather than after hours of work.
     const AtomicFile probe(file);
+}
+
+Files makeFolderOf(const std::filesystem::path& file) {
+    Files made;
+    std::error_code error;
+    for (std::filesystem::path folder = file.parent_path();
+         !folder.empty() && !exists(folder, error); folder = folder.parent_path())
+        made.push_back(folder);
+    if (made.empty()) return made;
+    create_directories(file.parent_path(), error);
+    if (error) throwCannotWrite(file, error.value());
+    return made;
 }
 
 void writeStats(const std::filesystem::path& file, std::string_view json) {

@@ -25,6 +25,11 @@ Files filesRead(const Files& inputs, const std::filesystem::path& transferFuncti
 void checkOutput(const std::string& option, const std::filesystem::path& file, const Files& others,
                  const std::string& names);
 
+/// Makes the folder of one of many outputs, unless it is there.
+/// @return the folders that were not, the innermost first
+/// @throw Error(kOutput)
+Files makeFolderOf(const std::filesystem::path& file);
+
 /// Writes what was asked for with --stats (empty: nothing), the last thing that a command writes.
 /// @throw Error(kOutput)
 void writeStats(const std::filesystem::path& file, std::string_view json);

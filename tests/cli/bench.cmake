@@ -73,7 +73,7 @@ deltasplat_bench_refusal(report_size 2
     "--size: got 1000001x1; expected sides of at most 1000000 pixels with --report"
     nowhere.vdb --report out --size 1000001x1)
 deltasplat_bench_refusal(report_no_folder 4
-    "nowhere/out: cannot be written: No such file or directory" nowhere.vdb --report nowhere/out)
+    "nowhere/out: cannot be written: there is no folder nowhere" nowhere.vdb --report nowhere/out)
 deltasplat_bench_refusal(report_is_file 4 "ball.vdb: got a file; expected a folder"
     nowhere.vdb --report ball.vdb)
 deltasplat_cli_test(bench.unused.background ARGS bench ${cube} ${quick} --background 0,0,0

@@ -72,7 +72,7 @@ deltasplat: out.nrrd: got \"density\", which has no active voxels; expected a vo
 deltasplat_cli_test(convert.cut EXIT 3 ARGS convert cut_8x8x8_uint8.raw out.vdb
     STDERR "deltasplat: cut_8x8x8_uint8.raw: got 500 bytes; expected 512 (8x8x8 uint8)")
 deltasplat_cli_test(convert.no_folder EXIT 4 ARGS convert nowhere.vdb nowhere/out.vdb
-    STDERR "deltasplat: nowhere/out.vdb: cannot be written: No such file or directory")
+    STDERR "deltasplat: nowhere/out.vdb: cannot be written: there is no folder nowhere")
 foreach(file full.vdb full.raw full.nrrd full.mha full.nii.gz)
     deltasplat_cli_test(convert.${file} EXIT 4 ARGS convert ${cube} ${file}
         STDERR "deltasplat: ${file}: cannot be written: No space left on device")

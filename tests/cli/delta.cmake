@@ -44,7 +44,7 @@ deltasplat_cli_test(delta.fine.wide_integers ARGS delta wide_48x48x32_int32.raw 
 deltasplat_cli_test(delta.inexact EXIT 1 ARGS delta wide_48x48x32_int32.raw d.vdb --max-error 0
     STDERR_MATCHES "deltasplat: grid \"wide_48x48x32_int32\": got a largest error of 2; expected at most 0 .--max-error.")
 deltasplat_cli_test(delta.no_folder EXIT 4 ARGS delta nowhere.vdb nowhere/d.vdb
-    STDERR "deltasplat: nowhere/d.vdb: cannot be written: No such file or directory")
+    STDERR "deltasplat: nowhere/d.vdb: cannot be written: there is no folder nowhere")
 deltasplat_cli_test(delta.full EXIT 4 ARGS delta ${cube} full.vdb
     STDERR "deltasplat: full.vdb: cannot be written: No space left on device")
 

@@ -89,7 +89,7 @@ foreach(file plot.jpg plot plot.exr)
         STDERR "deltasplat: ${file}: got extension \"${extension}\"; expected .png or .svg")
 endforeach()
 deltasplat_cli_test(info.plot_no_folder EXIT 4 ARGS info nowhere.vdb --plot nowhere/plot.svg
-    STDERR "deltasplat: nowhere/plot.svg: cannot be written: No such file or directory")
+    STDERR "deltasplat: nowhere/plot.svg: cannot be written: there is no folder nowhere")
 foreach(file full.png full.svg)
     deltasplat_cli_test(info.plot_${file} EXIT 4 ARGS info ball.vdb --plot ${file}
         STDERR "deltasplat: ${file}: cannot be written: No space left on device"

@@ -2,11 +2,11 @@
 set(cube cube_8x8x8_uint8.raw)
 
 deltasplat_cli_test(output.no_folder EXIT 4 ARGS render ${cube} -o nowhere/out.exr
-    STDERR "deltasplat: nowhere/out.exr: cannot be written: No such file or directory")
+    STDERR "deltasplat: nowhere/out.exr: cannot be written: there is no folder nowhere")
 deltasplat_cli_test(output.is_folder EXIT 4 ARGS render ${cube} -o folder.exr
     STDERR "deltasplat: folder.exr: cannot be written: Is a directory")
 deltasplat_cli_test(output.before_input EXIT 4 ARGS render nowhere.vdb -o nowhere/out.exr
-    STDERR "deltasplat: nowhere/out.exr: cannot be written: No such file or directory")
+    STDERR "deltasplat: nowhere/out.exr: cannot be written: there is no folder nowhere")
 foreach(file full.exr full.png)
     deltasplat_cli_test(output.${file} EXIT 4 ARGS render ${cube} -o ${file}
         STDERR "deltasplat: ${file}: cannot be written: No space left on device")
@@ -15,9 +15,9 @@ deltasplat_cli_test(output.stats_full EXIT 4 ARGS render ${cube} -o out.exr --st
     STDERR "deltasplat: full.json: cannot be written: No space left on device" CREATES out.exr)
 deltasplat_cli_test(output.stats_no_folder EXIT 4
     ARGS render ${cube} -o out.exr --stats nowhere/stats.json
-    STDERR "deltasplat: nowhere/stats.json: cannot be written: No such file or directory")
+    STDERR "deltasplat: nowhere/stats.json: cannot be written: there is no folder nowhere")
 deltasplat_cli_test(output.synth_no_folder EXIT 4 ARGS synth cloud nowhere/out.vdb
-    STDERR "deltasplat: nowhere/out.vdb: cannot be written: No such file or directory")
+    STDERR "deltasplat: nowhere/out.vdb: cannot be written: there is no folder nowhere")
 foreach(file full.raw full.vdb)
     deltasplat_cli_test(output.${file} EXIT 4 ARGS synth cloud ${file}
         STDERR "deltasplat: ${file}: cannot be written: No space left on device")
@@ -32,7 +32,7 @@ deltasplat_cli_test(output.fine.deep CREATES out.exr stats.json
 deltasplat_cli_test(output.deep_verbose CREATES out.exr ARGS render ball.vdb -o out.exr --deep -v
     STDERR_MATCHES "code book .*method auto: .*[0-9]+ samples, at most 2 in a pixel.*--distance=7 .*")
 deltasplat_cli_test(output.deep_no_folder EXIT 4 ARGS render ball.vdb -o nowhere/out.exr --deep
-    STDERR "deltasplat: nowhere/out.exr: cannot be written: No such file or directory")
+    STDERR "deltasplat: nowhere/out.exr: cannot be written: there is no folder nowhere")
 deltasplat_cli_test(output.deep_full EXIT 4 ARGS render ${cube} -o full.exr --deep
     STDERR "deltasplat: full.exr: cannot be written: No space left on device")
 deltasplat_cli_test(output.fine.bits ARGS render ball.vdb -o out.png --bits 16 CREATES out.png)

@@ -180,7 +180,8 @@ TEST(AtomicFile, NamesTheFinalFileWhenTheFolderIsMissing) {
     const test::TempFolder folder;
     const fs::path file = folder / "missing/out.exr";
     EXPECT_EQ(errorOf([&] { const AtomicFile probe(file); }),
-              "output: " + file.string() + ": cannot be written: No such file or directory");
+              "output: " + file.string() + ": cannot be written: there is no folder " +
+                  (folder / "missing").string());
 }
 
 TEST(AtomicFile, RefusesFoldersAndEmptyNames) {

@@ -430,8 +430,9 @@ TEST(CheckImageFile, RefusesWhatCannot) {
     ImageFileOptions floats;
     floats.floatExr = true;
     EXPECT_EQ(check("out.png", floats), "usage: `floatExr`: got out.png; expected an .exr file");
-    EXPECT_EQ(check("no_such_folder/out.png", {}),
-              "output: no_such_folder/out.png: cannot be written: No such file or directory");
+    EXPECT_EQ(
+        check("no_such_folder/out.png", {}),
+        "output: no_such_folder/out.png: cannot be written: there is no folder no_such_folder");
 }
 
 TEST(WriteImage, RefusesAPictureWithoutPixels) {

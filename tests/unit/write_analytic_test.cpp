@@ -300,10 +300,12 @@ TEST(WriteAnalyticFile, RefusesWhatItCannotWrite) {
     flat.spacing = {1, 0, 2.5};
     EXPECT_EQ(error("out.vdb", flat),
               "usage: `spacing`: got 1,0,2.5; expected three numbers above 0");
-    EXPECT_EQ(error("no_such_folder/out.vdb", options(kDims)),
-              "output: no_such_folder/out.vdb: cannot be written: No such file or directory");
-    EXPECT_EQ(error("no_such_folder/out.raw", options(kDims)),
-              "output: no_such_folder/out.raw: cannot be written: No such file or directory");
+    EXPECT_EQ(
+        error("no_such_folder/out.vdb", options(kDims)),
+        "output: no_such_folder/out.vdb: cannot be written: there is no folder no_such_folder");
+    EXPECT_EQ(
+        error("no_such_folder/out.raw", options(kDims)),
+        "output: no_such_folder/out.raw: cannot be written: there is no folder no_such_folder");
 }
 
 TEST(WriteAnalyticFile, ReportsProgressAndCanBeStopped) {

@@ -323,7 +323,7 @@ TEST(WriteDense, WhatCannotBeWritten) {
                 "a%d.raw: got a name with \"%\" or control characters; expected one that a header "
                 "can hold",
                 [&] { checkVolumeFile("a%d.mhd"); });
-    expectError(ErrorCode::kOutput, "no/out.nrrd: cannot be written: No such file or directory",
+    expectError(ErrorCode::kOutput, "no/out.nrrd: cannot be written: there is no folder no",
                 [&] { checkVolumeFile("no/out.nrrd"); });
     EXPECT_FALSE(std::filesystem::exists("out.nrrd"));
 }

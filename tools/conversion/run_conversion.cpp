@@ -5,10 +5,13 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "conversion/conversion_files.h"
+#include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "ingest/files/file_name.h"
 #include "memory.h"
@@ -61,6 +64,8 @@ ConversionStats convertFrames(const ConversionFiles& files, const FrameChoice& c
             ConversionFiles one{frames[i].input, frames[i].output, {}};
             if (!files.stats.empty())
                 one.stats = frameNameOf("--stats", files.stats).at(frames[i].frame);
+            makeFolderOf(one.output);
+            makeFolderOf(one.stats);
             each[i] = convertOne(one, convert, part);
             writeStats(one.stats, statsJson(each[i]));
         },
@@ -83,6 +88,21 @@ void writeConverted(const ConversionFiles& files, std::vector<Volume> volumes,
     stats.outputBytes = bytesOf(report.files);
     stats.maxError = std::max(stats.maxError, report.maxError);
     stats.lossless = stats.lossless && report.lossless;
+}
+
+void checkFirstOutput(const ConversionFiles& files, const FrameChoice& frames,
+                      const std::function<void(const std::filesystem::path& output)>& check) {
+    const std::optional<FrameName> name = FrameName::find(files.output);
+    if (!frames.asked() || !name) return check(files.output);
+    const std::filesystem::path first = name->at(frames.frames.front());
+    const Files made = makeFolderOf(first);
+    try {
+        check(first);
+    } catch (const Error&) {
+        std::error_code ignored;
+        for (const std::filesystem::path& folder : made) remove(folder, ignored);
+        throw;
+    }
 }
 
 void addConversionOptions(CLI::App& app, const std::string& what, ConversionFiles& files,

@@ -25,6 +25,10 @@ struct ConversionFiles {
 /// Converts one volume and says what came of it but for bytes and seconds. Thread-safe.
 using Convert = std::function<ConversionStats(const ConversionFiles& files, const Listener&)>;
 
+/// Checks an output before the work, of frames that of the first one, whose folder is made.
+void checkFirstOutput(const ConversionFiles& files, const FrameChoice& frames,
+                      const std::function<void(const std::filesystem::path& output)>& check);
+
 /// Declares the options of sequences, and --stats.
 /// @param what  that the file of --stats tells
 void addConversionOptions(CLI::App& app, const std::string& what, ConversionFiles& files,

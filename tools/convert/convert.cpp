@@ -114,7 +114,7 @@ ConversionStats convertFile(const CLI::App& app, const ConvertCommand& command,
 }
 
 void runConvert(const CLI::App& app, const ConvertCommand& command, const Session& session) {
-    checkVolumeFile(command.files.output);
+    checkFirstOutput(command.files, command.frames, checkVolumeFile);
     runConversion(app, command.files, command.frames, session,
                   [&](const ConversionFiles& files, const Listener& listener) {
                       return convertFile(app, command, files, listener);

@@ -90,7 +90,7 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
     addInputOptions(app, command.read);
 }
 
-void checkOutput(const std::filesystem::path& output) {
+void checkDeltaFile(const std::filesystem::path& output) {
     if (lowerExtension(output) != ".vdb") {
         throw Error(ErrorCode::kUsage,
                     gotExpected(output.string(),
@@ -152,7 +152,7 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
 }
 
 void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& session) {
-    checkOutput(command.files.output);
+    checkFirstOutput(command.files, command.frames, checkDeltaFile);
     const ConversionStats stats =
         runConversion(app, command.files, command.frames, session,
                       [&](const ConversionFiles& files, const Listener& listener) {

@@ -11,7 +11,6 @@
 #include "batch/file_pattern.h"
 #include "batch/memory_gate.h"
 #include "batch/output_name.h"
-#include "cannot_write.h"
 #include "conversion/conversion_stats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/ingest/list_grids.h"
@@ -46,19 +45,6 @@ constexpr double kWorkShare = 0.5;
 constexpr double kBytesPerVoxel = 8;
 constexpr double kBytesPerByte = 40;
 constexpr double kBytesPerPixel = 200;
-
-// Makes the folder of a file, and returns the folders that were not there, the innermost first.
-std::vector<fs::path> makeFolderOf(const fs::path& file) {
-    std::vector<fs::path> made;
-    std::error_code error;
-    for (fs::path folder = file.parent_path(); !folder.empty() && !fs::exists(folder, error);
-         folder = folder.parent_path())
-        made.push_back(folder);
-    if (made.empty()) return made;
-    fs::create_directories(file.parent_path(), error);
-    if (error) throwCannotWrite(file, error.value());
-    return made;
-}
 
 // What rendering takes at most; what cannot be told is told by who reads it.
 double bytesFor(const RenderCommand& command) {

@@ -18,6 +18,7 @@
 #include "deltasplat/threads.h"
 #include "listener_part.h"
 #include "memory.h"
+#include "output_files.h"
 #include "process/interrupt.h"
 #include "render/render_input.h"
 #include "render/render_modes.h"
@@ -72,10 +73,12 @@ RenderCommand commandOf(const RenderCommand& command, const FrameFiles& files,
 
 class Survey {
   public:
-    Survey(const RenderCommand& command, const std::vector<FrameFiles>& frames)
-        : command_(command), frames_(frames) {}
+    // @param isAlone  whether no frame is shown afterwards
+    Survey(const RenderCommand& command, const std::vector<FrameFiles>& frames, bool isAlone)
+        : command_(command), frames_(frames), isAlone_(isAlone) {}
 
-    // Reads all frames and notes what is in them. What is wrong with one is said when it is shown.
+    // Reads all frames and notes what is in them. What is wrong with one is said when it is shown,
+    // or here if it is not.
     void run(SequenceLook& look, const Listener& listener) {
         std::vector<FrameFiles> files;
         std::set<std::filesystem::path> known;
@@ -86,11 +89,25 @@ class Survey {
         if (files.empty())
             throw Error(ErrorCode::kInput,
                         gotExpected("--frames", "no file of any frame", "at least one"));
-        runFrames(
-            files, false, threadCount(),
-            [&](std::size_t i, const Listener& part) { add(i, files[i], look, part); }, listener);
-        if (!anyIsRead_) throw *failure_;
+        tellsFailures_ = isAlone_ && files.size() > 1;
+        std::optional<Error> failed;
+        try {
+            runFrames(
+                files, command_.frames.keepGoing, threadCount(),
+                [&](std::size_t i, const Listener& part) { add(i, files[i], look, part); },
+                listener);
+        } catch (const Error& error) {
+            if (!command_.frames.keepGoing || error.code() == ErrorCode::kInterrupted) throw;
+            failed = error;
+        }
+        if (!anyIsRead_) throw failed ? *failed : *failure_;
         look.finish();
+        failed_ = failed;
+    }
+
+    // What ends the command when what there is has been written.
+    void throwFailure() const {
+        if (failed_) throw *failed_;
     }
 
   private:
@@ -104,7 +121,7 @@ class Survey {
             readScene(command.input, command.picture, silent, &frame);
             anyIsRead_ = true;
         } catch (const Error& error) {
-            if (error.code() == ErrorCode::kInterrupted) throw;
+            if (error.code() == ErrorCode::kInterrupted || tellsFailures_) throw;
             const std::lock_guard lock(mutex_);
             if (!failure_ || i < failedFrame_) {
                 failure_ = error;
@@ -115,6 +132,9 @@ class Survey {
 
     const RenderCommand& command_;
     const std::vector<FrameFiles>& frames_;
+    const bool isAlone_;
+    bool tellsFailures_ = false;
+    std::optional<Error> failed_;  // frames, which have been told of
     std::mutex mutex_;
     std::atomic<bool> anyIsRead_{false};
     std::optional<Error> failure_;
@@ -338,13 +358,21 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
         withScene(command.scene, filesFor(command, sinks.areWritten() && !isLookAlone(command)));
     SequenceLook look(kKeptShare * double(availableMemory()));
     const std::vector<FrameFiles> present = withInputs(all, command.frames.missing, listener);
+    const bool isAlone = isLookAlone(command);
     const bool isKnown = !command.firstPass.empty() && readFirstPass(command, look, listener);
     const double readShare = choosesWindow(command) ? kSurveyShare / 2 : kSurveyShare;
-    if (!isKnown) Survey(command, present).run(look, partOf(listener, 0, readShare));
+    Survey survey(command, present, isAlone);
+    if (!isKnown && isAlone && !command.frames.keepGoing &&
+        command.frames.missing == MissingFrames::kError)
+        requireInputs(present);
+    if (!isKnown) survey.run(look, partOf(listener, 0, readShare));
     RenderCommand fixed = fixedTo(look, command);
     fixWindow(present, isKnown, look, fixed, partOf(listener, readShare, kSurveyShare));
     if (!isKnown && !command.firstPass.empty()) writeFirstPass(command, look);
-    if (isLookAlone(command)) return listener.report(1);
+    if (isAlone) {
+        listener.report(1);
+        return survey.throwFailure();
+    }
     const Listener making = partOf(listener, kSurveyShare, 1);
     const std::vector<FrameFiles> frames = framesToMake(present, command.frames);
     const std::optional<FrameName> stats = FrameName::find(command.stats);
@@ -362,7 +390,10 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
                                       frames[i].frame};
                 if (sinks.any()) sequence.take = [&](const Image& image) { sinks.put(i, image); };
                 try {
-                    makePicture(commandOf(fixed, frames[i], stats), sequence, part);
+                    const RenderCommand one = commandOf(fixed, frames[i], stats);
+                    if (sinks.areWritten()) makeFolderOf(one.output);
+                    makeFolderOf(one.stats);
+                    makePicture(one, sequence, part);
                 } catch (...) {
                     sinks.skip(i);
                     throw;

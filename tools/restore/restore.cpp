@@ -115,7 +115,7 @@ ConversionStats restoreFile(const RestoreCommand& command, const ConversionFiles
 }
 
 void runRestore(const CLI::App& app, const RestoreCommand& command, const Session& session) {
-    checkVolumeFile(command.files.output);
+    checkFirstOutput(command.files, command.frames, checkVolumeFile);
     runConversion(app, command.files, command.frames, session,
                   [&](const ConversionFiles& files, const Listener& listener) {
                       return restoreFile(command, files, listener);

@@ -2,6 +2,7 @@
 #include "sequence/frames_to_make.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -92,6 +93,18 @@ std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, Missin
                                                           : "are left out"));
     }
     return result;
+}
+
+void requireInputs(const std::vector<FrameFiles>& frames) {
+    std::vector<FrameFiles> absent;
+    std::copy_if(frames.begin(), frames.end(), std::back_inserter(absent),
+                 [](const FrameFiles& frame) { return !isThere(frame.input); });
+    if (absent.empty() || frames.front().input == frames.back().input) return;
+    throw Error(ErrorCode::kInput,
+                gotExpected(absent.front().input.string(),
+                            "no such file (" + std::to_string(absent.size()) + " of " +
+                                std::to_string(frames.size()) + " frames have none)",
+                            "one of each, or --missing skip, hold or black"));
 }
 
 std::vector<FrameFiles> framesToMake(const std::vector<FrameFiles>& frames,

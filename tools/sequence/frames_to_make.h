@@ -14,6 +14,9 @@ namespace deltasplat {
 std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, MissingFrames missing,
                                    const Listener& listener);
 
+/// @throw Error(kInput) that counts them if frames have no input, unless that is the same of all
+void requireInputs(const std::vector<FrameFiles>& frames);
+
 /// Returns the frames whose output is not there already, as far as the choice asks for that.
 std::vector<FrameFiles> framesToMake(const std::vector<FrameFiles>& frames,
                                      const FrameChoice& choice);

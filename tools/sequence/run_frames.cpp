@@ -127,6 +127,11 @@ class FrameRun {
             }
         }
         if (named > kMostNamed) names += ", ...";
+        // Every frame that was begun has ended.
+        const std::size_t begun = std::min<std::size_t>(next_, frames_.size());
+        const std::size_t left = frames_.size() - begun;
+        if (left > 0)
+            names += "; " + std::to_string(left) + (left == 1 ? " was" : " were") + " not tried";
         throw Error(failures_.begin()->second.code(),
                     std::to_string(failures_.size()) + " of " + std::to_string(frames_.size()) +
                         (frames_[0].name.empty() ? " frames" : " pictures") + " failed: " + names);

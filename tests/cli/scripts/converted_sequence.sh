@@ -42,10 +42,17 @@ grep -qx 'All 3 frames' info.txt || fail "info.txt: got nothing of all frames"
 grep -q '^  frames  *3, with active voxels in 3$' info.txt || fail "info.txt: got other frames"
 "$program" info in.####.vdb --frames 1-3 --json | grep -q '"filled": 3' || fail "info: got other JSON"
 
+# Folders of frames are made.
+"$program" convert in.####.vdb made/####/c.vdb --frames 1-2 -qq --stats made/####.json
+expect_files "made/0001/c.vdb made/0002/c.vdb" 'made/*/*'
+expect_files "made/0001.json made/0002.json" 'made/*.json'
+
 # Frames without a file, and those that are there already.
 expect_code 3 "$program" convert in.####.vdb m.####.vdb --frames 1-5 --keep-going -qq
 expect_files "m.0001.vdb m.0002.vdb m.0003.vdb" 'm.*'
 expect_said "deltasplat: 2 of 5 frames failed: 4, 5"
+expect_code 3 "$program" convert in.####.vdb n.####.vdb --frames 4-7 -qq --threads 1
+expect_said "deltasplat: 1 of 4 frames failed: 4; 3 were not tried"
 expect_code 4 "$program" diff in.####.vdb r.####.vdb --frames 3-4 -q
 expect_code 0 "$program" diff in.####.vdb r.####.vdb --frames 3-4 -q --missing skip
 expect_code 4 "$program" diff in.####.vdb none.####.vdb --frames 1-2 -q --missing skip

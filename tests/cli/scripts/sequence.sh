@@ -112,14 +112,36 @@ same c.0012.png c.0010.png || fail "frame 12 does not show the one before"
 expect_code 3 "$program" render none.####.vdb --frames 1-3 -o d.####.png --missing skip
 expect_code 3 "$program" render none.####.vdb --frames 1-3 -o d.####.png
 
+# The look at all frames by itself is as strict, and counts them.
+look=(render in.####.vdb --frames 7-12 --size 8x8 --first-pass look.json)
+expect_code 3 "$program" "${look[@]}"
+expect_said "deltasplat: in.0007.vdb: got no such file (3 of 6 frames have none); expected one of each, or --missing skip, hold or black"
+expect_files "" 'look.json'
+expect_code 3 "$program" "${look[@]}" --keep-going
+expect_said "deltasplat: 3 of 6 frames failed: 7, 11, 12"
+expect_files "look.json" 'look.json'
+mv look.json kept.json
+expect_code 0 "$program" "${look[@]}" --missing skip
+expect_said "deltasplat: warning: --missing: 3 of 6 frames have no file and are left out"
+cmp look.json kept.json || fail "look.json is another one with --missing skip"
+
 # A frame that cannot be read.
 cp in.0009.vdb whole.vdb
 head -c 200 whole.vdb >in.0009.vdb
 expect_code 3 "$program" "${frames[@]}" -o e.####.png --threads 1
 expect_files "e.0008.png" 'e.*'
+expect_said "deltasplat: 1 of 3 frames failed: 9; 1 was not tried"
+expect_code 3 "$program" "${frames[@]}" --first-pass look2.json --threads 1
+expect_said "deltasplat: 1 of 3 frames failed: 9; 1 was not tried"
+expect_files "" 'look2.json'
 expect_code 3 "$program" "${frames[@]}" -o e.####.png --keep-going
 expect_files "e.0008.png e.0010.png" 'e.*'
 mv whole.vdb in.0009.vdb
+
+# Folders of pictures are made, as for batches.
+"$program" "${frames[@]}" -o made/by/####/e.png --stats made/s/####.json
+expect_files "made/by/0008/e.png made/by/0009/e.png made/by/0010/e.png" 'made/by/*/*'
+expect_files "made/s/0008.json made/s/0009.json made/s/0010.json" 'made/s/*'
 
 # What is there stays, if it is whole.
 cp e.0008.png kept.png
