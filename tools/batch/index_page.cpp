@@ -68,11 +68,14 @@ std::string factsText(const IndexEntry& entry) {
         text += std::string(text.empty() ? "" : ", ") + std::to_string(facts.dims.x) + "×" +
                 std::to_string(facts.dims.y) + "×" + std::to_string(facts.dims.z);
     }
-    if (facts.range) {
+    if (facts.isEmpty) {
+        text += std::string(text.empty() ? "" : "<br>") +
+                "<span class=\"failed\">no active voxels</span>";
+    } else if (facts.range) {
         text += "<br>" + shortNumberText(facts.range->x, kValueShare) + " to " +
                 shortNumberText(facts.range->y, kValueShare);
     }
-    return text + (facts.range ? ", " : "<br>") +
+    return text + (facts.range || facts.isEmpty ? ", " : "<br>") +
            (entry.seconds ? secondsText(*entry.seconds) : "was there");
 }
 
@@ -108,7 +111,7 @@ std::string failures(const Index& index) {
            "</tbody></table></div>\n</section>\n";
 }
 
-// "498 pictures, 2 failed; 34.2 s".
+// "498 pictures, 3 of them empty, 2 failed; 34.2 s".
 std::string summary(const Index& index) {
     const auto failed = std::count_if(index.entries.begin(), index.entries.end(), hasFailed);
     const auto shown = std::ptrdiff_t(index.entries.size()) - failed;
@@ -116,6 +119,10 @@ std::string summary(const Index& index) {
         std::count_if(index.entries.begin(), index.entries.end(),
                       [](const IndexEntry& entry) { return !hasFailed(entry) && !entry.seconds; });
     std::string text = std::to_string(shown) + (shown == 1 ? " picture" : " pictures");
+    const auto empty = std::count_if(
+        index.entries.begin(), index.entries.end(),
+        [](const IndexEntry& entry) { return !hasFailed(entry) && entry.facts.isEmpty; });
+    if (empty > 0) text += ", " + std::to_string(empty) + " of them empty";
     if (there > 0) text += ", " + std::to_string(there) + " of them there before";
     if (failed > 0) {
         text += ", <span class=\"failed\"><a href=\"#failures\">" + std::to_string(failed) +

@@ -17,6 +17,7 @@ struct PictureFacts {
     std::string grid;
     glm::ivec3 dims{0};
     std::optional<glm::dvec2> range;  ///< of values; empty: not known
+    bool isEmpty = false;             ///< no voxel is active: the picture shows nothing
 };
 
 /// What the index of a batch says of one picture.

@@ -291,7 +291,8 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     made.times.read = secondsSince(beginRead);
     made.codeBook = "code book " + volume.codeBook.name() + ", largest error " +
                     codeErrorText(volume.codeError) + "\n";
-    made.facts = {volume.name, volume.box.dims(), glm::dvec2(volume.valueMin, volume.valueMax)};
+    made.facts = {volume.name, volume.box.dims(), glm::dvec2(volume.valueMin, volume.valueMax),
+                  volume.empty()};
 
     const Listener showing = partOf(listener, kReadShare, 1);
     std::optional<Preview> preview;

@@ -66,12 +66,15 @@ PictureFacts factsOf(const BatchItem& item, const RenderCommand& command) {
     try {
         for (const VolumeEntry& entry : listVolumes(item.input, command.picture.read)) {
             if (item.grid.empty() ? entry.preferred : entry.name == item.grid)
-                return {entry.name, entry.box ? entry.box->dims() : glm::ivec3(0), {}};
+                return {entry.name,
+                        entry.box ? entry.box->dims() : glm::ivec3(0),
+                        {},
+                        entry.box && entry.box->empty()};
         }
     } catch (const Error&) {
-        return {item.grid, glm::ivec3(0), {}};
+        return {item.grid, glm::ivec3(0), {}, false};
     }
-    return {item.grid, glm::ivec3(0), {}};
+    return {item.grid, glm::ivec3(0), {}, false};
 }
 
 // Values are shown as greys.

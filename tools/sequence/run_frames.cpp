@@ -6,7 +6,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
-#include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -15,7 +15,6 @@
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "process/terminate.h"
-#include "warn_once.h"
 
 namespace deltasplat {
 namespace {
@@ -29,16 +28,19 @@ std::string lineOf(const FrameFiles& files, const std::string& what) {
     return what.starts_with(files.name + ":") ? what : files.name + ": " + what;
 }
 
+std::string withoutNumbers(const std::string& text) {
+    std::string rest;
+    for (const char c : text)
+        if ((c < '0' || c > '9') && c != '.') rest += c;
+    return rest;
+}
+
 class FrameRun {
   public:
     FrameRun(const std::vector<FrameFiles>& frames, bool keepGoing,
              const std::function<void(std::size_t, const Listener&)>& work,
              const Listener& listener)
-        : frames_(frames),
-          keepGoing_(keepGoing),
-          work_(work),
-          listener_(listener),
-          warnings_(listener) {}
+        : frames_(frames), keepGoing_(keepGoing), work_(work), listener_(listener) {}
 
     void run(int workers) {
         workers = int(std::clamp<std::size_t>(std::size_t(workers), 1, frames_.size()));
@@ -53,10 +55,20 @@ class FrameRun {
             }
             takeFrames(threadsEach);
         }
+        countWarnings();
         finish();
     }
 
   private:
+    // What is said of frames in the same words but for numbers.
+    struct Warning {
+        std::size_t first;  // frame that it is said of
+        std::string text;   // without the names of its files
+        bool isOfFrames;    // or of all, whatever the frame
+        bool hasOtherNumbers;
+        std::set<std::size_t> others;
+    };
+
     void takeFrames(int threads) {
         const ThreadLimit limit(threads);
         while (!stops_) {
@@ -94,15 +106,39 @@ class FrameRun {
         listener_.report(done_ / double(frames_.size()));
     }
 
+    // Shows the first one of its kind.
     void warn(std::size_t i, const std::string& text) {
         const FrameFiles& files = frames_[i];
         std::string about = text;
         for (const auto& file : {files.input.string(), files.output.string()}) {
-            const std::size_t at = about.find(file);
+            const std::size_t at = file.empty() ? std::string::npos : about.find(file);
             if (at != std::string::npos) about.replace(at, file.size(), "");
         }
         const std::lock_guard lock(mutex_);
-        warnings_.warn(lineOf(files, text), about);
+        const auto [known, isNew] =
+            warnings_.emplace(withoutNumbers(about), Warning{i, about, false, false, {}});
+        Warning& warning = known->second;
+        warning.isOfFrames = warning.isOfFrames || about != text;
+        if (isNew) return listener_.warn(lineOf(files, text));
+        warning.hasOtherNumbers = warning.hasOtherNumbers || about != warning.text;
+        if (i != warning.first) warning.others.insert(i);
+    }
+
+    // Says of how many others a warning is.
+    void countWarnings() const {
+        for (const auto& [kind, warning] : warnings_) {
+            const std::size_t count = warning.others.size();
+            if (count == 0 || (!warning.isOfFrames && !warning.hasOtherNumbers)) continue;
+            listener_.warn(std::to_string(count) + " other" + frameWord(count) +
+                           (warning.hasOtherNumbers ? ", in other numbers: " : ": ") +
+                           warning.text.substr(std::min(warning.text.find_first_not_of(": "),
+                                                        warning.text.size())));
+        }
+    }
+
+    std::string frameWord(std::size_t count) const {
+        return std::string(frames_[0].name.empty() ? " frame" : " picture") +
+               (count > 1 ? "s" : "");
     }
 
     void fail(std::size_t i, const Error& error) {
@@ -132,9 +168,9 @@ class FrameRun {
         const std::size_t left = frames_.size() - begun;
         if (left > 0)
             names += "; " + std::to_string(left) + (left == 1 ? " was" : " were") + " not tried";
-        throw Error(failures_.begin()->second.code(),
-                    std::to_string(failures_.size()) + " of " + std::to_string(frames_.size()) +
-                        (frames_[0].name.empty() ? " frames" : " pictures") + " failed: " + names);
+        throw Error(failures_.begin()->second.code(), std::to_string(failures_.size()) + " of " +
+                                                          std::to_string(frames_.size()) +
+                                                          frameWord(2) + " failed: " + names);
     }
 
     const std::vector<FrameFiles>& frames_;
@@ -146,7 +182,7 @@ class FrameRun {
     std::mutex mutex_;
     std::map<std::size_t, double> shares_;  // of frames begun
     double done_ = 0;
-    WarnOnce warnings_;
+    std::map<std::string, Warning> warnings_;  // by what is said, without numbers
     std::map<std::size_t, Error> failures_;
 };
 

@@ -124,8 +124,13 @@ InputKind findInFolder(const std::filesystem::path& folder, const Listener& list
     }
     const Files images = filesThat(all, isImageName);
     if (images.empty()) {
+        const Files grids =
+            filesThat(all, [](const auto& file) { return lowerExtension(file) == ".vdb"; });
         refuseFile(folder, "a folder without DICOM files and images",
-                   "a DICOM folder, a folder of images, or a file");
+                   "a DICOM folder, a folder of images, or a file" +
+                       (grids.empty() ? ""
+                                      : " such as " + grids.front().string() + " (render takes '" +
+                                            (folder / "*.vdb").string() + "')"));
     }
     const std::string extension = lowerExtension(images.front());
     for (const std::filesystem::path& image : images) {
@@ -161,7 +166,12 @@ InputKind findInput(const std::filesystem::path& input, const Listener& listener
     requireRegularFile(input);
     const std::string extension = lowerExtension(input);
     const auto found = formats().find(extension);
-    if (found == formats().end()) refuseFile(input, "extension \"" + extension + "\"", kReadable);
+    if (found == formats().end()) {
+        refuseFile(input, "extension \"" + extension + "\"",
+                   kReadable + std::string(extension == ".usda"    ? " (render reads .usda)"
+                                           : extension == ".slabs" ? " (fold reads .slabs)"
+                                                                   : ""));
+    }
     return {found->second, nameWithoutExtensions(input), {input}};
 }
 

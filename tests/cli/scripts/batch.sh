@@ -179,9 +179,35 @@ done
 "$program" render shots/a.2.vdb -o one.png --annotate a.2.vdb "${cells[@]}" --size 160x120
 same one.png slate/a.2.png || fail "the name of the file is not drawn"
 
-# A warning that is the same of all is said once.
+# A warning that is the same of several is said once, and counted.
+for i in 3 4 5; do cp shots/a.1.vdb shots/b.$i.vdb; done
 "$program" render 'shots/*.vdb' -o 'jpg/{name}.jpg' --size 40x32 2>stderr.txt
-[[ $(grep -c 'a .jpg has no alpha' stderr.txt) == 1 ]] || fail "got $(cat stderr.txt); expected one warning"
+said='a .jpg has no alpha, so what is clear is black; --background gives it another colour'
+[[ $(grep -c "^deltasplat: warning: shots/.*: $said" stderr.txt) == 1 && $(wc -l <stderr.txt) == 2 ]] ||
+    fail "got $(cat stderr.txt); expected two lines"
+expect_said "deltasplat: warning: 4 other pictures: $said"
+"$program" render 'shots/a.?.vdb' -o 'jpg/{name}.png' --size 40x32 --exposure 3 2>stderr.txt
+grep -q '^deltasplat: warning: 1 other picture, in other numbers: [0-9.]* % of the pixels' stderr.txt ||
+    fail "got $(cat stderr.txt); expected to be told of how many pictures"
+rm shots/b.*
+
+# Volumes without active voxels are told apart.
+mkdir empty
+head -c 512 /dev/zero >zero_8x8x8_uint8.raw
+"$program" convert zero_8x8x8_uint8.raw empty/a.1.vdb --background 0 -qq
+for i in 2 3; do cp empty/a.1.vdb empty/a.$i.vdb; done
+cp shots/a.1.vdb empty/b.1.vdb
+empty=(render 'empty/*.vdb' -o 'empty/{name}.png' --size 40x32 --index empty/index.html)
+expect_code 0 "$program" "${empty[@]}"
+expect_said 'deltasplat: warning: 2 other pictures: grid "zero_8x8x8_uint8": no active voxels'
+[[ $(wc -l <stderr.txt) == 2 ]] || fail "got $(cat stderr.txt); expected two lines"
+for choice in "" --skip-existing; do
+    "$program" "${empty[@]}" $choice 2>stderr.txt
+    [[ $(grep -c 'no active voxels' empty/index.html) == 3 ]] ||
+        fail "empty/index.html ($choice) does not say what is empty"
+    grep -q '<p class="quiet">4 pictures, 3 of them empty' empty/index.html ||
+        fail "empty/index.html ($choice) does not count what is empty"
+done
 
 # A program that is ended leaves the pictures that are there, no other file, and no page.
 cp -r shots many
@@ -269,6 +295,8 @@ done
 usage "--bits: got 16; expected 8 in a .jpg" 'shots/*.vdb' -o 'u/{name}.jpg' --bits 16 --stats 'u/s/{name}.json'
 usage "--frames: got it with a pattern of inputs; expected one or the other" \
     'shots/*.vdb' -o 'u/{name}.####.png' --frames 1-3
+expect_code 3 "$program" render shots -o u.png
+expect_said "deltasplat: shots: got a folder without DICOM files and images; expected a DICOM folder, a folder of images, or a file such as shots/a.1.vdb (render takes 'shots/*.vdb')"
 expect_code 3 "$program" render 'shots/*.none' -o 'u/{name}.png'
 expect_said "deltasplat: shots/*.none: got no file that fits; expected at least one"
 expect_files "" 'u*'
