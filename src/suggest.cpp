@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: V. I. Levenshtein, "Binary codes capable of correcting deletions, insertions, and
-// reversals", 1966; the one-row dynamic programme of Wagner and Fischer, 1974.
+// reversals", 1966; the dynamic programme of Wagner and Fischer, 1974, in which neighbours that
+// have changed places count once, as in F. J. Damerau, "A technique for computer detection and
+// correction of spelling errors", 1964.
 #include "suggest.h"
 
 #include <algorithm>
@@ -10,15 +12,20 @@ namespace deltasplat {
 namespace {
 
 std::size_t editDistance(const std::string& a, const std::string& b) {
-    std::vector<std::size_t> row(b.size() + 1);
+    using Row = std::vector<std::size_t>;
+    Row row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
+    Row before = row;  // and the one before that
+    Row earlier = row;
     for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
+        earlier.swap(before);
+        before.swap(row);
         row[0] = i + 1;
         for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+            const std::size_t replaced = before[j] + (a[i] == b[j] ? 0 : 1);
+            row[j + 1] = std::min({replaced, before[j + 1] + 1, row[j] + 1});
+            const bool isSwapped = i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j];
+            if (isSwapped) row[j + 1] = std::min(row[j + 1], earlier[j - 1] + 1);
         }
     }
     return row.back();

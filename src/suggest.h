@@ -10,4 +10,9 @@ namespace deltasplat {
 /// if none is near enough to be a slip of the finger.
 std::string suggestion(const std::string& text, const std::vector<std::string>& words);
 
+/// The same behind a sentence that has no stop yet.
+inline std::string afterStop(const std::string& suggestion) {
+    return suggestion.empty() ? "" : "." + suggestion;
+}
+
 }  // namespace deltasplat

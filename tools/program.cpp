@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -149,6 +150,13 @@ void joinPossibleValues(std::vector<std::string>& arguments,
     }
 }
 
+// Spells "help render" as "render --help", as users of git do.
+void askForHelp(std::vector<std::string>& arguments) {
+    if (arguments.empty() || arguments.front() != "help") return;
+    arguments.erase(arguments.begin());
+    arguments.emplace_back("--help");
+}
+
 // Refuses the first argument that the program or the subcommand does not know.
 void refuseExtras(const CLI::App& app, const std::vector<Subcommand>& subcommands) {
     std::vector<std::string> extras = app.remaining();
@@ -192,6 +200,7 @@ Error usageError(const CLI::App& app, const CLI::ParseError& problem) {
 const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcommands,
                         const std::vector<std::string>& arguments) {
     std::vector<std::string> spelt(arguments.begin() + 1, arguments.end());
+    askForHelp(spelt);
     spellWithTwoDashes(spelt, subcommands);
     joinPossibleValues(spelt, subcommands);
     std::vector<std::string> reversed(spelt.rbegin(), spelt.rend());
@@ -252,7 +261,7 @@ int execute(const std::vector<std::string>& arguments,
     program.get_formatter()->column_width(32);
     program.require_subcommand(0, 1);
     program.allow_extras();
-    program.footer("'deltasplat SUBCOMMAND --help' explains a subcommand.");
+    program.footer("'deltasplat help SUBCOMMAND' explains a subcommand.");
     addCommonOptions(program, session.common);
     std::vector<Subcommand> subcommands;
     for (const AddSubcommand add : addSubcommands) {
@@ -299,6 +308,8 @@ int complain(const std::vector<std::string>& arguments, const std::string& what,
 int fail(const std::vector<std::string>& arguments, const std::string& what, ErrorCode code,
          std::optional<int> errorExit) {
     if (isInterrupted()) return complain(arguments, "interrupted", interruptExitCode());
+    // As of programs that the signal ends: `| head` has seen enough.
+    if (isReaderGone()) return 128 + SIGPIPE;
     return complain(arguments, what, errorExit.value_or(exitCodeOf(code)));
 }
 

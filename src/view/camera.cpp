@@ -13,6 +13,7 @@
 #include "deltasplat/error.h"
 #include "number_text.h"
 #include "portable_math.h"
+#include "suggest.h"
 #include "view/affine.h"
 #include "view/camera_axes.h"
 
@@ -39,11 +40,13 @@ const NamedView kNamedViews[] = {
 
 const NamedView& namedView(const std::string& name) {
     std::string known;
+    std::vector<std::string> names;
     for (const NamedView& view : kNamedViews) {
         if (name == view.name) return view;
+        names.emplace_back(view.name);
         known += (known.empty() ? "" : ", ") + std::string(view.name);
     }
-    refuse("`view`", name, "one of " + known);
+    refuse("`view`", name, "one of " + known + afterStop(suggestion(name, names)));
 }
 
 // How who looks at the front of the volume stands in the world.

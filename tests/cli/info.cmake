@@ -123,3 +123,9 @@ deltasplat_cli_test(info.size_digits
 deltasplat_cli_test(info.size_digits_json
     ARGS info cube_8x8x8_uint8.raw --json --spacing 0.9999999999999981,0.05000000074505806,0.123456789
     STDOUT_MATCHES "\"voxel_size\": [[][ \n]*0[.]9999999999999981,[ \n]*0[.]05000000074505806")
+
+# Zeros have no sign.
+foreach(format "" --json)
+    deltasplat_cli_test(info.signed_zero${format} ARGS info signed_zero.nrrd ${format}
+        STDOUT_MATCHES "^([^-]|-[^0]|-0[.][0-9]*[1-9])*$")
+endforeach()

@@ -31,6 +31,7 @@ deltasplat_script_test(preview preview.sh
 deltasplat_script_test(batch batch.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/batch)
 deltasplat_script_test(converted_sequence converted_sequence.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/converted_sequence)
+deltasplat_script_test(closed_pipe closed_pipe.sh ARGS ${tool} ${scratch}/closed_pipe)
 deltasplat_script_test(interrupt.full_pipe interrupt_full_pipe.sh
     ARGS ${tool} ${scratch}/interrupt_full_pipe)
 deltasplat_script_test(interrupt.write interrupt_write.sh ARGS ${tool} ${scratch}/interrupt_write)

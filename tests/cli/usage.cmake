@@ -33,6 +33,32 @@ deltasplat_cli_test(usage.unlike_any_subcommand EXIT 2 ARGS compress
     STDERR "deltasplat: Unknown subcommand 'compress'. Expected info, convert, delta, restore, diff, render, fold, bench or synth")
 deltasplat_cli_test(usage.unknown_option_before EXIT 2 ARGS --verbos info ${cube}
     STDERR "deltasplat: Unknown option '--verbos'. Did you mean '--verbose'?")
+# The names that there are, and the one that is nearest: letters that have changed places count once.
+deltasplat_refusal(unknown_option_swapped "Unknown option '--szie'. Did you mean '--size'?" --szie 8x8)
+deltasplat_refusal(mode_swapped
+    "--mode: got mpi; expected composite, xray, mip, min, average or drr. Did you mean 'mip'?" --mode mpi)
+deltasplat_refusal(view_swapped
+    "--view: got tpo; expected one of front, back, left, right, top, bottom, iso. Did you mean 'top'?"
+    --view tpo)
+deltasplat_refusal(filter_slip
+    "--filter: got mitchel; expected catmull-rom, mitchell, gauss or box. Did you mean 'mitchell'?"
+    --filter mitchel)
+deltasplat_refusal(aov_slip
+    "--aov: got front,dept; expected some of depth, front, back, position, normal, emission, ambient, direct, transmittance, mattes, samples and shadow, with commas between. Did you mean 'depth'?"
+    --aov front,dept)
+deltasplat_cli_test(usage.grid_slip EXIT 3 ARGS render ball.vdb -o out.exr --grid densty
+    STDERR_MATCHES "deltasplat: ball.vdb: got no grid \"densty\"; expected one of density .*[.] Did you mean 'density'[?]")
+deltasplat_refusal(background_word
+    "--background: got black; expected R,G,B or R,G,B,A, numbers of at least 0 and A at most 1, scene-linear: 1,1,1 is white, 0.216,0.216,0.216 is #808080"
+    --background black)
+deltasplat_cli_test(usage.help_of ARGS help render STDOUT_MATCHES "Renders one picture of a volume[.].*--size WxH")
+deltasplat_cli_test(usage.help_alone ARGS help STDOUT_MATCHES "'deltasplat help SUBCOMMAND' explains a subcommand")
+
+# Inputs that other subcommands read.
+set(readable ".vdb, .raw, .raw.gz, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .dcm, .tif, .png, .jpg, .bmp, .pgm or .exr")
+deltasplat_cli_test(usage.info_of_usda EXIT 3 ARGS info scene.usda
+    STDERR "deltasplat: scene.usda: got extension \".usda\"; expected ${readable} (render reads .usda)")
+
 deltasplat_refusal(unknown_option "Unknown option '--sise'. Did you mean '--size'?" --sise 8x8)
 deltasplat_refusal(unknown_option_equals "Unknown option '--metod'. Did you mean '--method'?"
     --metod=delta)
@@ -343,7 +369,9 @@ foreach(stops nan inf 1e3 -100.1 1,2 bright)
     deltasplat_refusal(exposure_${stops}
         "--exposure: got ${stops}; expected a finite number from -100 to 100" --exposure=${stops})
 endforeach()
-foreach(tone foo Filmic 1)
+deltasplat_refusal(tone_capital
+    "--tone: got Filmic; expected standard or filmic. Did you mean 'filmic'?" --tone Filmic)
+foreach(tone foo 1)
     deltasplat_refusal(tone_${tone} "--tone: got ${tone}; expected standard or filmic"
         --tone ${tone})
 endforeach()
@@ -462,9 +490,9 @@ deltasplat_cli_test(usage.no_dims EXIT 2 ARGS ${raw}
 deltasplat_cli_test(usage.no_type EXIT 2 ARGS info plain.raw --dims 8x8x8
     STDERR "deltasplat: plain.raw: got no value type; expected --type TYPE, or a name such as volume_256x256x128_uint8.raw")
 deltasplat_cli_test(usage.unknown_type EXIT 2 ARGS info plain.raw --dims 8x8x8 --type uint9
-    STDERR "deltasplat: --type: got uint9; expected uint8, int8, uint16, int16, uint32, int32, float32 or float64")
+    STDERR "deltasplat: --type: got uint9; expected uint8, int8, uint16, int16, uint32, int32, float32 or float64. Did you mean 'uint8'?")
 deltasplat_cli_test(usage.unknown_type_of_vdb EXIT 2 ARGS info ball.vdb --type uint9
-    STDERR "deltasplat: --type: got uint9; expected uint8, int8, uint16, int16, uint32, int32, float32 or float64")
+    STDERR "deltasplat: --type: got uint9; expected uint8, int8, uint16, int16, uint32, int32, float32 or float64. Did you mean 'uint8'?")
 foreach(dims 0x8x8 -8x8x8 3000000000x3000000000x3000000000)
     deltasplat_cli_test(usage.dims_${dims} EXIT 2 ARGS ${raw} --dims ${dims}
         STDERR "deltasplat: --dims: got ${dims}; expected each 1..1073741824")
@@ -698,7 +726,7 @@ deltasplat_cli_test(usage.synth_absurd_vdb EXIT 1
 deltasplat_cli_test(usage.synth_spacing EXIT 2 ARGS synth cloud out.vdb --spacing 1,1,1e16
     STDERR "deltasplat: --spacing: got 1,1,1e16; expected X,Y,Z, three numbers from 1e-15 to 1e+15")
 deltasplat_cli_test(usage.synth_type EXIT 2 ARGS synth cloud out.raw --type int8
-    STDERR "deltasplat: --type: got int8; expected uint8, uint16 or float32")
+    STDERR "deltasplat: --type: got int8; expected uint8, uint16 or float32. Did you mean 'uint8'?")
 deltasplat_cli_test(usage.synth_noise EXIT 2 ARGS synth engine out.raw --noise 2
     STDERR "deltasplat: --noise: got 2; expected a finite number from 0 to 1")
 deltasplat_cli_test(usage.synth_seed EXIT 2 ARGS synth cloud out.raw --seed -1

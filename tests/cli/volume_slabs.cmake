@@ -4,7 +4,13 @@ deltasplat_script_test(full_disk.slabs full_disk.sh
     ARGS ${tool} ${scratch}/full_disk_slabs full.slabs
          render input_32x32x32_uint8.raw -o full.slabs --size 400x400 --slab-range 1/1)
 
-foreach(share 1 0/2 3/2 2-1/2 1-2-3/4 -1/2 1/10001 1.5/2 a/b 1/2/3 /2 1/)
+foreach(share 0/2 3/2 2-1/2 -1/2 1.5/2 /2)
+    string(MAKE_C_IDENTIFIER "slab_range_${share}" test)
+    deltasplat_refusal(${test}
+        "--slab-range: got ${share}; expected one of parts 1/2 to 2/2, or several, 1-2/2"
+        --slab-range=${share})
+endforeach()
+foreach(share 1 1/10001 a/b 1/2/3 1/)
     string(MAKE_C_IDENTIFIER "slab_range_${share}" test)
     deltasplat_refusal(${test}
         "--slab-range: got ${share}; expected a part of so many, 1/4 to 4/4, or several, 2-3/4, of at most 10000"
@@ -45,3 +51,7 @@ deltasplat_cli_test(slabs.no_picture EXIT 2
 deltasplat_cli_test(slabs.overwrites EXIT 2
     STDERR "deltasplat: --output: got cut.png; expected another file than the parts"
     ARGS fold cut.png -o cut.png)
+
+# Parts by a pattern; what fits no file.
+deltasplat_cli_test(fold.no_parts EXIT 3 ARGS fold "s.*.slabs" -o out.exr
+    STDERR "deltasplat: s.*.slabs: got no file that fits; expected at least one")

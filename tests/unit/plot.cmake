@@ -14,4 +14,4 @@ deltasplat_test(unit/annotate_test.cpp SOURCES ${annotate} ${tools}/drawing/draw
     ${tools}/drawing/stroke_font.cpp ${tools}/text/utf8_text.cpp)
 deltasplat_test(unit/picture_legend_test.cpp SOURCES ${tools}/render/picture_legend.cpp
     ${tools}/render/list_presets.cpp ${tools}/options/transfer_function_option.cpp
-    ${tools}/options/file_and_name.cpp ${tools}/suggest.cpp)
+    ${tools}/options/file_and_name.cpp)

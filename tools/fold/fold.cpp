@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "batch/file_pattern.h"
 #include "deltasplat/error.h"
 #include "deltasplat/slab_part.h"
 #include "listener.h"
@@ -36,7 +37,7 @@ struct FoldCommand {
 void declareOptions(CLI::App& app, FoldCommand& command) {
     app.add_option("PARTS", command.parts,
                    "Parts of a picture, all of them, in any order: .slabs files that\n"
-                   "render --slab-range has written")
+                   "render --slab-range has written; or a pattern in quotes, 's.*.slabs'")
         ->type_name("FILE")
         ->required()
         ->group("Arguments");
@@ -113,15 +114,32 @@ void writeWhole(const RenderCommand& command, FoldedPicture& folded, const Sessi
     writeImage(command.output, image, file);
 }
 
+// The parts, with the files that patterns stand for in their place.
+Files partsOf(const FoldCommand& asked) {
+    Files parts;
+    for (const std::string& name : asked.parts) {
+        if (!isPattern(name)) {
+            parts.emplace_back(name);
+            continue;
+        }
+        const FoundFiles found = findFiles(name, {});
+        for (const FoundFile& one : found.files) parts.push_back(one.file);
+        if (found.files.empty()) {
+            throw Error(ErrorCode::kInput, gotExpected(name, "no file that fits", "at least one"));
+        }
+    }
+    return parts;
+}
+
 void runFold(const CLI::App& app, const FoldCommand& asked, const Session& session) {
     RenderCommand command = asked.picture;
     requireArgument(!command.output.empty(), "--output", "FILE (see 'deltasplat fold --help')");
     imageFormatOf(command.output);
-    const Files parts(asked.parts.begin(), asked.parts.end());
+    const Files parts = partsOf(asked);
     checkOutput("--output", command.output, parts, "the parts");
     checkColors(command);
     FoldedPicture folded(parts);
-    applyParts(folded, asked.parts.front(), command);
+    applyParts(folded, parts.front().string(), command);
     {
         ProgressDisplay display(session.common);
         warnOfUnusedOptions(app, command, display);

@@ -15,6 +15,11 @@
 namespace deltasplat {
 namespace {
 
+// Zeros without a sign.
+std::string valueText(double value) {
+    return joinNumbers({value}, "");
+}
+
 template <class Vector>
 std::string toText(const Vector& v, const std::string& separator) {
     return joinNumbers({double(v.x), double(v.y), double(v.z)}, separator);
@@ -50,9 +55,9 @@ std::string axisText(const GridReport& report, int axis) {
 
 std::string backgroundText(const GridReport& report) {
     const Volume& volume = report.volume;
-    if (volume.hasBackground) return numberText(volume.background);
+    if (volume.hasBackground) return valueText(volume.background);
     if (!report.backgroundGuess) return "none that is obvious";
-    return numberText(*report.backgroundGuess) +
+    return valueText(*report.backgroundGuess) +
            ", a guess: " + percent(double(volume.mostFrequent->count), double(volume.activeCount)) +
            " of the voxels have it";
 }
@@ -82,9 +87,9 @@ std::string valuesText(const Volume& volume) {
     std::string shares;
     for (const int share : {1, 50, 99}) {
         shares += (shares.empty() ? "" : ", ") + std::to_string(share) +
-                  " %: " + numberText(percentileValue(volume, share));
+                  " %: " + valueText(percentileValue(volume, share));
     }
-    return textLine("range", numberText(volume.valueMin) + " to " + numberText(volume.valueMax)) +
+    return textLine("range", valueText(volume.valueMin) + " to " + valueText(volume.valueMax)) +
            textLine("percentiles", shares);
 }
 
@@ -104,7 +109,7 @@ std::string histogramText(const Volume& volume) {
     std::size_t longest = 0;
     for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
         char edge[32];
-        std::snprintf(edge, sizeof edge, "%.6g", histogram.low + width * double(i));
+        std::snprintf(edge, sizeof edge, "%.6g", histogram.low + width * double(i) + 0.0);
         from.push_back(edge);
         longest = std::max(longest, from.back().size());
         // Bins of whole numbers may go on behind the largest value, and one value has one bin.

@@ -10,6 +10,11 @@
 #include "version.h"
 
 namespace deltasplat {
+namespace {
+
+bool readerIsGone = false;
+
+}  // namespace
 
 bool OptionGroup::isMoreGiven(const CLI::App& app, const std::string& name) {
     const std::vector<const CLI::Option*> options = app.get_options();
@@ -71,9 +76,14 @@ void requireArgument(bool given, const std::string& name, const std::string& exp
     if (!given) throw Error(ErrorCode::kUsage, gotExpected(name, "nothing", expected));
 }
 
+bool isReaderGone() {
+    return readerIsGone;
+}
+
 void printOut(const std::string& text) {
     const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
     if (written && std::fflush(stdout) == 0) return;
+    readerIsGone = errno == EPIPE;
     throw Error(ErrorCode::kOutput,
                 std::string("standard output: cannot be written: ") + std::strerror(errno));
 }

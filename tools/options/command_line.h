@@ -130,6 +130,9 @@ class OptionGroup {
     std::string title_;
 };
 
+/// Whether nobody reads what is printed any longer.
+bool isReaderGone();
+
 /// Returns `help` with the default as it stands in an options struct: "help (default 512x512)".
 std::string withDefault(const std::string& help, const std::string& value);
 

@@ -2,6 +2,7 @@
 #include "options/parse.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "deltasplat/error.h"
 #include "ingest/placement.h"
 #include "number_text.h"
+#include "suggest.h"
 
 namespace deltasplat {
 namespace {
@@ -79,7 +81,9 @@ std::vector<std::string> splitAt(const std::string& text, char separator) {
 
 std::string joinNumbers(const std::vector<double>& values, const std::string& separator) {
     std::string text;
-    for (const double value : values) text += (text.empty() ? "" : separator) + numberText(value);
+    // A zero with a sign is a zero.
+    for (const double value : values)
+        text += (text.empty() ? "" : separator) + numberText(value + 0.0);
     return text;
 }
 
@@ -105,7 +109,7 @@ Parser<std::string> anyText() {
 Parser<std::string> choice(std::vector<std::string> words) {
     return [words = std::move(words)](const std::string& option, const std::string& text) {
         if (std::find(words.begin(), words.end(), text) == words.end())
-            refuse(option, text, joinWords(words, "or"));
+            refuse(option, text, joinWords(words, "or") + afterStop(suggestion(text, words)));
         return text;
     };
 }
@@ -219,8 +223,13 @@ Parser<glm::vec4> color() {
     return [](const std::string& option, const std::string& text) {
         std::vector<double> v = toNumbers<double>(text, ',');
         if (v.size() == 3) v.push_back(1);
+        // A name, or what stands in a style sheet.
+        const bool isWord = !text.empty() && (text[0] == '#' || std::isalpha(text[0] & 0x7f) != 0);
         if (v.size() != 4 || *std::min_element(v.begin(), v.end()) < 0 || v[3] > 1)
-            refuse(option, text, "R,G,B or R,G,B,A, numbers of at least 0 and A at most 1");
+            refuse(
+                option, text,
+                std::string("R,G,B or R,G,B,A, numbers of at least 0 and A at most 1") +
+                    (isWord ? ", scene-linear: 1,1,1 is white, 0.216,0.216,0.216 is #808080" : ""));
         return glm::vec4(v[0], v[1], v[2], v[3]);
     };
 }

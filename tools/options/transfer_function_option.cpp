@@ -35,9 +35,9 @@ bool isLabelTable(const std::filesystem::path& file) {
         names.push_back(preset.name);
         known += (known.empty() ? "" : ", ") + preset.name;
     }
-    const std::string guess = suggestion(text, names);
-    if (!guess.empty()) known += "." + guess;
-    throw Error(ErrorCode::kUsage, gotExpected("--tf", text, "a file, or one of " + known));
+    throw Error(ErrorCode::kUsage,
+                gotExpected("--tf", text,
+                            "a file, or one of " + known + afterStop(suggestion(text, names))));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "number_text.h"
 #include "options/parse.h"
 #include "render/render_modes.h"
+#include "suggest.h"
 
 namespace deltasplat {
 namespace {
@@ -28,9 +29,10 @@ ChannelChoice parseChannels(const std::string& option, const std::string& text) 
         const auto number =
             std::size_t(std::find(names.begin(), names.end(), part) - names.begin());
         if (number == names.size()) {
-            throw Error(ErrorCode::kUsage, gotExpected(option, text,
-                                                       "some of " + joinWords(names, "and") +
-                                                           ", with commas between"));
+            throw Error(ErrorCode::kUsage,
+                        gotExpected(option, text,
+                                    "some of " + joinWords(names, "and") + ", with commas between" +
+                                        afterStop(suggestion(part, names))));
         }
         if (part == kShadow) {
             channels.shadow = true;

@@ -27,6 +27,7 @@
 #include "render/render_sequence.h"
 #include "render/slab_options.h"
 #include "render/tone_options.h"
+#include "suggest.h"
 #include "view/affine.h"
 
 namespace deltasplat {
@@ -35,15 +36,17 @@ namespace {
 // One of some values, by their names.
 template <typename T, typename NameOf>
 Parser<T> named(std::vector<T> values, const NameOf& nameOf) {
-    return
-        [values = std::move(values), nameOf](const std::string& option, const std::string& text) {
-            std::vector<std::string> names;
-            for (const T value : values) {
-                if (nameOf(value) == text) return value;
-                names.push_back(nameOf(value));
-            }
-            throw Error(ErrorCode::kUsage, gotExpected(option, text, joinWords(names, "or")));
-        };
+    return [values = std::move(values), nameOf](const std::string& option,
+                                                const std::string& text) {
+        std::vector<std::string> names;
+        for (const T value : values) {
+            if (nameOf(value) == text) return value;
+            names.push_back(nameOf(value));
+        }
+        throw Error(
+            ErrorCode::kUsage,
+            gotExpected(option, text, joinWords(names, "or") + afterStop(suggestion(text, names))));
+    };
 }
 
 Parser<Method> method() {

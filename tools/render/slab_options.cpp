@@ -22,6 +22,20 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+// What a share can be, of as many as the text says if it says that.
+std::string expectedShares(const std::string& text) {
+    const std::string most = std::to_string(kMostSlabShares);
+    try {
+        const auto count = wholeNumber(1, kMostSlabShares)(
+            "", text.substr(std::min(text.find('/'), text.size() - 1) + 1));
+        const std::string of = "/" + std::to_string(count);
+        return "one of parts 1" + of + " to " + std::to_string(count) + of + ", or several, 1-" +
+               std::to_string(count) + of;
+    } catch (const Error&) {
+        return "a part of so many, 1/4 to 4/4, or several, 2-3/4, of at most " + most;
+    }
+}
+
 SlabShare parseShare(const std::string& option, const std::string& text) {
     const auto whole = wholeNumber(1, kMostSlabShares);
     try {
@@ -35,10 +49,7 @@ SlabShare parseShare(const std::string& option, const std::string& text) {
         }
     } catch (const Error&) {
     }
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, text,
-                            "a part of so many, 1/4 to 4/4, or several, 2-3/4, of at most " +
-                                std::to_string(kMostSlabShares)));
+    throw Error(ErrorCode::kUsage, gotExpected(option, text, expectedShares(text)));
 }
 
 [[noreturn]] void refuse(const std::string& got, const std::string& expected) {

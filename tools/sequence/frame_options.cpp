@@ -22,17 +22,23 @@ Parser<MissingFrames> missingFrames(const std::vector<std::string>& words) {
     };
 }
 
+constexpr const char* kFrameName = "a name with ####, %04d, @ or $F4 for the number";
+
 [[noreturn]] void refuseName(const std::string& option, const std::filesystem::path& name) {
-    throw Error(ErrorCode::kUsage, gotExpected(option, name.string() + " with --frames",
-                                               "a name with ####, %04d, @ or $F4 for the number"));
+    throw Error(ErrorCode::kUsage,
+                gotExpected(option, name.string() + " with --frames", kFrameName));
 }
 
 }  // namespace
 
 FrameName frameNameOf(const std::string& option, const std::filesystem::path& file) {
     const std::optional<FrameName> found = FrameName::find(file);
-    if (!found) refuseName(option, file);
-    return *found;
+    if (found) return *found;
+    std::filesystem::path named = file.filename();
+    named.replace_extension(".####" + file.extension().string());
+    throw Error(ErrorCode::kUsage,
+                gotExpected(option, file.string() + " with --frames",
+                            std::string(kFrameName) + ", such as " + named.string()));
 }
 
 void refuseWithoutFrames(const std::string& option) {

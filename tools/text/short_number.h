@@ -16,6 +16,7 @@ inline constexpr double kFloatRounding = 0x1p-24;
 /// Returns the number with as few digits as keep it within a share of itself, for people to read.
 inline std::string shortNumberText(double number, double share = kFloatRounding) {
     constexpr int kMostDigits = 17;
+    if (number == 0) return "0";  // whatever its sign
     for (int digits = 1; digits < kMostDigits; ++digits) {
         char text[32];
         char* const end =

@@ -16,6 +16,7 @@
 #include "ingest/vdb/default_grid.h"
 #include "ingest/vdb/vdb_file.h"
 #include "ingest/vdb/vector_part.h"
+#include "suggest.h"
 
 namespace deltasplat {
 namespace {
@@ -67,8 +68,11 @@ ChosenGrid findGrid(const std::string& file, const std::vector<VdbGrid>& grids,
         }
     }
     if (found == nullptr) {
+        std::vector<std::string> names;
+        for (const VdbGrid& grid : grids) names.push_back(grid.name);
         fail(file, "no grid \"" + name + "\"",
-             grids.empty() ? "a file with grids" : "one of " + listOf(grids));
+             grids.empty() ? "a file with grids"
+                           : "one of " + listOf(grids) + afterStop(suggestion(name, names)));
     }
     if (!found->isScalar()) {
         fail(file, "grid \"" + name + "\" of type " + found->type,

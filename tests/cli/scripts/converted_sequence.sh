@@ -67,13 +67,13 @@ cmp m.0001.vdb m.0002.vdb || fail "m.0001.vdb was made anew"
 # What cannot be meant.
 place="expected a name with ####, %04d, @ or \$F4 for the number"
 expect_code 2 "$program" convert in.####.vdb o.vdb --frames 1-3
-expect_said "deltasplat: OUTPUT: got o.vdb with --frames; $place"
+expect_said "deltasplat: OUTPUT: got o.vdb with --frames; $place, such as o.####.vdb"
 expect_code 2 "$program" delta in.0001.vdb o.####.vdb --frames 1-3
 expect_said "deltasplat: INPUT: got in.0001.vdb with --frames; $place"
 expect_code 2 "$program" restore d.####.vdb o.####.vdb
 expect_said "deltasplat: INPUT: got d.####.vdb without --frames; expected --frames with it, as in --frames 1-100"
 expect_code 2 "$program" convert in.####.vdb o.####.vdb --frames 1-3 --stats o.json
-expect_said "deltasplat: --stats: got o.json with --frames; $place"
+expect_said "deltasplat: --stats: got o.json with --frames; $place, such as o.####.json"
 expect_code 2 "$program" convert in.####.vdb o.####.xyz --frames 1-3
 expect_code 4 "$program" diff in.0001.vdb in.0002.vdb --frames 1-3
 expect_code 2 "$program" info in.0001.vdb --missing skip

@@ -183,7 +183,7 @@ usage "--frames: got 1-9999999; expected at most 1000000 frames" \
     in.####.vdb -o g.####.png --frames 1-9999999
 usage "INPUT: got in.0008.vdb with --frames; expected a name with ####, %04d, @ or \$F4 for the number" \
     in.0008.vdb -o g.####.png --frames 8-9
-usage "--output: got g.png with --frames; expected a name with ####, %04d, @ or \$F4 for the number" \
+usage "--output: got g.png with --frames; expected a name with ####, %04d, @ or \$F4 for the number, such as g.####.png" \
     in.####.vdb -o g.png --frames 8-9
 usage "INPUT: got in.####.vdb without --frames; expected --frames with it, as in --frames 1-100" \
     in.####.vdb -o g.png
@@ -191,6 +191,6 @@ usage "--keep-going: got it without --frames; expected the frames of a sequence"
     in.0008.vdb -o g.png --keep-going
 usage "--first-pass: got it without --frames; expected the frames of a sequence" \
     in.0008.vdb -o g.png --first-pass g.json
-usage "--stats: got s.json with --frames; expected a name with ####, %04d, @ or \$F4 for the number" \
+usage "--stats: got s.json with --frames; expected a name with ####, %04d, @ or \$F4 for the number, such as s.####.json" \
     in.####.vdb -o g.####.png --frames 8-9 --stats s.json
 expect_files "" 'g.*'

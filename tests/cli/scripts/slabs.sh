@@ -33,6 +33,10 @@ folds() { # ARGUMENTS...: as one process renders it
 ball=(engine_48x40x32_uint8.raw --tf viridis --size 60x50)
 cloud=(cloud.vdb --size 60x50)
 folds "${cloud[@]}" --view iso
+"$program" fold "part$scene.?.slabs" -o pattern.exr --float -qq
+equal all$scene.exr pattern.exr
+info=$("$program" info part$scene.1.slabs 2>&1 || true)
+[[ $info == *"(fold reads .slabs)" ]] || fail "info of a part: got $info; expected to be told what reads it"
 folds "${cloud[@]}" --projection perspective --view left --distance 50 --near 20
 folds "${ball[@]}" --azimuth 30
 folds "${ball[@]}" --projection perspective --view iso --fov 60
