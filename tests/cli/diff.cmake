@@ -157,3 +157,7 @@ deltasplat_diff_refusal(name_twice
     "same_names.vdb: got several grids named \"density\" or none; expected grids that each have a name of their own (or --grid NAME)"
     same_names.vdb two.vdb)
 
+# Of files that name no place, that is said where it counts.
+deltasplat_diff(no_place 2
+    "transform     equal; B's voxel [(]0,0,0[)] is A's [(]2,0,0[)] [(]A's is origin 0,0,0 and spacing 1,1,1, as of files that name none; --origin and --spacing name them[)]"
+    ${cube} moved.nrrd)

@@ -87,6 +87,21 @@ std::string placeText(const VolumeComparison& c) {
            numberText(c.shift) + " voxels apart" + offset;
 }
 
+// Of files that say nothing of places, whose voxels are of size 1 from the world's origin on.
+std::string assumedText(const GridDiff& grid) {
+    const auto isAssumed = [](const Volume& volume) {
+        return !volume.hasBackground && volume.space.empty() &&
+               volume.worldFromIndex == glm::dmat4(1);
+    };
+    const bool a = isAssumed(grid.a);
+    const bool b = isAssumed(grid.b);
+    if (a == b) return "";
+    return std::string(" (") + (a ? "A" : "B") +
+           "'s is origin 0,0,0 and spacing 1,1,1, as of files that name none; --origin and "
+           "--spacing "
+           "name them)";
+}
+
 std::string activeText(const GridDiff& grid) {
     const std::uint64_t mismatch = grid.comparison.activeMismatch;
     const auto count = [](const Volume& volume) {
@@ -128,7 +143,8 @@ std::string maxText(const GridDiff& grid) {
 std::string plainText(const GridDiff& grid, const CompareOptions& thresholds) {
     const VolumeComparison& c = grid.comparison;
     std::string text = textLine("grid", agreement(grid.a.name, grid.b.name));
-    text += textLine("transform", placeText(c));
+    const bool isApart = c.shift != 0 || c.offset != glm::ivec3(0);
+    text += textLine("transform", placeText(c) + (isApart ? assumedText(grid) : ""));
     text += textLine("type", agreement(grid.a.type, grid.b.type));
     text += textLine("class", agreement(grid.a.gridClass, grid.b.gridClass));
     text += textLine("background", backgroundText(grid));

@@ -71,3 +71,13 @@ for frame in 1 2 3; do "$program" convert volume_8x8x8_uint8.raw in.$frame.vdb -
 "$program" render in.#.vdb -o part_#.exr --camera "$files/camera_moving.json" --frames 2 -qq --float
 expect_same part_2 own_2
 expect_different own_1 own_3 0.01
+
+# The frame holds the centres of voxels; five voxels wider, all of them.
+head -c 4096 /dev/zero | tr '\0' '\377' >full_16x16x16_uint8.raw
+border() { # OPTIONS...: the largest alpha there
+    "$program" render full_16x16x16_uint8.raw --tf grey --range 0,255 --size 64x64 --float -qq -o full.exr "$@"
+    "$oiiotool" full.exr --cut 1x64+0+0 --printstats | sed -n 's/^ *Stats Max: .* \([^ ]*\) (.*$/\1/p'
+}
+holds "$(border) > 0.7" || fail "the frame is wider than the centres of voxels"
+holds "$(border --frame-width 18) > 0.01" || fail "footprints end before the frame does"
+holds "$(border --frame-width 20) < 1e-3" || fail "the frame does not hold all of the voxels"
