@@ -31,6 +31,11 @@ deltasplat_cli_test(output.fine.deep CREATES out.exr stats.json
     ARGS render ball.vdb -o out.exr --deep --deep-slices 3 --float --stats stats.json)
 deltasplat_cli_test(output.deep_verbose CREATES out.exr ARGS render ball.vdb -o out.exr --deep -v
     STDERR_MATCHES "code book .*method auto: .*[0-9]+ samples, at most 2 in a pixel.*--distance=7 .*")
+# Of options given twice the last counts.
+deltasplat_cli_test(output.twice CREATES b.png ARGS render ball.vdb -o a.png -o b.png)
+deltasplat_cli_test(output.preview_verbose CREATES out.png
+    ARGS render ball.vdb -o out.png --progressive -v
+    STDERR_MATCHES "code book .*total [0-9.]*.preview: [0-9.]* seconds before.camera: .*")
 deltasplat_cli_test(output.deep_no_folder EXIT 4 ARGS render ball.vdb -o nowhere/out.exr --deep
     STDERR "deltasplat: nowhere/out.exr: cannot be written: there is no folder nowhere")
 deltasplat_cli_test(output.deep_full EXIT 4 ARGS render ${cube} -o full.exr --deep

@@ -296,7 +296,11 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
 
     const Listener showing = partOf(listener, kReadShare, 1);
     std::optional<Preview> preview;
-    if (command.progressive) preview.emplace(command, scene, part.prepared, session, showing);
+    if (command.progressive) {
+        const Clock::time_point start = Clock::now();
+        preview.emplace(command, scene, part.prepared, session, showing);
+        made.times.preview = secondsSince(start);
+    }
     showScene(command, scene, part, session, showing, made);
     made.times.total = secondsSince(session.begin);
     writeStats(command.stats, statsJson(made.result, volume, made.times, made.deep));

@@ -142,7 +142,11 @@ std::string statsSummary(const RenderResult& result, const RenderTimes& times,
                   stats.footprint, times.read, stats.prepareSeconds, stats.renderSeconds,
                   stats.splatSeconds, stats.compositeSeconds, stats.warpSeconds, times.write,
                   times.total);
-    return text + deepSummary(deep) + "camera: " + cameraOptionsText(result.camera) + "\n";
+    char preview[64] = "";
+    if (times.preview > 0)
+        std::snprintf(preview, sizeof preview, "preview: %.3f seconds before\n", times.preview);
+    return text + std::string(preview) + deepSummary(deep) +
+           "camera: " + cameraOptionsText(result.camera) + "\n";
 }
 
 }  // namespace deltasplat

@@ -13,6 +13,7 @@ namespace deltasplat {
 struct RenderTimes {
     double read = 0;
     double write = 0;
+    double preview = 0;  ///< 0: none was made
     double total = 0;
 };
 
