@@ -14,5 +14,7 @@ install(FILES ${PROJECT_BINARY_DIR}/deltasplat-config-version.cmake
               cmake/deltasplat-config.cmake cmake/dependencies.cmake cmake/find_itk.cmake
         DESTINATION ${DELTASPLAT_CMAKE_DIR})
 # What there is to read, where the links of README.md lead.
-install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+if(PROJECT_IS_TOP_LEVEL)
+    install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+    install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} USE_SOURCE_PERMISSIONS)
+endif()
