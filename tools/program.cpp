@@ -150,11 +150,14 @@ void joinPossibleValues(std::vector<std::string>& arguments,
     }
 }
 
-// Spells "help render" as "render --help", as users of git do.
-void askForHelp(std::vector<std::string>& arguments) {
+// Spells "help render" as "render --help", as users of git do; what is no subcommand is refused as
+// it is without "help".
+void askForHelp(std::vector<std::string>& arguments, const std::vector<Subcommand>& subcommands) {
     if (arguments.empty() || arguments.front() != "help") return;
     arguments.erase(arguments.begin());
-    arguments.emplace_back("--help");
+    const std::vector<std::string> names = subcommandNames(subcommands);
+    const bool isKnown = arguments.empty() || std::count(names.begin(), names.end(), arguments[0]);
+    if (isKnown && arguments.size() < 2) arguments.emplace_back("--help");
 }
 
 // Refuses the first argument that the program or the subcommand does not know.
@@ -200,7 +203,7 @@ Error usageError(const CLI::App& app, const CLI::ParseError& problem) {
 const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcommands,
                         const std::vector<std::string>& arguments) {
     std::vector<std::string> spelt(arguments.begin() + 1, arguments.end());
-    askForHelp(spelt);
+    askForHelp(spelt, subcommands);
     spellWithTwoDashes(spelt, subcommands);
     joinPossibleValues(spelt, subcommands);
     std::vector<std::string> reversed(spelt.rbegin(), spelt.rend());
