@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -28,10 +29,25 @@ std::string lineOf(const FrameFiles& files, const std::string& what) {
     return what.starts_with(files.name + ":") ? what : files.name + ": " + what;
 }
 
+bool isOfWord(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+// Without 3, -0.5 and 1e-05, but with what belongs to a name.
 std::string withoutNumbers(const std::string& text) {
     std::string rest;
-    for (const char c : text)
-        if ((c < '0' || c > '9') && c != '.') rest += c;
+    for (std::size_t i = 0; i < text.size();) {
+        const bool begins = std::isdigit(static_cast<unsigned char>(text[i])) != 0 &&
+                            (i == 0 || !isOfWord(text[i - 1]));
+        if (!begins) {
+            rest += text[i++];
+            continue;
+        }
+        if (!rest.empty() && rest.back() == '-') rest.pop_back();
+        while (i < text.size() && (isOfWord(text[i]) || text[i] == '.' ||
+                                   ((text[i] == '-' || text[i] == '+') && text[i - 1] == 'e')))
+            ++i;
+    }
     return rest;
 }
 
@@ -120,15 +136,20 @@ class FrameRun {
         Warning& warning = known->second;
         warning.isOfFrames = warning.isOfFrames || about != text;
         if (isNew) return listener_.warn(lineOf(files, text));
+        // All that differs in one frame is shown.
+        if (i == warning.first && about != warning.text) listener_.warn(lineOf(files, text));
+        if (i == warning.first) return;
         warning.hasOtherNumbers = warning.hasOtherNumbers || about != warning.text;
-        if (i != warning.first) warning.others.insert(i);
+        warning.others.insert(i);
     }
 
     // Says of how many others a warning is.
     void countWarnings() const {
         for (const auto& [kind, warning] : warnings_) {
             const std::size_t count = warning.others.size();
-            if (count == 0 || (!warning.isOfFrames && !warning.hasOtherNumbers)) continue;
+            // What is the same of all frames of a sequence need not be counted.
+            const bool isOfAll = !warning.isOfFrames && !warning.hasOtherNumbers;
+            if (count == 0 || (isOfAll && frames_[0].name.empty())) continue;
             listener_.warn(std::to_string(count) + " other" + frameWord(count) +
                            (warning.hasOtherNumbers ? ", in other numbers: " : ": ") +
                            warning.text.substr(std::min(warning.text.find_first_not_of(": "),
