@@ -105,6 +105,14 @@ class Survey {
         failed_ = failed;
     }
 
+    // Returns the frames that were read, in order.
+    std::vector<int> framesRead() const {
+        std::vector<int> frames;
+        for (const FrameFiles& one : frames_)
+            if (!one.input.empty() && !unread_.contains(one.input)) frames.push_back(one.frame);
+        return frames;
+    }
+
     // What ends the command when what there is has been written.
     void throwFailure() const {
         if (failed_) throw *failed_;
@@ -121,8 +129,9 @@ class Survey {
             readScene(command.input, command.picture, silent, &frame);
             anyIsRead_ = true;
         } catch (const Error& error) {
-            if (error.code() == ErrorCode::kInterrupted || tellsFailures_) throw;
             const std::lock_guard lock(mutex_);
+            unread_.insert(files.input);
+            if (error.code() == ErrorCode::kInterrupted || tellsFailures_) throw;
             if (!failure_ || i < failedFrame_) {
                 failure_ = error;
                 failedFrame_ = i;
@@ -136,6 +145,7 @@ class Survey {
     bool tellsFailures_ = false;
     std::optional<Error> failed_;  // frames, which have been told of
     std::mutex mutex_;
+    std::set<std::filesystem::path> unread_;
     std::atomic<bool> anyIsRead_{false};
     std::optional<Error> failure_;
     std::size_t failedFrame_ = 0;
@@ -201,8 +211,9 @@ bool readFirstPass(const RenderCommand& command, SequenceLook& look, const Liste
     return true;
 }
 
-void writeFirstPass(const RenderCommand& command, const SequenceLook& look) {
-    Json json{{kInput, inputName(command)}, {kFrames, runsOf(command.frames.frames)}};
+void writeFirstPass(const RenderCommand& command, const std::vector<int>& frames,
+                    const SequenceLook& look) {
+    Json json{{kInput, inputName(command)}, {kFrames, runsOf(frames)}};
     json.update(look.toJson());
     writeFileAtomically(command.firstPass, Json{{kFirstPass, json}}.dump(1) + "\n");
 }
@@ -368,7 +379,7 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     if (!isKnown) survey.run(look, partOf(listener, 0, readShare));
     RenderCommand fixed = fixedTo(look, command);
     fixWindow(present, isKnown, look, fixed, partOf(listener, readShare, kSurveyShare));
-    if (!isKnown && !command.firstPass.empty()) writeFirstPass(command, look);
+    if (!isKnown && !command.firstPass.empty()) writeFirstPass(command, survey.framesRead(), look);
     if (isAlone) {
         listener.report(1);
         return survey.throwFailure();
