@@ -288,10 +288,15 @@ bool areParallel(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 // Returns the shortest turn that takes one unit vector to another, exact between axes; of opposite
-// ones half a turn about `halfTurn`.
+// ones half a turn about `halfTurn`, a unit vector across the first.
 glm::dmat3 turnBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& halfTurn) {
-    if (areParallel(from, to) && glm::dot(from, to) < 0)
-        return 2.0 * glm::outerProduct(halfTurn, halfTurn) - glm::dmat3(1.0);
+    // Of nearly opposite ones the rest of the way goes from there, for what follows divides by what
+    // is lost in rounding.
+    constexpr double kOpposite = -1 + 1e-6;
+    if (glm::dot(from, to) < kOpposite) {
+        const glm::dmat3 half = 2.0 * glm::outerProduct(halfTurn, halfTurn) - glm::dmat3(1.0);
+        return turnBetween(-from, to, halfTurn) * half;
+    }
     const glm::dvec3 v = glm::cross(from, to);
     const glm::dmat3 cross(0, v.z, -v.y, -v.z, 0, v.x, v.y, -v.x, 0);
     return glm::dmat3(1.0) + cross + cross * cross / (1 + glm::dot(from, to));

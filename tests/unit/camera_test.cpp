@@ -304,6 +304,14 @@ TEST(Camera, viewsStandOnWhatIsUp) {
         EXPECT_EQ(stated.up, plain.up) << view.name;
         options.up = glm::dvec3(0, -1, 0);  // the front on its head
         expectNear(makeCamera(options, kBox, kUnit).up, plain.up * glm::dvec3(-1, -1, 1));
+        for (const double off : {1e-12, 1.2e-8, 1e-7, 1e-4, 0.01}) {
+            const glm::dvec3 up = glm::normalize(glm::dvec3(off, -1, 2 * off));
+            options.up = up;
+            const Camera turned = makeCamera(options, kBox, kUnit);
+            const glm::dmat3 axes(turned.right, turned.up, -turned.direction);
+            EXPECT_NEAR(glm::determinant(axes), 1, 1e-12) << view.name << ' ' << off;
+            if (std::string(view.name) == "front") expectNear(turned.up, up, 1e-12);
+        }
     }
     options.view = "iso";
     options.up = glm::dvec3(0, 0, 1);
@@ -661,8 +669,10 @@ TEST(Camera, aParallelCameraMayStandAnywhere) {
 }
 
 TEST(Camera, refusesWhatCannotBeMeant) {
-    EXPECT_EQ(messageOf([](CameraOptions& o) { o.view = "frnt"; }),
-              "`view`: got frnt; expected one of front, back, left, right, top, bottom, iso");
+    EXPECT_EQ(
+        messageOf([](CameraOptions& o) { o.view = "frnt"; }),
+        "`view`: got frnt; expected one of front, back, left, right, top, bottom, iso. Did you "
+        "mean 'front'?");
     EXPECT_EQ(messageOf([](CameraOptions& o) { o.direction = glm::dvec3(0); }),
               "`direction`: got 0,0,0; expected three finite numbers, not all of them 0");
     EXPECT_EQ(messageOf([](CameraOptions& o) { o.direction = glm::dvec3(1, NAN, 0); }),

@@ -238,6 +238,7 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
 
 glm::dvec3 upOf(const PictureOptions& picture, const Volume& volume) {
     const glm::dvec3 up = volume.space.empty() ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+    if (picture.upWorld) return *picture.upWorld;
     return picture.render.camera.up.value_or(up);
 }
 

@@ -43,7 +43,8 @@ struct PictureOptions {
     SurfaceChoice surface;
     CutChoice parts;
     CameraChoice camera;
-    glm::dmat4 worldFromInput{1.0};  ///< where a scene has the volume
+    glm::dmat4 worldFromInput{1.0};     ///< where a scene has the volume
+    std::optional<glm::dvec3> upWorld;  ///< what is up in a scene, unless the camera says
 };
 
 /// Whether what is shown is fog by what was asked for, which has no surfaces.

@@ -33,9 +33,18 @@ UsdVolume volumeAt(const SceneChoice& scene, std::optional<int> frame) {
     return scene.motion->at(frame ? *frame : frames.empty() ? 0 : frames.front());
 }
 
-// Who looks straight down or up has something else at the top of the picture.
-bool looksAlong(const CameraOptions& camera, const std::optional<glm::dvec3>& up) {
-    return camera.direction && up && glm::cross(*camera.direction, *up) == glm::dvec3(0);
+// What is up in a scene, y or z, is up for a camera that does not say; who looks straight down or
+// up has at the top of the picture what the views top and bottom have.
+void takeUp(const glm::dvec3& up, CameraOptions& camera) {
+    camera.up = up;
+    std::optional<glm::dvec3> direction = camera.direction;
+    if (!direction && camera.eyeWorld && camera.targetWorld)
+        direction = *camera.targetWorld - *camera.eyeWorld;
+    if (!direction) return;
+    const double across = glm::length(glm::cross(*direction, up));
+    if (across > 1e-9 * glm::length(*direction)) return;
+    const glm::dvec3 behind = up.z == 1 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
+    camera.up = glm::dot(*direction, up) < 0 ? behind : -behind;
 }
 
 }  // namespace
@@ -49,7 +58,10 @@ void applyScene(const CLI::App& app, const std::vector<int>& frames, RenderComma
     scene.motion = readUsdVolume(found->file, found->name, listener);
     scene.isGridGiven = isGiven(app, "--grid");
     CameraOptions& camera = command.picture.render.camera;
-    if (!camera.up && !looksAlong(camera, scene.motion->upWorld)) camera.up = scene.motion->upWorld;
+    if (!camera.up && scene.motion->upWorld) {
+        command.picture.upWorld = scene.motion->upWorld;
+        takeUp(*scene.motion->upWorld, camera);
+    }
     if (!frames.empty()) {
         // Each frame has its own; until then the first one's will do.
         showFrame(frames.front(), scene.moves() ? scene.file : std::filesystem::path(), command);

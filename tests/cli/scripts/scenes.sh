@@ -49,6 +49,18 @@ expect_same upright standing 1e-6
 show upright.usda down --direction 0,0,-1
 show at3.vdb flat
 expect_same down flat 1e-6
+above="--projection perspective --target 6,12,6"
+show upright.usda above $above --eye 6,12,60
+show at3.vdb over $above --direction 0,0,-1 --distance 54
+expect_same above over 1e-6
+show upright.usda below --direction 0,0,1
+show upright.usda bottom --view bottom
+expect_same below bottom 1e-6
+# The ground is level there, however the camera is held.
+ground="--lighting scatter --light 0.3,0.2,-1 --ground 6,12,-1"
+show upright.usda ground --direction 0,0,-1 $ground
+show upright.usda level --view top $ground
+expect_same ground level 1e-6
 
 # A frame without a file is missing.
 expect_code 3 "$program" render scene.usda -o gone.#.exr --frames 3-4 -qq --size 8x8
