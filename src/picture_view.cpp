@@ -119,8 +119,8 @@ Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
 
 // Base plane pixels that a slope of 1 takes: as many as the farthest slice has sheet pixels, which
 // is the most that there is to show, or fewer: as many as the picture needs, but at least as many
-// as there are voxels in the slice in the middle. What is averaged before it is composited is not
-// what is seen of it.
+// as there are voxels in the slice in the middle, or sheet pixels if those are fewer. What is
+// averaged before it is composited is not what is seen of it.
 double PictureView::densityOf() const {
     const IndexBox& box = axis_->deltas.box;
     const Factorization& view = thinView_;

@@ -67,10 +67,7 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view
     const SplatOptions& options = scene.options;
     // Where the screen asks for two sheet pixels a voxel, but not for more, what is thin gets one.
     const bool few = view.pixelsPerVoxel < 2.5;
-    if (!options.resolution && few && scene.isThin) resolution_ = std::min(resolution_, 1.0);
-    // What voxels share has one kernel.
-    if (!options.resolution && (options.sigma || options.footprintWidth))
-        resolution_ = std::max(resolution_, 1.0);
+    if (!options.resolution && few && scene.isThin) resolution_ = 1;
     int between = 0;
     if (options.between) {
         between = *options.between;

@@ -59,8 +59,9 @@ void SliceBlocks::clear() {
 std::uint64_t SliceBlocks::voxelsInBox(glm::ivec2 block) const {
     const IndexBox& box = input_.deltas.box;
     const glm::ivec2 first = layout_.firstVoxel + 8 * block;
-    // Of the block's rows or columns, of which there are some: those of the box.
+    // Of the block's rows or columns those of the box; of blocks that fill up a tile none.
     const auto inside = [](int from, int to) {
+        if (from > 7 || to < 0) return 0u;
         return 0xFFu >> (7 - std::min(to, 7)) & 0xFFu << std::max(from, 0) & 0xFFu;
     };
     const std::uint64_t columns = inside(box.min.z - first.x, box.max.z - first.x);

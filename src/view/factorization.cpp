@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: P. Lacroute and M. Levoy, Fast Volume Rendering Using a Shear-Warp Factorization of the
 // Viewing Transformation, 1994. Deviates in that the base plane is sampled at a whole number of
-// points a voxel, and in that near-ties and near-zero shifts are snapped (see factorize).
+// points a voxel, or of voxels a point, and in that near-ties and near-zero shifts are snapped (see factorize).
 #include "deltasplat/view/factorization.h"
 
 #include <algorithm>
@@ -63,10 +63,7 @@ double largestSingularValue(const glm::dmat2& m) {
 double screenResolution(double pixelsPerVoxel) {
     // Asked this way round because a frame too narrow for double arithmetic stretches by NaN.
     if (!(pixelsPerVoxel < kMaxAutomaticResolution)) return kMaxAutomaticResolution;
-    if (pixelsPerVoxel >= 0.5) return double(std::lround(std::max(pixelsPerVoxel, 1.0)));
-    // Coarser sheets save little more than what compositing takes, which is little then.
-    if (pixelsPerVoxel >= 0.125) return 0.5;
-    return pixelsPerVoxel >= 0.0625 ? 0.25 : 1.0 / kMostVoxelsPerPixel;
+    return double(std::lround(std::max(pixelsPerVoxel, 1.0)));
 }
 
 void requireFinite(const glm::dvec3& eye) {

@@ -85,7 +85,8 @@ Parser<std::int64_t> bits() {
 Parser<double> resolution() {
     return [](const std::string& option, const std::string& text) {
         for (int voxels = 2; voxels <= kMostVoxelsPerPixel; voxels *= 2)
-            if (text == "1/" + std::to_string(voxels)) return 1.0 / voxels;
+            if (text == "1/" + std::to_string(voxels) || text == numberText(1.0 / voxels))
+                return 1.0 / voxels;
         try {
             return double(wholeNumber(1, kMaxResolution)(option, text));
         } catch (const Error&) {
@@ -359,7 +360,9 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
             std::to_string(kMostDivided) + " blocks of voxels; else 0)");
     group.addValue("--resolution", "R", options.resolution, resolution(),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
-                       ", or 1/2, 1/4 or 1/8\n(default: chosen from the screen)");
+                       ", or 1/2, 1/4 or 1/8:\nvoxels share a pixel, which is faster, softer, "
+                       "and denser where\nthin and opaque things lie along the line of sight\n"
+                       "(default: 1 or 2, chosen from the screen)");
     group.addValue("--filter", "NAME", options.filter, pictureFilter(),
                    withDefault("What makes pixels of the rendered plane: catmull-rom (sharp),\n"
                                "mitchell, gauss (soft) or box (the mean over a pixel)",

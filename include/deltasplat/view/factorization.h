@@ -55,9 +55,9 @@ bool isResolution(double resolution);
 /// defined; what is within 1e-9 of a tie is one, and shifts within 1e-9 of 0 or 1 are 0 or 1, so
 /// that rounding neither chooses an axis nor tilts a straight view.
 /// @param camera      a parallel one
-/// @param resolution  as isResolution says, or empty: 2 where the screen has one and a half pixels
-/// a voxel or more; 1/2 where it has less than half a pixel, 1/4 below 1/8 of one and 1/8 below
-/// 1/16; else 1
+/// @param resolution  as isResolution says, or empty: 1 where the screen has fewer than one and a
+/// half pixels a voxel, else 2, and never less than 1: where voxels share sheet pixels, what is
+/// dense and thin along the line of sight looks denser
 /// @throw Error(kUsage) if the resolution is out of range;
 ///        Error(kInput) if worldFromIndex is not finite or cannot be inverted
 Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
