@@ -73,6 +73,19 @@ Files makeFolderOf(const std::filesystem::path& file) {
     return made;
 }
 
+void OutputFolders::makeFor(const std::filesystem::path& file) {
+    const Files made = makeFolderOf(file);
+    if (made.empty()) return;
+    const std::lock_guard lock(mutex_);
+    made_.insert(made_.begin(), made.begin(), made.end());
+}
+
+void OutputFolders::dropEmpty() noexcept {
+    std::error_code ignored;
+    for (const std::filesystem::path& folder : made_) remove(folder, ignored);
+    made_.clear();
+}
+
 void writeStats(const std::filesystem::path& file, std::string_view json) {
     if (!file.empty()) writeFileAtomically(file, json);
     allIsWritten();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,20 @@ void checkOutput(const std::string& option, const std::filesystem::path& file, c
 /// @return the folders that were not, the innermost first
 /// @throw Error(kOutput)
 Files makeFolderOf(const std::filesystem::path& file);
+
+/// Folders of many outputs, made as they are needed. Thread-safe.
+class OutputFolders {
+  public:
+    /// As makeFolderOf.
+    void makeFor(const std::filesystem::path& file);
+    /// Takes those away that were made and are empty: of outputs that came to nothing. To be called
+    /// when all are done, for outputs share folders.
+    void dropEmpty() noexcept;
+
+  private:
+    std::mutex mutex_;
+    Files made_;  // the innermost first
+};
 
 /// Writes what was asked for with --stats (empty: nothing), the last thing that a command writes.
 /// @throw Error(kOutput)

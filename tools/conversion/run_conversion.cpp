@@ -58,18 +58,24 @@ ConversionStats convertFrames(const ConversionFiles& files, const FrameChoice& c
                                 choice.missing, listener),
                      choice);
     std::vector<ConversionStats> each(frames.size());
-    runFrames(
-        frames, choice.keepGoing, workersFor(frames),
-        [&](std::size_t i, const Listener& part) {
-            ConversionFiles one{frames[i].input, frames[i].output, {}};
-            if (!files.stats.empty())
-                one.stats = frameNameOf("--stats", files.stats).at(frames[i].frame);
-            makeFolderOf(one.output);
-            makeFolderOf(one.stats);
-            each[i] = convertOne(one, convert, part);
-            writeStats(one.stats, statsJson(each[i]));
-        },
-        listener);
+    OutputFolders folders;
+    try {
+        runFrames(
+            frames, choice.keepGoing, workersFor(frames),
+            [&](std::size_t i, const Listener& part) {
+                ConversionFiles one{frames[i].input, frames[i].output, {}};
+                if (!files.stats.empty())
+                    one.stats = frameNameOf("--stats", files.stats).at(frames[i].frame);
+                folders.makeFor(one.output);
+                folders.makeFor(one.stats);
+                each[i] = convertOne(one, convert, part);
+                writeStats(one.stats, statsJson(each[i]));
+            },
+            listener);
+    } catch (const Error&) {
+        folders.dropEmpty();
+        throw;
+    }
     ConversionStats all;
     for (const ConversionStats& stats : each) all.add(stats);
     return all;
@@ -95,14 +101,16 @@ void checkFirstOutput(const ConversionFiles& files, const FrameChoice& frames,
     const std::optional<FrameName> name = FrameName::find(files.output);
     if (!frames.asked() || !name) return check(files.output);
     const std::filesystem::path first = name->at(frames.frames.front());
-    const Files made = makeFolderOf(first);
+    // Made again for each frame that has something to write.
+    OutputFolders folders;
+    folders.makeFor(first);
     try {
         check(first);
     } catch (const Error&) {
-        std::error_code ignored;
-        for (const std::filesystem::path& folder : made) remove(folder, ignored);
+        folders.dropEmpty();
         throw;
     }
+    folders.dropEmpty();
 }
 
 void addConversionOptions(CLI::App& app, const std::string& what, ConversionFiles& files,

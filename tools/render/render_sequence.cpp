@@ -387,6 +387,7 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     const Listener making = partOf(listener, kSurveyShare, 1);
     const std::vector<FrameFiles> frames = framesToMake(present, command.frames);
     const std::optional<FrameName> stats = FrameName::find(command.stats);
+    OutputFolders folders;
     std::optional<PreparedScene> prepared;
     if (!frames.empty() && seesOneThing(command)) prepared = prepareOnce(fixed, look, making);
     try {
@@ -402,8 +403,8 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
                 if (sinks.any()) sequence.take = [&](const Image& image) { sinks.put(i, image); };
                 try {
                     const RenderCommand one = commandOf(fixed, frames[i], stats);
-                    if (sinks.areWritten()) makeFolderOf(one.output);
-                    makeFolderOf(one.stats);
+                    if (sinks.areWritten()) folders.makeFor(one.output);
+                    folders.makeFor(one.stats);
                     makePicture(one, sequence, part);
                 } catch (...) {
                     sinks.skip(i);
@@ -412,6 +413,7 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
             },
             making);
     } catch (const Error& error) {
+        folders.dropEmpty();
         // What there is goes into the file of all.
         if (command.frames.keepGoing && error.code() != ErrorCode::kInterrupted)
             finishAfterFailure(sinks);

@@ -47,6 +47,14 @@ grep -q '^  frames  *3, with active voxels in 3$' info.txt || fail "info.txt: go
 expect_files "made/0001/c.vdb made/0002/c.vdb" 'made/*/*'
 expect_files "made/0001.json made/0002.json" 'made/*.json'
 
+# But none of frames that come to nothing, nor where something is refused.
+expect_code 3 "$program" convert in.####.vdb part/####/c.vdb --frames 3-5 --keep-going -qq
+expect_files "part/0003" 'part/*'
+expect_code 2 "$program" convert in.####.vdb not/####/c.vdb --frames 1-2 -qq --stats one.json
+expect_code 3 "$program" convert none.####.vdb not/####/c.vdb --frames 1-2 -qq --missing skip
+expect_code 3 "$program" convert in.####.vdb not/####/c.vdb --frames 1-2 -qq --grid nope
+expect_files "" 'not'
+
 # Frames without a file, and those that are there already.
 expect_code 3 "$program" convert in.####.vdb m.####.vdb --frames 1-5 --keep-going -qq
 expect_files "m.0001.vdb m.0002.vdb m.0003.vdb" 'm.*'
