@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: P. Lacroute and M. Levoy, Fast Volume Rendering Using a Shear-Warp Factorization of the
 // Viewing Transformation, 1994. Deviates in that the base plane is sampled at a whole number of
-// points a voxel, or of voxels a point, and in that near-ties and near-zero shifts are snapped (see factorize).
+// points a voxel, or of voxels a point, and in that near-ties and near-zero shifts are snapped (see
+// factorize).
 #include "deltasplat/view/factorization.h"
 
 #include <algorithm>
