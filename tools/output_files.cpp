@@ -80,10 +80,9 @@ void OutputFolders::makeFor(const std::filesystem::path& file) {
     made_.insert(made_.begin(), made.begin(), made.end());
 }
 
-void OutputFolders::dropEmpty() noexcept {
+OutputFolders::~OutputFolders() {
     std::error_code ignored;
     for (const std::filesystem::path& folder : made_) remove(folder, ignored);
-    made_.clear();
 }
 
 void writeStats(const std::filesystem::path& file, std::string_view json) {

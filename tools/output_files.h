@@ -31,14 +31,17 @@ void checkOutput(const std::string& option, const std::filesystem::path& file, c
 /// @throw Error(kOutput)
 Files makeFolderOf(const std::filesystem::path& file);
 
-/// Folders of many outputs, made as they are needed. Thread-safe.
+/// Folders of many outputs, made as they are needed. Those that are empty in the end, of outputs
+/// that came to nothing, are taken away again; not before, for outputs share folders. Thread-safe.
 class OutputFolders {
   public:
+    OutputFolders() = default;
+    OutputFolders(const OutputFolders&) = delete;
+    OutputFolders& operator=(const OutputFolders&) = delete;
+    ~OutputFolders();
+
     /// As makeFolderOf.
     void makeFor(const std::filesystem::path& file);
-    /// Takes those away that were made and are empty: of outputs that came to nothing. To be called
-    /// when all are done, for outputs share folders.
-    void dropEmpty() noexcept;
 
   private:
     std::mutex mutex_;

@@ -6,12 +6,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <optional>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "conversion/conversion_files.h"
-#include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "ingest/files/file_name.h"
 #include "memory.h"
@@ -59,23 +57,18 @@ ConversionStats convertFrames(const ConversionFiles& files, const FrameChoice& c
                      choice);
     std::vector<ConversionStats> each(frames.size());
     OutputFolders folders;
-    try {
-        runFrames(
-            frames, choice.keepGoing, workersFor(frames),
-            [&](std::size_t i, const Listener& part) {
-                ConversionFiles one{frames[i].input, frames[i].output, {}};
-                if (!files.stats.empty())
-                    one.stats = frameNameOf("--stats", files.stats).at(frames[i].frame);
-                folders.makeFor(one.output);
-                folders.makeFor(one.stats);
-                each[i] = convertOne(one, convert, part);
-                writeStats(one.stats, statsJson(each[i]));
-            },
-            listener);
-    } catch (const Error&) {
-        folders.dropEmpty();
-        throw;
-    }
+    runFrames(
+        frames, choice.keepGoing, workersFor(frames),
+        [&](std::size_t i, const Listener& part) {
+            ConversionFiles one{frames[i].input, frames[i].output, {}};
+            if (!files.stats.empty())
+                one.stats = frameNameOf("--stats", files.stats).at(frames[i].frame);
+            folders.makeFor(one.output);
+            folders.makeFor(one.stats);
+            each[i] = convertOne(one, convert, part);
+            writeStats(one.stats, statsJson(each[i]));
+        },
+        listener);
     ConversionStats all;
     for (const ConversionStats& stats : each) all.add(stats);
     return all;
@@ -104,13 +97,7 @@ void checkFirstOutput(const ConversionFiles& files, const FrameChoice& frames,
     // Made again for each frame that has something to write.
     OutputFolders folders;
     folders.makeFor(first);
-    try {
-        check(first);
-    } catch (const Error&) {
-        folders.dropEmpty();
-        throw;
-    }
-    folders.dropEmpty();
+    check(first);
 }
 
 void addConversionOptions(CLI::App& app, const std::string& what, ConversionFiles& files,

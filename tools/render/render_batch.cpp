@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "batch/file_pattern.h"
@@ -227,19 +226,13 @@ RenderCommand checkFirst(const RenderCommand& command, const std::vector<BatchIt
     for (auto item = items.begin(); item != items.end() && !first; ++item)
         first = tryOpen(command, *item, work);
     if (!first) return command;
-    std::vector<fs::path> made;
-    try {
-        made = makeFolderOf(first->output);
-        const std::vector<fs::path> others = makeFolderOf(first->stats);
-        made.insert(made.begin(), others.begin(), others.end());
-        work.prepare(*first, {});
-        work.begin(*first);
-        readOptics(first->picture, {});
-    } catch (const Error&) {
-        std::error_code ignored;
-        for (const fs::path& folder : made) fs::remove(folder, ignored);
-        throw;
-    }
+    // Made again for each picture.
+    OutputFolders folders;
+    folders.makeFor(first->output);
+    folders.makeFor(first->stats);
+    work.prepare(*first, {});
+    work.begin(*first);
+    readOptics(first->picture, {});
     return *first;
 }
 

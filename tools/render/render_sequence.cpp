@@ -413,7 +413,6 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
             },
             making);
     } catch (const Error& error) {
-        folders.dropEmpty();
         // What there is goes into the file of all.
         if (command.frames.keepGoing && error.code() != ErrorCode::kInterrupted)
             finishAfterFailure(sinks);
