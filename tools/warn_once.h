@@ -14,10 +14,8 @@ class WarnOnce {
     /// @param listener  must live as long
     explicit WarnOnce(const Listener& listener) : listener_(listener) {}
 
-    void warn(const std::string& text) { warn(text, text); }
-    /// @param about  what tells a warning from others
-    void warn(const std::string& text, const std::string& about) {
-        if (known_.insert(about).second) listener_.warn(text);
+    void warn(const std::string& text) {
+        if (known_.insert(text).second) listener_.warn(text);
     }
 
   private:

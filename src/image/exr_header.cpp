@@ -78,7 +78,7 @@ Imf::Header exrHeader(const ImageFileOptions& options, glm::ivec2 sizePixels, co
     return header;
 }
 
-// OpenEXR's threads are those of the process, and as many as there are cores unless it is told.
+// OpenEXR's threads are those of the process, and none but the caller unless it is told.
 // OpenEXR 3.1 may wait for ever if some are taken away while others write: only more are made then.
 ExrThreads::ExrThreads() {
     const std::lock_guard lock(writersMutex);

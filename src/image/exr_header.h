@@ -38,8 +38,8 @@ class ExrThreads {
 /// @param write  may throw what OpenEXR throws
 template <typename Write>
 void writeExr(const std::filesystem::path& file, const Write& write) {
-    const ExrThreads threads;
     try {
+        const ExrThreads threads;
         write();
     } catch (const Error&) {
         throw;

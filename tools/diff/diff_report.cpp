@@ -97,9 +97,8 @@ std::string assumedText(const GridDiff& grid) {
     const bool b = isAssumed(grid.b);
     if (a == b) return "";
     return std::string(" (") + (a ? "A" : "B") +
-           "'s is origin 0,0,0 and spacing 1,1,1, as of files that name none; --origin and "
-           "--spacing "
-           "name them)";
+           "'s is origin 0,0,0 and spacing 1,1,1, as of files that name none; "
+           "--origin and --spacing name them)";
 }
 
 std::string activeText(const GridDiff& grid) {
