@@ -8,7 +8,6 @@
 
 #include "deltasplat/error.h"
 #include "dims_text.h"
-#include "number_text.h"
 #include "view/thin_voxels.h"
 
 namespace deltasplat {
@@ -17,12 +16,6 @@ namespace {
 // Of the picture's pixels that a line of the base plane has at most, seen from an eye: about what
 // parallel projection has on average.
 constexpr double kPixelsOfScreen = 0.7;
-
-[[noreturn]] void refuseWithCoarse(const std::string& option, const std::string& got) {
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, got + " with a `resolution` below 1",
-                            "none: voxels that share a sheet pixel have a kernel of its width"));
-}
 
 }  // namespace
 
@@ -100,12 +93,7 @@ glm::dmat4 PictureView::worldFromSlices() const {
 
 Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
     const SplatOptions& options = scene_.options;
-    if (plan.resolution() < 1) {
-        if (options.sigma) refuseWithCoarse("`sigma`", numberText(*options.sigma));
-        if (options.footprintWidth)
-            refuseWithCoarse("footprint width", std::to_string(*options.footprintWidth));
-        return makeCoarseFootprint(int(1 / plan.resolution()));
-    }
+    if (plan.resolution() < 1) return makeCoarseFootprint(int(1 / plan.resolution()));
     const int within = axis_->parts.within;
     const double pixels = view_.pixelsPerVoxel / within;
     const double sigma = options.sigma.value_or(defaultSigma(pixels) / within);

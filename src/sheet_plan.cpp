@@ -7,6 +7,7 @@
 
 #include "deltasplat/error.h"
 #include "dims_text.h"
+#include "number_text.h"
 
 namespace deltasplat {
 namespace {
@@ -23,6 +24,17 @@ void checkBetween(int between) {
     throw Error(ErrorCode::kUsage,
                 gotExpected("`between`", std::to_string(between),
                             "a whole number within 0.." + std::to_string(kMostBetween)));
+}
+
+// Voxels that share a sheet pixel have a kernel of its width.
+void checkKernel(const SplatOptions& options) {
+    if (options.resolution.value_or(1) >= 1 || (!options.sigma && !options.footprintWidth)) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected(options.sigma ? "`sigma`" : "footprint width",
+                            (options.sigma ? numberText(*options.sigma)
+                                           : std::to_string(*options.footprintWidth)) +
+                                " with a `resolution` below 1",
+                            "none: voxels that share a sheet pixel have a kernel of its width"));
 }
 
 [[noreturn]] void throwTooWide(const IndexBox& box, int between) {
@@ -65,6 +77,7 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view
     : firstVoxel_(scene.scene.volume->box.min), resolution_(view.resolution) {
     const IndexBox& box = scene.scene.volume->box;
     const SplatOptions& options = scene.options;
+    checkKernel(options);
     // Where the screen asks for two sheet pixels a voxel, but not for more, what is thin gets one.
     const bool few = view.pixelsPerVoxel < 2.5;
     if (!options.resolution && few && scene.isThin) resolution_ = 1;
