@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>
@@ -16,6 +15,7 @@
 #include "suggest.h"
 #include "view/affine.h"
 #include "view/camera_axes.h"
+#include "view/check_camera.h"
 
 namespace deltasplat {
 namespace {
@@ -34,10 +34,6 @@ const NamedView kNamedViews[] = {
     {"iso", {-1, -1, -1}, {0, 1, 0}},
 };
 
-[[noreturn]] void refuse(const char* option, const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
-}
-
 const NamedView& namedView(const std::string& name) {
     std::string known;
     std::vector<std::string> names;
@@ -46,7 +42,7 @@ const NamedView& namedView(const std::string& name) {
         names.emplace_back(view.name);
         known += (known.empty() ? "" : ", ") + std::string(view.name);
     }
-    refuse("`view`", name, "one of " + known + afterStop(suggestion(name, names)));
+    refuseCamera("`view`", name, "one of " + known + afterStop(suggestion(name, names)));
 }
 
 // How who looks at the front of the volume stands in the world.
@@ -72,193 +68,6 @@ std::string viewFrom(const Viewer& viewer, const std::string& view) {
     return view == "right" ? "left" : view;
 }
 
-bool isFinite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-// Scales to length 1 without overflow on the way.
-glm::dvec3 unitVector(const char* option, const glm::dvec3& v) {
-    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    if (!isFinite(v) || largest == 0) {
-        refuse(option, numberText(v), "three finite numbers, not all of them 0");
-    }
-    return glm::normalize(v / largest);
-}
-
-void checkNumber(const char* option, double number) {
-    if (!std::isfinite(number)) refuse(option, numberText(number), "a finite number");
-}
-
-void checkPositive(const char* option, const std::optional<double>& number) {
-    if (number && !(std::isfinite(*number) && *number > 0))
-        refuse(option, numberText(*number), "a finite number > 0");
-}
-
-void checkSize(const CameraOptions& options) {
-    const glm::ivec2 size = options.sizePixels;
-    const std::string text = std::to_string(size.x) + "x" + std::to_string(size.y);
-    if (size.x < 1 || size.y < 1) refuse("`sizePixels`", text, "WxH, each at least 1");
-    if (options.projection == Projection::kLatlong && size.x != 2 * std::int64_t{size.y})
-        refuse("`sizePixels`", text, "twice as wide as high for `projection` latlong");
-}
-
-// What one projection has and another has not must not be asked for.
-void checkProjection(const CameraOptions& options) {
-    const auto requireFor = [&](bool given, bool allowed, const char* option,
-                                const char* expected) {
-        if (given && !allowed)
-            refuse(option, "`projection` " + projectionName(options.projection), expected);
-    };
-    const bool parallel = options.projection == Projection::kOrtho;
-    const bool flat = options.projection == Projection::kPerspective;
-    requireFor(options.frameWidthWorld.has_value(), parallel, "`frameWidthWorld`",
-               "`projection` ortho, of which it is an option");
-    requireFor(options.eyeWorld.has_value(), !parallel, "`eyeWorld`",
-               "`projection` perspective or latlong");
-    requireFor(options.nearWorld != 0, !parallel, "`nearWorld`",
-               "`projection` perspective or latlong");
-    requireFor(options.frameOffset != glm::dvec2(0), parallel || flat, "`frameOffset`",
-               "`projection` ortho or perspective");
-    requireFor(options.pixelAspect != 1, parallel || flat, "`pixelAspect`",
-               "`projection` ortho or perspective");
-    requireFor(options.distanceWorld.has_value(), parallel || flat, "`distanceWorld`",
-               "`projection` ortho or perspective");
-    for (const auto& [option, given] :
-         {std::pair("`fovDegrees`", options.fovDegrees.has_value()),
-          std::pair("`focalMm`", options.focalMm.has_value()),
-          std::pair("`apertureMm`", options.apertureMm.has_value()),
-          std::pair("`sourceToIsocenterWorld`", options.sourceToIsocenterWorld.has_value()),
-          std::pair("`sourceToDetectorWorld`", options.sourceToDetectorWorld.has_value()),
-          std::pair("`detectorWorld`", options.detectorWorld.has_value())})
-        requireFor(given, flat, option, "`projection` perspective");
-}
-
-void checkLens(const CameraOptions& options) {
-    if (options.fovDegrees && !(*options.fovDegrees > 0 && *options.fovDegrees < 180)) {
-        refuse("`fovDegrees`", numberText(*options.fovDegrees),
-               "a number of degrees greater than 0 and less than 180");
-    }
-    checkPositive("`focalMm`", options.focalMm);
-    checkPositive("`apertureMm`", options.apertureMm);
-    if (options.fovDegrees && (options.focalMm || options.apertureMm)) {
-        refuse("`fovDegrees`",
-               std::string("it and ") + (options.focalMm ? "`focalMm`" : "`apertureMm`"),
-               "the angle of view one way or the other");
-    }
-}
-
-void checkEye(const CameraOptions& options) {
-    if (options.projection != Projection::kOrtho) {
-        checkPositive("`distanceWorld`", options.distanceWorld);
-    } else if (options.distanceWorld) {
-        checkNumber("`distanceWorld`", *options.distanceWorld);
-    }
-    const double nearest = options.nearWorld;
-    if (!(std::isfinite(nearest) && nearest >= 0))
-        refuse("`nearWorld`", numberText(nearest), "a finite number of at least 0");
-    if (!options.eyeWorld) return;
-    const glm::dvec3 eye = *options.eyeWorld;
-    if (!isFinite(eye)) refuse("`eyeWorld`", numberText(eye), "three finite numbers");
-    if (options.distanceWorld)
-        refuse("`distanceWorld`", "it and `eyeWorld`", "the eye's place one way or the other");
-    if (options.direction && options.targetWorld) {
-        refuse("`direction`", "it, `eyeWorld` and `targetWorld`",
-               "a line of sight one way or the other: without one of them");
-    }
-}
-
-// What else says where a perspective camera is and how much it sees.
-const char* otherThanCArm(const CameraOptions& options) {
-    if (options.fovDegrees) return "`fovDegrees`";
-    if (options.focalMm) return "`focalMm`";
-    if (options.apertureMm) return "`apertureMm`";
-    if (options.eyeWorld) return "`eyeWorld`";
-    return options.distanceWorld ? "`distanceWorld`" : nullptr;
-}
-
-void checkCArm(const CameraOptions& options) {
-    const std::optional<double>& isocenter = options.sourceToIsocenterWorld;
-    const std::optional<double>& detector = options.sourceToDetectorWorld;
-    const std::optional<glm::dvec2>& size = options.detectorWorld;
-    const int given = isocenter.has_value() + detector.has_value() + size.has_value();
-    if (given == 0) return;
-    if (given < 3) {
-        refuse(!isocenter  ? "`sourceToIsocenterWorld`"
-               : !detector ? "`sourceToDetectorWorld`"
-                           : "`detectorWorld`",
-               "none", "`sourceToIsocenterWorld`, `sourceToDetectorWorld` and `detectorWorld`");
-    }
-    if (const char* other = otherThanCArm(options))
-        refuse(other, "it and `sourceToIsocenterWorld`", "the camera one way or the other");
-    checkPositive("`sourceToIsocenterWorld`", isocenter);
-    checkPositive("`sourceToDetectorWorld`", detector);
-    if (*detector < *isocenter) {
-        refuse("`sourceToDetectorWorld`", numberText(*detector),
-               "at least `sourceToIsocenterWorld` " + numberText(*isocenter));
-    }
-    const std::string text = numberText(size->x) + "x" + numberText(size->y);
-    if (!(std::isfinite(size->x + size->y) && size->x > 0 && size->y > 0))
-        refuse("`detectorWorld`", text, "WxH, two finite numbers > 0");
-    const glm::ivec2 pixels = options.sizePixels;
-    const double width = size->x / pixels.x;
-    const double height = size->y / pixels.y * options.pixelAspect;
-    if (!(std::abs(width - height) <= 1e-3 * width)) {
-        refuse(
-            "`detectorWorld`",
-            text + " of " + std::to_string(pixels.x) + "x" + std::to_string(pixels.y) + " pixels",
-            "square pixels, as " + numberText(size->x) + "x" + numberText(width * pixels.y));
-    }
-}
-
-void checkFrame(const CameraOptions& options) {
-    const glm::dvec2& offset = options.frameOffset;
-    if (!(std::abs(offset.x) <= kMostFrameOffset && std::abs(offset.y) <= kMostFrameOffset)) {
-        refuse("`frameOffset`", numberText(offset),
-               "two numbers from " + numberText(-kMostFrameOffset) + " to " +
-                   numberText(kMostFrameOffset));
-    }
-    if (!(options.pixelAspect >= kLeastPixelAspect && options.pixelAspect <= kMostPixelAspect)) {
-        refuse("`pixelAspect`", numberText(options.pixelAspect),
-               "a number from " + numberText(kLeastPixelAspect) + " to " +
-                   numberText(kMostPixelAspect));
-    }
-}
-
-// A matrix says all of where the camera is.
-void checkMatrix(const CameraOptions& options) {
-    if (!options.worldFromCamera) return;
-    const char* other = options.direction               ? "`direction`"
-                        : options.targetWorld           ? "`targetWorld`"
-                        : options.eyeWorld              ? "`eyeWorld`"
-                        : options.distanceWorld         ? "`distanceWorld`"
-                        : options.detectorWorld         ? "`detectorWorld`"
-                        : options.azimuthDegrees != 0   ? "`azimuthDegrees`"
-                        : options.elevationDegrees != 0 ? "`elevationDegrees`"
-                        : options.rollDegrees != 0      ? "`rollDegrees`"
-                                                        : nullptr;
-    if (other) refuse(other, "it and `worldFromCamera`", "the camera one way or the other");
-}
-
-void checkOptions(const CameraOptions& options) {
-    checkProjection(options);
-    checkLens(options);
-    checkEye(options);
-    checkNumber("`azimuthDegrees`", options.azimuthDegrees);
-    checkNumber("`elevationDegrees`", options.elevationDegrees);
-    checkNumber("`rollDegrees`", options.rollDegrees);
-    if (options.targetWorld && !isFinite(*options.targetWorld)) {
-        refuse("`targetWorld`", numberText(*options.targetWorld), "three finite numbers");
-    }
-    const double width = options.frameWidthWorld.value_or(1);
-    if (!std::isfinite(width) || width <= 0) {
-        refuse("`frameWidthWorld`", numberText(width), "a number > 0");
-    }
-    checkSize(options);
-    checkCArm(options);
-    checkFrame(options);
-    checkMatrix(options);
-}
-
 // Turns v about a unit axis by the right-hand rule (O. Rodrigues, 1840). Quarter turns are exact,
 // so that a view turned by 90 degrees is as straight as a named one.
 glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double degrees) {
@@ -279,8 +88,9 @@ std::optional<glm::dvec3> givenDirection(const CameraOptions& options, const glm
     const glm::dvec3 direction = target - *options.eyeWorld;
     if (isFinite(direction) && direction != glm::dvec3(0)) return direction;
     if (options.projection == Projection::kLatlong && isFinite(direction)) return {};
-    refuse("`eyeWorld`", numberText(*options.eyeWorld),
-           "another place than the target " + numberText(target) + ", or a `direction` to look in");
+    refuseCamera(
+        "`eyeWorld`", numberText(*options.eyeWorld),
+        "another place than the target " + numberText(target) + ", or a `direction` to look in");
 }
 
 bool areParallel(const glm::dvec3& a, const glm::dvec3& b) {
@@ -329,9 +139,10 @@ void orient(Camera& camera, const CameraOptions& options, const Viewer& atFront,
         unitVector("`up`", pointed ? options.up.value_or(defaultUp(viewer, direction))
                                    : viewer.toWorld(view.up));
     if (areParallel(direction, up)) {
-        refuse("`up`",
-               numberText(*options.up) + ", parallel to the line of sight " + numberText(direction),
-               "a direction that differs from it");
+        refuseCamera(
+            "`up`",
+            numberText(*options.up) + ", parallel to the line of sight " + numberText(direction),
+            "a direction that differs from it");
     }
 
     // The azimuth goes about the up that was given, the rest about the camera's own axes.
@@ -440,8 +251,8 @@ void placeEye(Camera& camera, const CameraOptions& options, const glm::dvec3& ta
     camera.frameWidthWorld = 2 * distance * tangent;
     if (!std::isfinite(camera.frameWidthWorld) || camera.frameWidthWorld <= 0 ||
         !isFinite(camera.targetWorld)) {
-        refuse(options.eyeWorld ? "`eyeWorld`" : "`distanceWorld`",
-               numberText(distance) + " to the target", "a distance that numbers can hold");
+        refuseCamera(options.eyeWorld ? "`eyeWorld`" : "`distanceWorld`",
+                     numberText(distance) + " to the target", "a distance that numbers can hold");
     }
 }
 
@@ -472,7 +283,7 @@ void placeByMatrix(Camera& camera, CameraOptions options, const IndexBox& box,
 Camera makeCamera(const CameraOptions& options, const IndexBox& box,
                   const glm::dmat4& worldFromIndex, const std::string& space) {
     const DefaultFloats floats;
-    checkOptions(options);
+    checkCameraOptions(options);
     requireInvertible(worldFromIndex);
     const IndexBox framed = box.empty() ? IndexBox{glm::ivec3(0), glm::ivec3(0)} : box;
     const glm::dvec3 middle = 0.5 * (glm::dvec3(framed.min) + glm::dvec3(framed.max));
