@@ -19,11 +19,17 @@ double clampUnit(double value) {
     return value > 0 ? std::min(value, 1.0) : 0.0;
 }
 
+// A level in steps of samples; cut off it is quantized.
 // @param threshold  0 < threshold < 1: which fractions are rounded up, the larger ones; 0.5 is
 // nearest
 template <typename Sample>
+double toSteps(double unit, double threshold) {
+    return unit * std::numeric_limits<Sample>::max() + (1 - threshold);
+}
+
+template <typename Sample>
 Sample quantize(double unit, double threshold) {
-    return Sample(std::floor(unit * std::numeric_limits<Sample>::max() + (1 - threshold)));
+    return Sample(int(toSteps<Sample>(unit, threshold)));
 }
 
 // The curve of sRGB, nearly: straight between 256 places an octave, from 2^-9 on.
@@ -62,10 +68,10 @@ class SrgbCurve {
 template <typename Sample>
 Sample quantizeSrgb(const SrgbCurve& curve, double linear, double threshold) {
     if (SrgbCurve::knows(linear)) {
-        const double level = curve(linear);
-        const Sample low = quantize<Sample>(level - SrgbCurve::kMostOff, threshold);
-        if (low == quantize<Sample>(std::min(1.0, level + SrgbCurve::kMostOff), threshold))
-            return low;
+        constexpr double kMostOff = SrgbCurve::kMostOff * std::numeric_limits<Sample>::max();
+        const double steps = toSteps<Sample>(curve(linear), threshold);
+        const int whole = int(steps);
+        if (steps - whole > kMostOff && steps - whole < 1 - kMostOff) return Sample(whole);
     }
     return quantize<Sample>(srgbFromLinear(linear), threshold);
 }
@@ -90,8 +96,12 @@ template <typename Sample>
 void straightSrgbPixel(const SrgbCurve& curve, const float* rgba, double threshold,
                        Sample* result) {
     const double alpha = clampUnit(rgba[3]);
+    if (alpha == 0) {
+        std::fill_n(result, 4, Sample{0});
+        return;
+    }
     for (int channel = 0; channel < 3; ++channel) {
-        const double straight = alpha > 0 ? clampUnit(rgba[channel] / alpha) : 0;
+        const double straight = clampUnit(rgba[channel] / alpha);
         result[channel] = quantizeSrgb<Sample>(curve, straight, threshold);
     }
     // The other way round: where colour is rounded up, alpha rather is not.
