@@ -14,10 +14,12 @@
 namespace deltasplat {
 namespace {
 
-Encoding encodingOf(Method method) {
+// Changes that a picture passes over wait until they are needed, but for looks of voxels' own:
+// these are lit for the slice in hand.
+Encoding encodingOf(Method method, bool hasLooks) {
     switch (method) {
         case Method::kAuto:
-            return Encoding::kSmaller;
+            return hasLooks ? Encoding::kFewerWords : Encoding::kSmaller;
         case Method::kDelta:
             return Encoding::kChanges;
         default:
@@ -138,7 +140,8 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
                                                               const Listener& listener) const {
     const bool isWhole =
         painter && (painter->isEverywhereOther() || (fromEye && painter->dependsOnCamera()));
-    const Encoding encoding = isWhole ? Encoding::kWhole : encodingOf(options.method);
+    const Encoding encoding =
+        isWhole ? Encoding::kWhole : encodingOf(options.method, painter != nullptr);
     std::shared_ptr<Place> place;
     {
         const std::lock_guard lock(mutex_);

@@ -260,6 +260,7 @@ double SlabRenderer::walkSlices(const SeenSlab& seen, const SheetLayout& layout,
                                 const Composite& composite) {
     double compositeSeconds = 0;
     splatter.begin(*seen.slab, layout);
+    const SheetBox last = readBox(readingOf(input_.plane, layout, seen.lastSlice), box, layout);
     for (int slice = seen.slab->firstSlice; slice <= seen.lastSlice; ++slice) {
         if (slice < seen.firstSlice) {
             // What changes before the first that is seen is needed; nothing of it is read.
@@ -268,7 +269,9 @@ double SlabRenderer::walkSlices(const SeenSlab& seen, const SheetLayout& layout,
         }
         const SheetReading reading = readingOf(input_.plane, layout, slice);
         const SheetBox read = readBox(reading, box, layout);
-        const NeededPixels needed = cover.next(reading, read, layout);
+        NeededPixels needed = cover.next(reading, read, layout);
+        // Those between are read from between.
+        needed.rowsFromNowOn = {std::min(read.min.y, last.min.y), std::max(read.max.y, last.max.y)};
         const auto sheets = splatter.splat(slice, needed);
         const Clock::time_point before = Clock::now();
         cover.add(composite(sheets, slice, reading, needed.cover));

@@ -24,6 +24,20 @@ bool isSmallerWhole(const PlannedSlab& slab) {
                                        : 5 * slab.visible < 4 * slab.deltas;
 }
 
+bool isWhole(const PlannedSlab& slab, Encoding encoding) {
+    switch (encoding) {
+        case Encoding::kChanges:
+            return false;
+        case Encoding::kWhole:
+            return true;
+        case Encoding::kSmaller:
+            return isSmallerWhole(slab);
+        case Encoding::kFewerWords:
+            return slab.seenWords <= slab.words;
+    }
+    return false;
+}
+
 }  // namespace
 
 SlabPlanner::SlabPlanner(const IndexBox& box) : box_(box), shortest_(layoutOf(box, 8)) {
@@ -32,18 +46,17 @@ SlabPlanner::SlabPlanner(const IndexBox& box) : box_(box), shortest_(layoutOf(bo
 }
 
 void SlabPlanner::add(int slice, std::uint64_t visible, std::uint64_t changed) {
-    const SliceCounts found{std::uint64_t(std::popcount(visible)),
-                            std::uint64_t(std::popcount(changed))};
-    Counts& counts = counts_[shortest_.slabOf(slice >> 3)];
+    const Counts found{
+        {std::uint64_t(std::popcount(visible)), std::uint64_t(std::popcount(changed))},
+        {std::uint64_t(visible != 0), std::uint64_t(changed != 0)}};
+    SlabCounts& counts = counts_[shortest_.slabOf(slice >> 3)];
     counts.all += found;
-    counts.words += changed != 0;
     if (shortest_.startsLaterSlab(slice)) counts.firstSlice += found;
 }
 
 void SlabPlanner::add(const SlabPlanner& other) {
     for (std::size_t i = 0; i < counts_.size(); ++i) {
         counts_[i].all += other.counts_[i].all;
-        counts_[i].words += other.counts_[i].words;
         counts_[i].firstSlice += other.counts_[i].firstSlice;
     }
 }
@@ -53,20 +66,22 @@ SlabPlan SlabPlanner::plan(Encoding encoding) const {
     SlabPlan plan{shortest_, {}};
     plan.layout.blocksPerSlab *= length;
     for (std::size_t i = 0; i < counts_.size(); ++i) {
-        const Counts& counts = counts_[i];
+        const auto& [all, first] = counts_[i];
         const bool begins = i % length == 0;
         if (begins) plan.slabs.emplace_back();
         PlannedSlab& slab = plan.slabs.back();
-        slab.visible += counts.all.visible;
-        slab.deltas += counts.all.deltas;
-        slab.words += counts.words;
-        if (begins) slab.deltas += counts.firstSlice.visible - counts.firstSlice.deltas;
+        slab.visible += all.voxels.visible;
+        slab.deltas += all.voxels.deltas;
+        slab.seenWords += all.words.visible;
+        slab.words += all.words.deltas;
+        if (!begins) continue;
+        slab.deltas += first.voxels.visible - first.voxels.deltas;
+        slab.words += first.words.visible - first.words.deltas;
     }
     for (int i = 0; i < plan.layout.count(); ++i) {
         PlannedSlab& slab = plan.slabs[i];
         placeSlab(box_, plan.layout, i, slab);
-        slab.whole = encoding == Encoding::kWhole ||
-                     (encoding == Encoding::kSmaller && isSmallerWhole(slab));
+        slab.whole = isWhole(slab, encoding);
     }
     return plan;
 }
@@ -87,8 +102,8 @@ double SlabPlanner::keyShare(std::size_t length) const {
     double deltas = 0;
     double added = 0;
     for (std::size_t i = 0; i < counts_.size(); ++i) {
-        deltas += double(counts_[i].all.deltas);
-        const SliceCounts& key = counts_[i].firstSlice;
+        deltas += double(counts_[i].all.voxels.deltas);
+        const SliceCounts& key = counts_[i].firstSlice.voxels;
         if (i % length == 0) added += double(key.visible) - double(key.deltas);
     }
     return deltas > 0 ? added / deltas : 0;

@@ -11,17 +11,19 @@ namespace deltasplat {
 
 /// How the slices of a picture's slabs are splatted.
 enum class Encoding {
-    kChanges,  ///< as one key slice a slab, then deltas (method `delta`)
-    kWhole,    ///< every slice anew (`sparse` and `traditional`)
-    kSmaller   ///< for each slab kWhole if that takes fewer stamps by a fifth, or by three eighths
-               ///< where few voxels of a block change, which kChanges suits (`auto`)
+    kChanges,    ///< as one key slice a slab, then deltas (method `delta`)
+    kWhole,      ///< every slice anew (`sparse` and `traditional`)
+    kSmaller,    ///< for each slab kWhole if that takes fewer stamps by a fifth, or by three
+                 ///< eighths where few voxels of a block change, which kChanges suits
+    kFewerWords  ///< for each slab kWhole if no more of its words have anything to stamp
 };
 
 /// A slab as a picture is rendered from it.
 struct PlannedSlab : Slab {
     bool whole = false;  ///< every slice is splatted anew
 
-    std::uint64_t words = 0;  ///< mask words in which anything changes, but for key slices
+    std::uint64_t words = 0;      ///< mask words with deltas
+    std::uint64_t seenWords = 0;  ///< mask words with visible voxels
 
     std::uint64_t stamps() const { return whole ? visible : deltas; }
     /// Whether there are fewer deltas than so many voxels for each of `words`.
@@ -53,11 +55,19 @@ class SlabPlanner {
     SlabPlan plan(Encoding encoding) const;
 
   private:
-    // What is in one of the shortest slabs, as if no key slice began it.
+    // What is in slices: voxels, and mask words with any.
     struct Counts {
-        SliceCounts all;
-        SliceCounts firstSlice;   // of which in its first slice; 0 for the first slab
-        std::uint64_t words = 0;  // mask words in which anything differs
+        SliceCounts voxels;
+        SliceCounts words;
+        void operator+=(const Counts& other) {
+            voxels += other.voxels;
+            words += other.words;
+        }
+    };
+    // What is in one of the shortest slabs, as if no key slice began it.
+    struct SlabCounts {
+        Counts all;
+        Counts firstSlice;  // of which in its first slice; 0 for the first slab
     };
 
     int chooseLength() const;
@@ -65,7 +75,7 @@ class SlabPlanner {
 
     IndexBox box_;
     SlabLayout shortest_;
-    std::vector<Counts> counts_;
+    std::vector<SlabCounts> counts_;
 };
 
 }  // namespace deltasplat

@@ -48,6 +48,8 @@ struct NeededPixels {
     const SheetCover* cover = nullptr;
     /// What is not needed in this slice, and in none of those to come; null likewise.
     const SheetCover* fromNowOn = nullptr;
+    /// Rows [x, y) that are needed in this slice or any of those to come.
+    glm::ivec2 rowsFromNowOn{0, 1 << 30};
 };
 
 }  // namespace deltasplat

@@ -72,9 +72,13 @@ std::uint64_t SliceBlocks::voxelsInBox(glm::ivec2 block) const {
 }
 
 // The words of a slice lie in order, but not what they point to.
-void SliceBlocks::prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words) {
+// @param rows  of blocks, that are needed now
+void SliceBlocks::prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words,
+                                  glm::ivec2 rows) const {
     constexpr std::ptrdiff_t kAhead = 8;
     if (words.data() + words.size() - word <= kAhead) return;
+    const int row = blockOf(word[kAhead]).y;
+    if (row < rows.x || row >= rows.y) return;
     hwy::Prefetch(word[kAhead].classes);
     hwy::Prefetch(word[kAhead].classes + 32);
 }

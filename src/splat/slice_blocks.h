@@ -89,7 +89,8 @@ class SliceBlocks {
         return std::size_t(&word - input_.deltas.words.data());
     }
     std::uint64_t voxelsInBox(glm::ivec2 block) const;
-    static void prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words);
+    void prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words,
+                         glm::ivec2 rows) const;
 
     const SplatInput& input_;
     SheetLayout layout_;
@@ -105,14 +106,15 @@ class SliceBlocks {
 
 template <typename Use>
 void SliceBlocks::forEach(int slice, bool whole, const NeededPixels& needed, const Use& use) {
-    const glm::ivec2 rows = whole ? blocksReaching(layout_, needed.firstRow, needed.lastRow)
-                                  : glm::ivec2(0, layout_.blocks.y);
+    const glm::ivec2 now = blocksReaching(layout_, needed.firstRow, needed.lastRow);
+    const glm::ivec2 rows =
+        whole ? now : blocksReaching(layout_, needed.rowsFromNowOn.x, needed.rowsFromNowOn.y);
     const SheetCover* cover = whole ? needed.cover : needed.fromNowOn;
     const std::span<const DeltaWord> words = wordsOf(slice, rows);
     if (input_.lit) input_.lit->begin(slice);
     if (!stampEmptyVoxels_) {
         for (const DeltaWord& word : words) {
-            if (!input_.lit) prefetchClasses(&word, words);
+            if (!input_.lit) prefetchClasses(&word, words, now);
             const glm::ivec2 block = blockOf(word);
             if (!hasColumn(block) || (cover && cover->hidesBlock(block))) continue;
             SeenWord seen = seenOf(word);

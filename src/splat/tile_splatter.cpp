@@ -3,6 +3,7 @@
 // equation 9. Deviates in that pixels take from voxels what voxels would stamp: the same integers.
 #include "splat/tile_splatter.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -105,17 +106,40 @@ void TileSplatter::clear() {
     blocks_.clear();
     for (const glm::ivec2 block : shownBlocks_) takeAway(block);
     shownBlocks_.clear();
+    rowsBefore_ = {0, 0};
     sheet_.clear();
 }
 
+// Changes in rows that are needed later, or never, wait: each word knows all voxels of its block,
+// so that the last one says it all.
 void TileSplatter::paintChanges(int slice, const NeededPixels& needed) {
+    const glm::ivec2 rows = blocksReaching(blocks_.layout(), needed.firstRow, needed.lastRow);
     blocks_.forEach(slice, false, needed,
                     [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
                         Shown& shown = shown_[blocks_.placeOf(block)];
-                        if (shown.voxels == 0) shownBlocks_.push_back(block);
-                        shown.voxels |= active;
-                        paint(block, active, word.classes, word.colors);
+                        if ((shown.voxels | shown.waiting) == 0) shownBlocks_.push_back(block);
+                        shown.waiting |= active;
+                        shown.classes = word.classes;
+                        // Colours of a word's own are those of this slice.
+                        if (word.hasOwn || (block.y >= rows.x && block.y < rows.y))
+                            paintWaiting(block, word.colors);
                     });
+    const auto enter = [&](int first, int last) {
+        for (int u = first; u < last; ++u)
+            for (int v = 0; v < blocks_.layout().blocks.x; ++v)
+                paintWaiting({v, u}, colors_.data());
+    };
+    enter(rows.x, std::min(rows.y, rowsBefore_.x));
+    enter(std::max(rows.x, rowsBefore_.y), rows.y);
+    rowsBefore_ = rows;
+}
+
+void TileSplatter::paintWaiting(glm::ivec2 block, const ClassTable::Color* colors) {
+    Shown& shown = shown_[blocks_.placeOf(block)];
+    if (shown.waiting == 0) return;
+    shown.voxels |= shown.waiting;
+    paint(block, shown.waiting, shown.classes, colors);
+    shown.waiting = 0;
 }
 
 // Only what the slice before showed and this one does not paint over has to be taken away.
@@ -136,8 +160,9 @@ void TileSplatter::paintWhole(int slice, const NeededPixels& needed) {
 
 void TileSplatter::takeAway(glm::ivec2 block) {
     Shown& shown = shown_[blocks_.placeOf(block)];
-    paint(block, shown.voxels, kEmptyClasses.data(), colors_.data());
+    if (shown.voxels != 0) paint(block, shown.voxels, kEmptyClasses.data(), colors_.data());
     shown.voxels = 0;
+    shown.waiting = 0;
 }
 
 // Writes the colours of voxels of a block.

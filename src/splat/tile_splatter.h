@@ -48,9 +48,14 @@ class TileSplatter {
     struct Shown {
         std::uint64_t voxels = 0;  // that may not be empty
         int slice = 0;             // that last painted it, in a slab that is whole
+        // Of changes that are not painted yet, for nobody needs them: which voxels, and what they
+        // have become.
+        std::uint64_t waiting = 0;
+        const ClassIndex* classes = nullptr;
     };
 
     void paintChanges(int slice, const NeededPixels& needed);
+    void paintWaiting(glm::ivec2 block, const ClassTable::Color* colors);
     void paintWhole(int slice, const NeededPixels& needed);
     void takeAway(glm::ivec2 block);
     void sumTiles(int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
@@ -73,6 +78,7 @@ class TileSplatter {
     std::pmr::vector<Shown> shown_;         // [block]
     std::vector<glm::ivec2> shownBlocks_;   // those with voxels
     std::vector<glm::ivec2> before_;        // likewise, in the slice before
+    glm::ivec2 rowsBefore_{0};              // of blocks, that were needed in the slice before
     std::vector<std::int16_t> opacities_;   // of one colour: [classes]
     std::vector<std::uint8_t> lowRows_;     // [tile]: of the row of tiles in hand
 };

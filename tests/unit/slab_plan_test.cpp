@@ -106,5 +106,26 @@ TEST(SlabPlan, KeepsFewChangesUnlessWholeSlicesSaveMuch) {
     EXPECT_FALSE(isWhole(20, 22));
 }
 
+TEST(SlabPlan, TakesWholeSlicesWhereTheyHaveNoMoreWords) {
+    // A block that is full and never changes, and one in which a voxel goes and comes: there is a
+    // word of each slice but those after the first of the former.
+    SlabPlanner planner({{0, 0, 0}, {15, 7, 15}});
+    for (int slice = 0; slice < 16; ++slice) {
+        planner.add(slice, ~std::uint64_t{0}, slice == 0 ? ~std::uint64_t{0} : 0);
+        planner.add(slice, slice % 2, 1);
+    }
+    const SlabPlan plan = planner.plan(Encoding::kFewerWords);
+    for (const PlannedSlab& slab : plan.slabs) {
+        const auto slices = std::uint64_t(slab.sliceCount);
+        EXPECT_EQ(slab.seenWords, slices + slices / 2);
+        // One that does not begin with a visible voxel has no word of it in its key slice.
+        EXPECT_EQ(slab.words, slab.firstSlice == 0 ? slices + 1 : slices);
+        EXPECT_FALSE(slab.whole);
+    }
+    // Where all words change, whole slices are as good.
+    for (const PlannedSlab& slab : planned(0, 16, 20, 3).plan(Encoding::kFewerWords).slabs)
+        EXPECT_TRUE(slab.whole);
+}
+
 }  // namespace
 }  // namespace deltasplat

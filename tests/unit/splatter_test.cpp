@@ -120,10 +120,10 @@ struct Kind {
     int width;
 };
 
-// A window of rows that moves over the sheet from slice to slice and comes back: in it the sheet is
-// that of the slice, whatever was passed over meanwhile, and in the end nothing is left.
+// A window of rows that moves over the sheet from slice to slice, and comes back or not: in it the
+// sheet is that of the slice, whatever was passed over meanwhile, and in the end nothing is left.
 void expectMovingWindow(const Volume& volume, bool oneColor, const Footprint& footprint,
-                        Range range) {
+                        Range range, bool comesBack) {
     const Scene whole(volume, Encoding::kWhole, footprint, oneColor, range);
     std::vector<std::vector<std::vector<std::int32_t>>> expected;
     for (int slice = kBox.min.x; slice <= kBox.max.x; ++slice)
@@ -137,9 +137,12 @@ void expectMovingWindow(const Volume& volume, bool oneColor, const Footprint& fo
             splatter.begin(slab, scene.layout);
             std::span<const Sheet* const> sheets;
             for (int i = 0; i < slab.sliceCount; ++i) {
-                const int first = 11 * i % (height - 15);
                 const int slice = slab.firstSlice + i;
-                sheets = splatter.splat(slice, {first, first + 15});
+                const int last = (height - 15) / slab.sliceCount * slab.sliceCount;
+                const int first = comesBack ? 11 * i % (height - 15) : last * i / slab.sliceCount;
+                NeededPixels needed{first, first + 15};
+                if (!comesBack) needed.rowsFromNowOn = {first, last + 15};
+                sheets = splatter.splat(slice, needed);
                 ASSERT_EQ(sheets.size(), scene.classes.planes.size());
                 for (std::size_t p = 0; p < sheets.size(); ++p) {
                     for (int y = first; y < first + 15; ++y) {
@@ -165,8 +168,10 @@ TEST(Splatter, RowsOfAMovingWindowAreThoseOfTheSlice) {
             for (const Kind kind : {Kind{1, 3}, {1, 6}, {2, 5}, {3, 9}, {4, 13}}) {
                 const Footprint footprint =
                     makeFootprint(0.5, {0.3, -0.6}, kind.resolution, kind.width);
-                for (const Range range : {Range::kOneDigit, Range::kTwoDigits, Range::kTwoPlanes})
-                    expectMovingWindow(volume, oneColor, footprint, range);
+                for (const Range range : {Range::kOneDigit, Range::kTwoDigits, Range::kTwoPlanes}) {
+                    expectMovingWindow(volume, oneColor, footprint, range, true);
+                    expectMovingWindow(volume, oneColor, footprint, range, false);
+                }
             }
         }
     }
