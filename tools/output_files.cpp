@@ -13,6 +13,7 @@
 #include "ingest/files/input_files.h"
 #include "output_target.h"
 #include "process/interrupt.h"
+#include "process/run_log.h"
 
 namespace deltasplat {
 namespace {
@@ -52,6 +53,10 @@ Files filesRead(const Files& inputs, const std::filesystem::path& transferFuncti
 void checkOutput(const std::string& option, const std::filesystem::path& file, const Files& others,
                  const std::string& names) {
     if (file.empty()) return;
+    const std::filesystem::path log = runLogFile();
+    if (!log.empty() && sameFile(file, log))
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(option, file.string(), "another file than --log"));
     for (const std::filesystem::path& other : others) {
         if (other.empty() || !sameFile(file, other)) continue;
         throw Error(ErrorCode::kUsage,

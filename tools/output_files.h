@@ -19,7 +19,7 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 Files filesRead(const Files& inputs, const std::filesystem::path& transferFunction);
 
 /// Checks an output (empty: none) before the work: that it can be written, and would not overwrite
-/// a file that is read or another output.
+/// the log, a file that is read or another output.
 /// @param option  gives the output's name, for messages
 /// @param others  the files that it must not be, called `names` in the message
 /// @throw Error(kUsage), Error(kOutput)

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "deltasplat/cameras/read_camera.h"
+#include "deltasplat/error.h"
 
 namespace deltasplat {
 
@@ -13,6 +14,7 @@ struct CameraChoice {
     std::filesystem::path file;  ///< perhaps with a prim's path behind a colon; empty: none
     CameraMotion motion;         ///< once it is read
     std::map<int, CameraMotion> ofFrames;  ///< of a file for each frame of a sequence
+    std::map<int, Error> unread;           ///< why that of a frame could not be read
 
     bool isNearGiven = false;  ///< --near counts, not the file's
 

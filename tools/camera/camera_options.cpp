@@ -41,8 +41,25 @@ CameraMotion readOne(const std::filesystem::path& given, const Listener& listene
     return found ? readCamera(found->file, found->name, listener) : readCamera(given, "", listener);
 }
 
+// Reads the files of frames that have one each.
+void readEach(const FrameName& name, const FrameChoice& frames, CameraChoice& choice,
+              const Listener& listener) {
+    for (const int frame : frames.frames) {
+        try {
+            choice.ofFrames.emplace(frame, readOne(name.at(frame), listener));
+        } catch (const Error& error) {
+            if (!frames.keepGoing || error.code() != ErrorCode::kInput) throw;
+            choice.unread.emplace(frame, error);
+        }
+    }
+    if (choice.ofFrames.empty()) throw choice.unread.begin()->second;
+    choice.motion = choice.ofFrames.begin()->second;
+}
+
 const CameraMotion& motionOf(const CameraChoice& choice, std::optional<int> frame) {
     if (!frame || choice.ofFrames.empty()) return choice.motion;
+    const auto unread = choice.unread.find(*frame);
+    if (unread != choice.unread.end()) throw unread->second;
     return choice.ofFrames.at(*frame);
 }
 
@@ -90,8 +107,9 @@ void addCameraFileOptions(CLI::App& app, PictureOptions& options) {
                    withDefault("Width of a pixel over its height", numberText(camera.pixelAspect)));
 }
 
-void applyCamera(const CLI::App& app, const std::vector<int>& frames, PictureOptions& options,
+void applyCamera(const CLI::App& app, const FrameChoice& choiceOfFrames, PictureOptions& options,
                  const Listener& listener) {
+    const std::vector<int>& frames = choiceOfFrames.frames;
     CameraChoice& choice = options.camera;
     if (options.render.camera.worldFromCamera && !choice.asked())
         for (const char* other : kPlaces) requireOnce(app, "--camera-matrix", other);
@@ -101,9 +119,7 @@ void applyCamera(const CLI::App& app, const std::vector<int>& frames, PictureOpt
 
     const std::optional<FrameName> name = FrameName::find(choice.file);
     if (name && !frames.empty()) {
-        for (const int frame : frames)
-            choice.ofFrames.emplace(frame, readOne(name->at(frame), listener));
-        choice.motion = choice.ofFrames.begin()->second;
+        readEach(*name, choiceOfFrames, choice, listener);
     } else {
         choice.motion = readOne(choice.file, listener);
     }
@@ -120,7 +136,9 @@ void applyCamera(const CLI::App& app, const std::vector<int>& frames, PictureOpt
     }
     if (!camera.up) camera.up = choice.motion.upWorld;
     choice.isNearGiven = isGiven(app, "--near");
-    camera = cameraAt(options, frames.empty() ? std::nullopt : std::optional(frames.front()));
+    const auto isRead = [&](int frame) { return !choice.unread.contains(frame); };
+    const auto first = std::find_if(frames.begin(), frames.end(), isRead);
+    camera = cameraAt(options, first == frames.end() ? std::nullopt : std::optional(*first));
 }
 
 std::filesystem::path cameraFile(const PictureOptions& options) {

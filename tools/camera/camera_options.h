@@ -3,10 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
-#include <vector>
 
 #include "deltasplat/progress.h"
 #include "render/render_options.h"
+#include "sequence/frame_options.h"
 
 namespace deltasplat {
 
@@ -14,9 +14,10 @@ namespace deltasplat {
 void addCameraFileOptions(CLI::App& app, PictureOptions& options);
 
 /// Refuses what says twice where the camera is, and reads the file of --camera.
-/// @param frames  of a sequence; empty: a single picture, which is shown by the first key
+/// @param frames  of a sequence; none: a single picture, which is shown by the first key. With
+///                `keepGoing` those whose own file cannot be read fail later, unless all do
 /// @throw Error(kUsage), or Error(kInput) for the file
-void applyCamera(const CLI::App& app, const std::vector<int>& frames, PictureOptions& options,
+void applyCamera(const CLI::App& app, const FrameChoice& frames, PictureOptions& options,
                  const Listener& listener);
 
 /// Returns the file that a camera is read from; of several the name that they have in common. Empty
@@ -28,6 +29,7 @@ bool cameraMoves(const PictureOptions& options);
 
 /// Returns the camera that a file describes, at a frame or, without one, at its first key.
 /// @param options  after applyCamera, with --camera
+/// @throw Error(kInput) if that frame's could not be read
 CameraOptions cameraAt(const PictureOptions& options, std::optional<int> frame);
 
 /// Warns of a volume that another program would have cut off before or behind its camera, which is

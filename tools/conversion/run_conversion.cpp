@@ -110,7 +110,7 @@ void addConversionOptions(CLI::App& app, const std::string& what, ConversionFile
 ConversionStats runConversion(const CLI::App& app, const ConversionFiles& files,
                               const FrameChoice& frames, const Session& session,
                               const Convert& convert) {
-    requireFramesOf(app, frames, files.input);
+    requireFramesOf(app, frames, files.input, files.output);
     if (frames.asked() && !files.stats.empty()) frameNameOf("--stats", files.stats);
     ConversionStats stats;
     {

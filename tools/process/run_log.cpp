@@ -15,6 +15,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 
 #include "deltasplat/error.h"
 #include "process/peak_bytes.h"
@@ -49,7 +50,8 @@ double processorSeconds() {
 
 class RunLog {
   public:
-    RunLog(int file, bool asJson) : file_(file), asJson_(asJson) {}
+    RunLog(std::filesystem::path name, int file, bool asJson)
+        : name_(std::move(name)), file_(file), asJson_(asJson) {}
     ~RunLog() { close(file_); }
     RunLog(const RunLog&) = delete;
     RunLog& operator=(const RunLog&) = delete;
@@ -75,11 +77,13 @@ class RunLog {
         (void)!::write(file_, line.data(), line.size());
     }
 
+    const std::filesystem::path& name() const { return name_; }
     double seconds() const {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     }
 
   private:
+    std::filesystem::path name_;
     int file_;
     bool asJson_;
     std::mutex mutex_;
@@ -118,7 +122,11 @@ void openRunLog(const std::filesystem::path& file, bool asJson) {
                     gotExpected("--log", file.string() + " (" + std::strerror(errno) + ")",
                                 "a file that can be written"));
     }
-    log = std::make_unique<RunLog>(descriptor, asJson);
+    log = std::make_unique<RunLog>(file, descriptor, asJson);
+}
+
+std::filesystem::path runLogFile() {
+    return log ? log->name() : std::filesystem::path();
 }
 
 void logLine(LogLevel level, const std::string& text) {

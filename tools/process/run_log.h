@@ -14,6 +14,9 @@ enum class LogLevel { kInfo, kWarning, kError };
 /// @throw Error(kUsage) if it holds anything but a log; Error(kOutput) if it cannot be written
 void openRunLog(const std::filesystem::path& file, bool asJson);
 
+/// Returns the file; empty: there is no log.
+std::filesystem::path runLogFile();
+
 /// Adds a line, with the time (UTC) and the process' number; without a log, nothing. Thread-safe.
 /// What cannot be written is lost: no picture fails for it.
 void logLine(LogLevel level, const std::string& text);

@@ -36,21 +36,27 @@ Metadata commonMetadata(const Session& session) {
     return {{"version", programVersion()}, {"commandLine", session.commandLine}};
 }
 
-ImageFileOptions imageOptions(const RenderCommand& command, const CodeText& codes,
-                              const RenderResult& result, const Session& session) {
+ImageFileOptions imageOptions(const RenderCommand& command, const Camera& camera,
+                              const Session& session) {
     ImageFileOptions options = command.image;
-    setExr(command, result.camera, options);
-    options.cameraFromWorld = result.camera.cameraFromWorld();
-    options.ndcFromWorld = result.camera.ndcFromWorld();
-    options.exr.pixelAspect = result.camera.pixelAspect;
+    setExr(command, camera, options);
+    options.cameraFromWorld = camera.cameraFromWorld();
+    options.ndcFromWorld = camera.ndcFromWorld();
+    options.exr.pixelAspect = camera.pixelAspect;
     const Metadata common = commonMetadata(session);
     options.metadata.insert(options.metadata.end(), common.begin(), common.end());
+    setColors(command, options);
+    return options;
+}
+
+ImageFileOptions imageOptions(const RenderCommand& command, const CodeText& codes,
+                              const RenderResult& result, const Session& session) {
+    ImageFileOptions options = imageOptions(command, result.camera, session);
     options.metadata.insert(options.metadata.end(), {{"input", command.input.string()},
                                                      {"mode", modeName(result.stats.mode)},
                                                      {"camera", cameraOptionsText(result.camera)},
                                                      {"codeBook", codes.book},
                                                      {"codeError", codes.error}});
-    setColors(command, options);
     const RenderOptions& render = command.picture.render;
     if (result.stats.mode == Mode::kDrr) {
         options.metadata.emplace_back("muWater", numberText(render.drr.muWater));

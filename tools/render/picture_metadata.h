@@ -23,6 +23,10 @@ CodeText codesOf(const Volume& volume);
 /// Returns what every picture says of how it was made.
 Metadata commonMetadata(const Session& session);
 
+/// Returns how a picture of a camera is stored, whatever it shows.
+ImageFileOptions imageOptions(const RenderCommand& command, const Camera& camera,
+                              const Session& session);
+
 /// Returns how a picture is stored, and what it says of how it was made.
 /// @param result  all but its image
 ImageFileOptions imageOptions(const RenderCommand& command, const CodeText& codes,

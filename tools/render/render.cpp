@@ -311,18 +311,17 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
 // Writes what stands for a frame that there is none of.
 void makeBlack(const RenderCommand& command, const Session& session, const SequencePart& part) {
     Image image = blackPicture(command);
+    const Volume& seen = part.look->sequence.seen();
+    const Camera camera =
+        makeCamera(command.picture.render.camera, seen.box, seen.worldFromIndex, seen.space);
     if (!command.annotations.lines.empty()) {
         AnnotationChoice lines;
         lines.lines = command.annotations.lines;
-        Camera camera;
-        camera.sizePixels = image.size;
         annotate(layOut(lines, camera, "", std::nullopt, inkFor(image)), image);
     }
     if (part.take) part.take(image);
     if (!part.isWritten) return;
-    ImageFileOptions options = command.image;
-    options.metadata = commonMetadata(session);
-    writeImage(command.output, image, options);
+    writeImage(command.output, image, imageOptions(command, camera, session));
 }
 
 // Of several pictures, the largest bound is said.
@@ -378,7 +377,7 @@ void prepare(const CLI::App& app, RenderCommand& command, std::size_t pictures,
              const Listener& listener) {
     applyMode(app, command);
     applyProjection(app, command.picture.render.camera);
-    applyCamera(app, command.frames.frames, command.picture, listener);
+    applyCamera(app, command.frames, command.picture, listener);
     applyOverscan(command);
     applySinks(app, command, pictures);
     applySlabs(app, command);

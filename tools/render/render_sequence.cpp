@@ -196,19 +196,41 @@ void warnOfOthers(const Json& json, const RenderCommand& command, const Listener
                   ", and is taken as it is");
 }
 
-bool readFirstPass(const RenderCommand& command, SequenceLook& look, const Listener& listener) {
+// The file that the first of the frames in hand shows if it has none: of a first pass' frames that
+// are there the last before it, or else the first behind it.
+std::filesystem::path heldFile(const Json& json, const std::vector<int>& frames,
+                               const std::filesystem::path& input) {
+    const std::optional<FrameName> name = FrameName::findInput(input);
+    if (!name || !std::is_sorted(frames.begin(), frames.end())) return {};
+    const Json& runs = json.at(kFrames);
+    for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
+        const int last = std::min(run->at(1).get<int>(), frames.front() - 1);
+        for (int frame = last; frame >= run->at(0); --frame)
+            if (hasInput(name->at(frame))) return name->at(frame);
+    }
+    for (const Json& run : runs) {
+        const int first = std::max(run.at(0).get<int>(), frames.front() + 1);
+        for (int frame = first; frame <= run.at(1); ++frame)
+            if (hasInput(name->at(frame))) return name->at(frame);
+    }
+    return {};
+}
+
+std::optional<KnownSequence> readFirstPass(const RenderCommand& command, SequenceLook& look,
+                                           const Listener& listener) {
     const std::filesystem::path& file = command.firstPass;
+    if (file.empty()) return {};
     std::ifstream in(file);
-    if (!in) return false;
+    if (!in) return {};
     try {
         const Json json = Json::parse(in).at(kFirstPass);
         look.takeJson(json);
         warnOfOthers(json, command, listener);
+        return KnownSequence{heldFile(json, command.frames.frames, command.input)};
     } catch (const std::exception&) {
         throw Error(ErrorCode::kInput,
                     gotExpected(file.string(), "something else", "what --first-pass has written"));
     }
-    return true;
 }
 
 void writeFirstPass(const RenderCommand& command, const std::vector<int>& frames,
@@ -250,8 +272,12 @@ void fixCamera(const Volume& seen, std::optional<int> turntable, CameraOptions& 
     const bool isPlaced = choice.eyeWorld || choice.sourceToDetectorWorld || choice.worldFromCamera;
     if (choice.projection == Projection::kOrtho && !choice.frameWidthWorld)
         choice.frameWidthWorld = width;
-    if (choice.projection == Projection::kPerspective && !isPlaced && !choice.distanceWorld)
-        choice.distanceWorld = distance;
+    // From there on depths are counted as well.
+    const bool hasDistance =
+        choice.projection == Projection::kPerspective
+            ? !isPlaced
+            : choice.projection == Projection::kOrtho && !choice.worldFromCamera;
+    if (hasDistance && !choice.distanceWorld) choice.distanceWorld = distance;
 }
 
 // Puts what all frames have into what they are rendered by.
@@ -274,6 +300,18 @@ void finishAfterFailure(SequenceSinks& sinks) {
 // Whether nothing but --first-pass is to be made.
 bool isLookAlone(const RenderCommand& command) {
     return command.output.empty();
+}
+
+// What frames still take from themselves alone.
+void warnOfOwnRanges(const RenderCommand& command, const Listener& listener) {
+    if (!FrameName::findInput(command.input) && !command.scene.moves()) return;
+    const RenderOptions& render = command.picture.render;
+    const std::string may = ", so that what stands still may change from frame to frame";
+    if (render.mode == Mode::kComposite && render.optics.colorBy != ColorBy::kValue)
+        listener.warn("--color-by " + colorByName(render.optics.colorBy) +
+                      ": colours span each frame's own voxels" + may);
+    if (render.mode == Mode::kMip && render.depthShade > 0)
+        listener.warn("--depth-shade: spans each frame's own voxels" + may);
 }
 
 // The files of all frames; if pictures go elsewhere, all have the same output.
@@ -354,7 +392,7 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
         command.frames.frames.resize(std::size_t(*command.turntable));
         std::iota(command.frames.frames.begin(), command.frames.frames.end(), 1);
     }
-    requireFramesOf(app, command.frames, command.input);
+    requireFramesOf(app, command.frames, command.input, command.output);
     if (!command.frames.asked()) {
         if (command.firstPass.empty()) return;
         refuseWithoutFrames("--first-pass");
@@ -368,9 +406,12 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     const std::vector<FrameFiles> all =
         withScene(command.scene, filesFor(command, sinks.areWritten() && !isLookAlone(command)));
     SequenceLook look(kKeptShare * double(availableMemory()));
-    const std::vector<FrameFiles> present = withInputs(all, command.frames.missing, listener);
+    const std::optional<KnownSequence> known = readFirstPass(command, look, listener);
+    const bool isKnown = known.has_value();
+    const std::vector<FrameFiles> present =
+        withInputs(all, command.frames.missing, listener, known);
+    warnOfOwnRanges(command, listener);
     const bool isAlone = isLookAlone(command);
-    const bool isKnown = !command.firstPass.empty() && readFirstPass(command, look, listener);
     const double readShare = choosesWindow(command) ? kSurveyShare / 2 : kSurveyShare;
     Survey survey(command, present, isAlone);
     if (!isKnown && isAlone && !command.frames.keepGoing &&

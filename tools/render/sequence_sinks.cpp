@@ -57,7 +57,7 @@ void checkMovieOf(const CLI::App& app, RenderCommand& command) {
     if (isExr(command))
         refuse("--movie", "an .exr besides, which shows light as it is", "-o with a .png, or none");
     if (!command.isMovieAlone) return;
-    for (const char* option : {"--float", "--bits", "--progressive"})
+    for (const char* option : {"--float", "--bits", "--progressive", "--region"})
         if (isGiven(app, option)) refuse(option, "a movie alone", "-o with pictures");
 }
 

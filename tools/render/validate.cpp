@@ -79,6 +79,7 @@ void validate(const RenderCommand& command) {
     Files others =
         filesRead({command.input}, parseTransferFunction(command.picture.transferFunction).file);
     checkOutput("--output", command.output, others, "the input and the transfer function");
+    checkOutput("--output", command.output, {command.firstPass}, "the first pass");
     others.push_back(command.firstPass);
     checkOutput("--movie", command.movie, others,
                 "the input, the transfer function and the first pass");

@@ -112,15 +112,20 @@ std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::file
 }
 
 void requireFramesOf(const CLI::App& app, const FrameChoice& choice,
-                     const std::filesystem::path& input) {
+                     const std::filesystem::path& input, const std::filesystem::path& output) {
     if (choice.asked()) return;
     for (const char* option : {"--missing", "--keep-going", "--skip-existing", "--update"}) {
         if (app.get_option_no_throw(option) && isGiven(app, option)) refuseWithoutFrames(option);
     }
+    const auto refuse = [](const std::string& option, const std::filesystem::path& file) {
+        throw Error(ErrorCode::kUsage, gotExpected(option, file.string() + " without --frames",
+                                                   "--frames with it, as in --frames 1-100"));
+    };
     std::error_code ignored;
-    if (!FrameName::findInput(input) || std::filesystem::exists(input, ignored)) return;
-    throw Error(ErrorCode::kUsage, gotExpected("INPUT", input.string() + " without --frames",
-                                               "--frames with it, as in --frames 1-100"));
+    if (FrameName::findInput(input) && !std::filesystem::exists(input, ignored))
+        refuse("INPUT", input);
+    if (FrameName::find(output) && output.string().find_first_of("#%$") != std::string::npos)
+        refuse("output", output);
 }
 
 }  // namespace deltasplat

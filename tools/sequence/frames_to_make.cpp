@@ -18,17 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool isThere(const fs::path& input) {
-    std::error_code ignored;
-    if (fs::exists(input, ignored)) return true;
-    if (!isImageName(input)) return false;
-    try {
-        return !findInput(input, {}).files.empty();  // a stack
-    } catch (const Error&) {
-        return false;
-    }
-}
-
 bool isReadable(const fs::path& output) {
     std::error_code error;
     if (!fs::is_regular_file(output, error) || fs::file_size(output, error) == 0) return false;
@@ -59,14 +48,27 @@ bool isNew(const FrameFiles& frame) {
 
 }  // namespace
 
+bool hasInput(const fs::path& input) {
+    std::error_code ignored;
+    if (fs::exists(input, ignored)) return true;
+    if (!isImageName(input)) return false;
+    try {
+        return !findInput(input, {}).files.empty();  // a stack
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, MissingFrames missing,
-                                   const Listener& listener) {
+                                   const Listener& listener,
+                                   const std::optional<KnownSequence>& known) {
     if (missing == MissingFrames::kError) return frames;
     std::vector<FrameFiles> result;
     std::optional<fs::path> before;
+    if (known && !known->held.empty()) before = known->held;
     std::size_t absent = 0;
     for (const FrameFiles& frame : frames) {
-        const bool isPresent = isThere(frame.input);
+        const bool isPresent = hasInput(frame.input);
         if (!isPresent) ++absent;
         if (isPresent) {
             // Those before the first one show it.
@@ -81,7 +83,7 @@ std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, Missin
             result.push_back({frame.frame, {}, frame.output});
         }
     }
-    if (!before && missing != MissingFrames::kBlack) {
+    if (!before && !known && missing != MissingFrames::kBlack) {
         throw Error(ErrorCode::kInput, gotExpected(frames.front().input.string(),
                                                    "no file of any frame", "at least one"));
     }
@@ -98,7 +100,7 @@ std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, Missin
 void requireInputs(const std::vector<FrameFiles>& frames) {
     std::vector<FrameFiles> absent;
     std::copy_if(frames.begin(), frames.end(), std::back_inserter(absent),
-                 [](const FrameFiles& frame) { return !isThere(frame.input); });
+                 [](const FrameFiles& frame) { return !hasInput(frame.input); });
     if (absent.empty() || frames.front().input == frames.back().input) return;
     throw Error(ErrorCode::kInput,
                 gotExpected(absent.front().input.string(),

@@ -64,6 +64,26 @@ for mode in mip xray; do
     ! same alone.png $mode.0008.png || fail "--mode $mode: got greys of one frame, not of all"
 done
 
+# Depths are counted from one place, though each frame by itself begins where its volume does.
+"$program" "${frames[@]}" --aov depth -o far.####.exr
+depth() { "$oiiotool" -q "$1" --ch Z --cut 1x1+9+39 --printstats | awk '/Avg/ { printf "%.2f", $3 }'; }
+[[ $(depth far.0008.exr) == 15.95 && $(depth far.0010.exr) == 15.95 ]] || fail "the cube is farther away in frame 10"
+# What is each frame's own is said.
+expect_code 0 "$program" render in.####.vdb --frames 8-10 --size 8x8 --color-by z -o own.####.png
+expect_said "deltasplat: warning: --color-by z: colours span each frame's own voxels, so that what stands still may change from frame to frame"
+expect_code 0 "$program" render in.####.vdb --frames 8-10 --size 8x8 --mode mip --depth-shade 0.5 -o own.####.png
+expect_said "deltasplat: warning: --depth-shade: spans each frame's own voxels, so that what stands still may change from frame to frame"
+# The log and the first pass are no pictures.
+expect_code 2 "$program" render in.0008.vdb -o one.png --log one.png
+expect_said "deltasplat: --output: got one.png; expected another file than --log"
+expect_code 2 "$program" render in.####.vdb --frames 8-9 --first-pass p.0008.png -o p.####.png
+expect_said "deltasplat: frame 8: --output: got p.0008.png; expected another file than the first pass"
+expect_code 2 "$program" render in.0008.vdb -o p.####.png
+expect_said "deltasplat: output: got p.####.png without --frames; expected --frames with it, as in --frames 1-100"
+expect_code 2 "$program" convert in.0008.vdb 'p.$F4.vdb'
+expect_said 'deltasplat: output: got p.$F4.vdb without --frames; expected --frames with it, as in --frames 1-100'
+expect_code 0 "$program" render in.0008.vdb -o at@home.png -qq --size 8x8
+
 # Whatever the threads, the order, the names, and which task of a farm has which.
 "$program" "${frames[@]}" -o two.%04d.exr --threads 2
 ran two
@@ -109,6 +129,22 @@ expect_said "deltasplat: warning: --missing: 3 of 6 frames have no file and are 
 expect_code 0 "$program" "${gaps[@]}" -o c.####.png --missing hold
 same c.0007.png c.0008.png || fail "frame 7 does not show the next"
 same c.0012.png c.0010.png || fail "frame 12 does not show the one before"
+# A task of a farm knows by the first pass what the frame before its own shows, and may have nothing
+# to do.
+"$program" "${gaps[@]}" -o h.####.exr --missing hold -qq --first-pass gaps.json
+for number in 7 12; do
+    "$program" "${gaps[@]}" --frames $number -o i.####.exr --missing hold -qq --first-pass gaps.json
+done
+same i.0012.exr h.0012.exr || fail "frame 12 by itself does not show the one before"
+same i.0007.exr h.0007.exr || fail "frame 7 by itself does not show the next"
+expect_code 0 "$program" "${gaps[@]}" --frames 12 -o j.####.exr --missing skip --first-pass gaps.json
+expect_files "" 'j.*'
+expect_said "deltasplat: warning: --missing: 1 of 1 frames have no file and are left out"
+# What is black is stored as the others are.
+"$program" "${gaps[@]}" -o k.####.exr --missing black -qq --pixel-aspect 2 --region 4x3+2+1
+header() { "$oiiotool" --info -v "$1" | grep -E 'x +[0-9]+,|PixelAspect|worldTo|origin|full'; }
+[[ $(header k.0007.exr | sed 's/^[^:]*//') == $(header k.0008.exr | sed 's/^[^:]*//') ]] ||
+    fail "k.0007.exr has another header than k.0008.exr"
 expect_code 3 "$program" render none.####.vdb --frames 1-3 -o d.####.png --missing skip
 expect_code 3 "$program" render none.####.vdb --frames 1-3 -o d.####.png
 
@@ -165,6 +201,14 @@ touch -d '2000-01-01' in.0008.vdb
 "$program" "${frames[@]}" -o e.####.png --update
 [[ e.0008.png -ot in.0010.vdb ]] || fail "e.0008.png was made anew"
 ! cmp -s e.0009.png kept.png || fail "e.0009.png was not made anew"
+
+# Of cameras that are a file each, one that is not there costs its frame.
+for number in 0008 0010; do cp all.$number.exr eye.$number.exr; done
+expect_code 3 "$program" render in.####.vdb --frames 8-10 --camera eye.####.exr --size 48x48 -o seen.####.exr --keep-going
+expect_files "seen.0008.exr seen.0010.exr" 'seen.*'
+expect_said "deltasplat: 1 of 3 frames failed: 9"
+expect_code 3 "$program" render in.####.vdb --frames 8-10 --camera eye.####.exr --size 48x48 -o none.####.exr
+expect_files "" 'none.*'
 
 # A turn: every frame is as wide, and one of it is the one of all.
 turn=(render in.0010.vdb --size 48x48 -qq --turntable 8)
