@@ -50,7 +50,7 @@ std::uint64_t addressesAvailable() {
     return most.rlim_cur > taken ? most.rlim_cur - taken : 0;
 }
 
-std::uint64_t systemAvailable() {
+std::uint64_t unusedMemory() {
     std::ifstream in("/proc/meminfo");
     for (std::string line; std::getline(in, line);) {
         unsigned long long kib = 0;
@@ -59,8 +59,12 @@ std::uint64_t systemAvailable() {
     return kNoLimit;
 }
 
+std::uint64_t systemAvailable() {
+    return std::min({addressesAvailable(), unusedMemory(), cgroupAvailable("/")});
+}
+
 // Asking the system takes longer than some pictures: it is asked again when so much has been
-// granted since.
+// granted since, which has to be there as well.
 constexpr std::uint64_t kLittle = 64 << 20;
 std::atomic<std::uint64_t> grantedUnasked = 0;
 
@@ -75,7 +79,7 @@ bool isLittle(double bytes) {
 void require(ErrorCode code, const std::string& what, double bytes) {
     const double left = double(limitAvailable());
     if (bytes <= left && isLittle(bytes)) return;
-    const double available = std::min(left, double(availableMemory()));
+    const double available = std::min(left, std::max(0.0, double(systemAvailable()) - kLittle));
     if (bytes <= available) return;
     throw Error(code, what + ": needs " + humanBytes(bytes) + " of memory; expected at most " +
                           humanBytes(available) + ", which " +
@@ -93,8 +97,7 @@ std::uint64_t memoryLimit() {
 }
 
 std::uint64_t availableMemory() {
-    return std::min(
-        {limitAvailable(), addressesAvailable(), systemAvailable(), cgroupAvailable("/")});
+    return std::min(limitAvailable(), systemAvailable());
 }
 
 std::string humanBytes(double bytes) {
