@@ -2,6 +2,7 @@
 #include "process/interrupt.h"
 
 #include <poll.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -49,8 +50,9 @@ static void hear(int signal) {
     before = kWorking;
     const bool first = state.compare_exchange_strong(before, kInterrupted);
     if (!first && before == kInterrupted) endAtOnce(signal);
-    constexpr unsigned kSeconds = 1;
-    ::alarm(kSeconds);
+    // Within a second, of which the system takes some to free memory.
+    constexpr itimerval kSoon{{0, 0}, {0, 700'000}};
+    ::setitimer(ITIMER_REAL, &kSoon, nullptr);
 }
 
 }  // extern "C"

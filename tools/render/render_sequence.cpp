@@ -460,6 +460,7 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
         throw;
     }
     sinks.finish();
+    listener.report(1);
 }
 
 }  // namespace deltasplat
