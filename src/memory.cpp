@@ -64,7 +64,7 @@ std::uint64_t systemAvailable() {
 }
 
 // Asking the system takes longer than some pictures: it is asked again when so much has been
-// granted since, which has to be there as well.
+// granted since, or each time where less than that is left.
 constexpr std::uint64_t kLittle = 64 << 20;
 std::atomic<std::uint64_t> grantedUnasked = 0;
 
@@ -79,8 +79,11 @@ bool isLittle(double bytes) {
 void require(ErrorCode code, const std::string& what, double bytes) {
     const double left = double(limitAvailable());
     if (bytes <= left && isLittle(bytes)) return;
-    const double available = std::min(left, std::max(0.0, double(systemAvailable()) - kLittle));
-    if (bytes <= available) return;
+    const double available = std::min(left, double(systemAvailable()));
+    if (bytes <= available) {
+        if (available - bytes < double(kLittle)) grantedUnasked = kLittle;
+        return;
+    }
     throw Error(code, what + ": needs " + humanBytes(bytes) + " of memory; expected at most " +
                           humanBytes(available) + ", which " +
                           (available == left ? "`memoryLimit` leaves" : "is available"));

@@ -53,10 +53,7 @@ Files filesRead(const Files& inputs, const std::filesystem::path& transferFuncti
 void checkOutput(const std::string& option, const std::filesystem::path& file, const Files& others,
                  const std::string& names) {
     if (file.empty()) return;
-    const std::filesystem::path log = runLogFile();
-    if (!log.empty() && sameFile(file, log))
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, file.string(), "another file than --log"));
+    refuseLog(option, file);
     for (const std::filesystem::path& other : others) {
         if (other.empty() || !sameFile(file, other)) continue;
         throw Error(ErrorCode::kUsage,
@@ -64,6 +61,12 @@ void checkOutput(const std::string& option, const std::filesystem::path& file, c
     }
     // Asked now, rather than after hours of work.
     const AtomicFile probe(file);
+}
+
+void refuseLog(const std::string& option, const std::filesystem::path& file) {
+    const std::filesystem::path log = runLogFile();
+    if (log.empty() || !sameFile(file, log)) return;
+    throw Error(ErrorCode::kUsage, gotExpected(option, file.string(), "another file than --log"));
 }
 
 Files makeFolderOf(const std::filesystem::path& file) {

@@ -26,6 +26,9 @@ Files filesRead(const Files& inputs, const std::filesystem::path& transferFuncti
 void checkOutput(const std::string& option, const std::filesystem::path& file, const Files& others,
                  const std::string& names);
 
+/// @throw Error(kUsage) if an output is the run's log
+void refuseLog(const std::string& option, const std::filesystem::path& file);
+
 /// Makes the folder of one of many outputs, unless it is there.
 /// @return the folders that were not, the innermost first
 /// @throw Error(kOutput)

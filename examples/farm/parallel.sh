@@ -12,7 +12,8 @@ fi
 input=$1 output=$2 first=$((10#${3%-*})) last=$((10#${3#*-}))
 shift 3
 program=${DELTASPLAT:-deltasplat} chunk=${CHUNK:-10} jobs=${JOBS:-$(nproc)}
-first_pass=${FIRST_PASS:-${output%%[#@%\$]*}first_pass.json}
+name=$(basename "$output")
+first_pass=${FIRST_PASS:-$(dirname "$output")/${name%%[#@%\$]*}first_pass.json}
 
 "$program" render "$input" --frames "$first-$last" --first-pass "$first_pass" "$@"
 seq "$first" "$chunk" "$last" |

@@ -127,8 +127,8 @@ int SlabRenderer::stripCount() const {
                       std::max(1, rows / std::max(kLeastRows, travel())));
 }
 
-// How many rows a strip moves along the sheet in a slab of changes: all that it passes over is kept
-// up to date, for each strip anew.
+// How many rows a strip moves along the sheet in a slab of changes: all that it comes to is looked
+// at by each strip anew.
 int SlabRenderer::travel() const {
     if (!input_.plane.isParallel()) return 0;
     int rows = 0;

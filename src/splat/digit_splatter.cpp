@@ -47,7 +47,7 @@ double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout) 
     // The plane, which is at most half as large as a sheet of one pixel a voxel, and two lists of
     // blocks.
     const double voxels = layout.voxelsPerPixel * layout.voxelsPerPixel;
-    const double tiles = 0.5 * double(layout.bytes()) * voxels + 48 * blocks;
+    const double tiles = 0.5 * double(layout.bytes()) * voxels + 64 * blocks;
     const double shown = input.colors.table().oneDigit() ? 0 : sizeof(std::uint64_t) * blocks;
     return double(layout.bytes()) + stamps + shown +
            (TileSplatter::fits(input.footprint) ? tiles : 0);

@@ -29,7 +29,7 @@ void StampSplatter::setLayout(const SheetLayout& layout) {
     }
 }
 
-// Changes have to be added wherever they are, for what is not read now may be later.
+// Changes have to be added wherever they may be read, now or later.
 void StampSplatter::splat(int slice, bool whole, const NeededPixels& needed) {
     if (whole) {
         sheet_.clear();

@@ -71,7 +71,8 @@ TEST(PackedDeltas, AddUpToTheClassesOfTheVolume) {
     const std::vector<Slot> classes = plainClasses();
     for (int axis = 0; axis < 3; ++axis) {
         const Classes expected = classesOf(volume, axis, classes);
-        for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller}) {
+        for (const Encoding encoding :
+             {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller, Encoding::kFewerWords}) {
             for (const int threads : {1, 2}) {
                 const ThreadLimit limit(threads);
                 const PackedDeltas packed = packDeltas(volume, {axis, encoding, classes, {}});
@@ -94,7 +95,8 @@ TEST(PackedDeltas, CountWhatTheDeltaGridCounts) {
     const Volume volume = test::randomVolume(kBox, 4);
     const std::vector<Slot> classes = plainClasses();
     for (int axis = 0; axis < 3; ++axis) {
-        for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller}) {
+        for (const Encoding encoding :
+             {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller, Encoding::kFewerWords}) {
             const PackedDeltas packed = packDeltas(volume, {axis, encoding, classes, {}});
             const DeltaGrid grid = makeDeltaGrid(volume, {axis, keyIntervalOf(packed), classes});
             EXPECT_EQ(packed.visible(), grid.visible());

@@ -21,6 +21,8 @@ std::vector<std::filesystem::path> checkConversionFiles(const std::filesystem::p
                                                         const std::filesystem::path& stats) {
     const Files sources = filesRead({input}, {});
     const std::filesystem::path dataFile = dataFileOf(output);
+    refuseLog("OUTPUT", output);
+    refuseLog("OUTPUT", dataFile);
     // By links: "o.raw" may lead to "o.mhd".
     if (!dataFile.empty() && sameFile(output, dataFile)) {
         refuse(output, "the file of its own data, " + dataFile.string() + ",");

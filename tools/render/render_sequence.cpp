@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <fstream>
 #include <mutex>
 #include <numeric>
@@ -184,7 +185,11 @@ void warnOfOthers(const Json& json, const RenderCommand& command, const Listener
     if (input != name)
         return listener.warn(begin + "of " + input + ", and is taken as it is for " + name);
     std::vector<int> absent;
+    const std::optional<FrameName> files = FrameName::findInput(command.input);
     for (const int frame : command.frames.frames) {
+        // It had none to be read, either.
+        if (files && command.frames.missing != MissingFrames::kError && !hasInput(files->at(frame)))
+            continue;
         const bool isKnown =
             std::any_of(json.at(kFrames).begin(), json.at(kFrames).end(),
                         [&](const Json& run) { return frame >= run.at(0) && frame <= run.at(1); });
@@ -202,16 +207,22 @@ std::filesystem::path heldFile(const Json& json, const std::vector<int>& frames,
                                const std::filesystem::path& input) {
     const std::optional<FrameName> name = FrameName::findInput(input);
     if (!name || !std::is_sorted(frames.begin(), frames.end())) return {};
+    // A file may say anything.
+    constexpr int kMostLooks = 1'000'000;
+    int looks = 0;
     const Json& runs = json.at(kFrames);
+    const std::int64_t first = frames.front();
     for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
-        const int last = std::min(run->at(1).get<int>(), frames.front() - 1);
-        for (int frame = last; frame >= run->at(0); --frame)
-            if (hasInput(name->at(frame))) return name->at(frame);
+        const std::int64_t begin = run->at(0).get<int>();
+        for (auto frame = std::min<std::int64_t>(run->at(1).get<int>(), first - 1);
+             frame >= begin && looks < kMostLooks; --frame, ++looks)
+            if (hasInput(name->at(int(frame)))) return name->at(int(frame));
     }
     for (const Json& run : runs) {
-        const int first = std::max(run.at(0).get<int>(), frames.front() + 1);
-        for (int frame = first; frame <= run.at(1); ++frame)
-            if (hasInput(name->at(frame))) return name->at(frame);
+        const std::int64_t end = run.at(1).get<int>();
+        for (auto frame = std::max<std::int64_t>(run.at(0).get<int>(), first + 1);
+             frame <= end && looks < kMostLooks; ++frame, ++looks)
+            if (hasInput(name->at(int(frame)))) return name->at(int(frame));
     }
     return {};
 }
@@ -226,6 +237,7 @@ std::optional<KnownSequence> readFirstPass(const RenderCommand& command, Sequenc
         const Json json = Json::parse(in).at(kFirstPass);
         look.takeJson(json);
         warnOfOthers(json, command, listener);
+        if (command.frames.missing != MissingFrames::kHold) return KnownSequence{};
         return KnownSequence{heldFile(json, command.frames.frames, command.input)};
     } catch (const std::exception&) {
         throw Error(ErrorCode::kInput,
@@ -410,6 +422,9 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     const bool isKnown = known.has_value();
     const std::vector<FrameFiles> present =
         withInputs(all, command.frames.missing, listener, known);
+    if (present.empty() && sinks.any())
+        throw Error(ErrorCode::kInput, gotExpected(all.front().input.string(),
+                                                   "no file of any frame", "at least one"));
     warnOfOwnRanges(command, listener);
     const bool isAlone = isLookAlone(command);
     const double readShare = choosesWindow(command) ? kSurveyShare / 2 : kSurveyShare;

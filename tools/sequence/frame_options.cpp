@@ -124,8 +124,11 @@ void requireFramesOf(const CLI::App& app, const FrameChoice& choice,
     std::error_code ignored;
     if (FrameName::findInput(input) && !std::filesystem::exists(input, ignored))
         refuse("INPUT", input);
-    if (FrameName::find(output) && output.string().find_first_of("#%$") != std::string::npos)
-        refuse("output", output);
+    // A single # or @ may be just a letter.
+    const std::string name = output.filename().string();
+    const auto holds = [&](const char* place) { return name.find(place) != std::string::npos; };
+    if (holds("##") || holds("%0") || holds("$F"))
+        refuse(app.get_option_no_throw("--output") ? "--output" : "OUTPUT", output);
 }
 
 }  // namespace deltasplat

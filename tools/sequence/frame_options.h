@@ -66,7 +66,7 @@ std::vector<FrameFiles> inputsOfFrames(const FrameChoice& choice, const std::str
                                        const std::filesystem::path& input);
 
 /// Refuses names with a place for a frame's number if there is no such file and no frames are asked
-/// for, and options that frames alone have. An output's @ may be just a letter.
+/// for, and options that frames alone have.
 /// @param output  empty: none
 /// @throw Error(kUsage)
 void requireFramesOf(const CLI::App& app, const FrameChoice& choice,

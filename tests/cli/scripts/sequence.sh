@@ -79,10 +79,15 @@ expect_said "deltasplat: --output: got one.png; expected another file than --log
 expect_code 2 "$program" render in.####.vdb --frames 8-9 --first-pass p.0008.png -o p.####.png
 expect_said "deltasplat: frame 8: --output: got p.0008.png; expected another file than the first pass"
 expect_code 2 "$program" render in.0008.vdb -o p.####.png
-expect_said "deltasplat: output: got p.####.png without --frames; expected --frames with it, as in --frames 1-100"
+expect_said "deltasplat: --output: got p.####.png without --frames; expected --frames with it, as in --frames 1-100"
 expect_code 2 "$program" convert in.0008.vdb 'p.$F4.vdb'
-expect_said 'deltasplat: output: got p.$F4.vdb without --frames; expected --frames with it, as in --frames 1-100'
-expect_code 0 "$program" render in.0008.vdb -o at@home.png -qq --size 8x8
+expect_said 'deltasplat: OUTPUT: got p.$F4.vdb without --frames; expected --frames with it, as in --frames 1-100'
+mkdir 'job##1'
+for name in at@home.png 'job##1/pic#2.png' '50%done.png'; do
+    expect_code 0 "$program" render in.0008.vdb -o "$name" -qq --size 8x8
+done
+expect_code 2 "$program" convert in.0008.vdb run.vdb --log run.vdb
+expect_said "deltasplat: OUTPUT: got run.vdb; expected another file than --log"
 
 # Whatever the threads, the order, the names, and which task of a farm has which.
 "$program" "${frames[@]}" -o two.%04d.exr --threads 2
@@ -140,6 +145,7 @@ same i.0007.exr h.0007.exr || fail "frame 7 by itself does not show the next"
 expect_code 0 "$program" "${gaps[@]}" --frames 12 -o j.####.exr --missing skip --first-pass gaps.json
 expect_files "" 'j.*'
 expect_said "deltasplat: warning: --missing: 1 of 1 frames have no file and are left out"
+expect_code 3 "$program" "${gaps[@]}" --frames 12 -o j.png --contact-sheet 1x1 --missing skip --first-pass gaps.json
 # What is black is stored as the others are.
 "$program" "${gaps[@]}" -o k.####.exr --missing black -qq --pixel-aspect 2 --region 4x3+2+1
 header() { "$oiiotool" --info -v "$1" | grep -E 'x +[0-9]+,|PixelAspect|worldTo|origin|full'; }
