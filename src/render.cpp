@@ -10,6 +10,7 @@
 #include "memory.h"
 #include "prepared_axis.h"
 #include "ray_render.h"
+#include "render_frame.h"
 #include "stopwatch.h"
 
 namespace deltasplat {
@@ -70,7 +71,8 @@ std::string modeName(Mode mode) {
     return "composite";
 }
 
-RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {
+RenderResult renderFrame(const Volume& volume, const RenderOptions& options,
+                         const Listener& listener, const FrameStep* step) {
     const DefaultFloats floats;
     RenderResult result;
     const auto makePicture = [&](const Volume& seen) {
@@ -85,14 +87,21 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
     if (options.mode == Mode::kComposite) {
         // A camera that cannot be is refused before there is work.
         if (options.optics.parts.empty()) makePicture(volume);
-        // The volume outlives the scene.
+        // The volume outlives what is rendered of the scene.
         const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
         const Clock::time_point start = Clock::now();
-        const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
+        const auto scene = std::make_shared<const PreparedScene::Impl>(
+            Scene{borrowed, options.optics}, options, true);
         const double sceneSeconds = secondsSince(start);
-        if (!options.optics.parts.empty()) makePicture(*scene.scene.volume);
-        KeptMemory memory;
-        stats = renderComposite(scene, result.camera, memory, result.image, listener);
+        if (!options.optics.parts.empty()) makePicture(*scene->scene.volume);
+        if (step) {
+            step->now.scene = scene;
+            step->now.camera = result.camera;
+            stats = renderComposite(*step, result.image, listener);
+        } else {
+            KeptMemory memory;
+            stats = renderComposite(*scene, result.camera, memory, result.image, listener);
+        }
         stats.prepareSeconds += sceneSeconds;
     } else {
         makePicture(volume);
@@ -100,6 +109,10 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
     }
     listener.report(1);
     return result;
+}
+
+RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {
+    return renderFrame(volume, options, listener, nullptr);
 }
 
 }  // namespace deltasplat

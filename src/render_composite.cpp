@@ -11,17 +11,21 @@
 #include "kept_view.h"
 #include "listener_part.h"
 #include "number_text.h"
+#include "render_frame.h"
 #include "stopwatch.h"
 #include "view/affine.h"
+#include "view_changes.h"
 
 namespace deltasplat {
 namespace {
 
-// What is made: a picture, perhaps stage by stage as well, or views that it may be made of.
+// What is made: a picture, perhaps stage by stage as well, or behind another one; or views that it
+// may be made of.
 struct Wanted {
     Image* image = nullptr;
     const DeepRequest* deep = nullptr;
     std::vector<KeptView>* views = nullptr;
+    const FrameStep* step = nullptr;
 };
 
 // Renders one picture, or the regions of one.
@@ -43,13 +47,15 @@ class CompositeRender {
         plan_.emplace(scene_, views.front(), listener);
         for (std::size_t i = 0; i < views.size(); ++i) {
             const auto share = [&](double part) { return (double(i) + part) / views.size(); };
-            runView(views[i], partOf(listener, share(0), share(1)));
+            runView(i, views[i], partOf(listener, share(0), share(1)));
         }
+        if (shown_ > 0) stats_.changed = double(differing_) / double(shown_);
+        if (rows_ > 0) stats_.kept = double(rowsKept_) / double(rows_);
         warnOfEmptyPicture(listener);
     }
 
   private:
-    void runView(const Factorization& view, const Listener& listener) {
+    void runView(std::size_t number, const Factorization& view, const Listener& listener) {
         const Clock::time_point start = Clock::now();
         std::shared_ptr<const PreparedAxis> axis =
             scene_.axis(view.sliceAxis, plan_->partsAlong(view.sliceAxis), stepsOf(view, volume_),
@@ -64,26 +70,71 @@ class CompositeRender {
         countIn(*picture);
         if (wanted_.views) {
             keep(std::move(picture), listener);
+        } else if (wanted_.step) {
+            const PictureView& kept = wanted_.step->now.addView(std::move(picture));
+            countBound(kept, showBehind(number, kept, listener));
         } else {
-            const double gain =
-                wanted_.deep ? showDeep(*picture, listener) : showFlat(*picture, listener);
-            if (!options_.tolerance.isExact()) countIn(picture->errorBound(), gain);
+            countBound(*picture,
+                       wanted_.deep ? showDeep(*picture, listener) : showFlat(*picture, listener));
         }
         stats_.renderSeconds += secondsSince(renderStart);
     }
 
     void keep(std::unique_ptr<const PictureView> picture, const Listener& listener) {
-        Layer merged = renderSlabs(picture->slabs(), partOf(listener, 0.2, 1));
+        Layer merged = renderSlabs(picture->slabs(), kAllRows, partOf(listener, 0.2, 1));
         picture->finish(merged);
         wanted_.views->push_back({std::move(picture), std::move(merged)});
     }
 
     double showFlat(const PictureView& picture, const Listener& listener) {
-        Layer merged = renderSlabs(picture.slabs(), partOf(listener, 0.2, 0.9));
+        Layer merged = renderSlabs(picture.slabs(), kAllRows, partOf(listener, 0.2, 0.9));
         listener.report(0.95);
-        const Clock::time_point warpStart = Clock::now();
-        const double gain = picture.show(merged, *wanted_.image);
-        stats_.warpSeconds += secondsSince(warpStart);
+        return timedWarp([&] { return picture.show(merged, *wanted_.image); });
+    }
+
+    // Leaves the layer to the frame behind.
+    double showBehind(std::size_t number, const PictureView& picture, const Listener& listener) {
+        Layer merged = renderBehind(number, picture, partOf(listener, 0.2, 0.9));
+        listener.report(0.95);
+        KeptFrame& now = wanted_.step->now;
+        if (picture.showChangesLayer()) {
+            now.addLayer(Layer(merged));
+            return timedWarp([&] { return picture.show(merged, *wanted_.image); });
+        }
+        const Layer& kept = now.addLayer(std::move(merged));
+        return timedWarp([&] { return picture.showPart(kept, PicturePart(*wanted_.image)); });
+    }
+
+    // Takes from the frame before what is the same in both.
+    Layer renderBehind(std::size_t number, const PictureView& picture, const Listener& listener) {
+        KeptFrame* before = wanted_.step->before;
+        const PictureView* viewBefore = before ? before->view(number) : nullptr;
+        if (!viewBefore) return renderSlabs(picture.slabs(), kAllRows, listener);
+        const ViewChanges changes = compareViews(*viewBefore, picture);
+        differing_ += changes.differing;
+        shown_ += changes.shown;
+        const glm::ivec2 made = changes.differingRows;
+        const glm::ivec2 all = changes.shownRows;
+        rows_ += std::max(all.y - all.x, 0);
+        if (made.x <= all.x && made.y >= all.y)
+            return renderSlabs(picture.slabs(), kAllRows, listener);
+        Layer merged = renderSlabs(picture.slabs(), made, listener);
+        const Layer* layerBefore = before->layer(number);
+        // Who could not be rendered leaves nothing.
+        if (!layerBefore) return renderSlabs(picture.slabs(), kAllRows, listener);
+        const int firstMade = std::min(made.x, all.y);
+        const int lastMade = std::max(made.y, firstMade);
+        merged.takeRows(*layerBefore, all.x, firstMade);
+        merged.takeRows(*layerBefore, lastMade, all.y);
+        rowsKept_ += (all.y - all.x) - (lastMade - firstMade);
+        return merged;
+    }
+
+    template <typename Show>
+    double timedWarp(const Show& show) {
+        const Clock::time_point start = Clock::now();
+        const double gain = show();
+        stats_.warpSeconds += secondsSince(start);
         return gain;
     }
 
@@ -147,14 +198,17 @@ class CompositeRender {
         stats_.footprint = std::max(stats_.footprint, footprint.width);
     }
 
-    void countIn(const ErrorBound& bound, double gain) {
+    void countBound(const PictureView& picture, double gain) {
+        if (options_.tolerance.isExact()) return;
+        const ErrorBound bound = picture.errorBound();
         stats_.errorBoundColor = std::max(stats_.errorBoundColor, bound.color * gain);
         stats_.errorBoundAlpha = std::max(stats_.errorBoundAlpha, bound.alpha * gain);
     }
 
-    Layer renderSlabs(const SlabInput& input, const Listener& listener) {
+    // @param rows  of the base plane
+    Layer renderSlabs(const SlabInput& input, glm::ivec2 rows, const Listener& listener) {
         const Clock::time_point start = Clock::now();
-        SlabRenderer slabs(input, seenSlabs(input), listener);
+        SlabRenderer slabs(input, seenSlabs(input), rows, listener);
         slabs.run();
         const double slabSeconds = secondsSince(start);
         Layer merged = slabs.merge();
@@ -172,6 +226,12 @@ class CompositeRender {
     const Wanted& wanted_;
     RenderStats& stats_;
     std::optional<SheetPlan> plan_;
+    // Rows of blocks compared with the frame before.
+    std::uint64_t differing_ = 0;
+    std::uint64_t shown_ = 0;
+    // Of base planes that were.
+    std::int64_t rows_ = 0;
+    std::int64_t rowsKept_ = 0;
 };
 
 RenderStats renderAs(const Wanted& wanted, const PreparedScene::Impl& scene, const Camera& camera,
@@ -216,6 +276,12 @@ RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& came
                             KeptMemory& memory, Image& image, const Listener& listener,
                             const DeepRequest* deep) {
     return renderAs({&image, deep, nullptr}, scene, camera, memory, listener);
+}
+
+RenderStats renderComposite(const FrameStep& step, Image& image, const Listener& listener) {
+    KeptFrame& now = step.now;
+    return renderAs({&image, nullptr, nullptr, &step}, *now.scene, now.camera, now.memory,
+                    listener);
 }
 
 RenderStats renderKept(const PreparedScene::Impl& scene, const Camera& camera, KeptMemory& memory,

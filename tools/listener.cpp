@@ -21,11 +21,12 @@ void showError(const std::string& what) {
     logLine(LogLevel::kError, line);
 }
 
-ProgressDisplay::ProgressDisplay(const CommonOptions& options)
+ProgressDisplay::ProgressDisplay(const CommonOptions& options, double longSeconds)
     : terminal_(isatty(STDERR_FILENO) && !options.alfProgress),
       alf_(options.alfProgress),
-      showsProgress_(options.quiet == 0 &&
-                     (terminal_ || options.verbose || options.progress || options.alfProgress)),
+      showsProgress_(options.quiet == 0),
+      showsAllProgress_(terminal_ || options.verbose || options.progress || options.alfProgress),
+      longSeconds_(longSeconds),
       showsWarnings_(options.quiet < 2) {}
 
 ProgressDisplay::~ProgressDisplay() {
@@ -57,7 +58,7 @@ void ProgressDisplay::show(double share) {
         loggedTens_ = tens;
         logLine(LogLevel::kInfo, "Progress: " + std::to_string(10 * tens) + "%");
     }
-    if (!showsProgress_) return;
+    if (!showsProgress_ || !(showsAllProgress_ || secondsPassed() >= longSeconds_)) return;
     const int percent = int(100 * std::clamp(share, 0.0, 1.0) + 1e-9);
     const int shown = terminal_ ? percent : percent / 10 * 10;
     if (shown <= shownPercent_) return;
@@ -70,12 +71,15 @@ void ProgressDisplay::show(double share) {
     }
 }
 
+double ProgressDisplay::secondsPassed() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+}
+
 void ProgressDisplay::drawBar(int percent) {
     constexpr int kWidth = 40;
     const std::string bar(std::size_t(percent * kWidth / 100), '#');
-    const double elapsed =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    const int left = percent > 0 ? int(std::lround(elapsed * (100 - percent) / percent)) : 0;
+    const int left =
+        percent > 0 ? int(std::lround(secondsPassed() * (100 - percent) / percent)) : 0;
     std::fprintf(stderr, "\r[%-*s] %3d%%  %d:%02d left \033[K", kWidth, bar.c_str(), percent,
                  left / 60, left % 60);
 }

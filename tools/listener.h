@@ -13,12 +13,15 @@ namespace deltasplat {
 /// Shows on standard error, in one line, what went wrong; fields become flags, as in a warning.
 void showError(const std::string& what);
 
-/// Shows on standard error how far the work is: a bar with the time left on a terminal; elsewhere,
-/// if asked for or verbose, lines `Progress: NN%` for every ten percent. Quiet, it shows no
-/// progress; quiet twice, no warnings either.
+/// Shows on standard error how far the work is: a bar with the time left on a terminal; elsewhere
+/// lines `Progress: NN%` for every ten percent, if asked for or verbose from the start, else once
+/// the work is long. Quiet, it shows no progress; quiet twice, no warnings either.
 class ProgressDisplay {
   public:
-    explicit ProgressDisplay(const CommonOptions& options);
+    static constexpr double kLongSeconds = 5;
+
+    /// @param longSeconds  from when on work is long
+    explicit ProgressDisplay(const CommonOptions& options, double longSeconds = kLongSeconds);
     ~ProgressDisplay();
     ProgressDisplay(const ProgressDisplay&) = delete;
     ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -32,12 +35,15 @@ class ProgressDisplay {
 
   private:
     void show(double share);
+    double secondsPassed() const;
     void drawBar(int percent);
     void clearBar();
 
     bool terminal_;
     bool alf_;  // progress is told as a farm's dispatcher wants it
     bool showsProgress_;
+    bool showsAllProgress_;  // from the start
+    double longSeconds_;
     bool showsWarnings_;
     int shownPercent_ = -1;
     int loggedTens_ = -1;

@@ -34,6 +34,8 @@ struct Layer {
 
     /// Makes an empty layer of the same number of channels, in the memory that this one has.
     void reset(const PlaneBox& planeBox);
+    /// Takes rows [first, last), all zero here, from a layer of the same box and channels.
+    void takeRows(const Layer& other, int first, int last);
     /// Says that columns [first, last) of a row of the base plane may not be zero.
     void extend(int y, int first, int last) {
         glm::ivec2& span = spans[std::size_t(y - box.min.y)];

@@ -44,13 +44,14 @@ PlaneBox reachOfAll(const SlabInput& input, const std::vector<SeenSlab>& seen) {
     return all;
 }
 
-SlabRenderer::SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen,
+SlabRenderer::SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, glm::ivec2 rows,
                            const Listener& listener)
     : input_(input),
       progress_(listener),
       channels_(input.layout.channels),
       seen_(std::move(seen)),
       reach_(reachOfAll(input, seen_)),
+      rows_(glm::clamp(rows, reach_.min.y, std::max(reach_.min.y, reach_.max.y))),
       merged_({}, channels_, input.memory) {
     const ClassTable& table = input.splat.colors.table();
     for (int plane = 0; plane < int(table.planes.size()); ++plane)
@@ -95,6 +96,8 @@ std::optional<SlabRenderer::Piece> SlabRenderer::takePiece(Strip*& own) {
 }
 
 Layer SlabRenderer::merge() {
+    // With nothing to render nobody has made it.
+    if (strips_.empty() && !reach_.empty()) merged_.reset(reach_);
     parallelForChunks(std::size_t(merged_.box.size().y), [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
             const int y = merged_.box.min.y + int(row);
@@ -119,7 +122,7 @@ int SlabRenderer::stripCount() const {
     const std::size_t slabs = seen_.size();
     const std::size_t forThreads =
         threads == 1 ? 1 : (kPiecesPerThread * threads + slabs / 2) / slabs;
-    const int rows = reach_.size().y;
+    const int rows = rows_.y - rows_.x;
     const double bytes = 2.0 * sizeof(float) * channels_ * input_.layout.sizePixels.x * rows;
     const double forCache = bytes > kMostWholeBytes ? bytes / kStripBytes : 1;
     const double wanted = std::min(std::max(double(forThreads), forCache), 1024.0);
@@ -143,10 +146,11 @@ int SlabRenderer::travel() const {
 }
 
 void SlabRenderer::cutIntoStrips() {
-    const int rows = reach_.size().y;
+    const int rows = rows_.y - rows_.x;
+    if (rows <= 0) return;
     const int count = stripCount();
     for (int i = 0; i < count; ++i) {
-        const auto edge = [&](int n) { return reach_.min.y + int(std::int64_t{rows} * n / count); };
+        const auto edge = [&](int n) { return rows_.x + int(std::int64_t{rows} * n / count); };
         const PlaneBox part{{reach_.min.x, edge(i)}, {reach_.max.x, edge(i + 1)}};
         strips_.push_back(
             {part.min.y, part.max.y, std::make_unique<LayerFold>(seen_.size() - 1, merged_, part)});

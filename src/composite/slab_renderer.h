@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/vec2.hpp>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -32,6 +34,10 @@ struct SeenSlab {
     int lastSlice;
 };
 
+/// All rows of a base plane, [x, y).
+inline constexpr glm::ivec2 kAllRows{std::numeric_limits<int>::min(),
+                                     std::numeric_limits<int>::max()};
+
 /// Returns the slabs of which something may be seen, from the front on.
 std::vector<SeenSlab> seenSlabs(const SlabInput& input);
 /// Returns the base plane's part that one of them reaches.
@@ -45,8 +51,10 @@ PlaneBox reachOfAll(const SlabInput& input, const std::vector<SeenSlab>& seen);
 class SlabRenderer {
   public:
     /// @param seen  which, from the front on
+    /// @param rows  of the base plane, which become the same as among all; others stay zero
     /// @throw Error(kFailed) if sheets and layers do not fit into memory
-    SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, const Listener& listener);
+    SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, glm::ivec2 rows,
+                 const Listener& listener);
 
     /// Renders the slabs, from the front on.
     void run();
@@ -90,6 +98,7 @@ class SlabRenderer {
     int channels_;
     std::vector<SeenSlab> seen_;        // from the front on
     PlaneBox reach_;                    // of all of them
+    glm::ivec2 rows_;                   // of these, that are rendered
     std::optional<StepLengths> steps_;  // from an eye, of colours
     std::vector<Strip> strips_;
     SheetLayout largest_;  // holds the part of any piece

@@ -14,6 +14,7 @@ namespace deltasplat {
 class ReflectedLight : public LookLight {
   public:
     ReflectedLight(const Shading& shading, const ClassTable& classes, const LitScene& scene);
+    bool isLike(const LookLight& other) const override;
 
   protected:
     void lightVoxels(const WordPlace& place, const std::uint16_t* classes, const OwnLook* looks,

@@ -20,6 +20,8 @@ struct Ray {
     glm::vec3 half;  ///< half-way to the camera, of length 1; only where all see it from one side
     glm::vec3 diffuse;   ///< colour times strength times the share that is reflected evenly
     glm::vec3 specular;  ///< that is mirrored, likewise, in units of VoxelUnits for an alpha of 1
+
+    bool operator==(const Ray&) const = default;
 };
 
 /// What voxels reflect (Shading).
@@ -30,6 +32,8 @@ struct Reflection {
     std::vector<Ray> rays;
     bool fromEye;        ///< each voxel has its own way to the camera
     glm::vec3 toCamera;  ///< of length 1, unless it has
+
+    bool operator==(const Reflection&) const = default;
 };
 
 /// What is lit.

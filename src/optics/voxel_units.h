@@ -48,6 +48,8 @@ class VoxelUnits {
     /// Returns the premultiplied colours of all classes, [classes], in their own colours.
     std::vector<glm::vec4> unitsOfClasses(const ClassTable& classes) const;
 
+    bool operator==(const VoxelUnits&) const = default;
+
   private:
     std::vector<float> alphas_;     // [classes]
     std::vector<float> opacities_;  // [classes]

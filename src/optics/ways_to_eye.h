@@ -31,6 +31,8 @@ class EyeOfVoxels {
                 glm::vec3(-steps_[2])};
     }
 
+    bool operator==(const EyeOfVoxels&) const = default;
+
   private:
     glm::dvec3 eye_;    // (slice, u, v)
     glm::dmat3 steps_;  // in units of the world, along these

@@ -49,6 +49,8 @@ struct SheetLayout {
         const glm::ivec2 p = (voxel - firstVoxel) * resolution + marginPixels - reachPixels;
         return std::size_t(p.y) * pitchPixels() + p.x;
     }
+
+    bool operator==(const SheetLayout&) const = default;
 };
 
 /// Pixels [min, max) of a sheet.

@@ -20,6 +20,8 @@ struct PlaneBox {
 
     glm::ivec2 size() const { return max - min; }
     bool empty() const { return max.x <= min.x || max.y <= min.y; }
+
+    bool operator==(const PlaneBox&) const = default;
 };
 
 /// Where a slice lies on the base plane: base position b shows voxel position scale * b + offset,
@@ -72,6 +74,8 @@ class BasePlane {
     double shareOf(int slice, glm::ivec2 pixel) const;
     /// World length of the way through a slice, as a multiple of what colours are classified for.
     double stepsAt(glm::ivec2 pixel) const;
+
+    bool operator==(const BasePlane&) const = default;
 
   private:
     // Of a slope: slices from the eye to the near plane, infinite where that is never crossed.

@@ -51,8 +51,8 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
     group.addCount("-q,--quiet", options.quiet, "Show no progress; -qq: no warnings either");
     group.addFlag("-v,--verbose", options.verbose, "Say more about what is done and what failed");
     group.addFlag("--progress", options.progress,
-                  "Show progress where standard error is no terminal, too: lines\n"
-                  "\"Progress: 10%\", as -v does");
+                  "Show progress from the start where standard error is no terminal, too:\n"
+                  "lines \"Progress: 10%\", as -v does; else after five seconds");
     group.addFlag("--alf-progress", options.alfProgress,
                   "The same as lines \"ALF_PROGRESS 10%\", which render farms read");
     group.addValue("--log", "FILE", options.log, anyText(),

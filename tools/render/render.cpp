@@ -22,6 +22,7 @@
 #include "options/input_options.h"
 #include "output_files.h"
 #include "process/interrupt.h"
+#include "process/run_log.h"
 #include "render/aov_options.h"
 #include "render/color_options.h"
 #include "render/deep_options.h"
@@ -231,6 +232,8 @@ void showScene(const RenderCommand& command, const ReadScene& scene, const Seque
         result = renderHeldOut(command.holdoutDepth, volume, options, rendering);
     } else if (part.prepared) {
         result = renderPrepared(*part.prepared, options, rendering);
+    } else if (part.chain) {
+        result = part.chain->render(part.place, volume, options, rendering);
     } else {
         result = render(volume, options, rendering);
     }
@@ -341,8 +344,40 @@ class WorstBound {
     RenderStats worst_;
 };
 
+// How much frames differ from the ones before.
+class ChangedShares {
+  public:
+    void add(int frame, const RenderStats& stats) {
+        if (!stats.changed) return;
+        logLine(LogLevel::kInfo, "frame " + std::to_string(frame) + ": " + percent(*stats.changed) +
+                                     " of what it shows differs from the frame before");
+        const std::lock_guard lock(mutex_);
+        shares_.push_back(*stats.changed);
+    }
+    void show(const Session& session) {
+        if (shares_.empty() || !session.common.verbose) return;
+        std::sort(shares_.begin(), shares_.end());
+        std::fputs(("differs from the frame before: " + percent(shares_[shares_.size() / 2]) +
+                    " of what a frame shows (median of " + std::to_string(shares_.size()) + "), " +
+                    percent(shares_.front()) + " to " + percent(shares_.back()) + "\n")
+                       .c_str(),
+                   stderr);
+    }
+
+  private:
+    static std::string percent(double share) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.3g %%", 100 * share);
+        return text;
+    }
+
+    std::mutex mutex_;
+    std::vector<double> shares_;
+};
+
 void runSequence(const CLI::App& app, const RenderCommand& command, const Session& session) {
     WorstBound worst;
+    ChangedShares changed;
     {
         ProgressDisplay display(session.common);
         warnOfUnusedOptions(app, command, {command.input}, display);
@@ -352,9 +387,13 @@ void runSequence(const CLI::App& app, const RenderCommand& command, const Sessio
             [&](const RenderCommand& frame, const SequencePart& part, const Listener& listener) {
                 validate(frame);
                 if (frame.input.empty()) return makeBlack(frame, session, part);
-                worst.add(makePicture(app, frame, session, part, listener).result.stats);
+                const RenderStats stats =
+                    makePicture(app, frame, session, part, listener).result.stats;
+                worst.add(stats);
+                changed.add(*part.frame, stats);
             });
     }
+    changed.show(session);
     worst.show(session);
 }
 

@@ -81,15 +81,8 @@ class Survey {
     // Reads all frames and notes what is in them. What is wrong with one is said when it is shown,
     // or here if it is not.
     void run(SequenceLook& look, const Listener& listener) {
-        std::vector<FrameFiles> files;
-        std::set<std::filesystem::path> known;
-        // A scene may show one file in several places.
-        for (const FrameFiles& one : frames_)
-            if (!one.input.empty() && (command_.scene.moves() || known.insert(one.input).second))
-                files.push_back(one);
-        if (files.empty())
-            throw Error(ErrorCode::kInput,
-                        gotExpected("--frames", "no file of any frame", "at least one"));
+        const std::vector<FrameFiles> files = filesToRead();
+        if (files.empty()) refuseWithoutInputs(command_.input);
         tellsFailures_ = isAlone_ && files.size() > 1;
         std::optional<Error> failed;
         try {
@@ -120,6 +113,27 @@ class Survey {
     }
 
   private:
+    // Of frames without a file none are tried that are told of when they are shown, for there may
+    // be millions; but if there is none at all, the first says why.
+    std::vector<FrameFiles> filesToRead() {
+        std::vector<FrameFiles> files;
+        std::set<std::filesystem::path> known;
+        const FrameFiles* absent = nullptr;
+        for (const FrameFiles& one : frames_) {
+            // A scene may show one file in several places.
+            if (one.input.empty() || (!known.insert(one.input).second && !command_.scene.moves()))
+                continue;
+            if (isAlone_ || hasInput(one.input)) {
+                files.push_back(one);
+                continue;
+            }
+            unread_.insert(one.input);
+            if (!absent) absent = &one;
+        }
+        if (files.empty() && absent) files.push_back(*absent);
+        return files;
+    }
+
     void add(std::size_t i, const FrameFiles& files, SequenceLook& look, const Listener& part) {
         Listener silent;
         silent.progress = part.progress;
@@ -210,25 +224,25 @@ std::filesystem::path heldFile(const Json& json, const std::vector<int>& frames,
     // A file may say anything.
     constexpr int kMostLooks = 1'000'000;
     int looks = 0;
+    std::filesystem::path held;
+    // Looks from `frame` to `end`, one after the other, until there is one.
+    const auto look = [&](std::int64_t frame, std::int64_t end, int step) {
+        for (; held.empty() && (end - frame) * step >= 0 && looks < kMostLooks;
+             frame += step, ++looks)
+            if (hasInput(name->at(int(frame)))) held = name->at(int(frame));
+    };
     const Json& runs = json.at(kFrames);
     const std::int64_t first = frames.front();
-    for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
-        const std::int64_t begin = run->at(0).get<int>();
-        for (auto frame = std::min<std::int64_t>(run->at(1).get<int>(), first - 1);
-             frame >= begin && looks < kMostLooks; --frame, ++looks)
-            if (hasInput(name->at(int(frame)))) return name->at(int(frame));
-    }
-    for (const Json& run : runs) {
-        const std::int64_t end = run.at(1).get<int>();
-        for (auto frame = std::max<std::int64_t>(run.at(0).get<int>(), first + 1);
-             frame <= end && looks < kMostLooks; ++frame, ++looks)
-            if (hasInput(name->at(int(frame)))) return name->at(int(frame));
-    }
-    return {};
+    for (auto run = runs.rbegin(); run != runs.rend(); ++run)
+        look(std::min<std::int64_t>(run->at(1).get<int>(), first - 1), run->at(0).get<int>(), -1);
+    for (const Json& run : runs)
+        look(std::max<std::int64_t>(run.at(0).get<int>(), first + 1), run.at(1).get<int>(), 1);
+    return held;
 }
 
-std::optional<KnownSequence> readFirstPass(const RenderCommand& command, SequenceLook& look,
-                                           const Listener& listener) {
+// Returns, if there is a first pass, what frames hold that have no file.
+std::optional<std::filesystem::path> readFirstPass(const RenderCommand& command, SequenceLook& look,
+                                                   const Listener& listener) {
     const std::filesystem::path& file = command.firstPass;
     if (file.empty()) return {};
     std::ifstream in(file);
@@ -237,8 +251,8 @@ std::optional<KnownSequence> readFirstPass(const RenderCommand& command, Sequenc
         const Json json = Json::parse(in).at(kFirstPass);
         look.takeJson(json);
         warnOfOthers(json, command, listener);
-        if (command.frames.missing != MissingFrames::kHold) return KnownSequence{};
-        return KnownSequence{heldFile(json, command.frames.frames, command.input)};
+        if (command.frames.missing != MissingFrames::kHold) return std::filesystem::path();
+        return heldFile(json, command.frames.frames, command.input);
     } catch (const std::exception&) {
         throw Error(ErrorCode::kInput,
                     gotExpected(file.string(), "something else", "what --first-pass has written"));
@@ -343,13 +357,40 @@ std::vector<FrameFiles> filesFor(const RenderCommand& command, bool areWritten) 
     return files;
 }
 
-// How many pictures may be made at once.
-int workersFor(const RenderCommand& command, const SequenceLook& look) {
+// How many pictures there is memory for.
+double picturesThatFit(const RenderCommand& command, const SequenceLook& look) {
     const glm::dvec2 pixels(command.picture.render.camera.sizePixels);
     const double bytes = kTimesVolume * look.largestBytes() + kBytesPerPixel * pixels.x * pixels.y;
-    return std::max(
-        1, int(std::min(double(threadCount()), kWorkShare * double(availableMemory()) / bytes)));
+    return kWorkShare * double(availableMemory()) / bytes;
 }
+
+// How many pictures may be made at once.
+int workersFor(const RenderCommand& command, const SequenceLook& look) {
+    return std::max(1, int(std::min(double(threadCount()), picturesThatFit(command, look))));
+}
+
+// Whether a frame may be made of what the one before has left: one camera sees them all, and there
+// is memory for a frame more than are made at once.
+bool mayBeChained(const RenderCommand& command, const SequenceLook& look) {
+    return !command.turntable && !cameraMoves(command.picture) &&
+           command.picture.render.mode == Mode::kComposite &&
+           picturesThatFit(command, look) >= workersFor(command, look) + 1;
+}
+
+// Lets the frame behind go on, whatever has become of this one.
+class ChainEnd {
+  public:
+    ChainEnd(FrameChain* chain, std::size_t place) : chain_(chain), place_(place) {}
+    ~ChainEnd() {
+        if (chain_) chain_->end(place_);
+    }
+    ChainEnd(const ChainEnd&) = delete;
+    ChainEnd& operator=(const ChainEnd&) = delete;
+
+  private:
+    FrameChain* chain_;
+    std::size_t place_;
+};
 
 // Whether greys are chosen by what is in the pictures.
 bool choosesWindow(const RenderCommand& command) {
@@ -418,13 +459,10 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     const std::vector<FrameFiles> all =
         withScene(command.scene, filesFor(command, sinks.areWritten() && !isLookAlone(command)));
     SequenceLook look(kKeptShare * double(availableMemory()));
-    const std::optional<KnownSequence> known = readFirstPass(command, look, listener);
-    const bool isKnown = known.has_value();
-    const std::vector<FrameFiles> present =
-        withInputs(all, command.frames.missing, listener, known);
-    if (present.empty() && sinks.any())
-        throw Error(ErrorCode::kInput, gotExpected(all.front().input.string(),
-                                                   "no file of any frame", "at least one"));
+    const std::optional<std::filesystem::path> held = readFirstPass(command, look, listener);
+    const bool isKnown = held.has_value();
+    const std::vector<FrameFiles> present = withInputs(all, command.frames.missing, listener, held);
+    if (present.empty() && sinks.any()) refuseWithoutInputs(all.front().input);
     warnOfOwnRanges(command, listener);
     const bool isAlone = isLookAlone(command);
     const double readShare = choosesWindow(command) ? kSurveyShare / 2 : kSurveyShare;
@@ -446,16 +484,17 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     OutputFolders folders;
     std::optional<PreparedScene> prepared;
     if (!frames.empty() && seesOneThing(command)) prepared = prepareOnce(fixed, look, making);
+    std::optional<FrameChain> chain;
+    if (!prepared && mayBeChained(command, look)) chain.emplace();
     try {
         runFrames(
             frames, command.frames.keepGoing, workersFor(command, look),
             [&](std::size_t i, const Listener& part) {
                 const FrameLook frame{look, i};
-                SequencePart sequence{&frame,
-                                      prepared ? &*prepared : nullptr,
-                                      {},
-                                      sinks.areWritten(),
-                                      frames[i].frame};
+                SequencePart sequence{
+                    &frame,          prepared ? &*prepared : nullptr, {}, sinks.areWritten(),
+                    frames[i].frame, chain ? &*chain : nullptr,       i};
+                const ChainEnd end(sequence.chain, i);
                 if (sinks.any()) sequence.take = [&](const Image& image) { sinks.put(i, image); };
                 try {
                     const RenderCommand one = commandOf(fixed, frames[i], stats);

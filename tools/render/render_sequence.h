@@ -2,10 +2,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
 
+#include "deltasplat/frame_chain.h"
 #include "deltasplat/prepared_scene.h"
 #include "render/render_options.h"
 #include "render/sequence_sinks.h"
@@ -22,6 +24,8 @@ struct SequencePart {
     std::function<void(const Image& image)> take;
     bool isWritten = true;  ///< whether it has a file of its own
     std::optional<int> frame = {};
+    FrameChain* chain = nullptr;  ///< that it is rendered in, if it may be
+    std::size_t place = 0;        ///< in the chain
 };
 
 /// Makes and writes one picture; an input that is empty is that of a black one.

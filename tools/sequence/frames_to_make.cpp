@@ -60,12 +60,11 @@ bool hasInput(const fs::path& input) {
 }
 
 std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, MissingFrames missing,
-                                   const Listener& listener,
-                                   const std::optional<KnownSequence>& known) {
+                                   const Listener& listener, const std::optional<fs::path>& held) {
     if (missing == MissingFrames::kError) return frames;
     std::vector<FrameFiles> result;
     std::optional<fs::path> before;
-    if (known && !known->held.empty()) before = known->held;
+    if (held && !held->empty()) before = held;
     std::size_t absent = 0;
     for (const FrameFiles& frame : frames) {
         const bool isPresent = hasInput(frame.input);
@@ -83,10 +82,8 @@ std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, Missin
             result.push_back({frame.frame, {}, frame.output});
         }
     }
-    if (!before && !known && missing != MissingFrames::kBlack) {
-        throw Error(ErrorCode::kInput, gotExpected(frames.front().input.string(),
-                                                   "no file of any frame", "at least one"));
-    }
+    if (!before && !held && missing != MissingFrames::kBlack)
+        refuseWithoutInputs(frames.front().input);
     if (absent > 0) {
         listener.warn("--missing: " + std::to_string(absent) + " of " +
                       std::to_string(frames.size()) + " frames have no file and " +
@@ -95,6 +92,11 @@ std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, Missin
                                                           : "are left out"));
     }
     return result;
+}
+
+void refuseWithoutInputs(const fs::path& input) {
+    throw Error(ErrorCode::kInput,
+                gotExpected(input.string(), "no file of any frame", "at least one"));
 }
 
 void requireInputs(const std::vector<FrameFiles>& frames) {

@@ -37,6 +37,8 @@ struct Footprint {
     /// What weights add up to.
     double one() const { return voxelsPerPixel > 1 ? 32768 : kOne; }
     std::int32_t at(int x, int y) const { return weights[y * width + x]; }
+
+    bool operator==(const Footprint&) const = default;
 };
 
 inline constexpr double kMinSigma = 0.2;

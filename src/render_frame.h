@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "deltasplat/render.h"
+#include "kept_frame.h"
+
+namespace deltasplat {
+
+/// As `render`.
+/// @param step  null unless the picture is one of a FrameChain, under kComposite
+RenderResult renderFrame(const Volume& volume, const RenderOptions& options,
+                         const Listener& listener, const FrameStep* step);
+
+/// As the public one, of what `step.now` holds the scene and the camera of.
+RenderStats renderComposite(const FrameStep& step, Image& image, const Listener& listener);
+
+}  // namespace deltasplat
