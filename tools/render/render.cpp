@@ -378,6 +378,7 @@ class ChangedShares {
 void runSequence(const CLI::App& app, const RenderCommand& command, const Session& session) {
     WorstBound worst;
     ChangedShares changed;
+    if (!command.output.empty()) validateOptions(command);
     {
         ProgressDisplay display(session.common);
         warnOfUnusedOptions(app, command, {command.input}, display);

@@ -49,18 +49,23 @@ void checkPreviewName(const RenderCommand& command, const Files& others) {
 
 }  // namespace
 
-void validate(const RenderCommand& command) {
+void validateOptions(const RenderCommand& command) {
     checkDeep(command);
     checkAovs(command);
     checkExr(command);
     checkColors(command);
     checkGround(command);
     checkPreview(command);
+    if (!command.isMovieAlone && !command.slabs) imageFormatOf(command.output);
+    checkCamera(command.picture.render.camera);
+    checkAnnotations(command);
+}
+
+void validate(const RenderCommand& command) {
+    validateOptions(command);
     if (!command.isMovieAlone && !command.slabs) {
         checkImageFile(command.output, command.picture.render.camera.sizePixels, command.image);
     }
-    checkCamera(command.picture.render.camera);
-    checkAnnotations(command);
     const Files mask = filesRead(filesOfMask(command.picture.parts), {});
     checkOutput("--output", command.output, mask, "the mask");
     checkOutput("--stats", command.stats, mask, "the mask");

@@ -8,6 +8,7 @@
 #include "listener.h"
 #include "lower_case.h"
 #include "number_text.h"
+#include "output_files.h"
 #include "process/interrupt.h"
 #include "subcommands.h"
 
@@ -92,6 +93,7 @@ void runSynth(const CLI::App& app, const SynthOptions& options, const Session& s
     }
     const AnalyticVolume volume = makeAnalytic(options.name, options.seed, options.noise);
     requireArgument(!options.output.empty(), "OUTPUT", "FILE (see 'deltasplat synth --help')");
+    refuseLog("OUTPUT", options.output);
     ProgressDisplay display(session.common);
     warnOfUnusedOptions(app, options, display);
     writeAnalytic(volume, options.output, options.file, display.stage(0, 1));

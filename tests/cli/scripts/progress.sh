@@ -73,6 +73,8 @@ for arguments in "--log no/folder.log" "--json-log" "--log kept.vdb"; do
     grep -q "^deltasplat: ${arguments%% *}: got " said || { cat said; exit 1; }
 done
 [[ ! -e other.exr ]]
+! "$program" synth slab run.log --dims 4x4x4 -qq --log run.log 2>said || exit 1
+grep -qx 'deltasplat: OUTPUT: got run.log; expected another file than --log' said || { cat said; exit 1; }
 cmp kept.vdb "$fixtures/two.vdb"
 
 # Asked by a signal, it says where it is and goes on.

@@ -276,6 +276,8 @@ usage "--frames: got 1-5x0; expected frames such as 1-100, 1-100x2, 100-1, -5--1
     in.####.vdb -o g.####.png --frames 1-5x0
 usage "--frames: got 1-9999999; expected at most 1000000 frames" \
     in.####.vdb -o g.####.png --frames 1-9999999
+usage 'g.####.foo: got extension ".foo"; expected .exr, .png, .tif or .jpg' \
+    in.####.vdb -o g.####.foo --frames 8-9
 usage "INPUT: got in.0008.vdb with --frames; expected a name with ####, %04d, @ or \$F4 for the number" \
     in.0008.vdb -o g.####.png --frames 8-9
 usage "--output: got g.png with --frames; expected a name with ####, %04d, @ or \$F4 for the number, such as g.####.png" \
