@@ -144,6 +144,20 @@ TEST(FrameChain, keepsTheRowsThatSeeNothingNew) {
     }
 }
 
+TEST(FrameChain, keepsRowsOfSheetsThatVoxelsShare) {
+    const std::vector<Volume> frames = volumesOf(someChanges());
+    for (const double resolution : {0.5, 0.25, 0.125, 2.0}) {
+        for (const std::size_t camera : {0, 1, 3, 5}) {
+            RenderOptions options = optionsFor(Colors::kSeveral, someCameras()[camera]);
+            options.camera.sizePixels = {44, 36};
+            options.resolution = resolution;
+            const std::vector<RenderStats> stats = statsOfChain(frames, options);
+            EXPECT_EQ(stats[2].changed, 0.0);
+            EXPECT_EQ(stats[2].kept, 1.0);
+        }
+    }
+}
+
 // All voxels are of one class; what they reflect depends on their gradients.
 TEST(FrameChain, seesThatLooksHaveChanged) {
     const IndexBox box{{12, 12, 20}, {12, 12, 20}};
