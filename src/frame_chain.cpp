@@ -3,6 +3,7 @@
 
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "deltasplat/error.h"
 #include "kept_frame.h"
@@ -11,45 +12,59 @@
 namespace deltasplat {
 
 struct FrameChain::Impl {
-    struct Link {
-        std::shared_ptr<KeptFrame> frame = std::make_shared<KeptFrame>();
-        bool hasEnded = false;
-    };
+    explicit Impl(std::size_t frameCount) : frames(frameCount) {}
 
-    std::shared_ptr<KeptFrame> frame(std::size_t number) {
+    // Returns a frame, which is asked for by itself and by the one behind it.
+    std::shared_ptr<KeptFrame> take(std::size_t number) {
         const std::lock_guard lock(mutex);
-        return links[number].frame;
-    }
-    // Lets go of a frame that nobody will ask for any more.
-    void release(std::size_t number) {
-        if (links[number].hasEnded && links[number + 1].hasEnded) links[number].frame.reset();
+        const auto found = taken.find(number);
+        if (found == taken.end()) {
+            auto frame = std::make_shared<KeptFrame>();
+            if (number + 1 < frames) taken.emplace(number, frame);
+            return frame;
+        }
+        std::shared_ptr<KeptFrame> frame = std::move(found->second);
+        taken.erase(found);
+        return frame;
     }
 
-    std::mutex mutex;  // guards all below
-    std::map<std::size_t, Link> links;
+    const std::size_t frames;
+    std::mutex mutex;
+    std::map<std::size_t, std::shared_ptr<KeptFrame>> taken;  // by one of the two
 };
 
-FrameChain::FrameChain() : impl_(std::make_unique<Impl>()) {}
+struct FrameChain::Frame::Impl {
+    std::shared_ptr<KeptFrame> before;  // null: there is none
+    std::shared_ptr<KeptFrame> now;
+};
+
+FrameChain::FrameChain(std::size_t frames) : impl_(std::make_unique<Impl>(frames)) {}
 FrameChain::~FrameChain() = default;
 
-RenderResult FrameChain::render(std::size_t number, const Volume& volume,
-                                const RenderOptions& options, const Listener& listener) {
+FrameChain::Frame FrameChain::begin(std::size_t number) {
+    auto frame = std::make_unique<Frame::Impl>();
+    if (number > 0) frame->before = impl_->take(number - 1);
+    frame->now = impl_->take(number);
+    return Frame(std::move(frame));
+}
+
+FrameChain::Frame::Frame(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+FrameChain::Frame::Frame(Frame&&) noexcept = default;
+
+FrameChain::Frame::~Frame() {
+    if (impl_) impl_->now->end();
+}
+
+RenderResult FrameChain::Frame::render(const Volume& volume, const RenderOptions& options,
+                                       const Listener& listener) {
     if (options.mode != Mode::kComposite) {
         throw Error(ErrorCode::kUsage, gotExpected("mode of a frame after another",
                                                    modeName(options.mode), "composite"));
     }
-    const std::shared_ptr<KeptFrame> now = impl_->frame(number);
-    const std::shared_ptr<KeptFrame> before = number > 0 ? impl_->frame(number - 1) : nullptr;
-    const FrameStep step{before.get(), *now};
-    return renderFrame(volume, options, listener, &step);
-}
-
-void FrameChain::end(std::size_t number) {
-    impl_->frame(number)->end();
-    const std::lock_guard lock(impl_->mutex);
-    impl_->links[number].hasEnded = true;
-    impl_->release(number);
-    if (number > 0) impl_->release(number - 1);
+    const FrameStep step{std::move(impl_->before), *impl_->now, std::make_shared<KeptMemory>()};
+    RenderResult result = renderFrame(volume, options, listener, &step);
+    impl_->now->end();
+    return result;
 }
 
 }  // namespace deltasplat

@@ -5,25 +5,22 @@
 
 namespace deltasplat {
 
-const PictureView& KeptFrame::addView(std::unique_ptr<const PictureView> picture) {
-    const PictureView& view = *picture;
+void KeptFrame::addView(std::shared_ptr<const PictureView> view) {
     {
         const std::lock_guard lock(mutex_);
-        views_.push_back({std::move(picture), nullptr});
+        const bool isWanted = view != nullptr;
+        views_.push_back({std::move(view), nullptr, isWanted});
     }
     changed_.notify_all();
-    return view;
 }
 
-const Layer& KeptFrame::addLayer(Layer layer) {
-    auto kept = std::make_unique<const Layer>(std::move(layer));
-    const Layer& added = *kept;
+void KeptFrame::addLayer(std::shared_ptr<const Layer> layer) {
     {
         const std::lock_guard lock(mutex_);
-        views_.back().layer = std::move(kept);
+        if (!views_.back().isWanted) return;
+        views_.back().layer = std::move(layer);
     }
     changed_.notify_all();
-    return added;
 }
 
 void KeptFrame::end() {
@@ -34,16 +31,25 @@ void KeptFrame::end() {
     changed_.notify_all();
 }
 
-const PictureView* KeptFrame::view(std::size_t number) {
+std::shared_ptr<const PictureView> KeptFrame::takeView(std::size_t number) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return hasEnded_ || views_.size() > number; });
-    return views_.size() > number ? views_[number].picture.get() : nullptr;
+    if (views_.size() <= number) return nullptr;
+    return std::move(views_[number].view);
 }
 
-const Layer* KeptFrame::layer(std::size_t number) {
+std::shared_ptr<const Layer> KeptFrame::takeLayer(std::size_t number) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return hasEnded_ || views_[number].layer; });
-    return views_[number].layer.get();
+    return std::move(views_[number].layer);
+}
+
+void KeptFrame::dropLayer(std::size_t number) {
+    std::shared_ptr<const Layer> dropped;  // freed without the lock
+    const std::lock_guard lock(mutex_);
+    if (views_.size() <= number) return;
+    views_[number].isWanted = false;
+    dropped = std::move(views_[number].layer);
 }
 
 }  // namespace deltasplat

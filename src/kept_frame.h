@@ -13,31 +13,31 @@
 
 namespace deltasplat {
 
-/// A frame that is being rendered, or was: what its views were made of and came to, for the next
-/// one to take from. One thread writes, another may read.
+/// What a frame that is being rendered, or was, leaves to the next one: what its views are made of,
+/// and what they come to. Thread-safe: one thread adds, another takes. What nobody can take any
+/// more is not held.
 class KeptFrame {
   public:
-    /// What views refer to. A volume that was borrowed may be gone when they are read.
-    std::shared_ptr<const PreparedScene::Impl> scene;
-    Camera camera;
-    KeptMemory memory;
-
-    /// Adds the next view.
-    const PictureView& addView(std::unique_ptr<const PictureView> picture);
+    /// Adds the next view; null if it is not to be compared with.
+    void addView(std::shared_ptr<const PictureView> view);
     /// Adds the layer of the last view, not finished yet (PictureView::finish).
-    const Layer& addLayer(Layer layer);
+    void addLayer(std::shared_ptr<const Layer> layer);
     /// Says that nothing more comes.
     void end();
 
-    /// Waits for a view. Null if there is none.
-    const PictureView* view(std::size_t number);
-    /// Waits for the layer of a view that there is. Null if it could not be rendered.
-    const Layer* layer(std::size_t number);
+    /// Waits for a view, and takes it. Null if there is none to compare with.
+    std::shared_ptr<const PictureView> takeView(std::size_t number);
+    /// Waits for the layer of a view that has been taken, and takes it. Null if it could not be
+    /// rendered.
+    std::shared_ptr<const Layer> takeLayer(std::size_t number);
+    /// Says that the layer will not be taken.
+    void dropLayer(std::size_t number);
 
   private:
     struct View {
-        std::unique_ptr<const PictureView> picture;
-        std::unique_ptr<const Layer> layer;
+        std::shared_ptr<const PictureView> view;
+        std::shared_ptr<const Layer> layer;
+        bool isWanted;  // the layer
     };
 
     std::mutex mutex_;  // guards all below
@@ -48,8 +48,10 @@ class KeptFrame {
 
 /// What a frame is rendered behind, and as.
 struct FrameStep {
-    KeptFrame* before;  ///< null: there is none
+    std::shared_ptr<KeptFrame> before;  ///< null: there is none
     KeptFrame& now;
+    /// For layers and sheets. Layers that are left hold it.
+    std::shared_ptr<KeptMemory> memory;
 };
 
 }  // namespace deltasplat

@@ -87,20 +87,17 @@ RenderResult renderFrame(const Volume& volume, const RenderOptions& options,
     if (options.mode == Mode::kComposite) {
         // A camera that cannot be is refused before there is work.
         if (options.optics.parts.empty()) makePicture(volume);
-        // The volume outlives what is rendered of the scene.
+        // The volume outlives the scene.
         const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
         const Clock::time_point start = Clock::now();
-        const auto scene = std::make_shared<const PreparedScene::Impl>(
-            Scene{borrowed, options.optics}, options, true);
+        const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
         const double sceneSeconds = secondsSince(start);
-        if (!options.optics.parts.empty()) makePicture(*scene->scene.volume);
+        if (!options.optics.parts.empty()) makePicture(*scene.scene.volume);
         if (step) {
-            step->now.scene = scene;
-            step->now.camera = result.camera;
-            stats = renderComposite(*step, result.image, listener);
+            stats = renderComposite(*step, scene, result.camera, result.image, listener);
         } else {
             KeptMemory memory;
-            stats = renderComposite(*scene, result.camera, memory, result.image, listener);
+            stats = renderComposite(scene, result.camera, memory, result.image, listener);
         }
         stats.prepareSeconds += sceneSeconds;
     } else {

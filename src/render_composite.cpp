@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "deep_view.h"
@@ -28,6 +30,15 @@ struct Wanted {
     const FrameStep* step = nullptr;
 };
 
+// A layer in memory that goes when it does.
+struct HeldLayer {
+    HeldLayer(std::shared_ptr<KeptMemory> of, Layer held)
+        : memory(std::move(of)), layer(std::move(held)) {}
+
+    std::shared_ptr<KeptMemory> memory;
+    Layer layer;
+};
+
 // Renders one picture, or the regions of one.
 class CompositeRender {
   public:
@@ -49,7 +60,7 @@ class CompositeRender {
             const auto share = [&](double part) { return (double(i) + part) / views.size(); };
             runView(i, views[i], partOf(listener, share(0), share(1)));
         }
-        if (shown_ > 0) stats_.changed = double(differing_) / double(shown_);
+        if (isCompared_ && shown_ > 0) stats_.changed = double(differing_) / double(shown_);
         if (rows_ > 0) stats_.kept = double(rowsKept_) / double(rows_);
         warnOfEmptyPicture(listener);
     }
@@ -71,8 +82,9 @@ class CompositeRender {
         if (wanted_.views) {
             keep(std::move(picture), listener);
         } else if (wanted_.step) {
-            const PictureView& kept = wanted_.step->now.addView(std::move(picture));
-            countBound(kept, showBehind(number, kept, listener));
+            const std::shared_ptr<const PictureView> shared = std::move(picture);
+            countBound(*shared, showBehind(number, shared, listener));
+            stats_.renderSeconds -= std::exchange(waitedSeconds_, 0);
         } else {
             countBound(*picture,
                        wanted_.deep ? showDeep(*picture, listener) : showFlat(*picture, listener));
@@ -92,42 +104,73 @@ class CompositeRender {
         return timedWarp([&] { return picture.show(merged, *wanted_.image); });
     }
 
-    // Leaves the layer to the frame behind.
-    double showBehind(std::size_t number, const PictureView& picture, const Listener& listener) {
-        Layer merged = renderBehind(number, picture, partOf(listener, 0.2, 0.9));
-        listener.report(0.95);
+    // Leaves what it shows to the frame behind.
+    double showBehind(std::size_t number, const std::shared_ptr<const PictureView>& picture,
+                      const Listener& listener) {
         KeptFrame& now = wanted_.step->now;
-        if (picture.showChangesLayer()) {
-            now.addLayer(Layer(merged));
-            return timedWarp([&] { return picture.show(merged, *wanted_.image); });
+        now.addView(mayBeKept(*picture) ? picture : nullptr);
+        Layer merged = renderBehind(number, *picture, partOf(listener, 0.2, 0.9));
+        listener.report(0.95);
+        if (picture->showChangesLayer()) {
+            now.addLayer(std::make_shared<const Layer>(merged));
+            return timedWarp([&] { return picture->show(merged, *wanted_.image); });
         }
-        const Layer& kept = now.addLayer(std::move(merged));
-        return timedWarp([&] { return picture.showPart(kept, PicturePart(*wanted_.image)); });
+        const auto kept =
+            std::make_shared<const HeldLayer>(wanted_.step->memory, std::move(merged));
+        now.addLayer({kept, &kept->layer});
+        return timedWarp(
+            [&] { return picture->showPart(kept->layer, PicturePart(*wanted_.image)); });
     }
 
     // Takes from the frame before what is the same in both.
     Layer renderBehind(std::size_t number, const PictureView& picture, const Listener& listener) {
-        KeptFrame* before = wanted_.step->before;
-        const PictureView* viewBefore = before ? before->view(number) : nullptr;
-        if (!viewBefore) return renderSlabs(picture.slabs(), kAllRows, listener);
-        const ViewChanges changes = compareViews(*viewBefore, picture);
-        differing_ += changes.differing;
-        shown_ += changes.shown;
-        const glm::ivec2 made = changes.differingRows;
-        const glm::ivec2 all = changes.shownRows;
+        const SlabInput& slabs = picture.slabs();
+        const std::shared_ptr<KeptFrame>& before = wanted_.step->before;
+        const std::optional<ViewChanges> changes = compareBehind(number, picture);
+        if (!changes) {
+            isCompared_ = false;
+            rows_ += reachOfAll(slabs, seenSlabs(slabs)).size().y;
+            if (before) before->dropLayer(number);
+            return renderSlabs(slabs, kAllRows, listener);
+        }
+        differing_ += changes->differing;
+        shown_ += changes->shown;
+        const glm::ivec2 made = changes->differingRows;
+        const glm::ivec2 all = changes->shownRows;
         rows_ += std::max(all.y - all.x, 0);
-        if (made.x <= all.x && made.y >= all.y)
-            return renderSlabs(picture.slabs(), kAllRows, listener);
-        Layer merged = renderSlabs(picture.slabs(), made, listener);
-        const Layer* layerBefore = before->layer(number);
+        if (made.x <= all.x && made.y >= all.y) {
+            before->dropLayer(number);
+            return renderSlabs(slabs, kAllRows, listener);
+        }
+        {
+            Layer merged = renderSlabs(slabs, made, listener);
+            const auto kept = waitFor([&] { return before->takeLayer(number); });
+            if (kept) {
+                const int firstMade = std::min(made.x, all.y);
+                const int lastMade = std::max(made.y, firstMade);
+                merged.takeRows(*kept, all.x, firstMade);
+                merged.takeRows(*kept, lastMade, all.y);
+                rowsKept_ += (all.y - all.x) - (lastMade - firstMade);
+                return merged;
+            }
+        }
         // Who could not be rendered leaves nothing.
-        if (!layerBefore) return renderSlabs(picture.slabs(), kAllRows, listener);
-        const int firstMade = std::min(made.x, all.y);
-        const int lastMade = std::max(made.y, firstMade);
-        merged.takeRows(*layerBefore, all.x, firstMade);
-        merged.takeRows(*layerBefore, lastMade, all.y);
-        rowsKept_ += (all.y - all.x) - (lastMade - firstMade);
-        return merged;
+        return renderSlabs(slabs, kAllRows, listener);
+    }
+
+    std::optional<ViewChanges> compareBehind(std::size_t number, const PictureView& picture) {
+        const std::shared_ptr<KeptFrame>& before = wanted_.step->before;
+        if (!before) return {};
+        const auto view = waitFor([&] { return before->takeView(number); });
+        return view ? compareViews(*view, picture) : std::nullopt;
+    }
+
+    template <typename Take>
+    std::invoke_result_t<Take> waitFor(const Take& take) {
+        const Clock::time_point start = Clock::now();
+        auto taken = take();
+        waitedSeconds_ += secondsSince(start);
+        return taken;
     }
 
     template <typename Show>
@@ -226,12 +269,14 @@ class CompositeRender {
     const Wanted& wanted_;
     RenderStats& stats_;
     std::optional<SheetPlan> plan_;
-    // Rows of blocks compared with the frame before.
+    // Of rows of blocks compared with the frame before.
+    bool isCompared_ = true;
     std::uint64_t differing_ = 0;
     std::uint64_t shown_ = 0;
     // Of base planes that were.
     std::int64_t rows_ = 0;
     std::int64_t rowsKept_ = 0;
+    double waitedSeconds_ = 0;  // for the frame before
 };
 
 RenderStats renderAs(const Wanted& wanted, const PreparedScene::Impl& scene, const Camera& camera,
@@ -278,10 +323,13 @@ RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& came
     return renderAs({&image, deep, nullptr}, scene, camera, memory, listener);
 }
 
-RenderStats renderComposite(const FrameStep& step, Image& image, const Listener& listener) {
-    KeptFrame& now = step.now;
-    return renderAs({&image, nullptr, nullptr, &step}, *now.scene, now.camera, now.memory,
-                    listener);
+RenderStats renderComposite(const FrameStep& step, const PreparedScene::Impl& scene,
+                            const Camera& camera, Image& image, const Listener& listener) {
+    const RenderStats stats =
+        renderAs({&image, nullptr, nullptr, &step}, scene, camera, *step.memory, listener);
+    // What is held from now on is a layer, at most.
+    step.memory->releaseIdle();
+    return stats;
 }
 
 RenderStats renderKept(const PreparedScene::Impl& scene, const Camera& camera, KeptMemory& memory,

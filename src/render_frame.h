@@ -11,7 +11,8 @@ namespace deltasplat {
 RenderResult renderFrame(const Volume& volume, const RenderOptions& options,
                          const Listener& listener, const FrameStep* step);
 
-/// As the public one, of what `step.now` holds the scene and the camera of.
-RenderStats renderComposite(const FrameStep& step, Image& image, const Listener& listener);
+/// As the public one, of a scene's insides.
+RenderStats renderComposite(const FrameStep& step, const PreparedScene::Impl& scene,
+                            const Camera& camera, Image& image, const Listener& listener);
 
 }  // namespace deltasplat

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
+#include <optional>
 #include <vector>
 
 #include "delta/word_changes.h"
+#include "memory.h"
 #include "splat/sheet_reading.h"
 
 namespace deltasplat {
@@ -41,33 +44,44 @@ bool haveSameUnits(const ClassTable& before, const ClassTable& now) {
                       });
 }
 
-// Returns which of the classes now a class before is the same as, [classes]; 0 if none; nothing if
-// no colours can be the same.
-std::vector<ClassIndex> matchClasses(const StepColors& before, const StepColors& now) {
+struct ClassMatch {
+    std::vector<ClassIndex> nowOfBefore;  // [classes], as compareWords has it
+    bool isSameLight = false;             // what matches gives the same integers
+};
+
+// Whether colours that are stated can be told from what classes look like.
+bool haveSameSteps(const ClassTable& before, const ClassTable& now) {
+    return before.unitDistanceWorld == now.unitDistanceWorld &&
+           before.extinctionScale == now.extinctionScale && before.stepWorld == now.stepWorld;
+}
+
+bool isSameLight(const StepColors& before, const StepColors& now) {
+    return now.own() ? before.own()->isLike(*now.own())
+                     : haveSameUnits(before.classes(), now.classes());
+}
+
+// Matches classes that look alike. Slots that stand for other values than before match less.
+ClassMatch matchClasses(const StepColors& before, const StepColors& now) {
     const ClassTable& a = before.classes();
     const ClassTable& b = now.classes();
-    std::vector<ClassIndex> nowOfBefore;
-    if ((before.own() == nullptr) != (now.own() == nullptr)) return nowOfBefore;
-    if (now.own()) {
-        if (!before.own()->isLike(*now.own())) return nowOfBefore;
-        // What is lit alike has the same classes.
-        nowOfBefore.resize(a.size());
-        for (std::size_t number = 0; number < a.size(); ++number)
-            nowOfBefore[number] = ClassIndex(number);
-        return nowOfBefore;
+    ClassMatch match{std::vector<ClassIndex>(a.size()), isSameLight(before, now)};
+    if (now.own() && match.isSameLight) {
+        // Then all have the same numbers.
+        std::iota(match.nowOfBefore.begin(), match.nowOfBefore.end(), ClassIndex{0});
+        return match;
     }
-    if (!haveSameUnits(a, b)) return nowOfBefore;
-    nowOfBefore.resize(a.size());
     const std::size_t slots = std::min(a.classOfSlot.size(), b.classOfSlot.size());
     for (std::size_t slot = 0; slot < slots; ++slot) {
         const Slot classBefore = a.classOfSlot[slot];
         const Slot classNow = b.classOfSlot[slot];
-        if (classBefore == 0 || classNow == 0 || nowOfBefore[std::size_t(classBefore)] != 0)
+        if (classBefore == 0 || classNow == 0) continue;
+        ClassIndex& matching = match.nowOfBefore[std::size_t(classBefore)];
+        if (matching != 0 || a.looks[std::size_t(classBefore)] != b.looks[std::size_t(classNow)])
             continue;
-        if (haveSameColor(a, classBefore, b, classNow))
-            nowOfBefore[std::size_t(classBefore)] = ClassIndex(classNow);
+        if (!match.isSameLight || haveSameColor(a, classBefore, b, classNow))
+            matching = ClassIndex(classNow);
     }
-    return nowOfBefore;
+    return match;
 }
 
 // Adds to rows of the base plane those that see any of some rows of blocks in a slab.
@@ -88,25 +102,40 @@ void addRows(const SlabInput& input, const SeenSlab& seen, glm::ivec2 blockRows,
 
 }  // namespace
 
-ViewChanges compareViews(const PictureView& before, const PictureView& now) {
+bool mayBeKept(const PictureView& view) {
+    const SlabInput& slabs = view.slabs();
+    const WordColors* own = slabs.splat.colors.own();
+    if (own && !own->isLike(*own)) return false;
+    const PackedDeltas& deltas = slabs.splat.deltas;
+    double bytes = double(sizeof(DeltaWord)) * double(deltas.words.size());
+    for (const auto& classes : deltas.storage) bytes += sizeof(ClassIndex) * double(classes.size());
+    for (const auto& looks : deltas.lookStorage) bytes += sizeof(OwnLook) * double(looks.size());
+    bytes += layerBytes(reachOfAll(slabs, seenSlabs(slabs)), slabs.layout.channels);
+    constexpr double kShare = 0.125;
+    return bytes <= kShare * double(availableMemory());
+}
+
+std::optional<ViewChanges> compareViews(const PictureView& before, const PictureView& now) {
     const SlabInput& a = before.slabs();
     const SlabInput& b = now.slabs();
+    const StepColors& colorsBefore = a.splat.colors;
+    const StepColors& colorsNow = b.splat.colors;
+    if (a.layout != b.layout || a.plane != b.plane || a.splat.footprint != b.splat.footprint ||
+        !haveSameSlabs(a.splat.deltas, b.splat.deltas) ||
+        (colorsBefore.own() == nullptr) != (colorsNow.own() == nullptr) ||
+        !haveSameSteps(colorsBefore.classes(), colorsNow.classes())) {
+        return {};
+    }
     const std::vector<SeenSlab> seen = seenSlabs(b);
     const PlaneBox reach = reachOfAll(b, seen);
     const glm::ivec2 all(reach.min.y, reach.max.y);
     // Of what is out of sight nothing is kept, either.
-    if (reach.empty()) return {all, all, 0, 0};
-    ViewChanges changes{all, all, 1, 1};
-    if (a.layout != b.layout || a.plane != b.plane || a.splat.footprint != b.splat.footprint ||
-        !haveSameSlabs(a.splat.deltas, b.splat.deltas)) {
-        return changes;
-    }
-    const std::vector<ClassIndex> nowOfBefore = matchClasses(a.splat.colors, b.splat.colors);
-    if (nowOfBefore.empty()) return changes;
+    if (reach.empty()) return ViewChanges{all, all, 0, 0};
+    const ClassMatch match = matchClasses(colorsBefore, colorsNow);
     const std::vector<SlabChanges> slabs =
-        compareWords(a.splat.deltas, b.splat.deltas, nowOfBefore);
+        compareWords(a.splat.deltas, b.splat.deltas, match.nowOfBefore);
     const glm::ivec2 none(all.y, all.x);
-    changes = {none, none, 0, 0};
+    ViewChanges changes{match.isSameLight ? none : all, none, 0, 0};
     for (const SlabChanges& slab : slabs) {
         changes.differing += slab.differing;
         changes.shown += slab.shown;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <optional>
 
 #include "picture_view.h"
 
@@ -18,8 +19,12 @@ struct ViewChanges {
     std::uint64_t shown = 0;
 };
 
-/// Compares all that layers are made of. Views that have not the same base plane, sheets, or units
-/// of light differ everywhere.
-ViewChanges compareViews(const PictureView& before, const PictureView& now);
+/// Whether another view can be compared with one, and there is so much memory that what that takes
+/// and the view's layer may stay until then.
+bool mayBeKept(const PictureView& view);
+
+/// Compares all that layers are made of. Of other units of light, all rows differ. Empty if that
+/// cannot be told: of another base plane, other sheets or slabs, or light that is everywhere other.
+std::optional<ViewChanges> compareViews(const PictureView& before, const PictureView& now);
 
 }  // namespace deltasplat

@@ -8,32 +8,50 @@
 
 namespace deltasplat {
 
-/// Renders the frames of a sequence that one camera sees, which does not move. Rows of a picture in
-/// which nothing differs from the frame before are taken from there instead of being rendered:
-/// where no voxel that they see has another colour, and neither the box of the voxels, the light
-/// nor the brightest colour, which all are stated by, has changed. Light that voxels scatter is
-/// made anew. Thread-safe: frames may be rendered at the same time, begun in order.
+/// Frames of a sequence that one camera sees, which does not move. Rows of a picture in which
+/// nothing differs from the frame before are taken from there instead of being rendered: where all
+/// voxels that they see look as they did, and neither the box of the voxels, the slabs it is cut
+/// into, the light nor the brightest colour, which all others are stated by, has changed. What
+/// scatters light, and what belongs to several grids, is rendered anew.
 ///
-/// Keeps the words and layers of the last frame: about as much memory as rendering it takes.
+/// Keeps the words of a frame until the next has compared its own with them, and its layer until
+/// that has taken its rows, unless they take more than an eighth of the memory that is left.
+/// Thread-safe.
 class FrameChain {
   public:
-    FrameChain();
+    /// @param frames  how many there will be
+    explicit FrameChain(std::size_t frames);
     ~FrameChain();
     FrameChain(const FrameChain&) = delete;
     FrameChain& operator=(const FrameChain&) = delete;
 
-    /// Renders a frame under kComposite: the same pixels as `render`, bit for bit. Waits until the
-    /// frame before is as far, which may be rendered by another thread.
-    /// @param number  of the frame: 0, or one more than that of a frame that render() or end() was
-    ///                or will be called with
-    /// @param volume  may be gone when it has returned
-    /// @return `stats.changed`: how much of the frame differs from the one before
-    /// @throw as `render`; Error(kUsage) for another mode
-    RenderResult render(std::size_t number, const Volume& volume, const RenderOptions& options,
-                        const Listener& listener = {});
-    /// Says that a frame has been rendered, or will not be. To be called once for each, whatever
-    /// has become of it, or the next one waits for ever.
-    void end(std::size_t number);
+    /// A frame in hand, for one thread. Frames behind it wait for it until it has been rendered, or
+    /// is gone.
+    class Frame {
+      public:
+        ~Frame();
+        Frame(Frame&&) noexcept;
+        Frame& operator=(Frame&&) = delete;
+
+        /// Renders it under kComposite: the same pixels as `render`, bit for bit. Waits until the
+        /// frame before is as far. At most once.
+        /// @param volume  may be gone when it has returned
+        /// @return `stats.changed` and `stats.kept`, of what there was to compare
+        /// @throw as `render`; Error(kUsage) for another mode
+        RenderResult render(const Volume& volume, const RenderOptions& options,
+                            const Listener& listener = {});
+
+      private:
+        friend class FrameChain;
+        struct Impl;
+        explicit Frame(std::unique_ptr<Impl> impl);
+        std::unique_ptr<Impl> impl_;
+    };
+
+    /// Begins a frame. Call it once for each, in whatever order, but wait for none (render) before
+    /// all before it have been begun.
+    /// @param number  of the frame, from 0 on
+    Frame begin(std::size_t number);
 
   private:
     struct Impl;

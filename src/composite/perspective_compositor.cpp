@@ -26,10 +26,11 @@ std::size_t PerspectiveCompositor::composite(Sheets sheets, int slice, const She
     if (box_.empty()) return 0;
     pixels_ = 0;
     const SheetLayout& layout = sheets.front()->layout();
-    const glm::dvec2 start = glm::dvec2(reading.offset) + reading.fraction;
+    const glm::dvec2 start = reading.startOfWhole();
     const glm::ivec2 size = box_.size();
-    columns_.set(start.x, reading.scale, box_.min.x, size.x, layout.sizePixels.x);
-    rows_.set(start.y, reading.scale, box_.min.y, size.y, layout.sizePixels.y);
+    columns_.set(start.x, reading.scale, box_.min.x, size.x,
+                 {reading.origin.x, layout.sizePixels.x});
+    rows_.set(start.y, reading.scale, box_.min.y, size.y, {reading.origin.y, layout.sizePixels.y});
     slice_ = {{},
               sheets.front()->pitch(),
               scales_,

@@ -253,19 +253,20 @@ namespace deltasplat {
 
 HWY_EXPORT(overScaledKernel);
 
-void ScaledTaps::set(double start, double scale, int firstPixel, int pixels, int size) {
+void ScaledTaps::set(double start, double scale, int firstPixel, int pixels, const Part& part) {
     const double reach = std::max(scale, 1.0);
-    taps = scale > 1 ? std::min(int(std::ceil(2 * reach)), size) : 2;
+    taps = scale > 1 ? std::min(int(std::ceil(2 * reach)), part.size) : 2;
     first.resize(std::size_t(pixels));
     weights.resize(std::size_t(pixels) * std::size_t(taps));
-    if (scale <= 1) return setBetween(start, scale, firstPixel, size);
+    if (scale <= 1) return setBetween(start, scale, firstPixel, part);
     pairs.clear();
     for (int i = 0; i < pixels; ++i) {
         const double place = start + scale * (firstPixel + i);
         // The first sheet pixel that a tent around the place does not leave out.
         const double lowest = std::floor(place - reach) + 1;
-        const int begin = int(std::clamp(lowest, 0.0, double(size - taps)));
-        first[std::size_t(i)] = begin;
+        const double least = part.origin;
+        const int begin = int(std::clamp(lowest, least, least + (part.size - taps)));
+        first[std::size_t(i)] = begin - part.origin;
         float* weight = &weights[std::size_t(i) * std::size_t(taps)];
         // All of the tent counts, also what lies outside of the sheet, where nothing is.
         double sum = 0;
@@ -278,16 +279,17 @@ void ScaledTaps::set(double start, double scale, int firstPixel, int pixels, int
 }
 
 // Of two neighbours.
-void ScaledTaps::setBetween(double start, double scale, int firstPixel, int size) {
-    const double most = size - 2;
+void ScaledTaps::setBetween(double start, double scale, int firstPixel, const Part& part) {
+    const double least = part.origin;
+    const double most = least + (part.size - 2);
     pairs.resize(first.size());
     for (std::size_t i = 0; i < first.size(); ++i) {
         const double place = start + scale * (firstPixel + int(i));
-        double begin = std::min(std::max(std::floor(place), 0.0), most);
+        double begin = std::min(std::max(std::floor(place), least), most);
         // Rounding of places must not take two steps at once, which no scale up to 1 does.
-        if (i > 0) begin = std::min(begin, first[i - 1] + 1.0);
+        if (i > 0) begin = std::min(begin, least + first[i - 1] + 1);
         const double behind = place - begin;
-        first[i] = int(begin);
+        first[i] = int(begin) - part.origin;
         // Beyond the sheet's edge, where it is zero, it does not matter what is read.
         pairs[i] = float(std::clamp(1 - behind, 0.0, 1.0));
         weights[2 * i] = pairs[i];

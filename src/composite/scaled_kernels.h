@@ -17,8 +17,8 @@ namespace deltasplat {
 class ScaledTaps {
   public:
     int taps = 2;  ///< that every pixel has
-    /// [pixels]: the first sheet pixel of each, never decreasing; of pairs there are kSpare more,
-    /// for vectors, and each is at most 1 more than the one before.
+    /// [pixels]: the first sheet pixel of each, counted from the part's first, never decreasing; of
+    /// pairs there are kSpare more, for vectors, and each is at most 1 more than the one before.
     std::vector<std::int32_t> first;
     std::vector<float> weights;  ///< [pixels][taps]
     /// [pixels + kSpare]: of two taps of pixels that lie no farther apart than those of the sheet,
@@ -26,13 +26,19 @@ class ScaledTaps {
     std::vector<float> pairs;
     static constexpr std::size_t kSpare = 16;
 
-    /// Base pixel `firstPixel + i` lies at sheet pixel start + scale * (firstPixel + i), of `size`,
-    /// at least 2.
-    void set(double start, double scale, int firstPixel, int pixels, int size);
+    /// Pixels of a sheet along one axis, from the first on of a part of it.
+    struct Part {
+        int origin;
+        int size;  ///< at least 2
+    };
+
+    /// Base pixel `firstPixel + i` lies at pixel start + scale * (firstPixel + i) of the whole
+    /// sheet. Of two parts that both have what pixels read, weights have the same bits.
+    void set(double start, double scale, int firstPixel, int pixels, const Part& part);
     const float* of(std::size_t pixel) const { return &weights[pixel * std::size_t(taps)]; }
 
   private:
-    void setBetween(double start, double scale, int firstPixel, int size);
+    void setBetween(double start, double scale, int firstPixel, const Part& part);
 };
 
 /// What the runs of a slice have in common.

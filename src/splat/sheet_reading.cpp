@@ -34,7 +34,7 @@ SheetReading readingOf(const BasePlane& plane, const SheetLayout& layout, int sl
     const glm::dvec2 bounded = glm::clamp(whole, -2e9, 2e9);
     const double scale =
         plane.isParallel() ? 1 : place.scale * plane.spacing() * layout.pixelsPerVoxel();
-    return {glm::ivec2(bounded) - layout.origin, start - whole, scale};
+    return {glm::ivec2(bounded) - layout.origin, start - whole, scale, layout.origin};
 }
 
 PlaneBox reachOf(const BasePlane& plane, const SheetLayout& layout, int firstSlice,

@@ -8,11 +8,17 @@
 
 namespace deltasplat {
 
-/// Where the base plane reads one slice's sheet: base pixel b at scale * b + offset + fraction.
+/// Where the base plane reads one slice's sheet, or a part of it: base pixel b at scale * b +
+/// offset + fraction.
 struct SheetReading {
     glm::ivec2 offset{0};
     glm::dvec2 fraction{0.0};  ///< 0 <= fraction < 1
     double scale = 1;          ///< exactly 1 in parallel projection
+    glm::ivec2 origin{0};      ///< as SheetLayout::origin, of the part
+
+    /// Where base pixel 0 reads the whole sheet. Places that are scaled are rounded: those of the
+    /// whole, lest parts differ from it.
+    glm::dvec2 startOfWhole() const { return glm::dvec2(offset) + glm::dvec2(origin) + fraction; }
 };
 
 SheetReading readingOf(const BasePlane& plane, const SheetLayout& layout, int slice);

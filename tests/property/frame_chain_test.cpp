@@ -78,11 +78,10 @@ RenderOptions optionsFor(Colors colors, const CameraOptions& camera) {
 // Renders frames in a chain, and expects what is rendered by itself.
 std::vector<RenderStats> statsOfChain(const std::vector<Volume>& frames,
                                       const RenderOptions& options) {
-    FrameChain chain;
+    FrameChain chain(frames.size());
     std::vector<RenderStats> stats;
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        const RenderResult result = chain.render(i, frames[i], options);
-        chain.end(i);
+        const RenderResult result = chain.begin(i).render(frames[i], options);
         const RenderResult expected = render(frames[i], options);
         EXPECT_EQ(result.image.rgba, expected.image.rgba) << "frame " << i;
         EXPECT_FALSE(expected.stats.changed);
@@ -109,10 +108,10 @@ TEST(FrameChain, givesThePixelsOfFramesByThemselves) {
             const std::vector<RenderStats> stats = statsOfChain(frames, optionsFor(colors, camera));
             EXPECT_FALSE(stats[0].changed);
             EXPECT_EQ(stats[0].kept, 0);
-            ASSERT_TRUE(stats[2].changed);
-            EXPECT_EQ(*stats[2].changed, scatters(colors) ? 1 : 0);
+            EXPECT_EQ(stats[2].changed.has_value(), !scatters(colors));
             EXPECT_EQ(stats[2].kept, scatters(colors) ? 0 : 1);
             if (scatters(colors)) continue;
+            EXPECT_EQ(*stats[2].changed, 0);
             EXPECT_GT(*stats[1].changed, 0);
             EXPECT_LT(*stats[1].changed, 0.5);
         }
@@ -135,6 +134,7 @@ TEST(FrameChain, keepsTheRowsThatSeeNothingNew) {
                 EXPECT_LT(stats[1].kept, 0.9) << methodName(method);
                 // Classes are numbered otherwise where there are more of them.
                 ASSERT_EQ(stats[3].parts, 1);
+                EXPECT_LT(*stats[3].changed, 0.5);
                 if (colors == Colors::kLit)
                     EXPECT_EQ(stats[3].kept, 0);
                 else
@@ -187,19 +187,19 @@ TEST(FrameChain, rendersAnewWhatIsStatedInOtherUnits) {
         options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, 0.4, 0.5, 0}};
         const std::vector<RenderStats> stats = statsOfChain(frames, options);
         for (std::size_t i = 1; i < stats.size(); ++i) {
-            EXPECT_EQ(stats[i].changed, 1.0) << i;
             EXPECT_EQ(stats[i].kept, 0) << i;
+            // Another box has other slices and slabs.
+            EXPECT_EQ(stats[i].changed.has_value(), i < 3) << i;
         }
     }
 }
 
 TEST(FrameChain, seesWhereTheCameraHasMoved) {
     const Volume volume = volumeOf({});
-    FrameChain chain;
+    FrameChain chain(4);
     for (std::size_t i = 0; i < 4; ++i) {
         const RenderOptions options = optionsFor(Colors::kLit, someCameras()[2 * i]);
-        const RenderResult result = chain.render(i, volume, options);
-        chain.end(i);
+        const RenderResult result = chain.begin(i).render(volume, options);
         EXPECT_EQ(result.image.rgba, render(volume, options).image.rgba);
         EXPECT_EQ(result.stats.kept, 0);
     }
@@ -216,7 +216,7 @@ TEST(FrameChain, isRenderedByManyThreads) {
     const auto isAbsent = [](std::size_t i) { return i % 3 == 2; };
     const auto fails = [](std::size_t i) { return i % 5 == 3; };
     {
-        FrameChain chain;
+        FrameChain chain(kFrames);
         std::atomic<std::size_t> next{0};
         const auto work = [&] {
             const ThreadLimit limit(2);
@@ -225,14 +225,13 @@ TEST(FrameChain, isRenderedByManyThreads) {
                 listener.progress = [&](double share) {
                     if (fails(i) && share > 0.3) throw std::runtime_error("stopped");
                 };
+                FrameChain::Frame frame = chain.begin(i);
                 try {
                     if (!isAbsent(i))
-                        results[i] =
-                            chain.render(i, volumes[i % volumes.size()], options, listener);
+                        results[i] = frame.render(volumes[i % volumes.size()], options, listener);
                 } catch (const std::runtime_error&) {
                     results[i] = {};
                 }
-                chain.end(i);
             }
         };
         std::vector<std::jthread> threads;
@@ -254,11 +253,10 @@ TEST(FrameChain, goesOnBehindAnEmptyFrame) {
     RenderOptions options = optionsFor(Colors::kOne, someCameras()[0]);
     options.camera.targetWorld = {20, 20, 20};
     options.camera.frameWidthWorld = 60;
-    FrameChain chain;
+    FrameChain chain(5);
     std::size_t frame = 0;
     for (const Volume* one : {&nothing, &volume, &nothing, &nothing, &volume}) {
-        const RenderResult result = chain.render(frame, *one, options);
-        chain.end(frame++);
+        const RenderResult result = chain.begin(frame++).render(*one, options);
         EXPECT_EQ(result.image.rgba, render(*one, options).image.rgba);
         EXPECT_FALSE(result.stats.changed);
     }
@@ -267,8 +265,8 @@ TEST(FrameChain, goesOnBehindAnEmptyFrame) {
 TEST(FrameChain, refusesModesThatHaveNoLayers) {
     RenderOptions options;
     options.mode = Mode::kMip;
-    FrameChain chain;
-    EXPECT_EQ(test::errorOf([&] { chain.render(0, volumeOf({}), options); }),
+    FrameChain chain(1);
+    EXPECT_EQ(test::errorOf([&] { chain.begin(0).render(volumeOf({}), options); }),
               "usage: mode of a frame after another: got mip; expected composite");
 }
 

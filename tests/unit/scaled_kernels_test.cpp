@@ -36,7 +36,7 @@ TEST(ScaledTaps, columnsOfPairsLieNoCloserThanPixels) {
         if (scale > 1) continue;
         for (const double start : starts()) {
             ScaledTaps taps;
-            taps.set(start, scale, -7, 300, 256);
+            taps.set(start, scale, -7, 300, {0, 256});
             ASSERT_EQ(taps.first.size(), 300 + ScaledTaps::kSpare);
             for (std::size_t i = 1; i < taps.first.size(); ++i) {
                 const int step = taps.first[i] - taps.first[i - 1];
@@ -54,7 +54,7 @@ TEST(ScaledTaps, readLinearSheets) {
         for (const double start : starts()) {
             const int pixels = int(300 / std::max(1.0, scale));
             ScaledTaps taps;
-            taps.set(start, scale, 10, pixels, kSize);
+            taps.set(start, scale, 10, pixels, {0, kSize});
             for (int i = 0; i < pixels; ++i) {
                 const double place = start + scale * (10 + i);
                 if (place < taps.taps || place > kSize - taps.taps) continue;
@@ -64,6 +64,39 @@ TEST(ScaledTaps, readLinearSheets) {
                         double(taps.of(std::size_t(i))[tap]) * (taps.first[std::size_t(i)] + tap);
                 ASSERT_NEAR(read, place, scale > 1 ? 0.02 : 1e-4)
                     << start << ' ' << scale << ' ' << i;
+            }
+        }
+    }
+}
+
+// What strips of a picture read, each a part of its own, are the same bits.
+TEST(ScaledTaps, partsReadAsTheWholeDoes) {
+    constexpr int kSize = 4000;
+    constexpr int kFirst = 100;
+    for (const double scale : {0.37, 0.9999, 1.0000001, 1.3, 2.71}) {
+        for (const double start : {17.123456789, 311.9999999999, 1e-14}) {
+            ScaledTaps whole;
+            const int pixels = int(3000 / scale);
+            whole.set(start, scale, kFirst, pixels, {0, kSize});
+            for (const int origin : {8, 512, 1731}) {
+                const int size = 640;
+                // Pixels of which all that they read lies in the part.
+                int first = 0;
+                while (whole.first[std::size_t(first)] <= origin) ++first;
+                int last = first;
+                while (last < pixels && whole.first[std::size_t(last)] + whole.taps < origin + size)
+                    ++last;
+                ScaledTaps part;
+                part.set(start, scale, kFirst + first, last - first, {origin, size});
+                ASSERT_EQ(part.taps, whole.taps);
+                ASSERT_GT(last, first + 100);
+                for (int i = first; i < last; ++i) {
+                    const auto here = std::size_t(i - first);
+                    ASSERT_EQ(part.first[here] + origin, whole.first[std::size_t(i)]);
+                    for (int tap = 0; tap < whole.taps; ++tap)
+                        ASSERT_EQ(part.of(here)[tap], whole.of(std::size_t(i))[tap])
+                            << start << ' ' << scale << ' ' << origin << ' ' << i;
+                }
             }
         }
     }
@@ -101,7 +134,7 @@ TEST(ScaledKernels, everySimdLevelGivesTheSameBits) {
         for (const double start : starts()) {
             const int pixels = int(300 / std::max(1.0, scale));
             ScaledTaps taps;
-            taps.set(start, scale, 3, pixels, 399);
+            taps.set(start, scale, 3, pixels, {0, 399});
             for (const int channels : {1, 4}) {
                 for (const bool frontToBack : {false, true}) {
                     setSimdLevel("auto");

@@ -232,8 +232,8 @@ void showScene(const RenderCommand& command, const ReadScene& scene, const Seque
         result = renderHeldOut(command.holdoutDepth, volume, options, rendering);
     } else if (part.prepared) {
         result = renderPrepared(*part.prepared, options, rendering);
-    } else if (part.chain) {
-        result = part.chain->render(part.place, volume, options, rendering);
+    } else if (part.behind) {
+        result = part.behind->render(volume, options, rendering);
     } else {
         result = render(volume, options, rendering);
     }
@@ -347,7 +347,12 @@ class WorstBound {
 // How much frames differ from the ones before.
 class ChangedShares {
   public:
+    // Of a frame that was rendered behind another, or first.
     void add(int frame, const RenderStats& stats) {
+        {
+            const std::lock_guard lock(mutex_);
+            ++frames_;
+        }
         if (!stats.changed) return;
         logLine(LogLevel::kInfo, "frame " + std::to_string(frame) + ": " + percent(*stats.changed) +
                                      " of what it shows differs from the frame before");
@@ -355,13 +360,15 @@ class ChangedShares {
         shares_.push_back(*stats.changed);
     }
     void show(const Session& session) {
-        if (shares_.empty() || !session.common.verbose) return;
+        if (frames_ < 2 || !session.common.verbose) return;
+        std::string text = "not known, for no two frames can be compared";
         std::sort(shares_.begin(), shares_.end());
-        std::fputs(("differs from the frame before: " + percent(shares_[shares_.size() / 2]) +
-                    " of what a frame shows (median of " + std::to_string(shares_.size()) + "), " +
-                    percent(shares_.front()) + " to " + percent(shares_.back()) + "\n")
-                       .c_str(),
-                   stderr);
+        if (!shares_.empty()) {
+            text = percent(shares_[shares_.size() / 2]) + " of what a frame shows (median of " +
+                   std::to_string(shares_.size()) + "), " + percent(shares_.front()) + " to " +
+                   percent(shares_.back());
+        }
+        std::fputs(("differs from the frame before: " + text + "\n").c_str(), stderr);
     }
 
   private:
@@ -372,6 +379,7 @@ class ChangedShares {
     }
 
     std::mutex mutex_;
+    std::size_t frames_ = 0;
     std::vector<double> shares_;
 };
 
@@ -391,7 +399,7 @@ void runSequence(const CLI::App& app, const RenderCommand& command, const Sessio
                 const RenderStats stats =
                     makePicture(app, frame, session, part, listener).result.stats;
                 worst.add(stats);
-                changed.add(*part.frame, stats);
+                if (part.behind) changed.add(*part.frame, stats);
             });
     }
     changed.show(session);

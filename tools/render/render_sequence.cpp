@@ -377,21 +377,6 @@ bool mayBeChained(const RenderCommand& command, const SequenceLook& look) {
            picturesThatFit(command, look) >= workersFor(command, look) + 1;
 }
 
-// Lets the frame behind go on, whatever has become of this one.
-class ChainEnd {
-  public:
-    ChainEnd(FrameChain* chain, std::size_t place) : chain_(chain), place_(place) {}
-    ~ChainEnd() {
-        if (chain_) chain_->end(place_);
-    }
-    ChainEnd(const ChainEnd&) = delete;
-    ChainEnd& operator=(const ChainEnd&) = delete;
-
-  private:
-    FrameChain* chain_;
-    std::size_t place_;
-};
-
 // Whether greys are chosen by what is in the pictures.
 bool choosesWindow(const RenderCommand& command) {
     return showsWindow(command) && !windowAsked(command);
@@ -485,18 +470,21 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     std::optional<PreparedScene> prepared;
     if (!frames.empty() && seesOneThing(command)) prepared = prepareOnce(fixed, look, making);
     std::optional<FrameChain> chain;
-    if (!prepared && mayBeChained(command, look)) chain.emplace();
+    if (!prepared && frames.size() > 1 && mayBeChained(command, look)) chain.emplace(frames.size());
     try {
         runFrames(
             frames, command.frames.keepGoing, workersFor(command, look),
             [&](std::size_t i, const Listener& part) {
                 const FrameLook frame{look, i};
-                SequencePart sequence{
-                    &frame,          prepared ? &*prepared : nullptr, {}, sinks.areWritten(),
-                    frames[i].frame, chain ? &*chain : nullptr,       i};
-                const ChainEnd end(sequence.chain, i);
+                SequencePart sequence{&frame,
+                                      prepared ? &*prepared : nullptr,
+                                      {},
+                                      sinks.areWritten(),
+                                      frames[i].frame};
+                std::optional<FrameChain::Frame> behind;
                 if (sinks.any()) sequence.take = [&](const Image& image) { sinks.put(i, image); };
                 try {
+                    if (chain) sequence.behind = &behind.emplace(chain->begin(i));
                     const RenderCommand one = commandOf(fixed, frames[i], stats);
                     if (sinks.areWritten()) folders.makeFor(one.output);
                     folders.makeFor(one.stats);

@@ -24,8 +24,7 @@ struct SequencePart {
     std::function<void(const Image& image)> take;
     bool isWritten = true;  ///< whether it has a file of its own
     std::optional<int> frame = {};
-    FrameChain* chain = nullptr;  ///< that it is rendered in, if it may be
-    std::size_t place = 0;        ///< in the chain
+    FrameChain::Frame* behind = nullptr;  ///< renders it behind another, if that may be
 };
 
 /// Makes and writes one picture; an input that is empty is that of a black one.
