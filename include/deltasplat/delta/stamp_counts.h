@@ -14,7 +14,9 @@ struct StampCounts {
     std::uint64_t traditional = 0;  ///< voxels of the box
     std::uint64_t sparse = 0;       ///< visible voxels
     std::uint64_t delta = 0;        ///< deltas, those of key slices included
-    std::uint64_t automatic = 0;    ///< for each slab `sparse` if clearly less, else `delta`
+    /// For each slab `sparse` if clearly less, else `delta`; predicted as for voxels that have no
+    /// looks of their own (shading, color by another grid), of which more slabs would be `sparse`.
+    std::uint64_t automatic = 0;
 };
 
 /// Returns what `render` takes for a picture along a slice axis, without rendering or storing
