@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,11 +15,13 @@
 #include "convert/volume_grid.h"
 #include "default_floats.h"
 #include "delta/delta_tree.h"
+#include "delta/exact_deltas.h"
 #include "delta/hold_values.h"
 #include "delta/inactive_values.h"
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/error.h"
 #include "ingest/delta/delta_format.h"
+#include "ingest/delta/number_list.h"
 #include "ingest/delta/read_delta_grid.h"
 #include "ingest/delta/zigzag.h"
 #include "ingest/grids/source_grid.h"
@@ -122,6 +126,28 @@ openvdb::math::Transform::Ptr permutedTransform(const glm::dmat4& worldFromIndex
     return makeTransformOfType("AffineMap", permuted);
 }
 
+// Whether a table, which files have as text, is more than its codes can save, which is no more than
+// what values have beyond 16 bits.
+bool isTableLarger(const Volume& volume, const openvdb::GridBase& source) {
+    if (volume.codeBook.kind != CodeBook::Kind::kTable) return false;
+    const bool isNarrow =
+        source.isType<openvdb::FloatGrid>() || source.isType<openvdb::Int32Grid>();
+    const std::uint64_t saved = (isNarrow ? 2 : 6) * volume.activeCount;
+    return listText(*volume.codeBook.table).size() > saved;
+}
+
+// Whether values go into the file by their own bits: they have no exact code book that is worth its
+// bytes, and nobody asked for another.
+bool storesValues(const Volume& volume, const openvdb::GridBase* source,
+                  const DeltaFileOptions& options) {
+    if (!source || options.codesOnly || !options.tolerance.isExact()) return false;
+    if (volume.codeBook.isExact() && !isTableLarger(volume, *source)) return false;
+    // Deltas of codes have lost already what their source had besides.
+    if (volume.origin && volume.origin->maxError > 0) return false;
+    const bool isPlaced = volume.hasBackground || volume.box.min == glm::ivec3(0);
+    return isPlaced && exactValuesOf(*source).has_value();
+}
+
 // Deltas go into files as numbers without sign.
 void removeSigns(openvdb::Int32Grid& grid) {
     std::vector<DeltaTree::Leaf*> leaves;
@@ -135,11 +161,9 @@ void removeSigns(openvdb::Int32Grid& grid) {
     });
 }
 
-DeltaHeader headerOf(const Volume& volume, const DeltaGrid& deltas, const Rest& rest,
-                     const InactiveValues& inactive, const Tolerance& tolerance) {
+DeltaHeader headerOf(const Volume& volume, const Rest& rest, const InactiveValues& inactive,
+                     const Tolerance& tolerance) {
     DeltaHeader header;
-    header.sliceAxis = deltas.sliceAxis;
-    header.keyInterval = deltas.keyInterval;
     header.book = volume.codeBook;
     header.codeCount = codeCountOf(volume);
     header.sourceType = volume.type;
@@ -148,7 +172,6 @@ DeltaHeader headerOf(const Volume& volume, const DeltaGrid& deltas, const Rest& 
     header.restActive = rest.active;
     header.inactiveValues = inactive.values;
     header.active = volume.activeCount;
-    for (const Slab& slab : deltas.slabs) header.slabDeltas.push_back(slab.deltas);
     // A source that was a delta grid itself has an error of its own.
     const DeltaOrigin before = volume.origin.value_or(DeltaOrigin());
     // (1 + t) (1 + b) - 1, exact where there was none before.
@@ -157,6 +180,40 @@ DeltaHeader headerOf(const Volume& volume, const DeltaGrid& deltas, const Rest& 
     header.toleranceValue = tolerance.value + before.toleranceValue;
     header.maxError = before.maxError;
     return header;
+}
+
+openvdb::GridBase::Ptr takeCodes(const Volume& volume, const Rest& rest,
+                                 const InactiveValues& inactive, const Tolerance& tolerance,
+                                 DeltaHeader& header) {
+    DeltaOptions options;
+    options.slotMap = rest.slotMap;
+    options.inactive = inactive.numbers.get();
+    options.sliceAxis = header.sliceAxis;
+    options.keyInterval = header.keyInterval;
+    Volume held = volume;
+    held.box = header.box;
+    holdValues(held, options.sliceAxis, options.keyInterval, tolerance, rest.slotMap);
+    const DeltaGrid deltas = makeDeltaGrid(held, options);
+    header.codeCount = codeCountOf(held);
+    for (const Slab& slab : deltas.slabs) header.slabDeltas.push_back(slab.deltas);
+    removeSigns(*deltas.tree->grid);
+    return deltas.tree->grid;
+}
+
+openvdb::GridBase::Ptr takeValues(const Volume& volume, const openvdb::GridBase& source,
+                                  const InactiveValues& inactive, DeltaHeader& header) {
+    header.version = DeltaHeader::kExactVersion;
+    header.exact = exactValuesOf(source);
+    std::optional<double> rest;
+    if (header.restActive) {
+        rest = volume.mostFrequent ? volume.mostFrequent->value : 0;
+        header.background = *rest;
+    }
+    ExactDeltas taken =
+        takeExactDeltas(source, {header.sliceAxis, header.keyInterval, header.box, rest, inactive},
+                        "grid \"" + volume.name + "\"");
+    header.slabDeltas = std::move(taken.slabDeltas);
+    return taken.grid;
 }
 
 }  // namespace
@@ -187,25 +244,19 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     if (volume.hasBackground && source) rest.background = backgroundOf(*source);
     listener.report(0.1);
 
-    DeltaOptions taking;
-    taking.slotMap = rest.slotMap;
-    taking.inactive = inactive.numbers.get();
-    taking.sliceAxis =
+    DeltaHeader header = headerOf(volume, rest, inactive, options.tolerance);
+    header.box = united(volume.box, inactive);
+    header.sliceAxis =
         options.sliceAxis ? *options.sliceAxis : mostComparableAxis(volume, rest.slotMap);
-    Volume held = volume;
-    held.box = united(volume.box, inactive);
-    taking.keyInterval = options.keyInterval != 0
+    header.keyInterval = options.keyInterval != 0
                              ? options.keyInterval
-                             : defaultKeyInterval(held.box.dims()[taking.sliceAxis]);
+                             : defaultKeyInterval(header.box.dims()[header.sliceAxis]);
     listener.report(0.3);
-    holdValues(held, taking.sliceAxis, taking.keyInterval, options.tolerance, rest.slotMap);
-    const DeltaGrid deltas = makeDeltaGrid(held, taking);
+    const openvdb::GridBase::Ptr grid =
+        storesValues(volume, source.get(), options)
+            ? takeValues(volume, *source, inactive, header)
+            : takeCodes(volume, rest, inactive, options.tolerance, header);
     listener.report(0.7);
-
-    const openvdb::Int32Grid::Ptr& grid = deltas.tree->grid;
-    removeSigns(*grid);
-    DeltaHeader header = headerOf(held, deltas, rest, inactive, options.tolerance);
-    header.box = held.box;
     if (source && volume.hasBackground) {
         header.sourceTree = typeOf(*source);
         header.sourceMap = source->transform().mapType();
@@ -215,14 +266,16 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     }
     grid->setName(volume.name);
     grid->setCreator("deltasplat");
-    grid->setTransform(permutedTransform(volume.worldFromIndex, deltas.sliceAxis));
+    grid->setTransform(permutedTransform(volume.worldFromIndex, header.sliceAxis));
     putDeltaHeader(header, *grid);
 
     DeltaFileEntry entry;
-    entry.sliceAxis = deltas.sliceAxis;
-    entry.keyInterval = deltas.keyInterval;
-    entry.deltas = deltas.deltas();
-    if (!volume.codeBook.isExact() || !options.tolerance.isExact()) {
+    entry.sliceAxis = header.sliceAxis;
+    entry.keyInterval = header.keyInterval;
+    entry.deltas =
+        std::accumulate(header.slabDeltas.begin(), header.slabDeltas.end(), std::uint64_t{0});
+    entry.codeBook = header.bookName();
+    if (!header.exact && (!volume.codeBook.isExact() || !options.tolerance.isExact())) {
         // The real thing is measured: the deltas, added up again, against the source.
         ReadOptions reading;
         reading.levelSetToFog = false;

@@ -3,6 +3,7 @@
 // what happens to its metadata, the rest changes voxels and text.
 #include <openvdb/openvdb.h>
 
+#include <cmath>
 #include <cstring>
 #include <sstream>
 
@@ -13,7 +14,7 @@ namespace deltasplat::fuzz {
 namespace {
 
 // Turns the values of a table into ladders of one rung.
-void makePieces(openvdb::Int32Grid& grid) {
+void makePieces(openvdb::GridBase& grid) {
     std::istringstream values(grid.metaValue<std::string>("delta_table"));
     std::string pieces;
     for (std::string value; values >> value;)
@@ -25,14 +26,20 @@ void makePieces(openvdb::Int32Grid& grid) {
     grid.insertMeta("delta_version", openvdb::Int32Metadata(2));
 }
 
+// Half, table, linear, pieces, float32 and float64.
+constexpr int kKinds = 6;
+
 // Returns the delta grid of a small volume of each kind of code book.
-openvdb::Int32Grid::Ptr deltaGrid(int kind) {
+template <typename Grid>
+openvdb::GridBase::Ptr deltaGrid(int kind) {
+    using Value = typename Grid::ValueType;
     openvdb::initialize();
-    auto source = openvdb::FloatGrid::create(-0.5f);
+    auto source = Grid::create(Value(-0.5));
     source->setName("density");
     for (int i = 0; i < 500; ++i) {
         const openvdb::Coord at(i % 13 - 3, i / 13 % 11, i / 40);
-        const float value = kind % 2 == 1 ? float(i % 50) / 3 : float(i % 37) * 0.25f;
+        Value value = kind % 2 == 1 ? Value(i % 50) / 3 : Value(i % 37) / 4;
+        if (kind >= 4) value = std::sin(Value(i));  // more text than a table is worth
         if (i % 9 == 0) {
             source->tree().setValueOff(at, value);
         } else {
@@ -45,12 +52,14 @@ openvdb::Int32Grid::Ptr deltaGrid(int kind) {
     ReadOptions reading;
     reading.keepSource = true;
     if (kind == 2) reading.bits = 12;
+    DeltaFileOptions options;
+    options.codesOnly = kind < 4;
     DeltaFile file;
-    file.add(readVolume(path, reading), {});
+    file.add(readVolume(path, reading), options);
     file.write(path);
     openvdb::io::File input(path);
     input.open();
-    const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid("density"));
+    const openvdb::GridBase::Ptr grid = input.readGrid("density");
     input.close();
     std::remove(path.c_str());
     if (kind == 3) makePieces(*grid);
@@ -105,11 +114,13 @@ void damageMetadata(Input& input, openvdb::MetaMap& metadata) {
     }
 }
 
-void damageVoxels(Input& input, openvdb::Int32Tree& tree) {
+template <typename Tree>
+void damageVoxels(Input& input, Tree& tree) {
     const openvdb::Coord at(std::int8_t(input.byte()), std::int8_t(input.byte()),
                             std::int8_t(input.byte()));
     const std::uint8_t how = input.byte();
-    const std::int32_t value = how % 2 ? input.number() : std::int8_t(input.byte());
+    typename Tree::ValueType value = how % 2 ? input.number() : std::int8_t(input.byte());
+    if (sizeof value > 4 && how % 8 == 7) value <<= 31;
     if (how % 16 == 0) {
         tree.addTile(1, at, value, true);
     } else if (how % 4 == 1) {
@@ -123,7 +134,7 @@ void damageVoxels(Input& input, openvdb::Int32Tree& tree) {
 
 std::vector<std::string> seeds() {
     std::vector<std::string> inputs;
-    for (const char kind : {0, 1, 2, 3}) {
+    for (char kind = 0; kind < kKinds; ++kind) {
         inputs.push_back({kind, 0});
         inputs.push_back({kind, 1, 4, 2, 0, 0, 0, 3, 3, 3, 3, 3, 3});
         inputs.push_back({kind, 0, 1, 2, 3, 0, 7, 4, 4, 4, 1, 0, 0, 0, 1});
@@ -137,12 +148,18 @@ std::vector<std::string> seeds() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace deltasplat;
     if (size < 2 || size > 4096) return 0;
-    static const openvdb::Int32Grid::Ptr grids[] = {fuzz::deltaGrid(0), fuzz::deltaGrid(1),
-                                                    fuzz::deltaGrid(2), fuzz::deltaGrid(3)};
-    const openvdb::Int32Grid::Ptr grid = grids[data[0] % 4]->deepCopy();
+    using openvdb::DoubleGrid, openvdb::FloatGrid;
+    static const openvdb::GridBase::Ptr grids[fuzz::kKinds] = {
+        fuzz::deltaGrid<FloatGrid>(0), fuzz::deltaGrid<FloatGrid>(1),
+        fuzz::deltaGrid<FloatGrid>(2), fuzz::deltaGrid<FloatGrid>(3),
+        fuzz::deltaGrid<FloatGrid>(4), fuzz::deltaGrid<DoubleGrid>(5)};
+    const openvdb::GridBase::Ptr grid = grids[data[0] % fuzz::kKinds]->deepCopyGrid();
     fuzz::Input input(data + 2, size - 2);
     for (int n = data[1] % 4; n > 0; --n) fuzz::damageMetadata(input, *grid);
-    while (!input.empty()) fuzz::damageVoxels(input, grid->tree());
+    using Deltas = openvdb::TypeList<openvdb::Int32Grid, openvdb::Int64Grid>;
+    grid->apply<Deltas>([&](auto& deltas) {
+        while (!input.empty()) fuzz::damageVoxels(input, deltas.tree());
+    });
     const std::string path = fuzz::fileWith(".vdb", nullptr, 0);
     try {
         openvdb::io::File(path).write({grid});

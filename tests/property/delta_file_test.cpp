@@ -11,6 +11,8 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "deltasplat/error.h"
@@ -28,7 +30,26 @@ using testing::PlainVolume;
 using testing::TempFolder;
 
 // What a value type's random values are.
-enum class Kind { kHalf, kFewFloats, kManyFloats, kSmallInts, kWideInts, kBool };
+enum class Kind { kHalf, kFewFloats, kManyFloats, kSmallInts, kWideInts, kBool, kAny };
+
+// Any finite pattern of bits, those at the ends of the type among them.
+template <typename T>
+T anyValue(std::mt19937& random) {
+    using Limits = std::numeric_limits<T>;
+    constexpr bool kIsDouble = std::is_same_v<T, double>;
+    constexpr T kLargest = kIsDouble ? Limits::max() / 4 : Limits::max();
+    constexpr T kSmallest = kIsDouble ? Limits::lowest() / 4 : Limits::lowest();
+    constexpr T kEnds[] = {kLargest, kSmallest, Limits::denorm_min(), T(-0.0), T(0)};
+    if (random() % 50 == 0) return kEnds[random() % 5];
+    if constexpr (std::is_floating_point_v<T>) {
+        using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+        const T value = std::bit_cast<T>(Bits(std::uint64_t{random()} << 32 | random()));
+        // As far apart as a double can say.
+        return std::isfinite(value) && std::fabs(value) <= kLargest ? value : T(1);
+    } else {
+        return T(std::int32_t(random()));
+    }
+}
 
 template <typename T>
 T randomValue(std::mt19937& random, Kind kind) {
@@ -43,6 +64,8 @@ T randomValue(std::mt19937& random, Kind kind) {
             return T(int(random() % 60000) - 20000);
         case Kind::kWideInts:
             return T(int(random() % 5000) * 400000 - 1000000000);
+        case Kind::kAny:
+            return anyValue<T>(random);
         case Kind::kBool:
             break;
     }
@@ -87,6 +110,11 @@ typename Grid::Ptr randomGrid(std::mt19937& random, Kind kind) {
     tree.addTile(1, randomCoord(random, low, size), value(), true);
     tree.addTile(1, randomCoord(random, low, size), value(), false);
     if (random() % 3 == 0) tree.addTile(2, low, value(), false);
+    // More different values than a code book holds.
+    for (int i = 0; kind == Kind::kAny && i < 90000; ++i) {
+        const Coord at = low + Coord(i % 45, i / 45 % 45, i / 2025);
+        if (random() % 16 != 0) tree.setValueOn(at, value());
+    }
     return grid;
 }
 
@@ -123,6 +151,21 @@ openvdb::CoordBBox reachOf(const openvdb::GridBase& grid) {
 }
 
 template <typename Grid>
+void expectSameVoxels(const Grid& expected, const Grid& grid) {
+    EXPECT_EQ(grid.activeVoxelCount(), expected.activeVoxelCount());
+    std::uint64_t wrong = 0;
+    for (auto at = reachOf(expected).begin(); at; ++at) {
+        typename Grid::ValueType p{}, q{};
+        const bool on = expected.tree().probeValue(*at, p);
+        const bool restoredOn = grid.tree().probeValue(*at, q);
+        // Two int64 may be one double, two NaN are never equal.
+        const bool same = p == q || (p != p && q != q);
+        wrong += on == restoredOn && same && bits(double(p)) == bits(double(q)) ? 0 : 1;
+    }
+    EXPECT_EQ(wrong, 0u);
+}
+
+template <typename Grid>
 void expectEqual(const Grid& expected, const Volume& restored, const PlainVolume& plain) {
     ASSERT_TRUE(restored.source);
     ASSERT_TRUE(restored.source->grid->isType<Grid>());
@@ -152,9 +195,20 @@ void expectEqual(const Grid& expected, const Volume& restored, const PlainVolume
     EXPECT_EQ(wrong, 0u);
 }
 
+Volume readKept(const std::string& file, ReadOptions reading = {}) {
+    reading.keepSource = true;
+    return readVolume(file, reading);
+}
+
+DeltaFileOptions codesOnly() {
+    DeltaFileOptions options;
+    options.codesOnly = true;
+    return options;
+}
+
 // Writes a grid as OpenVDB does, makes a delta grid of it, and reads that back.
 template <typename Grid>
-void expectRoundTrip(unsigned seed, Kind kind) {
+void expectRoundTrip(unsigned seed, Kind kind, const std::string& codeBook = "") {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const TempFolder folder;
     openvdb::initialize();
@@ -178,6 +232,9 @@ void expectRoundTrip(unsigned seed, Kind kind) {
     file.write("delta.vdb");
     EXPECT_EQ(entry.maxError, 0);
     EXPECT_TRUE(entry.lossless);
+    if (!codeBook.empty()) {
+        EXPECT_EQ(entry.codeBook, codeBook);
+    }
     const Volume restored = readVolume("delta.vdb", reading);
     EXPECT_EQ(restored.origin->deltas, entry.deltas);
     expectEqual(*source, restored, testing::readPlainDeltas("delta.vdb", "density"));
@@ -205,6 +262,90 @@ TEST(DeltaFile, IntegerGridsComeBack) {
     }
 }
 
+TEST(DeltaFile, FloatGridsOfAnyValuesComeBack) {
+    for (unsigned seed = 61; seed <= 68; ++seed)
+        expectRoundTrip<openvdb::FloatGrid>(seed, Kind::kAny, "float32");
+}
+
+TEST(DeltaFile, DoubleGridsOfAnyValuesComeBack) {
+    for (unsigned seed = 71; seed <= 76; ++seed)
+        expectRoundTrip<openvdb::DoubleGrid>(seed, Kind::kAny, "float64");
+}
+
+TEST(DeltaFile, IntegerGridsOfAnyValuesComeBack) {
+    for (unsigned seed = 81; seed <= 84; ++seed)
+        expectRoundTrip<openvdb::Int32Grid>(seed, Kind::kAny, "int32");
+}
+
+// Values that no double holds, up to the largest that has a slot.
+TEST(DeltaFile, WideIntegersComeBackAsFarAsThereAreSlots) {
+    const TempFolder folder;
+    openvdb::initialize();
+    std::mt19937_64 random(7);
+    auto grid = openvdb::Int64Grid::create(-3);
+    grid->setName("labels");
+    constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max() - 65537;
+    for (int i = 0; i < 70000; ++i) {
+        const Coord at(i % 41, i / 41 % 41, i / 1681);
+        grid->tree().setValueOn(at, std::min(std::int64_t(random()), kLargest));
+    }
+    grid->tree().setValueOn(Coord(0, 0, 0), kLargest);
+    grid->tree().setValueOn(Coord(1, 0, 0), std::numeric_limits<std::int64_t>::min());
+    grid->tree().setValueOff(Coord(2, 0, 0), 12);
+    openvdb::io::File("source.vdb").write({grid});
+    ReadOptions reading;
+    reading.keepSource = true;
+    DeltaFile file;
+    const DeltaFileEntry entry = file.add(readVolume("source.vdb", reading), {});
+    EXPECT_EQ(entry.codeBook, "int64");
+    EXPECT_TRUE(entry.lossless);
+    file.write("delta.vdb");
+    const Volume restored = readVolume("delta.vdb", reading);
+    const auto& back = static_cast<const openvdb::Int64Grid&>(*restored.source->grid);
+    expectSameVoxels(*grid, back);
+
+    grid->tree().setValueOn(Coord(3, 0, 0), kLargest + 1);
+    openvdb::io::File("source.vdb").write({grid});
+    const DeltaFileEntry rounded = DeltaFile().add(readVolume("source.vdb", reading), {});
+    EXPECT_EQ(rounded.codeBook, "pieces");
+    EXPECT_FALSE(rounded.lossless);
+}
+
+// Blocks that OpenVDB's prune would take for uniform.
+TEST(DeltaFile, BlocksOfNearlyOneValueComeBack) {
+    const TempFolder folder;
+    openvdb::initialize();
+    auto floats = openvdb::FloatGrid::create(0.0f);
+    auto ints = openvdb::Int32Grid::create(0);
+    floats->setName("floats");
+    ints->setName("ints");
+    for (int i = 0; i < 512; ++i) {
+        const Coord at(i / 64, i / 8 % 8, i % 8);
+        floats->tree().setValueOn(at, i % 3 == 0 ? -0.0f : 0.0f);
+        floats->tree().setValueOff(at + Coord(8), i == 5 ? NAN : 2.0f);
+        ints->tree().setValueOn(at, i % 2 == 0 ? 2000000000 : -2000000000);
+    }
+    openvdb::io::File("source.vdb").write({floats, ints});
+    openvdb::io::File input("source.vdb");
+    input.open();
+    floats = openvdb::gridPtrCast<openvdb::FloatGrid>(input.readGrid("floats"));
+    ints = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid("ints"));
+    DeltaFile file;
+    for (const char* name : {"floats", "ints"}) {
+        ReadOptions reading;
+        reading.gridName = name;
+        EXPECT_TRUE(file.add(readKept("source.vdb", reading), {}).lossless);
+    }
+    file.write("delta.vdb");
+    ReadOptions reading;
+    reading.gridName = "floats";
+    const Volume restored = readKept("delta.vdb", reading);
+    expectSameVoxels(*floats, static_cast<const openvdb::FloatGrid&>(*restored.source->grid));
+    reading.gridName = "ints";
+    const Volume others = readKept("delta.vdb", reading);
+    expectSameVoxels(*ints, static_cast<const openvdb::Int32Grid&>(*others.source->grid));
+}
+
 TEST(DeltaFile, BoolGridsComeBack) {
     for (unsigned seed = 51; seed <= 55; ++seed)
         expectRoundTrip<openvdb::BoolGrid>(seed, Kind::kBool);
@@ -228,11 +369,6 @@ std::vector<float> waves(std::mt19937& random, double noise) {
 }
 
 constexpr const char* kWavesFile = "waves_95x41x50_float32.raw";
-
-Volume readKept(const std::string& file, ReadOptions reading = {}) {
-    reading.keepSource = true;
-    return readVolume(file, reading);
-}
 
 ReadOptions inBits(int bits) {
     ReadOptions reading;
@@ -265,7 +401,7 @@ TEST(DeltaFile, LinearBooksKeepToHalfAStepAndSayTheLargestError) {
         testing::writeBytes(kWavesFile, testing::bytesOf(values));
         const Volume volume = readKept(kWavesFile, inBits(bits));
         DeltaFile file;
-        const DeltaFileEntry entry = file.add(volume, {});
+        const DeltaFileEntry entry = file.add(volume, codesOnly());
         file.write("delta.vdb");
         const double found =
             largestError(values, testing::readPlainDeltas("delta.vdb", "waves_95x41x50_float32"));
@@ -274,7 +410,7 @@ TEST(DeltaFile, LinearBooksKeepToHalfAStepAndSayTheLargestError) {
         EXPECT_LE(entry.maxError, volume.codeBook.step / 2);
         EXPECT_EQ(entry.maxError, found);
         EXPECT_EQ(readVolume("delta.vdb").origin->maxError, entry.maxError);
-        DeltaFileOptions strict;
+        DeltaFileOptions strict = codesOnly();
         strict.maxError = entry.maxError * 0.99;
         EXPECT_THROW(DeltaFile().add(volume, strict), Error);
         strict.maxError = entry.maxError;
@@ -413,6 +549,106 @@ TEST(DeltaFile, ToleranceKeepsActiveStates) {
     EXPECT_GT(held, 100u);
 }
 
+// A volume that is read from its deltas is the one that is read from its source.
+void expectSameVolume(const Volume& a, const Volume& b) {
+    EXPECT_EQ(a.type, b.type);
+    EXPECT_EQ(a.gridClass, b.gridClass);
+    EXPECT_EQ(a.hasBackground, b.hasBackground);
+    EXPECT_EQ(a.background, b.background);
+    EXPECT_EQ(a.box, b.box);
+    EXPECT_EQ(a.worldFromIndex, b.worldFromIndex);
+    EXPECT_EQ(a.codeBook.name(), b.codeBook.name());
+    EXPECT_EQ(*a.codeBook.table, *b.codeBook.table);
+    EXPECT_EQ(a.histogram, b.histogram);
+    EXPECT_EQ(a.valueMin, b.valueMin);
+    EXPECT_EQ(a.valueMax, b.valueMax);
+    ASSERT_EQ(a.mostFrequent.has_value(), b.mostFrequent.has_value());
+    EXPECT_EQ(a.mostFrequent->value, b.mostFrequent->value);
+    EXPECT_EQ(a.mostFrequent->count, b.mostFrequent->count);
+    EXPECT_EQ(a.codeError.absolute, b.codeError.absolute);
+    EXPECT_TRUE(a.codes->tree.hasSameTopology(b.codes->tree));
+    std::uint64_t wrong = 0;
+    for (auto code = a.codes->tree.cbeginValueOn(); code; ++code)
+        wrong += *code == b.codes->tree.getValue(code.getCoord()) ? 0 : 1;
+    EXPECT_EQ(wrong, 0u);
+}
+
+// Volumes without empty places, a third of them of one value, on which deltas rest.
+TEST(DeltaFile, DenseVolumesOfManyValuesComeBackAsTheyAreRead) {
+    std::mt19937 random(31);
+    const std::vector<float> floats = waves(random, 40);
+    const std::vector<double> doubles(floats.begin(), floats.end());
+    std::vector<std::int32_t> ints(floats.size());
+    for (std::size_t i = 0; i < ints.size(); ++i)
+        ints[i] = floats[i] == 0 ? -5 : std::int32_t(random());
+    std::vector<std::uint32_t> labels(ints.begin(), ints.end());
+    const std::tuple<std::string, std::string, std::string> sources[] = {
+        {"float32", testing::bytesOf(floats), "float32"},
+        {"float64", testing::bytesOf(doubles), "float64"},
+        {"int32", testing::bytesOf(ints), "int32"},
+        {"uint32", testing::bytesOf(labels), "int64"}};
+    for (const auto& [type, bytes, book] : sources) {
+        for (int axis = 0; axis < 3; ++axis) {
+            SCOPED_TRACE(type + " along " + std::to_string(axis));
+            const TempFolder folder;
+            const std::string name = "waves_95x41x50_" + type;
+            testing::writeBytes(name + ".raw", bytes);
+            const Volume volume = readKept(name + ".raw");
+            ASSERT_TRUE(volume.codeBook.pieces);
+            DeltaFileOptions options;
+            options.sliceAxis = axis;
+            options.keyInterval = axis == 1 ? 16 : 0;
+            DeltaFile file;
+            const DeltaFileEntry entry = file.add(volume, options);
+            file.write("delta.vdb");
+            EXPECT_EQ(entry.codeBook, book);
+            EXPECT_TRUE(entry.lossless);
+            // Of what rests, no more than its ends is spoken of.
+            EXPECT_LT(entry.deltas, std::uint64_t(0.8 * double(floats.size())));
+            const Volume restored = readKept("delta.vdb");
+            EXPECT_EQ(restored.origin->codeBook, book);
+            expectSameVolume(volume, restored);
+            const PlainVolume plain = testing::readPlainDeltas("delta.vdb", name);
+            std::uint64_t wrong = 0;
+            for (std::size_t i = 0; i < floats.size(); ++i) {
+                const Coord at(int(i % 95), int(i / 95 % 41), int(i / 3895));
+                const double own = type == "int32"    ? double(ints[i])
+                                   : type == "uint32" ? double(labels[i])
+                                                      : double(floats[i]);
+                wrong += plain.activeAt(at) && bits(plain.valueAt(at)) == bits(own) ? 0 : 1;
+            }
+            EXPECT_EQ(wrong, 0u);
+            // Deltas of deltas lose nothing either.
+            DeltaFile again;
+            EXPECT_TRUE(again.add(restored, {}).lossless);
+        }
+    }
+}
+
+TEST(DeltaFile, GridsOfManyValuesComeBackAsTheyAreRead) {
+    const TempFolder folder;
+    openvdb::initialize();
+    std::mt19937 random(77);
+    auto grid = randomGrid<openvdb::FloatGrid>(random, Kind::kManyFloats);
+    for (int i = 0; i < 90000; ++i)
+        grid->tree().setValueOn(Coord(i % 45, i / 45 % 45, i / 2025),
+                                randomValue<float>(random, Kind::kManyFloats));
+    grid->setName("density");
+    openvdb::io::File("source.vdb").write({grid});
+    const Volume volume = readKept("source.vdb");
+    ASSERT_TRUE(volume.codeBook.pieces);
+    DeltaFile file;
+    file.add(volume, {});
+    file.write("delta.vdb");
+    expectSameVolume(volume, readKept("delta.vdb"));
+    // Who asks for less is given less.
+    EXPECT_EQ(DeltaFile().add(volume, codesOnly()).codeBook, "pieces");
+    DeltaFileOptions held;
+    held.tolerance.value = 0.1;
+    EXPECT_EQ(DeltaFile().add(volume, held).codeBook, "pieces");
+    EXPECT_EQ(DeltaFile().add(readKept("source.vdb", inBits(12)), codesOnly()).codeBook, "linear");
+}
+
 // Whole numbers of more than 65536 kinds, up to the ends of their type.
 TEST(DeltaFile, WideIntegersStayWholeAndWithinHalfAStep) {
     const TempFolder folder;
@@ -437,7 +673,7 @@ TEST(DeltaFile, WideIntegersStayWholeAndWithinHalfAStep) {
             step = std::max(step, 2 * volume.codeBook.largestErrorOf(Code(code)));
         }
         DeltaFile file;
-        const DeltaFileEntry entry = file.add(volume, {});
+        const DeltaFileEntry entry = file.add(volume, codesOnly());
         file.write("delta.vdb");
         const Volume restored = readKept("delta.vdb");
         ASSERT_TRUE(restored.source->grid->isType<openvdb::Int32Grid>());
@@ -467,7 +703,7 @@ TEST(DeltaFile, FloatsBesideAnOutlierComeBackAsTheirCodes) {
     const Volume volume = readKept("fog_50x48x40_float32.raw");
     ASSERT_TRUE(volume.codeBook.pieces);
     DeltaFile file;
-    const DeltaFileEntry entry = file.add(volume, {});
+    const DeltaFileEntry entry = file.add(volume, codesOnly());
     file.write("delta.vdb");
     EXPECT_EQ(entry.maxError, volume.codeError.absolute);
     const Volume restored = readVolume("delta.vdb");
@@ -511,7 +747,7 @@ TEST(DeltaFile, OlderVersionsAreRead) {
         const Volume volume = readKept(kWavesFile);
         ASSERT_EQ(bool(volume.codeBook.pieces), pieces);
         DeltaFile file;
-        file.add(volume, {});
+        file.add(volume, codesOnly());
         file.write("delta.vdb");
         openvdb::io::File input("delta.vdb");
         input.open();

@@ -23,6 +23,39 @@ std::vector<double> numbers(const std::string& text) {
     return list;
 }
 
+// Section "Exact code books": slots of values, 32 or 64 bits, and the first of inactive ones.
+struct ExactBook {
+    explicit ExactBook(const std::string& kind) : kind_(kind) {}
+    bool is32() const { return kind_ == "float32"; }
+    std::uint64_t firstInactive() const {
+        if (kind_ == "float32") return 4286578689u;
+        if (kind_ == "float64") return 18442240474082181121u;
+        if (kind_ == "int32") return 4294967297u;
+        return 18446744073709486080u;
+    }
+    double value(std::uint64_t code) const {
+        if (kind_ == "float32") {
+            const auto bits =
+                std::uint32_t(code >= 2147483648u ? code - 2147483648u : 4294967295u - code);
+            float value = 0;
+            std::memcpy(&value, &bits, sizeof value);
+            return double(value);
+        }
+        if (kind_ == "float64") {
+            const std::uint64_t half = std::uint64_t{1} << 63;
+            const std::uint64_t bits = code >= half ? code - half : ~code;
+            double value = 0;
+            std::memcpy(&value, &bits, sizeof value);
+            return value;
+        }
+        if (kind_ == "int32") return double(std::int64_t(code) - 2147483648ll);
+        return double(std::int64_t(code - (std::uint64_t{1} << 63)));
+    }
+
+  private:
+    std::string kind_;
+};
+
 // Section "Code books".
 class Book {
   public:
@@ -74,9 +107,11 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
     openvdb::initialize();
     openvdb::io::File input(file);
     input.open();
-    const auto deltas = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid(name));
+    const openvdb::GridBase::Ptr deltas = input.readGrid(name);
+    const auto narrow = openvdb::gridPtrCast<openvdb::Int32Grid>(deltas);
+    const auto wide = openvdb::gridPtrCast<openvdb::Int64Grid>(deltas);
     const int version = entry<std::int32_t>(*deltas, "delta_version");
-    if (version < 1 || version > 3) throw std::runtime_error("version");
+    if (version < 1 || version > 4) throw std::runtime_error("version");
 
     // Axis of the source that slices, u and v run along.
     const int axis = entry<std::string>(*deltas, "delta_slice_axis")[0] - 'x';
@@ -101,6 +136,7 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
     if (low[0] > high[0] || low[1] > high[1] || low[2] > high[2]) return volume;
 
     const Book book(*deltas);
+    const ExactBook exact(entry<std::string>(*deltas, "delta_code_book"));
     const bool restActive = entry<std::string>(*deltas, "delta_rest") == "active";
     const std::vector<double> inactive =
         numbers(entry<std::string>(*deltas, "delta_inactive_values"));
@@ -110,32 +146,41 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
     const std::size_t count = std::size_t(size.x()) * std::size_t(size.y()) * std::size_t(size.z());
     volume.values.resize(count);
     volume.active.resize(count);
-    auto accessor = deltas->getConstAccessor();
     for (int u = low[order[1]]; u <= high[order[1]]; ++u) {
         for (int v = low[order[2]]; v <= high[order[2]]; ++v) {
-            std::int64_t slot = 0;
+            std::uint64_t slot = 0;  // of version 4 modulo 2^32 or 2^64
             for (int s = low[axis]; s <= high[axis]; ++s) {
                 // A key slice is a change from nothing.
                 if ((s - firstSlab) % interval == 0) slot = 0;
+                const openvdb::Coord place(s, u, v);
                 std::int32_t delta = 0;
-                if (accessor.probeValue(openvdb::Coord(s, u, v), delta)) {
+                std::int64_t wideDelta = 0;
+                if (narrow && narrow->tree().probeValue(place, delta)) {
                     // Section "Reading it".
                     const auto z = std::int64_t(std::uint32_t(delta));
                     if (version < 3) {
-                        slot += delta;
+                        slot += std::uint64_t(std::int64_t{delta});
                     } else {
-                        slot += z % 2 == 0 ? z / 2 : -(z + 1) / 2;
+                        slot += std::uint64_t(z % 2 == 0 ? z / 2 : -(z + 1) / 2);
                     }
+                } else if (wide && wide->tree().probeValue(place, wideDelta)) {
+                    const auto z = std::uint64_t(wideDelta);
+                    slot += z % 2 == 0 ? z / 2 : ~(z / 2);
                 }
+                if (version == 4 && exact.is32()) slot %= std::uint64_t{1} << 32;
                 openvdb::Coord xyz;
                 xyz[order[0]] = s;
                 xyz[order[1]] = u;
                 xyz[order[2]] = v;
                 const std::size_t at = volume.at(xyz);
-                volume.values[at] = slot == 0       ? volume.background
-                                    : slot <= 65536 ? book.value(int(slot - 1))
-                                                    : inactive.at(std::size_t(slot - 65537));
-                volume.active[at] = slot == 0 ? restActive : slot <= 65536;
+                const std::uint64_t first = version == 4 ? exact.firstInactive() : 65537;
+                const auto value = [&] {
+                    if (slot == 0) return volume.background;
+                    if (slot >= first) return inactive.at(std::size_t(slot - first));
+                    return version == 4 ? exact.value(slot - 1) : book.value(int(slot - 1));
+                };
+                volume.values[at] = value();
+                volume.active[at] = slot == 0 ? restActive : slot < first;
             }
         }
     }

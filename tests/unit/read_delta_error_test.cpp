@@ -66,8 +66,8 @@ std::function<void(openvdb::Int32Grid&)> without(const std::string& key) {
 }
 
 TEST(ReadDeltaError, UnknownVersion) {
-    expectRefused(": metadata \"delta_version\": got 4; expected an int32 within 1..3",
-                  with<std::int32_t>("delta_version", 4));
+    expectRefused(": metadata \"delta_version\": got 5; expected an int32 within 1..4",
+                  with<std::int32_t>("delta_version", 5));
 }
 
 TEST(ReadDeltaError, MetadataMissingOrOfAnotherType) {
@@ -181,6 +181,66 @@ TEST(ReadDeltaError, ChainsBeyondIntegers) {
         ": got deltas that lead to 2147483647 at (0, 7, 0); expected 0..250, the codes "
         "of its integer code book",
         [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), -2); });
+}
+
+// The same of 60 x 40 x 30 floats, more than a code book has codes for, sliced along x.
+void expectExactRefused(const std::string& message,
+                        const std::function<void(openvdb::Int32Grid&)>& damage) {
+    SCOPED_TRACE(message);
+    const TempFolder folder;
+    std::vector<float> values(60 * 40 * 30);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i) * 0.001f;
+    testing::writeBytes("f_60x40x30_float32.raw", testing::bytesOf(values));
+    ReadOptions reading;
+    reading.keepSource = true;
+    DeltaFileOptions options;
+    options.sliceAxis = 0;
+    DeltaFile file;
+    file.add(readVolume("f_60x40x30_float32.raw", reading), options);
+    file.write("whole.vdb");
+    EXPECT_NO_THROW(readVolume("whole.vdb"));
+    openvdb::io::File input("whole.vdb");
+    input.open();
+    const auto grid =
+        openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid("f_60x40x30_float32"));
+    damage(*grid);
+    openvdb::io::File("a.vdb").write({grid});
+    expectError(ErrorCode::kInput, "a.vdb: grid \"f_60x40x30_float32\"" + message,
+                [] { readVolume("a.vdb"); });
+}
+
+TEST(ReadDeltaError, ExactValuesThatAreNone) {
+    const auto setFirst = [](std::int32_t zigzag) {
+        return [=](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 8, 8), zigzag); };
+    };
+    const std::string range = " at (0, 8, 8); expected 0 or 8388609..4286578688";
+    expectExactRefused(": got deltas that lead to 5" + range, setFirst(10));
+    expectExactRefused(": got deltas that lead to 8388608" + range, setFirst(2 * 8388608));
+    // -8388607 of 32 bits: behind the largest float, where inactive values would begin.
+    expectExactRefused(": got deltas that lead to 4286578689" + range, setFirst(2 * 8388607 - 1));
+}
+
+TEST(ReadDeltaError, ExactBooksOfOtherGrids) {
+    expectExactRefused(": got deltas of type int32; expected int64 for the code book float64",
+                       with<std::string>("delta_code_book", "float64"));
+    expectExactRefused(
+        ": metadata \"delta_code_book\": got \"float32\"; expected one of \"integer\" \"half\" "
+        "\"linear\" \"table\" \"pieces\"",
+        with<std::int32_t>("delta_version", 3));
+    expectExactRefused(
+        ": metadata \"delta_source_tree\": got \"double\"; expected \"float\", for the code book "
+        "float32",
+        with<std::string>("delta_source_tree", "double"));
+    expectExactRefused(
+        ": metadata \"delta_background\": got 0.1; expected a float32, for active voxels to rest "
+        "at",
+        with<double>("delta_background", 0.1));
+    expectExactRefused(
+        ": metadata \"delta_box_min\": got [-1, 0, 0]; expected [0, 0, 0] in a box of at least one "
+        "voxel, for active voxels to rest in a volume of float32",
+        with<openvdb::Vec3i>("delta_box_min", {-1, 0, 0}));
+    expectExactRefused(": got 72000 active voxels; expected 71999, as \"delta_active\" says",
+                       with<std::int64_t>("delta_active", 71999));
 }
 
 TEST(ReadDeltaError, DeltasOutsideOfTheBox) {

@@ -14,12 +14,12 @@ namespace deltasplat {
 
 namespace fs = std::filesystem;
 
-void ConversionStats::add(const Volume& volume) {
+void ConversionStats::add(const Volume& volume, const std::string& codeBook) {
     voxels += std::uint64_t(volume.box.voxels());
     active += volume.activeCount;
     maxError = std::max(maxError, volume.readError);
     lossless = lossless && volume.replaced == 0 && volume.readError == 0;
-    addBook(volume.codeBook.name());
+    addBook(codeBook);
 }
 
 void ConversionStats::add(const ConversionStats& other) {

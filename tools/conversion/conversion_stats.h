@@ -23,7 +23,8 @@ struct ConversionStats {
     double seconds = 0;
 
     /// Adds what there is to say of a volume.
-    void add(const Volume& volume);
+    /// @param codeBook  name of the one that it is stored by
+    void add(const Volume& volume, const std::string& codeBook);
     /// Adds what came of another conversion.
     void add(const ConversionStats& other);
 

@@ -105,7 +105,7 @@ ConversionStats convertFile(const CLI::App& app, const ConvertCommand& command,
     bool complete = true;
     std::vector<Volume> volumes =
         readInput(command, files.input, partOf(listener, 0, kReadShare), complete);
-    for (const Volume& volume : volumes) stats.add(volume);
+    for (const Volume& volume : volumes) stats.add(volume, volume.codeBook.name());
 
     writeConverted(files, std::move(volumes), command.write, partOf(listener, kReadShare, 1),
                    stats);

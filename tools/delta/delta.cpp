@@ -72,8 +72,11 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
                                 "0: a sixteenth of the volume, at least 128",
                                 std::to_string(command.file.keyInterval)));
     deltas.addValue("--bits", "N", command.read.bits, wholeNumber(8, 16),
-                    "Store real values in 2^N even steps, 8..16 (default: exactly if\n"
-                    "there are at most 65536 different ones, otherwise 16)");
+                    "Store real values in 2^N even steps, 8..16 (default: exactly)");
+    deltas.addFlag("--codes", command.file.codesOnly,
+                   "Store values of which there are more than 65536 different ones\n"
+                   "as the codes that pictures are made of, within 2e-4 of\n"
+                   "themselves as a rule: smaller, and not lossless");
     deltas.addValue("--max-error", "E", command.file.maxError, number(0),
                     "Fail, and write nothing, if a value would come back with a\n"
                     "larger error than E data units");
@@ -128,6 +131,8 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
     const double relative = command.file.tolerance.relative;
     if (relative > 0) reading.relativeError = relative / 2;
     if (!command.file.tolerance.isExact()) reading.bytesPerBlock += kBytesPerHeldBlock;
+    DeltaFileOptions writing = command.file;
+    if (reading.bits) writing.codesOnly = true;
     warnOfUnusedInputOptions(app, {files.input}, listener);
     ConversionStats stats;
     DeltaFile file;
@@ -138,8 +143,8 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
         [&](const Volume& volume) {
             if (volume.origin && reading.bits)
                 remarks.warn("--bits: has no effect on delta grids, which keep their code book");
-            stats.add(volume);
-            const DeltaFileEntry entry = file.add(volume, command.file, remarks);
+            const DeltaFileEntry entry = file.add(volume, writing, remarks);
+            stats.add(volume, entry.codeBook);
             warnOfWholeNumbers(volume, entry, command, remarks);
             add(entry, stats);
         },

@@ -92,7 +92,7 @@ std::vector<Volume> readInput(const RestoreCommand& command, const std::filesyst
         Volume volume =
             readVolume(input, options, partOf(listener, done, done + 1 / double(names.size())));
         requireDeltas(input, volume);
-        stats.add(volume);
+        stats.add(volume, volume.origin->codeBook);
         stats.deltas += volume.origin->deltas;
         stats.maxError = std::max(stats.maxError, volume.origin->maxError);
         // The source says all that the codes do, and more.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/progress.h"
@@ -17,6 +18,9 @@ struct DeltaFileOptions {
     std::optional<int> sliceAxis;  ///< 0 = x, 1 = y, 2 = z; empty: the one with the fewest deltas
     int keyInterval = 0;           ///< a multiple of 8; 0 = defaultKeyInterval
     Tolerance tolerance;
+    /// Stores the volume's codes even where they are not exact: what pictures are made of, in a
+    /// smaller file.
+    bool codesOnly = false;
     /// The largest error that is let through, in data units; empty: any.
     std::optional<double> maxError;
 };
@@ -28,6 +32,9 @@ struct DeltaFileEntry {
     std::uint64_t deltas = 0;
     double maxError = 0;  ///< largest |restored - source|, measured over every voxel
     bool lossless = true;
+    /// As CodeBook::name, or "float32", "float64", "int32" or "int64" where values are stored by
+    /// their own bits.
+    std::string codeBook;
 };
 
 /// A .vdb of delta grids, the format of docs/delta-grid.md: grid by grid, so that only one volume
@@ -40,7 +47,9 @@ class DeltaFile {
     DeltaFile& operator=(const DeltaFile&) = delete;
 
     /// Takes the differences of a volume that was read with ReadOptions::keepSource, and measures
-    /// how far what comes back is from the source. Multi-threaded; deterministic.
+    /// how far what comes back is from the source. Without a tolerance values for which there is no
+    /// exact code book are stored by their own bits, unless options.codesOnly is set.
+    /// Multi-threaded; deterministic.
     /// @throw Error(kUsage) if the key interval is no multiple of 8, if a tolerance is negative or
     ///        smaller than the code book's own error, or if memory does not suffice;
     ///        Error(kFailed) if the error is larger than options.maxError

@@ -41,6 +41,7 @@ struct DeltaOrigin {
     int sliceAxis = 2;  ///< 0 = x, 1 = y, 2 = z
     int keyInterval = 8;
     std::uint64_t deltas = 0;
+    std::string codeBook;       ///< as DeltaFileEntry::codeBook
     double tolerance = 0;       ///< relative
     double toleranceValue = 0;  ///< in data units
     double maxError = 0;  ///< largest distance of a value from its source's, measured at making

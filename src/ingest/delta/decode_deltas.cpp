@@ -7,22 +7,21 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <glm/vector_relational.hpp>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "deltasplat/error.h"
 #include "ingest/codes/leaf_slices.h"
+#include "ingest/delta/exact_slots.h"
 #include "ingest/delta/zigzag.h"
+#include "ingest/values/value_cast.h"
 #include "memory.h"
 #include "parallel.h"
 #include "run_begins.h"
 
 namespace deltasplat {
 namespace {
-
-using DeltaLeaf = openvdb::Int32Tree::LeafNodeType;
-using Leaf = CodeTree::Leaf;
 
 [[noreturn]] void fail(const std::string& where, const std::string& got,
                        const std::string& expected) {
@@ -35,35 +34,114 @@ std::string placeText(const glm::ivec3& v) {
 }
 
 // A block's place in (slice, u, v) order, divided by 8.
+template <typename DeltaLeaf>
 glm::ivec3 blockOf(const DeltaLeaf& leaf) {
     const openvdb::Coord origin = leaf.origin();
     return {origin.x() >> 3, origin.y() >> 3, origin.z() >> 3};
 }
 
+// What slots are where values have codes: how they add up, and what they stand for.
+class CodeWords {
+  public:
+    using Slot = std::uint32_t;
+    using DeltaGrid = openvdb::Int32Grid;
+    using Tree = CodeTree::Tree;
+
+    explicit CodeWords(const DeltaHeader& header)
+        : header_(header),
+          codeCount_(Slot(header.codeCount)),
+          hasZigzag_(header.hasZigzag()),
+          isHalf_(header.book.kind == CodeBook::Kind::kHalf) {
+        if (header.restActive) rest_ = header.book.codeOf(header.background);
+    }
+
+    Slot sum(Slot slot, std::int32_t delta) const {
+        return slot + Slot(hasZigzag_ ? fromZigzag(delta) : delta);
+    }
+    bool isValue(Slot slot) const {
+        return slot - 1 < codeCount_ && (!isHalf_ || isFiniteCode(slot));
+    }
+    Code valueOf(Slot slot) const { return Code(slot - 1); }
+    Code rest() const { return rest_; }
+    Code inactiveValue() const { return 0; }
+    static Slot firstInactive() { return Slot(kSlotCount); }
+    std::string textOf(Slot slot) const { return std::to_string(std::int32_t(slot)); }
+    std::string expected() const {
+        return "0.." + std::to_string(header_.codeCount) + ", the codes of its " +
+               header_.book.name() + " code book";
+    }
+
+  private:
+    bool isFiniteCode(Slot slot) const {
+        return std::isfinite(header_.book.valueOf(valueOf(slot)));
+    }
+
+    const DeltaHeader& header_;
+    Slot codeCount_;
+    bool hasZigzag_;
+    bool isHalf_;
+    Code rest_ = 0;
+};
+
+// The same where slots are made of the values' own bits.
+template <typename T>
+class ExactWords {
+  public:
+    using Slots = ExactSlots<T>;
+    using Slot = typename Slots::Slot;
+    using DeltaGrid = typename Slots::DeltaGrid;
+    using Tree = typename openvdb::tree::Tree4<T, 5, 4, 3>::Type;
+
+    explicit ExactWords(const DeltaHeader& header) : background_(valueAs<T>(header.background)) {}
+
+    Slot sum(Slot slot, typename Slots::Delta delta) const {
+        return slot + Slot(fromZigzag(delta));
+    }
+    bool isValue(Slot slot) const { return Slots::isValue(slot); }
+    T valueOf(Slot slot) const { return Slots::valueOf(slot); }
+    T rest() const { return background_; }
+    T inactiveValue() const { return background_; }
+    static Slot firstInactive() { return Slots::firstInactive(); }
+    std::string textOf(Slot slot) const { return std::to_string(slot); }
+    std::string expected() const {
+        return "0 or " + std::to_string(Slots::lowest()) + ".." + std::to_string(Slots::highest());
+    }
+
+  private:
+    T background_;
+};
+
 // The slots of one block and what became of them.
+template <typename Words>
 struct Block {
+    using Leaf = typename Words::Tree::LeafNodeType;
     glm::ivec3 position{0};
-    std::unique_ptr<Leaf> codes;
-    std::unique_ptr<Leaf> inactive;
-    Slot tile = kEmptySlot;  // of the whole block, if there is no leaf
+    std::unique_ptr<Leaf> values;
+    std::unique_ptr<CodeTree::Leaf> inactive;
+    typename Words::Slot tile = 0;  // of the whole block, if there is no leaf
 };
 
 // One delta can stand for as many blocks as there are slices until the next key slice, so memory is
 // asked for as it is needed.
 constexpr std::size_t kAskEvery = 1024;
-constexpr double kBlockBytes = sizeof(Block) + sizeof(Leaf) + Leaf::SIZE * sizeof(Code);
+template <typename Leaf>
+constexpr double kLeafBytes = sizeof(Leaf) + Leaf::SIZE * sizeof(typename Leaf::ValueType);
 
+template <typename Words>
 class Decoder {
   public:
-    Decoder(const DeltaHeader& header, const std::string& where)
+    using Slot = typename Words::Slot;
+    using DeltaLeaf = typename Words::DeltaGrid::TreeType::LeafNodeType;
+    using Leaf = typename Words::Tree::LeafNodeType;
+
+    Decoder(const DeltaHeader& header, const Words& words, const std::string& where)
         : header_(header),
+          words_(words),
           where_(where),
           first_(toSliceOrder(header.box.min, header.sliceAxis)),
           last_(toSliceOrder(header.box.max, header.sliceAxis)),
-          blocksPerSlab_(header.keyInterval / 8) {
-        if (!header.restActive) return;
-        restCode_ = header.book.codeOf(header.background);
-    }
+          blocksPerSlab_(header.keyInterval / 8),
+          inactiveValues_(Slot(header.inactiveValues.size())) {}
 
     int slabOf(int block) const { return (block - (first_.x >> 3)) / blocksPerSlab_; }
     int slabs() const { return header_.box.empty() ? 0 : slabOf(last_.x >> 3) + 1; }
@@ -79,9 +157,9 @@ class Decoder {
     }
 
     // Decodes a column: the leaves of one slab with the same u and v, in the order of slices.
-    std::vector<Block> decodeColumn(const DeltaLeaf* const* begin,
-                                    const DeltaLeaf* const* end) const {
-        std::vector<Block> blocks;
+    std::vector<Block<Words>> decodeColumn(const DeltaLeaf* const* begin,
+                                           const DeltaLeaf* const* end) const {
+        std::vector<Block<Words>> blocks;
         std::array<Slot, 64> slots{};
         glm::ivec3 position = blockOf(**begin);
         const int slab = slabOf(position.x);
@@ -95,13 +173,11 @@ class Decoder {
                 continue;
             }
             if (blocks.size() % kAskEvery == 0)
-                requireMemory(where_, double(kAskEvery) * kBlockBytes);
+                requireMemory(where_, kAskEvery * (sizeof(Block<Words>) + kLeafBytes<Leaf>));
             blocks.push_back(decodeBlock(position, changes ? *begin++ : nullptr, slots));
         }
         return blocks;
     }
-
-    Code restCode() const { return restCode_; }
 
   private:
     static bool isEmpty(const std::array<Slot, 64>& slots) {
@@ -110,48 +186,41 @@ class Decoder {
 
     std::string boxText() const { return placeText(first_) + " to " + placeText(last_); }
 
+    bool isInside(const glm::ivec3& place) const {
+        return place.x >= first_.x && place.x <= last_.x && place.y >= first_.y &&
+               place.y <= last_.y && place.z >= first_.z && place.z <= last_.z;
+    }
+
     // Adds one slice's deltas to the slots.
     void addSlice(const DeltaLeaf& leaf, int s, std::array<Slot, 64>& slots) const {
-        std::uint64_t word = leaf.getValueMask().getWord<std::uint64_t>(openvdb::Index(s));
-        const std::int32_t* deltas = leaf.buffer().data() + 64 * s;
+        std::uint64_t word = leaf.getValueMask().template getWord<std::uint64_t>(openvdb::Index(s));
+        const auto* deltas = leaf.buffer().data() + 64 * s;
         const auto slice = glm::ivec3(8 * blockOf(leaf)) + glm::ivec3(s, 0, 0);
         for (; word != 0; word &= word - 1) {
             const int n = std::countr_zero(word);
-            const std::int32_t delta = header_.hasZigzag() ? fromZigzag(deltas[n]) : deltas[n];
-            const std::int64_t slot = std::int64_t{slots[n]} + delta;
-            const glm::ivec3 place = slice + glm::ivec3(0, n >> 3, n & 7);
-            requireSlot(slot, place);
-            slots[n] = Slot(slot);
+            slots[n] = words_.sum(slots[n], deltas[n]);
+            requireSlot(slots[n], slice + glm::ivec3(0, n >> 3, n & 7));
         }
     }
 
-    void requireSlot(std::int64_t slot, const glm::ivec3& place) const {
-        const bool inside = glm::all(glm::greaterThanEqual(place, first_)) &&
-                            glm::all(glm::lessThanEqual(place, last_));
-        if (!inside)
+    void requireSlot(Slot slot, const glm::ivec3& place) const {
+        if (!isInside(place))
             fail(where_, "a delta at " + placeText(place), "deltas within the box " + boxText());
-        const bool code = slot >= 0 && slot <= header_.codeCount && isFiniteCode(slot);
-        const bool value = slot >= kSlotCount && slot < header_.slotCount();
-        if (code || value) return;
-        fail(where_, "deltas that lead to " + std::to_string(slot) + " at " + placeText(place),
-             "0.." + std::to_string(header_.codeCount) + ", the codes of its " +
-                 header_.book.name() + " code book");
+        const bool isNumber = Slot(slot - Words::firstInactive()) < inactiveValues_;
+        if (slot == 0 || words_.isValue(slot) || isNumber) return;
+        fail(where_, "deltas that lead to " + words_.textOf(slot) + " at " + placeText(place),
+             words_.expected());
     }
 
-    bool isFiniteCode(std::int64_t slot) const {
-        if (header_.book.kind != CodeBook::Kind::kHalf || slot == 0) return true;
-        return std::isfinite(header_.book.valueOf(Code(slot - 1)));
-    }
-
-    Block decodeBlock(const glm::ivec3& position, const DeltaLeaf* leaf,
-                      std::array<Slot, 64>& slots) const {
+    Block<Words> decodeBlock(const glm::ivec3& position, const DeltaLeaf* leaf,
+                             std::array<Slot, 64>& slots) const {
         std::array<Slot, 512> block;
         for (int s = 0; s < 8; ++s) {
             if (leaf) addSlice(*leaf, s, slots);
             const bool exists = 8 * position.x + s <= last_.x;
-            for (int n = 0; n < 64; ++n) block[64 * s + n] = exists ? slots[n] : kEmptySlot;
+            for (int n = 0; n < 64; ++n) block[64 * s + n] = exists ? slots[n] : Slot{0};
         }
-        Block result;
+        Block<Words> result;
         result.position = position;
         const bool uniform =
             std::all_of(block.begin(), block.end(), [&](Slot slot) { return slot == block[0]; });
@@ -163,54 +232,55 @@ class Decoder {
         return result;
     }
 
-    void makeLeaves(const std::array<Slot, 512>& slots, Block& block) const {
+    void makeLeaves(const std::array<Slot, 512>& slots, Block<Words>& block) const {
         const openvdb::Coord origin = blockOrigin(block.position, header_.sliceAxis);
-        block.codes = std::make_unique<Leaf>(origin, Code{0}, false);
+        block.values = std::make_unique<Leaf>(origin, words_.inactiveValue(), false);
         const Slot* slot = slots.data();
         forLeafVoxels(header_.sliceAxis, [&](const glm::ivec3& place, int n) {
             setVoxel(*slot++, 8 * block.position + place, openvdb::Index(n), origin, block);
         });
-        if (block.codes->isEmpty()) block.codes.reset();
+        if (block.values->isEmpty()) block.values.reset();
     }
 
     void setVoxel(Slot slot, const glm::ivec3& place, openvdb::Index n,
-                  const openvdb::Coord& origin, Block& block) const {
-        if (slot == kEmptySlot) {
-            const bool rests = header_.restActive &&
-                               glm::all(glm::greaterThanEqual(place, first_)) &&
-                               glm::all(glm::lessThanEqual(place, last_));
-            if (rests) block.codes->setValueOn(n, restCode_);
-        } else if (slot < kSlotCount) {
-            block.codes->setValueOn(n, Code(slot - 1));
+                  const openvdb::Coord& origin, Block<Words>& block) const {
+        if (slot == 0) {
+            if (header_.restActive && isInside(place)) block.values->setValueOn(n, words_.rest());
+        } else if (slot < Words::firstInactive()) {
+            block.values->setValueOn(n, words_.valueOf(slot));
         } else {
-            if (!block.inactive) block.inactive = std::make_unique<Leaf>(origin, Code{0}, false);
-            block.inactive->setValueOn(n, Code(slot - kSlotCount));
+            if (!block.inactive)
+                block.inactive = std::make_unique<CodeTree::Leaf>(origin, Code{0}, false);
+            block.inactive->setValueOn(n, Code(slot - Words::firstInactive()));
         }
     }
 
     const DeltaHeader& header_;
+    const Words& words_;
     const std::string& where_;
     glm::ivec3 first_;
     glm::ivec3 last_;
     int blocksPerSlab_;
-    Code restCode_ = 0;
+    Slot inactiveValues_;  // how many there are
 };
 
 // Other programs may have made tiles of what this one writes as voxels.
-void voxelizeTiles(openvdb::Int32Tree& tree, const std::string& where) {
+template <typename Tree>
+void voxelizeTiles(Tree& tree, const std::string& where) {
     const double voxels = double(tree.activeVoxelCount()) - double(tree.activeLeafVoxelCount());
     if (voxels == 0) return;
-    requireClaimedMemory(where, voxels * sizeof(Slot));
+    requireClaimedMemory(where, voxels * sizeof(typename Tree::ValueType));
     tree.voxelizeActiveTiles();
 }
 
 // Returns the leaves, ordered by slab, u, v and slice.
-std::vector<const DeltaLeaf*> orderedLeaves(const openvdb::Int32Tree& tree,
-                                            const Decoder& decoder) {
-    std::vector<const DeltaLeaf*> leaves;
+template <typename Tree, typename Words>
+std::vector<const typename Tree::LeafNodeType*> orderedLeaves(const Tree& tree,
+                                                              const Decoder<Words>& decoder) {
+    std::vector<const typename Tree::LeafNodeType*> leaves;
     tree.getNodes(leaves);
-    for (const DeltaLeaf* leaf : leaves) decoder.requireInside(*leaf);
-    std::sort(leaves.begin(), leaves.end(), [&](const DeltaLeaf* a, const DeltaLeaf* b) {
+    for (const auto* leaf : leaves) decoder.requireInside(*leaf);
+    std::sort(leaves.begin(), leaves.end(), [&](const auto* a, const auto* b) {
         const glm::ivec3 p = blockOf(*a), q = blockOf(*b);
         return std::tuple(decoder.slabOf(p.x), p.y, p.z, p.x) <
                std::tuple(decoder.slabOf(q.x), q.y, q.z, q.x);
@@ -219,8 +289,9 @@ std::vector<const DeltaLeaf*> orderedLeaves(const openvdb::Int32Tree& tree,
 }
 
 // Returns where in `leaves` each column begins, and at the end their number.
+template <typename DeltaLeaf, typename Words>
 std::vector<std::size_t> columnsOf(const std::vector<const DeltaLeaf*>& leaves,
-                                   const Decoder& decoder) {
+                                   const Decoder<Words>& decoder) {
     const auto column = [&](const DeltaLeaf* leaf) {
         const glm::ivec3 p = blockOf(*leaf);
         return glm::ivec3(decoder.slabOf(p.x), p.y, p.z);
@@ -229,7 +300,8 @@ std::vector<std::size_t> columnsOf(const std::vector<const DeltaLeaf*>& leaves,
         leaves, [&](const DeltaLeaf* a, const DeltaLeaf* b) { return column(a) == column(b); });
 }
 
-void checkSlabs(const std::vector<const DeltaLeaf*>& leaves, const Decoder& decoder,
+template <typename DeltaLeaf, typename Words>
+void checkSlabs(const std::vector<const DeltaLeaf*>& leaves, const Decoder<Words>& decoder,
                 const DeltaHeader& header, const std::string& where) {
     if (std::int64_t(header.slabDeltas.size()) != decoder.slabs()) {
         fail(where, std::to_string(header.slabDeltas.size()) + " slabs in \"delta_slab_deltas\"",
@@ -246,39 +318,40 @@ void checkSlabs(const std::vector<const DeltaLeaf*>& leaves, const Decoder& deco
 }
 
 // Puts blocks into the trees.
+template <typename Words>
 class Collector {
   public:
-    Collector(const DeltaHeader& header, const std::string& where, DecodedDeltas& decoded)
-        : header_(header),
-          where_(where),
-          codes_(decoded.codes->tree),
-          inactive_(decoded.inactive->tree) {}
+    using Tree = typename Words::Tree;
 
-    void add(std::vector<Block>& blocks) {
-        for (Block& block : blocks) {
+    Collector(const DeltaHeader& header, const Words& words, const std::string& where, Tree& values,
+              CodeTree::Tree& inactive)
+        : header_(header), words_(words), where_(where), values_(values), inactive_(inactive) {}
+
+    void add(std::vector<Block<Words>>& blocks) {
+        for (Block<Words>& block : blocks) {
             count(block);
             const openvdb::Coord corner = blockOrigin(block.position, header_.sliceAxis);
             askForNode(corner);
-            if (block.codes) codes_.addLeaf(block.codes.release());
+            if (block.values) values_.addLeaf(block.values.release());
             if (block.inactive) inactive_.addLeaf(block.inactive.release());
-            if (block.tile == kEmptySlot) continue;
-            if (block.tile < kSlotCount) {
-                codes_.addTile(1, corner, Code(block.tile - 1), true);
+            if (block.tile == 0) continue;
+            if (block.tile < Words::firstInactive()) {
+                values_.addTile(1, corner, words_.valueOf(block.tile), true);
             } else {
-                inactive_.addTile(1, corner, Code(block.tile - kSlotCount), true);
+                inactive_.addTile(1, corner, Code(block.tile - Words::firstInactive()), true);
             }
         }
     }
 
   private:
-    using Accessor = openvdb::tree::ValueAccessor<CodeTree::Tree>;
-    using Node = CodeTree::Tree::RootNodeType::ChildNodeType::ChildNodeType;
+    using Node = typename Tree::RootNodeType::ChildNodeType::ChildNodeType;
 
     // What is more than the file says is not waited for.
-    void count(const Block& block) {
+    void count(const Block<Words>& block) {
         if (header_.restActive) return;
-        if (block.codes) active_ += block.codes->onVoxelCount();
-        if (block.tile != kEmptySlot && block.tile < kSlotCount) active_ += Leaf::SIZE;
+        if (block.values) active_ += block.values->onVoxelCount();
+        if (block.tile != 0 && block.tile < Words::firstInactive())
+            active_ += Tree::LeafNodeType::SIZE;
         if (active_ <= header_.active) return;
         fail(where_, "at least " + std::to_string(active_) + " active voxels",
              std::to_string(header_.active) + ", as \"delta_active\" says");
@@ -287,51 +360,52 @@ class Collector {
     // Tiles are small, but not the nodes that they are in.
     void askForNode(const openvdb::Coord& corner) {
         constexpr int kAtOnce = 64;
-        if (codes_.probeConstNode<Node>(corner)) return;
+        if (values_.template probeConstNode<Node>(corner)) return;
         if (newNodes_++ % kAtOnce == 0) requireMemory(where_, 2.0 * kAtOnce * sizeof(Node));
     }
 
     const DeltaHeader& header_;
+    const Words& words_;
     const std::string& where_;
-    Accessor codes_;
-    Accessor inactive_;
+    openvdb::tree::ValueAccessor<Tree> values_;
+    openvdb::tree::ValueAccessor<CodeTree::Tree> inactive_;
     std::uint64_t active_ = 0;
     int newNodes_ = 0;
 };
 
-void fillRest(const DeltaHeader& header, Code restCode, const std::string& where,
-              CodeTree::Tree& tree) {
+template <typename Tree>
+void fillRest(const DeltaHeader& header, typename Tree::ValueType rest, const std::string& where,
+              Tree& tree) {
     const glm::ivec3 low = header.box.min, high = header.box.max;
     // A filled box has leaves at its faces and, within, a root tile for each 4096^3 voxels.
     const glm::dvec3 dims(header.box.dims());
     const double faces = 2 * (dims.x * dims.y + dims.y * dims.z + dims.z * dims.x);
-    requireClaimedMemory(where, faces / 64 * (sizeof(Leaf) + Leaf::SIZE * sizeof(Code)) +
+    requireClaimedMemory(where, faces / 64 * kLeafBytes<typename Tree::LeafNodeType> +
                                     double(header.box.voxels()) / 0x1p36 * 100);
-    tree.fill({{low.x, low.y, low.z}, {high.x, high.y, high.z}}, restCode, true);
+    tree.fill({{low.x, low.y, low.z}, {high.x, high.y, high.z}}, rest, true);
 }
 
-}  // namespace
-
-DecodedDeltas decodeDeltas(openvdb::Int32Grid& grid, const DeltaHeader& header,
-                           const std::string& where, const Listener& listener) {
+// @param values, inactive  empty trees
+template <typename Words>
+void decode(typename Words::DeltaGrid& grid, const DeltaHeader& header, const Words& words,
+            const std::string& where, const Listener& listener, typename Words::Tree& values,
+            CodeTree::Tree& inactive) {
     if (grid.background() != 0) fail(where, "background " + std::to_string(grid.background()), "0");
-    const Decoder decoder(header, where);
+    const Decoder<Words> decoder(header, words, where);
     voxelizeTiles(grid.tree(), where);
-    const std::vector<const DeltaLeaf*> leaves = orderedLeaves(grid.tree(), decoder);
+    const auto leaves = orderedLeaves(grid.tree(), decoder);
     checkSlabs(leaves, decoder, header, where);
 
-    DecodedDeltas decoded;
-    if (header.restActive && !header.box.empty())
-        fillRest(header, decoder.restCode(), where, decoded.codes->tree);
+    if (header.restActive && !header.box.empty()) fillRest(header, words.rest(), where, values);
     const std::vector<std::size_t> columns = columnsOf(leaves, decoder);
-    Collector collector(header, where, decoded);
+    Collector<Words> collector(header, words, where, values, inactive);
     // In portions, so that memory is asked for as it is needed.
     constexpr std::size_t kPortion = 2048;
     for (std::size_t begin = 0; begin + 1 < columns.size(); begin += kPortion) {
         const std::size_t count = std::min(kPortion, columns.size() - 1 - begin);
         const int blocksPerColumn = header.keyInterval / 8;
-        requireClaimedMemory(where, double(count) * blocksPerColumn * sizeof(Block));
-        std::vector<std::vector<Block>> blocks(count);
+        requireClaimedMemory(where, double(count) * blocksPerColumn * sizeof(Block<Words>));
+        std::vector<std::vector<Block<Words>>> blocks(count);
         parallelForChunks(count, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {
                 blocks[i] = decoder.decodeColumn(&leaves[columns[begin + i]],
@@ -341,7 +415,42 @@ DecodedDeltas decodeDeltas(openvdb::Int32Grid& grid, const DeltaHeader& header,
         for (auto& column : blocks) collector.add(column);
         listener.report(double(begin + count) / double(columns.size()));
     }
+}
+
+template <typename T>
+DecodedValues decodeExact(openvdb::GridBase& grid, const DeltaHeader& header,
+                          const std::string& where, const Listener& listener) {
+    using Words = ExactWords<T>;
+    auto values = openvdb::Grid<typename Words::Tree>::create(valueAs<T>(header.background));
+    DecodedValues decoded;
+    decode(static_cast<typename Words::DeltaGrid&>(grid), header, Words(header), where, listener,
+           values->tree(), decoded.inactive->tree);
+    decoded.values = std::move(values);
     return decoded;
+}
+
+}  // namespace
+
+DecodedDeltas decodeDeltas(openvdb::GridBase& grid, const DeltaHeader& header,
+                           const std::string& where, const Listener& listener) {
+    DecodedDeltas decoded;
+    decode(static_cast<openvdb::Int32Grid&>(grid), header, CodeWords(header), where, listener,
+           decoded.codes->tree, decoded.inactive->tree);
+    return decoded;
+}
+
+DecodedValues decodeValues(openvdb::GridBase& grid, const DeltaHeader& header,
+                           const std::string& where, const Listener& listener) {
+    switch (*header.exact) {
+        case ExactValues::kFloat32:
+            return decodeExact<float>(grid, header, where, listener);
+        case ExactValues::kFloat64:
+            return decodeExact<double>(grid, header, where, listener);
+        case ExactValues::kInt32:
+            return decodeExact<std::int32_t>(grid, header, where, listener);
+        default:
+            return decodeExact<std::int64_t>(grid, header, where, listener);
+    }
 }
 
 }  // namespace deltasplat

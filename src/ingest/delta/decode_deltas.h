@@ -20,12 +20,23 @@ struct DecodedDeltas {
     std::shared_ptr<CodeTree> inactive = std::make_shared<CodeTree>();
 };
 
+/// The same of a source whose values stand for themselves (DeltaHeader::exact).
+struct DecodedValues {
+    openvdb::GridBase::Ptr values;  ///< of the type DeltaHeader::exact; its background
+    std::shared_ptr<CodeTree> inactive = std::make_shared<CodeTree>();  ///< as above
+};
+
 /// Adds up the deltas along the slices, slab by slab. Active tiles of `grid` become voxels.
 /// Multi-threaded; deterministic.
+/// @param grid  as isDeltaGrid says, of codes
 /// @throw Error(kInput) if the deltas contradict the header or lead outside of the code book, or if
 ///        the header alone asks for more than memory holds; Error(kFailed) if the codes do not fit
 ///        into memory, whatever the listener throws
-DecodedDeltas decodeDeltas(openvdb::Int32Grid& grid, const DeltaHeader& header,
+DecodedDeltas decodeDeltas(openvdb::GridBase& grid, const DeltaHeader& header,
+                           const std::string& where, const Listener& listener);
+
+/// As decodeDeltas, of a grid of exact values.
+DecodedValues decodeValues(openvdb::GridBase& grid, const DeltaHeader& header,
                            const std::string& where, const Listener& listener);
 
 }  // namespace deltasplat

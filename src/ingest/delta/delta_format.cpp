@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "deltasplat/error.h"
@@ -132,7 +133,16 @@ std::vector<CodeBook::Piece> takePieces(const Entries& entries) {
 }
 
 void takeBook(const Entries& entries, DeltaHeader& header) {
-    switch (entries.choice("delta_code_book", {"integer", "half", "linear", "table", "pieces"})) {
+    std::vector<std::string> names = {"integer", "half", "linear", "table", "pieces"};
+    const int books = int(names.size());
+    if (header.version >= DeltaHeader::kExactVersion)
+        names.insert(names.end(), std::begin(kExactNames), std::end(kExactNames));
+    const int book = entries.choice("delta_code_book", names);
+    if (book >= books) {
+        header.exact = ExactValues(book - books);
+        return;
+    }
+    switch (book) {
         case 0:
             header.book = {CodeBook::Kind::kInteger, entries.finite("delta_offset"), 1, nullptr, 0};
             break;
@@ -178,48 +188,8 @@ void takeBox(const Entries& entries, DeltaHeader& header) {
     }
 }
 
-// What rests has to be a code, and the source's type has to hold the background and the book.
-void requireHeldValues(const Entries& entries, const DeltaHeader& header) {
-    const double background = header.background;
-    const auto refuse = [&](const std::string& expected) {
-        entries.fail("delta_background", numberText(background), expected);
-    };
-    if (header.restActive) {
-        const CodeBook& book = header.book;
-        const Code code = std::isfinite(background) ? book.codeOf(background) : Code{0};
-        if (code >= header.codeCount || book.valueOf(code) != background)
-            refuse("the value of a code, for active voxels to rest at");
-    }
-    const std::string& tree = header.sourceTree;
-    if (tree == "float" && std::isfinite(background) &&
-        double(valueAs<float>(background)) != background)
-        refuse("a float");
-    if (tree.empty() || tree == "float" || tree == "double") return;
-    if (background != std::floor(background) || std::fabs(background) > 0x1p63)
-        refuse("a whole number of type " + tree);
-    if (header.book.kind == CodeBook::Kind::kHalf)
-        entries.fail("delta_code_book", "\"half\"", "a book of whole numbers for type " + tree);
-}
-
-}  // namespace
-
-bool isDeltaGrid(const openvdb::GridBase& grid) {
-    return isDeltaGrid(grid.valueType(), grid) && grid.isType<openvdb::Int32Grid>();
-}
-
-bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata) {
-    return valueType == "int32" && bool(metadata[kVersionKey]);
-}
-
-void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
+void putBook(const DeltaHeader& header, openvdb::MetaMap& metadata) {
     using namespace openvdb;
-    const auto vector = [](const glm::ivec3& v) { return Vec3IMetadata({v.x, v.y, v.z}); };
-    metadata.insertMeta(kVersionKey, Int32Metadata(header.version));
-    metadata.insertMeta("delta_slice_axis", StringMetadata(kAxisNames[header.sliceAxis]));
-    metadata.insertMeta("delta_key_interval", Int32Metadata(header.keyInterval));
-    metadata.insertMeta("delta_box_min", vector(header.box.min));
-    metadata.insertMeta("delta_box_max", vector(header.box.max));
-    metadata.insertMeta("delta_code_book", StringMetadata(header.book.name()));
     metadata.insertMeta("delta_code_count", Int32Metadata(header.codeCount));
     if (header.book.kind == CodeBook::Kind::kInteger || header.book.kind == CodeBook::Kind::kLinear)
         metadata.insertMeta("delta_offset", DoubleMetadata(header.book.offset));
@@ -232,6 +202,87 @@ void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
         metadata.insertMeta("delta_pieces", StringMetadata(listText(numbers)));
     } else if (header.book.table)
         metadata.insertMeta("delta_table", StringMetadata(listText(*header.book.table)));
+}
+
+bool isValueOf(ExactValues type, double value) {
+    if (!std::isfinite(value)) return false;
+    switch (type) {
+        case ExactValues::kFloat32:
+            return double(valueAs<float>(value)) == value;
+        case ExactValues::kFloat64:
+            return true;
+        case ExactValues::kInt32:
+            return double(valueAs<std::int32_t>(value)) == value;
+        default:
+            return double(valueAs<std::int64_t>(value)) == value &&
+                   valueAs<std::int64_t>(value) <= ExactSlots<std::int64_t>::largest();
+    }
+}
+
+// Exact values are of the source's type, or of one that holds all that a file's type can be.
+void requireExactTree(const Entries& entries, const DeltaHeader& header) {
+    constexpr const char* kTrees[] = {"float", "double", "int32", "int64"};
+    const std::string tree = kTrees[int(*header.exact)];
+    if (header.sourceTree.empty() || header.sourceTree == tree) return;
+    entries.fail("delta_source_tree", "\"" + header.sourceTree + "\"",
+                 "\"" + tree + "\", for the code book " + kExactNames[int(*header.exact)]);
+}
+
+// What rests has to be a code, and the source's type has to hold the background and the book.
+void requireHeldValues(const Entries& entries, const DeltaHeader& header) {
+    const double background = header.background;
+    const auto refuse = [&](const std::string& expected) {
+        entries.fail("delta_background", numberText(background), expected);
+    };
+    if (header.restActive && header.exact) {
+        if (!isValueOf(*header.exact, background))
+            refuse(std::string("a ") + kExactNames[int(*header.exact)] +
+                   ", for active voxels to rest at");
+        const glm::ivec3& min = header.box.min;
+        if (header.box.empty() || min != glm::ivec3(0))
+            entries.fail("delta_box_min", openvdb::Vec3i(min.x, min.y, min.z).str(),
+                         std::string("[0, 0, 0] in a box of at least one voxel, for active "
+                                     "voxels to rest in a volume of ") +
+                             kExactNames[int(*header.exact)]);
+    } else if (header.restActive) {
+        const CodeBook& book = header.book;
+        const Code code = std::isfinite(background) ? book.codeOf(background) : Code{0};
+        if (code >= header.codeCount || book.valueOf(code) != background)
+            refuse("the value of a code, for active voxels to rest at");
+    }
+    const std::string& tree = header.sourceTree;
+    if (header.exact) requireExactTree(entries, header);
+    if (tree == "float" && std::isfinite(background) &&
+        double(valueAs<float>(background)) != background)
+        refuse("a float");
+    if (tree.empty() || tree == "float" || tree == "double") return;
+    if (background != std::floor(background) || std::fabs(background) > 0x1p63)
+        refuse("a whole number of type " + tree);
+    if (!header.exact && header.book.kind == CodeBook::Kind::kHalf)
+        entries.fail("delta_code_book", "\"half\"", "a book of whole numbers for type " + tree);
+}
+
+}  // namespace
+
+bool isDeltaGrid(const openvdb::GridBase& grid) {
+    return isDeltaGrid(grid.valueType(), grid) &&
+           (grid.isType<openvdb::Int32Grid>() || grid.isType<openvdb::Int64Grid>());
+}
+
+bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata) {
+    return (valueType == "int32" || valueType == "int64") && bool(metadata[kVersionKey]);
+}
+
+void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
+    using namespace openvdb;
+    const auto vector = [](const glm::ivec3& v) { return Vec3IMetadata({v.x, v.y, v.z}); };
+    metadata.insertMeta(kVersionKey, Int32Metadata(header.version));
+    metadata.insertMeta("delta_slice_axis", StringMetadata(kAxisNames[header.sliceAxis]));
+    metadata.insertMeta("delta_key_interval", Int32Metadata(header.keyInterval));
+    metadata.insertMeta("delta_box_min", vector(header.box.min));
+    metadata.insertMeta("delta_box_max", vector(header.box.max));
+    metadata.insertMeta("delta_code_book", StringMetadata(header.bookName()));
+    if (!header.exact) putBook(header, metadata);
     metadata.insertMeta("delta_source_type", StringMetadata(header.sourceType));
     metadata.insertMeta("delta_source_tree", StringMetadata(header.sourceTree));
     metadata.insertMeta("delta_source_map", StringMetadata(header.sourceMap));
@@ -246,10 +297,14 @@ void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
     metadata.insertMeta("delta_max_error", DoubleMetadata(header.maxError));
 }
 
+std::string DeltaHeader::bookName() const {
+    return exact ? kExactNames[int(*exact)] : book.name();
+}
+
 DeltaHeader takeDeltaHeader(const openvdb::MetaMap& metadata, const std::string& where) {
     const Entries entries(metadata, where);
     DeltaHeader header;
-    header.version = entries.whole(kVersionKey, 1, DeltaHeader::kVersion);
+    header.version = entries.whole(kVersionKey, 1, DeltaHeader::kExactVersion);
     header.sliceAxis = entries.choice("delta_slice_axis", {"x", "y", "z"});
     header.keyInterval = entries.whole("delta_key_interval", 8, 1 << 30);
     if (header.keyInterval % 8 != 0)

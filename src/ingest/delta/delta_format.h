@@ -4,24 +4,30 @@
 #include <openvdb/Grid.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/ingest/volume.h"
+#include "ingest/delta/exact_slots.h"
 
 namespace deltasplat {
 
 /// What a delta grid's metadata says; docs/delta-grid.md specifies it.
 struct DeltaHeader {
-    /// The one that is written, and the largest that is read. Of 1 and 2 (books of pieces) deltas
-    /// are plain numbers; from 3 on they are without sign (ingest/delta/zigzag.h).
+    /// The one that is written. Of 1 and 2 (books of pieces) deltas are plain numbers; from 3 on
+    /// they are without sign (ingest/delta/zigzag.h).
     static constexpr int kVersion = 3;
+    /// The one that is written of exact values, and the largest that is read.
+    static constexpr int kExactVersion = 4;
 
     int version = kVersion;
     int sliceAxis = 2;
     int keyInterval = 8;
     IndexBox box;  ///< in the source's index space
+    /// Where there is one, slots are ExactSlots, and neither `book` nor `codeCount` means anything.
+    std::optional<ExactValues> exact;
     CodeBook book;
     int codeCount = kCodeCount;  ///< codes are below this
     std::string sourceType;      ///< as Volume::type
@@ -30,16 +36,15 @@ struct DeltaHeader {
     std::string space;       ///< as Volume::space
     double background = 0;
     bool restActive = false;  ///< what no delta speaks of is active (a volume without empty places)
-    std::vector<double> inactiveValues;     ///< of slots from kSlotCount on
+    std::vector<double> inactiveValues;     ///< of slots from kSlotCount, or firstInactive, on
     std::uint64_t active = 0;               ///< active voxels of the source
     std::vector<std::uint64_t> slabDeltas;  ///< deltas of each slab
     double tolerance = 0;
     double toleranceValue = 0;
     double maxError = 0;
 
+    std::string bookName() const;
     bool hasZigzag() const { return version >= 3; }
-    /// Largest slot + 1.
-    Slot slotCount() const { return kSlotCount + Slot(inactiveValues.size()); }
 };
 
 /// Names of the source grid's own metadata in a delta grid begin with this.
@@ -47,7 +52,7 @@ inline constexpr const char* kSourcePrefix = "source:";
 
 /// Returns whether a grid is a delta grid of any version.
 bool isDeltaGrid(const openvdb::GridBase& grid);
-/// Returns the same by a grid's value type ("int32") and metadata.
+/// Returns the same by a grid's value type ("int32", "int64") and metadata.
 bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata);
 
 /// Adds the header to a grid's metadata.

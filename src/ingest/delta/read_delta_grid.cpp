@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/delta/read_delta_grid.h"
 
-#include <openvdb/tools/Prune.h>
-
 #include <cmath>
 #include <glm/matrix.hpp>
 #include <numeric>
@@ -12,6 +10,8 @@
 #include "deltasplat/error.h"
 #include "ingest/codes/code_statistics.h"
 #include "ingest/delta/decode_deltas.h"
+#include "ingest/delta/read_exact_deltas.h"
+#include "ingest/delta/restored_grid.h"
 #include "ingest/grids/grid_codes.h"
 #include "ingest/grids/grid_from_codes.h"
 #include "ingest/grids/source_grid.h"
@@ -43,57 +43,21 @@ DeltaOrigin originOf(const DeltaHeader& header) {
     origin.keyInterval = header.keyInterval;
     origin.deltas =
         std::accumulate(header.slabDeltas.begin(), header.slabDeltas.end(), std::uint64_t{0});
+    origin.codeBook = header.bookName();
     origin.tolerance = header.tolerance;
     origin.toleranceValue = header.toleranceValue;
     origin.maxError = header.maxError;
     return origin;
 }
 
-// Sets what inactive voxels hold where that is not the background.
-template <typename Tree>
-void setInactive(const CodeTree::Tree& inactive, const std::vector<double>& values, Tree& tree) {
-    openvdb::tree::ValueAccessor<Tree> accessor(tree);
-    const auto valueOf = [&](Code number) {
-        return valueAs<typename Tree::ValueType>(values[number]);
-    };
-    for (auto leaf = inactive.cbeginLeaf(); leaf; ++leaf) {
-        for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
-            accessor.setValueOff(voxel.getCoord(), valueOf(*voxel));
-    }
-    auto tile = inactive.cbeginValueOn();
-    tile.setMaxDepth(CodeTree::Tree::ValueOnCIter::LEAF_DEPTH - 1);
-    for (; tile; ++tile) accessor.addTile(1, tile.getCoord(), valueOf(*tile), false);
-}
-
-template <typename Grid>
-openvdb::GridBase::Ptr restoredGrid(const DeltaHeader& header, const DecodedDeltas& decoded) {
-    using Value = typename Grid::ValueType;
-    auto grid =
-        gridFromCodes<Grid>(decoded.codes->tree, header.book, valueAs<Value>(header.background));
-    if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
-        setInactive(decoded.inactive->tree, header.inactiveValues, grid->tree());
-        openvdb::tools::prune(grid->tree());
-    }
-    return grid;
-}
-
-openvdb::GridBase::Ptr restoreGrid(const DeltaHeader& header, const DecodedDeltas& decoded) {
-    if (header.sourceTree == "float") return restoredGrid<openvdb::FloatGrid>(header, decoded);
-    if (header.sourceTree == "double") return restoredGrid<openvdb::DoubleGrid>(header, decoded);
-    if (header.sourceTree == "int32") return restoredGrid<openvdb::Int32Grid>(header, decoded);
-    if (header.sourceTree == "int64") return restoredGrid<openvdb::Int64Grid>(header, decoded);
-    if (header.sourceTree == "bool") return restoredGrid<openvdb::BoolGrid>(header, decoded);
-    return restoredGrid<openvdb::MaskGrid>(header, decoded);
-}
-
-// Puts the source's own metadata back under their names.
-void restoreMetadata(const openvdb::MetaMap& from, openvdb::MetaMap& to) {
-    const std::string_view prefix = kSourcePrefix;
-    to.clearMetadata();
-    for (auto entry = from.beginMeta(); entry != from.endMeta(); ++entry) {
-        if (entry->first.starts_with(prefix) && entry->first.size() > prefix.size())
-            to.insertMeta(entry->first.substr(prefix.size()), *entry->second);
-    }
+// The grid has the type that its code book asks for.
+void requireType(const openvdb::GridBase& grid, const DeltaHeader& header,
+                 const std::string& where) {
+    const bool isWide = header.exact && *header.exact != ExactValues::kFloat32;
+    const std::string expected = isWide ? "int64" : "int32";
+    if (grid.valueType() == expected) return;
+    fail(where, "deltas of type " + grid.valueType(),
+         expected + " for the code book " + header.bookName());
 }
 
 std::string sourceClass(const openvdb::MetaMap& metadata) {
@@ -112,31 +76,32 @@ void fillVolume(const DeltaHeader& header, DecodedDeltas decoded, const std::str
     volume.histogram = histogramOf(decoded.codes->tree);
     volume.codes = std::move(decoded.codes);
     summarize(volume);
-    if (volume.activeCount == header.active) return;
-    fail(where, std::to_string(volume.activeCount) + " active voxels",
-         std::to_string(header.active) + ", as \"delta_active\" says");
+    requireActiveCount(volume.activeCount, header, where);
 }
 
 }  // namespace
 
-Volume readDeltaGrid(openvdb::Int32Grid& grid, const openvdb::MetaMap::ConstPtr& fileMetadata,
+Volume readDeltaGrid(openvdb::GridBase& grid, const openvdb::MetaMap::ConstPtr& fileMetadata,
                      const std::string& where, const ReadOptions& options,
                      const Listener& listener) {
     const DeltaHeader header = takeDeltaHeader(grid, where);
-    DecodedDeltas decoded = decodeDeltas(grid, header, where, listener);
-
+    requireType(grid, header, where);
     Volume volume;
     volume.name = grid.getName();
     volume.space = header.space;
     volume.origin = originOf(header);
     volume.gridClass = sourceClass(grid);
     volume.worldFromIndex = sourceTransform(grid.transform(), header.sliceAxis);
+    if (header.exact) {
+        readExactDeltas(grid, header, fileMetadata, {listener, where, header.sourceType, options},
+                        volume);
+        return volume;
+    }
+    DecodedDeltas decoded = decodeDeltas(grid, header, where, listener);
     const bool fog = options.levelSetToFog && volume.gridClass == "level set";
     openvdb::GridBase::Ptr source;
     if (!header.sourceTree.empty() && (options.keepSource || fog)) {
-        source = restoreGrid(header, decoded);
-        restoreMetadata(grid, *source);
-        source->setTransform(makeTransformOfType(header.sourceMap, volume.worldFromIndex));
+        source = restoreGrid(header, decoded, grid, volume.worldFromIndex);
     }
     // Values between two floats come back as the nearer one.
     if (options.keepSource && header.sourceType == "float32" && !header.book.isExact()) {

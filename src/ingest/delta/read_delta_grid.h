@@ -13,7 +13,7 @@ namespace deltasplat {
 /// `options.levelSetToFog` says.
 /// @param grid  as isDeltaGrid says; active tiles become voxels
 /// @throw Error(kInput) if the grid is damaged; as readVolume
-Volume readDeltaGrid(openvdb::Int32Grid& grid, const openvdb::MetaMap::ConstPtr& fileMetadata,
+Volume readDeltaGrid(openvdb::GridBase& grid, const openvdb::MetaMap::ConstPtr& fileMetadata,
                      const std::string& where, const ReadOptions& options,
                      const Listener& listener);
 

@@ -19,8 +19,8 @@ GridList listGrids(const std::filesystem::path& file) {
         } else {
             list.others.push_back(grid.describe());
         }
-        if (grid.isScalar() && grid.type == "int32" &&
-            isDeltaGrid(grid.type, *vdb.metadata(grid))) {
+        const bool mayBeDelta = grid.type == "int32" || grid.type == "int64";
+        if (mayBeDelta && isDeltaGrid(grid.type, *vdb.metadata(grid))) {
             list.deltas.push_back(grid.name);
         } else {
             list.ordinary.push_back(grid.describe());

@@ -115,8 +115,7 @@ Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string
         decoding.progress = [&](double share) {
             listener.report(kReadShare + (1 - kReadShare) * share);
         };
-        volume = readDeltaGrid(static_cast<openvdb::Int32Grid&>(*loaded), file.metadata(), where,
-                               options, decoding);
+        volume = readDeltaGrid(*loaded, file.metadata(), where, options, decoding);
         settleEmpty(volume, coding);
     } else {
         volume = volumeOfGrid(loaded, coding, file.metadata());

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/delta/read_exact_deltas.h"
+
+#include <openvdb/tools/Dense.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "ingest/delta/decode_deltas.h"
+#include "ingest/delta/restored_grid.h"
+#include "ingest/dense/dense_source.h"
+#include "ingest/grids/source_grid.h"
+
+namespace deltasplat {
+namespace {
+
+// Hands on a grid's box, layer by layer.
+template <typename Grid>
+void forEachLayer(const Grid& grid, const glm::ivec3& size, const DenseSource::LayerUse& use,
+                  const Listener& listener) {
+    using Value = typename Grid::ValueType;
+    using Layer = openvdb::tools::Dense<Value, openvdb::tools::LayoutXYZ>;
+    std::vector<Value> values(std::size_t(size.x) * std::size_t(size.y) *
+                              DenseSource::kLayerSlices);
+    for (int first = 0; first < size.z; first += DenseSource::kLayerSlices) {
+        const int slices = std::min(size.z - first, DenseSource::kLayerSlices);
+        Layer layer({{0, 0, first}, {size.x - 1, size.y - 1, first + slices - 1}}, values.data());
+        openvdb::tools::copyToDense(grid, layer);
+        use(first, slices, reinterpret_cast<const std::byte*>(values.data()));
+        listener.report(double(first + slices) / double(size.z));
+    }
+}
+
+constexpr RawType kRawTypes[] = {RawType::kFloat32, RawType::kFloat64, RawType::kInt32,
+                                 RawType::kInt64};
+
+DenseSource denseSource(const openvdb::GridBase& grid, const DeltaHeader& header,
+                        const GridCodesOptions& options, const Volume& volume) {
+    DenseSource source;
+    source.where = options.where;
+    source.name = volume.name;
+    source.dims = glm::i64vec3(header.box.dims());
+    source.type = kRawTypes[int(*header.exact)];
+    source.bigEndian = std::endian::native == std::endian::big;
+    source.worldFromIndex = volume.worldFromIndex;
+    source.space = header.space;
+    source.forEachLayer = [&grid, size = header.box.dims()](const DenseSource::LayerUse& use,
+                                                            const Listener& listener) {
+        using Grids = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
+                                        openvdb::Int64Grid>;
+        grid.apply<Grids>([&](const auto& typed) { forEachLayer(typed, size, use, listener); });
+    };
+    return source;
+}
+
+}  // namespace
+
+void readExactDeltas(openvdb::GridBase& deltas, const DeltaHeader& header,
+                     const openvdb::MetaMap::ConstPtr& fileMetadata,
+                     const GridCodesOptions& options, Volume& volume) {
+    const std::string& where = options.where;
+    const openvdb::GridBase::Ptr source =
+        restoreGrid(header, decodeValues(deltas, header, where, options.listener), deltas,
+                    volume.worldFromIndex);
+    requireActiveCount(source->activeVoxelCount(), header, where);
+    if (header.restActive) {
+        ReadOptions reading = options.reading;
+        reading.keepSource = reading.keepInexact = false;
+        Volume dense =
+            readDense(denseSource(*source, header, options, volume), reading, options.listener);
+        dense.origin = volume.origin;
+        dense.type = header.sourceType;
+        dense.gridClass = volume.gridClass;
+        volume = std::move(dense);
+    } else {
+        fillFromGrid(*source, options, volume);
+    }
+    const bool isExact = volume.codeBook.isExact();
+    const bool keeps = options.reading.keepSource ? volume.hasBackground || !isExact
+                                                  : options.reading.keepInexact && !isExact;
+    if (keeps) volume.source = std::make_shared<const SourceGrid>(SourceGrid{source, fileMetadata});
+}
+
+}  // namespace deltasplat
