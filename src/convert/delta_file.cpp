@@ -24,6 +24,7 @@
 #include "ingest/delta/number_list.h"
 #include "ingest/delta/read_delta_grid.h"
 #include "ingest/delta/zigzag.h"
+#include "ingest/grids/grid_from_codes.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "number_text.h"
@@ -128,24 +129,39 @@ openvdb::math::Transform::Ptr permutedTransform(const glm::dmat4& worldFromIndex
 
 // Whether a table, which files have as text, is more than its codes can save, which is no more than
 // what values have beyond 16 bits.
-bool isTableLarger(const Volume& volume, const openvdb::GridBase& source) {
+bool isTableLarger(const Volume& volume) {
     if (volume.codeBook.kind != CodeBook::Kind::kTable) return false;
-    const bool isNarrow =
-        source.isType<openvdb::FloatGrid>() || source.isType<openvdb::Int32Grid>();
-    const std::uint64_t saved = (isNarrow ? 2 : 6) * volume.activeCount;
-    return listText(*volume.codeBook.table).size() > saved;
+    const bool isWide = volume.type == "double" || volume.type.ends_with("64");
+    return listText(*volume.codeBook.table).size() > (isWide ? 6 : 2) * volume.activeCount;
 }
 
-// Whether values go into the file by their own bits: they have no exact code book that is worth its
-// bytes, and nobody asked for another.
-bool storesValues(const Volume& volume, const openvdb::GridBase* source,
-                  const DeltaFileOptions& options) {
-    if (!source || options.codesOnly || !options.tolerance.isExact()) return false;
-    if (volume.codeBook.isExact() && !isTableLarger(volume, *source)) return false;
+// The grid of a volume without empty places, whose codes are exact.
+openvdb::GridBase::ConstPtr gridOfCodes(const Volume& volume) {
+    const CodeTree::Tree& codes = volume.codes->tree;
+    if (volume.type == "float32")
+        return gridFromCodes<openvdb::FloatGrid>(codes, volume.codeBook, 0);
+    if (volume.type == "int32") return gridFromCodes<openvdb::Int32Grid>(codes, volume.codeBook, 0);
+    if (volume.type == "uint32" || volume.type == "int64")
+        return gridFromCodes<openvdb::Int64Grid>(codes, volume.codeBook, 0);
+    return gridFromCodes<openvdb::DoubleGrid>(codes, volume.codeBook, 0);
+}
+
+// Returns what goes into the file by its values' own bits, null if codes do: values have an exact
+// code book that is worth its bytes, or less is asked for, or there is no other way.
+openvdb::GridBase::ConstPtr valuesToStore(const Volume& volume, const DeltaFileOptions& options) {
+    if (options.codesOnly || !options.tolerance.isExact()) return nullptr;
     // Deltas of codes have lost already what their source had besides.
-    if (volume.origin && volume.origin->maxError > 0) return false;
-    const bool isPlaced = volume.hasBackground || volume.box.min == glm::ivec3(0);
-    return isPlaced && exactValuesOf(*source).has_value();
+    if (volume.origin && volume.origin->maxError > 0) return nullptr;
+    const bool isExact = volume.codeBook.isExact();
+    if (isExact && !isTableLarger(volume)) return nullptr;
+    if (!volume.hasBackground && volume.box.min != glm::ivec3(0)) return nullptr;
+    openvdb::GridBase::ConstPtr grid;
+    if (volume.source) {
+        grid = volume.source->grid;
+    } else if (isExact && !volume.hasBackground) {
+        grid = gridOfCodes(volume);
+    }
+    return grid && exactValuesOf(*grid) ? grid : nullptr;
 }
 
 // Deltas go into files as numbers without sign.
@@ -252,10 +268,10 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
                              ? options.keyInterval
                              : defaultKeyInterval(header.box.dims()[header.sliceAxis]);
     listener.report(0.3);
+    const openvdb::GridBase::ConstPtr values = valuesToStore(volume, options);
     const openvdb::GridBase::Ptr grid =
-        storesValues(volume, source.get(), options)
-            ? takeValues(volume, *source, inactive, header)
-            : takeCodes(volume, rest, inactive, options.tolerance, header);
+        values ? takeValues(volume, *values, inactive, header)
+               : takeCodes(volume, rest, inactive, options.tolerance, header);
     listener.report(0.7);
     if (source && volume.hasBackground) {
         header.sourceTree = typeOf(*source);

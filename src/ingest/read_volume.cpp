@@ -115,8 +115,11 @@ void summarize(Volume& volume) {
     if (volume.activeCount > 0) volume.mostFrequent = mostFrequentCode(volume);
 }
 
-void warnOfCodeError(const std::string& where, const Volume& volume, const Listener& listener) {
+void warnOfCodeError(const std::string& where, const Volume& volume, const ReadOptions& options,
+                     const Listener& listener) {
     constexpr double kWorthSaying = 1e-3;
+    // Who keeps the source has its values.
+    if (options.keepSource && !options.bits) return;
     if (!(volume.codeError.relative > kWorthSaying)) return;
     char percent[32];
     std::snprintf(percent, sizeof percent, "%.3g", 100 * volume.codeError.relative);

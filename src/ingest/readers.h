@@ -49,6 +49,7 @@ void requireFloatNan(double nanValue);
 void summarize(Volume& volume);
 
 /// Warns if values are kept so badly that a picture may show it.
-void warnOfCodeError(const std::string& where, const Volume& volume, const Listener& listener);
+void warnOfCodeError(const std::string& where, const Volume& volume, const ReadOptions& options,
+                     const Listener& listener);
 
 }  // namespace deltasplat

@@ -16,6 +16,9 @@ add_test(NAME cli.delta.round_trip COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/script
     ${DELTASPLAT_FIXTURES}/cube_8x8x8_uint8.raw)
 set_tests_properties(cli.delta.round_trip PROPERTIES LABELS cli TIMEOUT 120
                      FIXTURES_REQUIRED cli_files)
+add_test(NAME cli.delta.exact COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/exact_deltas.sh
+    $<TARGET_FILE:deltasplat_tool> ${CMAKE_CURRENT_BINARY_DIR}/cli/exact_deltas)
+set_tests_properties(cli.delta.exact PROPERTIES LABELS cli TIMEOUT 120)
 add_test(NAME cli.delta.input_bytes
     COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/input_bytes.sh $<TARGET_FILE:deltasplat_tool>
     ${CMAKE_CURRENT_BINARY_DIR}/cli/input_bytes ${DELTASPLAT_FIXTURES} ${DELTASPLAT_CASE_FILES}

@@ -101,7 +101,8 @@ TEST(DeltaData, EveryVolumeComesBack) {
             expectRestored(sources[i], entries[i], restored[i]);
     }
     // Only these have more different 32-bit values than there are codes, or than a table is worth.
-    EXPECT_EQ(exact, " test.vdb densityAndHeat.vdb smoke_000002.vdb smoke_000003.vdb");
+    EXPECT_EQ(exact,
+              " test.vdb densityAndHeat.vdb densityAndHeat.vdb smoke_000002.vdb smoke_000003.vdb");
 }
 
 // What a tolerance promises, on the real thing: scanner noise, smoke, a field that never ends.

@@ -257,7 +257,7 @@ void readCodes(const DenseSource& source, const ReadOptions& options, const Surv
     volume.mostFrequent = FrequentValue{volume.mostFrequent->value, 0};
     keepMostFrequent(frequent, counts, volume);
     volume.codeError = meter.error();
-    warnOfCodeError(source.where, volume, listener);
+    warnOfCodeError(source.where, volume, options, listener);
 }
 
 // @param nonFinite  what NaN and infinities are read as; empty: as they are

@@ -147,7 +147,7 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     volume.valueMin = scan.census.min;
     volume.valueMax = scan.census.max;
     volume.codeError = meter.error();
-    warnOfCodeError(options.where, volume, options.listener);
+    warnOfCodeError(options.where, volume, options.reading, options.listener);
 }
 
 }  // namespace

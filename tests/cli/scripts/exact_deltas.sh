@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Delta grids of floats of which there are more than codes: every byte comes back, whatever the
+# number of threads, and they render as their sources do; who asks for less is told what is lost.
+# Usage: exact_deltas.sh PROGRAM SCRATCH
+set -euo pipefail
+program=$1
+scratch=$2
+rm -rf "$scratch"
+mkdir -p "$scratch"
+cd "$scratch"
+fail() { echo "$1" >&2; exit 1; }
+
+raw=noise_96x80x72_float32.raw
+"$program" synth engine "$raw" --dims 96x80x72 --type float32 --noise 0.1 -qq
+"$program" synth engine noise.vdb --dims 96x80x72 --noise 0.1 -qq
+for source in "$raw" noise.vdb; do
+    suffix=${source##*.}
+    "$program" delta "$source" one.vdb --threads 1 --stats stats.json >said.txt 2>&1
+    "$program" delta "$source" two.vdb --threads 3 -q
+    cmp one.vdb two.vdb
+    [[ ! -s said.txt ]] || fail "delta $source: said $(cat said.txt); expected nothing"
+    grep -q '"code_book": "float32"' stats.json || fail "stats.json: got no code book float32"
+    grep -q '"lossless": true' stats.json || fail "stats.json: got no lossless delta grid"
+    "$program" restore one.vdb "back_96x80x72_float32.$suffix" --stats stats.json -q
+    grep -q '"code_book": "float32"' stats.json || fail "restore: got no code book float32"
+    if [[ $suffix == raw ]]; then
+        cmp "$source" back_96x80x72_float32.raw
+    else
+        "$program" diff "$source" back_96x80x72_float32.vdb --fail 0 --warn 0 -q
+    fi
+    "$program" render "$source" -o source.exr --float -q
+    "$program" render one.vdb -o delta.exr --float -q
+    idiff -fail 0 -failpercent 0 -hardfail 0 -warn 0 source.exr delta.exr >/dev/null
+    "$program" info one.vdb | grep -q 'delta grid .* exact' || fail "info: got no exact delta grid"
+
+    # Less is smaller, and says so.
+    for less in --codes "--bits 12"; do
+        # shellcheck disable=SC2086
+        "$program" delta "$source" less.vdb $less --stats stats.json >said.txt
+        grep -q '^largest error ' said.txt || fail "delta $less: said no largest error"
+        grep -q '"lossless": false' stats.json || fail "delta $less: got a lossless delta grid"
+        (($(stat -c %s less.vdb) < $(stat -c %s one.vdb))) || fail "delta $less: got no less bytes"
+        # shellcheck disable=SC2086
+        if "$program" delta "$source" none.vdb $less --max-error 0 -q 2>said.txt; then
+            fail "delta $less --max-error 0: got exit code 0; expected 1"
+        fi
+        grep -q 'got a largest error of' said.txt || fail "delta $less: got $(cat said.txt)"
+        [[ ! -e none.vdb ]] || fail "delta $less --max-error 0: wrote a file"
+    done
+done
+
+# A table of nearly as many values as voxels is larger than their own bits.
+few=noise_32x32x32_float32.raw
+"$program" synth engine "$few" --dims 32x32x32 --type float32 --noise 0.1 -qq
+"$program" delta "$few" few.vdb --stats stats.json -q
+grep -q '"code_book": "float32"' stats.json || fail "$few: got no code book float32"
+"$program" restore few.vdb back_32x32x32_float32.raw -q
+cmp "$few" back_32x32x32_float32.raw
+"$program" delta "$few" table.vdb --codes --stats stats.json -q
+grep -q '"code_book": "table"' stats.json || fail "$few --codes: got no table"
+grep -q '"lossless": true' stats.json || fail "$few --codes: got no lossless delta grid"
+(($(stat -c %s few.vdb) < $(stat -c %s table.vdb))) || fail "$few: got no less bytes than a table"
+echo "Exact: raw volumes and a grid"
