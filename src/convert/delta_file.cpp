@@ -21,12 +21,14 @@
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/error.h"
 #include "ingest/delta/delta_format.h"
+#include "ingest/delta/delta_origin.h"
 #include "ingest/delta/number_list.h"
 #include "ingest/delta/read_delta_grid.h"
 #include "ingest/delta/zigzag.h"
 #include "ingest/grids/grid_from_codes.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/vdb/vdb_transform.h"
+#include "memory.h"
 #include "number_text.h"
 #include "parallel.h"
 #include "view/affine.h"
@@ -135,15 +137,23 @@ bool isTableLarger(const Volume& volume) {
     return listText(*volume.codeBook.table).size() > (isWide ? 6 : 2) * volume.activeCount;
 }
 
-// The grid of a volume without empty places, whose codes are exact.
+template <typename Grid>
 openvdb::GridBase::ConstPtr gridOfCodes(const Volume& volume) {
+    using Leaf = typename Grid::TreeType::LeafNodeType;
     const CodeTree::Tree& codes = volume.codes->tree;
-    if (volume.type == "float32")
-        return gridFromCodes<openvdb::FloatGrid>(codes, volume.codeBook, 0);
-    if (volume.type == "int32") return gridFromCodes<openvdb::Int32Grid>(codes, volume.codeBook, 0);
+    requireMemory("grid \"" + volume.name + "\"",
+                  double(codes.leafCount()) *
+                      double(sizeof(Leaf) + Leaf::SIZE * sizeof(typename Leaf::ValueType)));
+    return gridFromCodes<Grid>(codes, volume.codeBook, 0);
+}
+
+// The grid of a volume without empty places, whose codes are exact.
+openvdb::GridBase::ConstPtr gridOfExactCodes(const Volume& volume) {
+    if (volume.type == "float32") return gridOfCodes<openvdb::FloatGrid>(volume);
+    if (volume.type == "int32") return gridOfCodes<openvdb::Int32Grid>(volume);
     if (volume.type == "uint32" || volume.type == "int64")
-        return gridFromCodes<openvdb::Int64Grid>(codes, volume.codeBook, 0);
-    return gridFromCodes<openvdb::DoubleGrid>(codes, volume.codeBook, 0);
+        return gridOfCodes<openvdb::Int64Grid>(volume);
+    return gridOfCodes<openvdb::DoubleGrid>(volume);
 }
 
 // Returns what goes into the file by its values' own bits, null if codes do: values have an exact
@@ -151,7 +161,7 @@ openvdb::GridBase::ConstPtr gridOfCodes(const Volume& volume) {
 openvdb::GridBase::ConstPtr valuesToStore(const Volume& volume, const DeltaFileOptions& options) {
     if (options.codesOnly || !options.tolerance.isExact()) return nullptr;
     // Deltas of codes have lost already what their source had besides.
-    if (volume.origin && volume.origin->maxError > 0) return nullptr;
+    if (isOfCodes(volume) && volume.origin->maxError > 0) return nullptr;
     const bool isExact = volume.codeBook.isExact();
     if (isExact && !isTableLarger(volume)) return nullptr;
     if (!volume.hasBackground && volume.box.min != glm::ivec3(0)) return nullptr;
@@ -159,7 +169,7 @@ openvdb::GridBase::ConstPtr valuesToStore(const Volume& volume, const DeltaFileO
     if (volume.source) {
         grid = volume.source->grid;
     } else if (isExact && !volume.hasBackground) {
-        grid = gridOfCodes(volume);
+        grid = gridOfExactCodes(volume);
     }
     return grid && exactValuesOf(*grid) ? grid : nullptr;
 }
@@ -194,7 +204,7 @@ DeltaHeader headerOf(const Volume& volume, const Rest& rest, const InactiveValue
     const double t = tolerance.relative;
     header.tolerance = t + before.tolerance + t * before.tolerance;
     header.toleranceValue = tolerance.value + before.toleranceValue;
-    header.maxError = before.maxError;
+    header.maxError = std::max(before.maxError, volume.readError);
     return header;
 }
 
@@ -222,7 +232,9 @@ openvdb::GridBase::Ptr takeValues(const Volume& volume, const openvdb::GridBase&
     header.exact = exactValuesOf(source);
     std::optional<double> rest;
     if (header.restActive) {
-        rest = volume.mostFrequent ? volume.mostFrequent->value : 0;
+        rest = 0;
+        if (volume.mostFrequent && hasSlot(*header.exact, volume.mostFrequent->value))
+            rest = volume.mostFrequent->value;
         header.background = *rest;
     }
     ExactDeltas taken =
@@ -291,7 +303,7 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     entry.deltas =
         std::accumulate(header.slabDeltas.begin(), header.slabDeltas.end(), std::uint64_t{0});
     entry.codeBook = header.bookName();
-    if (!header.exact && (!volume.codeBook.isExact() || !options.tolerance.isExact())) {
+    if (header.exact || !volume.codeBook.isExact() || !options.tolerance.isExact()) {
         // The real thing is measured: the deltas, added up again, against the source.
         ReadOptions reading;
         reading.levelSetToFog = false;
@@ -302,7 +314,11 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
         putDeltaHeader(header, *grid);
     }
     entry.maxError = header.maxError;
-    entry.lossless = entry.maxError == 0 && !inactive.tooMany;
+    entry.lossless = entry.maxError == 0 && !inactive.tooMany && !inactive.rounded;
+    if (inactive.rounded)
+        listener.warn("grid \"" + volume.name +
+                      "\": the background, or what is inactive, has whole numbers beyond 2^53, "
+                      "which are rounded");
     if (inactive.tooMany)
         listener.warn("grid \"" + volume.name +
                       "\": more than 65536 different values of inactive voxels; they become the "

@@ -21,9 +21,6 @@
 namespace deltasplat {
 namespace {
 
-using ExactGrids = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                     openvdb::Int64Grid>;
-
 // Blocks of 8x8x8 voxels, one behind the other along the slices, that are not rest: one with voxels
 // of its own, or any number of one slot.
 struct Run {
@@ -251,15 +248,10 @@ std::optional<ExactValues> exactValuesOf(const openvdb::GridBase& grid) {
     if (grid.isType<openvdb::DoubleGrid>()) return ExactValues::kFloat64;
     if (grid.isType<openvdb::Int32Grid>()) return ExactValues::kInt32;
     if (!grid.isType<openvdb::Int64Grid>()) return {};
-    // The largest ones have no slots; what is inactive is noted as doubles.
     const auto& wide = static_cast<const openvdb::Int64Grid&>(grid);
     for (auto value = wide.cbeginValueOn(); value; ++value) {
         if (*value > ExactSlots<std::int64_t>::largest()) return {};
     }
-    for (auto value = wide.cbeginValueOff(); value; ++value) {
-        if (valueAs<std::int64_t>(double(*value)) != *value) return {};
-    }
-    if (valueAs<std::int64_t>(double(wide.background())) != wide.background()) return {};
     return ExactValues::kInt64;
 }
 

@@ -4,11 +4,13 @@
 #include <openvdb/openvdb.h>
 
 #include <bit>
+#include <cstdint>
 #include <type_traits>
 
 #include "ingest/codes/book_encoder.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/values/distinct_values.h"
+#include "ingest/values/value_cast.h"
 
 namespace deltasplat {
 namespace {
@@ -37,9 +39,24 @@ void forInactive(const Tree& tree, const Use& use) {
     }
 }
 
+// Whether a grid has whole numbers that no double holds, where they are not active.
+template <typename Tree>
+bool hasRounded(const Tree& tree) {
+    using T = typename Tree::ValueType;
+    if constexpr (std::is_same_v<T, std::int64_t>) {
+        const auto isRounded = [](T value) { return valueAs<T>(double(value)) != value; };
+        if (isRounded(tree.background())) return true;
+        for (auto value = tree.cbeginValueOff(); value; ++value) {
+            if (isRounded(*value)) return true;
+        }
+    }
+    return false;
+}
+
 template <typename Tree>
 InactiveValues find(const Tree& tree) {
     InactiveValues found;
+    found.rounded = hasRounded(tree);
     DistinctValues distinct;
     forInactive(tree,
                 [&](const auto&, double value, const openvdb::CoordBBox*) { distinct.add(value); });

@@ -17,6 +17,8 @@ struct InactiveValues {
     std::shared_ptr<const CodeTree>
         numbers;           ///< active at those voxels: the value's number; may be null
     bool tooMany = false;  ///< more than 65536 different ones: none is kept
+    /// Whether one of them, or the background, is a whole number that no double holds.
+    bool rounded = false;
 };
 
 /// Returns a scalar grid's background as a double; 0 for masks.

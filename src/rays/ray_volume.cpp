@@ -7,6 +7,7 @@
 
 #include "delta/block_windows.h"
 #include "ingest/codes/leaf_slices.h"
+#include "ingest/delta/delta_origin.h"
 #include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
 #include "memory.h"
@@ -126,7 +127,7 @@ RayVolume makeRayVolume(const Volume& volume, int sliceAxis, RayRule rule, const
     rays.box = permutedBox(volume.box, sliceAxis);
     rays.sliceAxis = sliceAxis;
     std::vector<Slot> slots = readValues(volume, rule, map, rays);
-    const bool fromSource = volume.source && !volume.codeBook.isExact() && !volume.origin;
+    const bool fromSource = volume.source && !volume.codeBook.isExact() && !isOfCodes(volume);
     if (fromSource) readSource(volume, rule, map, slots, rays);
     std::vector<CodeBlock> blocks = BlockReader(*volume.codes, nullptr, sliceAxis, slots).blocks();
     if (fromSource && rule == RayRule::kSum) dropZeros(volume, sliceAxis, map, blocks);

@@ -41,10 +41,15 @@ deltasplat_cli_test(delta.usage.tolerance EXIT 2 ARGS delta ${cube} d.vdb --tole
     STDERR_MATCHES "deltasplat: --tolerance-value: got -1; expected a finite number of at least 0")
 deltasplat_cli_test(delta.stats_is_image EXIT 2 ARGS delta stack.\#.pgm d.vdb --stats stack.2.pgm
     STDERR "deltasplat: --stats: got stack.2.pgm; expected another file than the input and the output")
-deltasplat_cli_test(delta.fine.wide_integers ARGS delta wide_48x48x32_int32.raw d.vdb --bits 9
+deltasplat_cli_test(delta.fine.wide_integers
+    ARGS delta wide_48x48x32_int32.raw d.vdb --bits 9 --max-error 0 CREATES d.vdb
+    STDERR "deltasplat: warning: --bits: has no effect on whole numbers")
+deltasplat_cli_test(delta.fine.wide_integers_as_codes
+    ARGS delta wide_48x48x32_int32.raw d.vdb --codes
     CREATES d.vdb STDOUT_MATCHES "^largest error 2"
-    STDERR_MATCHES "^deltasplat: warning: --bits: has no effect on whole numbers\ndeltasplat: warning: grid \"wide_48x48x32_int32\": more than 65536 different values of type int32 rounded, by up to 2 .--max-error 0 refuses.")
-deltasplat_cli_test(delta.inexact EXIT 1 ARGS delta wide_48x48x32_int32.raw d.vdb --max-error 0
+    STDERR_MATCHES "^deltasplat: warning: grid \"wide_48x48x32_int32\": more than 65536 different values of type int32, which are rounded by up to 2 .--max-error 0 refuses.")
+deltasplat_cli_test(delta.inexact EXIT 1
+    ARGS delta wide_48x48x32_int32.raw d.vdb --codes --max-error 0
     STDERR_MATCHES "deltasplat: grid \"wide_48x48x32_int32\": got a largest error of 2; expected at most 0 .--max-error.")
 deltasplat_cli_test(delta.no_folder EXIT 4 ARGS delta nowhere.vdb nowhere/d.vdb
     STDERR "deltasplat: nowhere/d.vdb: cannot be written: there is no folder nowhere")

@@ -15,6 +15,7 @@
 #include <tuple>
 #include <vector>
 
+#include "delta/inactive_values.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/codes/code_tree.h"
@@ -608,6 +609,8 @@ TEST(DeltaFile, DenseVolumesOfManyValuesComeBackAsTheyAreRead) {
             const Volume restored = readKept("delta.vdb");
             EXPECT_EQ(restored.origin->codeBook, book);
             expectSameVolume(volume, restored);
+            // What lies outside is what a converted source has there.
+            EXPECT_EQ(backgroundOf(*restored.source->grid), backgroundOf(*volume.source->grid));
             const PlainVolume plain = testing::readPlainDeltas("delta.vdb", name);
             std::uint64_t wrong = 0;
             for (std::size_t i = 0; i < floats.size(); ++i) {
@@ -622,6 +625,78 @@ TEST(DeltaFile, DenseVolumesOfManyValuesComeBackAsTheyAreRead) {
             DeltaFile again;
             EXPECT_TRUE(again.add(restored, {}).lossless);
         }
+    }
+}
+
+// An array of 64-bit whole numbers, which .raw files have no type for.
+void writeNpy(const std::string& file, const std::string& type, const std::string& shape,
+              const std::string& data) {
+    std::string text =
+        "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" + shape + ")}";
+    text.resize(117, ' ');
+    text += '\n';
+    testing::writeBytes(file, std::string("\x93NUMPY\1\0v\0", 10) + text + data);
+}
+
+// What most voxels hold, as a double, has no slot, nor is it a value of the source.
+TEST(DeltaFile, DenseVolumesOfTheLargestIntegersComeBack) {
+    const TempFolder folder;
+    std::mt19937_64 random(3);
+    constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max() - 65537;
+    std::vector<std::int64_t> values(std::size_t(60) * 50 * 80);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = i % 3 != 0 ? kLargest : std::int64_t(random() >> 2);
+    writeNpy("a.npy", "<i8", "80, 50, 60", testing::bytesOf(values));
+    const Volume volume = readKept("a.npy");
+    DeltaFile file;
+    const DeltaFileEntry entry = file.add(volume, {});
+    file.write("delta.vdb");
+    EXPECT_EQ(entry.codeBook, "int64");
+    EXPECT_TRUE(entry.lossless);
+    const Volume restored = readKept("delta.vdb");
+    const auto& source = static_cast<const openvdb::Int64Grid&>(*volume.source->grid);
+    expectSameVoxels(source, static_cast<const openvdb::Int64Grid&>(*restored.source->grid));
+}
+
+// Errors that reading made are not forgotten.
+TEST(DeltaFile, IntegersThatDoublesRoundAreNotCalledExact) {
+    const TempFolder folder;
+    std::mt19937_64 random(3);
+    for (const unsigned kinds : {100u, 1000000u}) {
+        std::vector<std::uint64_t> kind(kinds), values(std::size_t(60) * 50 * 40);
+        for (std::uint64_t& value : kind) value = random();
+        for (std::uint64_t& value : values) value = kind[random() % kinds];
+        writeNpy("a.npy", "<u8", "40, 50, 60", testing::bytesOf(values));
+        const Volume volume = readKept("a.npy");
+        DeltaFile file;
+        const DeltaFileEntry entry = file.add(volume, {});
+        EXPECT_GT(entry.maxError, 0);
+        EXPECT_FALSE(entry.lossless);
+        file.write("delta.vdb");
+        EXPECT_EQ(readVolume("delta.vdb").origin->maxError, entry.maxError);
+        DeltaFileOptions strict;
+        strict.maxError = 0;
+        EXPECT_THROW(DeltaFile().add(volume, strict), Error);
+    }
+}
+
+// Of inactive voxels and the background too.
+TEST(DeltaFile, InactiveIntegersThatDoublesRoundAreNotCalledExact) {
+    const TempFolder folder;
+    openvdb::initialize();
+    for (const bool isBackground : {false, true}) {
+        auto grid = openvdb::Int64Grid::create(isBackground ? (std::int64_t{1} << 60) + 1 : 0);
+        for (int i = 0; i < 900; ++i) grid->tree().setValueOn(Coord(i % 9, i / 9 % 10, i / 90), i);
+        if (!isBackground) grid->tree().setValueOff(Coord(3, 3, 3), (std::int64_t{1} << 53) + 1);
+        grid->setName("count");
+        openvdb::io::File("source.vdb").write({grid});
+        std::vector<std::string> warnings;
+        Listener listener;
+        listener.warning = [&](const std::string& text) { warnings.push_back(text); };
+        const DeltaFileEntry entry = DeltaFile().add(readKept("source.vdb"), {}, listener);
+        EXPECT_FALSE(entry.lossless);
+        ASSERT_EQ(warnings.size(), 1u);
+        EXPECT_NE(warnings[0].find("beyond 2^53"), std::string::npos);
     }
 }
 

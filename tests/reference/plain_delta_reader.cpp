@@ -23,7 +23,7 @@ std::vector<double> numbers(const std::string& text) {
     return list;
 }
 
-// Section "Exact code books": slots of values, 32 or 64 bits, and the first of inactive ones.
+// Section "Exact books": slots of values, 32 or 64 bits, and the first of inactive ones.
 struct ExactBook {
     explicit ExactBook(const std::string& kind) : kind_(kind) {}
     bool is32() const { return kind_ == "float32"; }

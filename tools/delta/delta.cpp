@@ -10,6 +10,7 @@
 #include "conversion/run_conversion.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
+#include "ingest/delta/delta_origin.h"
 #include "ingest/files/file_name.h"
 #include "listener_part.h"
 #include "number_text.h"
@@ -116,11 +117,14 @@ bool isWhole(const std::string& type) {
 // Labels are whole numbers, and a label that is rounded is another one.
 void warnOfWholeNumbers(const Volume& volume, const DeltaFileEntry& entry,
                         const DeltaCommand& command, const Listener& listener) {
-    if (!isWhole(volume.type) || volume.origin) return;
+    if (!isWhole(volume.type) || isOfCodes(volume)) return;
     if (command.read.bits) listener.warn("--bits: has no effect on whole numbers");
     if (entry.lossless || !command.file.tolerance.isExact() || entry.maxError == 0) return;
-    listener.warn("grid \"" + volume.name + "\": more than 65536 different values of type " +
-                  volume.type + " rounded, by up to " + numberText(entry.maxError) +
+    if (volume.readError > 0) return;  // has been said
+    const std::string why = command.file.codesOnly ? "more than 65536 different values of type "
+                                                   : "some of the 65537 largest values of type ";
+    listener.warn("grid \"" + volume.name + "\": " + why + volume.type +
+                  ", which are rounded by up to " + numberText(entry.maxError) +
                   " (--max-error 0 refuses)");
 }
 
@@ -131,8 +135,6 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
     const double relative = command.file.tolerance.relative;
     if (relative > 0) reading.relativeError = relative / 2;
     if (!command.file.tolerance.isExact()) reading.bytesPerBlock += kBytesPerHeldBlock;
-    DeltaFileOptions writing = command.file;
-    if (reading.bits) writing.codesOnly = true;
     warnOfUnusedInputOptions(app, {files.input}, listener);
     ConversionStats stats;
     DeltaFile file;
@@ -141,8 +143,10 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
     const bool complete = forEachScalarGrid(
         files.input, reading,
         [&](const Volume& volume) {
-            if (volume.origin && reading.bits)
-                remarks.warn("--bits: has no effect on delta grids, which keep their code book");
+            if (isOfCodes(volume) && reading.bits)
+                remarks.warn("--bits: has no effect on deltas of codes, which keep their book");
+            DeltaFileOptions writing = command.file;
+            if (reading.bits && !isWhole(volume.type)) writing.codesOnly = true;
             const DeltaFileEntry entry = file.add(volume, writing, remarks);
             stats.add(volume, entry.codeBook);
             warnOfWholeNumbers(volume, entry, command, remarks);

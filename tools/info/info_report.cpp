@@ -45,6 +45,7 @@ Json toJson(const DeltaOrigin& origin) {
     return {{"slice_axis", kAxisNames[origin.sliceAxis]},
             {"key_interval", origin.keyInterval},
             {"deltas", origin.deltas},
+            {"code_book", origin.codeBook},
             {"tolerance", origin.tolerance},
             {"tolerance_value", origin.toleranceValue},
             {"max_error", origin.maxError}};

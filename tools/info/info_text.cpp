@@ -65,7 +65,7 @@ std::string backgroundText(const GridReport& report) {
 std::string deltaText(const DeltaOrigin& origin) {
     std::string text = alongText(origin.sliceAxis) + ", a key slice every " +
                        std::to_string(origin.keyInterval) + ", " + std::to_string(origin.deltas) +
-                       " deltas, ";
+                       " deltas, " + origin.codeBook + " code book, ";
     if (origin.maxError == 0) return text + "exact";
     if (origin.tolerance > 0) text += "tolerance " + numberText(origin.tolerance) + ", ";
     if (origin.toleranceValue > 0)

@@ -92,14 +92,15 @@ class ExactWords {
     using DeltaGrid = typename Slots::DeltaGrid;
     using Tree = typename openvdb::tree::Tree4<T, 5, 4, 3>::Type;
 
-    explicit ExactWords(const DeltaHeader& header) : background_(valueAs<T>(header.background)) {}
+    explicit ExactWords(const DeltaHeader& header)
+        : rest_(valueAs<T>(header.background)), background_(header.restActive ? T{} : rest_) {}
 
     Slot sum(Slot slot, typename Slots::Delta delta) const {
         return slot + Slot(fromZigzag(delta));
     }
     bool isValue(Slot slot) const { return Slots::isValue(slot); }
     T valueOf(Slot slot) const { return Slots::valueOf(slot); }
-    T rest() const { return background_; }
+    T rest() const { return rest_; }
     T inactiveValue() const { return background_; }
     static Slot firstInactive() { return Slots::firstInactive(); }
     std::string textOf(Slot slot) const { return std::to_string(slot); }
@@ -108,6 +109,7 @@ class ExactWords {
     }
 
   private:
+    T rest_;
     T background_;
 };
 
@@ -421,9 +423,10 @@ template <typename T>
 DecodedValues decodeExact(openvdb::GridBase& grid, const DeltaHeader& header,
                           const std::string& where, const Listener& listener) {
     using Words = ExactWords<T>;
-    auto values = openvdb::Grid<typename Words::Tree>::create(valueAs<T>(header.background));
+    const Words words(header);
+    auto values = openvdb::Grid<typename Words::Tree>::create(words.inactiveValue());
     DecodedValues decoded;
-    decode(static_cast<typename Words::DeltaGrid&>(grid), header, Words(header), where, listener,
+    decode(static_cast<typename Words::DeltaGrid&>(grid), header, words, where, listener,
            values->tree(), decoded.inactive->tree);
     decoded.values = std::move(values);
     return decoded;

@@ -22,7 +22,8 @@ struct DecodedDeltas {
 
 /// The same of a source whose values stand for themselves (DeltaHeader::exact).
 struct DecodedValues {
-    openvdb::GridBase::Ptr values;  ///< of the type DeltaHeader::exact; its background
+    /// Of the type DeltaHeader::exact, with the source's background; 0 if it has none.
+    openvdb::GridBase::Ptr values;
     std::shared_ptr<CodeTree> inactive = std::make_shared<CodeTree>();  ///< as above
 };
 

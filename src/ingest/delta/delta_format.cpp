@@ -204,21 +204,6 @@ void putBook(const DeltaHeader& header, openvdb::MetaMap& metadata) {
         metadata.insertMeta("delta_table", StringMetadata(listText(*header.book.table)));
 }
 
-bool isValueOf(ExactValues type, double value) {
-    if (!std::isfinite(value)) return false;
-    switch (type) {
-        case ExactValues::kFloat32:
-            return double(valueAs<float>(value)) == value;
-        case ExactValues::kFloat64:
-            return true;
-        case ExactValues::kInt32:
-            return double(valueAs<std::int32_t>(value)) == value;
-        default:
-            return double(valueAs<std::int64_t>(value)) == value &&
-                   valueAs<std::int64_t>(value) <= ExactSlots<std::int64_t>::largest();
-    }
-}
-
 // Exact values are of the source's type, or of one that holds all that a file's type can be.
 void requireExactTree(const Entries& entries, const DeltaHeader& header) {
     constexpr const char* kTrees[] = {"float", "double", "int32", "int64"};
@@ -235,7 +220,7 @@ void requireHeldValues(const Entries& entries, const DeltaHeader& header) {
         entries.fail("delta_background", numberText(background), expected);
     };
     if (header.restActive && header.exact) {
-        if (!isValueOf(*header.exact, background))
+        if (!hasSlot(*header.exact, background))
             refuse(std::string("a ") + kExactNames[int(*header.exact)] +
                    ", for active voxels to rest at");
         const glm::ivec3& min = header.box.min;
@@ -263,6 +248,21 @@ void requireHeldValues(const Entries& entries, const DeltaHeader& header) {
 }
 
 }  // namespace
+
+bool hasSlot(ExactValues type, double value) {
+    if (!std::isfinite(value)) return false;
+    switch (type) {
+        case ExactValues::kFloat32:
+            return double(valueAs<float>(value)) == value;
+        case ExactValues::kFloat64:
+            return true;
+        case ExactValues::kInt32:
+            return double(valueAs<std::int32_t>(value)) == value;
+        default:
+            return double(valueAs<std::int64_t>(value)) == value &&
+                   valueAs<std::int64_t>(value) <= ExactSlots<std::int64_t>::largest();
+    }
+}
 
 bool isDeltaGrid(const openvdb::GridBase& grid) {
     return isDeltaGrid(grid.valueType(), grid) &&

@@ -21,6 +21,13 @@ enum class ExactValues { kFloat32, kFloat64, kInt32, kInt64 };
 /// Names of the code books, in the order of ExactValues.
 inline constexpr const char* kExactNames[] = {"float32", "float64", "int32", "int64"};
 
+/// The grids that have such values, in the order of ExactValues.
+using ExactGrids = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
+                                     openvdb::Int64Grid>;
+
+/// Returns whether a number is a value of a type that has a slot.
+bool hasSlot(ExactValues type, double value);
+
 /// What voxels of a source with values of type T (float, double, std::int32_t or std::int64_t) are
 /// as numbers: in the order of their values, so that what is alike differs by little. Slots are
 /// added and subtracted modulo 2^32 (float) or 2^64.

@@ -13,6 +13,7 @@
 #include "ingest/delta/restored_grid.h"
 #include "ingest/dense/dense_source.h"
 #include "ingest/grids/source_grid.h"
+#include "listener_part.h"
 
 namespace deltasplat {
 namespace {
@@ -49,9 +50,8 @@ DenseSource denseSource(const openvdb::GridBase& grid, const DeltaHeader& header
     source.space = header.space;
     source.forEachLayer = [&grid, size = header.box.dims()](const DenseSource::LayerUse& use,
                                                             const Listener& listener) {
-        using Grids = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                        openvdb::Int64Grid>;
-        grid.apply<Grids>([&](const auto& typed) { forEachLayer(typed, size, use, listener); });
+        grid.apply<ExactGrids>(
+            [&](const auto& typed) { forEachLayer(typed, size, use, listener); });
     };
     return source;
 }
@@ -62,15 +62,15 @@ void readExactDeltas(openvdb::GridBase& deltas, const DeltaHeader& header,
                      const openvdb::MetaMap::ConstPtr& fileMetadata,
                      const GridCodesOptions& options, Volume& volume) {
     const std::string& where = options.where;
-    const openvdb::GridBase::Ptr source =
-        restoreGrid(header, decodeValues(deltas, header, where, options.listener), deltas,
-                    volume.worldFromIndex);
+    const Listener decoding = partOf(options.listener, 0, 0.5);
+    const Listener reading = partOf(options.listener, 0.5, 1);
+    const openvdb::GridBase::Ptr source = restoreGrid(
+        header, decodeValues(deltas, header, where, decoding), deltas, volume.worldFromIndex);
     requireActiveCount(source->activeVoxelCount(), header, where);
     if (header.restActive) {
-        ReadOptions reading = options.reading;
-        reading.keepSource = reading.keepInexact = false;
-        Volume dense =
-            readDense(denseSource(*source, header, options, volume), reading, options.listener);
+        ReadOptions codesOnly = options.reading;
+        codesOnly.keepSource = codesOnly.keepInexact = false;
+        Volume dense = readDense(denseSource(*source, header, options, volume), codesOnly, reading);
         dense.origin = volume.origin;
         dense.type = header.sourceType;
         dense.gridClass = volume.gridClass;

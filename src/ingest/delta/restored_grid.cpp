@@ -8,7 +8,6 @@
 #include "deltasplat/error.h"
 #include "ingest/grids/grid_from_codes.h"
 #include "ingest/grids/prune_same_bits.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
 
@@ -84,10 +83,8 @@ openvdb::GridBase::Ptr restoreGrid(const DeltaHeader& header, const DecodedValue
                                    const openvdb::GridBase& deltas,
                                    const glm::dmat4& worldFromIndex) {
     const openvdb::GridBase::Ptr grid = decoded.values;
-    grid->apply<ScalarGrids>([&](auto& typed) {
-        // There are none of these, but the list has them.
-        if constexpr (!std::is_same_v<typename std::decay_t<decltype(typed)>::ValueType, bool>)
-            setInactive(decoded.inactive->tree, header.inactiveValues, typed.tree());
+    grid->apply<ExactGrids>([&](auto& typed) {
+        setInactive(decoded.inactive->tree, header.inactiveValues, typed.tree());
     });
     if (header.sourceTree.empty()) {
         grid->setName(deltas.getName());

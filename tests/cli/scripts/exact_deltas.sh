@@ -29,9 +29,15 @@ for source in "$raw" noise.vdb; do
     else
         "$program" diff "$source" back_96x80x72_float32.vdb --fail 0 --warn 0 -q
     fi
-    "$program" render "$source" -o source.exr --float -q
-    "$program" render one.vdb -o delta.exr --float -q
-    idiff -fail 0 -failpercent 0 -hardfail 0 -warn 0 source.exr delta.exr >/dev/null
+    for mode in composite xray mip; do
+        "$program" render "$source" -o source.exr --float --mode $mode -q
+        "$program" render one.vdb -o delta.exr --float --mode $mode -q
+        idiff -fail 0 -failpercent 0 -hardfail 0 -warn 0 source.exr delta.exr >/dev/null ||
+            fail "$mode: got another picture of the delta grid of $source"
+    done
+    "$program" convert "$source" plain.vdb -q
+    "$program" restore one.vdb again.vdb -q
+    "$program" diff plain.vdb again.vdb --fail 0 --warn 0 -q
     "$program" info one.vdb | grep -q 'delta grid .* exact' || fail "info: got no exact delta grid"
 
     # Less is smaller, and says so.

@@ -135,7 +135,7 @@ expect_value("${stats}" ON lossless)
 run(delta slab_12x10x8_uint8.raw slab_delta.vdb -q)
 run(info slab_delta.vdb --json -q)
 expect_keys("${text}" "files;0;grids;0;delta"
-    "slice_axis;key_interval;deltas;tolerance;tolerance_value;max_error")
+    "slice_axis;key_interval;deltas;code_book;tolerance;tolerance_value;max_error")
 expect_value("${text}" 128 files 0 grids 0 delta key_interval)
 expect_value("${text}" 0.0 files 0 grids 0 delta max_error)
 
