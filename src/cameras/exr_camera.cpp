@@ -44,7 +44,11 @@ glm::dmat4 readMatrix(const std::filesystem::path& file, const OIIO::ImageSpec& 
 }
 
 glm::dmat4 inverseOf(const std::filesystem::path& file, const glm::dmat4& matrix) {
-    const glm::dmat4 inverse = glm::inverse(matrix);
+    glm::dmat4 inverse = glm::inverse(matrix);
+    // Rounding leaves no projection where there was none.
+    const bool isAffine =
+        matrix[0].w == 0 && matrix[1].w == 0 && matrix[2].w == 0 && matrix[3].w == 1;
+    for (int i = 0; isAffine && i < 4; ++i) inverse[i].w = matrix[i].w;
     if (std::isfinite(glm::determinant(inverse)) && glm::determinant(inverse) != 0) return inverse;
     refuseFile(file, "a worldToCamera that is singular", "one that can be inverted");
 }

@@ -118,6 +118,7 @@ struct RenderCommand {
     FrameChoice frames;
     SceneChoice scene;
     std::filesystem::path firstPass;         ///< of a sequence; empty: none
+    std::string readingOptions;              ///< those given that choose what is read, as typed
     std::optional<int> turntable;            ///< frames of a turn of the camera
     std::optional<glm::ivec2> contactSheet;  ///< columns and rows; empty: none
     bool progressive = false;                ///< whether a small picture comes before

@@ -170,6 +170,7 @@ constexpr const char* kFirstPass = "deltasplat_first_pass";
 // In it, what it was made of.
 constexpr const char* kInput = "input";
 constexpr const char* kFrames = "frames";
+constexpr const char* kOptions = "options";
 
 using Json = nlohmann::ordered_json;
 
@@ -198,6 +199,14 @@ void warnOfOthers(const Json& json, const RenderCommand& command, const Listener
     const std::string name = inputName(command);
     if (input != name)
         return listener.warn(begin + "of " + input + ", and is taken as it is for " + name);
+    const std::string options = json.value(kOptions, command.readingOptions);
+    if (options != command.readingOptions) {
+        const auto named = [](const std::string& text) {
+            return text.empty() ? "no options that choose what is read" : "\"" + text + "\"";
+        };
+        return listener.warn(begin + "with " + named(options) + ", and is taken as it is for " +
+                             named(command.readingOptions));
+    }
     std::vector<int> absent;
     const std::optional<FrameName> files = FrameName::findInput(command.input);
     for (const int frame : command.frames.frames) {
@@ -261,8 +270,11 @@ std::optional<std::filesystem::path> readFirstPass(const RenderCommand& command,
 
 void writeFirstPass(const RenderCommand& command, const std::vector<int>& frames,
                     const SequenceLook& look) {
-    Json json{{kInput, inputName(command)}, {kFrames, runsOf(frames)}};
+    Json json{{kInput, inputName(command)},
+              {kFrames, runsOf(frames)},
+              {kOptions, command.readingOptions}};
     json.update(look.toJson());
+    makeFolderOf(command.firstPass);
     writeFileAtomically(command.firstPass, Json{{kFirstPass, json}}.dump(1) + "\n");
 }
 
@@ -416,7 +428,20 @@ void addSequenceOptions(CLI::App& app, RenderCommand& command) {
                    "no others; INPUT may be one volume");
 }
 
+// The options that were given of those that choose which voxels are read.
+std::string readingOptions(const CLI::App& app) {
+    std::string text;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string& group = option->get_group();
+        if (option->count() == 0 || !(group.starts_with("Input") || group == "Parts")) continue;
+        text += (text.empty() ? "" : " ") + option->get_name();
+        for (const std::string& value : option->results()) text += " " + value;
+    }
+    return utf8(codePoints(text));
+}
+
 void applySequence(const CLI::App& app, RenderCommand& command) {
+    command.readingOptions = readingOptions(app);
     if (command.turntable &&
         (command.picture.camera.asked() || command.picture.render.camera.worldFromCamera)) {
         throw Error(

@@ -26,6 +26,16 @@ expect_same options json
 expect_same picture json 1e-4
 expect_different middle json 0.01
 
+# Out of pictures from all sides.
+for projection in ortho perspective; do
+    for side in "0 0" "30 20" "45 0" "100 -35" "200 60" "315 10"; do
+        read -r azimuth elevation <<<"$side"
+        show side --azimuth "$azimuth" --elevation "$elevation" --projection $projection --size 24x24
+        show again --camera side.exr
+        expect_same again side 1e-3
+    done
+done
+
 # Shifted by 9 pixels and by 6, the picture is that part of one without.
 show shifted --camera-matrix $matrix --frame-width 12 --frame-offset=0.25,-0.25 --size 36x24
 show larger --camera-matrix $matrix --frame-width 24 --size 72x48

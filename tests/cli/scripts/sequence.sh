@@ -110,6 +110,10 @@ cmp alone.json first.json || fail "alone.json is not first.json"
 "$program" render in.####.vdb --size 48x48 -qq --frames 8-9 --first-pass few.json
 expect_code 0 "$program" render in.####.vdb --size 48x48 --frames 8-10 --first-pass few.json -o few.####.exr
 expect_said "deltasplat: warning: --first-pass: few.json was made without frame 10, and is taken as it is"
+expect_code 0 "$program" render in.####.vdb --size 48x48 --frames 8-9 --first-pass few.json -o few.####.exr --crop 0:5,:,:
+expect_said 'deltasplat: warning: --first-pass: few.json was made with no options that choose what is read, and is taken as it is for "--crop 0:5,:,:"'
+"$program" render in.####.vdb --size 48x48 -qq --frames 8-9 --first-pass made/here/few.json
+[[ -s made/here/few.json ]] || fail "--first-pass: got no folder for it"
 cp in.0008.vdb other.0008.vdb
 expect_code 0 "$program" render other.####.vdb --size 48x48 --frames 8 --first-pass few.json -o few.####.exr
 expect_said "deltasplat: warning: --first-pass: few.json was made of in.####.vdb, and is taken as it is for other.####.vdb"
