@@ -121,10 +121,11 @@ class Taker {
                 held = {};
             }
             std::unique_ptr<DeltaLeaf> leaf;
+            const Slot* inOrder = slots.data();
             const int slices = std::min(8, taker.last_.x - 8 * block + 1);
             for (int s = 0; s < slices; ++s) {
                 for (int n = 0; n < 64; ++n) {
-                    const Slot slot = slots[std::size_t(64 * s + n)];
+                    const Slot slot = *inOrder++;
                     Slot& before = held[std::size_t(n)];
                     if (slot == before) continue;
                     if (!leaf) {
