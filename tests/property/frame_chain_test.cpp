@@ -37,8 +37,9 @@ struct Change {
 
 // Blocks of 3x2x3 voxels of even codes up to 250, a quarter of them inactive.
 int codeAt(const glm::ivec3& p) {
-    auto hash = std::uint32_t((p.x + 30) / 3 * 73856093) ^
-                std::uint32_t((p.y + 30) / 2 * 19349663) ^ std::uint32_t((p.z + 30) / 3 * 83492791);
+    std::uint32_t hash = std::uint32_t((p.x + 30) / 3) * 73856093u ^
+                         std::uint32_t((p.y + 30) / 2) * 19349663u ^
+                         std::uint32_t((p.z + 30) / 3) * 83492791u;
     hash = (hash ^ (hash >> 13)) * 0x5bd1e995u;
     hash ^= hash >> 15;
     return hash % 4 == 0 ? test::kInactive : int(hash / 4 % 126) * 2;
