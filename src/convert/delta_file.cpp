@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,6 +25,7 @@
 #include "ingest/delta/read_delta_grid.h"
 #include "ingest/delta/zigzag.h"
 #include "ingest/grids/grid_from_codes.h"
+#include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "memory.h"
@@ -141,9 +141,7 @@ template <typename Grid>
 openvdb::GridBase::ConstPtr gridOfCodes(const Volume& volume) {
     using Leaf = typename Grid::TreeType::LeafNodeType;
     const CodeTree::Tree& codes = volume.codes->tree;
-    requireMemory("grid \"" + volume.name + "\"",
-                  double(codes.leafCount()) *
-                      double(sizeof(Leaf) + Leaf::SIZE * sizeof(typename Leaf::ValueType)));
+    requireMemory("grid \"" + volume.name + "\"", double(codes.leafCount()) * leafBytes<Leaf>());
     return gridFromCodes<Grid>(codes, volume.codeBook, 0);
 }
 
@@ -156,22 +154,31 @@ openvdb::GridBase::ConstPtr gridOfExactCodes(const Volume& volume) {
     return gridOfCodes<openvdb::DoubleGrid>(volume);
 }
 
-// Returns what goes into the file by its values' own bits, null if codes do: values have an exact
-// code book that is worth its bytes, or less is asked for, or there is no other way.
-openvdb::GridBase::ConstPtr valuesToStore(const Volume& volume, const DeltaFileOptions& options) {
-    if (options.codesOnly || !options.tolerance.isExact()) return nullptr;
+// What goes into the file by its values' own bits.
+struct StoredValues {
+    openvdb::GridBase::ConstPtr grid;
+    ExactValues type;
+};
+
+// Empty if codes go into the file: values have an exact code book that is worth its bytes, or less
+// is asked for, or there is no other way.
+std::optional<StoredValues> valuesToStore(const Volume& volume, const DeltaFileOptions& options) {
+    if (options.codesOnly || !options.tolerance.isExact()) return {};
     // Deltas of codes have lost already what their source had besides.
-    if (isOfCodes(volume) && volume.origin->maxError > 0) return nullptr;
+    if (isOfCodes(volume) && volume.origin->maxError > 0) return {};
     const bool isExact = volume.codeBook.isExact();
-    if (isExact && !isTableLarger(volume)) return nullptr;
-    if (!volume.hasBackground && volume.box.min != glm::ivec3(0)) return nullptr;
+    if (isExact && !isTableLarger(volume)) return {};
+    if (!volume.hasBackground && volume.box.min != glm::ivec3(0)) return {};
     openvdb::GridBase::ConstPtr grid;
     if (volume.source) {
         grid = volume.source->grid;
     } else if (isExact && !volume.hasBackground) {
         grid = gridOfExactCodes(volume);
     }
-    return grid && exactValuesOf(*grid) ? grid : nullptr;
+    if (!grid) return {};
+    const std::optional<ExactValues> type = exactValuesOf(*grid);
+    if (!type) return {};
+    return StoredValues{grid, *type};
 }
 
 // Deltas go into files as numbers without sign.
@@ -191,7 +198,6 @@ DeltaHeader headerOf(const Volume& volume, const Rest& rest, const InactiveValue
                      const Tolerance& tolerance) {
     DeltaHeader header;
     header.book = volume.codeBook;
-    header.codeCount = codeCountOf(volume);
     header.sourceType = volume.type;
     header.space = volume.space;
     header.background = rest.background;
@@ -226,20 +232,20 @@ openvdb::GridBase::Ptr takeCodes(const Volume& volume, const Rest& rest,
     return deltas.tree->grid;
 }
 
-openvdb::GridBase::Ptr takeValues(const Volume& volume, const openvdb::GridBase& source,
+openvdb::GridBase::Ptr takeValues(const Volume& volume, const StoredValues& values,
                                   const InactiveValues& inactive, DeltaHeader& header) {
     header.version = DeltaHeader::kExactVersion;
-    header.exact = exactValuesOf(source);
+    header.exact = values.type;
     std::optional<double> rest;
     if (header.restActive) {
         rest = 0;
-        if (volume.mostFrequent && hasSlot(*header.exact, volume.mostFrequent->value))
+        if (volume.mostFrequent && hasSlot(values.type, volume.mostFrequent->value))
             rest = volume.mostFrequent->value;
         header.background = *rest;
     }
-    ExactDeltas taken =
-        takeExactDeltas(source, {header.sliceAxis, header.keyInterval, header.box, rest, inactive},
-                        "grid \"" + volume.name + "\"");
+    ExactDeltas taken = takeExactDeltas(
+        *values.grid, {header.sliceAxis, header.keyInterval, header.box, rest, inactive},
+        "grid \"" + volume.name + "\"");
     header.slabDeltas = std::move(taken.slabDeltas);
     return taken.grid;
 }
@@ -280,7 +286,7 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
                              ? options.keyInterval
                              : defaultKeyInterval(header.box.dims()[header.sliceAxis]);
     listener.report(0.3);
-    const openvdb::GridBase::ConstPtr values = valuesToStore(volume, options);
+    const std::optional<StoredValues> values = valuesToStore(volume, options);
     const openvdb::GridBase::Ptr grid =
         values ? takeValues(volume, *values, inactive, header)
                : takeCodes(volume, rest, inactive, options.tolerance, header);
@@ -300,8 +306,7 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     DeltaFileEntry entry;
     entry.sliceAxis = header.sliceAxis;
     entry.keyInterval = header.keyInterval;
-    entry.deltas =
-        std::accumulate(header.slabDeltas.begin(), header.slabDeltas.end(), std::uint64_t{0});
+    entry.deltas = header.deltas();
     entry.codeBook = header.bookName();
     if (header.exact || !volume.codeBook.isExact() || !options.tolerance.isExact()) {
         // The real thing is measured: the deltas, added up again, against the source.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ingest/grids/grid_values.h"
+#include "ingest/grids/leaf_bytes.h"
 #include "memory.h"
 #include "parallel.h"
 
@@ -21,7 +22,7 @@ struct Block {
     Code code = 0;
 };
 
-constexpr double kBlockBytes = sizeof(Leaf) + Leaf::SIZE * sizeof(Code) + sizeof(Block);
+constexpr double kBlockBytes = leafBytes<Leaf>() + sizeof(Block);
 
 IndexBox boxAt(const openvdb::Coord& origin, int width) {
     const glm::ivec3 first(origin.x(), origin.y(), origin.z());

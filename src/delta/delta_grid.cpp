@@ -14,6 +14,7 @@
 #include "delta/block_windows.h"
 #include "delta/delta_tree.h"
 #include "deltasplat/error.h"
+#include "ingest/grids/leaf_bytes.h"
 #include "memory.h"
 #include "parallel.h"
 
@@ -92,7 +93,7 @@ std::shared_ptr<DeltaTree> makeTree(const Differences& differences) {
     const auto& changes = differences.changes;
     std::size_t needed = 0;
     for (const BlockChanges& block : changes) needed += countBits(block.changed) != 0;
-    requireMemory("delta grid", double(needed) * (sizeof(Leaf) + Leaf::NUM_VALUES * sizeof(Slot)));
+    requireMemory("delta grid", double(needed) * leafBytes<Leaf>());
 
     std::vector<std::unique_ptr<Leaf>> leaves(windows.count());
     parallelForChunks(windows.count(), [&](std::size_t begin, std::size_t end) {

@@ -13,6 +13,7 @@
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/delta/zigzag.h"
+#include "ingest/grids/leaf_bytes.h"
 #include "ingest/values/value_cast.h"
 #include "memory.h"
 #include "parallel.h"
@@ -129,7 +130,7 @@ class Taker {
                     Slot& before = held[std::size_t(n)];
                     if (slot == before) continue;
                     if (!leaf) {
-                        requireMemory(taker.where_, sizeof(DeltaLeaf) + 512 * sizeof(Slot));
+                        requireMemory(taker.where_, leafBytes<DeltaLeaf>());
                         leaf = std::make_unique<DeltaLeaf>(openvdb::Coord(8 * block, 8 * u, 8 * v),
                                                            0, false);
                     }

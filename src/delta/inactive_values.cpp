@@ -3,21 +3,17 @@
 
 #include <openvdb/openvdb.h>
 
-#include <bit>
 #include <cstdint>
 #include <type_traits>
 
 #include "ingest/codes/book_encoder.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/values/distinct_values.h"
+#include "ingest/values/same_bits.h"
 #include "ingest/values/value_cast.h"
 
 namespace deltasplat {
 namespace {
-
-bool sameBits(double a, double b) {
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
 
 // Calls use(iterator) for all inactive voxels and tiles that do not hold the background.
 template <typename Tree, typename Use>
@@ -26,14 +22,14 @@ void forInactive(const Tree& tree, const Use& use) {
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
         if (leaf->isDense()) continue;
         for (auto voxel = leaf->cbeginValueOff(); voxel; ++voxel) {
-            if (!sameBits(double(*voxel), background))
+            if (!haveSameBits(double(*voxel), background))
                 use(voxel.getCoord(), double(*voxel), nullptr);
         }
     }
     auto tile = tree.cbeginValueOff();
     tile.setMaxDepth(Tree::ValueOffCIter::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
-        if (sameBits(double(*tile), background)) continue;
+        if (haveSameBits(double(*tile), background)) continue;
         const openvdb::CoordBBox box = tile.getBoundingBox();
         use(box.min(), double(*tile), &box);
     }

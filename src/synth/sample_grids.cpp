@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "ingest/grids/leaf_bytes.h"
 #include "memory.h"
 #include "parallel.h"
 #include "synth/sample_voxel.h"
@@ -58,7 +59,7 @@ openvdb::FloatGrid::Ptr sampleScalars(const AnalyticGrid& sampled,
     // One layer of leaves at a time keeps the work in large pieces and the list of them short.
     const std::size_t layerLeaves = std::size_t(leaves.y) * std::size_t(leaves.z);
     // What a layer takes is known only when it is there, so room is asked for one full layer more.
-    constexpr double kLeafBytes = sizeof(Leaf) + Leaf::SIZE * sizeof(float) + sizeof(void*);
+    constexpr double kLeafBytes = leafBytes<Leaf>() + sizeof(void*);
     requireMemory("`dims`", kLeafBytes * double(layerLeaves));
     std::vector<std::unique_ptr<Leaf>> layer(layerLeaves);
     for (int x = 0; x < leaves.x; ++x) {
@@ -87,11 +88,10 @@ openvdb::Vec3SGrid::Ptr sampleColors(const AnalyticVolume& volume,
                                      const openvdb::FloatGrid& density,
                                      const AnalyticFileOptions& options, const Listener& listener) {
     constexpr std::size_t kBatch = 4096;  // leaves
-    constexpr double kLeafBytes = sizeof(ColorLeaf) + ColorLeaf::SIZE * sizeof(openvdb::Vec3s);
     const openvdb::FloatTree& shape = density.tree();
     const double mostLeaves =
         double(shape.leafCount()) + double(shape.activeVoxelCount()) / ColorLeaf::SIZE;
-    requireMemory("`dims`", kLeafBytes * mostLeaves);
+    requireMemory("`dims`", leafBytes<ColorLeaf>() * mostLeaves);
     auto grid = openvdb::Vec3SGrid::create(
         std::make_shared<openvdb::Vec3STree>(shape, openvdb::Vec3s(0.0f), openvdb::TopologyCopy()));
     grid->setName("Cd");

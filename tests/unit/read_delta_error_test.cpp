@@ -19,49 +19,51 @@ using openvdb::Coord;
 using testing::expectError;
 using testing::TempFolder;
 
-// Writes the delta grid of a 20 x 9 x 12 volume of bytes, sliced along z, then damages it.
-class Damaged {
-  public:
-    explicit Damaged(const std::function<void(openvdb::Int32Grid&)>& damage) {
-        std::string voxels(20 * 9 * 12, '\0');
-        for (std::size_t i = 0; i < voxels.size(); ++i) voxels[i] = char(i % 7 == 0 ? i % 250 : 0);
-        testing::writeBytes("a_20x9x12_uint8.raw", voxels);
-        DeltaFileOptions options;
-        options.sliceAxis = 2;
-        options.keyInterval = 8;
-        DeltaFile file;
-        file.add(readVolume("a_20x9x12_uint8.raw"), options);
-        file.write("whole.vdb");
-        openvdb::io::File input("whole.vdb");
-        input.open();
-        const auto grid =
-            openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid("a_20x9x12_uint8"));
-        damage(*grid);
-        openvdb::io::File("a.vdb").write({grid});
-    }
+using Damage = std::function<void(openvdb::Int32Grid&)>;
 
-  private:
-    TempFolder folder_;
-};
-
-void expectRefused(const std::string& message,
-                   const std::function<void(openvdb::Int32Grid&)>& damage) {
-    SCOPED_TRACE(message);
-    const Damaged files(damage);
+// Reads NAME.raw, writes its delta grid, and that damaged as a.vdb.
+void writeDamaged(const std::string& name, const DeltaFileOptions& options, const Damage& damage) {
+    ReadOptions reading;
+    reading.keepSource = true;
+    DeltaFile file;
+    file.add(readVolume(name + ".raw", reading), options);
+    file.write("whole.vdb");
     EXPECT_NO_THROW(readVolume("whole.vdb"));
+    openvdb::io::File input("whole.vdb");
+    input.open();
+    const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid(name));
+    damage(*grid);
+    openvdb::io::File("a.vdb").write({grid});
+}
+
+// Of a 20 x 9 x 12 volume of bytes, sliced along z.
+void writeDamagedBytes(const Damage& damage) {
+    std::string voxels(20 * 9 * 12, '\0');
+    for (std::size_t i = 0; i < voxels.size(); ++i) voxels[i] = char(i % 7 == 0 ? i % 250 : 0);
+    testing::writeBytes("a_20x9x12_uint8.raw", voxels);
+    DeltaFileOptions options;
+    options.sliceAxis = 2;
+    options.keyInterval = 8;
+    writeDamaged("a_20x9x12_uint8", options, damage);
+}
+
+void expectRefused(const std::string& message, const Damage& damage) {
+    SCOPED_TRACE(message);
+    const TempFolder folder;
+    writeDamagedBytes(damage);
     expectError(ErrorCode::kInput, "a.vdb: grid \"a_20x9x12_uint8\"" + message,
                 [] { readVolume("a.vdb"); });
 }
 
 template <typename T>
-std::function<void(openvdb::Int32Grid&)> with(const std::string& key, const T& value) {
+Damage with(const std::string& key, const T& value) {
     return [=](openvdb::Int32Grid& grid) {
         grid.removeMeta(key);
         grid.insertMeta(key, openvdb::TypedMetadata<T>(value));
     };
 }
 
-std::function<void(openvdb::Int32Grid&)> without(const std::string& key) {
+Damage without(const std::string& key) {
     return [=](openvdb::Int32Grid& grid) { grid.removeMeta(key); };
 }
 
@@ -183,28 +185,16 @@ TEST(ReadDeltaError, ChainsBeyondIntegers) {
         [](openvdb::Int32Grid& grid) { grid.tree().setValue(Coord(0, 7, 0), -2); });
 }
 
-// The same of 60 x 40 x 30 floats, more than a code book has codes for, sliced along x.
-void expectExactRefused(const std::string& message,
-                        const std::function<void(openvdb::Int32Grid&)>& damage) {
+// Of 60 x 40 x 30 floats, more than a code book has codes for, sliced along x.
+void expectExactRefused(const std::string& message, const Damage& damage) {
     SCOPED_TRACE(message);
     const TempFolder folder;
     std::vector<float> values(60 * 40 * 30);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i) * 0.001f;
     testing::writeBytes("f_60x40x30_float32.raw", testing::bytesOf(values));
-    ReadOptions reading;
-    reading.keepSource = true;
     DeltaFileOptions options;
     options.sliceAxis = 0;
-    DeltaFile file;
-    file.add(readVolume("f_60x40x30_float32.raw", reading), options);
-    file.write("whole.vdb");
-    EXPECT_NO_THROW(readVolume("whole.vdb"));
-    openvdb::io::File input("whole.vdb");
-    input.open();
-    const auto grid =
-        openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid("f_60x40x30_float32"));
-    damage(*grid);
-    openvdb::io::File("a.vdb").write({grid});
+    writeDamaged("f_60x40x30_float32", options, damage);
     expectError(ErrorCode::kInput, "a.vdb: grid \"f_60x40x30_float32\"" + message,
                 [] { readVolume("a.vdb"); });
 }
@@ -269,9 +259,8 @@ TEST(ReadDeltaError, AnotherBackground) {
 
 // A box that claims more than there is does not make the reader ask for memory.
 TEST(ReadDeltaError, BoxesThatMemoryCannotHold) {
-    const Damaged files([](openvdb::Int32Grid& grid) {
-        with<openvdb::Vec3i>("delta_box_max", {1 << 20, 1 << 20, 11})(grid);
-    });
+    const TempFolder folder;
+    writeDamagedBytes(with<openvdb::Vec3i>("delta_box_max", {1 << 20, 1 << 20, 11}));
     expectError(ErrorCode::kInput, "", [] {
         try {
             readVolume("a.vdb");

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdint>
-#include <fstream>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -14,13 +12,13 @@
 #include <vector>
 
 #include "camera/camera_options.h"
-#include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "listener_part.h"
 #include "memory.h"
 #include "output_files.h"
 #include "process/interrupt.h"
+#include "render/first_pass.h"
 #include "render/render_input.h"
 #include "render/render_modes.h"
 #include "render/scene_input.h"
@@ -28,7 +26,6 @@
 #include "sequence/frame_name.h"
 #include "sequence/frames_to_make.h"
 #include "sequence/run_frames.h"
-#include "text/utf8_text.h"
 
 namespace deltasplat {
 namespace {
@@ -165,118 +162,6 @@ class Survey {
     std::optional<Error> failure_;
     std::size_t failedFrame_ = 0;
 };
-
-constexpr const char* kFirstPass = "deltasplat_first_pass";
-// In it, what it was made of.
-constexpr const char* kInput = "input";
-constexpr const char* kFrames = "frames";
-constexpr const char* kOptions = "options";
-
-using Json = nlohmann::ordered_json;
-
-// Runs [first, last] of frames.
-Json runsOf(std::vector<int> frames) {
-    std::sort(frames.begin(), frames.end());
-    Json runs = Json::array();
-    for (const int frame : frames) {
-        if (!runs.empty() && runs.back()[1] == frame - 1)
-            runs.back()[1] = frame;
-        else
-            runs.push_back({frame, frame});
-    }
-    return runs;
-}
-
-// As a first pass names it: JSON is UTF-8, which a file's name need not be.
-std::string inputName(const RenderCommand& command) {
-    return utf8(codePoints(command.input.filename().string()));
-}
-
-// What was made of other frames, or of another thing, may not suit those in hand.
-void warnOfOthers(const Json& json, const RenderCommand& command, const Listener& listener) {
-    const std::string begin = "--first-pass: " + command.firstPass.string() + " was made ";
-    const auto input = json.at(kInput).get<std::string>();
-    const std::string name = inputName(command);
-    if (input != name)
-        return listener.warn(begin + "of " + input + ", and is taken as it is for " + name);
-    const std::string options = json.value(kOptions, command.readingOptions);
-    if (options != command.readingOptions) {
-        const auto named = [](const std::string& text) {
-            return text.empty() ? "no options that choose what is read" : "\"" + text + "\"";
-        };
-        return listener.warn(begin + "with " + named(options) + ", and is taken as it is for " +
-                             named(command.readingOptions));
-    }
-    std::vector<int> absent;
-    const std::optional<FrameName> files = FrameName::findInput(command.input);
-    for (const int frame : command.frames.frames) {
-        // It had none to be read, either.
-        if (files && command.frames.missing != MissingFrames::kError && !hasInput(files->at(frame)))
-            continue;
-        const bool isKnown =
-            std::any_of(json.at(kFrames).begin(), json.at(kFrames).end(),
-                        [&](const Json& run) { return frame >= run.at(0) && frame <= run.at(1); });
-        if (!isKnown) absent.push_back(frame);
-    }
-    if (absent.empty()) return;
-    listener.warn(begin + "without frame " + std::to_string(absent.front()) +
-                  (absent.size() > 1 ? " and " + std::to_string(absent.size() - 1) + " more" : "") +
-                  ", and is taken as it is");
-}
-
-// The file that the first of the frames in hand shows if it has none: of a first pass' frames that
-// are there the last before it, or else the first behind it.
-std::filesystem::path heldFile(const Json& json, const std::vector<int>& frames,
-                               const std::filesystem::path& input) {
-    const std::optional<FrameName> name = FrameName::findInput(input);
-    if (!name || !std::is_sorted(frames.begin(), frames.end())) return {};
-    // A file may say anything.
-    constexpr int kMostLooks = 1'000'000;
-    int looks = 0;
-    std::filesystem::path held;
-    // Looks from `frame` to `end`, one after the other, until there is one.
-    const auto look = [&](std::int64_t frame, std::int64_t end, int step) {
-        for (; held.empty() && (end - frame) * step >= 0 && looks < kMostLooks;
-             frame += step, ++looks)
-            if (hasInput(name->at(int(frame)))) held = name->at(int(frame));
-    };
-    const Json& runs = json.at(kFrames);
-    const std::int64_t first = frames.front();
-    for (auto run = runs.rbegin(); run != runs.rend(); ++run)
-        look(std::min<std::int64_t>(run->at(1).get<int>(), first - 1), run->at(0).get<int>(), -1);
-    for (const Json& run : runs)
-        look(std::max<std::int64_t>(run.at(0).get<int>(), first + 1), run.at(1).get<int>(), 1);
-    return held;
-}
-
-// Returns, if there is a first pass, what frames hold that have no file.
-std::optional<std::filesystem::path> readFirstPass(const RenderCommand& command, SequenceLook& look,
-                                                   const Listener& listener) {
-    const std::filesystem::path& file = command.firstPass;
-    if (file.empty()) return {};
-    std::ifstream in(file);
-    if (!in) return {};
-    try {
-        const Json json = Json::parse(in).at(kFirstPass);
-        look.takeJson(json);
-        warnOfOthers(json, command, listener);
-        if (command.frames.missing != MissingFrames::kHold) return std::filesystem::path();
-        return heldFile(json, command.frames.frames, command.input);
-    } catch (const std::exception&) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file.string(), "something else", "what --first-pass has written"));
-    }
-}
-
-void writeFirstPass(const RenderCommand& command, const std::vector<int>& frames,
-                    const SequenceLook& look) {
-    Json json{{kInput, inputName(command)},
-              {kFrames, runsOf(frames)},
-              {kOptions, command.readingOptions}};
-    json.update(look.toJson());
-    makeFolderOf(command.firstPass);
-    writeFileAtomically(command.firstPass, Json{{kFirstPass, json}}.dump(1) + "\n");
-}
 
 // Whether all frames show the same, which then is made ready once.
 bool seesOneThing(const RenderCommand& command) {
@@ -426,18 +311,6 @@ void addSequenceOptions(CLI::App& app, RenderCommand& command) {
     group.addValue("--turntable", "N", command.turntable, wholeNumber(1, 1'000'000),
                    "Turns the camera once around in N frames, 1 to N if --frames names\n"
                    "no others; INPUT may be one volume");
-}
-
-// The options that were given of those that choose which voxels are read.
-std::string readingOptions(const CLI::App& app) {
-    std::string text;
-    for (const CLI::Option* option : app.get_options()) {
-        const std::string& group = option->get_group();
-        if (option->count() == 0 || !(group.starts_with("Input") || group == "Parts")) continue;
-        text += (text.empty() ? "" : " ") + option->get_name();
-        for (const std::string& value : option->results()) text += " " + value;
-    }
-    return utf8(codePoints(text));
 }
 
 void applySequence(const CLI::App& app, RenderCommand& command) {

@@ -18,9 +18,7 @@ constexpr int kStretchBits = 17;
 // Numbers stretches of the floats in increasing order, 256 an octave. What is beyond the floats is
 // in the outermost.
 std::size_t stretchOf(double value) {
-    const auto bits = std::bit_cast<std::uint32_t>(float(value));
-    const std::uint32_t ordered = (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
-    return ordered >> (32 - kStretchBits);
+    return orderOfBits(std::bit_cast<std::uint32_t>(float(value))) >> (32 - kStretchBits);
 }
 
 }  // namespace

@@ -7,15 +7,29 @@
 
 namespace deltasplat {
 
-/// Returns the code of a binary16 pattern: negative patterns run backwards, so that codes are in
-/// the order of values.
+/// Returns a number that is in the order of values, of a binary16, 32 or 64 pattern: negative ones
+/// run backwards.
+template <typename Bits>
+Bits orderOfBits(Bits bits) {
+    constexpr auto kSign = Bits(Bits{1} << (8 * sizeof(Bits) - 1));
+    return (bits & kSign) != 0 ? Bits(~bits) : Bits(bits | kSign);
+}
+
+/// Returns the pattern of such a number; the inverse of orderOfBits.
+template <typename Bits>
+Bits bitsOfOrder(Bits order) {
+    constexpr auto kSign = Bits(Bits{1} << (8 * sizeof(Bits) - 1));
+    return (order & kSign) != 0 ? Bits(order ^ kSign) : Bits(~order);
+}
+
+/// Returns the code of a binary16 pattern.
 inline Code codeOfHalfBits(std::uint16_t bits) {
-    return (bits & 0x8000) != 0 ? Code(~bits) : Code(bits | 0x8000);
+    return orderOfBits(bits);
 }
 
 /// Returns the binary16 pattern of a code; the inverse of codeOfHalfBits.
 inline std::uint16_t halfBitsOfCode(Code code) {
-    return (code & 0x8000) != 0 ? std::uint16_t(code & 0x7fff) : std::uint16_t(~code);
+    return bitsOfOrder(code);
 }
 
 /// Returns the code nearest to `value` on the ladder offset + step * code, clamped to 0..65535;

@@ -15,6 +15,7 @@
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/delta/exact_slots.h"
 #include "ingest/delta/zigzag.h"
+#include "ingest/grids/leaf_bytes.h"
 #include "ingest/values/value_cast.h"
 #include "memory.h"
 #include "parallel.h"
@@ -126,8 +127,6 @@ struct Block {
 // One delta can stand for as many blocks as there are slices until the next key slice, so memory is
 // asked for as it is needed.
 constexpr std::size_t kAskEvery = 1024;
-template <typename Leaf>
-constexpr double kLeafBytes = sizeof(Leaf) + Leaf::SIZE * sizeof(typename Leaf::ValueType);
 
 template <typename Words>
 class Decoder {
@@ -175,7 +174,7 @@ class Decoder {
                 continue;
             }
             if (blocks.size() % kAskEvery == 0)
-                requireMemory(where_, kAskEvery * (sizeof(Block<Words>) + kLeafBytes<Leaf>));
+                requireMemory(where_, kAskEvery * (sizeof(Block<Words>) + leafBytes<Leaf>()));
             blocks.push_back(decodeBlock(position, changes ? *begin++ : nullptr, slots));
         }
         return blocks;
@@ -382,7 +381,7 @@ void fillRest(const DeltaHeader& header, typename Tree::ValueType rest, const st
     // A filled box has leaves at its faces and, within, a root tile for each 4096^3 voxels.
     const glm::dvec3 dims(header.box.dims());
     const double faces = 2 * (dims.x * dims.y + dims.y * dims.z + dims.z * dims.x);
-    requireClaimedMemory(where, faces / 64 * kLeafBytes<typename Tree::LeafNodeType> +
+    requireClaimedMemory(where, faces / 64 * leafBytes<typename Tree::LeafNodeType>() +
                                     double(header.box.voxels()) / 0x1p36 * 100);
     tree.fill({{low.x, low.y, low.z}, {high.x, high.y, high.z}}, rest, true);
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 
 #include "deltasplat/error.h"
 #include "ingest/delta/number_list.h"
@@ -299,6 +300,10 @@ void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
 
 std::string DeltaHeader::bookName() const {
     return exact ? kExactNames[int(*exact)] : book.name();
+}
+
+std::uint64_t DeltaHeader::deltas() const {
+    return std::accumulate(slabDeltas.begin(), slabDeltas.end(), std::uint64_t{0});
 }
 
 DeltaHeader takeDeltaHeader(const openvdb::MetaMap& metadata, const std::string& where) {

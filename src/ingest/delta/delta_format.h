@@ -44,6 +44,7 @@ struct DeltaHeader {
     double maxError = 0;
 
     std::string bookName() const;
+    std::uint64_t deltas() const;  ///< of all slabs together
     bool hasZigzag() const { return version >= 3; }
 };
 

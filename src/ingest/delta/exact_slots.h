@@ -4,13 +4,12 @@
 #include <openvdb/openvdb.h>
 
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <type_traits>
 
 #include "deltasplat/ingest/code_book.h"
+#include "ingest/codes/code_math.h"
 
 namespace deltasplat {
 
@@ -42,8 +41,7 @@ struct ExactSlots {
     /// at most 2^63 - 65538.
     static Slot slotOf(T value) {
         if constexpr (std::is_floating_point_v<T>) {
-            const auto bits = std::bit_cast<Slot>(value);
-            return (bits & kSign ? ~bits : bits | kSign) + 1;
+            return orderOfBits(std::bit_cast<Slot>(value)) + 1;
         } else {
             return Slot(std::int64_t{value}) - Slot(std::int64_t{std::numeric_limits<T>::min()}) +
                    1;
@@ -52,8 +50,7 @@ struct ExactSlots {
     /// Returns the value of an active voxel.
     static T valueOf(Slot slot) {
         if constexpr (std::is_floating_point_v<T>) {
-            const Slot code = slot - 1;
-            return std::bit_cast<T>(code & kSign ? code ^ kSign : Slot(~code));
+            return std::bit_cast<T>(bitsOfOrder(Slot(slot - 1)));
         } else {
             return T(std::int64_t(slot - 1 + Slot(std::int64_t{std::numeric_limits<T>::min()})));
         }
@@ -69,9 +66,6 @@ struct ExactSlots {
     }
     /// Returns the slot of an inactive voxel that has the first of the inactive values.
     static Slot firstInactive() { return highest() + 1; }
-
-  private:
-    static constexpr Slot kSign = Slot{1} << (8 * sizeof(Slot) - 1);
 };
 
 }  // namespace deltasplat

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <glm/matrix.hpp>
-#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -41,8 +40,7 @@ DeltaOrigin originOf(const DeltaHeader& header) {
     DeltaOrigin origin;
     origin.sliceAxis = header.sliceAxis;
     origin.keyInterval = header.keyInterval;
-    origin.deltas =
-        std::accumulate(header.slabDeltas.begin(), header.slabDeltas.end(), std::uint64_t{0});
+    origin.deltas = header.deltas();
     origin.codeBook = header.bookName();
     origin.tolerance = header.tolerance;
     origin.toleranceValue = header.toleranceValue;

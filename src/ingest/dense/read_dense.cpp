@@ -20,6 +20,7 @@
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/grid_volume.h"
+#include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/raw/raw_values.h"
@@ -334,8 +335,7 @@ void requireLimit(const DenseSource& source, const ReadOptions& options, bool ke
     if (memoryLimit() == 0) return;
     Listener stopping;
     stopping.progress = [&](double) { listener.report(0); };
-    double bytesPerBlock =
-        sizeof(CodeTree::Leaf) + CodeTree::Leaf::SIZE * sizeof(Code) + options.bytesPerBlock;
+    double bytesPerBlock = leafBytes<CodeTree::Leaf>() + options.bytesPerBlock;
     if (keep) {
         bytesPerBlock += sizeof(CodeTree::Leaf) +
                          CodeTree::Leaf::SIZE * double(rawTypeBytes(source.type)) +

@@ -10,6 +10,7 @@
 #include "deltasplat/error.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/grids/grid_metadata.h"
+#include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "memory.h"
@@ -63,8 +64,7 @@ Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& 
     Volume volume;
     volume.worldFromIndex = worldFromIndexOf(grid->transform(), options.where);
     requireMemory(options.where,
-                  double(grid->constBaseTree().leafCount()) *
-                      double(sizeof(CodeTree::Leaf) + CodeTree::Leaf::SIZE * sizeof(Code)));
+                  double(grid->constBaseTree().leafCount()) * leafBytes<CodeTree::Leaf>());
     fillFromGrid(*grid, options, volume);
     const ReadOptions& reading = options.reading;
     if (reading.keepSource || (reading.keepInexact && !volume.codeBook.isExact())) {

@@ -3,24 +3,13 @@
 
 #include <openvdb/tree/NodeManager.h>
 
-#include <bit>
-#include <cstdint>
 #include <type_traits>
+
+#include "ingest/values/same_bits.h"
 
 namespace deltasplat {
 
 namespace prune {
-
-template <typename T>
-bool haveSameBits(T a, T b) {
-    if constexpr (std::is_same_v<T, float>) {
-        return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
-    } else if constexpr (std::is_same_v<T, double>) {
-        return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-    } else {
-        return a == b;
-    }
-}
 
 template <typename Node>
 bool isUniform(const Node& node, typename Node::ValueType& value, bool& isActive) {
