@@ -28,7 +28,8 @@ std::string faultOf(const glm::dmat4& matrix, const glm::dvec3& lengths) {
     const glm::dvec4 last(matrix[0][3], matrix[1][3], matrix[2][3], matrix[3][3]);
     if (last != glm::dvec4(0, 0, 0, 1)) {
         const bool isTransposed = last.w == 1 && glm::dvec3(matrix[3]) == glm::dvec3(0);
-        return isTransposed ? "the translation in the last column" : "a projection";
+        if (isTransposed) return "the translation in the last column";
+        return glm::determinant(matrix) == 0 ? "a singular matrix" : "a projection";
     }
     const double least = std::min({lengths.x, lengths.y, lengths.z});
     const double most = std::max({lengths.x, lengths.y, lengths.z});

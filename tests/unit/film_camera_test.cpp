@@ -142,6 +142,7 @@ TEST(FilmCamera, MatricesThatAreNoCamerasAreRefused) {
              m[1] = {0, 0, 0, 0};
          }},
         {"singular", [](glm::dmat4& m) { m[1] = m[0]; }},
+        {"a singular matrix", [](glm::dmat4& m) { m = glm::dmat4(0); }},
         {"mirrored", [](glm::dmat4& m) { m[0] = -m[0]; }},
         {"right angles", [](glm::dmat4& m) { m[0][1] = 0.01; }},
         {"axes of the lengths 1,1,1.01", [](glm::dmat4& m) { m[2] *= 1.01; }},

@@ -62,7 +62,7 @@ ConversionStats convertFrames(const ConversionFiles& files, const FrameChoice& c
         [&](std::size_t i, const Listener& part) {
             ConversionFiles one{frames[i].input, frames[i].output, {}};
             if (!files.stats.empty())
-                one.stats = frameNameOf("--stats", files.stats).at(frames[i].frame);
+                one.stats = frameNameOf(choice, "--stats", files.stats).at(frames[i].frame);
             folders.makeFor(one.output);
             folders.makeFor(one.stats);
             each[i] = convertOne(one, convert, part);
@@ -111,7 +111,7 @@ ConversionStats runConversion(const CLI::App& app, const ConversionFiles& files,
                               const FrameChoice& frames, const Session& session,
                               const Convert& convert) {
     requireFramesOf(app, frames, files.input, files.output);
-    if (frames.asked() && !files.stats.empty()) frameNameOf("--stats", files.stats);
+    if (frames.asked() && !files.stats.empty()) frameNameOf(frames, "--stats", files.stats);
     ConversionStats stats;
     {
         ProgressDisplay display(session.common);

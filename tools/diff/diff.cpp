@@ -14,6 +14,7 @@
 #include "options/input_options.h"
 #include "options/volume_choices.h"
 #include "sequence/frame_name.h"
+#include "sequence/frame_warnings.h"
 #include "sequence/frames_to_make.h"
 #include "subcommands.h"
 
@@ -208,21 +209,33 @@ Verdict compareFrames(const CLI::App& app, const DiffOptions& options, const Ses
         throw Error(ErrorCode::kInput,
                     gotExpected("--frames", "no frame that both have", "at least one"));
     }
+    std::vector<FrameFiles> files;
+    for (const FrameDiff& frame : frames) files.push_back({frame.frame, frame.a, frame.b});
+    const Listener all = display.stage(0, 1);
+    FrameWarnings warnings(files, all);
     Verdict worst = Verdict::kPass;
-    double done = 0;
-    for (FrameDiff& frame : frames) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        FrameDiff& frame = frames[i];
         DiffOptions one = options;
         one.a = frame.a;
         one.b = frame.b;
         const auto stage = [&](double begin, double end) {
             const double count = double(frames.size());
-            return display.stage((done + begin) / count, (done + end) / count);
+            Listener part = display.stage((double(i) + begin) / count, (double(i) + end) / count);
+            part.warning = [&, i](const std::string& text) { warnings.warn(i, text); };
+            return part;
         };
-        frame.diff = compareFiles(app, one, stage);
+        try {
+            frame.diff = compareFiles(app, one, stage);
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::kInterrupted) throw;
+            warnings.count();
+            throw Error(error.code(), frameLine(files[i], error.what()));
+        }
         worst = std::max(worst, frame.diff.verdict());
         if (!options.json && !session.common.quiet) printOut(plainText(frame.diff, one));
-        ++done;
     }
+    warnings.count();
     if (options.json) {
         printOut(jsonText(frames));
     } else if (!session.common.quiet) {

@@ -20,6 +20,7 @@
 #include "output_files.h"
 #include "process/interrupt.h"
 #include "sequence/frame_options.h"
+#include "sequence/frame_warnings.h"
 #include "sequence/frames_to_make.h"
 #include "subcommands.h"
 #include "warn_once.h"
@@ -33,6 +34,7 @@ constexpr std::size_t kMaxPlots = 16;
 struct InfoOptions {
     std::vector<std::string> inputs;  // of frames their files
     FrameChoice frames;
+    std::vector<FrameFiles> files;  // of frames
     bool json = false;
     bool list = false;
     std::filesystem::path plot;              // empty: none
@@ -166,7 +168,6 @@ void writePlot(const std::filesystem::path& file, const Findings& found) {
 
 // The same with the files of frames in place of names that stand for them.
 InfoOptions withFrames(const CLI::App& app, InfoOptions options, const Session& session) {
-    std::vector<std::string> inputs;
     for (const std::string& input : options.inputs) {
         requireFramesOf(app, options.frames, input);
         if (!options.frames.asked()) continue;
@@ -174,9 +175,11 @@ InfoOptions withFrames(const CLI::App& app, InfoOptions options, const Session& 
         ProgressDisplay display(session.common);
         for (const FrameFiles& frame :
              withInputs(frames, options.frames.missing, display.stage(0, 0)))
-            inputs.push_back(frame.input.string());
+            options.files.push_back(frame);
     }
-    if (options.frames.asked()) options.inputs = std::move(inputs);
+    if (!options.frames.asked()) return options;
+    options.inputs.clear();
+    for (const FrameFiles& frame : options.files) options.inputs.push_back(frame.input.string());
     return options;
 }
 
@@ -193,16 +196,19 @@ void runInfo(const CLI::App& app, const InfoOptions& asked, const Session& sessi
     Findings found;
     {
         ProgressDisplay display(session.common);
+        const Listener all = display.stage(0, 1);
+        FrameWarnings warnings(options.files, all);
         warnOfUnusedInputOptions(app, {options.inputs.begin(), options.inputs.end()},
                                  display.stage(0, 0));
         const DescribeOptions describe = describeOptions(options, display.stage(0, 0));
         const double count = double(options.inputs.size());
-        double done = 0;
-        for (const std::string& file : options.inputs) {
-            addFile(file, options, describe, display.stage(done / count, (done + 1) / count),
-                    found);
-            ++done;
+        for (std::size_t i = 0; i < options.inputs.size(); ++i) {
+            Listener part = display.stage(double(i) / count, double(i + 1) / count);
+            if (!options.files.empty())
+                part.warning = [&, i](const std::string& text) { warnings.warn(i, text); };
+            addFile(options.inputs[i], options, describe, part, found);
         }
+        warnings.count();
     }
     if (!found.reports.empty()) {
         // Of several sequences there is nothing to say in common.

@@ -50,9 +50,9 @@ static void hear(int signal) {
     before = kWorking;
     const bool first = state.compare_exchange_strong(before, kInterrupted);
     if (!first && before == kInterrupted) endAtOnce(signal);
-    // Within a second, of which the system takes some to free memory. As safe in a handler as
-    // alarm(), which Linux makes of it.
-    constexpr itimerval kSoon{{0, 0}, {0, 700'000}};
+    // Within a second, of which the system takes what it needs to take gigabytes back. As safe in a
+    // handler as alarm(), which Linux makes of it.
+    constexpr itimerval kSoon{{0, 0}, {0, 300'000}};
     ::setitimer(ITIMER_REAL, &kSoon, nullptr);
 }
 

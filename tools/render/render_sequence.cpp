@@ -30,8 +30,6 @@
 namespace deltasplat {
 namespace {
 
-// Share of the progress that surveying takes.
-constexpr double kSurveyShare = 0.4;
 // Of the memory there is, what volumes of the survey may take that are kept, and what pictures that
 // are made at the same time may.
 constexpr double kKeptShare = 0.3;
@@ -279,6 +277,13 @@ bool choosesWindow(const RenderCommand& command) {
     return showsWindow(command) && !windowAsked(command);
 }
 
+// Share of the progress that looking at all frames takes before any is made.
+double surveyShare(const RenderCommand& command, bool isKnown, std::size_t frames) {
+    if (isKnown && !choosesWindow(command)) return 0;
+    const bool readsOne = !FrameName::findInput(command.input) && !command.scene.moves();
+    return readsOne && !choosesWindow(command) ? 1 / (1 + double(frames)) : 0.4;
+}
+
 // Puts into a look, and into `command`, the greys that all frames are shown in.
 // @param isKnown  whether what there is to know of all frames is known already
 void fixWindow(const std::vector<FrameFiles>& frames, bool isKnown, SequenceLook& look,
@@ -325,6 +330,7 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
                         "a camera that options turn"));
     }
     if (command.turntable && !command.frames.asked()) {
+        command.frames.askedBy = "--turntable";
         command.frames.frames.resize(std::size_t(*command.turntable));
         std::iota(command.frames.frames.begin(), command.frames.frames.end(), 1);
     }
@@ -333,7 +339,7 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
         if (command.firstPass.empty()) return;
         refuseWithoutFrames("--first-pass");
     }
-    if (!command.stats.empty()) frameNameOf("--stats", command.stats);
+    if (!command.stats.empty()) frameNameOf(command.frames, "--stats", command.stats);
 }
 
 void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Listener& listener,
@@ -348,20 +354,21 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     if (present.empty() && sinks.any()) refuseWithoutInputs(all.front().input);
     warnOfOwnRanges(command, listener);
     const bool isAlone = isLookAlone(command);
-    const double readShare = choosesWindow(command) ? kSurveyShare / 2 : kSurveyShare;
+    const double surveyed = surveyShare(command, isKnown, present.size());
+    const double readShare = choosesWindow(command) ? surveyed / 2 : surveyed;
     Survey survey(command, present, isAlone);
     if (!isKnown && isAlone && !command.frames.keepGoing &&
         command.frames.missing == MissingFrames::kError)
         requireInputs(present);
     if (!isKnown) survey.run(look, partOf(listener, 0, readShare));
     RenderCommand fixed = fixedTo(look, command);
-    fixWindow(present, isKnown, look, fixed, partOf(listener, readShare, kSurveyShare));
+    fixWindow(present, isKnown, look, fixed, partOf(listener, readShare, surveyed));
     if (!isKnown && !command.firstPass.empty()) writeFirstPass(command, survey.framesRead(), look);
     if (isAlone) {
         listener.report(1);
         return survey.throwFailure();
     }
-    const Listener making = partOf(listener, kSurveyShare, 1);
+    const Listener making = partOf(listener, surveyed, 1);
     const std::vector<FrameFiles> frames = framesToMake(present, command.frames);
     const std::optional<FrameName> stats = FrameName::find(command.stats);
     OutputFolders folders;

@@ -82,7 +82,8 @@ void addSinkOptions(CLI::App& app, RenderCommand& command) {
 void applySinks(const CLI::App& app, RenderCommand& command, std::size_t pictures) {
     const bool isSingle = !command.frames.asked() && pictures == 0;
     for (const char* option : {"--contact-sheet", "--movie", "--slate"})
-        if (isSingle && isGiven(app, option)) refuseWithoutFrames(option);
+        if (isSingle && isGiven(app, option))
+            refuse(option, "one picture", "several (--frames, --turntable, or a batch)");
     const bool isLookAlone = command.frames.asked() && !command.firstPass.empty();
     if (command.output.empty() && command.movie.empty() && !isLookAlone)
         refuse("--output", "nothing", "FILE (see 'deltasplat render --help')");

@@ -24,20 +24,22 @@ Parser<MissingFrames> missingFrames(const std::vector<std::string>& words) {
 
 constexpr const char* kFrameName = "a name with ####, %04d, @ or $F4 for the number";
 
-[[noreturn]] void refuseName(const std::string& option, const std::filesystem::path& name) {
+[[noreturn]] void refuseName(const FrameChoice& choice, const std::string& option,
+                             const std::filesystem::path& name) {
     throw Error(ErrorCode::kUsage,
-                gotExpected(option, name.string() + " with --frames", kFrameName));
+                gotExpected(option, name.string() + " with " + choice.askedBy, kFrameName));
 }
 
 }  // namespace
 
-FrameName frameNameOf(const std::string& option, const std::filesystem::path& file) {
+FrameName frameNameOf(const FrameChoice& choice, const std::string& option,
+                      const std::filesystem::path& file) {
     const std::optional<FrameName> found = FrameName::find(file);
     if (found) return *found;
     std::filesystem::path named = file.filename();
     named.replace_extension(".####" + file.extension().string());
     throw Error(ErrorCode::kUsage,
-                gotExpected(option, file.string() + " with --frames",
+                gotExpected(option, file.string() + " with " + choice.askedBy,
                             std::string(kFrameName) + ", such as " + named.string()));
 }
 
@@ -84,7 +86,7 @@ void addFrameList(CLI::App& app, FrameChoice& choice) {
 std::vector<FrameFiles> inputsOfFrames(const FrameChoice& choice, const std::string& option,
                                        const std::filesystem::path& input) {
     const std::optional<FrameName> name = FrameName::findInput(input);
-    if (!name) refuseName(option, input);
+    if (!name) refuseName(choice, option, input);
     std::vector<FrameFiles> files;
     for (const int frame : choice.frames) files.push_back({frame, name->at(frame), {}});
     return files;
@@ -94,8 +96,8 @@ std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::file
                                       bool mayStand, const std::string& outputOption,
                                       const std::filesystem::path& output) {
     const std::optional<FrameName> inputName = FrameName::findInput(input);
-    if (!inputName && !mayStand) refuseName("INPUT", input);
-    const FrameName outputName = frameNameOf(outputOption, output);
+    if (!inputName && !mayStand) refuseName(choice, "INPUT", input);
+    const FrameName outputName = frameNameOf(choice, outputOption, output);
     std::vector<FrameFiles> files;
     std::map<std::filesystem::path, int> outputs;
     for (const int frame : choice.frames) {

@@ -22,9 +22,10 @@ enum class MissingFrames {
 struct FrameChoice {
     std::vector<int> frames;  ///< empty: no sequence
     MissingFrames missing = MissingFrames::kError;
-    bool keepGoing = false;     ///< whether the others are made if some have failed
-    bool skipExisting = false;  ///< leave alone what is there and whole
-    bool update = false;        ///< the same of what is no older than its input
+    bool keepGoing = false;            ///< whether the others are made if some have failed
+    bool skipExisting = false;         ///< leave alone what is there and whole
+    bool update = false;               ///< the same of what is no older than its input
+    std::string askedBy = "--frames";  ///< the option that they are given by, for messages
 
     bool asked() const { return !frames.empty(); }
 };
@@ -54,7 +55,8 @@ std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::file
 
 /// Returns a name with a place for the frame's number.
 /// @throw Error(kUsage) naming the option, if it has none
-FrameName frameNameOf(const std::string& option, const std::filesystem::path& file);
+FrameName frameNameOf(const FrameChoice& choice, const std::string& option,
+                      const std::filesystem::path& file);
 
 /// @throw Error(kUsage) always: the option is given without --frames
 [[noreturn]] void refuseWithoutFrames(const std::string& option);

@@ -57,6 +57,7 @@ std::vector<std::string> argumentsFor(const std::filesystem::path& file, glm::iv
         " -i pipe:0 -an -threads 1 -filter_threads 1 -vf scale=flags=accurate_rnd+full_chroma_int:"
         "out_color_matrix=bt709:out_range=tv,format=" +
         (proRes ? "yuv422p10le" : "yuv420p") +
+        ",setparams=color_primaries=bt709:color_trc=iec61966-2-1:colorspace=bt709" +
         " -color_primaries bt709 -colorspace bt709 -color_trc iec61966-2-1 -color_range tv"
         " -map_metadata -1 -fflags +bitexact -flags:v +bitexact -c:v " +
         (proRes ? "prores_ks -profile:v 3 -vendor apl0" : "libx264 -preset medium -crf 16") +

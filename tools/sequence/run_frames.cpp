@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cctype>
 #include <exception>
 #include <map>
 #include <mutex>
-#include <set>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -16,47 +14,21 @@
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "process/terminate.h"
+#include "sequence/frame_warnings.h"
 
 namespace deltasplat {
 namespace {
-
-// What went wrong may begin with the name, or that of the file, and perhaps a line in it.
-std::string lineOf(const FrameFiles& files, const std::string& what) {
-    if (files.name.empty()) return "frame " + std::to_string(files.frame) + ": " + what;
-    const std::string input = files.input.string();
-    if (!input.empty() && what.starts_with(input + ":"))
-        return files.name + what.substr(input.size());
-    return what.starts_with(files.name + ":") ? what : files.name + ": " + what;
-}
-
-bool isOfWord(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
-
-// Without 3, -0.5 and 1e-05, but with what belongs to a name.
-std::string withoutNumbers(const std::string& text) {
-    std::string rest;
-    for (std::size_t i = 0; i < text.size();) {
-        const bool begins = std::isdigit(static_cast<unsigned char>(text[i])) != 0 &&
-                            (i == 0 || !isOfWord(text[i - 1]));
-        if (!begins) {
-            rest += text[i++];
-            continue;
-        }
-        if (!rest.empty() && rest.back() == '-') rest.pop_back();
-        while (i < text.size() && (isOfWord(text[i]) || text[i] == '.' ||
-                                   ((text[i] == '-' || text[i] == '+') && text[i - 1] == 'e')))
-            ++i;
-    }
-    return rest;
-}
 
 class FrameRun {
   public:
     FrameRun(const std::vector<FrameFiles>& frames, bool keepGoing,
              const std::function<void(std::size_t, const Listener&)>& work,
              const Listener& listener)
-        : frames_(frames), keepGoing_(keepGoing), work_(work), listener_(listener) {}
+        : frames_(frames),
+          keepGoing_(keepGoing),
+          work_(work),
+          listener_(listener),
+          warnings_(frames, listener) {}
 
     void run(int workers) {
         workers = int(std::clamp<std::size_t>(std::size_t(workers), 1, frames_.size()));
@@ -71,20 +43,11 @@ class FrameRun {
             }
             takeFrames(threadsEach);
         }
-        countWarnings();
+        warnings_.count();
         finish();
     }
 
   private:
-    // What is said of frames in the same words but for numbers.
-    struct Warning {
-        std::size_t first;  // frame that it is said of
-        std::string text;   // without the names of its files
-        bool isOfFrames;    // or of all, whatever the frame
-        bool hasOtherNumbers;
-        std::set<std::size_t> others;
-    };
-
     void takeFrames(int threads) {
         const ThreadLimit limit(threads);
         while (!stops_) {
@@ -109,7 +72,7 @@ class FrameRun {
     Listener listenerOf(std::size_t i) {
         Listener listener;
         listener.progress = [this, i](double share) { report(i, share); };
-        listener.warning = [this, i](const std::string& text) { warn(i, text); };
+        listener.warning = [this, i](const std::string& text) { warnings_.warn(i, text); };
         return listener;
     }
 
@@ -122,52 +85,12 @@ class FrameRun {
         listener_.report(done_ / double(frames_.size()));
     }
 
-    // Shows the first one of its kind.
-    void warn(std::size_t i, const std::string& text) {
-        const FrameFiles& files = frames_[i];
-        std::string about = text;
-        for (const auto& file : {files.input.string(), files.output.string()}) {
-            const std::size_t at = file.empty() ? std::string::npos : about.find(file);
-            if (at != std::string::npos) about.replace(at, file.size(), "");
-        }
-        const std::lock_guard lock(mutex_);
-        const auto [known, isNew] =
-            warnings_.emplace(withoutNumbers(about), Warning{i, about, false, false, {}});
-        Warning& warning = known->second;
-        warning.isOfFrames = warning.isOfFrames || about != text;
-        if (isNew) return listener_.warn(lineOf(files, text));
-        // All that differs in one frame is shown.
-        if (i == warning.first && about != warning.text) listener_.warn(lineOf(files, text));
-        if (i == warning.first) return;
-        warning.hasOtherNumbers = warning.hasOtherNumbers || about != warning.text;
-        warning.others.insert(i);
-    }
-
-    // Says of how many others a warning is.
-    void countWarnings() const {
-        for (const auto& [kind, warning] : warnings_) {
-            const std::size_t count = warning.others.size();
-            // What is the same of all frames of a sequence need not be counted.
-            const bool isOfAll = !warning.isOfFrames && !warning.hasOtherNumbers;
-            if (count == 0 || (isOfAll && frames_[0].name.empty())) continue;
-            listener_.warn(std::to_string(count) + " other" + frameWord(count) +
-                           (warning.hasOtherNumbers ? ", in other numbers: " : ": ") +
-                           warning.text.substr(std::min(warning.text.find_first_not_of(": "),
-                                                        warning.text.size())));
-        }
-    }
-
-    std::string frameWord(std::size_t count) const {
-        return std::string(frames_[0].name.empty() ? " frame" : " picture") +
-               (count > 1 ? "s" : "");
-    }
-
     void fail(std::size_t i, const Error& error) {
         const std::lock_guard lock(mutex_);
         failures_.emplace(i, error);
         done_ += 1 - std::exchange(shares_[i], 1);
         if (!keepGoing_) stops_ = true;
-        if (error.code() != ErrorCode::kInterrupted) showError(lineOf(frames_[i], error.what()));
+        if (error.code() != ErrorCode::kInterrupted) showError(frameLine(frames_[i], error.what()));
     }
 
     void finish() const {
@@ -191,7 +114,7 @@ class FrameRun {
             names += "; " + std::to_string(left) + (left == 1 ? " was" : " were") + " not tried";
         throw Error(failures_.begin()->second.code(), std::to_string(failures_.size()) + " of " +
                                                           std::to_string(frames_.size()) +
-                                                          frameWord(2) + " failed: " + names);
+                                                          warnings_.word(2) + " failed: " + names);
     }
 
     const std::vector<FrameFiles>& frames_;
@@ -203,7 +126,7 @@ class FrameRun {
     std::mutex mutex_;
     std::map<std::size_t, double> shares_;  // of frames begun
     double done_ = 0;
-    std::map<std::string, Warning> warnings_;  // by what is said, without numbers
+    FrameWarnings warnings_;
     std::map<std::size_t, Error> failures_;
 };
 

@@ -40,6 +40,22 @@ code=0
 "$program" info in.####.vdb --frames 1-3 >info.txt
 grep -qx 'All 3 frames' info.txt || fail "info.txt: got nothing of all frames"
 grep -q '^  frames  *3, with active voxels in 3$' info.txt || fail "info.txt: got other frames"
+# A warning of several frames is shown once, and counted.
+mkdir copies
+for frame in 1 2 3; do
+    printf '\0\0\300\177%.0s' $(seq $frame) >nan.$frame\_8x1x1_float32.raw
+    head -c $((32 - 4 * frame)) /dev/zero >>nan.$frame\_8x1x1_float32.raw
+done
+cp nan.* copies
+"$program" info nan.#_8x1x1_float32.raw --frames 1-3 --nan 0 2>said.txt >/dev/null
+[[ $(wc -l <said.txt) == 2 ]] && grep -q "frame 1: nan.1_8x1x1_float32.raw: 1 NaN" said.txt &&
+    grep -q "2 other frames, in other numbers: 1 NaN" said.txt || fail "info: got $(cat said.txt)"
+"$program" diff nan.#_8x1x1_float32.raw copies/nan.#_8x1x1_float32.raw --frames 1-3 --nan 0 2>said.txt >/dev/null
+[[ $(wc -l <said.txt) == 4 ]] && grep -q "frame 1: copies/nan.1_8x1x1_float32.raw: 1 NaN" said.txt || fail "diff: got $(cat said.txt)"
+rm copies/nan.2_*
+"$program" diff nan.#_8x1x1_float32.raw copies/nan.#_8x1x1_float32.raw --frames 1-3 --nan 0 2>said.txt >/dev/null || true
+grep -q "^deltasplat: frame 2: copies/nan.2_8x1x1_float32.raw: got no such file" said.txt ||
+    fail "diff: got $(cat said.txt)"
 "$program" info in.####.vdb --frames 1-3 --json | grep -q '"filled": 3' || fail "info: got other JSON"
 
 # Folders of frames are made.

@@ -99,7 +99,7 @@ usage "--output: got g.#.png with --contact-sheet; expected one file" \
 usage "--float: got a movie alone; expected -o with pictures" in.#.vdb --frames 1-2 --movie g.mp4 --float
 usage "--missing: got black with --deep; expected error, skip or hold" \
     in.#.vdb -o g.#.exr --frames 1-3 --missing black --deep
-usage "--contact-sheet: got it without --frames; expected the frames of a sequence" \
+usage "--contact-sheet: got one picture; expected several (--frames, --turntable, or a batch)" \
     in.1.vdb -o g.png --contact-sheet 2x1
 usage "--movie: got g.avi; expected .mp4, .m4v, .mkv or .mov" in.#.vdb --frames 1-3 --movie g.avi
 usage "--size: got 33x24 with --movie g.mp4; expected an even width and height, or a .mov" \
