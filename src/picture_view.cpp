@@ -63,7 +63,7 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
       steps_(stepsOf(view, *scene.scene.volume)),
       thinView_(subdivided(view, axis_->parts)),
       footprint_(makeViewFootprint(plan)),
-      layout_(layoutSheet(axis_->deltas.box, footprint_, axis_->classes().oneColor ? 1 : 4)) {
+      layout_(layoutSheet(axis_->deltas().box, footprint_, axis_->classes().oneColor ? 1 : 4)) {
     const VoxelPainter* painter = scene.painter.get();
     const bool isLit = painter && painter->dependsOnCamera();
     if (isLit || steps_ != axis_->steps) {
@@ -76,12 +76,12 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
             axis_->sliceAxis};
         std::unique_ptr<const LookLight> light;
         if (painter) light = painter->lightOf(classes, isLit ? &lit : nullptr);
-        colors_.emplace(axis_->deltas, std::move(classes), std::move(light));
+        colors_.emplace(axis_->deltas(), std::move(classes), std::move(light));
     }
     plane_.emplace(camera, placePlane());
     const bool stampEmptyVoxels = scene.options.method == Method::kTraditional;
     slabs_.emplace(SlabInput{
-        {axis_->deltas, colors_ ? *colors_ : axis_->colors, footprint_, stampEmptyVoxels, memory},
+        {axis_->deltas(), colors_ ? *colors_ : axis_->colors, footprint_, stampEmptyVoxels, memory},
         layout_,
         plane_->plane(),
         memory});
@@ -110,7 +110,7 @@ Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
 // as there are voxels in the slice in the middle, or sheet pixels if those are fewer. What is
 // averaged before it is composited is not what is seen of it.
 double PictureView::densityOf() const {
-    const IndexBox& box = axis_->deltas.box;
+    const IndexBox& box = axis_->deltas().box;
     const Factorization& view = thinView_;
     const double farthest = view.frontToBack ? box.max.x - view.eye->x : view.eye->x - box.min.x;
     const double nearest =
@@ -157,7 +157,7 @@ ErrorBound PictureView::errorBound() const {
             scene_.painter->lightOf(axis_->classes(), nullptr)->units().brightest();
         brightest = std::max({color.x, color.y, color.z});
     }
-    const IndexBox& box = axis_->deltas.box;
+    const IndexBox& box = axis_->deltas().box;
     const Steps steps = view_.eye && plane_->plane().cutsAny({box.min.x, box.max.x})
                             ? Steps::kOneShorter
                         : view_.eye || steps_ != 1 ? Steps::kLonger

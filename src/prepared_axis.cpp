@@ -7,6 +7,7 @@
 #include "delta/code_blocks.h"
 #include "deltasplat/error.h"
 #include "medium/room.h"
+#include "optics/class_numbers.h"
 #include "optics/hold_rule.h"
 #include "optics/largest_alpha.h"
 #include "parallel.h"
@@ -61,9 +62,22 @@ bool shorterMayShowLess(const ClassTable& classes, double times) {
     return false;
 }
 
+// Returns the words that other optics have, if these tell the same codes apart, or null; classes
+// then get the others' numbers. Where nothing is held and nothing has looks of its own, all that
+// words know of optics is the classes of codes.
+std::shared_ptr<const PackedDeltas> sharedWords(const PreparedAxis* before,
+                                                const PreparedScene::Impl& scene,
+                                                ClassTable& classes) {
+    const bool areOfClasses = !scene.painter && scene.options.tolerance.isExact();
+    if (!before || !areOfClasses || !before->words->looks.empty()) return {};
+    return takeNumbers(before->classes().classOfSlot, classes) ? before->words : nullptr;
+}
+
+// @param before  the same axis as other optics have it; null: none
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, int sliceAxis,
                                             const Subdivision& parts, double steps,
-                                            Encoding encoding, const Listener& listener) {
+                                            Encoding encoding, const PreparedAxis* before,
+                                            const Listener& listener) {
     const Volume& volume = *scene.scene.volume;
     const Tolerance& tolerance = scene.options.tolerance;
     std::optional<ValueMixer> mixer;
@@ -79,6 +93,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
         classes = classify(seen, scene.optics, straight);
     }
     listener.report(0.05);
+    std::shared_ptr<const PackedDeltas> words = sharedWords(before, scene, classes);
     PackOptions pack{sliceAxis, encoding, classes.classOfSlot, holdRule(seen, classes, tolerance),
                      mixer ? &*mixer : nullptr};
     const bool isLit = painter && painter->dependsOnCamera();
@@ -93,17 +108,15 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
             pack.holds = {};
         }
     }
-    PackedDeltas deltas = packDeltas(volume, pack);
+    if (!words) words = std::make_shared<const PackedDeltas>(packDeltas(volume, pack));
     if (steps != first) {
         classes = classes.atSteps(steps);
         if (light) light = painter->lightOf(classes, nullptr);
     }
-    // Colours refer to the deltas where these lie at last.
-    const auto axis = std::make_shared<PreparedAxis>(
-        PreparedAxis{sliceAxis, parts, std::move(deltas), steps, StepColors(ClassTable{})});
-    axis->colors = isLit ? StepColors(std::move(classes))
-                         : StepColors(axis->deltas, std::move(classes), std::move(light));
-    return axis;
+    StepColors colors = isLit ? StepColors(std::move(classes))
+                              : StepColors(*words, std::move(classes), std::move(light));
+    return std::make_shared<const PreparedAxis>(
+        PreparedAxis{sliceAxis, parts, std::move(words), steps, std::move(colors)});
 }
 
 std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
@@ -116,22 +129,37 @@ std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
 }  // namespace
 
 std::uint64_t PreparedAxis::stamps(Method method) const {
-    if (method == Method::kTraditional) return std::uint64_t(deltas.box.voxels());
+    if (method == Method::kTraditional) return std::uint64_t(deltas().box.voxels());
     std::uint64_t stamps = 0;
-    for (const PlannedSlab& slab : deltas.slabs) stamps += slab.stamps();
+    for (const PlannedSlab& slab : deltas().slabs) stamps += slab.stamps();
     return stamps;
 }
 
-PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne)
-    : scene(requireVolume(std::move(ofScene))),
+PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne, Axes before)
+    : given(ofScene.volume),
+      scene(requireVolume(std::move(ofScene))),
       painter(makePainter(*scene.volume, scene.optics)),
       optics(opticsOf(*scene.volume, scene.optics, painter.get())),
       options(withOptions),
       isThin(showsThin(*scene.volume, scene.optics)),
-      isForOne(forOne) {
+      isForOne(forOne),
+      before_(std::move(before)) {
     const BlockSet* more = painter ? painter->more() : nullptr;
     if (more && !more->positions.empty())
         scene.volume = std::make_shared<const Volume>(withRoom(*scene.volume, *more));
+}
+
+PreparedScene::Impl::Impl(const Impl& before, Optics others)
+    : Impl({before.given, std::move(others)}, before.options, before.isForOne, before.axes()) {}
+
+PreparedScene::Impl::Axes PreparedScene::Impl::axes() const {
+    Axes axes = before_;
+    const std::lock_guard lock(mutex_);
+    for (const auto& [key, place] : places_) {
+        const std::lock_guard placeLock(place->mutex);
+        if (place->axis) axes[key] = place->axis;
+    }
+    return axes;
 }
 
 std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
@@ -142,10 +170,11 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
         painter && (painter->isEverywhereOther() || (fromEye && painter->dependsOnCamera()));
     const Encoding encoding =
         isWhole ? Encoding::kWhole : encodingOf(options.method, painter != nullptr);
+    const Key key{sliceAxis, parts.slices, parts.within, isWhole};
     std::shared_ptr<Place> place;
     {
         const std::lock_guard lock(mutex_);
-        std::shared_ptr<Place>& known = places_[{sliceAxis, parts.slices, parts.within, isWhole}];
+        std::shared_ptr<Place>& known = places_[key];
         if (!known) known = std::make_shared<Place>();
         place = known;
     }
@@ -153,8 +182,10 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
     // Work of another picture, taken on while waiting here, might want the same axis.
     if (!place->axis)
         isolated([&] {
+            const auto before = before_.find(key);
             place->axis =
-                prepare(*this, sliceAxis, parts, isForOne ? steps : 1, encoding, listener);
+                prepare(*this, sliceAxis, parts, isForOne ? steps : 1, encoding,
+                        before == before_.end() ? nullptr : before->second.get(), listener);
         });
     return place->axis;
 }
@@ -169,6 +200,13 @@ std::size_t PreparedScene::Impl::blocksSeen(int sliceAxis) const {
 PreparedScene::PreparedScene(Scene scene, SplatOptions options) {
     const DefaultFloats floats;
     impl_ = std::make_shared<const Impl>(std::move(scene), options);
+}
+
+PreparedScene PreparedScene::withOptics(Optics optics) const {
+    const DefaultFloats floats;
+    PreparedScene other(*this);
+    other.impl_ = std::make_shared<const Impl>(*impl_, std::move(optics));
+    return other;
 }
 
 const Scene& PreparedScene::scene() const {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "delta/packed_deltas.h"
 #include "deltasplat/prepared_scene.h"
@@ -18,10 +19,11 @@ namespace deltasplat {
 struct PreparedAxis {
     int sliceAxis;
     Subdivision parts;
-    PackedDeltas deltas;
+    std::shared_ptr<const PackedDeltas> words;  ///< other optics may share them
     double steps;       ///< that colours are for, straight ways from slice to slice
     StepColors colors;  ///< of classes alone where looks depend on the camera
 
+    const PackedDeltas& deltas() const { return *words; }
     const ClassTable& classes() const { return colors.classes(); }
     /// Footprints that a method adds.
     std::uint64_t stamps(Method method) const;
@@ -30,8 +32,12 @@ struct PreparedAxis {
 /// The axes of a scene.
 struct PreparedScene::Impl {
     /// @param forOne  whether there will be one picture only
-    Impl(Scene ofScene, SplatOptions withOptions, bool forOne = false);
+    Impl(Scene ofScene, SplatOptions withOptions, bool forOne = false)
+        : Impl(std::move(ofScene), withOptions, forOne, Axes()) {}
+    /// The same volume seen by other optics.
+    Impl(const Impl& before, Optics others);
 
+    std::shared_ptr<const Volume> given;  ///< before it got room for what a painter adds
     Scene scene;
     std::unique_ptr<const VoxelPainter> painter;  ///< of own looks; null: there are none
     Optics optics;  ///< with the range that the volume has, and white if painted colours are others
@@ -50,14 +56,21 @@ struct PreparedScene::Impl {
     std::size_t blocksSeen(int sliceAxis) const;
 
   private:
+    using Key = std::array<int, 4>;  // axis, parts and whole slabs
+    using Axes = std::map<Key, std::shared_ptr<const PreparedAxis>>;
     struct Place {
         std::mutex mutex;
         std::shared_ptr<const PreparedAxis> axis;
     };
 
+    Impl(Scene ofScene, SplatOptions withOptions, bool forOne, Axes before);
+
+    // Returns those that are there, and those of optics before for which there are none yet.
+    Axes axes() const;
+
+    const Axes before_;  // of other optics
     mutable std::mutex mutex_;
-    mutable std::map<std::array<int, 4>, std::shared_ptr<Place>>
-        places_;  // by axis, parts and whole slabs
+    mutable std::map<Key, std::shared_ptr<Place>> places_;
     mutable std::mutex blocksMutex_;
     mutable std::array<std::optional<std::size_t>, 3> blocksSeen_;  // [slice axis]
 };

@@ -229,9 +229,9 @@ class CompositeRender {
         stats_.parts = axis.parts.voxels();
         stats_.slices = volume_.box.dims()[axis.sliceAxis] * axis.parts.slices;
         stats_.voxels = std::uint64_t(volume_.box.voxels()) * std::uint64_t(stats_.parts);
-        stats_.visible = axis.deltas.visible();
-        stats_.deltas = axis.deltas.deltas();
-        stats_.slabs = int(axis.deltas.slabs.size());
+        stats_.visible = axis.deltas().visible();
+        stats_.deltas = axis.deltas().deltas();
+        stats_.slabs = int(axis.deltas().slabs.size());
         stats_.stamps += axis.stamps(options_.method);
     }
 

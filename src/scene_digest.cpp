@@ -53,7 +53,7 @@ std::uint64_t digestOfSlice(const PackedDeltas& deltas, std::size_t slice) {
 }  // namespace
 
 std::uint64_t digestOf(const PictureView& view) {
-    const PackedDeltas& deltas = view.axis().deltas;
+    const PackedDeltas& deltas = view.axis().deltas();
     const std::size_t slices = deltas.begins.empty() ? 0 : deltas.begins.size() - 1;
     std::vector<std::uint64_t> ofSlices(slices);
     parallelFor(slices, [&](std::size_t i) { ofSlices[i] = digestOfSlice(deltas, i); });

@@ -24,6 +24,12 @@ class PreparedScene {
     /// @throw Error(kUsage) without a volume, or for optics out of range
     PreparedScene(Scene scene, SplatOptions options);
 
+    /// Returns the same volume with other optics, as if prepared anew. Words are shared with this
+    /// scene where both tell the same voxels apart and nothing is held or has a look of its own:
+    /// where colours or opacities are others, but what is clear, and what looks alike, is the same.
+    /// @throw Error(kUsage) for optics out of range
+    PreparedScene withOptics(Optics optics) const;
+
     const Scene& scene() const;
     const SplatOptions& options() const;
 

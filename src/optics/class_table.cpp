@@ -18,6 +18,7 @@
 #include "deltasplat/error.h"
 #include "number_text.h"
 #include "optics/check_optics.h"
+#include "optics/class_numbers.h"
 #include "optics/color_curve.h"
 #include "optics/color_digits.h"
 #include "optics/function_place.h"
@@ -272,15 +273,7 @@ void takeDigit(const std::vector<ColorDigits>& colors, std::size_t i, bool alway
     digit.colors.clear();
     digit.colors.reserve(colors.size());
     for (const ColorDigits& color : colors) digit.colors.push_back(color[i]);
-    const auto isUsed = [](const ClassTable::Color& color) { return color != ClassTable::Color{}; };
-    const auto& all = digit.colors;
-    const auto first = std::find_if(all.begin(), all.end(), isUsed);
-    if (first == all.end()) {
-        if (!always) digit.colors.clear();
-        return;
-    }
-    digit.first = int(first - all.begin());
-    digit.last = int(std::find_if(all.rbegin(), all.rend(), isUsed).base() - all.begin());
+    if (!noteUse(digit) && !always) digit.colors.clear();
 }
 
 void takeDigits(const std::vector<ColorDigits>& colors, ClassTable& table) {

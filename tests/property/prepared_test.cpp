@@ -70,6 +70,63 @@ TEST(Prepared, preparesEachAxisOnce) {
     }
 }
 
+// Other optics of a scene: its opacities and colours changed so that the same codes are seen, codes
+// that are seen changed, and looks of other kinds.
+std::vector<Optics> otherOptics() {
+    std::vector<Optics> all;
+    for (const Colors colors :
+         {Colors::kOne, Colors::kSeveral, Colors::kOwn, Colors::kLit, Colors::kFog}) {
+        all.push_back(someOptics(colors));
+        all.push_back(all.back());
+        all.back().extinctionScale = 0.3;
+        all.push_back(all[all.size() - 2]);
+        all.back().transferFunction.opacities = {{90, 0, 0.5, 0}, {180, 0.6, 0.5, 0}};
+    }
+    return all;
+}
+
+TEST(Prepared, otherOpticsGiveThePixelsOfRender) {
+    for (const double tolerance : {0.0, 0.1}) {
+        RenderOptions options;
+        options.tolerance.relative = tolerance;
+        PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, options);
+        for (const CameraOptions& camera : {someCameras()[1], someCameras()[6]}) {
+            options.camera = camera;
+            for (const Optics& optics : otherOptics()) {
+                scene = scene.withOptics(optics);
+                options.optics = optics;
+                EXPECT_EQ(pictureOf(scene, camera).rgba, render(*someVolume(), options).image.rgba)
+                    << tolerance;
+            }
+        }
+    }
+}
+
+// What is told apart is what words are made of.
+TEST(Prepared, wordsAreSharedWhereTheSameIsToldApart) {
+    const PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, SplatOptions());
+    const auto wordsOf = [](const PreparedScene& one) {
+        return one.impl().axis(1, Subdivision(), 1, false, {})->words;
+    };
+    const auto words = wordsOf(scene);
+    Optics optics = scene.scene().optics;
+    optics.transferFunction.colors = {{0, {1, 1, 0}}, {255, {0.3, 0.1, 0}}};
+    optics.extinctionScale = 2.5;
+    const PreparedScene recolored = scene.withOptics(optics);
+    EXPECT_EQ(wordsOf(recolored), words);
+    // Also where no picture of the scene between was made.
+    optics.extinctionScale = 1.5;
+    EXPECT_EQ(wordsOf(recolored.withOptics(optics).withOptics(scene.scene().optics)), words);
+    optics.transferFunction.opacities = {{90, 0, 0.5, 0}, {180, 0.6, 0.5, 0}};
+    EXPECT_NE(wordsOf(scene.withOptics(optics)), words);
+    SplatOptions held;
+    held.tolerance.relative = 0.1;
+    const PreparedScene holding({someVolume(), scene.scene().optics}, held);
+    optics = scene.scene().optics;
+    optics.extinctionScale = 2.5;
+    EXPECT_NE(wordsOf(holding.withOptics(optics)), wordsOf(holding));
+}
+
 // Also while none of the axes is there yet.
 TEST(Prepared, anyNumberOfThreadsMayRenderOneScene) {
     for (const Colors colors :

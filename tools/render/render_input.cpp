@@ -329,6 +329,15 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
                   look);
 }
 
+RenderOptions opticsFor(const Volume& volume, const std::filesystem::path& input,
+                        const PictureOptions& picture, const Listener& listener,
+                        const FrameLook& look) {
+    RenderOptions options = readOptics(picture, listener);
+    fitOptics(input, picture, look.standIn(kMainGrid, volume), false, options, listener);
+    if (options.optics.surface) options.optics.densityScale.reset();
+    return options;
+}
+
 ReadScene readScene(const std::filesystem::path& input, const PictureOptions& picture,
                     const Listener& listener, const FrameLook* look) {
     RenderOptions options = readOptics(picture, listener);

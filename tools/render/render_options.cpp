@@ -299,7 +299,8 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
     group.addValue("--tf", "FILE|PRESET", options.transferFunction, anyText(),
                    "Transfer function: a ParaView JSON file, FILE:NAME for one of\n"
                    "several in it, a table of labels (3D Slicer's .ctbl, ITK-SNAP's\n"
-                   ".txt or .label), or a preset:" +
+                   ".txt or .label; with --frames one for each, as tf.####.json), or a\n"
+                   "preset:" +
                        presetNames() + "\n(default: " + kScanPreset +
                        " for CT scans, in Hounsfield units of a\n"
                        "patient, labels for files that say they hold some; else a ramp over the "

@@ -44,6 +44,28 @@ double turnOf(int frame, std::optional<int> turntable) {
     return turntable ? 360 * (double(frame - 1) / *turntable) : 0;
 }
 
+// The place for a frame's number in the transfer function's name, if it has one and is no file.
+std::optional<FrameName> functionFrames(const RenderCommand& command) {
+    const std::filesystem::path& given = command.picture.transferFunction;
+    std::error_code ignored;
+    if (std::filesystem::exists(given, ignored)) return {};
+    return FrameName::find(given);
+}
+
+// Whether a frame has a transfer function to be read, as far as that is its own.
+bool hasFunction(const RenderCommand& command, int frame) {
+    const std::optional<FrameName> function = functionFrames(command);
+    std::error_code ignored;
+    return !function || std::filesystem::exists(function->at(frame), ignored);
+}
+
+// Puts what a frame reads into `command`.
+void showAll(const FrameFiles& files, RenderCommand& command) {
+    if (const std::optional<FrameName> function = functionFrames(command))
+        command.picture.transferFunction = function->at(files.frame);
+    showFrame(files.frame, files.input, command);
+}
+
 // The command that makes one frame.
 // @param stats  empty: none are written
 RenderCommand commandOf(const RenderCommand& command, const FrameFiles& files,
@@ -53,7 +75,7 @@ RenderCommand commandOf(const RenderCommand& command, const FrameFiles& files,
     if (camera) frame.picture.camera.file = camera->at(files.frame);
     // One without a file is black.
     frame.input.clear();
-    if (!files.input.empty()) showFrame(files.frame, files.input, frame);
+    if (!files.input.empty()) showAll(files, frame);
     frame.output = files.output;
     if (stats) frame.stats = stats->at(files.frame);
     if (cameraMoves(command.picture))
@@ -116,8 +138,13 @@ class Survey {
         const FrameFiles* absent = nullptr;
         for (const FrameFiles& one : frames_) {
             // A scene may show one file in several places.
-            if (one.input.empty() || (!known.insert(one.input).second && !command_.scene.moves()))
+            if (one.input.empty() || (known.contains(one.input) && !command_.scene.moves()))
                 continue;
+            if (!hasFunction(command_, one.frame)) {
+                if (!absent) absent = &one;
+                continue;
+            }
+            known.insert(one.input);
             if (isAlone_ || hasInput(one.input)) {
                 files.push_back(one);
                 continue;
@@ -135,7 +162,7 @@ class Survey {
         const FrameLook frame{look, i};
         try {
             RenderCommand command = command_;
-            showFrame(files.frame, files.input, command);
+            showAll(files, command);
             readScene(command.input, command.picture, silent, &frame);
             anyIsRead_ = true;
         } catch (const Error& error) {
@@ -163,11 +190,14 @@ class Survey {
 
 // Whether all frames show the same, which then is made ready once.
 bool seesOneThing(const RenderCommand& command) {
-    return !FrameName::findInput(command.input) && !command.scene.moves() &&
+    // Other grids of a medium would be read for each transfer function.
+    const bool isOneMedium = !functionFrames(command) || !isFog(command.picture);
+    return !FrameName::findInput(command.input) && !command.scene.moves() && isOneMedium &&
            command.picture.render.mode == Mode::kComposite && !command.deep &&
            command.holdoutDepth.empty() && command.channels.aovs.empty();
 }
 
+// @param command  of the first frame
 PreparedScene prepareOnce(const RenderCommand& command, SequenceLook& look,
                           const Listener& listener) {
     Listener warnings;
@@ -175,6 +205,14 @@ PreparedScene prepareOnce(const RenderCommand& command, SequenceLook& look,
     const FrameLook frame{look, 0};
     const ReadScene scene = readScene(command.input, command.picture, warnings, &frame);
     return PreparedScene({scene.volume, scene.options.optics}, scene.options);
+}
+
+// Returns the scene as another frame's transfer function shows it.
+// @param scene    of the first frame
+PreparedScene seenBy(const RenderCommand& command, const PreparedScene& scene,
+                     const FrameLook& frame, const Listener& listener) {
+    return scene.withOptics(
+        opticsFor(*scene.scene().volume, command.input, command.picture, listener, frame).optics);
 }
 
 // Makes a camera, as far as it is not said where it is, hold all of a turn.
@@ -237,8 +275,8 @@ void warnOfOwnRanges(const RenderCommand& command, const Listener& listener) {
 
 // The files of all frames; if pictures go elsewhere, all have the same output.
 std::vector<FrameFiles> filesFor(const RenderCommand& command, bool areWritten) {
-    const bool mayStand =
-        command.turntable.has_value() || cameraMoves(command.picture) || command.scene.moves();
+    const bool mayStand = command.turntable.has_value() || cameraMoves(command.picture) ||
+                          command.scene.moves() || functionFrames(command);
     if (areWritten)
         return filesOfFrames(command.frames, command.input, mayStand, "--output", command.output);
     std::vector<FrameFiles> files;
@@ -373,7 +411,12 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     const std::optional<FrameName> stats = FrameName::find(command.stats);
     OutputFolders folders;
     std::optional<PreparedScene> prepared;
-    if (!frames.empty() && seesOneThing(command)) prepared = prepareOnce(fixed, look, making);
+    const auto first = std::find_if(frames.begin(), frames.end(), [&](const FrameFiles& one) {
+        return hasFunction(command, one.frame);
+    });
+    if (first != frames.end() && seesOneThing(command))
+        prepared = prepareOnce(commandOf(fixed, *first, {}), look, making);
+    const bool hasFunctions = functionFrames(command).has_value();
     std::optional<FrameChain> chain;
     if (!prepared && frames.size() > 1 && mayBeChained(command, look)) chain.emplace(frames.size());
     try {
@@ -391,6 +434,9 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
                 try {
                     if (chain) sequence.behind = &behind.emplace(chain->begin(i));
                     const RenderCommand one = commandOf(fixed, frames[i], stats);
+                    std::optional<PreparedScene> seen;
+                    if (prepared && hasFunctions && frames[i].frame != first->frame)
+                        sequence.prepared = &seen.emplace(seenBy(one, *prepared, frame, part));
                     if (sinks.areWritten()) folders.makeFor(one.output);
                     folders.makeFor(one.stats);
                     makePicture(one, sequence, part);

@@ -221,6 +221,26 @@ expect_code 3 "$program" render in.####.vdb --frames 8-10 --camera eye.####.exr 
 expect_files "" 'none.*'
 
 # A turn: every frame is as wide, and one of it is the one of all.
+# A transfer function for each frame shows one volume, read once, as each of them shows it by itself.
+for frame in 1 2 3 4; do
+    # Frames 1, 2 and 4 show the same voxels, and 3 others.
+    echo "[{\"Name\": \"fade\", \"Points\": [0.$((frame == 3)), 0, 0.5, 0, 1, 0.0$frame, 0.5, 0],
+        \"RGBPoints\": [0, 1, 0.$frame, 0, 1, 0.2, 1, 0.5]}]" >fade.$frame.json
+done
+faded=(render in.0010.vdb --size 48x48 -qq --range 0,1 --tf)
+"$program" "${faded[@]}" fade.#.json --frames 1-4 -o faded.#.exr --stats faded.#.json
+for frame in 1 2 3 4; do
+    "$program" "${faded[@]}" fade.$frame.json -o alone.exr
+    expect_same faded.$frame.exr alone.exr
+    ! same faded.$frame.exr faded.$((frame % 4 + 1)).exr || fail "frames $frame and the next are one picture"
+done
+rm fade.1.json faded.*.exr
+code=0
+"$program" "${faded[@]}" fade.#.json --frames 1-4 -o faded.#.exr --keep-going 2>said.txt || code=$?
+[[ $code == 3 ]] || fail "a frame without a transfer function: got exit code $code; expected 3"
+expect_files "faded.2.exr faded.3.exr faded.4.exr" 'faded.*.exr'
+expect_same faded.4.exr alone.exr
+
 turn=(render in.0010.vdb --size 48x48 -qq --turntable 8)
 "$program" "${turn[@]}" -o turn.#.exr
 expect_files "turn.1.exr turn.2.exr turn.3.exr turn.4.exr turn.5.exr turn.6.exr turn.7.exr turn.8.exr" 'turn.*'
