@@ -1,4 +1,5 @@
 deltasplat_test(unit/code_book_test.cpp)
+deltasplat_test(unit/book_encoder_test.cpp)
 deltasplat_test(unit/make_volume_test.cpp)
 deltasplat_test(unit/input_files_test.cpp)
 deltasplat_test(unit/printable_test.cpp)

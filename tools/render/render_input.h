@@ -21,8 +21,8 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
                     RenderOptions& options, const Listener& listener,
                     const FrameLook* look = nullptr);
 
-/// Returns the options to render a volume with that is there already: readOptics and what depends on
-/// the volume. Not of media, whose other grids are not read.
+/// Returns the options to render a volume with that is there already: readOptics and what depends
+/// on the volume. Not of media, whose other grids are not read.
 /// @param look  of the sequence that it is shown in
 RenderOptions opticsFor(const Volume& volume, const std::filesystem::path& input,
                         const PictureOptions& picture, const Listener& listener,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "ingest/codes/code_math.h"
 #include "ingest/values/hash_place.h"
@@ -25,7 +26,7 @@ std::size_t stretchOf(double value) {
 
 BookEncoder::BookEncoder(const CodeBook& book) : book_(book) {
     if (!book.table) return;
-    book.isExact() ? makePlaces() : makeFirsts();
+    book.isExact() ? makePlaces() : makeStretches();
 }
 
 void BookEncoder::makePlaces() {
@@ -39,13 +40,22 @@ void BookEncoder::makePlaces() {
     }
 }
 
-void BookEncoder::makeFirsts() {
+void BookEncoder::makeStretches() {
     const std::vector<double>& table = *book_.table;
-    firsts_.assign((std::size_t{1} << kStretchBits) + 1, std::int32_t(table.size()));
+    stretches_.assign((std::size_t{1} << kStretchBits) + 1, {std::int32_t(table.size()), 0});
     std::size_t stretch = 0;
     for (std::size_t code = 0; code < table.size(); ++code) {
         for (const std::size_t own = stretchOf(table[code]); stretch <= own; ++stretch)
-            firsts_[stretch] = std::int32_t(code);
+            stretches_[stretch].first = std::int32_t(code);
+    }
+    for (std::size_t i = 0; i + 1 < stretches_.size(); ++i) {
+        const std::int32_t steps = stretches_[i + 1].first - stretches_[i].first - 1;
+        if (steps < 1) continue;
+        const std::int32_t first = stretches_[i].first;
+        const auto perUnit =
+            float(steps / (table[std::size_t(first + steps)] - table[std::size_t(first)]));
+        // Between denormals there may be no such number.
+        if (std::isfinite(perUnit)) stretches_[i].codesPerUnit = perUnit;
     }
 }
 
@@ -68,16 +78,35 @@ Code BookEncoder::tableCode(double value) const {
     return places_[at].code >= 0 ? Code(places_[at].code) : book_.codeOf(value);
 }
 
+// Returns the first code whose value is not below `value`, as std::lower_bound would. Steps within
+// a stretch are mostly alike, which says where to look.
+std::size_t BookEncoder::firstNotBelow(double value) const {
+    const double* table = book_.table->data();
+    const Stretch& stretch = stretches_[stretchOf(value)];
+    const std::int32_t first = stretch.first;
+    const std::int32_t last = (&stretch)[1].first;
+    if (first == last) return std::size_t(first);
+    const double steps = (value - table[first]) * double(stretch.codesPerUnit);
+    std::int32_t code = first + std::int32_t(std::clamp(steps, 0.0, double(last - first)));
+    for (int tries = 0; tries < 4; ++tries) {
+        if (code > first && !(table[code - 1] < value)) {
+            --code;
+        } else if (code < last && table[code] < value) {
+            ++code;
+        } else {
+            return std::size_t(code);
+        }
+    }
+    return std::size_t(std::lower_bound(table + first, table + last, value) - table);
+}
+
 // As CodeBook::codeOf, which looks through the whole table.
 Code BookEncoder::nearestCode(double value) const {
     const std::vector<double>& table = *book_.table;
-    const std::size_t stretch = stretchOf(value);
-    const auto above = std::lower_bound(table.begin() + firsts_[stretch],
-                                        table.begin() + firsts_[stretch + 1], value);
-    if (above == table.begin()) return 0;
-    const auto code = std::size_t(above - table.begin());
-    if (above == table.end()) return Code(code - 1);
-    return Code(value - table[code - 1] < *above - value ? code - 1 : code);
+    const std::size_t code = firstNotBelow(value);
+    if (code == 0) return 0;
+    if (code == table.size()) return Code(code - 1);
+    return Code(value - table[code - 1] < table[code] - value ? code - 1 : code);
 }
 
 }  // namespace deltasplat

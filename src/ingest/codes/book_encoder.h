@@ -18,8 +18,9 @@ class BookEncoder {
   private:
     Code tableCode(double value) const;
     Code nearestCode(double value) const;
+    std::size_t firstNotBelow(double value) const;
     void makePlaces();
-    void makeFirsts();
+    void makeStretches();
 
     CodeBook book_;
     struct Entry {
@@ -27,8 +28,13 @@ class BookEncoder {
         std::int32_t code;  // negative: nothing here
     };
     std::vector<Entry> places_;  // an open hash table of the book's table, where that is exact
-    /// Where it is not: the first code whose value is in each of many stretches of the floats.
-    std::vector<std::int32_t> firsts_;
+    /// Where it is not: the codes whose values are in each of many stretches of the floats, up to
+    /// the first of the next.
+    struct Stretch {
+        std::int32_t first;
+        float codesPerUnit;
+    };
+    std::vector<Stretch> stretches_;
 };
 
 }  // namespace deltasplat

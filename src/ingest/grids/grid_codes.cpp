@@ -5,6 +5,9 @@
 #include <openvdb/tools/LevelSetUtil.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -27,8 +30,31 @@ namespace {
     throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
 }
 
+// Whether any value is NaN or infinite, active or not: there hardly ever is, and this is told soon.
+template <typename Tree>
+bool hasNonFinite(Tree& tree) {
+    using T = typename Tree::ValueType;
+    std::vector<typename Tree::LeafNodeType*> leaves;
+    tree.getNodes(leaves);
+    std::atomic<bool> found = false;
+    forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end && !found; ++i) {
+            const T* values = leaves[i]->buffer().data();
+            bool areFinite = true;
+            for (openvdb::Index n = 0; n < Tree::LeafNodeType::SIZE; ++n)
+                areFinite &= std::fabs(values[n]) <= std::numeric_limits<T>::max();
+            if (!areFinite) found = true;
+        }
+    });
+    forActiveTiles(tree, [&](const auto& tile) {
+        if (!isFinite(*tile)) found = true;
+    });
+    return found;
+}
+
 template <typename Grid>
 std::uint64_t settleNonFinite(Grid& grid, const GridCodesOptions& options) {
+    if (!hasNonFinite(grid.tree())) return 0;
     const GridScan range = scanTree(grid.tree(), {.distinct = false, .survey = false});
     if (range.nonFinite == 0) return 0;
     if (!options.reading.nanValue) {
@@ -82,10 +108,10 @@ std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book, ErrorMet
         ErrorMeter::Part part(meter);
         for (std::size_t i = begin; i < end; ++i) {
             Code* out = targets[i]->buffer().data();
-            for (auto voxel = sources[i]->cbeginValueOn(); voxel; ++voxel) {
-                out[voxel.pos()] = encode(double(*voxel));
-                if (!exact) part.add(double(*voxel), out[voxel.pos()]);
-            }
+            forActiveVoxels(*sources[i], [&](openvdb::Index n, const auto& value) {
+                out[n] = encode(double(value));
+                if (!exact) part.add(double(value), out[n]);
+            });
         }
         meter.add(part);
     });
@@ -127,8 +153,10 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
         volume.fromLevelSet = makeFog(grid, options);
     }
     constexpr bool kReal = std::is_floating_point_v<T>;
-    GridScan scan = scanTree(
-        grid.tree(), {.distinct = !(kReal && options.reading.bits), .survey = sizeof(T) > 1});
+    const bool isLinear = kReal && options.reading.bits;
+    GridScan scan = scanTree(grid.tree(), {.distinct = false, .survey = false});
+    if (isLinear || !plainBook(scan.census, kReal))
+        scan = scanTree(grid.tree(), {.distinct = !isLinear, .survey = sizeof(T) > 1});
     // Active voxels may be as empty as inactive ones: then they have that very value.
     if (isFinite(grid.background())) scan.census.frequent = {{double(grid.background()), 0}};
     // Masks have nothing but true, which stays 1.

@@ -5,6 +5,7 @@
 #include <openvdb/math/Coord.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <type_traits>
@@ -52,6 +53,23 @@ void forLeafRuns(std::size_t count, const Body& body) {
     });
 }
 
+/// Calls use(n, value) for the active voxels of a leaf, n being their places in it.
+template <typename Leaf, typename Use>
+void forActiveVoxels(const Leaf& leaf, const Use& use) {
+    if constexpr (std::is_same_v<typename Leaf::ValueType, bool>) {
+        for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) use(voxel.pos(), *voxel);
+    } else {
+        const auto* values = leaf.buffer().data();
+        for (openvdb::Index row = 0; row < Leaf::SIZE; row += 64) {
+            auto active = leaf.valueMask().template getWord<std::uint64_t>(row / 64);
+            for (; active != 0; active &= active - 1) {
+                const openvdb::Index n = row + openvdb::Index(std::countr_zero(active));
+                use(n, values[n]);
+            }
+        }
+    }
+}
+
 /// Calls use(iterator) for every active tile of `tree`, of any level.
 template <typename Tree, typename Use>
 void forActiveTiles(Tree& tree, const Use& use) {
@@ -71,33 +89,41 @@ template <typename Tree>
 GridScan scanTree(Tree& tree, const ScanWishes& wishes) {
     std::vector<typename Tree::LeafNodeType*> leaves;
     tree.getNodes(leaves);
-    const auto add = [](GridScan& scan, const auto& value, std::uint64_t voxels) {
-        if (isFinite(*value)) {
-            scan.census.add(*value);
-        } else {
-            scan.addNonFinite(value.getCoord(), voxels);
-        }
-    };
     GridScan whole;
     if (!wishes.distinct) whole.census.distinct.giveUp();
     whole.census.skipSurvey = !wishes.survey;
-    // Runs are put together as they are done: what each of them collects is large.
-    constexpr std::size_t kBatch = 64 * kLeafRun;
-    for (std::size_t start = 0; start < leaves.size(); start += kBatch) {
-        const std::size_t count = std::min(kBatch, leaves.size() - start);
+    // Runs are put together as they are done: what each of them collects is large. The first few
+    // tell the others whether there is any use in collecting.
+    constexpr std::size_t kMostRuns = 64;
+    std::size_t runs = 8;
+    std::size_t count = 0;
+    for (std::size_t start = 0; start < leaves.size(); start += count) {
+        count = std::min(runs * kLeafRun, leaves.size() - start);
+        runs = std::min(2 * runs, kMostRuns);
         std::vector<GridScan> scans((count + kLeafRun - 1) / kLeafRun);
         forLeafRuns(count, [&](std::size_t run, std::size_t begin, std::size_t end) {
             ValueCensus& census = scans[run].census;
             if (whole.census.distinct.tooMany()) census.distinct.giveUp();
             census.skipSurvey = !wishes.survey;
             for (std::size_t i = start + begin; i < start + end; ++i) {
-                for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel)
-                    add(scans[run], voxel, 1);
+                forActiveVoxels(*leaves[i], [&](openvdb::Index n, const auto& value) {
+                    if (isFinite(value)) {
+                        census.add(value);
+                    } else {
+                        scans[run].addNonFinite(leaves[i]->offsetToGlobalCoord(n), 1);
+                    }
+                });
             }
         });
         for (const GridScan& scan : scans) whole.append(scan);
     }
-    forActiveTiles(tree, [&](const auto& tile) { add(whole, tile, tile.getVoxelCount()); });
+    forActiveTiles(tree, [&](const auto& tile) {
+        if (isFinite(*tile)) {
+            whole.census.add(*tile);
+        } else {
+            whole.addNonFinite(tile.getCoord(), tile.getVoxelCount());
+        }
+    });
     return whole;
 }
 

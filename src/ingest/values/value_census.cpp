@@ -39,15 +39,20 @@ CodeBook::Values kindOf(const ValueCensus& census, bool real) {
 
 }  // namespace
 
+std::optional<CodeBook> plainBook(const ValueCensus& census, bool real) {
+    if (real && census.half) return CodeBook::half();
+    constexpr double kMostInteger = 0x1p62;  // more than that, no offset holds
+    const bool near = census.exact && census.max - census.min < kCodeCount &&
+                      std::max(std::abs(census.min), std::abs(census.max)) <= kMostInteger;
+    if (census.whole && near) return CodeBook::integer(std::int64_t(census.min));
+    return {};
+}
+
 CodeBook chooseBook(const ValueCensus& census, bool real, const ReadOptions& reading,
                     const std::string& where) {
     const bool linear = real && reading.bits;
     if (!linear) {
-        if (real && census.half) return CodeBook::half();
-        constexpr double kMostInteger = 0x1p62;  // more than that, no offset holds
-        const bool near = census.exact && census.max - census.min < kCodeCount &&
-                          std::max(std::abs(census.min), std::abs(census.max)) <= kMostInteger;
-        if (census.whole && near) return CodeBook::integer(std::int64_t(census.min));
+        if (const std::optional<CodeBook> plain = plainBook(census, real)) return *plain;
         if (census.exact && !census.distinct.tooMany())
             return CodeBook::ofTable(census.distinct.sorted());
     }

@@ -4,8 +4,10 @@
 #include <openvdb/Types.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <type_traits>
 
@@ -44,7 +46,7 @@ struct ValueCensus {
         if (magnitude > 0 && (least == 0 || magnitude < least)) least = magnitude;
         if constexpr (!std::is_same_v<T, float>) floats = floats && double(float(number)) == number;
         if constexpr (std::is_floating_point_v<T>) {
-            half = half && double(float(openvdb::math::half(float(number)))) == number;
+            half = half && isHalf(number);
             whole = whole && number == std::floor(number) && (number != 0 || !std::signbit(number));
         } else {
             constexpr std::int64_t kMost = std::int64_t{1} << 53;
@@ -58,6 +60,14 @@ struct ValueCensus {
     void append(const ValueCensus& next);
 
   private:
+    static bool isHalf(double number) {
+        // Binary16 has 10 of the 52 bits behind the point, and most numbers have more.
+        if ((std::bit_cast<std::uint64_t>(number) & ((std::uint64_t{1} << 42) - 1)) != 0)
+            return false;
+        const double magnitude = std::fabs(number);
+        if (magnitude >= 0x1p-14 && magnitude <= 65504) return true;
+        return double(float(openvdb::math::half(float(number)))) == number;
+    }
     static double off(std::uint64_t value) {
         const auto number = double(value);
         // The largest round to 2^64.
@@ -68,6 +78,11 @@ struct ValueCensus {
 
 /// Returns the magnitude of which kBulkNeed of the bulk's width is the share kRelativeNeed.
 double bulkMagnitude(const ValueCensus& census);
+
+/// Returns the code book of values that are all halves, or whole and close together, as chooseBook
+/// does; these need no survey, nor their different values. Empty: there is no such book.
+/// @param real  the source's type is real
+std::optional<CodeBook> plainBook(const ValueCensus& census, bool real);
 
 /// Returns the code book for values of this census: exact if there is one. Real values that are
 /// all halves get `half`; whole numbers that span at most 65536 get `integer`; at most 65536
