@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
 #include "ingest/codes/code_math.h"
 #include "ingest/raw/raw_load.h"
+#include "ingest/values/same_bits.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -17,17 +19,33 @@ template <typename T>
 RawScan scanRun(const std::byte* bytes, std::size_t count, bool swap, bool distinct) {
     RawScan scan;
     if (!distinct) scan.census.distinct.giveUp();
+    // Neighbours are often equal.
+    std::optional<T> last;
+    std::uint64_t repeats = 0;
+    const auto endRepeats = [&] {
+        if (repeats == 0) return;
+        scan.census.repeat(double(*last), repeats);
+        scan.frequent.add(double(*last), repeats);
+        repeats = 0;
+    };
     for (std::size_t i = 0; i < count; ++i) {
         const T value = loadValue<T>(bytes + i * sizeof(T), swap);
+        if (last && haveSameBits(value, *last)) {
+            ++repeats;
+            continue;
+        }
         if constexpr (std::is_floating_point_v<T>) {
             if (!std::isfinite(value)) {
                 if (scan.nonFinite++ == 0) scan.firstNonFinite = i;
                 continue;
             }
         }
+        endRepeats();
+        last = value;
         scan.census.add(value);
         scan.frequent.add(double(value));
     }
+    endRepeats();
     return scan;
 }
 
@@ -60,9 +78,17 @@ template <typename T>
 struct BookCoder {
     const BookEncoder& encoder;
     double nanValue;
+    // Neighbours are often equal.
+    mutable double last = 0;
+    mutable Code code;
     explicit BookCoder(const RawCoding& coding)
-        : encoder(coding.encoder), nanValue(coding.nanValue) {}
-    Code operator()(T value) const { return encoder(finiteOr(value, nanValue)); }
+        : encoder(coding.encoder), nanValue(coding.nanValue), code(encoder(last)) {}
+    Code operator()(T value) const {
+        const double number = finiteOr(value, nanValue);
+        if (haveSameBits(number, last)) return code;
+        last = number;
+        return code = encoder(number);
+    }
 };
 
 template <typename T, bool kSwap, typename Coder>

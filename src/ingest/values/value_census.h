@@ -57,6 +57,11 @@ struct ValueCensus {
         distinct.add(number);
         if (!skipSurvey) survey.add(number);
     }
+    /// Adds a value that was added before, so many times more.
+    void repeat(double value, std::uint64_t times) {
+        count += times;
+        if (!skipSurvey) survey.add(value, times);
+    }
     void append(const ValueCensus& next);
 
   private:

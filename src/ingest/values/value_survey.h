@@ -18,14 +18,14 @@ struct ValueCell {
 /// Counts where finite values lie.
 class ValueSurvey {
   public:
-    void add(double value) {
+    void add(double value, std::uint64_t count = 1) {
         const std::size_t key = keyOf(value);
         if (cellOfKey_.empty()) cellOfKey_.assign(kKeys, 0);
         if (cellOfKey_[key] == 0) open(key, value);
         ValueCell& cell = cells_[cellOfKey_[key] - std::size_t{1}];
         if (value < cell.low) cell.low = value;
         if (value > cell.high) cell.high = value;
-        ++cell.count;
+        cell.count += count;
     }
     void append(const ValueSurvey& other);
     /// Returns the cells in increasing order.
