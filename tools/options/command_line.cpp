@@ -62,9 +62,9 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
     group.addValue("--threads", "N", options.threads, wholeNumber(0, 1024),
                    withDefault("Threads to use, 0 = all", std::to_string(options.threads)));
     group.addValue("--max-memory", "SIZE", options.maxMemory, byteCount(),
-                   "Refuse up front what would take more memory than this, the\n"
-                   "program itself (about 150M) included, such as 4G (default: what\n"
-                   "the machine has)");
+                   "Refuse up front what would take more memory than this, such as 4G,\n"
+                   "the program itself (40M; with .jpg, DICOM and other formats of\n"
+                   "libraries 150M) included (default: what the machine has)");
     group.addFlag("--fsync", options.fsync,
                   "End only when what was written would outlive a power failure");
     group.addValue(
