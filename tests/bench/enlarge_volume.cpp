@@ -3,6 +3,8 @@
 // voxels each way, interpolated linearly between voxel centres and rounded, as
 // FOLDER/NAMEFACTOR_XxYxZ_uint8.raw. Prints the file's name.
 //   enlarge_volume FACTOR INPUT FOLDER
+#include <openvdb/tree/ValueAccessor.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +13,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -28,7 +31,7 @@ std::vector<std::uint8_t> valuesOf(const Volume& volume) {
     const glm::ivec3 dims = volume.box.dims();
     std::vector<std::uint8_t> values;
     values.reserve(std::size_t(volume.box.voxels()));
-    const auto codes = volume.codes->tree.getConstAccessor();
+    const openvdb::tree::ValueAccessor<const CodeTree::Tree> codes(volume.codes->tree);
     for (int z = 0; z < dims.z; ++z) {
         for (int y = 0; y < dims.y; ++y) {
             for (int x = 0; x < dims.x; ++x) {

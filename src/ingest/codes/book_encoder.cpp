@@ -49,11 +49,10 @@ void BookEncoder::makeStretches() {
             stretches_[stretch].first = std::int32_t(code);
     }
     for (std::size_t i = 0; i + 1 < stretches_.size(); ++i) {
+        const double* first = table.data() + stretches_[i].first;
         const std::int32_t steps = stretches_[i + 1].first - stretches_[i].first - 1;
         if (steps < 1) continue;
-        const std::int32_t first = stretches_[i].first;
-        const auto perUnit =
-            float(steps / (table[std::size_t(first + steps)] - table[std::size_t(first)]));
+        const auto perUnit = float(steps / (first[steps] - *first));
         // Between denormals there may be no such number.
         if (std::isfinite(perUnit)) stretches_[i].codesPerUnit = perUnit;
     }
