@@ -5,6 +5,7 @@
 
 #include "default_floats.h"
 #include "delta/code_blocks.h"
+#include "delta/value_mixer.h"
 #include "deltasplat/error.h"
 #include "medium/room.h"
 #include "optics/class_numbers.h"

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "delta/slab_plan.h"
-#include "delta/value_mixer.h"
 #include "optics/voxel_painter.h"
 
 namespace deltasplat {
+
+class ValueMixer;
 
 /// What a voxel looks like: an index into the colours of a class table; 0 = empty.
 using ClassIndex = std::uint16_t;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "delta/block_windows.h"
+#include "delta/slab_layout.h"
 #include "deltasplat/delta/delta_grid.h"
 
 namespace deltasplat {

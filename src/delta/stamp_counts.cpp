@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/delta/stamp_counts.h"
 
+#include "delta/block_windows.h"
 #include "delta/slab_plan.h"
 
 namespace deltasplat {
