@@ -3,9 +3,21 @@
 # Runs clang-tidy over the library and the program. Needs a configured build/release.
 # What was found clean is not looked at again before its text, that of a header it includes, or the
 # checks change: a hash of all that is noted in ${XDG_CACHE_HOME:-~/.cache}/deltasplat.
-# Usage: bash scripts/tidy.sh
+# What was changed last is looked at first. With --seconds, no other file is begun after so many: how
+# many are left is said, and is no failure.
+# Usage: bash scripts/tidy.sh [--seconds N]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+usage() {
+    echo "tidy.sh: got $*; expected nothing or --seconds N" >&2
+    exit 2
+}
+end=
+if [[ $# -gt 0 ]]; then
+    [[ $# -eq 2 && $1 == --seconds && $2 =~ ^[0-9]+$ ]] || usage "$*"
+    end=$(($(date +%s) + $2))
+fi
 
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/deltasplat/tidy
 mkdir -p "$cache"
@@ -33,6 +45,10 @@ key_of() {
 
 look_at() {
     local key
+    if [[ -n $end && $(date +%s) -ge $end ]]; then
+        echo "$1" >>"$left"
+        return 0
+    fi
     key=$(key_of "$1")
     [[ -n $key && -e $cache/$key ]] && return 0
     clang-tidy --quiet -p build/release --extra-arg=-Wno-unknown-warning-option "$1" 2>&1 |
@@ -40,6 +56,19 @@ look_at() {
     [[ -z $key ]] || touch "$cache/$key"
 }
 
+# Files in the order in which they were last committed, those without a history last.
+newest_first() {
+    {
+        git log --format= --name-only
+        git ls-files
+    } | awk '!seen[$0]++' | grep -xFf <(git ls-files 'src/*.cpp' 'tools/*.cpp')
+}
+
+left=$(mktemp)
+trap 'rm -f "$left"' EXIT
 export -f key_of look_at
-export cache SHELLOPTS
-git ls-files 'src/*.cpp' 'tools/*.cpp' | xargs -I{} --max-procs=2 bash -c 'look_at {}'
+export cache end left SHELLOPTS
+newest_first | xargs -I{} --max-procs=2 bash -c 'look_at {}'
+if [[ -s $left ]]; then
+    echo "NOTE: $(wc -l <"$left") files were not looked at, for time was up; first: $(head -n 1 "$left")"
+fi
