@@ -7,6 +7,7 @@
 
 #include "ingest/codes/leaf_slices.h"
 #include "memory.h"
+#include "parallel_sort.h"
 
 namespace deltasplat {
 namespace {
@@ -64,7 +65,7 @@ BlockReader::BlockReader(const CodeTree& codes, const CodeTree* inactive, int sl
                          std::span<const Slot> slotMap)
     : slotMap_(slotMap), sliceAxis_(sliceAxis) {
     listBlocks(codes, inactive);
-    std::sort(blocks_.begin(), blocks_.end(), [](const CodeBlock& a, const CodeBlock& b) {
+    parallelSort(blocks_, [](const CodeBlock& a, const CodeBlock& b) {
         return std::tie(a.position.y, a.position.z, a.position.x) <
                std::tie(b.position.y, b.position.z, b.position.x);
     });

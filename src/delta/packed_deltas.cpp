@@ -9,9 +9,9 @@
 #include <bit>
 #include <iterator>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "delta/block_kernels.h"
 #include "delta/block_looks.h"
@@ -20,6 +20,7 @@
 #include "delta/hold_slots.h"
 #include "delta/mixed_sight.h"
 #include "delta/slot_holder.h"
+#include "delta/word_collector.h"
 #include "ingest/codes/leaf_slices.h"
 #include "memory.h"
 #include "parallel.h"
@@ -57,15 +58,6 @@ inline auto mapped(std::span<const Slot> slotMap) {
     return [map = slotMap.data()](Code code) { return map[code + 1]; };
 }
 
-// A word before all words are in one place.
-struct PendingWord {
-    std::uint64_t visible;
-    std::uint64_t changed;
-    std::size_t classes;  // where they begin in the packer's storage, and looks in theirs
-    int slice;
-    glm::ivec2 block;
-};
-
 // Words that a block may make: its slices, and one behind it that takes away what it showed.
 constexpr std::size_t kMostWords = 9;
 constexpr double kBytesPerBlock =
@@ -85,13 +77,6 @@ struct PackTools {
 struct Columns {
     const CodeBlock* begin;
     const CodeBlock* end;
-};
-
-// Words of columns, and the classes that they point to.
-struct PackedColumns {
-    std::vector<PendingWord> words;
-    std::vector<ClassIndex> storage;
-    std::vector<OwnLook> looks;  // likewise, if voxels have their own
 };
 
 class ColumnPacker {
@@ -373,42 +358,6 @@ IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& part
     const IndexBox own = permutedBox(box, sliceAxis);
     const glm::ivec3 per(parts.slices, parts.within, parts.within);
     return {(own.min - parts.origin) * per, (own.max - parts.origin) * per + per - 1};
-}
-
-// Puts the packers' words in the order of slices.
-void collectWords(const std::vector<PackedColumns*>& columns, const SlabLayout& layout,
-                  bool hasLooks, PackedDeltas& packed) {
-    const auto sliceOf = [&](const PendingWord& word) {
-        return std::size_t(word.slice - packed.box.min.x);
-    };
-    const auto changed = [&](const PendingWord& word) {
-        return layout.startsLaterSlab(word.slice) ? word.visible : word.changed;
-    };
-    const auto needed = [&](const PendingWord& word) {
-        const bool whole = packed.slabs[layout.slabOf(word.slice >> 3)].whole;
-        return (whole ? word.visible : changed(word)) != 0;
-    };
-    packed.begins.resize(std::size_t(packed.box.dims().x) + 1);
-    for (const PackedColumns* column : columns) {
-        for (const PendingWord& word : column->words)
-            if (needed(word)) ++packed.begins[sliceOf(word) + 1];
-    }
-    std::partial_sum(packed.begins.begin(), packed.begins.end(), packed.begins.begin());
-    packed.words.resize(packed.begins.back());
-    std::vector<std::size_t> next(packed.begins.begin(), packed.begins.end() - 1);
-    if (hasLooks) packed.looks.resize(packed.words.size());
-    for (PackedColumns* column : columns) {
-        packed.storage.push_back(std::move(column->storage));
-        const ClassIndex* classes = packed.storage.back().data();
-        packed.lookStorage.push_back(std::move(column->looks));
-        const OwnLook* looks = packed.lookStorage.back().data();
-        for (const PendingWord& word : column->words) {
-            if (!needed(word)) continue;
-            const std::size_t place = next[sliceOf(word)]++;
-            packed.words[place] = {word.visible, changed(word), classes + word.classes, word.block};
-            if (hasLooks) packed.looks[place] = looks + word.classes;
-        }
-    }
 }
 
 }  // namespace

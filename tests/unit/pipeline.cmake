@@ -1,4 +1,5 @@
 deltasplat_test(unit/threads_test.cpp)
+deltasplat_test(unit/parallel_sort_test.cpp)
 deltasplat_test(unit/kept_memory_test.cpp)
 deltasplat_test(unit/delta_grid_test.cpp)
 deltasplat_test(unit/slice_counts_test.cpp)
