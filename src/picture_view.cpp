@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/matrix.hpp>
 #include <string>
 #include <utility>
 
@@ -16,6 +18,15 @@ namespace {
 // Of the picture's pixels that a line of the base plane has at most, seen from an eye: about what
 // parallel projection has on average.
 constexpr double kPixelsOfScreen = 0.7;
+
+// Of the slopes of a region, that of the way a camera looks, or the one nearest to it: what is
+// around a picture's frame does not move it.
+glm::dvec2 middleSlope(const Camera& camera, const Factorization& view) {
+    const glm::dvec3 ahead = glm::inverse(view.worldFromStep) * camera.direction;
+    if (camera.projection == Projection::kLatlong || !(ahead.x > 0))
+        return 0.5 * (view.slopeMin + view.slopeMax);
+    return glm::clamp(glm::dvec2(ahead.y, ahead.z) / ahead.x, view.slopeMin, view.slopeMax);
+}
 
 }  // namespace
 
@@ -99,8 +110,7 @@ Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
     const double sigma = options.sigma.value_or(defaultSigma(pixels) / within);
     // The kernel is round in voxels, however many slices there are; seen along the middle line of
     // sight.
-    const glm::dvec2 shift =
-        view_.eye ? 0.5 * (view_.slopeMin + view_.slopeMax) : view_.shiftPerSlice;
+    const glm::dvec2 shift = view_.eye ? middleSlope(camera_, view_) : view_.shiftPerSlice;
     return makeFootprint(sigma, {shift.y, shift.x}, int(plan.resolution()), options.footprintWidth,
                          within);
 }

@@ -46,16 +46,16 @@ BasePlane::BasePlane(const Factorization& view, const Camera& camera, int firstS
     : frontToBack_(view.frontToBack),
       firstSlice_(firstSlice),
       spacing_(spacing),
-      origin_(swapped(view.slopeMin) - kBorder * spacing),
+      origin_(spacing * (glm::floor(swapped(view.slopeMin) / spacing) - double(kBorder))),
       eye_(glm::dvec3(view.eye->x - firstSlice, view.eye->z - firstVoxel.x,
                       view.eye->y - firstVoxel.y)),
       worldFromStep_(view.worldFromStep[0], view.worldFromStep[2], view.worldFromStep[1]),
       stepWorld_(view.sliceStepWorld),
       nearWorld_(camera.nearWorld) {
-    const glm::dvec2 wide = (view.slopeMax - view.slopeMin) / spacing;
+    const glm::dvec2 wide = (swapped(view.slopeMax) - origin_) / spacing;
     // Whoever needs memory for it finds out that there are too many.
     constexpr double kMost = 1 << 30;
-    limits_.max = glm::ivec2(glm::min(glm::ceil(swapped(wide)), kMost)) + 2 * kBorder + 1;
+    limits_.max = glm::ivec2(glm::min(glm::ceil(wide), kMost)) + kBorder + 1;
     if (camera.projection == Projection::kPerspective) depthAlong_ = camera.direction;
     // Depth grows evenly with slopes, and lengths are largest and smallest at ends.
     nearest_ = {std::numeric_limits<double>::infinity(), 0};

@@ -144,24 +144,34 @@ double densityAt(const Camera& camera, const glm::dmat3& worldFromStep, glm::dve
     return pixels * std::sqrt(0.5 * (a + b) + portable::hypot(0.5 * (a - b), mixed));
 }
 
-// Slopes that a picture shows, and how fine it shows them.
-void measureCone(const Camera& camera, const Cone& cone, Factorization& region) {
-    region.slopeMin = glm::dvec2(cone.front().y, cone.front().z) / cone.front().x;
+// Slopes along a corner of a cone, of which rounding makes no more than belong to the axis.
+glm::dvec2 slopeOf(const glm::dvec3& ray) {
+    return glm::clamp(glm::dvec2(ray.y, ray.z) / ray.x, -1.0, 1.0);
+}
+
+// Slopes that a picture shows.
+void boundSlopes(const Cone& cone, Factorization& region) {
+    region.slopeMin = slopeOf(cone.front());
     region.slopeMax = region.slopeMin;
+    for (const glm::dvec3& ray : cone) {
+        region.slopeMin = glm::min(region.slopeMin, slopeOf(ray));
+        region.slopeMax = glm::max(region.slopeMax, slopeOf(ray));
+    }
+}
+
+// How fine a picture shows slopes, on average over its corners and its middle.
+double densityOf(const Camera& camera, const Cone& cone, const glm::dmat3& worldFromStep) {
     glm::dvec2 sum(0);
     double logarithms = 0;
     const auto measure = [&](glm::dvec2 slope) {
-        logarithms += portable::log(densityAt(camera, region.worldFromStep, slope));
+        logarithms += portable::log(densityAt(camera, worldFromStep, slope));
     };
     for (const glm::dvec3& ray : cone) {
-        const glm::dvec2 slope = glm::clamp(glm::dvec2(ray.y, ray.z) / ray.x, -1.0, 1.0);
-        region.slopeMin = glm::min(region.slopeMin, slope);
-        region.slopeMax = glm::max(region.slopeMax, slope);
-        sum += slope;
-        measure(slope);
+        sum += slopeOf(ray);
+        measure(slopeOf(ray));
     }
     measure(sum / double(cone.size()));
-    region.pixelsPerSlope = portable::exp(logarithms / double(cone.size() + 1));
+    return portable::exp(logarithms / double(cone.size() + 1));
 }
 
 // Picture pixels that a voxel covers where the middle of the volume is seen, or would be; from
@@ -248,6 +258,7 @@ std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox
     const glm::dvec3 eye = inverse * (camera.eyeWorld() - glm::dvec3(worldFromIndex[3]));
     requireFinite(eye);
     const double pixels = pixelsAtMiddle(camera, box, linear, eye);
+    const Camera frame = camera.withoutOverscan();
     std::vector<Factorization> regions;
     for (int axis = 2; axis >= 0; --axis) {
         const glm::ivec3 order = sliceOrder(axis);
@@ -261,7 +272,11 @@ std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox
             if (cone.size() < 3) continue;
             region.sliceStepWorld = planeDistance(worldFromIndex, axis);
             region.eye = glm::dvec3(eye[order[0]], eye[order[1]], eye[order[2]]);
-            measureCone(camera, cone, region);
+            boundSlopes(cone, region);
+            // What is around the frame changes nothing within it.
+            const Cone ofFrame = coneOf(frame, stepFromWorld);
+            region.pixelsPerSlope =
+                densityOf(camera, ofFrame.size() < 3 ? cone : ofFrame, region.worldFromStep);
             region.pixelsPerVoxel = pixels;
             region.resolution = resolution ? *resolution : screenResolution(pixels);
             regions.push_back(region);
