@@ -70,7 +70,7 @@ std::shared_ptr<const PackedDeltas> sharedWords(const PreparedAxis* before,
                                                 const PreparedScene::Impl& scene,
                                                 ClassTable& classes) {
     const bool areOfClasses = !scene.painter && scene.options.tolerance.isExact();
-    if (!before || !areOfClasses || !before->words->looks.empty()) return {};
+    if (!before || !areOfClasses) return {};
     return takeNumbers(before->classes().classOfSlot, classes) ? before->words : nullptr;
 }
 
@@ -155,6 +155,8 @@ PreparedScene::Impl::Impl(const Impl& before, Optics others)
 
 PreparedScene::Impl::Axes PreparedScene::Impl::axes() const {
     Axes axes = before_;
+    // Of what is painted, words are not all that classes say, even where none are left.
+    if (painter) return axes;
     const std::lock_guard lock(mutex_);
     for (const auto& [key, place] : places_) {
         const std::lock_guard placeLock(place->mutex);

@@ -65,7 +65,8 @@ struct PreparedScene::Impl {
 
     Impl(Scene ofScene, SplatOptions withOptions, bool forOne, Axes before);
 
-    // Returns those that are there, and those of optics before for which there are none yet.
+    // Returns those that are there of classes alone, and those of optics before for which there are
+    // none.
     Axes axes() const;
 
     const Axes before_;  // of other optics

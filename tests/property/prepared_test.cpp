@@ -127,6 +127,20 @@ TEST(Prepared, wordsAreSharedWhereTheSameIsToldApart) {
     EXPECT_NE(wordsOf(holding.withOptics(optics)), wordsOf(holding));
 }
 
+// A painter may clear all that classes show, and then leaves no words, nor looks.
+TEST(Prepared, wordsThatWerePaintedAreNotShared) {
+    RenderOptions options;
+    options.optics = someOptics(Colors::kSeveral);
+    options.camera = someCameras()[1];
+    Optics faded = options.optics;
+    faded.gradientOpacity = {{0, 0}};
+    const PreparedScene scene({someVolume(), faded}, options);
+    const Image clear = pictureOf(scene, options.camera);
+    const Image seen = pictureOf(scene.withOptics(options.optics), options.camera);
+    EXPECT_NE(seen.rgba, clear.rgba);
+    EXPECT_EQ(seen.rgba, render(*someVolume(), options).image.rgba);
+}
+
 // Also while none of the axes is there yet.
 TEST(Prepared, anyNumberOfThreadsMayRenderOneScene) {
     for (const Colors colors :
