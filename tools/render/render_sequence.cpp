@@ -16,6 +16,8 @@
 #include "deltasplat/threads.h"
 #include "listener_part.h"
 #include "memory.h"
+#include "options/file_and_name.h"
+#include "options/transfer_function_option.h"
 #include "output_files.h"
 #include "process/interrupt.h"
 #include "render/first_pass.h"
@@ -44,19 +46,24 @@ double turnOf(int frame, std::optional<int> turntable) {
     return turntable ? 360 * (double(frame - 1) / *turntable) : 0;
 }
 
-// The place for a frame's number in the transfer function's name, if it has one and is no file.
+// The place for a frame's number in the transfer function's name, if it has one and names no file,
+// nor one in a file.
 std::optional<FrameName> functionFrames(const RenderCommand& command) {
     const std::filesystem::path& given = command.picture.transferFunction;
-    std::error_code ignored;
-    if (std::filesystem::exists(given, ignored)) return {};
+    if (findFileAndName("--tf", given)) return {};
     return FrameName::find(given);
 }
 
-// Whether a frame has a transfer function to be read, as far as that is its own.
+// Whether a frame has a transfer function that can be read, as far as that is its own.
 bool hasFunction(const RenderCommand& command, int frame) {
     const std::optional<FrameName> function = functionFrames(command);
-    std::error_code ignored;
-    return !function || std::filesystem::exists(function->at(frame), ignored);
+    if (!function) return true;
+    try {
+        readTransferFunctionOption(function->at(frame), {});
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
 }
 
 // Puts what a frame reads into `command`.
@@ -141,10 +148,12 @@ class Survey {
             if (one.input.empty() || (known.contains(one.input) && !command_.scene.moves()))
                 continue;
             if (!hasFunction(command_, one.frame)) {
+                if (!known.contains(one.input)) unread_.insert(one.input);
                 if (!absent) absent = &one;
                 continue;
             }
             known.insert(one.input);
+            unread_.erase(one.input);
             if (isAlone_ || hasInput(one.input)) {
                 files.push_back(one);
                 continue;

@@ -220,7 +220,6 @@ expect_said "deltasplat: 1 of 3 frames failed: 9"
 expect_code 3 "$program" render in.####.vdb --frames 8-10 --camera eye.####.exr --size 48x48 -o none.####.exr
 expect_files "" 'none.*'
 
-# A turn: every frame is as wide, and one of it is the one of all.
 # A transfer function for each frame shows one volume, read once, as each of them shows it by itself.
 for frame in 1 2 3 4; do
     # Frames 1, 2 and 4 show the same voxels, and 3 others.
@@ -240,7 +239,32 @@ code=0
 [[ $code == 3 ]] || fail "a frame without a transfer function: got exit code $code; expected 3"
 expect_files "faded.2.exr faded.3.exr faded.4.exr" 'faded.*.exr'
 expect_same faded.4.exr alone.exr
+# Nor does one that cannot be read cost the others their pictures.
+rm faded.*.exr
+echo '[{"Name": "fade"' >fade.1.json
+expect_code 3 "$program" "${faded[@]}" fade.#.json --frames 1-4 -o faded.#.exr --keep-going
+expect_said "deltasplat: 1 of 4 frames failed: 1"
+expect_files "faded.2.exr faded.3.exr faded.4.exr" 'faded.*.exr'
+expect_same faded.4.exr alone.exr
+# Functions may be those of a name in each file, and the name of one may have a number sign.
+for number in 0008 0009 0010; do
+    echo "[{\"Name\": \"none\", \"Points\": [0, 0, 0.5, 0], \"RGBPoints\": [0, 1, 1, 1]},
+        {\"Name\": \"no #1\", \"Points\": [0, 0, 0.5, 0, 255, 0.2, 0.5, 0],
+        \"RGBPoints\": [0, 1, 1, 1]}]" >both.$number.json
+    sed "s/no #1/shown/" both.$number.json >shown.$number.json
+done
+named=(render in.####.vdb --frames 8-10 --size 48x48)
+"$program" "${named[@]}" -qq --tf "both.0008.json:no #1" -o named.####.exr
+"$program" "${named[@]}" -qq --tf shown.####.json:shown -o shown.####.exr
+for number in 0008 0009 0010; do expect_same shown.$number.exr named.$number.exr; done
+# Frames that have none have not been looked at.
+mv shown.0009.json away.json
+"$program" "${named[@]}" -qq --tf shown.####.json:shown --first-pass shown.json
+mv away.json shown.0009.json
+expect_code 0 "$program" "${named[@]}" --tf shown.####.json:shown --first-pass shown.json -o shown.####.exr
+expect_said "deltasplat: warning: --first-pass: shown.json was made without frame 9, and is taken as it is"
 
+# A turn: every frame is as wide, and one of it is the one of all.
 turn=(render in.0010.vdb --size 48x48 -qq --turntable 8)
 "$program" "${turn[@]}" -o turn.#.exr
 expect_files "turn.1.exr turn.2.exr turn.3.exr turn.4.exr turn.5.exr turn.6.exr turn.7.exr turn.8.exr" 'turn.*'
