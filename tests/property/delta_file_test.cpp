@@ -628,6 +628,31 @@ TEST(DeltaFile, DenseVolumesOfManyValuesComeBackAsTheyAreRead) {
     }
 }
 
+// What codes are off by is said to those who are given codes, of a source and of its deltas.
+TEST(DeltaFile, WhoIsGivenTheValuesIsNotWarnedOfCodes) {
+    const TempFolder folder;
+    std::vector<double> values(std::size_t(60) * 50 * 40);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = double(i) * std::numeric_limits<double>::denorm_min();
+    testing::writeBytes("tiny_60x50x40_float64.raw", testing::bytesOf(values));
+    DeltaFile file;
+    EXPECT_TRUE(file.add(readKept("tiny_60x50x40_float64.raw"), {}).lossless);
+    file.write("delta.vdb");
+    for (const char* name : {"tiny_60x50x40_float64.raw", "delta.vdb"}) {
+        for (const bool keeps : {false, true}) {
+            SCOPED_TRACE(std::string(name) + (keeps ? ", kept" : ""));
+            std::vector<std::string> warnings;
+            Listener listener;
+            listener.warning = [&](const std::string& text) { warnings.push_back(text); };
+            ReadOptions reading;
+            reading.keepSource = keeps;
+            const Volume volume = readVolume(name, reading, listener);
+            EXPECT_GT(volume.codeError.relative, 1e-3);
+            EXPECT_EQ(warnings.size(), keeps ? 0u : 1u);
+        }
+    }
+}
+
 // An array of 64-bit whole numbers, which .raw files have no type for.
 void writeNpy(const std::string& file, const std::string& type, const std::string& shape,
               const std::string& data) {
@@ -656,6 +681,30 @@ TEST(DeltaFile, DenseVolumesOfTheLargestIntegersComeBack) {
     const Volume restored = readKept("delta.vdb");
     const auto& source = static_cast<const openvdb::Int64Grid&>(*volume.source->grid);
     expectSameVoxels(source, static_cast<const openvdb::Int64Grid&>(*restored.source->grid));
+}
+
+// Without sign and of 64 bits, whole numbers are doubles here, but their codes those of whole ones.
+TEST(DeltaFile, LargeWholeNumbersAreReadAsTheirSourceIs) {
+    for (const int bits : {24, 40, 64}) {
+        SCOPED_TRACE(bits);
+        const TempFolder folder;
+        std::mt19937_64 random(5);
+        std::vector<std::uint64_t> values(std::size_t(60) * 50 * 40);
+        for (std::uint64_t& value : values) value = random() >> (64 - bits);
+        writeNpy("a.npy", "<u8", "40, 50, 60", testing::bytesOf(values));
+        const Volume volume = readVolume("a.npy");
+        DeltaFile file;
+        EXPECT_EQ(file.add(readKept("a.npy"), {}).codeBook, "float64");
+        file.write("delta.vdb");
+        const Volume restored = readVolume("delta.vdb");
+        EXPECT_EQ(restored.codeBook.name(), volume.codeBook.name());
+        std::uint64_t wrong = 0;
+        for (auto code = volume.codes->tree.cbeginValueOn(); code; ++code) {
+            const Code other = restored.codes->tree.getValue(code.getCoord());
+            wrong += restored.codeBook.valueOf(other) == volume.codeBook.valueOf(*code) ? 0 : 1;
+        }
+        EXPECT_EQ(wrong, 0u);
+    }
 }
 
 // Errors that reading made are not forgotten.

@@ -22,8 +22,9 @@ namespace {
 
 // What its leaf of deltas and the list of blocks takes for an 8x8x8 block that is not uniform.
 constexpr double kBytesPerBlock = 2300;
-// What measuring the error takes besides: what comes back, as codes and as reals.
-constexpr double kBytesPerInexactBlock = 3400;
+// What measuring the error takes besides, of values of 4 bytes: what comes back, as codes and as
+// values.
+constexpr double kBytesPerInexactBlock = 4000;
 // A tolerance takes a second tree of codes and measures as well.
 constexpr double kBytesPerHeldBlock = 1200 + kBytesPerInexactBlock;
 

@@ -46,6 +46,8 @@ DenseSource denseSource(const openvdb::GridBase& grid, const DeltaHeader& header
     source.dims = glm::i64vec3(header.box.dims());
     source.type = kRawTypes[int(*header.exact)];
     source.bigEndian = std::endian::native == std::endian::big;
+    // Of 64 bits and without sign; whole numbers of other types are stored as such.
+    source.standsForWhole = header.sourceType == "uint64";
     source.worldFromIndex = volume.worldFromIndex;
     source.space = header.space;
     source.forEachLayer = [&grid, size = header.box.dims()](const DenseSource::LayerUse& use,
@@ -63,13 +65,15 @@ void readExactDeltas(openvdb::GridBase& deltas, const DeltaHeader& header,
                      const GridCodesOptions& options, Volume& volume) {
     const std::string& where = options.where;
     const Listener decoding = partOf(options.listener, 0, 0.5);
-    const Listener reading = partOf(options.listener, 0.5, 1);
+    Listener reading = partOf(options.listener, 0.5, 1);
     const openvdb::GridBase::Ptr source = restoreGrid(
         header, decodeValues(deltas, header, where, decoding), deltas, volume.worldFromIndex);
     requireActiveCount(source->activeVoxelCount(), header, where);
     if (header.restActive) {
         ReadOptions codesOnly = options.reading;
         codesOnly.keepSource = codesOnly.keepInexact = false;
+        // Who keeps the source has its values.
+        if (options.reading.keepSource && !options.reading.bits) reading.warning = {};
         Volume dense = readDense(denseSource(*source, header, options, volume), codesOnly, reading);
         dense.origin = volume.origin;
         dense.type = header.sourceType;

@@ -20,6 +20,8 @@ struct DenseSource {
     glm::i64vec3 dims{1};  ///< voxels along x, y, z; each 1..2^30
     RawType type = RawType::kUint8;
     bool bigEndian = false;  ///< of the bytes that forEachLayer gives
+    /// Values are whole numbers that a real type stands in for: codes are those of whole numbers.
+    bool standsForWhole = false;
     glm::dmat4 worldFromIndex{1.0};
     std::string space;         ///< as Volume::space
     std::int64_t volumes = 1;  ///< how many volumes its file has, one of which it is

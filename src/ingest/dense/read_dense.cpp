@@ -113,6 +113,11 @@ struct Survey {
     std::vector<double> frequent;  // which may be the most frequent one
 };
 
+// Whether whole numbers that are doubles now are sure to be what they were.
+bool isWithinDoubles(const ValueCensus& census) {
+    return std::max(std::fabs(census.min), std::fabs(census.max)) <= 0x1p53;
+}
+
 // Reads everything to find out which codes there have to be.
 Survey chooseBook(const DenseSource& source, const ReadOptions& options, const Listener& listener,
                   Volume& volume) {
@@ -120,7 +125,9 @@ Survey chooseBook(const DenseSource& source, const ReadOptions& options, const L
     settleNonFinite(source, whole, options.nanValue);
     volume.replaced = whole.nonFinite;
     volume.readError = whole.census.rounding;
-    const bool real = source.type == RawType::kFloat32 || source.type == RawType::kFloat64;
+    const bool isReal = source.type == RawType::kFloat32 || source.type == RawType::kFloat64;
+    const bool real = isReal && !(source.standsForWhole && whole.census.whole);
+    if (isReal && !real) whole.census.exact = isWithinDoubles(whole.census);
     whole.census.frequent = frequentOf(whole);
     volume.codeBook = chooseBook(whole.census, real, options, source.where);
     Survey survey{bulkMagnitude(whole.census), whole.census.min, whole.census.max, {}};
@@ -329,6 +336,11 @@ void dropValue(Grid& grid, double dropped) {
     openvdb::tools::pruneInactive(grid.tree());
 }
 
+// What a value takes in the grid that readSourceGrid makes.
+double gridValueBytes(RawType type) {
+    return rawTypeBytes(type) > 4 || type == RawType::kUint32 ? 8 : 4;
+}
+
 // Where memory is limited, what the volume will take is known before any of it is taken.
 void requireLimit(const DenseSource& source, const ReadOptions& options, bool keep,
                   const Listener& listener) {
@@ -337,9 +349,9 @@ void requireLimit(const DenseSource& source, const ReadOptions& options, bool ke
     stopping.progress = [&](double) { listener.report(0); };
     double bytesPerBlock = leafBytes<CodeTree::Leaf>() + options.bytesPerBlock;
     if (keep) {
-        bytesPerBlock += sizeof(CodeTree::Leaf) +
-                         CodeTree::Leaf::SIZE * double(rawTypeBytes(source.type)) +
-                         options.bytesPerInexactBlock;
+        const double valueBytes = gridValueBytes(source.type);
+        bytesPerBlock += sizeof(CodeTree::Leaf) + CodeTree::Leaf::SIZE * valueBytes +
+                         options.bytesPerInexactBlock * (valueBytes / 4);
     }
     requireMemory(source.where, double(countMixedBlocks(source, stopping)) * bytesPerBlock);
 }

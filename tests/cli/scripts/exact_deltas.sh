@@ -67,4 +67,22 @@ cmp "$few" back_32x32x32_float32.raw
 grep -q '"code_book": "table"' stats.json || fail "$few --codes: got no table"
 grep -q '"lossless": true' stats.json || fail "$few --codes: got no lossless delta grid"
 (($(stat -c %s few.vdb) < $(stat -c %s table.vdb))) || fail "$few: got no less bytes than a table"
+
+# What it takes is known before it is taken.
+peak() { "$program" delta "$1" peak.vdb --threads 1 --stats stats.json -q && number peak_bytes <stats.json; }
+number() { grep -o "\"$1\": *[0-9]*" | grep -o '[0-9]*$'; }
+"$program" synth engine small_8x8x8_uint8.raw --dims 8x8x8 -qq
+program_bytes=$(peak small_8x8x8_uint8.raw)
+"$program" synth engine noise_256x128x128_float32.raw --dims 256x128x128 --type float32 --noise 0.1 -qq
+# The same bits are doubles, or whole numbers.
+for large in noise_256x128x128_float32.raw noise_128x128x128_float64.raw noise_256x128x128_uint32.raw; do
+    [[ -e $large ]] || cp noise_256x128x128_float32.raw "$large"
+    taken=$(($(peak "$large") - program_bytes))
+    "$program" delta "$large" none.vdb --max-memory $((program_bytes + (16 << 20))) 2>said.txt &&
+        fail "$large: got within 16 MiB"
+    needed=$(sed -n 's/.*needs \([0-9]*\)[.0-9]* MiB.*/\1/p' said.txt)
+    # A tenth is for what allocators do not give back.
+    ((taken <= (needed + needed / 10 + 1) << 20)) ||
+        fail "$large: took $((taken >> 20)) MiB; expected about $needed, as was said before"
+done
 echo "Exact: raw volumes and a grid"
