@@ -24,7 +24,7 @@ namespace {
 constexpr double kBytesPerBlock = 2300;
 // What measuring the error takes besides, of values of 4 bytes: what comes back, as codes and as
 // values.
-constexpr double kBytesPerInexactBlock = 4000;
+constexpr double kBytesPerInexactBlock = 4500;
 // A tolerance takes a second tree of codes and measures as well.
 constexpr double kBytesPerHeldBlock = 1200 + kBytesPerInexactBlock;
 
