@@ -14,11 +14,11 @@ namespace deltasplat {
 /// @param isBefore  which of two items comes first; where it says of neither, either may
 template <typename T, typename IsBefore>
 void parallelSort(std::vector<T>& items, const IsBefore& isBefore) {
-    constexpr std::size_t kLeast =
-        4096;                          // items of a piece: fewer are sorted before a thread begins
-    constexpr std::size_t kMost = 64;  // pieces
+    // Of fewer items, pieces are sorted before a thread begins.
+    constexpr std::size_t kLeast = 4096;
+    constexpr std::size_t kMostPieces = 64;
     const std::size_t pieces =
-        std::bit_floor(std::clamp<std::size_t>(items.size() / kLeast, 1, kMost));
+        std::bit_floor(std::clamp<std::size_t>(items.size() / kLeast, 1, kMostPieces));
     const auto edge = [&](std::size_t i) {
         return items.begin() + std::ptrdiff_t(i * items.size() / pieces);
     };

@@ -58,7 +58,7 @@ struct ReadOptions {
     /// What the caller will take besides for each 8x8x8 block that is not uniform: counts where
     /// setMemoryLimit() is in force, so that too large a volume is refused before it is read.
     double bytesPerBlock = 0;
-    double bytesPerInexactBlock = 0;  ///< likewise, in addition, where the code book is not exact
+    double bytesPerInexactBlock = 0;  ///< besides, if codes are not exact; twice of 8-byte values
 };
 
 /// Reads one scalar volume: `.vdb .raw .raw.gz .npy .nii .nii.gz .nrrd .nhdr .mhd .mha .dcm` and
