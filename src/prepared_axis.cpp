@@ -78,7 +78,7 @@ std::shared_ptr<const PackedDeltas> sharedWords(const PreparedAxis* before,
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, int sliceAxis,
                                             const Subdivision& parts, double steps,
                                             Encoding encoding, const PreparedAxis* before,
-                                            const Listener& listener) {
+                                            bool inParts, const Listener& listener) {
     const Volume& volume = *scene.scene.volume;
     const Tolerance& tolerance = scene.options.tolerance;
     std::optional<ValueMixer> mixer;
@@ -109,15 +109,22 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
             pack.holds = {};
         }
     }
-    if (!words) words = std::make_shared<const PackedDeltas>(packDeltas(volume, pack));
+    std::shared_ptr<DeltaPacker> packer;
+    if (!words) {
+        packer = std::make_shared<DeltaPacker>(volume, pack);
+        inParts = inParts && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
+        words = std::make_shared<const PackedDeltas>(inParts ? packer->plan(scene.wordBytes)
+                                                             : packer->packAll());
+        if (!inParts) packer = nullptr;
+    }
     if (steps != first) {
         classes = classes.atSteps(steps);
         if (light) light = painter->lightOf(classes, nullptr);
     }
     StepColors colors = isLit ? StepColors(std::move(classes))
                               : StepColors(*words, std::move(classes), std::move(light));
-    return std::make_shared<const PreparedAxis>(
-        PreparedAxis{sliceAxis, parts, std::move(words), steps, std::move(colors)});
+    return std::make_shared<const PreparedAxis>(PreparedAxis{
+        sliceAxis, parts, std::move(words), steps, std::move(colors), std::move(packer)});
 }
 
 std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
@@ -134,6 +141,14 @@ std::uint64_t PreparedAxis::stamps(Method method) const {
     std::uint64_t stamps = 0;
     for (const PlannedSlab& slab : deltas().slabs) stamps += slab.stamps();
     return stamps;
+}
+
+std::shared_ptr<const PreparedAxis> PreparedAxis::withWords(const SlabRange& part) const {
+    auto some = std::make_shared<const PackedDeltas>(packer->pack(part));
+    // What is painted is not packed in parts.
+    StepColors ofSome(*some, classes(), nullptr);
+    return std::make_shared<const PreparedAxis>(
+        PreparedAxis{sliceAxis, parts, std::move(some), steps, std::move(ofSome)});
 }
 
 PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne, Axes before)
@@ -168,7 +183,8 @@ PreparedScene::Impl::Axes PreparedScene::Impl::axes() const {
 std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
                                                               const Subdivision& parts,
                                                               double steps, bool fromEye,
-                                                              const Listener& listener) const {
+                                                              const Listener& listener,
+                                                              bool inParts) const {
     const bool isWhole =
         painter && (painter->isEverywhereOther() || (fromEye && painter->dependsOnCamera()));
     const Encoding encoding =
@@ -186,9 +202,9 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
     if (!place->axis)
         isolated([&] {
             const auto before = before_.find(key);
-            place->axis =
-                prepare(*this, sliceAxis, parts, isForOne ? steps : 1, encoding,
-                        before == before_.end() ? nullptr : before->second.get(), listener);
+            place->axis = prepare(*this, sliceAxis, parts, isForOne ? steps : 1, encoding,
+                                  before == before_.end() ? nullptr : before->second.get(),
+                                  isForOne && inParts, listener);
         });
     return place->axis;
 }

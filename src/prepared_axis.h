@@ -22,11 +22,16 @@ struct PreparedAxis {
     std::shared_ptr<const PackedDeltas> words;  ///< other optics may share them
     double steps;       ///< that colours are for, straight ways from slice to slice
     StepColors colors;  ///< of classes alone where looks depend on the camera
+    /// Packs the words of a few slabs at a time, where all would take much memory: then there are
+    /// none yet. Else null.
+    std::shared_ptr<const DeltaPacker> packer = nullptr;
 
     const PackedDeltas& deltas() const { return *words; }
     const ClassTable& classes() const { return colors.classes(); }
     /// Footprints that a method adds.
     std::uint64_t stamps(Method method) const;
+    /// Returns the same with the words of some slabs, by the packer.
+    std::shared_ptr<const PreparedAxis> withWords(const SlabRange& part) const;
 };
 
 /// The axes of a scene.
@@ -44,14 +49,18 @@ struct PreparedScene::Impl {
     SplatOptions options;
     bool isThin;
     bool isForOne;
+    /// The most that words of an axis are to take where a picture may be made in parts.
+    double wordBytes = 256.0 * 1024 * 1024;
 
     /// Returns an axis, made if it is not there.
     /// @param steps    what the picture in hand wants classes to be coloured for, for which they
     ///                 are if there will be no other
     /// @param fromEye  whether each voxel has a line of sight of its own: what is lit then looks
     ///                 different in each slice, and slabs are whole
+    /// @param inParts  whether a few slabs at a time will do, of a scene for one picture
     std::shared_ptr<const PreparedAxis> axis(int sliceAxis, const Subdivision& parts, double steps,
-                                             bool fromEye, const Listener& listener) const;
+                                             bool fromEye, const Listener& listener,
+                                             bool inParts = false) const;
     /// Returns how many blocks of 8x8x8 voxels can be seen; counted once for each axis.
     std::size_t blocksSeen(int sliceAxis) const;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <type_traits>
@@ -68,13 +69,15 @@ class CompositeRender {
   private:
     void runView(std::size_t number, const Factorization& view, const Listener& listener) {
         const Clock::time_point start = Clock::now();
+        const bool isFlat = !wanted_.views && !wanted_.step && !wanted_.deep;
         std::shared_ptr<const PreparedAxis> axis =
             scene_.axis(view.sliceAxis, plan_->partsAlong(view.sliceAxis), stepsOf(view, volume_),
-                        view.eye.has_value(), listener);
+                        view.eye.has_value(), listener, isFlat);
         stats_.prepareSeconds += secondsSince(start);
         countIn(*axis);
         listener.report(0.2);
         if (volume_.empty()) return;
+        if (axis->packer) return showInParts(view, *axis, listener);
         const Clock::time_point renderStart = Clock::now();
         auto picture = std::make_unique<const PictureView>(scene_, camera_, view, *plan_,
                                                            std::move(axis), memory_);
@@ -102,6 +105,44 @@ class CompositeRender {
         Layer merged = renderSlabs(picture.slabs(), kAllRows, partOf(listener, 0.2, 0.9));
         listener.report(0.95);
         return timedWarp([&] { return picture.show(merged, *wanted_.image); });
+    }
+
+    // Makes words of a few slabs at a time, from the front on, and puts what they show behind what
+    // is there.
+    void showInParts(const Factorization& view, const PreparedAxis& planned,
+                     const Listener& listener) {
+        std::vector<SlabRange> parts = planned.packer->parts();
+        if (!view.frontToBack) std::reverse(parts.begin(), parts.end());
+        std::unique_ptr<const PictureView> picture;
+        std::optional<Layer> merged;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const auto share = [&](double part) {
+                return 0.2 + 0.7 * (double(i) + part) / double(parts.size());
+            };
+            // Words of one part go before those of the next come.
+            picture = nullptr;
+            const Clock::time_point start = Clock::now();
+            std::shared_ptr<const PreparedAxis> axis = planned.withWords(parts[i]);
+            stats_.prepareSeconds += secondsSince(start);
+            const Clock::time_point renderStart = Clock::now();
+            picture = std::make_unique<const PictureView>(scene_, camera_, view, *plan_,
+                                                          std::move(axis), memory_);
+            const SlabInput& input = picture->slabs();
+            std::vector<SeenSlab> seen = seenSlabs(input);
+            if (!merged) merged.emplace(reachOfAll(input, seen), input.layout.channels, memory_);
+            std::erase_if(seen, [&](const SeenSlab& one) {
+                const auto number = one.slab - input.splat.deltas.slabs.data();
+                return number < parts[i].first || number >= parts[i].last;
+            });
+            merged = renderSlabs(input, std::move(seen), kAllRows,
+                                 partOf(listener, share(0), share(1)), std::move(merged));
+            stats_.renderSeconds += secondsSince(renderStart);
+        }
+        const Clock::time_point start = Clock::now();
+        countIn(*picture);
+        listener.report(0.95);
+        countBound(*picture, timedWarp([&] { return picture->show(*merged, *wanted_.image); }));
+        stats_.renderSeconds += secondsSince(start);
     }
 
     // Leaves what it shows to the frame behind.
@@ -250,8 +291,13 @@ class CompositeRender {
 
     // @param rows  of the base plane
     Layer renderSlabs(const SlabInput& input, glm::ivec2 rows, const Listener& listener) {
+        return renderSlabs(input, seenSlabs(input), rows, listener, {});
+    }
+
+    Layer renderSlabs(const SlabInput& input, std::vector<SeenSlab> seen, glm::ivec2 rows,
+                      const Listener& listener, std::optional<Layer> front) {
         const Clock::time_point start = Clock::now();
-        SlabRenderer slabs(input, seenSlabs(input), rows, listener);
+        SlabRenderer slabs(input, std::move(seen), rows, listener, std::move(front));
         slabs.run();
         const double slabSeconds = secondsSince(start);
         Layer merged = slabs.merge();

@@ -45,14 +45,15 @@ PlaneBox reachOfAll(const SlabInput& input, const std::vector<SeenSlab>& seen) {
 }
 
 SlabRenderer::SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, glm::ivec2 rows,
-                           const Listener& listener)
+                           const Listener& listener, std::optional<Layer> front)
     : input_(input),
       progress_(listener),
       channels_(input.layout.channels),
       seen_(std::move(seen)),
-      reach_(reachOfAll(input, seen_)),
+      hasFront_(front.has_value()),
+      reach_(front ? front->box : reachOfAll(input, seen_)),
       rows_(glm::clamp(rows, reach_.min.y, std::max(reach_.min.y, reach_.max.y))),
-      merged_({}, channels_, input.memory) {
+      merged_(front ? std::move(*front) : Layer({}, channels_, input.memory)) {
     const ClassTable& table = input.splat.colors.table();
     for (int plane = 0; plane < int(table.planes.size()); ++plane)
         scales_.emplace_back(table.scaleOf(plane) / input.splat.footprint.one());
@@ -97,7 +98,7 @@ std::optional<SlabRenderer::Piece> SlabRenderer::takePiece(Strip*& own) {
 
 Layer SlabRenderer::merge() {
     // With nothing to render nobody has made it.
-    if (strips_.empty() && !reach_.empty()) merged_.reset(reach_);
+    if (strips_.empty() && !reach_.empty() && !hasFront_) merged_.reset(reach_);
     parallelForChunks(std::size_t(merged_.box.size().y), [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
             const int y = merged_.box.min.y + int(row);
@@ -152,8 +153,11 @@ void SlabRenderer::cutIntoStrips() {
     for (int i = 0; i < count; ++i) {
         const auto edge = [&](int n) { return rows_.x + int(std::int64_t{rows} * n / count); };
         const PlaneBox part{{reach_.min.x, edge(i)}, {reach_.max.x, edge(i + 1)}};
+        // The front slab's is the merged one, unless something lies before it.
+        const std::size_t layers = seen_.size() - (hasFront_ ? 0 : 1);
         strips_.push_back(
-            {part.min.y, part.max.y, std::make_unique<LayerFold>(seen_.size() - 1, merged_, part)});
+            {part.min.y, part.max.y, std::make_unique<LayerFold>(layers, merged_, part)});
+        if (hasFront_) strips_.back().layers->addFront();
     }
 }
 
@@ -196,10 +200,9 @@ void SlabRenderer::requireSlabMemory() const {
     const double pieces = double(strips_.size()) * double(seen_.size());
     double bytes =
         Splatter::bytes(input_.splat, largest_) * std::min<double>(threadCount(), pieces);
-    // The front slab's is the merged one.
-    for (std::size_t i = 1; i < seen_.size(); ++i)
+    for (std::size_t i = hasFront_ ? 0 : 1; i < seen_.size(); ++i)
         bytes += layerBytes(reachOfSeen(input_, seen_[i]), channels_);
-    bytes += layerBytes(reach_, channels_);
+    if (!hasFront_) bytes += layerBytes(reach_, channels_);
     if (!input_.plane.isParallel()) bytes += layerBytes(reach_, 1);
     // What is kept is there already.
     bytes = std::max(0.0, bytes - double(input_.memory.idleBytes()));
@@ -207,7 +210,8 @@ void SlabRenderer::requireSlabMemory() const {
         "sheets and layers at " + numberText(largest_.pixelsPerVoxel()) + " pixels a voxel", bytes);
 }
 
-// The front slab goes straight into the merged layer, the others into layers of their own.
+// The front slab goes straight into the merged layer if nothing lies before it, the others into
+// layers of their own.
 void SlabRenderer::renderPiece(const Piece& piece, Splatter& splatter) {
     const Clock::time_point start = Clock::now();
     const std::size_t number = piece.slab;
@@ -220,7 +224,7 @@ void SlabRenderer::renderPiece(const Piece& piece, Splatter& splatter) {
         use();
         compositeSeconds += secondsSince(before);
     };
-    if (number == 0) {
+    if (number == 0 && !hasFront_) {
         // Not made before there are threads, so that others may begin meanwhile.
         timed([&] { std::call_once(mergedOnce_, [&] { merged_.reset(reach_); }); });
         compositeSeconds += renderSlab(seen, strip, box, splatter, merged_);
@@ -228,7 +232,7 @@ void SlabRenderer::renderPiece(const Piece& piece, Splatter& splatter) {
     } else {
         Layer layer = strip.layers->take(box);
         compositeSeconds += renderSlab(seen, strip, box, splatter, layer);
-        timed([&] { strip.layers->add(number - 1, std::move(layer)); });
+        timed([&] { strip.layers->add(number - (hasFront_ ? 0 : 1), std::move(layer)); });
     }
     count(seen, compositeSeconds, secondsSince(start));
 }

@@ -50,11 +50,14 @@ PlaneBox reachOfAll(const SlabInput& input, const std::vector<SeenSlab>& seen);
 /// changes nothing but who does what.
 class SlabRenderer {
   public:
-    /// @param seen  which, from the front on
-    /// @param rows  of the base plane, which become the same as among all; others stay zero
+    /// @param seen   which, from the front on
+    /// @param rows   of the base plane, which become the same as among all; others stay zero
+    /// @param front  what lies before them, and reaches all that they do; with it the bits are
+    /// those
+    ///               of rendering all at once
     /// @throw Error(kFailed) if sheets and layers do not fit into memory
     SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, glm::ivec2 rows,
-                 const Listener& listener);
+                 const Listener& listener, std::optional<Layer> front = {});
 
     /// Renders the slabs, from the front on.
     void run();
@@ -97,6 +100,7 @@ class SlabRenderer {
     std::vector<glm::vec4> scales_;  // of the planes of colours
     int channels_;
     std::vector<SeenSlab> seen_;        // from the front on
+    bool hasFront_;                     // before them
     PlaneBox reach_;                    // of all of them
     glm::ivec2 rows_;                   // of these, that are rendered
     std::optional<StepLengths> steps_;  // from an eye, of colours

@@ -60,8 +60,8 @@ inline auto mapped(std::span<const Slot> slotMap) {
 
 // Words that a block may make: its slices, and one behind it that takes away what it showed.
 constexpr std::size_t kMostWords = 9;
-constexpr double kBytesPerBlock =
-    kMostWords * (sizeof(DeltaWord) + sizeof(PendingWord) + sizeof(SliceClasses));
+constexpr double kBytesPerWord = sizeof(DeltaWord) + sizeof(PendingWord) + sizeof(SliceClasses);
+constexpr double kBytesPerBlock = kMostWords * kBytesPerWord;
 constexpr double kLookBytesPerBlock = kMostWords * 64 * sizeof(OwnLook);
 
 // How voxels become classes. Null: as they are.
@@ -79,16 +79,25 @@ struct Columns {
     const CodeBlock* end;
 };
 
+// What of it: all blocks, of which it counts what is in their slices, or those of some slabs.
+struct PackRange {
+    SlabLayout layout;  // of slabs that there may be
+    int firstBlock;
+    int lastBlock;
+    bool storesWords = true;
+};
+
 class ColumnPacker {
   public:
     ColumnPacker(const IndexBox& box, const PackOptions& options, const PackTools& tools,
-                 std::span<const Slot> slotMap)
+                 std::span<const Slot> slotMap, const PackRange& range)
         : options_(options),
           tools_(tools),
           slotMap_(slotMap),
           box_(box),
           planner_(box),
-          layout_(planner_.shortest()) {
+          range_(range),
+          layout_(range.layout) {
         if (tools.mixer) parts_ = tools.mixer->parts();
         if (!tools.mixer) return;
         window_.emplace(*tools.codes, options.sliceAxis,
@@ -100,10 +109,15 @@ class ColumnPacker {
     }
 
     void run(const Columns& columns) {
+        const auto isIn = [&](const CodeBlock& block) {
+            return tools_.mixer ||
+                   (block.position.x >= range_.firstBlock && block.position.x <= range_.lastBlock);
+        };
         // What is not used of it takes no memory.
-        const std::size_t most = kMostWords * std::size_t(parts_.slices) *
-                                 std::size_t(parts_.within) *
-                                 std::size_t(columns.end - columns.begin);
+        const auto blocks = std::size_t(std::count_if(columns.begin, columns.end, isIn));
+        const std::size_t most = !range_.storesWords ? 0
+                                                     : kMostWords * std::size_t(parts_.slices) *
+                                                           std::size_t(parts_.within) * blocks;
         for (int half = 0; half < parts_.within; ++half) {
             halves_[std::size_t(half)].words.reserve(most);
             halves_[std::size_t(half)].storage.reserve(64 * most);
@@ -114,8 +128,10 @@ class ColumnPacker {
                                                 options_.sliceAxis, parts_, box_);
         }
         for (const CodeBlock* block = columns.begin; block != columns.end; ++block) {
+            if (!isIn(*block)) continue;
             if (own_) own_->beginBlock(*block);
-            const bool isFirst = block == columns.begin || !follows(block[-1], *block);
+            const bool isFirst =
+                block == columns.begin || !follows(block[-1], *block) || !isIn(block[-1]);
             const bool isLast = block + 1 == columns.end || !follows(*block, block[1]);
             if (isFirst) {
                 before_ = {};
@@ -130,7 +146,8 @@ class ColumnPacker {
             }
             // What a block showed must be taken away behind it.
             const int next = firstPart(*block).x + parts_.slices;
-            if (next > layout_.lastBlock || !isLast) continue;
+            const int last = tools_.mixer ? layout_.lastBlock : range_.lastBlock;
+            if (next > last || !isLast) continue;
             classes_.fill(kEmptySlot);
             forParts([&](const glm::ivec2& part) { add(partOf(*block, next, part), part, 1); });
         }
@@ -280,7 +297,7 @@ class ColumnPacker {
             const bool needed =
                 (options_.encoding != Encoding::kWhole && changed != 0) ||
                 ((options_.encoding != Encoding::kChanges || isKey) && visible != 0);
-            if (!needed) continue;
+            if (!needed || !range_.storesWords) continue;
             packed.words.push_back(
                 {visible, changed, packed.storage.size(), slice, {position.y, position.z}});
             packed.storage.insert(packed.storage.end(), &classes_[64 * s], &classes_[64 * s] + 64);
@@ -304,7 +321,8 @@ class ColumnPacker {
     std::span<const Slot> slotMap_;
     IndexBox box_;
     SlabPlanner planner_;
-    SlabLayout layout_;  // of the shortest slabs that there may be
+    PackRange range_;
+    SlabLayout layout_;
     Subdivision parts_;
     BlockClasses classes_{};                // of the block in hand
     std::array<SliceClasses, 4> before_{};  // [part]: of the slice before it
@@ -375,44 +393,145 @@ std::span<const DeltaWord> PackedDeltas::slice(int index) const {
     return std::span(words).subspan(begins[i], begins[i + 1] - begins[i]);
 }
 
-PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
-    PackedDeltas packed;
-    packed.sliceAxis = options.sliceAxis;
-    const ValueMixer* mixer = options.mixer;
-    const Subdivision parts = mixer ? mixer->parts() : Subdivision{};
-    packed.box = boxOfSlices(volume.box, options.sliceAxis, parts);
-    if (volume.empty()) return packed;
-    std::optional<SlotHolder> holder;
-    if (options.holds) holder.emplace(mixer ? mixer->levels() : volume, options);
-    const std::span<const Slot> slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
-    std::optional<MixedSight> sight;
-    if (mixer) sight.emplace(*mixer, slotMap, choosesClasses(options));
-    std::vector<CodeBlock> blocks =
-        sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
-              : BlockReader(*volume.codes, nullptr, options.sliceAxis, slotMap).takeBlocks();
-    if (options.painter && options.painter->more())
-        addBlocks(*options.painter->more(), options.sliceAxis, blocks);
-    const double blockBytes = kBytesPerBlock + (options.painter ? kLookBytesPerBlock : 0);
-    requireMemory(
-        parts.divides() ? "delta grid of divided voxels (`between` 0: undivided)" : "delta grid",
-        double(blocks.size()) * parts.voxels() * blockBytes + 16.0 * packed.box.dims().x);
+struct DeltaPacker::Impl {
+    Impl(const Volume& ofVolume, const PackOptions& withOptions)
+        : volume(ofVolume),
+          options(withOptions),
+          classOfSlot(withOptions.classOfSlot.begin(), withOptions.classOfSlot.end()) {
+        const ValueMixer* mixer = options.mixer;
+        if (mixer) divided = mixer->parts();
+        box = boxOfSlices(volume.box, options.sliceAxis, divided);
+        if (volume.empty()) return;
+        options.classOfSlot = classOfSlot;
+        if (options.holds) holder.emplace(mixer ? mixer->levels() : volume, options);
+        slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
+        if (mixer) sight.emplace(*mixer, slotMap, choosesClasses(options));
+        blocks = sight
+                     ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
+                     : BlockReader(*volume.codes, nullptr, options.sliceAxis, slotMap).takeBlocks();
+        if (options.painter && options.painter->more())
+            addBlocks(*options.painter->more(), options.sliceAxis, blocks);
+        runs = cutAtColumns(blocks, divided.within > 1);
+    }
 
-    const std::vector<Columns> runs = cutAtColumns(blocks, parts.within > 1);
-    std::vector<ColumnPacker> packers;
-    packers.reserve(runs.size());
-    const PackTools tools{holder ? &*holder : nullptr, mixer, sight ? &*sight : nullptr,
-                          volume.codes.get(),
-                          volume.uncut ? volume.uncut.get() : volume.codes.get()};
-    for (std::size_t i = 0; i < runs.size(); ++i)
-        packers.emplace_back(packed.box, options, tools, slotMap);
-    parallelFor(packers.size(), [&](std::size_t i) { packers[i].run(runs[i]); });
+    PackedDeltas noWords() const {
+        PackedDeltas packed;
+        packed.sliceAxis = options.sliceAxis;
+        packed.box = box;
+        return packed;
+    }
+
+    // All that there is, and slabs as short as they may be.
+    PackRange wholeRange(const SlabPlanner& planner) const {
+        const SlabLayout& layout = planner.shortest();
+        return {layout, layout.firstBlock, layout.lastBlock};
+    }
+
+    std::vector<ColumnPacker> run(const PackRange& range) const {
+        const PackTools tools{holder ? &*holder : nullptr, options.mixer, sight ? &*sight : nullptr,
+                              volume.codes.get(),
+                              volume.uncut ? volume.uncut.get() : volume.codes.get()};
+        std::vector<ColumnPacker> packers;
+        packers.reserve(runs.size());
+        for (std::size_t i = 0; i < runs.size(); ++i)
+            packers.emplace_back(box, options, tools, slotMap, range);
+        parallelFor(packers.size(), [&](std::size_t i) { packers[i].run(runs[i]); });
+        return packers;
+    }
+
+    void requireBlocks(double count) const {
+        const double blockBytes = kBytesPerBlock + (options.painter ? kLookBytesPerBlock : 0);
+        requireMemory(divided.divides() ? "delta grid of divided voxels (`between` 0: undivided)"
+                                        : "delta grid",
+                      count * divided.voxels() * blockBytes + 16.0 * box.dims().x);
+    }
+
+    const Volume& volume;
+    PackOptions options;
+    std::vector<Slot> classOfSlot;
+    Subdivision divided;
+    IndexBox box;
+    std::optional<SlotHolder> holder;
+    std::span<const Slot> slotMap;
+    std::optional<MixedSight> sight;
+    std::vector<CodeBlock> blocks;
+    std::vector<Columns> runs;
+    SlabPlan planned;
+    std::vector<SlabRange> parts;
+};
+
+DeltaPacker::DeltaPacker(const Volume& volume, const PackOptions& options)
+    : impl_(std::make_unique<Impl>(volume, options)) {}
+DeltaPacker::~DeltaPacker() = default;
+DeltaPacker::DeltaPacker(DeltaPacker&&) noexcept = default;
+
+bool DeltaPacker::canBeParted() const {
+    return !impl_->options.mixer && !impl_->options.painter && !impl_->holder;
+}
+
+double DeltaPacker::mostBytes() const {
+    return double(impl_->blocks.size()) * kBytesPerBlock;
+}
+
+PackedDeltas DeltaPacker::packAll() {
+    PackedDeltas packed = impl_->noWords();
+    if (impl_->volume.empty()) return packed;
+    impl_->requireBlocks(double(impl_->blocks.size()));
     SlabPlanner planner(packed.box);
+    std::vector<ColumnPacker> packers = impl_->run(impl_->wholeRange(planner));
     for (const ColumnPacker& packer : packers) planner.add(packer.planner());
-    SlabPlan plan = planner.plan(options.encoding);
+    SlabPlan plan = planner.plan(impl_->options.encoding);
     packed.slabs = std::move(plan.slabs);
-    collectWords(inOrder(runs, packers, parts.within), plan.layout, options.painter != nullptr,
-                 packed);
+    collectWords(inOrder(impl_->runs, packers, impl_->divided.within), plan.layout,
+                 impl_->options.painter != nullptr, packed);
     return packed;
+}
+
+PackedDeltas DeltaPacker::plan(double mostBytes) {
+    PackedDeltas packed = impl_->noWords();
+    if (impl_->volume.empty()) return packed;
+    SlabPlanner planner(packed.box);
+    PackRange range = impl_->wholeRange(planner);
+    range.storesWords = false;
+    for (const ColumnPacker& packer : impl_->run(range)) planner.add(packer.planner());
+    impl_->planned = planner.plan(impl_->options.encoding);
+    packed.slabs = impl_->planned.slabs;
+    packed.begins.assign(std::size_t(packed.box.dims().x) + 1, 0);
+    double bytes = 0;
+    for (int i = 0; i < int(packed.slabs.size()); ++i) {
+        const double ofSlab = double(packed.slabs[std::size_t(i)].stampedWords()) * kBytesPerWord;
+        if (impl_->parts.empty() || bytes + ofSlab > mostBytes) {
+            impl_->parts.push_back({i, i});
+            bytes = 0;
+        }
+        impl_->parts.back().last = i + 1;
+        bytes += ofSlab;
+    }
+    return packed;
+}
+
+const std::vector<SlabRange>& DeltaPacker::parts() const {
+    return impl_->parts;
+}
+
+PackedDeltas DeltaPacker::pack(const SlabRange& part) const {
+    PackedDeltas packed = impl_->noWords();
+    packed.slabs = impl_->planned.slabs;
+    const SlabLayout& layout = impl_->planned.layout;
+    const int firstBlock = layout.firstBlock + part.first * layout.blocksPerSlab;
+    const int lastBlock =
+        std::min(layout.firstBlock + part.last * layout.blocksPerSlab - 1, layout.lastBlock);
+    double words = 0;
+    for (int i = part.first; i < part.last; ++i)
+        words += double(packed.slabs[std::size_t(i)].stampedWords());
+    requireMemory("part of a delta grid", words * kBytesPerWord);
+    std::vector<ColumnPacker> packers = impl_->run({layout, firstBlock, lastBlock});
+    collectWords(inOrder(impl_->runs, packers, 1), layout, false, packed);
+    return packed;
+}
+
+PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
+    return DeltaPacker(volume, options).packAll();
 }
 
 }  // namespace deltasplat

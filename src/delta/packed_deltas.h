@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/vec2.hpp>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -80,5 +81,38 @@ struct PackOptions {
 /// as long as it may: compared with its true slot each time, so that errors never add up. Linear in
 /// the active voxels; deterministic; multi-threaded.
 PackedDeltas packDeltas(const Volume& volume, const PackOptions& options);
+
+/// Slabs [first, last).
+struct SlabRange {
+    int first;
+    int last;
+};
+
+/// Packs deltas as packDeltas does, or those of a few slabs at a time, so that few words are in
+/// memory at once: the volume is gone through once to find the slabs, then once for each part.
+class DeltaPacker {
+  public:
+    /// @param volume  must outlive this
+    DeltaPacker(const Volume& volume, const PackOptions& options);
+    ~DeltaPacker();
+    DeltaPacker(DeltaPacker&&) noexcept;
+
+    /// Whether parts can be made: no voxel is held, divided or painted.
+    bool canBeParted() const;
+    /// The most bytes that all words may take, of what is known before they are counted.
+    double mostBytes() const;
+    PackedDeltas packAll();
+    /// Returns the slabs, without words.
+    /// @param mostBytes  that the words of a part may take, unless it is of one slab
+    PackedDeltas plan(double mostBytes);
+    /// Once there is a plan, the parts that it is packed in, in increasing order.
+    const std::vector<SlabRange>& parts() const;
+    /// Returns all slabs, of which those of a part have their words.
+    PackedDeltas pack(const SlabRange& part) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace deltasplat

@@ -26,6 +26,8 @@ struct PlannedSlab : Slab {
     std::uint64_t seenWords = 0;  ///< mask words with visible voxels
 
     std::uint64_t stamps() const { return whole ? visible : deltas; }
+    /// Words that have any.
+    std::uint64_t stampedWords() const { return whole ? seenWords : words; }
     /// Whether there are fewer deltas than so many voxels for each of `words`.
     bool changesFewerThan(std::uint64_t voxels) const { return deltas < voxels * words; }
 };

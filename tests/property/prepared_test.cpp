@@ -12,6 +12,7 @@
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
 #include "deltasplat/threads.h"
+#include "kept_memory.h"
 #include "prepared_axis.h"
 #include "support/error_of.h"
 #include "support/some_scene.h"
@@ -41,6 +42,36 @@ TEST(Prepared, givesThePixelsOfRender) {
                     EXPECT_EQ(pictureOf(scene, camera).rgba,
                               render(*scene.scene().volume, options).image.rgba)
                         << int(colors) << ' ' << tolerance << ' ' << camera.azimuthDegrees;
+                }
+            }
+        }
+    }
+}
+
+// Where words would take much memory, slabs get theirs a few at a time.
+TEST(Prepared, picturesInPartsAreThoseOfAllAtOnce) {
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+        for (const double least : {0.0, 1e-6}) {
+            RenderOptions options;
+            options.optics = someOptics(colors);
+            options.optics.transferFunction.opacities[0].opacity = least;
+            for (const Method method :
+                 {Method::kAuto, Method::kDelta, Method::kSparse, Method::kTraditional}) {
+                options.method = method;
+                for (std::size_t i = 0; i < someCameras().size(); ++i) {
+                    options.camera = someCameras()[i];
+                    const ThreadLimit limit(1 + int(i % 3));
+                    const RenderResult whole = render(*someVolume(), options);
+                    PreparedScene::Impl scene({someVolume(), options.optics}, options, true);
+                    scene.wordBytes = i % 2 == 0 ? 0 : 4e5;
+                    KeptMemory memory;
+                    Image image(whole.camera.sizePixels);
+                    const RenderStats stats =
+                        renderComposite(scene, whole.camera, memory, image, {});
+                    EXPECT_EQ(image.rgba, whole.image.rgba) << int(colors) << ' ' << i;
+                    EXPECT_EQ(stats.visible, whole.stats.visible);
+                    EXPECT_EQ(stats.deltas, whole.stats.deltas);
+                    EXPECT_EQ(stats.stamps, whole.stats.stamps);
                 }
             }
         }

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <span>
 #include <tuple>
 
 #include "deltasplat/threads.h"
@@ -107,6 +109,56 @@ TEST(PackedDeltas, CountWhatTheDeltaGridCounts) {
                 EXPECT_EQ(packed.slabs[i].sliceCount, grid.slabs[i].sliceCount);
                 EXPECT_EQ(packed.slabs[i].visible, grid.slabs[i].visible);
                 EXPECT_EQ(packed.slabs[i].deltas, grid.slabs[i].deltas);
+            }
+        }
+    }
+}
+
+void expectSameWords(std::span<const DeltaWord> words, std::span<const DeltaWord> expected) {
+    ASSERT_EQ(words.size(), expected.size());
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        EXPECT_EQ(words[i].visible, expected[i].visible);
+        EXPECT_EQ(words[i].changed, expected[i].changed);
+        EXPECT_EQ(words[i].block, expected[i].block);
+        EXPECT_TRUE(std::equal(words[i].classes, words[i].classes + 64, expected[i].classes));
+    }
+}
+
+TEST(PackedDeltas, PartsHaveTheWordsOfTheWhole) {
+    const Volume volume = test::randomVolume(kBox, 6);
+    const std::vector<Slot> classes = plainClasses();
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const Encoding encoding :
+             {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller, Encoding::kFewerWords}) {
+            const PackedDeltas whole = packDeltas(volume, {axis, encoding, classes, {}});
+            // Slab by slab, some at a time, and all.
+            for (const double bytes : {0.0, 3e5, 1e9}) {
+                DeltaPacker packer(volume, {axis, encoding, classes, {}});
+                EXPECT_TRUE(packer.canBeParted());
+                const PackedDeltas planned = packer.plan(bytes);
+                EXPECT_TRUE(planned.words.empty());
+                EXPECT_EQ(planned.visible(), whole.visible());
+                EXPECT_EQ(planned.deltas(), whole.deltas());
+                ASSERT_EQ(planned.slabs.size(), whole.slabs.size());
+                int next = 0;
+                for (const SlabRange& range : packer.parts()) {
+                    EXPECT_EQ(range.first, next);
+                    next = range.last;
+                    const PackedDeltas part = packer.pack(range);
+                    for (int i = 0; i < int(whole.slabs.size()); ++i) {
+                        const PlannedSlab& slab = whole.slabs[std::size_t(i)];
+                        EXPECT_EQ(part.slabs[std::size_t(i)].whole, slab.whole);
+                        const bool isIn = i >= range.first && i < range.last;
+                        for (int s = slab.firstSlice; s < slab.firstSlice + slab.sliceCount; ++s)
+                            expectSameWords(part.slice(s),
+                                            isIn ? whole.slice(s) : std::span<const DeltaWord>());
+                    }
+                }
+                EXPECT_EQ(next, int(whole.slabs.size()));
+                const auto parts = int(packer.parts().size());
+                const int slabs = int(whole.slabs.size());
+                EXPECT_GE(parts, bytes == 0 ? slabs : 1);
+                EXPECT_LE(parts, bytes == 1e9 ? 1 : slabs);
             }
         }
     }
