@@ -160,6 +160,88 @@ TEST(Rays, ThreadsAndSimdLevelsGiveTheSamePixels) {
     }
 }
 
+// A picture of hills and holes whose pixels are so many voxels wide.
+RenderOptions smallPicture(const Volume& volume, const glm::dvec3& direction, double voxels) {
+    TestView view = viewOf(volume, direction);
+    view.pixelWorld = voxels * volume.voxelSize().x;
+    view.size = glm::ivec2(int(std::ceil(260 / voxels)));
+    RenderOptions options = optionsOf(Mode::kXray, view);
+    options.sigma.reset();
+    return options;
+}
+
+double sumOf(const Image& image) {
+    double sum = 0;
+    for (int y = 0; y < image.size.y; ++y)
+        for (int x = 0; x < image.size.x; ++x) sum += image.pixel(x, y)[0];
+    return sum;
+}
+
+// What is finer than pixels is read as boxes, whose sums are those of their voxels.
+TEST(Rays, BoxesOfVoxelsAddUpToTheSame) {
+    for (const glm::dvec3& spacing :
+         {glm::dvec3(1), glm::dvec3(1, 1, 4), glm::dvec3(1, 1.3, 0.4)}) {
+        const Volume volume = makeVolume(
+            {{-35, -7, 3}, {40, 66, 60}},
+            [](int x, int y, int z) {
+                const double hills = std::sin(0.21 * x) * std::cos(0.17 * y + 0.1 * z);
+                return hills > -0.3 ? int(100 + 80 * hills) : kInactive;
+            },
+            spacing);
+        for (const glm::dvec3& direction : kDirections) {
+            for (const double voxels : {2.0, 2.9, 4.4, 8.0}) {
+                RenderOptions options = smallPicture(volume, direction, voxels);
+                const RenderResult boxes = render(volume, options);
+                EXPECT_LT(boxes.stats.resolution, 1);
+                options.resolution = 1;
+                const RenderResult single = render(volume, options);
+                EXPECT_EQ(single.stats.resolution, 1);
+                EXPECT_EQ(boxes.stats.visible, single.stats.visible);
+                const double mass = sumOf(single.image);
+                EXPECT_NEAR(sumOf(boxes.image), mass, 2e-3 * mass);
+                float largest = 0;
+                double squares = 0;
+                for (std::size_t i = 0; i < single.image.rgba.size(); i += 4) {
+                    const double error = boxes.image.rgba[i] - single.image.rgba[i];
+                    squares += error * error;
+                    largest = std::max(largest, single.image.rgba[i]);
+                }
+                // The hills end at cliffs, and pictures of 33 pixels are hardly more than those.
+                const double pixels = double(single.image.rgba.size()) / 4;
+                EXPECT_GT(20 * std::log10(largest / std::sqrt(squares / pixels)), 32) << voxels;
+            }
+        }
+    }
+}
+
+TEST(Rays, BoxesOfVoxelsAreWhatIsAskedFor) {
+    const Volume volume = randomVolume({{-19, 5, -60}, {60, 110, 32}}, 17, 0.5, {1, 1.5, 0.8});
+    for (const glm::dvec3& direction : kDirections) {
+        RenderOptions options = smallPicture(volume, direction, 2.5);
+        const Image expected = render(volume, options).image;
+        for (const int threads : {1, 3}) {
+            const ThreadLimit limit(threads);
+            EXPECT_EQ(render(volume, options).image.rgba, expected.rgba) << threads;
+        }
+        for (const std::string& level : test::testedSimdLevels()) {
+            setSimdLevel(level);
+            EXPECT_EQ(render(volume, options).image.rgba, expected.rgba) << level;
+        }
+        setSimdLevel("auto");
+        options.resolution = 0.25;
+        const RenderResult asked = render(volume, options);
+        EXPECT_EQ(asked.stats.resolution, 0.25);
+        EXPECT_NE(asked.image.rgba, expected.rgba);
+        // What counts in voxels reads voxels.
+        options.resolution.reset();
+        options.sigma = 0.5;
+        EXPECT_EQ(render(volume, options).stats.resolution, 1);
+        options.sigma.reset();
+        options.mode = Mode::kMip;
+        EXPECT_EQ(render(volume, options).stats.resolution, 1);
+    }
+}
+
 // Blocks lie otherwise in the volume, and positions in the picture are rounded otherwise.
 TEST(Rays, PlaceInIndexSpaceDoesNotMatter) {
     const auto block = [](const glm::ivec3& offset) {
