@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much longer `auto` takes than the quickest of the methods that it may choose from: volumes,
+// views, sizes and threads, methods taking turns in rounds of one picture each. Prints a line for
+// each setting: milliseconds of `sparse`, `delta` and `auto`, least of all rounds, and what `auto`
+// loses, in percent; then how that is spread. A third of the rounds more are made where it seems to
+// lose more than 5 %, lest it be chance. `traditional`, which `auto` never is, is left out.
+//   auto_benchmark ROUNDS TRANSFER_FUNCTION.json FILE...
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "deltasplat/ingest/read_volume.h"
+#include "deltasplat/prepared_scene.h"
+#include "deltasplat/render.h"
+#include "deltasplat/threads.h"
+#include "stopwatch.h"
+
+namespace {
+
+using namespace deltasplat;
+
+constexpr std::array<Method, 3> kMethods = {Method::kSparse, Method::kDelta, Method::kAuto};
+constexpr glm::ivec2 kSizes[] = {{256, 256}, {512, 512}, {1920, 1080}, {3840, 2160}};
+const char* const kViews[] = {"front", "back", "left", "right", "top", "bottom", "iso"};
+
+// What a volume is rendered from by each method.
+struct Scenes {
+    std::array<std::unique_ptr<PreparedScene>, 3> of;
+    std::array<Renderer, 3> renderers;
+};
+
+// Adds rounds to the least times of each method.
+void addRounds(Scenes& scenes, const Camera& camera, int rounds, std::array<double, 3>& least) {
+    Image image(camera.sizePixels);
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t m = 0; m < kMethods.size(); ++m) {
+            const Clock::time_point start = Clock::now();
+            scenes.renderers[m].render(*scenes.of[m], camera, image);
+            least[m] = std::min(least[m], secondsSince(start));
+        }
+    }
+}
+
+double lossOf(const std::array<double, 3>& least) {
+    return least[2] / std::min(least[0], least[1]) - 1;
+}
+
+void measureFile(const char* file, const RenderOptions& options, int rounds,
+                 std::vector<double>& losses) {
+    const auto volume = std::make_shared<const Volume>(readVolume(file));
+    for (const int threads : {1, 2}) {
+        const ThreadLimit limit(threads);
+        Scenes scenes;
+        for (std::size_t m = 0; m < kMethods.size(); ++m) {
+            SplatOptions ofMethod = options;
+            ofMethod.method = kMethods[m];
+            scenes.of[m] = std::make_unique<PreparedScene>(Scene{volume, options.optics}, ofMethod);
+        }
+        for (const char* view : kViews) {
+            for (const glm::ivec2& size : kSizes) {
+                CameraOptions at;
+                at.view = view;
+                at.sizePixels = size;
+                const Camera camera =
+                    makeCamera(at, volume->box, volume->worldFromIndex, volume->space);
+                std::array<double, 3> least{};
+                addRounds(scenes, camera, 1, least);  // prepares
+                least.fill(1e300);
+                addRounds(scenes, camera, rounds, least);
+                for (int more = 0; more < 3 && lossOf(least) > 0.05; ++more)
+                    addRounds(scenes, camera, (rounds + 2) / 3, least);
+                losses.push_back(lossOf(least));
+                std::printf("%-24s %d %-6s %4dx%-4d %9.3f %9.3f %9.3f %6.1f\n",
+                            std::filesystem::path(file).filename().c_str(), threads, view, size.x,
+                            size.y, 1e3 * least[0], 1e3 * least[1], 1e3 * least[2],
+                            100 * losses.back());
+                std::fflush(stdout);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 4) {
+        std::fprintf(stderr, "usage: auto_benchmark ROUNDS TRANSFER_FUNCTION.json FILE...\n");
+        return 2;
+    }
+    try {
+        RenderOptions options;
+        options.optics.transferFunction = readTransferFunction(argv[2]);
+        std::vector<double> losses;
+        for (int i = 3; i < argc; ++i)
+            measureFile(argv[i], options, std::max(1, std::atoi(argv[1])), losses);
+        std::sort(losses.begin(), losses.end());
+        const auto within = std::upper_bound(losses.begin(), losses.end(), 0.05) - losses.begin();
+        std::printf("%zu settings: %.1f %% lose at most 5 %%; median %.1f %%, most %.1f %%\n",
+                    losses.size(), 100.0 * double(within) / double(losses.size()),
+                    100 * losses[losses.size() / 2], 100 * losses.back());
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "auto_benchmark: %s\n", error.what());
+        return 1;
+    }
+    return 0;
+}
