@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -37,6 +38,14 @@ constexpr const char* kNoConfig =
     "  - !<ColorSpace>\n"
     "    name: raw\n"
     "    isdata: true\n";
+
+// What a library complains of, on one line.
+std::string complaint(const std::string& text) {
+    std::istringstream words(text);
+    std::string line;
+    for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+    return printable(line);
+}
 
 std::string listOf(const std::vector<std::string>& names) {
     constexpr std::size_t kMost = 12;
@@ -91,7 +100,7 @@ class Processor : public ColorProcessor {
             throw Error(
                 ErrorCode::kInput,
                 gotExpected(options_.config.empty() ? "$OCIO" : options_.config.string(),
-                            printable(config_.geterror()), "a configuration of OpenColorIO"));
+                            complaint(config_.geterror()), "a configuration of OpenColorIO"));
         }
         working_ = workingSpaceOf(config_, options_);
         if (!options_.colorSpace.empty()) {
@@ -145,7 +154,7 @@ class Processor : public ColorProcessor {
                             const char* option, const std::string& name) {
         if (made) return;
         throw Error(ErrorCode::kInput,
-                    gotExpected(option, printable(name + ": " + config.geterror()),
+                    gotExpected(option, printable(name) + ": " + complaint(config.geterror()),
                                 "what OpenColorIO can make a transform of"));
     }
 
@@ -156,7 +165,7 @@ class Processor : public ColorProcessor {
         if (OIIO::ImageBufAlgo::colorconvert(buffer, buffer, processor.get(), true, {},
                                              threadCount()))
             return;
-        throw Error(ErrorCode::kFailed, "OpenColorIO: " + printable(buffer.geterror()));
+        throw Error(ErrorCode::kFailed, "OpenColorIO: " + complaint(buffer.geterror()));
     }
 
     // Changes colours, divided by alpha, each by itself.

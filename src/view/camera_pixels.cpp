@@ -76,7 +76,7 @@ glm::dmat4 Camera::cameraFromWorld() const {
     const glm::dmat3 rotation = glm::transpose(glm::dmat3(right, up, direction));
     glm::dmat4 matrix(rotation);
     matrix[3] = glm::dvec4(glm::dvec3(0, 0, targetDistanceWorld) - rotation * targetWorld, 1);
-    return matrix;
+    return matrix + 0.0;  // no -0
 }
 
 glm::dmat4 Camera::ndcFromWorld() const {
@@ -88,12 +88,12 @@ glm::dmat4 Camera::ndcFromWorld() const {
         ndcFromCamera[1][1] = -targetDistanceWorld / frameHeightWorld();
         ndcFromCamera[2] = glm::dvec4(targetInFrame, 1, 1);
         ndcFromCamera[3] = glm::dvec4(0);
-        return ndcFromCamera * cameraFromWorld();
+        return ndcFromCamera * cameraFromWorld() + 0.0;
     }
     ndcFromCamera[0][0] = 1 / frameWidthWorld;
     ndcFromCamera[1][1] = -1 / frameHeightWorld();
     ndcFromCamera[3] = glm::dvec4(targetInFrame, 0, 1);
-    return ndcFromCamera * cameraFromWorld();
+    return ndcFromCamera * cameraFromWorld() + 0.0;
 }
 
 }  // namespace deltasplat

@@ -234,11 +234,11 @@ Parser<glm::vec4> color() {
     };
 }
 
-Parser<glm::ivec2> pixelSize() {
-    return [](const std::string& option, const std::string& text) {
+Parser<glm::ivec2> pixelSize(const std::string& form) {
+    return [form](const std::string& option, const std::string& text) {
         const std::vector<int> v = toNumbers<int>(text, 'x');
         if (v.size() != 2 || v[0] < 1 || v[1] < 1)
-            refuse(option, text, "WxH, two whole numbers from 1 to 2147483647");
+            refuse(option, text, form + ", two whole numbers from 1 to 2147483647");
         return glm::ivec2(v[0], v[1]);
     };
 }

@@ -48,8 +48,8 @@ Parser<glm::dvec2> vector2(double most);
 /// 16 numbers, row by row, of a matrix that points are multiplied with as rows, so that the
 /// translation is the last row but its end; returned for columns. Commas or spaces between.
 Parser<glm::dmat4> matrix4();
-/// `WxH`, whole numbers of at least 1.
-Parser<glm::ivec2> pixelSize();
+/// Two whole numbers of at least 1, written as `form`.
+Parser<glm::ivec2> pixelSize(const std::string& form = "WxH");
 /// `AxBxC`, whole numbers; whether they make a volume is for its reader to say.
 Parser<glm::i64vec3> dimensions();
 

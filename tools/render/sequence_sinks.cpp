@@ -65,7 +65,7 @@ void checkMovieOf(const CLI::App& app, RenderCommand& command) {
 
 void addSinkOptions(CLI::App& app, RenderCommand& command) {
     OptionGroup group(app, "Sequence");
-    group.addValue("--contact-sheet", "CxR", command.contactSheet, pixelSize(),
+    group.addValue("--contact-sheet", "CxR", command.contactSheet, pixelSize("CxR"),
                    "Put all frames, or pictures of a batch, into one picture, the output,\n"
                    "in so many columns and rows, each of --size");
     group.addFlag("--slate", command.slate,
