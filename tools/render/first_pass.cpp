@@ -9,6 +9,7 @@
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "output_files.h"
+#include "printable.h"
 #include "render/render_options.h"
 #include "sequence/frame_name.h"
 #include "sequence/frames_to_make.h"
@@ -23,6 +24,7 @@ constexpr const char* kFirstPass = "deltasplat_first_pass";
 constexpr const char* kInput = "input";
 constexpr const char* kFrames = "frames";
 constexpr const char* kOptions = "options";
+constexpr const char* kFirstFile = "first_file";
 
 using Json = nlohmann::ordered_json;
 
@@ -44,6 +46,43 @@ std::string inputName(const RenderCommand& command) {
     return utf8(codePoints(command.input.filename().string()));
 }
 
+// A number by which one file is told from another of its name, nearly always: of its size, its
+// first bytes and its last. Of what is no file, or cannot be read, it is 0. Based on: the hash
+// FNV-1a (Fowler, Noll, Vo).
+std::uint64_t markOf(const std::filesystem::path& file) {
+    constexpr std::uint64_t kBytes = 65536;
+    std::error_code ignored;
+    std::ifstream in(file, std::ios::binary);
+    if (!std::filesystem::is_regular_file(file, ignored) || !in) return 0;
+    const std::uint64_t size = std::filesystem::file_size(file, ignored);
+    std::uint64_t mark = 0xcbf29ce484222325;
+    const auto add = [&](const std::string& bytes) {
+        for (const char byte : bytes)
+            mark = (mark ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
+    };
+    add(std::to_string(size));
+    std::string bytes(std::size_t(std::min(size, kBytes)), '\0');
+    for (const std::uint64_t at : {std::uint64_t(0), size - bytes.size()}) {
+        in.seekg(std::streamoff(at));
+        if (!in.read(bytes.data(), std::streamsize(bytes.size()))) return 0;
+        add(bytes);
+    }
+    return mark;
+}
+
+std::filesystem::path fileOf(const RenderCommand& command, int frame) {
+    const std::optional<FrameName> name = FrameName::findInput(command.input);
+    return name ? name->at(frame) : command.input;
+}
+
+// Whether the first frame's file is no longer the one that a first pass was made of.
+bool hasOtherFile(const Json& json, const RenderCommand& command) {
+    if (!json.contains(kFirstFile) || json.at(kFrames).empty()) return false;
+    const auto then = json.at(kFirstFile).get<std::uint64_t>();
+    const std::uint64_t now = markOf(fileOf(command, json.at(kFrames)[0][0].get<int>()));
+    return then != 0 && now != 0 && then != now;
+}
+
 // What was made of other frames, or of another thing, may not suit those in hand.
 void warnOfOthers(const Json& json, const RenderCommand& command, const Listener& listener) {
     const std::string begin = "--first-pass: " + command.firstPass.string() + " was made ";
@@ -51,6 +90,12 @@ void warnOfOthers(const Json& json, const RenderCommand& command, const Listener
     const std::string name = inputName(command);
     if (input != name)
         return listener.warn(begin + "of " + input + ", and is taken as it is for " + name);
+    if (hasOtherFile(json, command)) {
+        return listener.warn(
+            begin + "of another " +
+            printable(fileOf(command, json.at(kFrames)[0][0].get<int>()).filename().string()) +
+            " than there is now, and is taken as it is");
+    }
     const std::string options = json.value(kOptions, command.readingOptions);
     if (options != command.readingOptions) {
         const auto named = [](const std::string& text) {
@@ -137,6 +182,10 @@ void writeFirstPass(const RenderCommand& command, const std::vector<int>& frames
     Json json{{kInput, inputName(command)},
               {kFrames, runsOf(frames)},
               {kOptions, command.readingOptions}};
+    if (!frames.empty()) {
+        const int first = *std::min_element(frames.begin(), frames.end());
+        json[kFirstFile] = markOf(fileOf(command, first));
+    }
     json.update(look.toJson());
     makeFolderOf(command.firstPass);
     writeFileAtomically(command.firstPass, Json{{kFirstPass, json}}.dump(1) + "\n");

@@ -19,7 +19,8 @@ std::string readingOptions(const CLI::App& app);
 
 /// Takes what all frames are shown by from the command's `--first-pass` file, if it is there, and
 /// returns what the first frames hold that have no file.
-/// Warns if it was made of another input, with other options of reading or without some frames.
+/// Warns if it was made of another input, of another file of the first frame, with other options of
+/// reading or without some frames.
 /// @throw Error(kInput) if the file is something else
 std::optional<std::filesystem::path> readFirstPass(const RenderCommand& command, SequenceLook& look,
                                                    const Listener& listener);

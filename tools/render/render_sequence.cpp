@@ -46,20 +46,30 @@ double turnOf(int frame, std::optional<int> turntable) {
     return turntable ? 360 * (double(frame - 1) / *turntable) : 0;
 }
 
-// The place for a frame's number in the transfer function's name, if it has one and names no file,
-// nor one in a file.
-std::optional<FrameName> functionFrames(const RenderCommand& command) {
+// Whether the transfer function's name has a place for a frame's number, and names no file, nor one
+// in a file.
+bool hasFunctions(const RenderCommand& command) {
     const std::filesystem::path& given = command.picture.transferFunction;
-    if (findFileAndName("--tf", given)) return {};
-    return FrameName::find(given);
+    return FrameName::find(given) && !findFileAndName("--tf", given);
+}
+
+// The transfer function of a frame of those that have their own. In `FILE:NAME` the place is the
+// file's, if there is one: a name may have a # as well.
+std::filesystem::path functionOf(const RenderCommand& command, int frame) {
+    const std::string text = command.picture.transferFunction.string();
+    for (std::size_t colon = text.rfind(':'); colon != std::string::npos && colon > 0;
+         colon = text.rfind(':', colon - 1)) {
+        const std::optional<FrameName> file = FrameName::find(text.substr(0, colon));
+        if (file && hasInput(file->at(frame))) return file->at(frame).string() + text.substr(colon);
+    }
+    return FrameName::find(std::filesystem::path(text))->at(frame);
 }
 
 // Whether a frame has a transfer function that can be read, as far as that is its own.
 bool hasFunction(const RenderCommand& command, int frame) {
-    const std::optional<FrameName> function = functionFrames(command);
-    if (!function) return true;
+    if (!hasFunctions(command)) return true;
     try {
-        readTransferFunctionOption(function->at(frame), {});
+        readTransferFunctionOption(functionOf(command, frame), {});
         return true;
     } catch (const Error&) {
         return false;
@@ -68,8 +78,7 @@ bool hasFunction(const RenderCommand& command, int frame) {
 
 // Puts what a frame reads into `command`.
 void showAll(const FrameFiles& files, RenderCommand& command) {
-    if (const std::optional<FrameName> function = functionFrames(command))
-        command.picture.transferFunction = function->at(files.frame);
+    if (hasFunctions(command)) command.picture.transferFunction = functionOf(command, files.frame);
     showFrame(files.frame, files.input, command);
 }
 
@@ -200,7 +209,7 @@ class Survey {
 // Whether all frames show the same, which then is made ready once.
 bool seesOneThing(const RenderCommand& command) {
     // Other grids of a medium would be read for each transfer function.
-    const bool isOneMedium = !functionFrames(command) || !isFog(command.picture);
+    const bool isOneMedium = !hasFunctions(command) || !isFog(command.picture);
     return !FrameName::findInput(command.input) && !command.scene.moves() && isOneMedium &&
            command.picture.render.mode == Mode::kComposite && !command.deep &&
            command.holdoutDepth.empty() && command.channels.aovs.empty();
@@ -285,7 +294,7 @@ void warnOfOwnRanges(const RenderCommand& command, const Listener& listener) {
 // The files of all frames; if pictures go elsewhere, all have the same output.
 std::vector<FrameFiles> filesFor(const RenderCommand& command, bool areWritten) {
     const bool mayStand = command.turntable.has_value() || cameraMoves(command.picture) ||
-                          command.scene.moves() || functionFrames(command);
+                          command.scene.moves() || hasFunctions(command);
     if (areWritten)
         return filesOfFrames(command.frames, command.input, mayStand, "--output", command.output);
     std::vector<FrameFiles> files;
@@ -425,7 +434,7 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     });
     if (first != frames.end() && seesOneThing(command))
         prepared = prepareOnce(commandOf(fixed, *first, {}), look, making);
-    const bool hasFunctions = functionFrames(command).has_value();
+    const bool ownFunctions = hasFunctions(command);
     std::optional<FrameChain> chain;
     if (!prepared && frames.size() > 1 && mayBeChained(command, look)) chain.emplace(frames.size());
     try {
@@ -444,7 +453,7 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
                     if (chain) sequence.behind = &behind.emplace(chain->begin(i));
                     const RenderCommand one = commandOf(fixed, frames[i], stats);
                     std::optional<PreparedScene> seen;
-                    if (prepared && hasFunctions && frames[i].frame != first->frame)
+                    if (prepared && ownFunctions && frames[i].frame != first->frame)
                         sequence.prepared = &seen.emplace(seenBy(one, *prepared, frame, part));
                     if (sinks.areWritten()) folders.makeFor(one.output);
                     folders.makeFor(one.stats);

@@ -117,6 +117,14 @@ expect_said 'deltasplat: warning: --first-pass: few.json was made with no option
 cp in.0008.vdb other.0008.vdb
 expect_code 0 "$program" render other.####.vdb --size 48x48 --frames 8 --first-pass few.json -o few.####.exr
 expect_said "deltasplat: warning: --first-pass: few.json was made of in.####.vdb, and is taken as it is for other.####.vdb"
+# The same names in another folder may be another thing.
+mkdir elsewhere
+cp in.0009.vdb elsewhere/in.0008.vdb
+expect_code 0 "$program" render elsewhere/in.####.vdb --size 48x48 --frames 8 --first-pass few.json -o few.####.exr
+expect_said "deltasplat: warning: --first-pass: few.json was made of another in.0008.vdb than there is now, and is taken as it is"
+cp in.0008.vdb elsewhere/in.0008.vdb
+expect_code 0 "$program" render elsewhere/in.####.vdb --size 48x48 --frames 8 --first-pass few.json -o few.####.exr
+! grep warning stderr.txt || fail "warned of a first pass of the same files in another folder"
 expect_code 2 "$program" render in.0008.vdb --first-pass no.json
 expect_said "deltasplat: --first-pass: got it without --frames; expected the frames of a sequence"
 expect_code 3 "$program" "${greys[@]}" --frames 8 --mode mip --first-pass first.json -o g.####.png
@@ -256,6 +264,8 @@ done
 named=(render in.####.vdb --frames 8-10 --size 48x48)
 "$program" "${named[@]}" -qq --tf "both.0008.json:no #1" -o named.####.exr
 "$program" "${named[@]}" -qq --tf shown.####.json:shown -o shown.####.exr
+"$program" "${named[@]}" -qq --tf "both.####.json:no #1" -o both.####.exr
+for number in 0008 0009 0010; do expect_same both.$number.exr named.$number.exr; done
 for number in 0008 0009 0010; do expect_same shown.$number.exr named.$number.exr; done
 # Frames that have none have not been looked at.
 mv shown.0009.json away.json
