@@ -19,6 +19,7 @@
 #include "listener.h"
 #include "printable.h"
 #include "process/interrupt.h"
+#include "process/print_out.h"
 #include "process/reuse_memory.h"
 #include "process/run_log.h"
 #include "process/tell_place.h"
@@ -199,6 +200,18 @@ Error usageError(const CLI::App& app, const CLI::ParseError& problem) {
                                         " (see '" + callOf(app) + " --help')");
 }
 
+// Declares the options of a subcommand that an argument names, as it must to call it, and of those
+// nested in it.
+void declareIfNamed(const Subcommand& subcommand, const std::vector<std::string>& arguments,
+                    CommonOptions& common) {
+    CLI::App& app = *subcommand.app;
+    if (std::find(arguments.begin() + 1, arguments.end(), app.get_name()) == arguments.end())
+        return;
+    subcommand.declareOptions();
+    addCommonOptions(app, common);
+    for (const Subcommand& nested : subcommand.nested) declareIfNamed(nested, arguments, common);
+}
+
 // Parses the arguments; returns the subcommand to run, or nullptr if help or versions were shown.
 const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcommands,
                         const std::vector<std::string>& arguments) {
@@ -269,15 +282,12 @@ int execute(const std::vector<std::string>& arguments,
     std::vector<Subcommand> subcommands;
     for (const AddSubcommand add : addSubcommands) {
         subcommands.push_back(add(program));
-        CLI::App& app = *subcommands.back().app;
-        addCommonOptions(app, session.common);
+        declareIfNamed(subcommands.back(), arguments, session.common);
         const auto code = subcommands.back().errorExit;
-        app.preparse_callback([&errorExit, code](std::size_t) {
+        subcommands.back().app->preparse_callback([&errorExit, code](std::size_t) {
             errorExit = code;
             setTerminateExitCode(code.value_or(exitCodeOf(ErrorCode::kFailed)));
         });
-        for (const Subcommand& nested : subcommands.back().nested)
-            addCommonOptions(*nested.app, session.common);
     }
 
     const Subcommand* const subcommand = parse(program, subcommands, arguments);

@@ -8,7 +8,7 @@
 
 namespace deltasplat {
 
-/// Declares one subcommand and its options in the program.
+/// Declares one subcommand in the program; its options wait for Subcommand::declareOptions.
 using AddSubcommand = Subcommand (*)(CLI::App& program);
 
 /// Parses the arguments (the first is the program's name), runs the subcommand they name and

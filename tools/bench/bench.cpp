@@ -12,6 +12,7 @@
 #include "options/transfer_function_option.h"
 #include "output_files.h"
 #include "process/interrupt.h"
+#include "process/print_out.h"
 #include "render/read_medium.h"
 #include "render/render_input.h"
 #include "render/render_options.h"
@@ -155,8 +156,7 @@ Subcommand addBench(CLI::App& program) {
          "deltasplat bench engine_256x256x128_uint8.raw.gz head.vdb --tf examples/ct.json "
          "--repeats 9 --json",
          "deltasplat bench table1 data"});
-    addBenchOptions(app, *command);
-    Subcommand bench{&app,
+    Subcommand bench{&app, [&app, command] { addBenchOptions(app, *command); },
                      [&app, command](const Session& session) { runBench(app, *command, session); }};
     bench.nested.push_back(addTable1(app));
     return bench;

@@ -133,8 +133,8 @@ Subcommand addConvert(CLI::App& program) {
         program, "convert", "Converts a volume to another format.",
         {"deltasplat convert engine_256x256x128_uint8.raw.gz engine.vdb --background auto",
          "deltasplat convert smoke.vdb smoke.nrrd --grid density"});
-    declareOptions(app, *command);
-    return {&app, [&app, command](const Session& session) { runConvert(app, *command, session); }};
+    return {&app, [&app, command] { declareOptions(app, *command); },
+            [&app, command](const Session& session) { runConvert(app, *command, session); }};
 }
 
 }  // namespace deltasplat

@@ -15,6 +15,7 @@
 #include "listener_part.h"
 #include "number_text.h"
 #include "options/input_options.h"
+#include "process/print_out.h"
 #include "subcommands.h"
 
 namespace deltasplat {
@@ -185,8 +186,8 @@ Subcommand addDelta(CLI::App& program) {
         program, "delta", "Stores a volume as delta grids: what changes from slice to slice.",
         {"deltasplat delta smoke.vdb smoke_delta.vdb",
          "deltasplat delta head_256x256x225_uint8.raw.gz head.vdb --tolerance-value 2"});
-    declareOptions(app, *command);
-    return {&app, [&app, command](const Session& session) { runDelta(app, *command, session); }};
+    return {&app, [&app, command] { declareOptions(app, *command); },
+            [&app, command](const Session& session) { runDelta(app, *command, session); }};
 }
 
 }  // namespace deltasplat

@@ -13,6 +13,7 @@
 #include "listener.h"
 #include "options/input_options.h"
 #include "options/volume_choices.h"
+#include "process/print_out.h"
 #include "sequence/frame_name.h"
 #include "sequence/frame_warnings.h"
 #include "sequence/frames_to_make.h"
@@ -266,8 +267,7 @@ Subcommand addDiff(CLI::App& program) {
         app.get_footer() +
         "\n\nExit codes: 0 same, 1 warning, 2 different; 4 whatever else goes wrong (wrong usage,\n"
         "unreadable input); 130 interrupted. With -q they are all that is said.");
-    addDiffOptions(app, *options);
-    return {&app,
+    return {&app, [&app, options] { addDiffOptions(app, *options); },
             [&app, options, verdict](const Session& session) {
                 *verdict = runDiff(app, *options, session);
             },

@@ -171,8 +171,8 @@ Subcommand addFold(CLI::App& program) {
         program, "fold", "Makes a picture of parts that render --slab-range has written.",
         {"deltasplat fold smoke.1.slabs smoke.2.slabs -o smoke.exr",
          "deltasplat fold smoke.*.slabs -o smoke.png --background 0,0,0"});
-    declareOptions(app, *command);
-    return {&app, [&app, command](const Session& session) { runFold(app, *command, session); }};
+    return {&app, [&app, command] { declareOptions(app, *command); },
+            [&app, command](const Session& session) { runFold(app, *command, session); }};
 }
 
 }  // namespace deltasplat

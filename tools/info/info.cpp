@@ -19,6 +19,7 @@
 #include "options/volume_choices.h"
 #include "output_files.h"
 #include "process/interrupt.h"
+#include "process/print_out.h"
 #include "sequence/frame_options.h"
 #include "sequence/frame_warnings.h"
 #include "sequence/frames_to_make.h"
@@ -166,6 +167,30 @@ void writePlot(const std::filesystem::path& file, const Findings& found) {
     if (!plots.empty()) writeDrawing(file, drawSlicePlots(plots));
 }
 
+void declareOptions(CLI::App& app, InfoOptions& options) {
+    app.add_option("INPUT", options.inputs, std::string("Files to describe: ") + kInputFormats)
+        ->type_name("FILE")
+        ->required()
+        ->group("Arguments");
+    OptionGroup output(app, "Output");
+    output.addFlag("--json", options.json, "Print one JSON object");
+    output.addFlag("--list", options.list,
+                   "Only list what the headers tell: a line for each grid or DICOM\n"
+                   "series with its name, type, class and box, which one is read by\n"
+                   "default, and how many volumes there are");
+    output.addValue("--plot", "FILE", options.plot, anyText(),
+                    "Picture to write, .png or .svg: which share of every slice's\n"
+                    "voxels is visible and which changes, along x, y and z; a row\n"
+                    "for each grid, up to " +
+                        std::to_string(kMaxPlots));
+    OptionGroup(app, "Optics")
+        .addValue("--tf", "FILE|PRESET", options.transferFunction, anyText(),
+                  "Transfer function, as for render, that stamps and picture are\n"
+                  "for (default: all voxels but the background are visible)");
+    addFrameList(app, options.frames);
+    addInputOptions(app, options.read);
+}
+
 // The same with the files of frames in place of names that stand for them.
 InfoOptions withFrames(const CLI::App& app, InfoOptions options, const Session& session) {
     for (const std::string& input : options.inputs) {
@@ -234,28 +259,8 @@ Subcommand addInfo(CLI::App& program) {
         program, "info", "Tells what is in volume files, and how alike their slices are.",
         {"deltasplat info smoke.vdb --plot smoke.svg",
          "deltasplat info --json engine_256x256x128_uint8.raw.gz --tf examples/ct.json"});
-    app.add_option("INPUT", options->inputs, std::string("Files to describe: ") + kInputFormats)
-        ->type_name("FILE")
-        ->required()
-        ->group("Arguments");
-    OptionGroup output(app, "Output");
-    output.addFlag("--json", options->json, "Print one JSON object");
-    output.addFlag("--list", options->list,
-                   "Only list what the headers tell: a line for each grid or DICOM\n"
-                   "series with its name, type, class and box, which one is read by\n"
-                   "default, and how many volumes there are");
-    output.addValue("--plot", "FILE", options->plot, anyText(),
-                    "Picture to write, .png or .svg: which share of every slice's\n"
-                    "voxels is visible and which changes, along x, y and z; a row\n"
-                    "for each grid, up to " +
-                        std::to_string(kMaxPlots));
-    OptionGroup(app, "Optics")
-        .addValue("--tf", "FILE|PRESET", options->transferFunction, anyText(),
-                  "Transfer function, as for render, that stamps and picture are\n"
-                  "for (default: all voxels but the background are visible)");
-    addFrameList(app, options->frames);
-    addInputOptions(app, options->read);
-    return {&app, [&app, options](const Session& session) { runInfo(app, *options, session); }};
+    return {&app, [&app, options] { declareOptions(app, *options); },
+            [&app, options](const Session& session) { runInfo(app, *options, session); }};
 }
 
 }  // namespace deltasplat

@@ -2,19 +2,11 @@
 #include "options/command_line.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 
 #include "deltasplat/error.h"
 #include "version.h"
 
 namespace deltasplat {
-namespace {
-
-bool readerIsGone = false;
-
-}  // namespace
 
 bool OptionGroup::isMoreGiven(const CLI::App& app, const std::string& name) {
     const std::vector<const CLI::Option*> options = app.get_options();
@@ -74,18 +66,6 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
 
 void requireArgument(bool given, const std::string& name, const std::string& expected) {
     if (!given) throw Error(ErrorCode::kUsage, gotExpected(name, "nothing", expected));
-}
-
-bool isReaderGone() {
-    return readerIsGone;
-}
-
-void printOut(const std::string& text) {
-    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-    if (written && std::fflush(stdout) == 0) return;
-    readerIsGone = errno == EPIPE;
-    throw Error(ErrorCode::kOutput,
-                std::string("standard output: cannot be written: ") + std::strerror(errno));
 }
 
 }  // namespace deltasplat

@@ -37,9 +37,12 @@ struct Session {
     std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
 };
 
-/// A subcommand that has declared its options; run() validates them and does the work.
+/// A subcommand: run() validates its options and does the work.
 struct Subcommand {
     CLI::App* app = nullptr;
+    /// Called before parsing if the arguments may call the subcommand: the options of all of them
+    /// take longer than small volumes.
+    std::function<void()> declareOptions;
     std::function<void(const Session&)> run;
     /// Asked after run(): the exit code, if it has more to say than that all went well.
     std::function<int()> exitCode = {};
@@ -130,9 +133,6 @@ class OptionGroup {
     std::string title_;
 };
 
-/// Whether nobody reads what is printed any longer.
-bool isReaderGone();
-
 /// Returns `help` with the default as it stands in an options struct: "help (default 512x512)".
 std::string withDefault(const std::string& help, const std::string& value);
 
@@ -149,9 +149,5 @@ void addCommonOptions(CLI::App& app, CommonOptions& options);
 
 /// @throw Error(kUsage) if the argument was not given
 void requireArgument(bool given, const std::string& name, const std::string& expected);
-
-/// Writes text to standard output.
-/// @throw Error(kOutput) if that fails
-void printOut(const std::string& text);
 
 }  // namespace deltasplat

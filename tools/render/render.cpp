@@ -271,8 +271,8 @@ Subcommand addRender(CLI::App& program) {
          "--direction=-1,0.8,-0.6 --up 0,0,1",
          "deltasplat render 'shots/**/*.vdb' -o 'thumbs/{dir}/{name}.png' --index "
          "thumbs/index.html"});
-    addRenderOptions(app, *command);
-    return {&app, [&app, command](const Session& session) { runRender(app, *command, session); }};
+    return {&app, [&app, command] { addRenderOptions(app, *command); },
+            [&app, command](const Session& session) { runRender(app, *command, session); }};
 }
 
 }  // namespace deltasplat

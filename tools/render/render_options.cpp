@@ -14,6 +14,7 @@
 #include "drawing/plot_file.h"
 #include "number_text.h"
 #include "options/input_options.h"
+#include "process/print_out.h"
 #include "program.h"
 #include "render/annotation_options.h"
 #include "render/aov_options.h"

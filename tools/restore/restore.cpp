@@ -132,8 +132,8 @@ Subcommand addRestore(CLI::App& program) {
         addSubcommand(program, "restore", "Restores the volume that delta grids were made from.",
                       {"deltasplat restore smoke_delta.vdb smoke.vdb",
                        "deltasplat restore head.vdb head_256x256x225_uint8.raw"});
-    declareOptions(app, *command);
-    return {&app, [&app, command](const Session& session) { runRestore(app, *command, session); }};
+    return {&app, [&app, command] { declareOptions(app, *command); },
+            [&app, command](const Session& session) { runRestore(app, *command, session); }};
 }
 
 }  // namespace deltasplat

@@ -10,6 +10,7 @@
 #include "number_text.h"
 #include "output_files.h"
 #include "process/interrupt.h"
+#include "process/print_out.h"
 #include "subcommands.h"
 
 namespace deltasplat {
@@ -108,8 +109,8 @@ Subcommand addSynth(CLI::App& program) {
                                   {"deltasplat synth cloud cloud.vdb --dims 128x128x128 --seed 7",
                                    "deltasplat synth engine engine_256x256x128_uint8.raw "
                                    "--dims 256x256x128 --noise 0.01"});
-    declareOptions(app, *options);
-    return {&app, [&app, options](const Session& session) { runSynth(app, *options, session); }};
+    return {&app, [&app, options] { declareOptions(app, *options); },
+            [&app, options](const Session& session) { runSynth(app, *options, session); }};
 }
 
 }  // namespace deltasplat

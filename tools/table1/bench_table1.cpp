@@ -9,6 +9,7 @@
 #include "deltasplat/threads.h"
 #include "listener.h"
 #include "options/transfer_function_option.h"
+#include "process/print_out.h"
 #include "table1/ct_ramp.h"
 #include "table1/table1.h"
 
@@ -150,8 +151,8 @@ Subcommand addTable1(CLI::App& bench) {
         bench, "table1", "Measures the paper's Table 1 in the paper's setting, one thread.",
         {"deltasplat bench table1 data", "deltasplat bench table1 data --repeats 15 --json"});
     app.footer(filesText() + "\n\n" + app.get_footer());
-    addTable1Options(app, *command);
-    return {&app, [&app, command](const Session& session) { runTable1(app, *command, session); }};
+    return {&app, [&app, command] { addTable1Options(app, *command); },
+            [&app, command](const Session& session) { runTable1(app, *command, session); }};
 }
 
 }  // namespace deltasplat
