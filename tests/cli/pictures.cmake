@@ -24,6 +24,7 @@ deltasplat_script_test(sequence sequence.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/sequence)
 deltasplat_script_test(sheets_and_movies sheets_and_movies.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/sheets_and_movies)
+deltasplat_script_test(start start.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/start)
 deltasplat_script_test(modules modules.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/modules)
 deltasplat_script_test(preview preview.sh

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modules lie where the program's installation has them, as seen from the program itself.
+// Modules lie beside the program.
 #include <dlfcn.h>
 
 #include <cstring>
@@ -27,7 +27,7 @@ std::filesystem::path fileOf(const std::string& name) {
     std::error_code error;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
     if (error) refuse(name, "/proc/self/exe: " + error.message(), "the place of the program");
-    return (program.parent_path() / DELTASPLAT_MODULES / (name + ".so")).lexically_normal();
+    return program.parent_path() / (name + ".so");
 }
 
 // An installation may be replaced while a program of the one before runs.

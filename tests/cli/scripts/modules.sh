@@ -6,10 +6,11 @@
 source "${BASH_SOURCE%/*}/pictures.sh"
 source "${BASH_SOURCE%/*}/runs.sh"
 begin "$@"
-mkdir -p installed/bin installed/lib lonely/bin links
+mkdir -p installed/bin installed/lib lonely/bin lonely/lib/deltasplat links
 cp "$program" installed/bin/deltasplat
 cp "$program" lonely/bin/deltasplat
 cp -r "${program%/*}/../lib/deltasplat" installed/lib/
+cp installed/lib/deltasplat/deltasplat lonely/lib/deltasplat/
 ln -s ../installed/bin/deltasplat links/volumes
 program=$PWD/installed/bin/deltasplat
 
@@ -40,7 +41,6 @@ grep -q "^deltasplat: module exr: got .*; expected $PWD/lonely/lib/deltasplat/ex
 expect_files "" 'none*'
 
 # Nor is one of another version taken.
-mkdir -p lonely/lib/deltasplat
 for module in images exr; do
     sed 's/deltasplat module 0/deltasplat module 9/' installed/lib/deltasplat/$module.so >lonely/lib/deltasplat/$module.so
     suffix=jpg
