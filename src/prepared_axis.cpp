@@ -5,6 +5,7 @@
 
 #include "default_floats.h"
 #include "delta/code_blocks.h"
+#include "delta/slab_facts.h"
 #include "delta/value_mixer.h"
 #include "deltasplat/error.h"
 #include "medium/room.h"
@@ -129,9 +130,11 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
 
 std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
     const Volume& volume = *scene.scene.volume;
+    const SlotBlocks* const blocks = volume.codes->blocksAlong(sliceAxis);
+    if (blocks && blocks->facts()) return blocks->facts()->blocksSeen;
     const ClassTable classes =
         classify(volume, scene.optics, planeDistance(volume.worldFromIndex, sliceAxis));
-    return BlockReader(*volume.codes, nullptr, sliceAxis, classes.classOfSlot).blocks().size();
+    return listBlocks(*volume.codes, sliceAxis, classes.classOfSlot).size();
 }
 
 }  // namespace

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/slab_part.h"
 
-#include <algorithm>
-#include <cstdio>
-
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "layered_views.h"
 #include "listener_part.h"
 #include "part_header.h"
-#include "scene_digest.h"
+#include "picture_facts.h"
 #include "slab_file.h"
 
 namespace deltasplat {
@@ -32,39 +29,6 @@ PictureLayout layoutOf(const LayeredPicture::Impl& picture) {
     return layout;
 }
 
-std::string contentOf(const LayeredPicture::Impl& picture) {
-    std::string text;
-    for (const auto& view : picture.views) {
-        char digits[17];
-        std::snprintf(digits, sizeof digits, "%016llx", (unsigned long long)digestOf(*view));
-        text += digits;
-    }
-    return text;
-}
-
-// About how long a slab takes: what is stamped, and slices that are read.
-double workOf(const LayeredPicture::Impl& picture, const LayeredPicture::Impl::Place& place) {
-    const SlabInput& input = picture.inputOf(place);
-    const SeenSlab& seen = picture.seenOf(place);
-    double words = 0;
-    for (int slice = seen.firstSlice; slice <= seen.lastSlice; ++slice)
-        words += double(input.splat.deltas.slice(slice).size());
-    constexpr double kWordsOfSlice = 16;
-    return words + kWordsOfSlice * (seen.lastSlice - seen.firstSlice + 1);
-}
-
-// The slab that a share ends before: slabs are cut where their work passes it.
-int endOf(const std::vector<double>& works, int share, int count) {
-    double all = 0;
-    for (const double work : works) all += work;
-    double before = 0;
-    for (std::size_t slab = 0; slab < works.size(); ++slab) {
-        if (before + 0.5 * works[slab] >= all * share / count) return int(slab);
-        before += works[slab];
-    }
-    return int(works.size());
-}
-
 void check(const SlabShare& share) {
     if (share.first >= 1 && share.first <= share.last && share.last <= share.count &&
         share.count <= kMostSlabShares)
@@ -80,16 +44,15 @@ void writeSlabPart(const LayeredPicture& picture, const SlabShare& share, const 
     const DefaultFloats floats;
     check(share);
     const LayeredPicture::Impl& all = picture.impl();
-    std::vector<double> works;
-    for (const LayeredPicture::Impl::Place& place : all.slabs) works.push_back(workOf(all, place));
+    const SlabFacts facts = factsOf(all);
     const SplatOptions& options = all.scene.options();
     const PartHeader header{share,
-                            endOf(works, share.first - 1, share.count),
-                            endOf(works, share.last, share.count),
+                            facts.endOf(share.first - 1, share.count),
+                            facts.endOf(share.last, share.count),
                             notes,
                             options.method,
                             options.tolerance,
-                            contentOf(all),
+                            facts.content,
                             layoutOf(all)};
     SlabFileWriter writer(file, headerText(header));
     const double slabs = header.lastSlab - header.firstSlab;

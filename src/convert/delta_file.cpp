@@ -111,7 +111,7 @@ int codeCountOf(const Volume& volume) {
 
 IndexBox united(IndexBox box, const InactiveValues& inactive) {
     openvdb::CoordBBox more;
-    if (!inactive.numbers || !inactive.numbers->tree.evalActiveVoxelBoundingBox(more)) return box;
+    if (!inactive.numbers || !inactive.numbers->tree().evalActiveVoxelBoundingBox(more)) return box;
     return boxOfBoth(box, {{more.min().x(), more.min().y(), more.min().z()},
                            {more.max().x(), more.max().y(), more.max().z()}});
 }
@@ -140,7 +140,7 @@ bool isTableLarger(const Volume& volume) {
 template <typename Grid>
 openvdb::GridBase::ConstPtr gridOfCodes(const Volume& volume) {
     using Leaf = typename Grid::TreeType::LeafNodeType;
-    const CodeTree::Tree& codes = volume.codes->tree;
+    const CodeTree::Tree& codes = volume.codes->tree();
     requireMemory("grid \"" + volume.name + "\"", double(codes.leafCount()) * leafBytes<Leaf>());
     return gridFromCodes<Grid>(codes, volume.codeBook, 0);
 }

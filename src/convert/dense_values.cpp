@@ -89,7 +89,7 @@ ReadBox treeReader(const Tree& tree, const ValueOf& valueOf) {
 }
 
 ReadBox codeReader(const Volume& volume) {
-    return treeReader(volume.codes->tree,
+    return treeReader(volume.codes->tree(),
                       [values = valuesOfCodes(volume.codeBook), background = volume.background](
                           Code code, bool active) { return active ? values[code] : background; });
 }

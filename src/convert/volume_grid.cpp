@@ -63,7 +63,7 @@ GridBase::Ptr fromCodes(const Volume& volume) {
     using T = typename Grid::ValueType;
     const std::vector<double> values = valuesOfCodes(volume.codeBook);
     return translate<Grid>(
-        volume.codes->tree, [&](Code code) { return valueAs<T>(values[code]); },
+        volume.codes->tree(), [&](Code code) { return valueAs<T>(values[code]); },
         volume.hasBackground ? volume.background : 0);
 }
 

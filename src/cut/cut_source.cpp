@@ -33,7 +33,7 @@ void cutSource(Volume& volume) {
     requireMemory("cut", double(volume.source->grid->memUsage()));
     volume.source->grid->apply<ScalarGrids>([&](const auto& grid) {
         const auto cut = grid.deepCopy();
-        dropVoxels(cut->tree(), volume.codes->tree);
+        dropVoxels(cut->tree(), volume.codes->tree());
         if (!volume.codeBook.isExact()) {
             const GridScan scan = scanTree(cut->tree(), {.distinct = false, .survey = false});
             volume.valueMin = scan.census.min;

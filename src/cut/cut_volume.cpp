@@ -100,7 +100,7 @@ std::vector<IndexPlane> sidesOf(const WorldBox& box, const glm::dmat4& worldFrom
 
 bool keep(const CutRegion& region, Volume& volume) {
     volume.codes = keepVoxels(*volume.codes, region);
-    return !volume.codes->tree.empty();
+    return !volume.codes->tree().empty();
 }
 
 void crop(const Cut& cut, Volume& volume) {
@@ -117,7 +117,7 @@ void crop(const Cut& cut, Volume& volume) {
         refuse(cut.cropIndex ? "`cropIndex`" : "`slices`", boxText(region.box),
                expected + boxText(all));
     }
-    if (cut.cropWorld || volume.hasBackground) volume.box = activeBox(volume.codes->tree);
+    if (cut.cropWorld || volume.hasBackground) volume.box = activeBox(volume.codes->tree());
 }
 
 void clip(const Cut& cut, Volume& volume) {
@@ -150,7 +150,7 @@ void applyMask(const Volume& mask, const Listener& listener, Volume& volume) {
 
 // Finds out which values are left of a volume.
 void count(const Volume& whole, Volume& left) {
-    left.histogram = histogramOf(left.codes->tree);
+    left.histogram = histogramOf(left.codes->tree());
     summarize(left);
     if (!left.codeBook.isExact()) {
         // Codes may be a little outside of the values.

@@ -88,7 +88,7 @@ std::vector<Block> listBlocks(const CodeTree& codes, const CutRegion& region,
     }
     requireMemory("cut", double(blocks.size()) * kBlockBytes);
     TileSplitter splitter(region, tree, blocks);
-    forActiveTiles(codes.tree, [&](const auto& tile) {
+    forActiveTiles(codes.tree(), [&](const auto& tile) {
         splitter.add(tile.getCoord(), int(tile.getLevel()), *tile);
     });
     return blocks;
@@ -98,12 +98,12 @@ std::vector<Block> listBlocks(const CodeTree& codes, const CutRegion& region,
 
 std::shared_ptr<CodeTree> keepVoxels(const CodeTree& codes, const CutRegion& region) {
     auto result = std::make_shared<CodeTree>();
-    const std::vector<Block> blocks = listBlocks(codes, region, result->tree);
+    const std::vector<Block> blocks = listBlocks(codes, region, result->tree());
     std::vector<std::unique_ptr<Leaf>> leaves(blocks.size());
     parallelForChunks(blocks.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) leaves[i] = keptLeaf(blocks[i], region);
     });
-    openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(result->tree);
+    openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(result->tree());
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         if (!leaves[i]) continue;
         if (!blocks[i].leaf && leaves[i]->isDense()) {

@@ -51,7 +51,7 @@ IndexBox reachOf(const IndexBox& maskBox, const glm::dmat4& volumeFromMask) {
 }  // namespace
 
 MaskVoxels::MaskVoxels(const Volume& mask, const Volume& volume)
-    : tree_(mask.codes->tree),
+    : tree_(mask.codes->tree()),
       maskFromVolume_(glm::inverse(mask.worldFromIndex) * volume.worldFromIndex),
       shift_(wholeShift(maskFromVolume_, volume.box)),
       box_(reachOf(mask.box, glm::inverse(volume.worldFromIndex) * mask.worldFromIndex)) {

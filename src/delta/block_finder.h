@@ -13,11 +13,12 @@ class BlockFinder {
     BlockFinder(const CodeTree& codes, int sliceAxis);
 
     /// Returns a block, slots of tiles being code + 1, if any of it is active. Its range of codes
-    /// is left out.
+    /// is left out, unless it is one of SlotBlocks.
     std::optional<CodeBlock> find(const glm::ivec3& position) const;
 
   private:
-    openvdb::tree::ValueAccessor<const CodeTree::Tree> accessor_;
+    const SlotBlocks* blocks_;  // null: the tree is searched
+    std::optional<openvdb::tree::ValueAccessor<const CodeTree::Tree>> accessor_;
     int sliceAxis_;
 };
 

@@ -84,6 +84,7 @@ void GradientReader::readPart(const CodeBlock* block, const glm::ivec3& side) {
             values_[std::size_t(index)] = valueOf(n);
         });
     };
+    if (block && block->slots) return readSlots(block->slots, side, first, last);
     const float nothing = scale_.background.value_or(std::numeric_limits<float>::quiet_NaN());
     const CodeTree::Leaf* leaf = block ? block->leaf : nullptr;
     if (!leaf) {
@@ -95,6 +96,23 @@ void GradientReader::readPart(const CodeBlock* block, const glm::ivec3& side) {
     const float* ofCode = scale_.ofCode.data();
     if (leaf->isDense()) return forAll([&](int n) { return ofCode[codes[n]]; });
     forAll([&](int n) { return leaf->isValueOn(openvdb::Index(n)) ? ofCode[codes[n]] : nothing; });
+}
+
+// Reads the part from `first` to `last` of a block's slots.
+void GradientReader::readSlots(const ShortSlot* slots, const glm::ivec3& side,
+                               const glm::ivec3& first, const glm::ivec3& last) {
+    const float nothing = scale_.background.value_or(std::numeric_limits<float>::quiet_NaN());
+    for (int s = first.x; s <= last.x; ++s) {
+        for (int u = first.y; u <= last.y; ++u) {
+            for (int v = first.z; v <= last.z; ++v) {
+                const glm::ivec3 at = 8 * side + glm::ivec3(s, u, v) + kRim;
+                const int index = (at.x * kSide + at.y) * kSide + at.z;
+                const ShortSlot slot = slots[64 * s + 8 * u + v];
+                values_[std::size_t(index)] =
+                    slot == kEmptySlot ? nothing : scale_.ofCode[std::size_t(slot) - 1];
+            }
+        }
+    }
 }
 
 // Differences along an axis, (slice, u, v) order, of the block's voxels and a rim of theirs.

@@ -34,6 +34,8 @@ class GradientReader {
 
     void readValues(const CodeBlock& block);
     void readPart(const CodeBlock* block, const glm::ivec3& side);
+    void readSlots(const ShortSlot* slots, const glm::ivec3& side, const glm::ivec3& first,
+                   const glm::ivec3& last);
     template <typename Take, typename ArrayOf>
     void fill(const Take& take, const ArrayOf& arrayOf);
     void takeDifferences(int axis, int rim, float* out) const;

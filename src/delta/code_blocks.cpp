@@ -31,27 +31,36 @@ template <typename SlotOf, typename Use>
 void forVisibleTiles(const CodeTree& codes, const SlotOf& slotOf, const Use& use) {
     using Upper = CodeTree::Tree::RootNodeType::ChildNodeType;
     using Lower = Upper::ChildNodeType;
-    forVisibleTilesOf(codes.tree.root(), slotOf, use);
+    forVisibleTilesOf(codes.tree().root(), slotOf, use);
     std::vector<const Upper*> uppers;
-    codes.tree.getNodes(uppers);
+    codes.tree().getNodes(uppers);
     for (const Upper* node : uppers) forVisibleTilesOf(*node, slotOf, use);
     std::vector<const Lower*> lowers;
-    codes.tree.getNodes(lowers);
+    codes.tree().getNodes(lowers);
     for (const Lower* node : lowers) forVisibleTilesOf(*node, slotOf, use);
 }
+
+// Tells which blocks may have slots other than empty, by the range of their codes.
+class SeenCodes {
+  public:
+    explicit SeenCodes(std::span<const Slot> slotMap) : before_(kSlotCount, 0) {
+        for (int code = 0; code < kCodeCount; ++code)
+            before_[code + 1] = before_[code] + (slotMap[code + 1] != kEmptySlot);
+    }
+    bool hasAny(Code lowest, Code highest) const { return before_[highest + 1] != before_[lowest]; }
+
+  private:
+    std::vector<int> before_;  // how many codes before each have a slot
+};
 
 // Returns the leaves with active voxels whose slots may be other than empty.
 std::vector<CodeLeaf> visibleLeaves(const CodeTree& codes, std::span<const Slot> slotMap) {
     const auto all = codes.leaves();
     if (slotMap.empty()) return *all;
-    // How many codes before each have a slot.
-    std::vector<int> before(kSlotCount, 0);
-    for (int code = 0; code < kCodeCount; ++code)
-        before[code + 1] = before[code] + (slotMap[code + 1] != kEmptySlot);
+    const SeenCodes seen(slotMap);
     std::vector<CodeLeaf> leaves;
-    std::copy_if(all->begin(), all->end(), std::back_inserter(leaves), [&](const CodeLeaf& leaf) {
-        return before[leaf.highest + 1] != before[leaf.lowest];
-    });
+    std::copy_if(all->begin(), all->end(), std::back_inserter(leaves),
+                 [&](const CodeLeaf& leaf) { return seen.hasAny(leaf.lowest, leaf.highest); });
     return leaves;
 }
 
@@ -79,7 +88,7 @@ void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
     const auto slotOfCode = [this](Code code) { return slotOf(code); };
     const auto count = [&](const openvdb::CoordBBox& box, Slot) { blocks += box.volume() / 512.0; };
     forVisibleTiles(codes, slotOfCode, count);
-    if (inactive) blocks += inactive->tree.leafCount();
+    if (inactive) blocks += inactive->tree().leafCount();
     if (inactive) forVisibleTiles(*inactive, inactiveSlot, count);
     requireMemory("list of voxel blocks", blocks * kBytesPerBlock);
 
@@ -92,7 +101,7 @@ void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
     const auto add = [&](const openvdb::CoordBBox& box, Slot slot) { addTile(box, slot); };
     forVisibleTiles(codes, slotOfCode, add);
     if (!inactive) return;
-    for (auto leaf = inactive->tree.cbeginLeaf(); leaf; ++leaf) {
+    for (auto leaf = inactive->tree().cbeginLeaf(); leaf; ++leaf) {
         blocks_.push_back(
             {toSliceOrder(leaf->origin() >> 3, sliceAxis_), nullptr, kEmptySlot, &*leaf});
     }
@@ -159,6 +168,27 @@ void BlockReader::readInactive(const CodeBlock& block, int firstSlice, Slot* slo
         if (active.isOn(openvdb::Index(n))) *slots = inactiveSlot(numbers[n]);
         ++slots;
     });
+}
+
+std::vector<CodeBlock> listBlocks(const CodeTree& codes, int sliceAxis,
+                                  std::span<const Slot> slotMap) {
+    const SlotBlocks* const along = codes.blocksAlong(sliceAxis);
+    if (!along) return BlockReader(codes, nullptr, sliceAxis, slotMap).takeBlocks();
+    const SeenCodes seen(slotMap);
+    const auto isSeen = [&](const SlotBlock& block) {
+        return seen.hasAny(block.lowest, block.highest);
+    };
+    const auto count = std::count_if(along->blocks().begin(), along->blocks().end(), isSeen);
+    requireMemory("list of voxel blocks", double(count) * kBytesPerBlock);
+    std::vector<CodeBlock> blocks;
+    blocks.reserve(std::size_t(count));
+    for (const SlotBlock& block : along->blocks()) {
+        if (!isSeen(block)) continue;
+        const Slot tile = block.slots ? kEmptySlot : slotMap[std::size_t(block.tileSlot)];
+        blocks.push_back(
+            {block.position, nullptr, tile, nullptr, block.lowest, block.highest, block.slots});
+    }
+    return blocks;
 }
 
 }  // namespace deltasplat

@@ -8,20 +8,22 @@
 
 #include "deltasplat/delta/delta_grid.h"
 #include "ingest/codes/code_tree.h"
+#include "ingest/codes/slot_blocks.h"
 
 namespace deltasplat {
 
-/// An 8x8x8 block of active voxels, in (slice, u, v) order: a leaf of the code tree, or a piece of
-/// a tile.
+/// An 8x8x8 block of active voxels, in (slice, u, v) order: a leaf of the code tree, a piece of a
+/// tile, or one of SlotBlocks.
 struct CodeBlock {
     glm::ivec3 position{0};                ///< of its first voxel, divided by 8
-    const CodeTree::Leaf* leaf = nullptr;  ///< null for a piece of a tile
-    Slot tileSlot = kEmptySlot;            ///< of all voxels, if there is no leaf
+    const CodeTree::Leaf* leaf = nullptr;  ///< null for a piece of a tile, and with `slots`
+    Slot tileSlot = kEmptySlot;            ///< of all voxels, if there is neither
     /// Leaf of inactive voxels that hold a value of their own; may be null.
     const CodeTree::Leaf* inactive = nullptr;
-    /// Range of the active voxels' codes, where there is a leaf.
+    /// Range of the active voxels' codes, where there is a leaf or `slots`.
     Code lowest = 0;
     Code highest = 0;
+    const ShortSlot* slots = nullptr;  ///< as SlotBlock::slots; null unless listBlocks found them
 };
 
 /// Whether two blocks lie one behind the other along the slice axis, however far.
@@ -65,5 +67,10 @@ class BlockReader {
     int sliceAxis_;
     std::vector<CodeBlock> blocks_;
 };
+
+/// Lists the blocks of a volume's codes that may have slots other than empty, as BlockReader does.
+/// Where codes are SlotBlocks along this axis, these are what is listed, and no tree is made.
+std::vector<CodeBlock> listBlocks(const CodeTree& codes, int sliceAxis,
+                                  std::span<const Slot> slotMap);
 
 }  // namespace deltasplat

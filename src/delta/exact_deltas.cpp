@@ -59,11 +59,11 @@ class Taker {
         addTiles(tree_.cbeginValueOn(), runs);
         if (const CodeTree* const inactive = options_.inactive.numbers.get()) {
             // Those in leaves are met there.
-            for (auto leaf = inactive->tree.cbeginLeaf(); leaf; ++leaf) {
+            for (auto leaf = inactive->tree().cbeginLeaf(); leaf; ++leaf) {
                 if (!tree_.probeConstLeaf(leaf->origin()))
                     addRuns(leaf->getNodeBoundingBox(), runs);
             }
-            addTiles(inactive->tree.cbeginValueOn(), runs);
+            addTiles(inactive->tree().cbeginValueOn(), runs);
         }
         std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) {
             return std::tuple(a.position.y, a.position.z, a.position.x) <
@@ -92,7 +92,7 @@ class Taker {
         Column(const Taker& of, const glm::ivec3& position)
             : taker(of), u(position.y), v(position.z), source(of.tree_) {
             if (taker.options_.inactive.numbers)
-                inactive.emplace(taker.options_.inactive.numbers->tree);
+                inactive.emplace(taker.options_.inactive.numbers->tree());
         }
 
         void add(const Run& run) {

@@ -138,12 +138,12 @@ void holdValues(Volume& volume, int sliceAxis, int keyInterval, const Tolerance&
         }
     });
 
-    const auto codes = std::make_shared<CodeTree>(std::in_place, volume.codes->tree);
-    openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(codes->tree);
+    const auto codes = std::make_shared<CodeTree>(std::in_place, volume.codes->tree());
+    openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(codes->tree());
     for (auto& column : changed) {
         for (Changed& block : column) accessor.addLeaf(block.leaf.release());
     }
-    volume.histogram = histogramOf(codes->tree);
+    volume.histogram = histogramOf(codes->tree());
     volume.codes = codes;
     summarize(volume);
 }

@@ -62,10 +62,10 @@ InactiveValues find(const Tree& tree) {
 
     const BookEncoder encoder(CodeBook::ofTable(found.values));
     auto numbers = std::make_shared<CodeTree>();
-    openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(numbers->tree);
+    openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(numbers->tree());
     forInactive(tree, [&](const openvdb::Coord& at, double value, const openvdb::CoordBBox* box) {
         if (box) {
-            numbers->tree.fill(*box, encoder(value), true);
+            numbers->tree().fill(*box, encoder(value), true);
         } else {
             accessor.setValueOn(at, encoder(value));
         }

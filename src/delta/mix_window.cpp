@@ -52,6 +52,16 @@ void MixWindowReader::readPart(const CodeBlock* block, const glm::ivec3& side,
         first[i] = side[i] < 0 ? 7 : 0;
         last[i] = side[i] > 0 ? 0 : 7;
     }
+    if (block && block->slots) {
+        for (int s = first.x; s <= last.x; ++s) {
+            for (int u = first.y; u <= last.y; ++u) {
+                const ShortSlot* row = block->slots + 64 * s + 8 * u;
+                Slot* out = &window.at(8 * side + glm::ivec3(s, u, 0));
+                for (int v = first.z; v <= last.z; ++v) out[v] = row[v];
+            }
+        }
+        return;
+    }
     const auto forAll = [&](const auto& slotOf) {
         forLeafVoxels(sliceAxis_, first, last, [&](const glm::ivec3& place, int n) {
             window.at(8 * side + place) = slotOf(n);

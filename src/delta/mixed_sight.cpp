@@ -115,7 +115,7 @@ std::vector<Slot> MixedSight::seenCodes(std::span<const std::uint64_t> histogram
 std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAxis,
                                               std::span<const std::uint64_t> histogram) const {
     const std::vector<Slot> map = seenCodes(histogram);
-    const std::vector<CodeBlock> seen = BlockReader(codes, nullptr, sliceAxis, map).takeBlocks();
+    const std::vector<CodeBlock> seen = deltasplat::listBlocks(codes, sliceAxis, map);
     constexpr double kMostNeighbours = 3;
     constexpr double kBytesPerBlock =
         sizeof(CodeBlock) + 4 * sizeof(glm::ivec3) + 2 * sizeof(CodeRange);
@@ -152,8 +152,8 @@ std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAx
         }
         const CodeBlock& block = blocks.back();
         const auto tile = Code(block.tileSlot - 1);
-        ranges.push_back(block.leaf ? CodeRange{block.lowest, block.highest}
-                                    : CodeRange{tile, tile});
+        ranges.push_back(block.leaf || block.slots ? CodeRange{block.lowest, block.highest}
+                                                   : CodeRange{tile, tile});
     }
     addNeighbours(blocks, {1, 0, 0}, ranges);
     if (alongAll) {

@@ -19,8 +19,10 @@
 #include "delta/code_blocks.h"
 #include "delta/hold_slots.h"
 #include "delta/mixed_sight.h"
+#include "delta/slab_facts.h"
 #include "delta/slot_holder.h"
 #include "delta/word_collector.h"
+#include "deltasplat/error.h"
 #include "ingest/codes/leaf_slices.h"
 #include "memory.h"
 #include "parallel.h"
@@ -182,7 +184,10 @@ class ColumnPacker {
 
     void read(const CodeBlock& block) {
         if (!tools_.holder) {
-            if (!block.leaf) {
+            if (block.slots) {
+                for (std::size_t i = 0; i < classes_.size(); ++i)
+                    classes_[i] = ClassIndex(slotMap_[block.slots[i]]);
+            } else if (!block.leaf) {
                 classes_.fill(ClassIndex(block.tileSlot));
             } else {
                 readLeafSlices(*block.leaf, options_.sliceAxis, mapped(slotMap_), classes_.data());
@@ -190,7 +195,9 @@ class ColumnPacker {
             if (own_) own_->paint(block.position, 0, classes_);
             return;
         }
-        if (block.leaf) {
+        if (block.slots) {
+            for (std::size_t i = 0; i < slots_.size(); ++i) slots_[i] = slotMap_[block.slots[i]];
+        } else if (block.leaf) {
             readLeafSlices(*block.leaf, options_.sliceAxis, mapped(slotMap_), slots_.data());
         } else {
             slots_.fill(block.tileSlot);
@@ -378,6 +385,26 @@ IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& part
     return {(own.min - parts.origin) * per, (own.max - parts.origin) * per + per - 1};
 }
 
+// Returns the plan of all of a volume, also where only some of its slices are there.
+// @param box  of the slices
+SlabPlan planOf(const Volume& volume, const PackOptions& options, const IndexBox& box,
+                const SlabPlanner& planner) {
+    const SlotBlocks* const blocks = volume.codes->blocksAlong(options.sliceAxis);
+    const SlabFacts* const facts = blocks ? blocks->facts() : nullptr;
+    if (!facts) return planner.plan(options.encoding);
+    SlabPlan plan{planner.shortest(), facts->slabs};
+    const bool fits = facts->blocksPerSlab % plan.layout.blocksPerSlab == 0;
+    plan.layout.blocksPerSlab = facts->blocksPerSlab;
+    // They may come from anywhere.
+    if (!fits || plan.layout.count() != int(plan.slabs.size())) {
+        throw Error(ErrorCode::kInput,
+                    gotExpected("facts of slabs", "those of another picture", "those of this one"));
+    }
+    for (int i = 0; i < plan.layout.count(); ++i)
+        placeSlab(box, plan.layout, i, plan.slabs[std::size_t(i)]);
+    return plan;
+}
+
 }  // namespace
 
 std::uint64_t PackedDeltas::visible() const {
@@ -406,9 +433,8 @@ struct DeltaPacker::Impl {
         if (options.holds) holder.emplace(mixer ? mixer->levels() : volume, options);
         slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
         if (mixer) sight.emplace(*mixer, slotMap, choosesClasses(options));
-        blocks = sight
-                     ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
-                     : BlockReader(*volume.codes, nullptr, options.sliceAxis, slotMap).takeBlocks();
+        blocks = sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
+                       : listBlocks(*volume.codes, options.sliceAxis, slotMap);
         if (options.painter && options.painter->more())
             addBlocks(*options.painter->more(), options.sliceAxis, blocks);
         runs = cutAtColumns(blocks, divided.within > 1);
@@ -480,7 +506,7 @@ PackedDeltas DeltaPacker::packAll() {
     SlabPlanner planner(packed.box);
     std::vector<ColumnPacker> packers = impl_->run(impl_->wholeRange(planner));
     for (const ColumnPacker& packer : packers) planner.add(packer.planner());
-    SlabPlan plan = planner.plan(impl_->options.encoding);
+    SlabPlan plan = planOf(impl_->volume, impl_->options, packed.box, planner);
     packed.slabs = std::move(plan.slabs);
     collectWords(inOrder(impl_->runs, packers, impl_->divided.within), plan.layout,
                  impl_->options.painter != nullptr, packed);
@@ -494,7 +520,7 @@ PackedDeltas DeltaPacker::plan(double mostBytes) {
     PackRange range = impl_->wholeRange(planner);
     range.storesWords = false;
     for (const ColumnPacker& packer : impl_->run(range)) planner.add(packer.planner());
-    impl_->planned = planner.plan(impl_->options.encoding);
+    impl_->planned = planOf(impl_->volume, impl_->options, packed.box, planner);
     packed.slabs = impl_->planned.slabs;
     packed.begins.assign(std::size_t(packed.box.dims().x) + 1, 0);
     double bytes = 0;

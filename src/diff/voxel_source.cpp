@@ -209,7 +209,7 @@ VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background, 
         withSource(volume, [&](const auto& grid) { readTree(grid.tree(), {nullptr, wide}); });
     } else {
         readTree(
-            volume.codes->tree,
+            volume.codes->tree(),
             {std::make_shared<const std::vector<double>>(valuesOfCodes(volume.codeBook)), wide});
     }
 }

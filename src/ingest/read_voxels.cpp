@@ -69,7 +69,7 @@ void readVoxels(const Volume& volume, const IndexBox& box, std::span<double> val
         });
     } else if (volume.codes) {
         readTree(
-            volume.codes->tree, volume, box,
+            volume.codes->tree(), volume, box,
             [&](Code code) { return volume.codeBook.valueOf(code); }, values, active);
     } else {
         throw Error(ErrorCode::kUsage, gotExpected("voxels to read", "a volume without voxels",

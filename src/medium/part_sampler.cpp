@@ -102,7 +102,7 @@ PartFit fitOf(const Volume& part, const glm::dmat4& worldFromIndex) {
 // Reads single voxels. Not for several threads at once.
 class PartSampler::Reader {
   public:
-    explicit Reader(const CodeTree& codes) : accessor_(codes.tree) {}
+    explicit Reader(const CodeTree& codes) : accessor_(codes.tree()) {}
 
     std::optional<Code> codeAt(const glm::dvec3& at) const {
         Code code = 0;

@@ -31,7 +31,7 @@ std::vector<std::uint8_t> valuesOf(const Volume& volume) {
     const glm::ivec3 dims = volume.box.dims();
     std::vector<std::uint8_t> values;
     values.reserve(std::size_t(volume.box.voxels()));
-    const openvdb::tree::ValueAccessor<const CodeTree::Tree> codes(volume.codes->tree);
+    const openvdb::tree::ValueAccessor<const CodeTree::Tree> codes(volume.codes->tree());
     for (int z = 0; z < dims.z; ++z) {
         for (int y = 0; y < dims.y; ++y) {
             for (int x = 0; x < dims.x; ++x) {

@@ -22,14 +22,14 @@ deltasplat_refusal(slab_range_of_rays
     "--slab-range: got --mode xray; expected --mode composite"
     --slab-range 1/2 -o out.slabs --mode xray)
 foreach(option deep legend slate=0 stats=s.json aov=depth frames=1-2 turntable=3 ground=0,0,0
-        first-pass=f.json holdout-depth=d.exr window=0,1)
+        holdout-depth=d.exr window=0,1)
     string(REGEX REPLACE "=.*" "" name ${option})
     if(option STREQUAL "slate=0")
         continue()
     endif()
     set(given --${option})
     deltasplat_cli_test(usage.slab_range_with_${name} EXIT 2
-        STDERR_MATCHES "deltasplat: (--slab-range: got --${name} besides; expected one of the two|--(frames|first-pass|turntable|output): got .*)"
+        STDERR_MATCHES "deltasplat: (--slab-range: got --${name} besides; expected one of the two|--(frames|turntable|output): got .*)"
         ARGS render cube_8x8x8_uint8.raw -o out.slabs --slab-range 1/2 ${given})
 endforeach()
 foreach(option float bits=16 tone=filmic exposure=1 background=0,0,0 compression=piz region=1x1+0+0

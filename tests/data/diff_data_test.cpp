@@ -80,9 +80,9 @@ TEST_F(DiffData, OneVoxelOfEveryRawFileIsFound) {
             const glm::ivec3 at = randomPlace(volume.box, random);
             const Coord place(at.x, at.y, at.z);
             auto codes = std::make_shared<CodeTree>(*volume.codes);
-            const Code before = codes->tree.getValue(place);
+            const Code before = codes->tree().getValue(place);
             const Code after = Code(before ^ (1 + random() % 100));
-            codes->tree.setValueOn(place, after);
+            codes->tree().setValueOn(place, after);
             Volume changed = volume;
             changed.codes = codes;
             expectOneChange(compareVolumes(volume, changed), at, volume.codeBook.valueOf(before),

@@ -36,7 +36,7 @@ class IngestData : public ::testing::Test {
         std::uint64_t sum = 0;
         for (const std::uint64_t count : volume.histogram) sum += count;
         EXPECT_EQ(sum, volume.activeCount);
-        EXPECT_EQ(volume.codes->tree.activeVoxelCount(), volume.activeCount);
+        EXPECT_EQ(volume.codes->tree().activeVoxelCount(), volume.activeCount);
         EXPECT_LE(volume.activeCount, std::uint64_t(volume.box.voxels()));
     }
     inline static const fs::path kFolder = DELTASPLAT_SHARED_DATA;
@@ -88,8 +88,8 @@ TEST_F(IngestData, Engine) {
     EXPECT_NEAR(double(low) / double(engine.activeCount), 0.81, 0.005);
     // Slices 108 to 126 are empty: their whole blocks are tiles.
     for (int z = 112; z < 120; z += 8) {
-        EXPECT_EQ(engine.codes->tree.getValueDepth(openvdb::Coord(128, 128, z)), 2);
-        EXPECT_EQ(engine.codes->tree.getValue(openvdb::Coord(128, 128, z)), 0);
+        EXPECT_EQ(engine.codes->tree().getValueDepth(openvdb::Coord(128, 128, z)), 2);
+        EXPECT_EQ(engine.codes->tree().getValue(openvdb::Coord(128, 128, z)), 0);
     }
 }
 
@@ -105,7 +105,7 @@ TEST_F(IngestData, BigEndianScans) {
 TEST_F(IngestData, AneurismIsSparse) {
     const Volume aneurism = read("aneurism/aneurism_256x256x256_uint8.raw.gz");
     EXPECT_NEAR(zeroShare(aneurism), 0.99, 0.005);
-    EXPECT_LT(aneurism.codes->tree.leafCount(), 32768u / 4);
+    EXPECT_LT(aneurism.codes->tree().leafCount(), 32768u / 4);
 }
 
 TEST_F(IngestData, Smoke) {
@@ -142,7 +142,7 @@ TEST_F(IngestData, AnisotropicFogKeepsItsTiles) {
     const Volume fog = read("vdb_anisotropic_fog/test.vdb");
     EXPECT_EQ(fog.box.dims(), glm::ivec3(109, 95, 99));
     EXPECT_EQ(fog.activeCount, 271492u);
-    EXPECT_GT(fog.codes->tree.activeTileCount(), 0u);
+    EXPECT_GT(fog.codes->tree().activeTileCount(), 0u);
     EXPECT_NEAR(fog.voxelSize().x, 0.01, 1e-9);
     EXPECT_NEAR(fog.voxelSize().y, 0.02, 1e-9);
     EXPECT_NEAR(fog.voxelSize().z, 0.01, 1e-9);

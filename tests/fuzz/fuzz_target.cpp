@@ -25,7 +25,7 @@ void check(const Volume& volume) {
     for (const std::uint64_t count : volume.histogram) sum += count;
     require(volume.histogram.size() == std::size_t(kCodeCount), "histogram has 65536 places");
     require(sum == volume.activeCount, "histogram adds up to activeCount");
-    require(volume.codes->tree.activeVoxelCount() == volume.activeCount, "tree has activeCount");
+    require(volume.codes->tree().activeVoxelCount() == volume.activeCount, "tree has activeCount");
     require(volume.valueMin <= volume.valueMax, "valueMin <= valueMax");
     require(volume.empty() || std::uint64_t(volume.box.voxels()) >= volume.activeCount,
             "box holds all active voxels");
@@ -47,7 +47,7 @@ void digest(const T& value) {
 void digest(const Volume& volume) {
     digest(volume.box.dims());
     digest(volume.worldFromIndex);
-    for (auto voxel = volume.codes->tree.cbeginValueOn(); voxel; ++voxel) {
+    for (auto voxel = volume.codes->tree().cbeginValueOn(); voxel; ++voxel) {
         digest(voxel.getCoord().asVec3i());
         digest(volume.codeBook.valueOf(voxel.getValue()));
     }

@@ -567,10 +567,10 @@ void expectSameVolume(const Volume& a, const Volume& b) {
     EXPECT_EQ(a.mostFrequent->value, b.mostFrequent->value);
     EXPECT_EQ(a.mostFrequent->count, b.mostFrequent->count);
     EXPECT_EQ(a.codeError.absolute, b.codeError.absolute);
-    EXPECT_TRUE(a.codes->tree.hasSameTopology(b.codes->tree));
+    EXPECT_TRUE(a.codes->tree().hasSameTopology(b.codes->tree()));
     std::uint64_t wrong = 0;
-    for (auto code = a.codes->tree.cbeginValueOn(); code; ++code)
-        wrong += *code == b.codes->tree.getValue(code.getCoord()) ? 0 : 1;
+    for (auto code = a.codes->tree().cbeginValueOn(); code; ++code)
+        wrong += *code == b.codes->tree().getValue(code.getCoord()) ? 0 : 1;
     EXPECT_EQ(wrong, 0u);
 }
 
@@ -699,8 +699,8 @@ TEST(DeltaFile, LargeWholeNumbersAreReadAsTheirSourceIs) {
         const Volume restored = readVolume("delta.vdb");
         EXPECT_EQ(restored.codeBook.name(), volume.codeBook.name());
         std::uint64_t wrong = 0;
-        for (auto code = volume.codes->tree.cbeginValueOn(); code; ++code) {
-            const Code other = restored.codes->tree.getValue(code.getCoord());
+        for (auto code = volume.codes->tree().cbeginValueOn(); code; ++code) {
+            const Code other = restored.codes->tree().getValue(code.getCoord());
             wrong += restored.codeBook.valueOf(other) == volume.codeBook.valueOf(*code) ? 0 : 1;
         }
         EXPECT_EQ(wrong, 0u);
@@ -839,7 +839,7 @@ TEST(DeltaFile, FloatsBesideAnOutlierComeBackAsTheirCodes) {
         const auto own = double(values[i]);
         ASSERT_LE(std::fabs(plain.valueAt(at) - own),
                   std::max(2e-4 * std::fabs(own), 0x1p-16 * 0.006));
-        ASSERT_EQ(plain.valueAt(at), volume.codeBook.valueOf(volume.codes->tree.getValue(at)));
+        ASSERT_EQ(plain.valueAt(at), volume.codeBook.valueOf(volume.codes->tree().getValue(at)));
     }
 }
 
@@ -882,8 +882,8 @@ TEST(DeltaFile, OlderVersionsAreRead) {
         const PlainVolume plain = testing::readPlainDeltas("older.vdb", volume.name);
         for (std::size_t i = 0; i < values.size(); ++i) {
             const Coord at(int(i % 95), int(i / 95 % 41), int(i / 95 / 41));
-            const double own = volume.codeBook.valueOf(volume.codes->tree.getValue(at));
-            ASSERT_EQ(restored.codeBook.valueOf(restored.codes->tree.getValue(at)), own);
+            const double own = volume.codeBook.valueOf(volume.codes->tree().getValue(at));
+            ASSERT_EQ(restored.codeBook.valueOf(restored.codes->tree().getValue(at)), own);
             ASSERT_EQ(plain.valueAt(at), own);
         }
     }

@@ -96,7 +96,7 @@ Volume readRaw(const std::string& type, const std::vector<T>& values,
 }
 
 double keptValue(const Volume& volume, std::size_t i) {
-    return volume.codeBook.valueOf(volume.codes->tree.getValue(coordOf(i)));
+    return volume.codeBook.valueOf(volume.codes->tree().getValue(coordOf(i)));
 }
 
 // Every value within 2e-4 of itself, or within 2^-16 of the bulk's width.
@@ -117,8 +117,9 @@ void expectKept(const std::string& type) {
             const auto own = double(values[i]);
             const double off = std::fabs(keptValue(volume, i) - own);
             ASSERT_LE(off, std::max(2e-4 * std::fabs(own), 0x1p-16 * one.bulkWidth)) << own;
-            ASSERT_LE(off, volume.codeBook.largestErrorOf(volume.codes->tree.getValue(coordOf(i))) *
-                               (1 + 1e-9));
+            ASSERT_LE(off,
+                      volume.codeBook.largestErrorOf(volume.codes->tree().getValue(coordOf(i))) *
+                          (1 + 1e-9));
             largest = std::max(largest, off);
             low = std::min(low, own);
             high = std::max(high, own);

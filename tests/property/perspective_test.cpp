@@ -481,7 +481,7 @@ TEST(Perspective, picturesDoNotDependOnThePlaceInIndexSpace) {
     const Volume here = randomVolume(box, 3, 0.4);
     const glm::ivec3 moved(8 * 100000, -8 * 70000, 8 * 3);
     Volume there = makeVolume({box.min + moved, box.max + moved}, [&](int x, int y, int z) {
-        const auto& tree = here.codes->tree;
+        const auto& tree = here.codes->tree();
         const openvdb::Coord at(x - moved.x, y - moved.y, z - moved.z);
         return tree.isValueOn(at) ? int(tree.getValue(at)) : kInactive;
     });

@@ -121,8 +121,9 @@ class PlainEye {
                 const double weight =
                     (1 - std::abs(at[u] - voxel[u])) * (1 - std::abs(at[v] - voxel[v]));
                 const openvdb::Coord place(voxel.x, voxel.y, voxel.z);
-                const bool on = volume_.codes->tree.isValueOn(place);
-                const double value = volume_.codeBook.valueOf(volume_.codes->tree.getValue(place));
+                const bool on = volume_.codes->tree().isValueOn(place);
+                const double value =
+                    volume_.codeBook.valueOf(volume_.codes->tree().getValue(place));
                 sum += on ? weight * value : 0;
                 active += on ? weight : 0;
                 high += weight * (on ? value : least_);

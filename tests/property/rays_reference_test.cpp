@@ -31,8 +31,8 @@ reference::ValueVolume plainVolume(const Volume& volume) {
         for (int y = volume.box.min.y; y <= volume.box.max.y; ++y) {
             for (int x = volume.box.min.x; x <= volume.box.max.x; ++x) {
                 const openvdb::Coord at(x, y, z);
-                plain.active.push_back(volume.codes->tree.isValueOn(at));
-                plain.values.push_back(volume.codeBook.valueOf(volume.codes->tree.getValue(at)));
+                plain.active.push_back(volume.codes->tree().isValueOn(at));
+                plain.values.push_back(volume.codeBook.valueOf(volume.codes->tree().getValue(at)));
             }
         }
     }

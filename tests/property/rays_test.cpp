@@ -140,7 +140,7 @@ TEST(Rays, ThreadsAndSimdLevelsGiveTheSamePixels) {
     // Higher than a band on every axis, with tiles inside.
     Volume volume = randomVolume({{-19, 5, -60}, {60, 110, 32}}, 17, 0.5, {1, 1.5, 0.8});
     auto tree = std::make_shared<CodeTree>(*volume.codes);
-    tree->tree.addTile(1, openvdb::Coord(8, 24, -16), 77, true);
+    tree->tree().addTile(1, openvdb::Coord(8, 24, -16), 77, true);
     volume.codes = tree;
     ++volume.histogram[77];
     for (const Mode mode : kModes) {

@@ -468,8 +468,8 @@ TEST(Scattering, doesNotDependOnHowItIsStored) {
         });
         if (asTiles) {
             auto tree = std::make_shared<CodeTree>(*volume.codes);
-            tree->tree.prune();
-            EXPECT_GT(tree->tree.activeTileCount(), 0u);
+            tree->tree().prune();
+            EXPECT_GT(tree->tree().activeTileCount(), 0u);
             volume.codes = tree;
         }
         volume.worldFromIndex[3] = glm::dvec4(-glm::dvec3(first), 1);

@@ -31,7 +31,7 @@ inline Volume makeVolume(const IndexBox& box, const std::function<int(int x, int
             for (int x = box.min.x; x <= box.max.x; ++x) {
                 const int code = codeAt(x, y, z);
                 if (code == kInactive) continue;
-                tree->tree.setValueOn(openvdb::Coord(x, y, z), Code(code));
+                tree->tree().setValueOn(openvdb::Coord(x, y, z), Code(code));
                 if (volume.activeCount++ == 0) volume.valueMin = volume.valueMax = code;
                 volume.valueMin = std::min<double>(volume.valueMin, code);
                 volume.valueMax = std::max<double>(volume.valueMax, code);

@@ -87,8 +87,8 @@ Voxel probe(const Tree& tree, const Coord& at) {
 
 Voxel voxelOf(const Volume& volume, const Coord& at) {
     if (!volume.source) {
-        const bool active = volume.codes->tree.isValueOn(at);
-        const Code code = volume.codes->tree.getValue(at);
+        const bool active = volume.codes->tree().isValueOn(at);
+        const Code code = volume.codes->tree().getValue(at);
         return {active ? volume.codeBook.valueOf(code) : volume.background, active};
     }
     Voxel voxel;

@@ -49,7 +49,7 @@ void forVoxels(const IndexBox& box, const Use& use) {
 
 int codeIn(const Volume& volume, const glm::ivec3& at) {
     Code code = 0;
-    return volume.codes->tree.probeValue({at.x, at.y, at.z}, code) ? code : test::kInactive;
+    return volume.codes->tree().probeValue({at.x, at.y, at.z}, code) ? code : test::kInactive;
 }
 
 IndexBox grown(const IndexBox& box, int by) {
@@ -73,7 +73,7 @@ void expectCut(const Volume& whole, const Volume& cut, const Keeps& keeps) {
     ASSERT_GT(active, 0u) << "a test of nothing";
     EXPECT_LT(active, whole.activeCount) << "a test of nothing";
     EXPECT_EQ(cut.activeCount, active);
-    EXPECT_EQ(cut.codes->tree.activeVoxelCount(), active);
+    EXPECT_EQ(cut.codes->tree().activeVoxelCount(), active);
     ASSERT_EQ(cut.histogram.size(), std::size_t(kCodeCount));
     std::uint64_t sum = 0;
     for (const std::uint64_t count : cut.histogram) sum += count;
@@ -137,11 +137,11 @@ Volume tiledVolume() {
     volume.codeBook = CodeBook::integer();
     volume.box = {glm::ivec3(-16), glm::ivec3(143)};
     auto codes = std::make_shared<CodeTree>();
-    codes->tree.fill(openvdb::CoordBBox(openvdb::Coord(-16), openvdb::Coord(143)), 40);
-    codes->tree.fill(openvdb::CoordBBox(openvdb::Coord(-16), openvdb::Coord(-9)), 41);
+    codes->tree().fill(openvdb::CoordBBox(openvdb::Coord(-16), openvdb::Coord(143)), 40);
+    codes->tree().fill(openvdb::CoordBBox(openvdb::Coord(-16), openvdb::Coord(-9)), 41);
     volume.activeCount = std::uint64_t(volume.box.voxels());
     volume.codes = codes;
-    EXPECT_EQ(codes->tree.leafCount(), 0u);
+    EXPECT_EQ(codes->tree().leafCount(), 0u);
     return volume;
 }
 
@@ -255,7 +255,7 @@ TEST(CutVolume, tilesAreSplit) {
     const Volume left = cutVolume(volume, cut);
     expectCut(volume, left,
               [&](const glm::ivec3& at) { return isBeyond(volume, cut.clipPlanes[0], at); });
-    EXPECT_GT(left.codes->tree.activeTileCount(), 1000u) << "what is uniform stays tiles";
+    EXPECT_GT(left.codes->tree().activeTileCount(), 1000u) << "what is uniform stays tiles";
 
     cut = {};
     cut.cropIndex = IndexBox{glm::ivec3(-13), glm::ivec3(100)};

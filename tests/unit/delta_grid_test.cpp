@@ -21,7 +21,7 @@ using SlotMap = std::map<Voxel, Slot>;
 SlotMap slotsOf(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap = {}) {
     SlotMap slots;
     const glm::ivec3 order = sliceOrder(sliceAxis);
-    for (auto voxel = volume.codes->tree.cbeginValueOn(); voxel; ++voxel) {
+    for (auto voxel = volume.codes->tree().cbeginValueOn(); voxel; ++voxel) {
         const openvdb::CoordBBox box = voxel.getBoundingBox();
         for (auto c = box.begin(); c; ++c) {
             const Slot slot = slotMap.empty() ? *voxel + 1 : slotMap[*voxel + 1];
@@ -98,9 +98,9 @@ TEST(DeltaGrid, ActiveVoxelsAreExactlyTheChanges) {
 
 TEST(DeltaGrid, TilesCountAsTheirVoxels) {
     auto tree = std::make_shared<CodeTree>();
-    tree->tree.addTile(1, openvdb::Coord(0, 0, 0), Code{5}, true);
-    tree->tree.addTile(2, openvdb::Coord(128, 0, -128), Code{9}, true);
-    tree->tree.setValueOn(openvdb::Coord(8, 0, 0), Code{5});
+    tree->tree().addTile(1, openvdb::Coord(0, 0, 0), Code{5}, true);
+    tree->tree().addTile(2, openvdb::Coord(128, 0, -128), Code{9}, true);
+    tree->tree().setValueOn(openvdb::Coord(8, 0, 0), Code{5});
     Volume volume;
     volume.codes = tree;
     volume.activeCount = 512 + 128 * 128 * 128 + 1;
@@ -120,13 +120,13 @@ TEST(DeltaGrid, TilesCountAsTheirVoxels) {
 TEST(DeltaGrid, LeavesWithoutActiveVoxelsCountForNothing) {
     Volume volume = test::randomVolume(boxes()[2], 5);
     const Volume plain = volume;
-    const auto codes = std::make_shared<CodeTree>(std::in_place, plain.codes->tree);
+    const auto codes = std::make_shared<CodeTree>(std::in_place, plain.codes->tree());
     for (const openvdb::Coord& far : {openvdb::Coord(-900, 3, 500), openvdb::Coord(4, 700, -88),
                                       openvdb::Coord(2000, -300, 0)}) {
-        codes->tree.setValueOn(far, 7);
-        codes->tree.setActiveState(far, false);
+        codes->tree().setValueOn(far, 7);
+        codes->tree().setActiveState(far, false);
     }
-    ASSERT_EQ(codes->tree.leafCount(), plain.codes->tree.leafCount() + 3);
+    ASSERT_EQ(codes->tree().leafCount(), plain.codes->tree().leafCount() + 3);
     volume.codes = codes;
     for (int axis = 0; axis < 3; ++axis) {
         const DeltaGrid grid = makeDeltaGrid(volume, {axis, 8, {}});

@@ -15,7 +15,7 @@ namespace deltasplat::testing {
 
 /// Returns the value of the voxel (x, y, z).
 inline double valueAt(const Volume& volume, int x, int y, int z) {
-    return volume.codeBook.valueOf(volume.codes->tree.getValue(openvdb::Coord(x, y, z)));
+    return volume.codeBook.valueOf(volume.codes->tree().getValue(openvdb::Coord(x, y, z)));
 }
 
 /// Returns all values, x fastest.

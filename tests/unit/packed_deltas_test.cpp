@@ -28,7 +28,7 @@ std::vector<Slot> plainClasses() {
 
 Classes classesOf(const Volume& volume, int axis, const std::vector<Slot>& classOfSlot) {
     Classes classes;
-    for (auto voxel = volume.codes->tree.cbeginValueOn(); voxel; ++voxel) {
+    for (auto voxel = volume.codes->tree().cbeginValueOn(); voxel; ++voxel) {
         openvdb::CoordBBox box;
         voxel.getBoundingBox(box);
         const Slot found = classOfSlot[*voxel + 1];
@@ -168,9 +168,9 @@ TEST(PackedDeltas, TakeTilesOfTheTree) {
     Volume volume = test::makeVolume({{0, 0, 0}, {63, 63, 63}}, [](int x, int y, int z) {
         return x < 32 ? 200 : (x + y + z) % 3 == 0 ? 90 : test::kInactive;
     });
-    const auto pruned = std::make_shared<CodeTree>(std::in_place, volume.codes->tree);
-    pruned->tree.prune();
-    EXPECT_LT(pruned->tree.leafCount(), volume.codes->tree.leafCount());
+    const auto pruned = std::make_shared<CodeTree>(std::in_place, volume.codes->tree());
+    pruned->tree().prune();
+    EXPECT_LT(pruned->tree().leafCount(), volume.codes->tree().leafCount());
     const std::vector<Slot> classes = plainClasses();
     for (int axis = 0; axis < 3; ++axis) {
         const Classes expected = classesOf(volume, axis, classes);

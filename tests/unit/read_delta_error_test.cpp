@@ -279,27 +279,27 @@ TEST(ReadDeltaError, ChainsThatMemoryCannotHold) {
     block->fill({Coord(0), Coord(7)}, 1);
     block->setName("a");
     openvdb::io::File("source.vdb").write({block});
-    DeltaFileOptions options;
-    options.sliceAxis = 2;
-    options.keyInterval = 1 << 23;
-    DeltaFile file;
-    file.add(readVolume("source.vdb"), options);
-    file.write("whole.vdb");
-    openvdb::io::File input("whole.vdb");
-    input.open();
-    const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid("a"));
-    const auto claim = [&](std::int64_t active) {
-        with<openvdb::Vec3i>("delta_box_max", {7, 7, (1 << 23) - 1})(*grid);
+    const auto claim = [&](int slices, std::int64_t active) {
+        DeltaFileOptions options;
+        options.sliceAxis = 2;
+        options.keyInterval = slices;
+        DeltaFile file;
+        file.add(readVolume("source.vdb"), options);
+        file.write("whole.vdb");
+        openvdb::io::File input("whole.vdb");
+        input.open();
+        const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid("a"));
+        with<openvdb::Vec3i>("delta_box_max", {7, 7, slices - 1})(*grid);
         with<std::int64_t>("delta_active", active)(*grid);
         openvdb::io::File("a.vdb").write({grid});
     };
-    claim(512);
+    claim(1 << 23, 512);
     expectError(ErrorCode::kInput,
                 "a.vdb: grid \"a\": got at least 1024 active voxels; expected 512, as "
                 "\"delta_active\" says",
                 [] { readVolume("a.vdb"); });
-    claim(std::int64_t{1} << 29);
-    setMemoryLimit(std::uint64_t{1} << 30);
+    claim(1 << 25, std::int64_t{1} << 31);
+    setMemoryLimit(std::uint64_t{1} << 28);
     EXPECT_THROW(readVolume("a.vdb"), Error);
     setMemoryLimit(0);
 }

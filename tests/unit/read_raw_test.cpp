@@ -46,7 +46,7 @@ Plain<T> randomPlain(const glm::ivec3& dims, double low, double high, unsigned s
 // `relative` is a share of the voxel's own value; either suffices.
 template <typename T>
 void expectSame(const Volume& volume, Plain<T>& plain, double tolerance = 0, double relative = 0) {
-    const auto& tree = volume.codes->tree;
+    const auto& tree = volume.codes->tree();
     std::map<int, std::uint64_t> counts;
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
@@ -221,9 +221,9 @@ TEST(ReadRaw, ConstantBlocksAreTiles) {
     writeBytes(plain.file("uint8"), bytesOf(plain.values));
     const Volume volume = readVolume(plain.file("uint8"));
     expectSame(volume, plain);
-    EXPECT_EQ(volume.codes->tree.leafCount(), 1u);
-    EXPECT_EQ(volume.codes->tree.activeTileCount(), 4u * 3 * 2 - 1);
-    EXPECT_EQ(volume.codes->tree.getValueDepth(openvdb::Coord(8, 0, 8)), 2);
+    EXPECT_EQ(volume.codes->tree().leafCount(), 1u);
+    EXPECT_EQ(volume.codes->tree().activeTileCount(), 4u * 3 * 2 - 1);
+    EXPECT_EQ(volume.codes->tree().getValueDepth(openvdb::Coord(8, 0, 8)), 2);
 }
 
 // One voxel that differs, at each place of a block in turn, must make the block a leaf.
@@ -234,7 +234,7 @@ TEST(ReadRaw, OneOddVoxelMakesALeaf) {
         plain.values[std::size_t(odd)] = 1;
         writeBytes(plain.file("uint8"), bytesOf(plain.values));
         const Volume volume = readVolume(plain.file("uint8"));
-        ASSERT_EQ(volume.codes->tree.leafCount(), 1u) << odd;
+        ASSERT_EQ(volume.codes->tree().leafCount(), 1u) << odd;
         expectSame(volume, plain);
     }
 }
@@ -274,7 +274,7 @@ TEST(ReadRaw, GzipEqualsPlain) {
         EXPECT_EQ(plain.name, zipped.name);
         EXPECT_EQ(plain.codeBook.offset, zipped.codeBook.offset);
         EXPECT_EQ(plain.codeBook.step, zipped.codeBook.step);
-        EXPECT_TRUE(plain.codes->tree.hasSameTopology(zipped.codes->tree));
+        EXPECT_TRUE(plain.codes->tree().hasSameTopology(zipped.codes->tree()));
         type == "uint8" ? expectSame(zipped, narrow)
                         : expectSame(zipped, wide, zipped.codeBook.step * 0.5000001);
     }
@@ -359,7 +359,7 @@ TEST(ReadRaw, ThreadsDoNotMatter) {
     EXPECT_EQ(*one.codeBook.table, *many.codeBook.table);
     EXPECT_EQ(one.codeError.absolute, many.codeError.absolute);
     EXPECT_EQ(one.codeError.relative, many.codeError.relative);
-    EXPECT_TRUE(one.codes->tree.hasSameTopology(many.codes->tree));
+    EXPECT_TRUE(one.codes->tree().hasSameTopology(many.codes->tree()));
     expectSame(many, plain, 2 * 0x1p-16);
 }
 

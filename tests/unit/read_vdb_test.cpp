@@ -193,9 +193,9 @@ TEST(ReadVdb, LevelSetsBecomeFog) {
     // All of the inside is active, none of the outside; deep inside is 1.
     EXPECT_NEAR(double(fog.activeCount), 4.0 / 3 * M_PI * 20 * 20 * 20, 300);
     Code code = 0;
-    EXPECT_TRUE(fog.codes->tree.probeValue(Coord(0), code));
+    EXPECT_TRUE(fog.codes->tree().probeValue(Coord(0), code));
     EXPECT_NEAR(fog.codeBook.valueOf(code), 1, 1e-9);
-    EXPECT_FALSE(fog.codes->tree.isValueOn(Coord(21, 0, 0)));
+    EXPECT_FALSE(fog.codes->tree().isValueOn(Coord(21, 0, 0)));
 
     ReadOptions options;
     options.levelSetToFog = false;
@@ -249,7 +249,7 @@ TEST(ReadVdb, EmptyGridsAreEmptyVolumes) {
     EXPECT_TRUE(volume.box.empty());
     EXPECT_EQ(volume.background, 3);
     EXPECT_EQ(volume.valueMax, 0);
-    EXPECT_TRUE(volume.codes->tree.empty());
+    EXPECT_TRUE(volume.codes->tree().empty());
     EXPECT_EQ(volume.histogram, std::vector<std::uint64_t>(kCodeCount));
     EXPECT_EQ(warnings, std::vector<std::string>{"a.vdb: grid \"nothing\": no active voxels"});
 }

@@ -27,7 +27,7 @@ std::vector<Slot> someSlotMap() {
 
 Slot slotAt(const Volume& volume, const glm::ivec3& p, std::span<const Slot> slotMap) {
     Code code = 0;
-    const bool active = volume.codes->tree.probeValue(openvdb::Coord(p.x, p.y, p.z), code);
+    const bool active = volume.codes->tree().probeValue(openvdb::Coord(p.x, p.y, p.z), code);
     if (!active) return kEmptySlot;
     return slotMap.empty() ? code + 1 : slotMap[code + 1];
 }
@@ -119,8 +119,8 @@ TEST(SliceCounts, WhatEndsBetweenBlocksIsTakenAwayBehindIt) {
 TEST(SliceCounts, VoxelsFarApartTakeNoMemory) {
     constexpr int kFar = (1 << 30) - 1;
     auto tree = std::make_shared<CodeTree>();
-    tree->tree.setValueOn(openvdb::Coord(-kFar, 0, 0), Code{1});
-    tree->tree.setValueOn(openvdb::Coord(kFar, 0, 0), Code{1});
+    tree->tree().setValueOn(openvdb::Coord(-kFar, 0, 0), Code{1});
+    tree->tree().setValueOn(openvdb::Coord(kFar, 0, 0), Code{1});
     Volume volume;
     volume.codes = tree;
     volume.activeCount = 2;

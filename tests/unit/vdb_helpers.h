@@ -42,7 +42,7 @@ typename Grid::Ptr makeGrid(const std::string& name,
 // Compares codes with the grid in every active voxel, both ways, and the statistics.
 template <typename Grid>
 void expectSame(const Volume& volume, const Grid& grid, double tolerance) {
-    const auto& tree = volume.codes->tree;
+    const auto& tree = volume.codes->tree();
     std::map<int, std::uint64_t> counts;
     double low = std::numeric_limits<double>::infinity();
     double high = -low;

@@ -26,7 +26,7 @@ std::vector<std::string> formats() {
 }
 
 double valueAt(const Volume& volume, const glm::ivec3& place) {
-    return volume.codeBook.valueOf(volume.codes->tree.getValue(Coord(place.x, place.y, place.z)));
+    return volume.codeBook.valueOf(volume.codes->tree().getValue(Coord(place.x, place.y, place.z)));
 }
 
 template <typename T>

@@ -193,15 +193,15 @@ class Preview {
 
 }  // namespace
 
-ReadScene sceneOf(const RenderCommand& command, const SequencePart& part,
-                  const Listener& listener) {
+ReadScene sceneOf(const RenderCommand& command, const SequencePart& part, const Listener& listener,
+                  const VolumeReader& reader) {
     if (part.prepared) {
         const Scene& scene = part.prepared->scene();
         ReadScene read{command.picture.render, scene.volume};
         read.options.optics = scene.optics;
         return read;
     }
-    ReadScene read = readScene(command.input, command.picture, listener, part.look);
+    ReadScene read = readScene(command.input, command.picture, listener, part.look, reader);
     if (command.picture.surface.color && !read.options.optics.surface)
         listener.warn("--surface-color: has no effect without a surface");
     return read;

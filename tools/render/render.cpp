@@ -165,7 +165,7 @@ void runSlabs(const CLI::App& app, const RenderCommand& command, const Session& 
     warnOfUnusedOptions(app, command, {command.input}, display);
     const Listener all = display.stage(0, 1);
     const Listener reading = partOf(all, 0, kReadShare);
-    const ReadScene scene = sceneOf(command, {}, reading);
+    const ReadScene scene = sceneOf(command, {}, reading, slabReader(app, command));
     warnOfUnusedView(app, scene.options.camera, *scene.volume, reading);
     warnOfClipping(command.picture, SequencePart().frame, *scene.volume, reading);
     writeSlabs(app, command, scene, session, partOf(all, kReadShare, 1));

@@ -308,12 +308,14 @@ Volume seenIn(Volume volume, const Optics& optics, const FrameLook* look) {
 }  // namespace
 
 Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
-                    RenderOptions& options, const Listener& listener, const FrameLook* look) {
+                    RenderOptions& options, const Listener& listener, const FrameLook* look,
+                    const VolumeReader& reader) {
     ReadOptions read = picture.read;
     read.keepInexact = picture.render.mode != Mode::kComposite;
-    Volume volume = placed(
-        look ? look->sequence.read(input, read, listener) : readVolume(input, read, listener),
-        picture);
+    Volume volume = placed(look     ? look->sequence.read(input, read, listener)
+                           : reader ? reader(input, read, listener)
+                                    : readVolume(input, read, listener),
+                           picture);
     fitOptics(input, picture, look ? look->standIn(kMainGrid, volume) : volume,
               !look && !picture.parts.cuts(), options, listener);
     if (options.optics.surface) options.optics.densityScale.reset();
@@ -339,9 +341,9 @@ RenderOptions opticsFor(const Volume& volume, const std::filesystem::path& input
 }
 
 ReadScene readScene(const std::filesystem::path& input, const PictureOptions& picture,
-                    const Listener& listener, const FrameLook* look) {
+                    const Listener& listener, const FrameLook* look, const VolumeReader& reader) {
     RenderOptions options = readOptics(picture, listener);
-    Volume volume = readToRender(input, picture, options, listener, look);
+    Volume volume = readToRender(input, picture, options, listener, look, reader);
     return {options, std::make_shared<const Volume>(std::move(volume))};
 }
 

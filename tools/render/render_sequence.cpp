@@ -367,7 +367,8 @@ void addSequenceOptions(CLI::App& app, RenderCommand& command) {
                    "JSON file of what all frames are shown by alike: the values and the\n"
                    "place of all of them. Made from --frames if it is not there, without\n"
                    "-o that alone; tasks of a farm that have some of the frames each\n"
-                   "share one");
+                   "share one. With --slab-range what all parts have to know of the\n"
+                   "volume: those of a delta grid then read what they show alone");
     addSinkOptions(app, command);
     group.addValue("--turntable", "N", command.turntable, wholeNumber(1, 1'000'000),
                    "Turns the camera once around in N frames, 1 to N if --frames names\n"
@@ -392,7 +393,7 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
     }
     requireFramesOf(app, command.frames, command.input, command.output);
     if (!command.frames.asked()) {
-        if (command.firstPass.empty()) return;
+        if (command.firstPass.empty() || command.slabs) return;
         refuseWithoutFrames("--first-pass");
     }
     if (!command.stats.empty()) frameNameOf(command.frames, "--stats", command.stats);

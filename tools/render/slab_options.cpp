@@ -2,14 +2,19 @@
 #include "render/slab_options.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "deltasplat/error.h"
+#include "deltasplat/slab_facts.h"
 #include "listener_part.h"
 #include "lower_case.h"
 #include "number_text.h"
 #include "options/parse.h"
+#include "output_files.h"
 #include "render/picture_metadata.h"
 
 namespace deltasplat {
@@ -69,7 +74,8 @@ Notes optionsOf(const CLI::App& app) {
         const std::string name = nameOf(*option);
         const bool isOfPicture =
             option->count() > 0 && option->get_group() != std::string(kCommonTitle) &&
-            !option->get_positional() && !contains({"--output", "--slab-range", "--confine"}, name);
+            !option->get_positional() &&
+            !contains({"--output", "--slab-range", "--first-pass", "--confine"}, name);
         if (!isOfPicture) continue;
         std::string text;
         for (const std::string& value : option->results())
@@ -95,7 +101,8 @@ void applySlabs(const CLI::App& app, const RenderCommand& command) {
         "--float",        "--bits",        "--dither",        "--exposure",   "--tone",
         "--ocio",         "--look",        "--working-space", "--colorspace", "--display",
         "--display-view", "--compression", "--autocrop",      "--region",     "--background"};
-    const std::vector<std::string> used = {"--output", "--overscan", "--slab-range"};
+    const std::vector<std::string> used = {"--output", "--overscan", "--slab-range",
+                                           "--first-pass"};
     for (const CLI::Option* option : app.get_options()) {
         if (option->count() == 0) continue;
         const std::string name = nameOf(*option);
@@ -111,6 +118,16 @@ void applySlabs(const CLI::App& app, const RenderCommand& command) {
         refuse("--output " + command.output.string(), "a .slabs file");
 }
 
+VolumeReader slabReader(const CLI::App& app, const RenderCommand& command) {
+    if (command.firstPass.empty() || !std::filesystem::exists(command.firstPass)) return {};
+    return [&app, &command](const std::filesystem::path& input, const ReadOptions& reading,
+                            const Listener& listener) {
+        std::optional<Volume> volume = readSlabVolume(input, reading, command.firstPass,
+                                                      optionsOf(app), *command.slabs, listener);
+        return volume ? std::move(*volume) : readVolume(input, reading, listener);
+    };
+}
+
 void writeSlabs(const CLI::App& app, const RenderCommand& command, const ReadScene& scene,
                 const Session& session, const Listener& listener) {
     const PreparedScene prepared({scene.volume, scene.options.optics}, scene.options);
@@ -119,6 +136,10 @@ void writeSlabs(const CLI::App& app, const RenderCommand& command, const ReadSce
     const Camera camera =
         makeCamera(scene.options.camera, seen.box, seen.worldFromIndex, seen.space);
     const LayeredPicture picture(prepared, camera, partOf(listener, 0, kPrepareShare));
+    if (!command.firstPass.empty() && !std::filesystem::exists(command.firstPass)) {
+        makeFolderOf(command.firstPass);
+        writeSlabFacts(picture, optionsOf(app), command.firstPass);
+    }
     const CodeText codes = codesOf(*scene.volume);
     PartNotes notes{optionsOf(app), commonMetadata(session)};
     notes.picture.insert(notes.picture.begin(), notes.part.front());

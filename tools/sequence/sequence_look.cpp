@@ -32,7 +32,7 @@ Volume withoutVoxels(const Volume& volume) {
 }
 
 double bytesOf(const Volume& volume) {
-    return volume.codes ? double(volume.codes->tree.memUsage()) : 0;
+    return volume.codes ? double(volume.codes->memoryBytes()) : 0;
 }
 
 // The smallest box of voxels that holds a box of the world.

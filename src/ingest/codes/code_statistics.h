@@ -15,7 +15,7 @@ std::vector<std::uint64_t> histogramOf(const CodeTree::Tree& tree);
 /// Returns the histogram of a volume before it was cut: what is cut off counts as well, so that
 /// colours do not change by cutting.
 inline std::vector<std::uint64_t> uncutHistogram(const Volume& volume) {
-    return volume.uncut ? histogramOf(volume.uncut->tree) : volume.histogram;
+    return volume.uncut ? histogramOf(volume.uncut->tree()) : volume.histogram;
 }
 
 /// Returns the box of the active voxels, whose indices must fit.

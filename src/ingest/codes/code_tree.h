@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -13,27 +14,43 @@
 namespace deltasplat {
 
 struct CodeLeaf;
+class SlotBlocks;
 
-/// Codes in OpenVDB's standard layout (leaves of 8x8x8 voxels, x slowest, z fastest). A uniform
-/// active 8x8x8 block may be an active tile at any level, so a large constant region costs no
-/// memory.
+/// The codes of a volume: in OpenVDB's standard layout (leaves of 8x8x8 voxels, x slowest, z
+/// fastest), where a uniform active 8x8x8 block may be an active tile at any level, so that a large
+/// constant region costs no memory; or as blocks that lie along a slice axis, of which the tree is
+/// made when it is first asked for.
 struct CodeTree {
     using Tree = openvdb::tree::Tree4<Code, 5, 4, 3>::Type;
     using Leaf = Tree::LeafNodeType;
 
     CodeTree() = default;
-    CodeTree(const CodeTree& other) : tree(other.tree) {}
+    /// Copies the tree alone.
+    CodeTree(const CodeTree& other) : tree_(other.tree()) {}
     /// Makes the tree in place: OpenVDB's trees cannot be moved.
     template <typename... Args>
-    explicit CodeTree(std::in_place_t, Args&&... args) : tree(std::forward<Args>(args)...) {}
+    explicit CodeTree(std::in_place_t, Args&&... args) : tree_(std::forward<Args>(args)...) {}
+    explicit CodeTree(std::shared_ptr<const SlotBlocks> blocks);
 
-    Tree tree{Code{0}};
+    /// To be filled, before anybody asks for leaves(); not of one made of blocks.
+    Tree& tree() { return tree_; }
+    /// Thread-safe. Of one made of blocks the first call makes the tree.
+    /// @throw Error(kFailed) if these are some slices of a volume only
+    const Tree& tree() const;
+    /// The blocks that this is made of, if they lie along an axis; else null.
+    const SlotBlocks* blocksAlong(int sliceAxis) const;
+    /// Returns how much memory codes take, without making anything.
+    std::uint64_t memoryBytes() const;
 
     /// Lists the leaves that have active voxels, with the ranges of their codes: made on the first
     /// call, after which the tree must not change. Thread-safe.
     std::shared_ptr<const std::vector<CodeLeaf>> leaves() const;
 
   private:
+    mutable Tree tree_{Code{0}};
+    std::shared_ptr<const SlotBlocks> blocks_;  // null: the tree is all that there is
+    mutable std::mutex mutex_;
+    mutable std::atomic<bool> hasTree_ = false;  // if there are blocks
     mutable std::atomic<std::shared_ptr<const std::vector<CodeLeaf>>> leaves_;
 };
 

@@ -426,7 +426,7 @@ DecodedValues decodeExact(openvdb::GridBase& grid, const DeltaHeader& header,
     auto values = openvdb::Grid<typename Words::Tree>::create(words.inactiveValue());
     DecodedValues decoded;
     decode(static_cast<typename Words::DeltaGrid&>(grid), header, words, where, listener,
-           values->tree(), decoded.inactive->tree);
+           values->tree(), decoded.inactive->tree());
     decoded.values = std::move(values);
     return decoded;
 }
@@ -437,7 +437,7 @@ DecodedDeltas decodeDeltas(openvdb::GridBase& grid, const DeltaHeader& header,
                            const std::string& where, const Listener& listener) {
     DecodedDeltas decoded;
     decode(static_cast<openvdb::Int32Grid&>(grid), header, CodeWords(header), where, listener,
-           decoded.codes->tree, decoded.inactive->tree);
+           decoded.codes->tree(), decoded.inactive->tree());
     return decoded;
 }
 

@@ -2,17 +2,25 @@
 #include "ingest/delta/read_delta_grid.h"
 
 #include <cmath>
+#include <cstdint>
+#include <glm/common.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
+#include <memory>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "deltasplat/error.h"
+#include "deltasplat/ingest/slot.h"
 #include "ingest/codes/code_statistics.h"
 #include "ingest/delta/decode_deltas.h"
+#include "ingest/delta/decode_leaves.h"
 #include "ingest/delta/read_exact_deltas.h"
 #include "ingest/delta/restored_grid.h"
 #include "ingest/grids/grid_codes.h"
 #include "ingest/grids/grid_from_codes.h"
+#include "ingest/grids/grid_volume.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/readers.h"
 #include "ingest/values/value_cast.h"
@@ -48,6 +56,23 @@ DeltaOrigin originOf(const DeltaHeader& header) {
     return origin;
 }
 
+std::string sourceClass(const openvdb::MetaMap& metadata) {
+    const auto found = metadata.getMetadata<openvdb::StringMetadata>(
+        std::string(kSourcePrefix) + openvdb::GridBase::META_GRID_CLASS);
+    return found ? printable(found->value()) : "unknown";
+}
+
+// All of a volume but its voxels.
+Volume describe(const DeltaHeader& header, const openvdb::MetaMap& metadata,
+                const openvdb::math::Transform& transform) {
+    Volume volume;
+    volume.space = header.space;
+    volume.origin = originOf(header);
+    volume.gridClass = sourceClass(metadata);
+    volume.worldFromIndex = sourceTransform(transform, header.sliceAxis);
+    return volume;
+}
+
 // The grid has the type that its code book asks for.
 void requireType(const openvdb::GridBase& grid, const DeltaHeader& header,
                  const std::string& where) {
@@ -58,23 +83,32 @@ void requireType(const openvdb::GridBase& grid, const DeltaHeader& header,
          expected + " for the code book " + header.bookName());
 }
 
-std::string sourceClass(const openvdb::MetaMap& metadata) {
-    const auto found = metadata.getMetadata<openvdb::StringMetadata>(
-        std::string(kSourcePrefix) + openvdb::GridBase::META_GRID_CLASS);
-    return found ? printable(found->value()) : "unknown";
-}
-
-void fillVolume(const DeltaHeader& header, DecodedDeltas decoded, const std::string& where,
-                Volume& volume) {
+// @param active  box of the active voxels
+void fillVolume(const DeltaHeader& header, std::shared_ptr<const CodeTree> codes,
+                std::vector<std::uint64_t> histogram, const IndexBox& active, Volume& volume) {
     volume.type = header.sourceType;
     volume.hasBackground = !header.restActive;
     volume.background = header.restActive ? 0 : header.background;
     volume.codeBook = header.book;
-    volume.box = header.restActive ? header.box : activeBox(decoded.codes->tree);
-    volume.histogram = histogramOf(decoded.codes->tree);
-    volume.codes = std::move(decoded.codes);
+    volume.box = header.restActive ? header.box : active;
+    volume.histogram = std::move(histogram);
+    volume.codes = std::move(codes);
     summarize(volume);
-    requireActiveCount(volume.activeCount, header, where);
+}
+
+// Returns the first and the last of the slices that wanted ones add up from.
+std::optional<glm::ivec2> slicesToRead(const DeltaHeader& header, const SlicesWanted* wanted) {
+    if (!wanted) return std::nullopt;
+    const int first = toSliceOrder(header.box.min, header.sliceAxis).x >> 3;
+    const int last = toSliceOrder(header.box.max, header.sliceAxis).x >> 3;
+    const glm::ivec2 blocks = glm::clamp(wanted->blocks, first, last);
+    return glm::ivec2(8 * slabStart(header, blocks.x), 8 * blocks.y + 7);
+}
+
+// What is said of a whole volume may come from anywhere.
+bool isWithin(const IndexBox& box, const IndexBox& all) {
+    return !box.empty() && glm::all(glm::greaterThanEqual(box.min, all.min)) &&
+           glm::all(glm::lessThanEqual(box.max, all.max));
 }
 
 }  // namespace
@@ -84,12 +118,8 @@ Volume readDeltaGrid(openvdb::GridBase& grid, const openvdb::MetaMap::ConstPtr& 
                      const Listener& listener) {
     const DeltaHeader header = takeDeltaHeader(grid, where);
     requireType(grid, header, where);
-    Volume volume;
+    Volume volume = describe(header, grid, grid.transform());
     volume.name = grid.getName();
-    volume.space = header.space;
-    volume.origin = originOf(header);
-    volume.gridClass = sourceClass(grid);
-    volume.worldFromIndex = sourceTransform(grid.transform(), header.sliceAxis);
     if (header.exact) {
         readExactDeltas(grid, header, fileMetadata, {listener, where, header.sourceType, options},
                         volume);
@@ -103,7 +133,7 @@ Volume readDeltaGrid(openvdb::GridBase& grid, const openvdb::MetaMap::ConstPtr& 
     }
     // Values between two floats come back as the nearer one.
     if (options.keepSource && header.sourceType == "float32" && !header.book.isExact()) {
-        source = gridFromCodes<openvdb::FloatGrid>(decoded.codes->tree, header.book, 0);
+        source = gridFromCodes<openvdb::FloatGrid>(decoded.codes->tree(), header.book, 0);
         source->setName(grid.getName());
         source->setTransform(makeTransform(volume.worldFromIndex));
     }
@@ -111,11 +141,50 @@ Volume readDeltaGrid(openvdb::GridBase& grid, const openvdb::MetaMap::ConstPtr& 
         decoded = {};
         fillFromGrid(*source, {listener, where, header.sourceType, options}, volume);
     } else {
-        fillVolume(header, std::move(decoded), where, volume);
+        const CodeTree::Tree& codes = decoded.codes->tree();
+        fillVolume(header, decoded.codes, histogramOf(codes), activeBox(codes), volume);
+        requireActiveCount(volume.activeCount, header, where);
     }
     if (options.keepSource && source)
         volume.source =
             std::make_shared<const SourceGrid>(SourceGrid{std::move(source), fileMetadata});
+    return volume;
+}
+
+std::optional<Volume> readDeltaLeaves(const VdbFile& file, const VdbGrid& grid,
+                                      const std::string& where, const ReadOptions& options,
+                                      const Listener& listener, const SlicesWanted* wanted) {
+    if (options.keepSource || grid.type != "int32") return std::nullopt;
+    std::optional<VdbLeaves> leaves;
+    DeltaHeader header;
+    Volume volume;
+    try {
+        const openvdb::MetaMap::ConstPtr metadata = file.metadata(grid);
+        if (!isDeltaGrid(grid.type, *metadata)) return std::nullopt;
+        header = takeDeltaHeader(*metadata, where);
+        const bool becomesFog = options.levelSetToFog && sourceClass(*metadata) == "level set";
+        if (!mayDecodeLeaves(header) || becomesFog) return std::nullopt;
+        if (wanted && !isWithin(wanted->box, header.box)) return std::nullopt;
+        leaves = file.readLeaves(grid, slicesToRead(header, wanted));
+        if (!leaves) return std::nullopt;
+        worldFromIndexOf(leaves->transform(), where);
+        volume = describe(header, *metadata, leaves->transform());
+    } catch (const Error& error) {
+        // What is wrong is said by who reads the grid as a whole.
+        if (error.code() != ErrorCode::kInput) throw;
+        return std::nullopt;
+    }
+    const std::optional<glm::ivec2> blocks = wanted ? std::optional(wanted->blocks) : std::nullopt;
+    std::optional<DecodedLeaves> decoded = decodeLeaves(*leaves, header, where, blocks, listener);
+    if (!decoded) return std::nullopt;
+    if (wanted) {
+        decoded->blocks->setFacts(wanted->facts);
+        decoded->histogram = wanted->histogram;
+        decoded->active = wanted->box;
+    }
+    fillVolume(header, std::make_shared<const CodeTree>(std::move(decoded->blocks)),
+               std::move(decoded->histogram), decoded->active, volume);
+    if (volume.activeCount != header.active) return std::nullopt;
     return volume;
 }
 

@@ -3,9 +3,12 @@
 
 #include <openvdb/openvdb.h>
 
+#include <optional>
 #include <string>
 
 #include "deltasplat/ingest/read_volume.h"
+#include "ingest/vdb/read_slices.h"
+#include "ingest/vdb/vdb_file.h"
 
 namespace deltasplat {
 
@@ -16,5 +19,16 @@ namespace deltasplat {
 Volume readDeltaGrid(openvdb::GridBase& grid, const openvdb::MetaMap::ConstPtr& fileMetadata,
                      const std::string& where, const ReadOptions& options,
                      const Listener& listener);
+
+/// Reads a delta grid of a file as a volume whose codes are blocks along its slices: the same
+/// volume, without an OpenVDB grid, where nothing of what is asked for needs one (decodeLeaves).
+/// @param wanted  some slices: then no more of the file is read than the slabs that hold them, up
+///                to the last of them. Null: all.
+/// @return nothing where it is another grid, is not sound, or is asked for otherwise
+/// @throw as decodeLeaves
+std::optional<Volume> readDeltaLeaves(const VdbFile& file, const VdbGrid& grid,
+                                      const std::string& where, const ReadOptions& options,
+                                      const Listener& listener,
+                                      const SlicesWanted* wanted = nullptr);
 
 }  // namespace deltasplat

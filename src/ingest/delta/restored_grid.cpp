@@ -36,9 +36,9 @@ template <typename Grid>
 openvdb::GridBase::Ptr restoredGrid(const DeltaHeader& header, const DecodedDeltas& decoded) {
     using Value = typename Grid::ValueType;
     auto grid =
-        gridFromCodes<Grid>(decoded.codes->tree, header.book, valueAs<Value>(header.background));
+        gridFromCodes<Grid>(decoded.codes->tree(), header.book, valueAs<Value>(header.background));
     if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
-        setInactive(decoded.inactive->tree, header.inactiveValues, grid->tree());
+        setInactive(decoded.inactive->tree(), header.inactiveValues, grid->tree());
     }
     return grid;
 }
@@ -84,7 +84,7 @@ openvdb::GridBase::Ptr restoreGrid(const DeltaHeader& header, const DecodedValue
                                    const glm::dmat4& worldFromIndex) {
     const openvdb::GridBase::Ptr grid = decoded.values;
     grid->apply<ExactGrids>([&](auto& typed) {
-        setInactive(decoded.inactive->tree, header.inactiveValues, typed.tree());
+        setInactive(decoded.inactive->tree(), header.inactiveValues, typed.tree());
     });
     if (header.sourceTree.empty()) {
         grid->setName(deltas.getName());

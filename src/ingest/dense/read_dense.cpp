@@ -230,7 +230,7 @@ void keepMostFrequent(const std::vector<double>& values, const std::vector<std::
 void readCodes(const DenseSource& source, const ReadOptions& options, const Survey& survey,
                const Listener& listener, Volume& volume) {
     auto codes = std::make_shared<CodeTree>();
-    LayerAdder<CodeTree::Tree> adder(source, codes->tree);
+    LayerAdder<CodeTree::Tree> adder(source, codes->tree());
     const BookEncoder encoder(volume.codeBook);
     ErrorMeter meter(volume.codeBook, survey.bulkMagnitude);
     const bool exact = volume.codeBook.isExact();

@@ -103,7 +103,7 @@ std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book, ErrorMet
     std::vector<SourceLeaf*> sources;
     std::vector<CodeTree::Leaf*> targets;
     tree.getNodes(sources);
-    codes->tree.getNodes(targets);
+    codes->tree().getNodes(targets);
     forLeafRuns(sources.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
         ErrorMeter::Part part(meter);
         for (std::size_t i = begin; i < end; ++i) {
@@ -115,7 +115,7 @@ std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book, ErrorMet
         }
         meter.add(part);
     });
-    forActiveTiles(codes->tree, [&](const auto& tile) {
+    forActiveTiles(codes->tree(), [&](const auto& tile) {
         const auto value = double(tree.getValue(tile.getCoord()));
         tile.setValue(encode(value));
         ErrorMeter::Part part(meter);
@@ -167,8 +167,8 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     volume.background = double(grid.background());
     ErrorMeter meter(volume.codeBook, bulkMagnitude(scan.census));
     auto codes = codesOfTree(grid.tree(), volume.codeBook, meter);
-    volume.box = boxOf(codes->tree, options.where);
-    volume.histogram = histogramOf(codes->tree);
+    volume.box = boxOf(codes->tree(), options.where);
+    volume.histogram = histogramOf(codes->tree());
     volume.codes = std::move(codes);
     summarize(volume);
     if (volume.codeBook.isExact()) return;

@@ -14,6 +14,7 @@
 #include "ingest/grids/not_finite.h"
 #include "ingest/readers.h"
 #include "ingest/vdb/default_grid.h"
+#include "ingest/vdb/read_slices.h"
 #include "ingest/vdb/vdb_file.h"
 #include "ingest/vdb/vector_part.h"
 #include "suggest.h"
@@ -99,8 +100,9 @@ std::vector<ChosenGrid> chooseGrids(const std::string& where, const VdbFile& fil
     return chosen;
 }
 
-Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string& where,
-                const ReadOptions& options, const Listener& listener) {
+// Reads a grid as OpenVDB does.
+Volume readWholeGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string& where,
+                     const ReadOptions& options, const Listener& listener) {
     const VdbGrid& grid = *chosen.grid;
     Listener reading;
     reading.progress = [&](double share) { listener.report(kReadShare * share); };
@@ -120,8 +122,27 @@ Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string
     } else {
         volume = volumeOfGrid(loaded, coding, file.metadata());
     }
-    volume.name = chosen.name();
     return volume;
+}
+
+Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string& where,
+                const ReadOptions& options, const Listener& listener) {
+    const VdbGrid& grid = *chosen.grid;
+    double told = 0;
+    Listener onward = listener;
+    onward.progress = [&](double share) {
+        told = std::max(told, share);
+        listener.report(told);
+    };
+    std::optional<Volume> volume;
+    if (!chosen.part) volume = readDeltaLeaves(file, grid, where, options, onward);
+    if (volume) {
+        settleEmpty(*volume, {listener, where, grid.valueType(), options});
+    } else {
+        volume = readWholeGrid(file, chosen, where, options, onward);
+    }
+    volume->name = chosen.name();
+    return std::move(*volume);
 }
 
 bool isLevelSet(const VdbFile& file, const VdbGrid& grid) {
@@ -183,7 +204,22 @@ class GridReader {
     std::optional<NotFinite> passedOver_;
 };
 
+std::string whereOf(const std::filesystem::path& path, const ChosenGrid& grid) {
+    return path.string() + ": grid \"" + grid.name() + "\"";
+}
+
 }  // namespace
+
+std::optional<Volume> readVdbSlices(const std::filesystem::path& path, const ReadOptions& options,
+                                    const SlicesWanted& wanted, const Listener& listener) {
+    const VdbFile file(path);
+    const ChosenGrid chosen = chooseGrids(path.string(), file, options.gridName, false).front();
+    if (chosen.part) return std::nullopt;
+    std::optional<Volume> volume =
+        readDeltaLeaves(file, *chosen.grid, whereOf(path, chosen), options, listener, &wanted);
+    if (volume) volume->name = chosen.name();
+    return volume;
+}
 
 void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool all,
              const VolumeVisitor& visitor, const Listener& listener) {
@@ -203,8 +239,7 @@ void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool
         part.progress = [&, i](double share) {
             listener.report((double(i) + share) / double(chosen.size()));
         };
-        const std::string where = path.string() + ": grid \"" + chosen[i].name() + "\"";
-        reader.read(chosen[i], where, chosen.size() > 1, part);
+        reader.read(chosen[i], whereOf(path, chosen[i]), chosen.size() > 1, part);
     }
     reader.finish();
     if (!all || !options.gridName.empty() || !visitor.other) return;

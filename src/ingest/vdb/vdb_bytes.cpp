@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "deltasplat/error.h"
 
@@ -87,15 +88,13 @@ void VdbBytes::skip(std::uint64_t count) {
 
 void VdbBytes::read(void* to, std::uint64_t count) {
     require(count);
-    constexpr std::uint64_t kBufferBytes = std::uint64_t{1} << 18;
+    // More and more, so that a few small fields take little.
+    constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 16;
     auto* out = static_cast<char*>(to);
     while (count > 0) {
         if (position_ < bufferBegin_ || position_ >= bufferBegin_ + buffer_.size()) {
-            bufferBegin_ = position_;
-            buffer_.resize(std::size_t(std::min(kBufferBytes, size_ - position_)));
-            file_.seekg(std::streamoff(position_));
-            file_.read(buffer_.data(), std::streamsize(buffer_.size()));
-            if (!file_) failCorrupt("a read error", "a readable file");
+            fill(position_, std::min(nextBytes_, size_ - position_));
+            nextBytes_ = std::min(2 * nextBytes_, kMostBytes);
         }
         const std::uint64_t offset = position_ - bufferBegin_;
         const std::uint64_t part = std::min(count, buffer_.size() - offset);
@@ -104,6 +103,24 @@ void VdbBytes::read(void* to, std::uint64_t count) {
         position_ += part;
         count -= part;
     }
+}
+
+void VdbBytes::fill(std::uint64_t begin, std::uint64_t count) {
+    bufferBegin_ = begin;
+    buffer_.resize(std::size_t(count));
+    file_.seekg(std::streamoff(begin));
+    file_.read(buffer_.data(), std::streamsize(count));
+    if (!file_) failCorrupt("a read error", "a readable file");
+}
+
+void VdbBytes::hold(std::uint64_t begin, std::uint64_t end) {
+    seek(end);
+    seek(begin);
+    fill(begin, end - begin);
+}
+
+std::vector<char> VdbBytes::takeHeld() {
+    return std::move(buffer_);
 }
 
 std::string VdbBytes::bytes(std::uint64_t count) {
@@ -140,7 +157,7 @@ std::string VdbBytes::text(std::uint32_t most) {
     return bytes(length);
 }
 
-std::string readMetadata(VdbBytes& bytes) {
+std::string readMetadata(VdbBytes& bytes, std::string* leafSizes) {
     const std::uint32_t count = bytes.u32();
     std::uint32_t kept = 0;
     std::string entries;
@@ -149,7 +166,10 @@ std::string readMetadata(VdbBytes& bytes) {
         const std::string type = bytes.text();
         const std::uint32_t size = bytes.u32();
         if (!isKnown(type, size)) {
-            bytes.skip(size);
+            if (leafSizes && type == "__delayedload")
+                *leafSizes = bytes.bytes(size);
+            else
+                bytes.skip(size);
             continue;
         }
         const std::string value = bytes.bytes(size);

@@ -28,10 +28,17 @@ class VdbBytes {
     /// A 32-bit length and that many bytes, at most `most`.
     std::string text(std::uint32_t most = 65536);
 
+    /// Reads a range at once: what is read within it comes from memory, until something outside of
+    /// it is read. The position is then where it begins.
+    void hold(std::uint64_t begin, std::uint64_t end);
+    /// Hands over what hold() has read.
+    std::vector<char> takeHeld();
+
     [[noreturn]] void failCorrupt(const std::string& got, const std::string& expected) const;
 
   private:
     void require(std::uint64_t count) const;
+    void fill(std::uint64_t begin, std::uint64_t count);
     template <typename T>
     T number();
 
@@ -39,13 +46,16 @@ class VdbBytes {
     std::ifstream file_;
     std::uint64_t size_ = 0;
     std::uint64_t position_ = 0;
-    std::vector<char> buffer_;  // what the file holds from bufferBegin_ on
+    std::vector<char> buffer_;                          // what the file holds from bufferBegin_ on
+    std::uint64_t nextBytes_ = std::uint64_t{1} << 14;  // that are read at once
     std::uint64_t bufferBegin_ = 0;
 };
 
 /// Reads the metadata at the current position, which moves behind it. Returns it in the file's
 /// form, reduced to entries whose types and sizes OpenVDB can be trusted with.
-std::string readMetadata(VdbBytes& bytes);
+/// @param leafSizes  null, or where to put the value of OpenVDB's "file_delayed_load" as it is
+///                   stored, if there is one; not trusted
+std::string readMetadata(VdbBytes& bytes, std::string* leafSizes = nullptr);
 
 /// Appends `value` to `text` as four bytes, little endian.
 void appendU32(std::string& text, std::uint32_t value);

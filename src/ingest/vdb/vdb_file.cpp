@@ -6,13 +6,16 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <memory>
 #include <new>
 #include <sstream>
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "ingest/vdb/leaf_sizes.h"
 #include "ingest/vdb/vdb_bytes.h"
 #include "ingest/vdb/vdb_stream.h"
 #include "ingest/vdb/vdb_walk.h"
@@ -89,7 +92,9 @@ auto guarded(VdbStreamBuf& buffer, const std::string& where, const Read& read) {
 // What stands before a grid's tree.
 struct GridHead {
     std::string metadata;         // as readMetadata returns it
+    std::string leafSizes;        // OpenVDB's "file_delayed_load" as it is stored; empty: none
     std::uint64_t transform = 0;  // where it starts
+    openvdb::math::Transform::ConstPtr map;
     VdbValueFormat format;
 };
 
@@ -102,18 +107,64 @@ GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::p
     }
     bytes.seek(grid.data);
     head.format.compression = bytes.u32();
-    head.metadata = readMetadata(bytes);
+    head.metadata = readMetadata(bytes, &head.leafSizes);
     head.transform = bytes.position();
     bytes.text(256);  // the transform's type: a length that OpenVDB would trust
     VdbStreamBuf buffer(file);
     buffer.addRange(head.transform, bytes.size());
     const std::string where = file.string() + ": grid \"" + grid.name + "\"";
     guarded(buffer, where, [&](std::istream& stream) {
-        openvdb::math::Transform().read(stream);
+        const auto map = std::make_shared<openvdb::math::Transform>();
+        map->read(stream);
+        head.map = map;
         bytes.seek(head.transform + std::uint64_t(stream.tellg()));
         return 0;
     });
     return head;
+}
+
+void requireEnd(const VdbBytes& bytes, const VdbGrid& grid) {
+    if (bytes.position() == grid.end) return;
+    bytes.failCorrupt("a grid that ends at byte " + std::to_string(bytes.position()),
+                      std::to_string(grid.end));
+}
+
+// Reads the leaves of some slices alone, those that lie one behind the other at once, and leaves
+// these in `leaves`.
+// @param bytes  at the first leaf
+std::optional<std::vector<VdbRun>> readRuns(VdbBytes& bytes, const GridHead& head,
+                                            std::uint64_t end, const glm::ivec2& slices,
+                                            std::vector<VdbLeaf>& leaves,
+                                            const std::function<void(std::uint64_t)>& claim) {
+    constexpr std::uint64_t kMaskBytes = 64;
+    const auto sizes = leafSizesOf(head.leafSizes, leaves.size());
+    if (!sizes) return std::nullopt;
+    std::vector<VdbRun> runs;
+    std::vector<VdbLeaf> wanted;
+    std::uint64_t position = bytes.position();
+    for (std::size_t i = 0; i < leaves.size();) {
+        const auto isWanted = [&](const VdbLeaf& leaf) {
+            return leaf.origin[0] <= slices.y && leaf.origin[0] + 7 >= slices.x;
+        };
+        const std::size_t first = i;
+        const std::uint64_t begin = position;
+        const bool areWanted = isWanted(leaves[i]);
+        for (; i < leaves.size() && isWanted(leaves[i]) == areWanted; ++i)
+            position += kMaskBytes + (*sizes)[i];
+        if (position > end) return std::nullopt;
+        if (!areWanted) continue;
+        claim(position - begin);
+        bytes.hold(begin, position);
+        for (std::size_t n = first; n < i; ++n) {
+            walkLeaf(bytes, head.format, leaves[n]);
+            wanted.push_back(leaves[n]);
+        }
+        if (bytes.position() != position) return std::nullopt;
+        runs.push_back({begin, bytes.takeHeld()});
+    }
+    if (position != end) return std::nullopt;
+    leaves = std::move(wanted);
+    return runs;
 }
 
 openvdb::MetaMap::ConstPtr parseMetadata(const std::string& bytes) {
@@ -213,10 +264,7 @@ openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listen
         if (part->parentName.empty()) {
             requireMemory(where, walkTree(bytes, head.format).memoryBytes(head.format));
         }
-        if (bytes.position() != part->end) {
-            bytes.failCorrupt("a grid that ends at byte " + std::to_string(bytes.position()),
-                              std::to_string(part->end));
-        }
+        requireEnd(bytes, *part);
         buffer.addRange(part->begin, part->data + sizeof(std::uint32_t));
         buffer.addText(head.metadata);
         buffer.addRange(head.transform, part->end);
@@ -225,6 +273,38 @@ openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listen
     return guarded(buffer, where, [](std::istream& stream) {
         return openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids()->back();
     });
+}
+
+std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid,
+                                             const std::optional<glm::ivec2>& slices) const {
+    if (!grid.parentName.empty() || grid.type != "int32") return std::nullopt;
+    VdbBytes bytes(file_);
+    const GridHead head = readHead(bytes, grid, file_);
+    if ((head.format.compression & openvdb::io::COMPRESS_ZIP) != 0) return std::nullopt;
+    const std::uint64_t begin = bytes.position();
+    if (begin > grid.end) return std::nullopt;
+    const auto claim = [&](std::uint64_t more) {
+        requireMemory(file_.string() + ": grid \"" + grid.name + "\"", double(more));
+    };
+    VdbTreePlaces places;
+    std::vector<VdbRun> runs;
+    if (slices) {
+        walkTopology(bytes, head.format, places);
+        const auto read = readRuns(bytes, head, grid.end, *slices, places.leaves, claim);
+        if (!read) return std::nullopt;
+        runs = std::move(*read);
+    } else {
+        claim(grid.end - begin);
+        bytes.hold(begin, grid.end);
+        walkTree(bytes, head.format, &places);
+        requireEnd(bytes, grid);
+        runs.push_back({begin, bytes.takeHeld()});
+    }
+    if (places.hasActiveTiles || places.background < begin) return std::nullopt;
+    bytes.seek(places.background);
+    const auto background = std::int32_t(bytes.u32());
+    const bool isPacked = (head.format.compression & openvdb::io::COMPRESS_BLOSC) != 0;
+    return VdbLeaves(std::move(runs), std::move(places.leaves), background, isPacked, head.map);
 }
 
 }  // namespace deltasplat

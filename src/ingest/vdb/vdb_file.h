@@ -5,11 +5,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/vec2.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "deltasplat/progress.h"
 #include "ingest/vdb/vdb_bytes.h"
+#include "ingest/vdb/vdb_leaves.h"
 
 namespace deltasplat {
 
@@ -54,6 +57,14 @@ class VdbFile {
     /// into
     ///        memory, whatever the listener throws
     openvdb::GridBase::Ptr read(const VdbGrid& grid, const Listener& listener) const;
+    /// Returns the packed leaves of a grid of int32, unless there are active tiles beside them, the
+    /// grid shares its voxels with another, or values are packed by zip.
+    /// @param slices  which leaves are wanted: those with voxels whose x is within [x, y]. The
+    ///                values of others are not read, if the file says how long they are
+    ///                (OpenVDB's "file_delayed_load"). None: all.
+    /// @throw Error(kInput) as read()
+    std::optional<VdbLeaves> readLeaves(const VdbGrid& grid,
+                                        const std::optional<glm::ivec2>& slices = {}) const;
 
   private:
     void readDirectory();

@@ -28,23 +28,11 @@ using Mask = std::array<std::uint64_t, (std::size_t{1} << (3 * kLog2)) / 64>;
 
 class Walk {
   public:
-    Walk(VdbBytes& bytes, const VdbValueFormat& format) : bytes_(bytes), format_(format) {}
+    Walk(VdbBytes& bytes, const VdbValueFormat& format, VdbTreePlaces* places)
+        : bytes_(bytes), format_(format), places_(places) {}
 
     VdbTreeSize run() {
-        if (bytes_.u32() != 1) fail("a tree of several buffers");
-        bytes_.skip(format_.bytes);
-        const std::uint32_t tiles = bytes_.u32();
-        const std::uint32_t children = bytes_.u32();
-        for (std::uint32_t i = 0; i < tiles; ++i) {
-            addRoot(place());
-            bytes_.skip(format_.bytes);
-            if (bytes_.u8() > 1) fail("a tile that is neither active nor inactive");
-        }
-        for (std::uint32_t i = 0; i < children; ++i) {
-            const Place origin = place();
-            leaves_ = &addRoot(origin);
-            node<kUpperLog2>(origin);
-        }
+        topology();
         // Values follow in the order of the root's map, not in that of the nodes before.
         for (const auto& [origin, leaves] : root_) {
             for (const Place& leaf : leaves) leafValues(leaf);
@@ -52,7 +40,50 @@ class Walk {
         return size_;
     }
 
+    void runTopology() {
+        topology();
+        for (const auto& [origin, leaves] : root_)
+            for (const Place& leaf : leaves) places_->leaves.push_back({leaf, 0, 0, 0});
+    }
+
+    void leafValues(const Place& origin) {
+        const std::uint64_t begin = bytes_.position();
+        const auto active = mask<kLeafLog2>();
+        if (format_.leaf == Leaf::kValues) {
+            const ValuesPlace values = nodeValues<kLeafLog2>(active);
+            if (places_) places_->leaves.push_back({origin, values.count, begin, values.data});
+            return;
+        }
+        if (place() != origin) fail("a misplaced leaf");
+        if (format_.leaf == Leaf::kBools) mask<kLeafLog2>();
+    }
+
   private:
+    struct ValuesPlace {
+        std::uint64_t data;
+        std::uint32_t count;
+    };
+
+    void topology() {
+        if (bytes_.u32() != 1) fail("a tree of several buffers");
+        if (places_) places_->background = bytes_.position();
+        bytes_.skip(format_.bytes);
+        const std::uint32_t tiles = bytes_.u32();
+        const std::uint32_t children = bytes_.u32();
+        for (std::uint32_t i = 0; i < tiles; ++i) {
+            addRoot(place());
+            bytes_.skip(format_.bytes);
+            const int state = bytes_.u8();
+            if (state > 1) fail("a tile that is neither active nor inactive");
+            if (state == 1) noteActiveTile();
+        }
+        for (std::uint32_t i = 0; i < children; ++i) {
+            const Place origin = place();
+            leaves_ = &addRoot(origin);
+            node<kUpperLog2>(origin);
+        }
+    }
+
     [[noreturn]] void fail(const std::string& got) const {
         bytes_.failCorrupt(got, "a sound OpenVDB tree");
     }
@@ -87,6 +118,8 @@ class Walk {
             if ((children[i] & values[i]) != 0) fail("a node that is both tile and child");
         }
         ++(kLog2 == kUpperLog2 ? size_.upper : size_.lower);
+        if (std::any_of(values.begin(), values.end(), [](std::uint64_t word) { return word != 0; }))
+            noteActiveTile();
         nodeValues<kLog2>(values);
         for (std::size_t i = 0; i < children.size(); ++i) {
             for (std::uint64_t rest = children[i]; rest != 0; rest &= rest - 1) {
@@ -116,18 +149,12 @@ class Walk {
         }
     }
 
-    void leafValues(const Place& origin) {
-        const auto active = mask<kLeafLog2>();
-        if (format_.leaf == Leaf::kValues) {
-            nodeValues<kLeafLog2>(active);
-            return;
-        }
-        if (place() != origin) fail("a misplaced leaf");
-        if (format_.leaf == Leaf::kBools) mask<kLeafLog2>();
+    void noteActiveTile() {
+        if (places_) places_->hasActiveTiles = true;
     }
 
     template <int kLog2>
-    void nodeValues(const Mask<kLog2>& active) {
+    ValuesPlace nodeValues(const Mask<kLog2>& active) {
         using namespace openvdb::io;
         const int kind = bytes_.u8();
         const bool one = kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL;
@@ -141,7 +168,9 @@ class Walk {
             count = 0;
             for (const std::uint64_t word : active) count += std::uint64_t(std::popcount(word));
         }
+        const std::uint64_t begin = bytes_.position();
         data(count);
+        return {begin, std::uint32_t(count)};
     }
 
     void data(std::uint64_t count) {
@@ -184,6 +213,7 @@ class Walk {
 
     VdbBytes& bytes_;
     const VdbValueFormat& format_;
+    VdbTreePlaces* places_;
     VdbTreeSize size_;
     std::map<Place, std::vector<Place>> root_;  // leaves of each root node, in file order
     std::vector<Place>* leaves_ = nullptr;
@@ -214,8 +244,18 @@ double VdbTreeSize::memoryBytes(const VdbValueFormat& format) const {
     return double(leaves) * leafBytes + double(lower) * 4096 * slot + double(upper) * 32768 * slot;
 }
 
-VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format) {
-    return Walk(bytes, format).run();
+VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format, VdbTreePlaces* places) {
+    return Walk(bytes, format, places).run();
+}
+
+void walkTopology(VdbBytes& bytes, const VdbValueFormat& format, VdbTreePlaces& places) {
+    Walk(bytes, format, &places).runTopology();
+}
+
+void walkLeaf(VdbBytes& bytes, const VdbValueFormat& format, VdbLeaf& leaf) {
+    VdbTreePlaces places;
+    Walk(bytes, format, &places).leafValues(leaf.origin);
+    leaf = places.leaves.front();
 }
 
 }  // namespace deltasplat

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "ingest/vdb/vdb_bytes.h"
 
@@ -29,11 +31,36 @@ struct VdbTreeSize {
     double memoryBytes(const VdbValueFormat& format) const;
 };
 
+/// Where a leaf of values lies in a file.
+struct VdbLeaf {
+    std::array<std::int32_t, 3> origin;  ///< of its first voxel
+    std::uint32_t count;  ///< values that are stored: of all voxels, or of the active ones
+    std::uint64_t mask;   ///< where its mask is, 64 bytes
+    std::uint64_t data;   ///< where its values are, before them their packed size, if they have one
+};
+
+/// What of a tree has values, and where these lie in a file.
+struct VdbTreePlaces {
+    std::uint64_t background = 0;  ///< where the background is
+    bool hasActiveTiles = false;
+    std::vector<VdbLeaf> leaves;  ///< in file order
+};
+
 /// Walks a grid's tree from its first byte to its last without unpacking it; `bytes` moves along.
 /// Everything that OpenVDB takes on trust is checked: counts, masks, places of nodes, and that each
 /// node's stored size is the size of its values (OpenVDB 10 writes past its buffer where it is
 /// not).
+/// @param places  null, or where to note what lies where; of leaves that have values
 /// @throw Error(kInput) at the first contradiction
-VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format);
+VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format,
+                     VdbTreePlaces* places = nullptr);
+
+/// Walks what comes before the values of leaves, as walkTree does; `bytes` moves behind it. Of
+/// leaves, no more than their places is known then.
+void walkTopology(VdbBytes& bytes, const VdbValueFormat& format, VdbTreePlaces& places);
+
+/// Walks the values of one leaf, as walkTree does, and notes where they lie; `bytes` moves from
+/// their beginning behind them.
+void walkLeaf(VdbBytes& bytes, const VdbValueFormat& format, VdbLeaf& leaf);
 
 }  // namespace deltasplat

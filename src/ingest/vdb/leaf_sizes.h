@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace deltasplat {
+
+/// Returns how many bytes each leaf of a grid of int32 has in its file behind its mask, in file
+/// order, if that is noted for as many leaves as there are. A note may be wrong.
+/// @param stored  value of the grid's metadata "file_delayed_load" as the file has it
+std::optional<std::vector<std::uint64_t>> leafSizesOf(const std::string& stored,
+                                                      std::size_t leaves);
+
+}  // namespace deltasplat

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: the OpenVDB file format, as OpenVDB 10's headers read it (LeafNode.h,
+// io/Compression.h).
+#include "ingest/vdb/vdb_leaves.h"
+
+#include <openvdb/points/StreamCompression.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <exception>
+#include <iterator>
+#include <utility>
+
+namespace deltasplat {
+
+VdbLeaves::VdbLeaves(std::vector<VdbRun> runs, std::vector<VdbLeaf> leaves, std::int32_t background,
+                     bool isPacked, openvdb::math::Transform::ConstPtr transform)
+    : runs_(std::move(runs)),
+      leaves_(std::move(leaves)),
+      background_(background),
+      isPacked_(isPacked),
+      transform_(std::move(transform)) {}
+
+// Where a byte of a leaf is in memory, and those of the leaf behind it.
+const char* VdbLeaves::at(std::uint64_t position) const {
+    const VdbRun* run = &runs_.back();
+    if (position < run->begin) {
+        run = &*std::prev(std::upper_bound(
+            runs_.begin(), runs_.end(), position,
+            [](std::uint64_t place, const VdbRun& later) { return place < later.begin; }));
+    }
+    return run->bytes.data() + (position - run->begin);
+}
+
+VdbLeaves::Mask VdbLeaves::maskOf(const VdbLeaf& leaf) const {
+    Mask mask;
+    std::memcpy(mask.data(), at(leaf.mask), sizeof mask);
+    return mask;
+}
+
+std::span<const std::int32_t> VdbLeaves::activeValues(const VdbLeaf& leaf, const Mask& mask,
+                                                      Values& room) const {
+    std::size_t active = 0;
+    for (const std::uint64_t word : mask) active += std::size_t(std::popcount(word));
+    if (active == 0 || !unpack(leaf, room)) return {};
+    if (leaf.count == active) return {room.data(), active};
+    // All values are there.
+    std::size_t kept = 0;
+    for (std::size_t x = 0; x < mask.size(); ++x) {
+        for (std::uint64_t rest = mask[x]; rest != 0; rest &= rest - 1)
+            room[kept++] = room[64 * x + std::size_t(std::countr_zero(rest))];
+    }
+    return {room.data(), kept};
+}
+
+// The walk has found that sizes are what the file says.
+bool VdbLeaves::unpack(const VdbLeaf& leaf, Values& values) const {
+    const std::size_t size = sizeof(std::int32_t) * leaf.count;
+    std::uint64_t data = leaf.data;
+    if (isPacked_) {
+        std::int64_t packed;
+        std::memcpy(&packed, at(data), sizeof packed);
+        data += sizeof packed;
+        if (packed > 0) {
+            const char* chunk = at(data);
+            try {
+                openvdb::compression::bloscDecompress(reinterpret_cast<char*>(values.data()), size,
+                                                      sizeof values, chunk);
+            } catch (const std::exception&) {
+                return false;
+            }
+            return true;
+        }
+    }
+    std::memcpy(values.data(), at(data), size);
+    return true;
+}
+
+}  // namespace deltasplat

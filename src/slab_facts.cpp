@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/slab_facts.h"
+
+#include <algorithm>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "default_floats.h"
+#include "deltasplat/atomic_file.h"
+#include "deltasplat/error.h"
+#include "deltasplat/ingest/slot.h"
+#include "ingest/files/input_files.h"
+#include "ingest/vdb/read_slices.h"
+#include "lower_case.h"
+#include "picture_facts.h"
+
+namespace deltasplat {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kTitle = "deltasplat_slab_facts";
+
+Json notesJson(const Notes& notes) {
+    Json json = Json::array();
+    for (const auto& [name, text] : notes) json.push_back({name, text});
+    return json;
+}
+
+Json vectorJson(const glm::ivec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+glm::ivec3 vectorOf(const Json& json) {
+    return {json.at(0).get<int>(), json.at(1).get<int>(), json.at(2).get<int>()};
+}
+
+// What tells a delta grid from another one.
+Json gridJson(const Volume& volume) {
+    if (!volume.origin) return Json();
+    return {{"slice_axis", volume.origin->sliceAxis},
+            {"key_interval", volume.origin->keyInterval},
+            {"deltas", volume.origin->deltas},
+            {"active", volume.activeCount},
+            {"code_book", volume.origin->codeBook}};
+}
+
+Json histogramJson(const Volume& volume) {
+    Json json = Json::array();
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code)
+        if (volume.histogram[code] != 0) json.push_back({code, volume.histogram[code]});
+    return json;
+}
+
+std::vector<std::uint64_t> histogramOf(const Json& json) {
+    std::vector<std::uint64_t> histogram(kCodeCount);
+    for (const Json& pair : json)
+        histogram.at(pair.at(0).get<std::size_t>()) = pair.at(1).get<std::uint64_t>();
+    return histogram;
+}
+
+Json slabJson(const PlannedSlab& slab) {
+    return {slab.firstSlice, slab.sliceCount, slab.visible, slab.deltas,
+            slab.words,      slab.seenWords,  slab.whole};
+}
+
+PlannedSlab slabOf(const Json& json) {
+    PlannedSlab slab;
+    slab.firstSlice = json.at(0).get<int>();
+    slab.sliceCount = json.at(1).get<int>();
+    slab.visible = json.at(2).get<std::uint64_t>();
+    slab.deltas = json.at(3).get<std::uint64_t>();
+    slab.words = json.at(4).get<std::uint64_t>();
+    slab.seenWords = json.at(5).get<std::uint64_t>();
+    slab.whole = json.at(6).get<bool>();
+    return slab;
+}
+
+Json factsJson(const SlabFacts& facts) {
+    Json slabs = Json::array(), seen = Json::array();
+    for (const PlannedSlab& slab : facts.slabs) slabs.push_back(slabJson(slab));
+    for (const SlabFacts::Seen& slab : facts.seen)
+        seen.push_back({slab.work, slab.blocks.x, slab.blocks.y});
+    return {{"blocks_seen", facts.blocksSeen},
+            {"blocks_per_slab", facts.blocksPerSlab},
+            {"slabs", std::move(slabs)},
+            {"seen", std::move(seen)},
+            {"words", facts.words},
+            {"content", facts.content}};
+}
+
+SlabFacts factsOf(const Json& json) {
+    SlabFacts facts;
+    facts.blocksSeen = json.at("blocks_seen").get<std::size_t>();
+    facts.blocksPerSlab = json.at("blocks_per_slab").get<int>();
+    for (const Json& slab : json.at("slabs")) facts.slabs.push_back(slabOf(slab));
+    for (const Json& slab : json.at("seen")) {
+        facts.seen.push_back(
+            {slab.at(0).get<double>(), {slab.at(1).get<int>(), slab.at(2).get<int>()}});
+    }
+    facts.words = json.at("words").get<std::uint64_t>();
+    facts.content = json.at("content").get<std::string>();
+    if (facts.blocksPerSlab < 1) throw Error(ErrorCode::kInput, "slabs of nothing");
+    return facts;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
+                         const std::string& expected) {
+    throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
+}
+
+Json read(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    if (!in) refuse(file, "a file that cannot be opened", "a readable file");
+    try {
+        return Json::parse(in).at(kTitle);
+    } catch (const std::exception&) {
+        refuse(file, "something else", "facts of a picture's slabs");
+    }
+}
+
+SlicesWanted wantedOf(const Json& json, const SlabShare& share) {
+    SlicesWanted wanted;
+    const auto facts = std::make_shared<const SlabFacts>(factsOf(json.at("facts")));
+    const int first = facts->endOf(share.first - 1, share.count);
+    const int last = facts->endOf(share.last, share.count);
+    // A part that holds no slab reads as little as there is.
+    const int axis = json.at("grid").at("slice_axis").get<int>();
+    wanted.box = {vectorOf(json.at("box").at(0)), vectorOf(json.at("box").at(1))};
+    wanted.blocks = glm::ivec2(toSliceOrder(wanted.box.min, axis % 3).x >> 3);
+    for (int slab = first; slab < last; ++slab) {
+        const glm::ivec2& blocks = facts->seen.at(std::size_t(slab)).blocks;
+        const bool isFirst = slab == first;
+        wanted.blocks.x = isFirst ? blocks.x : std::min(wanted.blocks.x, blocks.x);
+        wanted.blocks.y = isFirst ? blocks.y : std::max(wanted.blocks.y, blocks.y);
+    }
+    wanted.histogram = histogramOf(json.at("histogram"));
+    wanted.facts = facts;
+    return wanted;
+}
+
+}  // namespace
+
+void writeSlabFacts(const LayeredPicture& picture, const Notes& options,
+                    const std::filesystem::path& file) {
+    const DefaultFloats floats;
+    const LayeredPicture::Impl& all = picture.impl();
+    const Volume& volume = *all.scene.impl().scene.volume;
+    const bool byParts = isReadByParts(all);
+    Json json{{"options", notesJson(options)}, {"by_parts", byParts}};
+    if (byParts) {
+        SlabFacts facts = deltasplat::factsOf(all);
+        facts.blocksSeen = all.scene.impl().blocksSeen(all.views.front()->axis().sliceAxis);
+        json["grid"] = gridJson(volume);
+        json["box"] = {vectorJson(volume.box.min), vectorJson(volume.box.max)};
+        json["facts"] = factsJson(facts);
+        json["histogram"] = histogramJson(volume);
+    }
+    const std::string text =
+        Json{{kTitle, json}}.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    writeFileAtomically(file, text);
+}
+
+std::optional<Volume> readSlabVolume(const std::filesystem::path& input, const ReadOptions& reading,
+                                     const std::filesystem::path& facts, const Notes& options,
+                                     const SlabShare& share, const Listener& listener) {
+    const DefaultFloats floats;
+    const Json json = read(facts);
+    SlicesWanted wanted;
+    Json grid;
+    try {
+        if (json.at("options") != notesJson(options))
+            refuse(facts, "facts for other options", "the same");
+        if (!json.at("by_parts").get<bool>()) return std::nullopt;
+        grid = json.at("grid");
+        wanted = wantedOf(json, share);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception&) {
+        refuse(facts, "something else", "facts of a picture's slabs");
+    }
+    if (lowerCase(input.extension().string()) != ".vdb") return std::nullopt;
+    if (inputsAreConfined()) requireConfined(input);
+    std::optional<Volume> volume = readVdbSlices(input, reading, wanted, listener);
+    if (volume && gridJson(*volume) != grid)
+        refuse(facts, "facts of another volume", "those of " + input.string());
+    return volume;
+}
+
+}  // namespace deltasplat
