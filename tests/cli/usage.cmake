@@ -592,8 +592,8 @@ deltasplat_unused(synth_spacing --spacing "without a .vdb output"
     ARGS synth slab out.raw --spacing 1,1,2 CREATES out.raw)
 
 foreach(mode xray mip)
-    foreach(option method=delta tolerance=0.1 tolerance-value=1 extinction=2 unit-distance=3
-            filter=box tf=tf_good.json)
+    foreach(option method=delta tolerance=0.1 tolerance-value=1 resolution=2 extinction=2
+            unit-distance=3 filter=box tf=tf_good.json)
         string(REGEX REPLACE "=.*" "" name ${option})
         deltasplat_unused(${mode}_${name} --${name} "with --mode ${mode}" CREATES out.exr
             ARGS render ${cube} -o out.exr --size 8x8 --mode ${mode} --${option})
@@ -614,18 +614,9 @@ deltasplat_unused(depth_shade --depth-shade "without --mode mip" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --mode min --depth-shade 0.5)
 deltasplat_unused(mu_water --mu-water "without --mode drr" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --mode xray --mu-water 0.02)
-foreach(option sigma resolution)
-    deltasplat_unused(xray_${option}_from_eye --${option}
-        "with --mode xray but in --projection ortho" CREATES out.exr
-        ARGS render ${cube} -o out.exr --size 8x8 --mode xray --${option} 1
-            --projection perspective)
-endforeach()
-deltasplat_unused(mip_resolution --resolution "with --mode mip" CREATES out.exr
-    ARGS render ${cube} -o out.exr --size 8x8 --mode mip --resolution 1)
-deltasplat_unused(xray_resolution_2 --resolution "above 1 with --mode xray" CREATES out.exr
-    ARGS render ${cube} -o out.exr --size 8x8 --mode xray --resolution 2)
-deltasplat_cli_test(used.xray_resolution CREATES out.exr
-    ARGS render ${cube} -o out.exr --size 8x8 --mode xray --resolution 1/2 --float)
+deltasplat_unused(xray_sigma_from_eye --sigma "with --mode xray but in --projection ortho"
+    CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --mode xray --sigma 1 --projection perspective)
 # Of a file that names no patient's space, --photons in a .png.
 deltasplat_cli_test(unused.photons CREATES out.png
     ARGS render ${cube} -o out.png --size 8x8 --drr --photons 1000

@@ -97,9 +97,6 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
             display.warn(option + ": has no effect with --mode " + modeName(mode) +
                          " but in --projection ortho");
     }
-    const RenderOptions& options = command.picture.render;
-    if (!colorsValues(command) && !fromEye && options.resolution.value_or(1) > 1)
-        display.warn("--resolution: has no effect above 1 with --mode " + modeName(mode));
     if (isGiven(app, "--background") && (storesValues(command) || mode == Mode::kDrr))
         display.warn("--background: has no effect on " +
                      std::string(storesValues(command) ? "an .exr" : "a picture") +
