@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <utility>
 
 #include "deltasplat/ingest/slot.h"
 #include "eye_render.h"
@@ -13,7 +12,6 @@
 #include "parallel.h"
 #include "ray_picture.h"
 #include "rays/blur_plane.h"
-#include "rays/coarse_rays.h"
 #include "rays/depth_shade.h"
 #include "rays/follow_rays.h"
 #include "stopwatch.h"
@@ -21,7 +19,7 @@
 namespace deltasplat {
 namespace {
 
-// Sheet pixels a voxel, or a box of voxels that are read as one.
+// Sheet pixels a voxel.
 constexpr int kResolution = 1;
 
 // A voxel stands for itself: what is between is for the warp to find.
@@ -83,28 +81,12 @@ void combineMet(const Image& met, const Image* shade, const ValuePainter& painte
     });
 }
 
-// How many voxels along x, y and z are read as one: of sums, boxes that are no larger than a pixel,
-// unless the size of voxels is asked for.
-glm::ivec3 boxesOf(const RenderOptions& options, const Camera& camera, const Volume& volume) {
-    glm::ivec3 boxes(1);
-    if (!showsSums(options.mode)) return boxes;
-    if (options.resolution) return glm::ivec3(std::max(1, int(1 / *options.resolution)));
-    if (options.sigma) return boxes;
-    const double pixel = std::min(camera.pixelWorld(), camera.pixelHeightWorld());
-    for (int axis = 0; axis < 3; ++axis) {
-        const double voxel = glm::length(glm::dvec3(volume.worldFromIndex[axis]));
-        while (boxes[axis] < kMostVoxelsAsOne && 2 * boxes[axis] * voxel <= pixel) boxes[axis] *= 2;
-    }
-    return boxes;
-}
-
 // A parallel picture on its way: what lies where, and what it is for.
 struct ParallelView {
     const Volume& volume;
     const RenderOptions& options;
     const Camera& camera;
     const Factorization& factors;
-    glm::ivec3 boxes;  // of voxels, which the factors are of
 };
 
 // How deep along the line of sight places in the volume lie, counted from its first voxel; from one
@@ -156,11 +138,9 @@ RayRule parallelRule(Mode mode) {
 
 void renderParallel(const ParallelView& view, const Listener& listener, RenderResult& result) {
     const Clock::time_point start = Clock::now();
-    const auto& [volume, options, camera, factors, boxes] = view;
+    const auto& [volume, options, camera, factors] = view;
     const RayRule rule = parallelRule(options.mode);
-    RayVolume rays = makeRayVolume(volume, factors.sliceAxis, rule, valueMapOf(options));
-    const glm::ivec3 slicedBoxes = toSliceOrder(boxes, factors.sliceAxis);
-    if (boxes != glm::ivec3(1)) rays = coarsened(std::move(rays), slicedBoxes);
+    const RayVolume rays = makeRayVolume(volume, factors.sliceAxis, rule, valueMapOf(options));
     RenderStats& stats = result.stats;
     stats.prepareSeconds = secondsSince(start);
 
@@ -199,7 +179,7 @@ void renderParallel(const ParallelView& view, const Listener& listener, RenderRe
         combineMet(share, shades ? &shade : nullptr, ValuePainter(volume, options, rays),
                    result.image);
     }
-    stats.resolution = double(kResolution) / std::max(slicedBoxes.y, slicedBoxes.z);
+    stats.resolution = kResolution;
     stats.footprint = footprint.width;
     stats.renderSeconds = secondsSince(renderStart);
     stats.warpSeconds = stats.renderSeconds - stats.splatSeconds - stats.compositeSeconds;
@@ -212,17 +192,14 @@ void renderRays(const Volume& volume, const RenderOptions& options, const Listen
     checkRayOptions(options);
     const bool parallel = options.camera.projection == Projection::kOrtho;
     // Of pictures from an eye, where it goes from region to region, the middle's.
-    const glm::ivec3 boxes = parallel ? boxesOf(options, result.camera, volume) : glm::ivec3(1);
-    const Factorization view =
-        factorize(result.camera, volume.worldFromIndex * indexFromBoxes(boxes),
-                  parallel ? options.resolution.value_or(kResolution) : kResolution);
+    const Factorization view = factorize(result.camera, volume.worldFromIndex,
+                                         parallel ? options.resolution : std::optional<double>(1));
     result.stats.sliceAxis = view.sliceAxis;
     result.stats.slices = volume.box.dims()[view.sliceAxis];
     if (!volume.empty()) {
-        warnOfValues(volume, options, result.stats.slices,
-                     view.sliceStepWorld / boxes[view.sliceAxis], listener);
+        warnOfValues(volume, options, result.stats.slices, view.sliceStepWorld, listener);
         if (parallel) {
-            renderParallel({volume, options, result.camera, view, boxes}, listener, result);
+            renderParallel({volume, options, result.camera, view}, listener, result);
         } else {
             renderFromEye(volume, options, listener, result);
         }

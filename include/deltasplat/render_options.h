@@ -65,9 +65,9 @@ struct Drr {
     std::optional<double> photons;  ///< that a pixel would get past nothing, > 0; empty: 1
 };
 
-/// What can be asked for. Under all modes but kComposite method, tolerance, filter, extinction,
-/// unit distance and colorBy have no effect, sigma and resolutions up to 1 only under kXray and
-/// kDrr in parallel projection; the transfer function has none but for the colours of `mipColors`.
+/// What can be asked for. Under all modes but kComposite method, tolerance, resolution, filter,
+/// extinction, unit distance and colorBy have no effect, and sigma only under kXray and kDrr in
+/// parallel projection; the transfer function has none but for the colours of `mipColors`.
 struct RenderOptions : SplatOptions {
     Mode mode = Mode::kComposite;
     /// kMip, kMin, kAverage: the transfer function's colour of the value, opaque, instead of the

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -24,14 +23,6 @@ struct BlockPlace {
     std::size_t sliceStep;
     std::size_t rowStep;
 };
-
-/// Writes one value everywhere.
-inline void fillBlock(float value, const BlockPlace& place) {
-    for (std::size_t slice = 0; slice < 8; ++slice) {
-        for (std::size_t u = 0; u < 8; ++u)
-            std::fill_n(place.first + slice * place.sliceStep + u * place.rowStep, 8, value);
-    }
-}
 
 /// Reads the 512 codes of a leaf (x slowest, z fastest) as values, in (slice, u, v) order.
 void readBlockValues(const Code* codes, int sliceAxis, const CodeValues& values,

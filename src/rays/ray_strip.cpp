@@ -2,15 +2,36 @@
 #include "rays/ray_strip.h"
 
 #include <algorithm>
+#include <bit>
+
+#include "bit_matrix.h"
 
 namespace deltasplat {
 namespace {
 
-constexpr ActiveWords kAllActive = [] {
-    ActiveWords words{};
+ActiveWords allActive() {
+    ActiveWords words;
     words.fill(~std::uint64_t{0});
     return words;
-}();
+}
+
+ActiveWords activeWords(const CodeTree::Leaf& leaf, int sliceAxis) {
+    ActiveWords words{};
+    const auto& mask = leaf.getValueMask();
+    for (int x = 0; x < 8; ++x) {
+        const auto word = mask.getWord<std::uint64_t>(x);  // bit 8 * y + z
+        const std::uint64_t turned = sliceAxis == 2 ? transposedBits(word) : 0;
+        for (int i = 0; i < 8; ++i) {
+            if (sliceAxis == 1) words[i] |= (word >> (8 * i) & 0xFF) << (8 * x);  // bit 8 * x + z
+            if (sliceAxis == 2) words[i] |= (turned >> (8 * i) & 0xFF) << (8 * x);
+        }
+        if (sliceAxis == 0) words[x] = word;
+    }
+    if (sliceAxis == 1) {
+        for (std::uint64_t& word : words) word = transposedBits(word);
+    }
+    return words;
+}
 
 }  // namespace
 
@@ -51,9 +72,43 @@ BlockPlace RayStrip::placeOf(int row, int column) {
 
 void RayStrip::readBlock(const CodeBlock& block, int row, int column) {
     empty_[at(row, column)] = false;
-    const ActiveWords words = readActiveValues(volume_, block, placeOf(row, column));
-    fills_[at(row, column)] = words == kAllActive ? kAll : kSome;
+    if (block.leaf) return readLeaf(block, row, column);
+    fills_[at(row, column)] = kAll;
+    if (volume_.sourceValues) {
+        volume_.sourceValues(block, placeOf(row, column));
+    } else {
+        fillBlock(row, column, volume_.valueOf(Code(block.tileSlot - 1)));
+    }
+    setActive(row, column, allActive());
+}
+
+void RayStrip::readLeaf(const CodeBlock& block, int row, int column) {
+    const CodeTree::Leaf& leaf = *block.leaf;
+    const BlockPlace place = placeOf(row, column);
+    if (volume_.sourceValues) {
+        volume_.sourceValues(block, place);
+    } else {
+        readBlockValues(leaf.buffer().data(), volume_.sliceAxis, volume_.values, place);
+    }
+    const bool dense = leaf.isDense();
+    fills_[at(row, column)] = dense ? kAll : kSome;
+    const ActiveWords words = dense ? allActive() : activeWords(leaf, volume_.sliceAxis);
+    for (std::size_t slice = 0; slice < 8; ++slice) {
+        for (std::uint64_t off = ~words[slice]; off != 0; off &= off - 1) {
+            const auto bit = std::size_t(std::countr_zero(off));
+            place.first[slice * place.sliceStep + bit / 8 * place.rowStep + bit % 8] =
+                volume_.empty;
+        }
+    }
     setActive(row, column, words);
+}
+
+void RayStrip::fillBlock(int row, int column, float value) {
+    const BlockPlace place = placeOf(row, column);
+    for (std::size_t slice = 0; slice < 8; ++slice) {
+        for (std::size_t u = 0; u < 8; ++u)
+            std::fill_n(place.first + slice * place.sliceStep + u * place.rowStep, 8, value);
+    }
 }
 
 void RayStrip::setActive(int row, int column, const ActiveWords& words) {
@@ -72,7 +127,7 @@ void RayStrip::emptyAround(int row, int column, int lastRow) {
         for (int c = column - 1; c <= column + 1; ++c) {
             const std::size_t place = at(r, c);
             if (fills_[place] != kNone || empty_[place]) continue;
-            fillBlock(volume_.empty, placeOf(r, c));
+            fillBlock(r, c, volume_.empty);
             setActive(r, c, {});
             empty_[place] = true;
         }

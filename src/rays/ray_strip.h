@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <vector>
 
-#include "rays/block_values.h"
+#include "rays/ray_volume.h"
 
 namespace deltasplat {
+
+/// A word for each slice of a block: bit 8 * u + v is set where the voxel is active.
+using ActiveWords = std::array<std::uint64_t, 8>;
 
 /// The values of a few rows of blocks in eight slices, and a border of what is empty around the
 /// volume. Made once, to be filled for one layer of blocks after the other; not thread-safe.
@@ -60,6 +64,8 @@ class RayStrip {
     BlockPlace placeOf(int row, int column);
 
     void readBlock(const CodeBlock& block, int row, int column);
+    void readLeaf(const CodeBlock& block, int row, int column);
+    void fillBlock(int row, int column, float value);
     void setActive(int row, int column, const ActiveWords& words);
     void emptyAround(int row, int column, int lastRow);
 

@@ -64,6 +64,13 @@ void placeValues(const Leaf& leaf, int sliceAxis, const ValueMap& map, const Blo
     });
 }
 
+void placeValue(float value, const BlockPlace& place) {
+    for (std::size_t slice = 0; slice < 8; ++slice) {
+        for (std::size_t u = 0; u < 8; ++u)
+            std::fill_n(place.first + slice * place.sliceStep + u * place.rowStep, 8, value);
+    }
+}
+
 // Lets rays read the source's own values.
 void readSource(const Volume& volume, RayRule rule, const ValueMap& map, std::vector<Slot>& slots,
                 RayVolume& rays) {
@@ -81,7 +88,7 @@ void readSource(const Volume& volume, RayRule rule, const ValueMap& map, std::ve
             const openvdb::Coord origin = blockOrigin(block.position, axis);
             const auto* const leaf = tree.probeConstLeaf(origin);
             leaf ? placeValues(*leaf, axis, map, place)
-                 : fillBlock(floatOf(map(double(tree.getValue(origin)))), place);
+                 : placeValue(floatOf(map(double(tree.getValue(origin)))), place);
         };
     });
 }
@@ -99,20 +106,21 @@ void dropZeros(const Volume& volume, int sliceAxis, const ValueMap& map,
     });
 }
 
-}  // namespace
-
-void RayVolume::takeBlocks(const std::vector<CodeBlock>& ordered) {
-    const int first = box.min.x >> 3;
-    const int layers = (box.max.x >> 3) - first + 1;
+// Puts blocks, which are ordered by u and v, in the order of layers, u and v.
+void sortByLayer(const std::vector<CodeBlock>& blocks, RayVolume& rays) {
+    const int first = rays.box.min.x >> 3;
+    const int layers = (rays.box.max.x >> 3) - first + 1;
     requireMemory("list of layers", 16.0 * layers);
-    begins.assign(std::size_t(layers) + 1, 0);
-    for (const CodeBlock& block : ordered) ++begins[std::size_t(block.position.x - first) + 1];
-    std::partial_sum(begins.begin(), begins.end(), begins.begin());
-    std::vector<std::size_t> next(begins.begin(), begins.end() - 1);
-    blocks.resize(ordered.size());
-    for (const CodeBlock& block : ordered)
-        blocks[next[std::size_t(block.position.x - first)]++] = block;
+    rays.begins.assign(std::size_t(layers) + 1, 0);
+    for (const CodeBlock& block : blocks) ++rays.begins[std::size_t(block.position.x - first) + 1];
+    std::partial_sum(rays.begins.begin(), rays.begins.end(), rays.begins.begin());
+    std::vector<std::size_t> next(rays.begins.begin(), rays.begins.end() - 1);
+    rays.blocks.resize(blocks.size());
+    for (const CodeBlock& block : blocks)
+        rays.blocks[next[std::size_t(block.position.x - first)]++] = block;
 }
+
+}  // namespace
 
 RayVolume makeRayVolume(const Volume& volume, int sliceAxis, RayRule rule, const ValueMap& map) {
     RayVolume rays;
@@ -123,7 +131,7 @@ RayVolume makeRayVolume(const Volume& volume, int sliceAxis, RayRule rule, const
     if (fromSource) readSource(volume, rule, map, slots, rays);
     std::vector<CodeBlock> blocks = BlockReader(*volume.codes, nullptr, sliceAxis, slots).blocks();
     if (fromSource && rule == RayRule::kSum) dropZeros(volume, sliceAxis, map, blocks);
-    rays.takeBlocks(blocks);
+    sortByLayer(blocks, rays);
     return rays;
 }
 

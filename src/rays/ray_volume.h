@@ -63,9 +63,6 @@ struct RayVolume {
         return std::span(blocks).subspan(begins[i], begins[i + 1] - begins[i]);
     }
 
-    /// Puts blocks, which are ordered by u and v, in the order of layers, u and v.
-    void takeBlocks(const std::vector<CodeBlock>& ordered);
-
     float valueOf(Code code) const {
         return values.direct ? float(code) + values.offset : table[code];
     }

@@ -75,15 +75,13 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
     warnOfOtherModes(app, command, display);
     if (mode == Mode::kComposite) return;
     std::vector<std::string> unused = {
-        "--method",        "--tolerance",        "--tolerance-value", "--between", "--extinction",
-        "--unit-distance", "--color-by",         "--shade",           "--light",   "--ambient",
-        "--diffuse",       "--specular",         "--shininess",       "--surface", "--isovalue",
-        "--surface-color", "--gradient-opacity", "--density-scale",   "--filter"};
+        "--method",     "--tolerance",     "--tolerance-value",  "--resolution",    "--between",
+        "--extinction", "--unit-distance", "--color-by",         "--shade",         "--light",
+        "--ambient",    "--diffuse",       "--specular",         "--shininess",     "--surface",
+        "--isovalue",   "--surface-color", "--gradient-opacity", "--density-scale", "--filter"};
     for (const std::vector<std::string>& ofFog : {scatterOptions(), mediumOptions()})
         unused.insert(unused.end(), ofFog.begin(), ofFog.end());
-    // What only sums along parallel lines of sight have a use for.
-    const std::vector<std::string> ofSums = {"--resolution", "--sigma"};
-    if (colorsValues(command)) unused.insert(unused.end(), ofSums.begin(), ofSums.end());
+    if (colorsValues(command)) unused.push_back("--sigma");
     if (!colorsValues(command) || isExr(command))
         unused.insert(unused.end(),
                       {"--tf", "--range", "--hide-labels", "--show-labels", "--label-opacity"});
@@ -92,11 +90,9 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
             display.warn(option + ": has no effect with --mode " + modeName(mode));
     }
     const bool fromEye = command.picture.render.camera.projection != Projection::kOrtho;
-    for (const std::string& option : ofSums) {
-        if (isGiven(app, option) && !colorsValues(command) && fromEye)
-            display.warn(option + ": has no effect with --mode " + modeName(mode) +
-                         " but in --projection ortho");
-    }
+    if (isGiven(app, "--sigma") && !colorsValues(command) && fromEye)
+        display.warn("--sigma: has no effect with --mode " + modeName(mode) +
+                     " but in --projection ortho");
     if (isGiven(app, "--background") && (storesValues(command) || mode == Mode::kDrr))
         display.warn("--background: has no effect on " +
                      std::string(storesValues(command) ? "an .exr" : "a picture") +

@@ -364,9 +364,7 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        ", or 1/2, 1/4 or 1/8:\nvoxels share a pixel, which is faster, softer, "
                        "and denser where\nthin and opaque things lie along the line of sight\n"
-                       "(default: 1 or 2, chosen from the screen). With --mode xray and\n"
-                       "drr up to 1, which reads each voxel by itself (default: boxes of\n"
-                       "2, 4 or 8 along an axis as one, no larger than a pixel)");
+                       "(default: 1 or 2, chosen from the screen)");
     group.addValue("--filter", "NAME", options.filter, pictureFilter(),
                    withDefault("What makes pixels of the rendered plane: catmull-rom (sharp),\n"
                                "mitchell, gauss (soft) or box (the mean over a pixel)",
