@@ -81,7 +81,7 @@ expect_said "deltasplat: tall1.json: got facts for other options; expected the s
 bytes_read() { # ARGUMENTS...
     # shellcheck disable=SC2016
     bash -c '"$@" >&2 || exit 1; while read -r name count; do
-        [[ $name == rchar: ]] && echo "$count"; done < "/proc/$$/io"' bash "$program" "$@"
+        if [[ $name == rchar: ]]; then echo "$count"; fi; done < "/proc/$$/io"' bash "$program" "$@"
 }
 if [[ -r /proc/$$/io ]]; then
     part=(render tall.vdb --tf viridis --size 60x50 --view front --between 0 -o p.slabs -qq)
