@@ -41,7 +41,7 @@ std::optional<std::vector<std::uint64_t>> leafSizesOf(const std::string& stored,
         for (std::size_t i = 0; i < leaves; ++i) {
             // A byte that says what inactive values are like, those, and which voxel has which.
             using namespace openvdb::io;
-            const int kind = metadata->getMask(i);
+            const int kind = static_cast<unsigned char>(metadata->getMask(i));
             const bool one =
                 kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL;
             const bool two = kind == MASK_AND_TWO_INACTIVE_VALS;

@@ -290,7 +290,7 @@ std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid,
     std::vector<VdbRun> runs;
     if (slices) {
         walkTopology(bytes, head.format, places);
-        const auto read = readRuns(bytes, head, grid.end, *slices, places.leaves, claim);
+        auto read = readRuns(bytes, head, grid.end, *slices, places.leaves, claim);
         if (!read) return std::nullopt;
         runs = std::move(*read);
     } else {
