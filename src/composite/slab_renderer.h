@@ -52,9 +52,8 @@ class SlabRenderer {
   public:
     /// @param seen   which, from the front on
     /// @param rows   of the base plane, which become the same as among all; others stay zero
-    /// @param front  what lies before them, and reaches all that they do; with it the bits are
-    /// those
-    ///               of rendering all at once
+    /// @param front  what lies before them, and reaches all that they do; bits are then those of
+    ///               rendering all at once
     /// @throw Error(kFailed) if sheets and layers do not fit into memory
     SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, glm::ivec2 rows,
                  const Listener& listener, std::optional<Layer> front = {});
