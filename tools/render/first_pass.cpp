@@ -75,12 +75,13 @@ std::filesystem::path fileOf(const RenderCommand& command, int frame) {
     return name ? name->at(frame) : command.input;
 }
 
-// Whether the first frame's file is no longer the one that a first pass was made of.
-bool hasOtherFile(const Json& json, const RenderCommand& command) {
-    if (!json.contains(kFirstFile) || json.at(kFrames).empty()) return false;
+// The first frame's file, if it is no longer the one that a first pass was made of; else empty.
+std::filesystem::path otherFile(const Json& json, const RenderCommand& command) {
+    if (!json.contains(kFirstFile) || json.at(kFrames).empty()) return {};
     const auto then = json.at(kFirstFile).get<std::uint64_t>();
-    const std::uint64_t now = markOf(fileOf(command, json.at(kFrames)[0][0].get<int>()));
-    return then != 0 && now != 0 && then != now;
+    std::filesystem::path file = fileOf(command, json.at(kFrames)[0][0].get<int>());
+    const std::uint64_t now = markOf(file);
+    return then != 0 && now != 0 && then != now ? file : std::filesystem::path();
 }
 
 // What was made of other frames, or of another thing, may not suit those in hand.
@@ -90,11 +91,9 @@ void warnOfOthers(const Json& json, const RenderCommand& command, const Listener
     const std::string name = inputName(command);
     if (input != name)
         return listener.warn(begin + "of " + input + ", and is taken as it is for " + name);
-    if (hasOtherFile(json, command)) {
-        return listener.warn(
-            begin + "of another " +
-            printable(fileOf(command, json.at(kFrames)[0][0].get<int>()).filename().string()) +
-            " than there is now, and is taken as it is");
+    if (const std::filesystem::path other = otherFile(json, command); !other.empty()) {
+        return listener.warn(begin + "of another " + printable(other.filename().string()) +
+                             " than there is now, and is taken as it is");
     }
     const std::string options = json.value(kOptions, command.readingOptions);
     if (options != command.readingOptions) {
