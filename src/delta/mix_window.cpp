@@ -56,8 +56,8 @@ void MixWindowReader::readPart(const CodeBlock* block, const glm::ivec3& side,
         for (int s = first.x; s <= last.x; ++s) {
             for (int u = first.y; u <= last.y; ++u) {
                 const ShortSlot* row = block->slots + 64 * s + 8 * u;
-                Slot* out = &window.at(8 * side + glm::ivec3(s, u, 0));
-                for (int v = first.z; v <= last.z; ++v) out[v] = row[v];
+                std::copy(row + first.z, row + last.z + 1,
+                          &window.at(8 * side + glm::ivec3(s, u, first.z)));
             }
         }
         return;
