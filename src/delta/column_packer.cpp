@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/column_packer.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "delta/block_kernels.h"
+#include "delta/mixed_sight.h"
+#include "delta/slot_holder.h"
+#include "ingest/codes/leaf_slices.h"
+
+namespace deltasplat {
+namespace {
+
+// The number of a part of a column.
+std::size_t numberOf(const glm::ivec2& part) {
+    const int number = 2 * part.x + part.y;
+    return std::size_t(number);
+}
+
+}  // namespace
+
+bool choosesClasses(const PackOptions& options) {
+    return options.painter && options.painter->choosesClasses();
+}
+
+ColumnPacker::ColumnPacker(const IndexBox& box, const PackOptions& options, const PackTools& tools,
+                           std::span<const Slot> slotMap, const PackRange& range)
+    : options_(options), tools_(tools), slotMap_(slotMap), box_(box), planner_(box), range_(range) {
+    if (!tools.mixer) return;
+    parts_ = tools.mixer->parts();
+    window_.emplace(*tools.codes, options.sliceAxis,
+                    parts_.within == 1 && !choosesClasses(options));
+    if (choosesClasses(options) && tools.uncut != tools.codes)
+        uncut_.emplace(*tools.uncut, options.sliceAxis, false);
+    const int blocks = parts_.voxels();
+    mixed_.resize(std::size_t(blocks));
+}
+
+// Calls use(part) for the parts of a column along u and v.
+template <typename Use>
+void ColumnPacker::forParts(const Use& use) const {
+    for (int u = 0; u < parts_.within; ++u)
+        for (int v = 0; v < parts_.within; ++v) use(glm::ivec2(u, v));
+}
+
+void ColumnPacker::run(const Columns& columns) {
+    reserve(columns);
+    if (options_.painter) {
+        own_ = std::make_unique<BlockLooks>(*options_.painter, *tools_.uncut, options_.sliceAxis,
+                                            parts_, box_);
+    }
+    for (const CodeBlock* block = columns.begin; block != columns.end; ++block) {
+        if (!isIn(*block)) continue;
+        if (own_) own_->beginBlock(*block);
+        const bool isFirst =
+            block == columns.begin || !follows(block[-1], *block) || !isIn(block[-1]);
+        const bool isLast = block + 1 == columns.end || !follows(*block, block[1]);
+        if (isFirst) {
+            before_ = {};
+            held_ = {};
+            if (own_) own_->beginColumn();
+        }
+        if (tools_.mixer) {
+            addMixed(*block);
+        } else {
+            read(*block);
+            add(block->position, {0, 0}, range_.layout.slicesOf(block->position.x));
+        }
+        // What a block showed must be taken away behind it.
+        const int next = firstPart(*block).x + parts_.slices;
+        const int last = tools_.mixer ? range_.layout.lastBlock : range_.lastBlock;
+        if (next > last || !isLast) continue;
+        classes_.fill(kEmptySlot);
+        forParts([&](const glm::ivec2& part) { add(partOf(*block, next, part), part, 1); });
+    }
+    own_.reset();
+}
+
+// What is mixed is needed around any slab: it is never taken in parts.
+bool ColumnPacker::isIn(const CodeBlock& block) const {
+    return tools_.mixer ||
+           (block.position.x >= range_.firstBlock && block.position.x <= range_.lastBlock);
+}
+
+// Makes room for the most words that there can be: what is not used of it takes no memory.
+void ColumnPacker::reserve(const Columns& columns) {
+    if (!range_.storesWords) return;
+    const auto blocks = std::size_t(
+        std::count_if(columns.begin, columns.end, [&](const CodeBlock& b) { return isIn(b); }));
+    const std::size_t most =
+        kMostWordsOfBlock * std::size_t(parts_.slices) * std::size_t(parts_.within) * blocks;
+    for (int half = 0; half < parts_.within; ++half) {
+        PackedColumns& packed = halves_[std::size_t(half)];
+        packed.words.reserve(most);
+        packed.storage.reserve(64 * most);
+        if (options_.painter) packed.looks.reserve(64 * most);
+    }
+}
+
+// Returns the position of a block's first part.
+glm::ivec3 ColumnPacker::firstPart(const CodeBlock& block) const {
+    return (block.position - parts_.origin / 8) *
+           glm::ivec3(parts_.slices, parts_.within, parts_.within);
+}
+
+// Returns that of another, at these slices.
+glm::ivec3 ColumnPacker::partOf(const CodeBlock& block, int slices, const glm::ivec2& part) const {
+    const glm::ivec3 first = firstPart(block);
+    return {slices, first.y + part.x, first.z + part.y};
+}
+
+// Writes what the slots of a block are under the map.
+template <typename T>
+void ColumnPacker::readSlots(const CodeBlock& block, std::array<T, 512>& out) const {
+    const Slot* const map = slotMap_.data();
+    if (block.slots) {
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = T(map[block.slots[i]]);
+    } else if (block.leaf) {
+        const auto slotOf = [map](Code code) { return map[code + 1]; };
+        readLeafSlices(*block.leaf, options_.sliceAxis, slotOf, out.data());
+    } else {
+        out.fill(T(block.tileSlot));
+    }
+}
+
+void ColumnPacker::read(const CodeBlock& block) {
+    if (tools_.holder) {
+        readSlots(block, slots_);
+        hold(slots_, block.position, {0, 0}, 0);
+    } else {
+        readSlots(block, classes_);
+        if (own_) own_->paint(block.position, 0, classes_);
+    }
+}
+
+// @param part    of the column: what was before is kept for each
+// @param number  of what the block in hand becomes
+void ColumnPacker::hold(const BlockSlots& slots, const glm::ivec3& position, const glm::ivec2& part,
+                        int number) {
+    HeldSlots& held = held_[numberOf(part)];
+    if (own_) return holdLooks(slots, position, number, held, own_->held(numberOf(part)));
+    const SlotHolder& holder = *tools_.holder;
+    const auto next = [&](Slot before, Slot slot) { return holder.next(before, slot); };
+    holdSlots(slots, held, next,
+              [&](std::size_t i, Slot slot) { classes_[i] = holder.classOf(slot); });
+}
+
+// What is held is slot and look together, each of which has to allow it.
+[[gnu::noinline]] void ColumnPacker::holdLooks(const BlockSlots& slots, const glm::ivec3& position,
+                                               int number, HeldSlots& before,
+                                               BlockLooks::Slice& looksBefore) {
+    const SlotHolder& holder = *tools_.holder;
+    for (std::size_t i = 0; i < slots.size(); ++i) classes_[i] = holder.classOf(slots[i]);
+    own_->paint(position, number, classes_);
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+        Slot& held = before[i & 63];
+        OwnLook& heldOwn = looksBefore[i & 63];
+        const VoxelLook look{classes_[i], own_->block()[i]};
+        const VoxelLook heldLook{holder.classOf(held), heldOwn};
+        const bool keeps = !(heldLook == look) && holder.allows(held, slots[i]) &&
+                           options_.looksHold(heldLook, look);
+        if (!keeps) {
+            held = slots[i];
+            heldOwn = look.own;
+        }
+        classes_[i] = holder.classOf(held);
+        own_->block()[i] = heldOwn;
+    }
+}
+
+void ColumnPacker::addMixed(const CodeBlock& block) {
+    inHand_ = &block;
+    window_->reader.read(block, window_->window);
+    if (uncut_) uncut_->reader.read(block.position, uncut_->window);
+    const bool isSeen = tools_.sight->canBeSeen(window_->window);
+    const bool isPainted = choosesClasses(options_);
+    if (isSeen && !isPainted) tools_.mixer->mix(window_->window, slotMap_, mixed_);
+    for (int s = 0; s < parts_.slices; ++s) {
+        forParts([&](const glm::ivec2& part) {
+            const glm::ivec3 position = partOf(block, firstPart(block).x + s, part);
+            const int slices = range_.layout.slicesOf(position.x);
+            // The box may begin and end within a block: some of what it becomes lies outside.
+            if (position.x < range_.layout.firstBlock || slices <= 0) return;
+            const int number = (part.x * parts_.slices + s) * parts_.within + part.y;
+            const BlockSlots& slots = mixed_[std::size_t(number)];
+            if (!isSeen) {
+                classes_.fill(kEmptySlot);
+                held_[numberOf(part)].fill(kEmptySlot);
+            } else if (isPainted) {
+                own_->paint(position, number, classes_);
+                if (uncut_) clearCutOff(position);
+            } else if (tools_.holder) {
+                hold(slots, position, part, number);
+            } else {
+                std::copy(slots.begin(), slots.end(), classes_.begin());
+                if (own_) own_->paint(position, number, classes_);
+            }
+            add(position, part, slices);
+        });
+    }
+}
+
+// Clears what was painted by values that were cut off: voxels that are not active any more, or
+// never were and have nothing left beside them.
+void ColumnPacker::clearCutOff(const glm::ivec3& position) {
+    const glm::ivec3 per(parts_.slices, parts_.within, parts_.within);
+    const glm::ivec3 first = 8 * (position - firstPart(*inHand_));
+    for (int n = 0; n < 512; ++n) {
+        if (classes_[std::size_t(n)] == 0) continue;
+        const glm::ivec3 place = (first + glm::ivec3(n / 64, n / 8 % 8, n % 8)) / per;
+        if (window_->window.at(place) != kEmptySlot) continue;
+        if (uncut_->window.at(place) != kEmptySlot || !window_->window.hasAnyAround(place))
+            classes_[std::size_t(n)] = 0;
+    }
+}
+
+// Adds the words of the first `slices` slices of classes_.
+// @param part  of the column: what was before is kept for each
+void ColumnPacker::add(const glm::ivec3& position, const glm::ivec2& part, int slices) {
+    SliceClasses& before = before_[numberOf(part)];
+    PackedColumns& packed = halves_[std::size_t(part.x)];
+    BlockChanges changes;
+    compareClasses(before.data(), classes_.data(), changes.visible.data(), changes.changed.data());
+    if (own_) own_->compare(numberOf(part), changes);
+    for (int s = 0; s < slices; ++s) {
+        const std::uint64_t visible = changes.visible[s];
+        const std::uint64_t changed = changes.changed[s];
+        const int slice = 8 * position.x + s;
+        const bool isKey = range_.layout.startsLaterSlab(slice);
+        planner_.add(slice, visible, changed);
+        const bool needed = (options_.encoding != Encoding::kWhole && changed != 0) ||
+                            ((options_.encoding != Encoding::kChanges || isKey) && visible != 0);
+        if (!needed || !range_.storesWords) continue;
+        packed.words.push_back(
+            {visible, changed, packed.storage.size(), slice, {position.y, position.z}});
+        packed.storage.insert(packed.storage.end(), &classes_[64 * s], &classes_[64 * s] + 64);
+        if (!own_) continue;
+        const OwnLook* looks = &own_->block()[64 * std::size_t(s)];
+        packed.looks.insert(packed.looks.end(), looks, looks + 64);
+    }
+    std::copy_n(&classes_[7 * 64], 64, before.begin());
+    if (own_) own_->endBlock(numberOf(part));
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "delta/block_looks.h"
+#include "delta/code_blocks.h"
+#include "delta/hold_slots.h"
+#include "delta/mix_window.h"
+#include "delta/packed_deltas.h"
+#include "delta/value_mixer.h"
+#include "delta/word_collector.h"
+
+namespace deltasplat {
+
+class MixedSight;
+class SlotHolder;
+
+/// How voxels become classes. Null: as they are.
+struct PackTools {
+    const SlotHolder* holder = nullptr;
+    const ValueMixer* mixer = nullptr;
+    const MixedSight* sight = nullptr;
+    const CodeTree* codes = nullptr;  ///< that values are mixed from
+    const CodeTree* uncut = nullptr;  ///< that gradients are taken of
+};
+
+/// What a packer packs: columns of blocks (same u and v), slices in increasing order.
+struct Columns {
+    const CodeBlock* begin;
+    const CodeBlock* end;
+};
+
+/// What of it: all blocks, of which it counts what is in their slices, or those of some slabs.
+struct PackRange {
+    SlabLayout layout;  ///< of slabs that there may be
+    int firstBlock;
+    int lastBlock;
+    bool storesWords = true;
+};
+
+/// Words that a block may make: its slices, and one behind it that takes away what it showed.
+inline constexpr std::size_t kMostWordsOfBlock = 9;
+/// What a word takes until it has its place, and where voxels have looks of their own besides.
+inline constexpr double kBytesPerWord =
+    sizeof(DeltaWord) + sizeof(PendingWord) + 64 * sizeof(ClassIndex);
+inline constexpr double kLookBytesPerWord = 64 * sizeof(OwnLook);
+
+bool choosesClasses(const PackOptions& options);
+
+/// Makes the words of a run of columns, and counts what is in their slices. Not for several threads
+/// at once; several packers are.
+class ColumnPacker {
+  public:
+    /// @param options,slotMap  must outlive this
+    ColumnPacker(const IndexBox& box, const PackOptions& options, const PackTools& tools,
+                 std::span<const Slot> slotMap, const PackRange& range);
+
+    void run(const Columns& columns);
+
+    /// Of the parts of columns along u, one.
+    PackedColumns& half(int i) { return halves_[std::size_t(i)]; }
+    const SlabPlanner& planner() const { return planner_; }
+
+  private:
+    struct Window {
+        Window(const CodeTree& codes, int sliceAxis, bool alongSlicesOnly)
+            : reader(codes, sliceAxis, alongSlicesOnly) {}
+        MixWindowReader reader;
+        MixWindow window;
+    };
+    using SliceClasses = std::array<ClassIndex, 64>;
+
+    bool isIn(const CodeBlock& block) const;
+    void reserve(const Columns& columns);
+    glm::ivec3 firstPart(const CodeBlock& block) const;
+    glm::ivec3 partOf(const CodeBlock& block, int slices, const glm::ivec2& part) const;
+    template <typename Use>
+    void forParts(const Use& use) const;
+    template <typename T>
+    void readSlots(const CodeBlock& block, std::array<T, 512>& out) const;
+    void read(const CodeBlock& block);
+    void hold(const BlockSlots& slots, const glm::ivec3& position, const glm::ivec2& part,
+              int number);
+    void holdLooks(const BlockSlots& slots, const glm::ivec3& position, int number,
+                   HeldSlots& before, BlockLooks::Slice& looksBefore);
+    void addMixed(const CodeBlock& block);
+    void clearCutOff(const glm::ivec3& position);
+    void add(const glm::ivec3& position, const glm::ivec2& part, int slices);
+
+    const PackOptions& options_;
+    PackTools tools_;
+    std::span<const Slot> slotMap_;
+    IndexBox box_;
+    SlabPlanner planner_;
+    PackRange range_;
+    Subdivision parts_;
+    std::array<ClassIndex, 512> classes_{};  // of the block in hand, [slice][u][v]
+    std::array<SliceClasses, 4> before_{};   // [part]: of the slice before it
+    std::array<HeldSlots, 4> held_{};        // [part]
+    BlockSlots slots_{};
+    std::optional<Window> window_;
+    std::optional<Window> uncut_;    // what was there before, if surfaces are cut
+    std::vector<BlockSlots> mixed_;  // [part along u][along slices][along v]
+    std::array<PackedColumns, 2> halves_;
+    std::unique_ptr<BlockLooks> own_;  // null: classes say all
+    const CodeBlock* inHand_ = nullptr;
+};
+
+}  // namespace deltasplat
