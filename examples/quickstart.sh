@@ -10,7 +10,7 @@ if [[ $# -gt 0 ]]; then folder=$(cd "$here" && realpath -m -- "$1"); fi
 
 bash scripts/install_dependencies.sh --to-build
 cmake --preset release </dev/null
-cmake --build --preset release --target deltasplat_tool
+cmake --build --preset release --target deltasplat_tool deltasplat
 
 deltasplat=build/release/bin/deltasplat
 volume=$folder/engine_256x256x256_uint8.raw

@@ -15,6 +15,9 @@ deltasplat_cli_test(medium.scaled CREATES out.exr
     ARGS ${fire} --emission-grid Flame --temperature-scale 1800,200)
 deltasplat_medium(cold ARGS --emission-grid cold --temperature-scale 1000
     WARNS "--emission-grid: nothing of cold glows, for the hottest has 100 K, and nothing below 500 K is seen to")
+deltasplat_medium(dark_auto ARGS --emission-grid auto --temperature-scale 100
+    WARNS "--emission-grid: nothing of Flame glows, for the hottest has 75 K, and nothing below 500 K is seen to
+deltasplat: warning: --emission-grid: auto takes Flame, nothing of which glows; temperature is another that may, where it is named")
 deltasplat_cli_test(medium.celsius CREATES out.exr
     ARGS render celsius.vdb -o out.exr --size 8x8 --grid density --emission-grid temperature
     STDERR "deltasplat: warning: --emission-grid: values of temperature, -20 to 900, are taken for kelvin, of which there are none below 0; --temperature-scale 1,273.15 takes degrees Celsius")

@@ -233,6 +233,7 @@ Verdict compareFrames(const CLI::App& app, const DiffOptions& options, const Ses
             warnings.count();
             throw Error(error.code(), frameLine(files[i], error.what()));
         }
+        warnings.finish(i);
         worst = std::max(worst, frame.diff.verdict());
         if (!options.json && !session.common.quiet) printOut(plainText(frame.diff, one));
     }

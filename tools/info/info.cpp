@@ -232,6 +232,7 @@ void runInfo(const CLI::App& app, const InfoOptions& asked, const Session& sessi
             if (!options.files.empty())
                 part.warning = [&, i](const std::string& text) { warnings.warn(i, text); };
             addFile(options.inputs[i], options, describe, part, found);
+            warnings.finish(i);
         }
         warnings.count();
     }

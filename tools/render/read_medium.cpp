@@ -66,8 +66,9 @@ class MediumReader {
             placed(look_ ? look_->sequence.read(input_, read, listener_)
                          : readVolume(input_, read, listener_),
                    picture_));
-        if (volume->empty()) return {};
         whole_ = look_ ? &look_->standIn(grid, *volume) : volume.get();
+        isDark_ = whole_->empty();
+        if (volume->empty()) return {};
         fit_ = fitOf(*volume, volume_.worldFromIndex);
         warnOfPlace(option, *volume);
         return volume;
@@ -123,6 +124,9 @@ class MediumReader {
         }
     }
 
+    // Whether nothing of what was read last shines, in any frame.
+    bool isDark() const { return isDark_; }
+
   private:
     // As the volume alone would be shown: by all of its values, whatever is cut off.
     void setFunction(const std::string& option, const std::filesystem::path& given,
@@ -166,7 +170,8 @@ class MediumReader {
                            "--temperature-scale 1,273.15 takes degrees Celsius");
         }
         const double hottest = part.kelvinScale * most + part.kelvinOffset;
-        if (!(hottest > kDarkKelvin)) {
+        isDark_ = !(hottest > kDarkKelvin);
+        if (isDark_) {
             listener_.warn(option + ": nothing of " + grid + " glows, for the hottest has " +
                            shortNumberText(hottest, 1e-3) + " K, and nothing below " +
                            numberText(kDarkKelvin) + " K is seen to");
@@ -202,6 +207,7 @@ class MediumReader {
     const FrameLook* look_;
     const Listener& listener_;
     const Volume* whole_ = nullptr;  // stands for the grid in hand, of all frames
+    bool isDark_ = false;            // of what was read last
     PartFit fit_ = PartFit::kSame;   // of the grid in hand
 };
 
@@ -325,6 +331,11 @@ void readMedium(const std::filesystem::path& input, const PictureOptions& pictur
     if (choice.emissionGrid) {
         constexpr const char* kOption = "--emission-grid";
         add(reader.fire(kOption, chosen(kOption, *choice.emissionGrid, found.emission, entries)));
+        if (*choice.emissionGrid == "auto" && reader.isDark() && !found.otherEmission.empty()) {
+            listener.warn(std::string(kOption) + ": auto takes " + found.emission +
+                          ", nothing of which glows; " + found.otherEmission +
+                          " is another that may, where it is named");
+        }
     }
     for (const LayerChoice& layer : choice.layers) {
         add(layer.isFire() ? reader.fire("--layer", layer.grid) : reader.fog("--layer", layer));

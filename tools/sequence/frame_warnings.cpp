@@ -41,6 +41,27 @@ std::string frameLine(const FrameFiles& files, const std::string& what) {
 }
 
 void FrameWarnings::warn(std::size_t i, const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    if (i == next_) {
+        show(i, text);
+    } else {
+        waiting_[i].push_back(text);
+    }
+}
+
+void FrameWarnings::finish(std::size_t i) {
+    const std::lock_guard lock(mutex_);
+    finished_.insert(i);
+    while (finished_.erase(next_) > 0) {
+        ++next_;
+        const auto waiting = waiting_.find(next_);
+        if (waiting == waiting_.end()) continue;
+        for (const std::string& text : waiting->second) show(next_, text);
+        waiting_.erase(waiting);
+    }
+}
+
+void FrameWarnings::show(std::size_t i, const std::string& text) {
     const FrameFiles& files = frames_[i];
     std::string about = text;
     std::string kind;  // what is said of the one file is not what is said of the other
@@ -55,7 +76,6 @@ void FrameWarnings::warn(std::size_t i, const std::string& text) {
         if (isOutput) kind = '\n';
     }
     kind += withoutNumbers(about);
-    const std::lock_guard lock(mutex_);
     // The first one of its kind is shown.
     const auto [known, isNew] = warnings_.emplace(kind, Warning{i, about, false, false, {}});
     Warning& warning = known->second;

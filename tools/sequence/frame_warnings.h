@@ -15,8 +15,8 @@ namespace deltasplat {
 /// Returns what to say of a frame, which is named first.
 std::string frameLine(const FrameFiles& files, const std::string& what);
 
-/// Warnings of frames: what is said of several in the same words, numbers aside, is shown once, and
-/// counted at the end. Thread-safe.
+/// Warnings of frames: what is said of several in the same words, numbers aside, is shown once, of
+/// the first of them whichever was quicker, and counted at the end. Thread-safe.
 class FrameWarnings {
   public:
     /// @param frames, listener  must live as long
@@ -24,6 +24,8 @@ class FrameWarnings {
         : frames_(frames), listener_(listener) {}
 
     void warn(std::size_t i, const std::string& text);
+    /// Says that there is nothing more to come of a frame; frames begin in order.
+    void finish(std::size_t i);
 
     /// Says of how many others a warning is.
     void count() const;
@@ -41,10 +43,15 @@ class FrameWarnings {
         std::set<std::size_t> others;
     };
 
+    void show(std::size_t i, const std::string& text);
+
     const std::vector<FrameFiles>& frames_;
     const Listener& listener_;
     std::mutex mutex_;
-    std::map<std::string, Warning> warnings_;  // by what is said, without numbers
+    std::size_t next_ = 0;            // the first frame that is not finished
+    std::set<std::size_t> finished_;  // behind it
+    std::map<std::size_t, std::vector<std::string>> waiting_;  // of frames behind it
+    std::map<std::string, Warning> warnings_;                  // by what is said, without numbers
 };
 
 }  // namespace deltasplat

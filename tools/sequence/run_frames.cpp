@@ -67,6 +67,7 @@ class FrameRun {
         } catch (const std::exception& problem) {
             fail(i, Error(ErrorCode::kFailed, describe(problem)));
         }
+        warnings_.finish(i);
     }
 
     Listener listenerOf(std::size_t i) {

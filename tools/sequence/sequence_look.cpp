@@ -86,14 +86,21 @@ Volume SequenceLook::read(const std::filesystem::path& input, const ReadOptions&
     if (isFinished_) {
         const std::lock_guard lock(mutex_);
         const auto known = kept_.find(key);
-        if (known != kept_.end()) return known->second;
+        if (known != kept_.end()) {
+            for (const std::string& text : known->second.warnings) listener.warn(text);
+            return known->second.volume;
+        }
     }
-    Volume volume = readVolume(input, options, listener);
-    if (isFinished_) return volume;
+    if (isFinished_) return readVolume(input, options, listener);
+    std::vector<std::string> warnings;
+    const Listener reading{listener.progress,
+                           [&](const std::string& text) { warnings.push_back(text); }};
+    Volume volume = readVolume(input, options, reading);
     const std::lock_guard lock(mutex_);
     const double bytes = bytesOf(volume);
     largestBytes_ = std::max(largestBytes_, bytes);
-    if (bytes <= keptBytes_ && kept_.emplace(key, volume).second) keptBytes_ -= bytes;
+    if (bytes <= keptBytes_ && kept_.emplace(key, Kept{volume, std::move(warnings)}).second)
+        keptBytes_ -= bytes;
     return volume;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/view/world_box.h"
@@ -48,7 +49,7 @@ class SequenceLook {
     explicit SequenceLook(double keptBytes) : keptBytes_(keptBytes) {}
 
     /// Reads a volume as readVolume does; at a survey it is kept, if there is room, and handed out
-    /// the next time.
+    /// the next time. What there is to warn of is said then, or where it is read again.
     Volume read(const std::filesystem::path& input, const ReadOptions& options,
                 const Listener& listener);
     /// Returns the volume that stands for a grid of all frames; at a survey, a frame's own, which
@@ -79,6 +80,10 @@ class SequenceLook {
     void takeJson(const nlohmann::ordered_json& json);
 
   private:
+    struct Kept {
+        Volume volume;
+        std::vector<std::string> warnings;  // of reading it
+    };
     struct Grid {
         std::optional<std::size_t> order;  // of the frame that is first
         Volume first;                      // without voxels
@@ -103,7 +108,7 @@ class SequenceLook {
     std::optional<glm::dvec2> window_;
     double keptBytes_;
     double largestBytes_ = 0;
-    std::map<std::string, Volume> kept_;  // by input and grid
+    std::map<std::string, Kept> kept_;  // by input and grid
     bool isFinished_ = false;
 };
 

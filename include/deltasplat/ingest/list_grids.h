@@ -57,6 +57,8 @@ std::vector<VolumeEntry> listVolumes(const std::filesystem::path& file,
 struct MediumGrids {
     std::string emission;
     std::string color;
+    /// The next of fire, where headers do not say that it has no active voxels.
+    std::string otherEmission;
 };
 
 /// Returns which grids their names, whatever their case, tell: of flame, flames, fire, burn, heat,

@@ -28,8 +28,15 @@ MediumGrids mediumGrids(const std::vector<VolumeEntry>& entries) {
         }
         return "";
     };
-    return {firstOf(kFires, [](const VolumeEntry& entry) { return entry.scalar; }),
-            firstOf(kColors, [](const VolumeEntry& entry) { return isColorType(entry.type); })};
+    MediumGrids grids;
+    grids.emission = firstOf(kFires, [](const VolumeEntry& entry) { return entry.scalar; });
+    grids.color =
+        firstOf(kColors, [](const VolumeEntry& entry) { return isColorType(entry.type); });
+    grids.otherEmission = firstOf(kFires, [&](const VolumeEntry& entry) {
+        const bool isEmpty = entry.box && entry.box->empty();
+        return entry.scalar && !isEmpty && entry.name != grids.emission;
+    });
+    return grids;
 }
 
 }  // namespace deltasplat
