@@ -9,6 +9,7 @@
 
 #include "deltasplat/error.h"
 #include "picture_layout.h"
+#include "whole_number.h"
 
 namespace deltasplat {
 namespace {
@@ -66,12 +67,7 @@ class Reader {
     static void read(const Json& json, double& value) {
         value = json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
     }
-    static void read(const Json& json, int& value) {
-        const auto wide = json.get<std::int64_t>();
-        value = int(wide);
-        if (!json.is_number_integer() || value != wide)
-            throw Error(ErrorCode::kInput, "a number that is too large");
-    }
+    static void read(const Json& json, int& value) { value = wholeNumberOf<int>(json); }
     static void read(const Json& json, bool& value) { value = json.get<bool>(); }
     static void read(const Json& json, PictureFilter& value) {
         const auto name = json.get<std::string>();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture_facts.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -62,11 +63,14 @@ const SlabFacts* knownFacts(const Picture& picture) {
 
 SlabFacts factsOf(const Picture& picture) {
     if (const SlabFacts* known = knownFacts(picture)) {
-        if (known->seen.size() == picture.slabs.size() &&
-            contentOf(picture, {known->words}) == known->content)
-            return *known;
-        throw Error(ErrorCode::kInput, gotExpected("facts of slabs", "those of other colours",
-                                                   "those of this picture"));
+        const bool isSame =
+            std::equal(picture.slabs.begin(), picture.slabs.end(), known->seen.begin(),
+                       known->seen.end(), [&](const auto& place, const SlabFacts::Seen& seen) {
+                           return seen.blocks == blocksOf(picture, place);
+                       });
+        if (isSame && contentOf(picture, {known->words}) == known->content) return *known;
+        throw Error(ErrorCode::kInput,
+                    gotExpected(known->file, "facts of other colours", "those of this picture"));
     }
     SlabFacts facts;
     std::vector<std::uint64_t> words;

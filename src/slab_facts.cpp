@@ -14,10 +14,12 @@
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/slot.h"
+#include "file_mark.h"
 #include "ingest/files/input_files.h"
 #include "ingest/vdb/read_slices.h"
 #include "lower_case.h"
 #include "picture_facts.h"
+#include "whole_number.h"
 
 namespace deltasplat {
 namespace {
@@ -32,12 +34,25 @@ Json notesJson(const Notes& notes) {
     return json;
 }
 
+Notes notesOf(const Json& json) {
+    Notes notes;
+    for (const Json& note : json)
+        notes.emplace_back(note.at(0).get<std::string>(), note.at(1).get<std::string>());
+    return notes;
+}
+
+// As it is in a file, which is UTF-8 whatever names are.
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 Json vectorJson(const glm::ivec3& v) {
     return {v.x, v.y, v.z};
 }
 
 glm::ivec3 vectorOf(const Json& json) {
-    return {json.at(0).get<int>(), json.at(1).get<int>(), json.at(2).get<int>()};
+    return {wholeNumberOf<int>(json.at(0)), wholeNumberOf<int>(json.at(1)),
+            wholeNumberOf<int>(json.at(2))};
 }
 
 // What tells a delta grid from another one.
@@ -60,7 +75,8 @@ Json histogramJson(const Volume& volume) {
 std::vector<std::uint64_t> histogramOf(const Json& json) {
     std::vector<std::uint64_t> histogram(kCodeCount);
     for (const Json& pair : json)
-        histogram.at(pair.at(0).get<std::size_t>()) = pair.at(1).get<std::uint64_t>();
+        histogram.at(wholeNumberOf<std::size_t>(pair.at(0))) =
+            wholeNumberOf<std::uint64_t>(pair.at(1));
     return histogram;
 }
 
@@ -71,12 +87,12 @@ Json slabJson(const PlannedSlab& slab) {
 
 PlannedSlab slabOf(const Json& json) {
     PlannedSlab slab;
-    slab.firstSlice = json.at(0).get<int>();
-    slab.sliceCount = json.at(1).get<int>();
-    slab.visible = json.at(2).get<std::uint64_t>();
-    slab.deltas = json.at(3).get<std::uint64_t>();
-    slab.words = json.at(4).get<std::uint64_t>();
-    slab.seenWords = json.at(5).get<std::uint64_t>();
+    slab.firstSlice = wholeNumberOf<int>(json.at(0));
+    slab.sliceCount = wholeNumberOf<int>(json.at(1));
+    slab.visible = wholeNumberOf<std::uint64_t>(json.at(2));
+    slab.deltas = wholeNumberOf<std::uint64_t>(json.at(3));
+    slab.words = wholeNumberOf<std::uint64_t>(json.at(4));
+    slab.seenWords = wholeNumberOf<std::uint64_t>(json.at(5));
     slab.whole = json.at(6).get<bool>();
     return slab;
 }
@@ -94,16 +110,18 @@ Json factsJson(const SlabFacts& facts) {
             {"content", facts.content}};
 }
 
-SlabFacts factsOf(const Json& json) {
+// @param file  that it is in
+SlabFacts factsOf(const Json& json, const std::filesystem::path& file) {
     SlabFacts facts;
-    facts.blocksSeen = json.at("blocks_seen").get<std::size_t>();
-    facts.blocksPerSlab = json.at("blocks_per_slab").get<int>();
+    facts.file = file.string();
+    facts.blocksSeen = wholeNumberOf<std::size_t>(json.at("blocks_seen"));
+    facts.blocksPerSlab = wholeNumberOf<int>(json.at("blocks_per_slab"));
     for (const Json& slab : json.at("slabs")) facts.slabs.push_back(slabOf(slab));
     for (const Json& slab : json.at("seen")) {
-        facts.seen.push_back(
-            {slab.at(0).get<double>(), {slab.at(1).get<int>(), slab.at(2).get<int>()}});
+        facts.seen.push_back({slab.at(0).get<double>(),
+                              {wholeNumberOf<int>(slab.at(1)), wholeNumberOf<int>(slab.at(2))}});
     }
-    facts.words = json.at("words").get<std::uint64_t>();
+    facts.words = wholeNumberOf<std::uint64_t>(json.at("words"));
     facts.content = json.at("content").get<std::string>();
     if (facts.blocksPerSlab < 1) throw Error(ErrorCode::kInput, "slabs of nothing");
     return facts;
@@ -124,13 +142,33 @@ Json read(const std::filesystem::path& file) {
     }
 }
 
-SlicesWanted wantedOf(const Json& json, const SlabShare& share) {
+// Parts belong together that are made alike: names what differs first.
+void requireOptions(const Json& json, const Notes& options, const std::filesystem::path& file) {
+    const auto text = [](const std::string& name, const std::string& value) {
+        return name + (value.empty() ? "" : " ") + value;
+    };
+    const Notes known = notesOf(json), asked = notesOf(Json::parse(dumped(notesJson(options))));
+    if (known == asked) return;
+    const auto without = [&](const Notes& notes, const Notes& others) -> std::string {
+        for (const auto& note : notes) {
+            if (std::find(others.begin(), others.end(), note) == others.end())
+                return text(note.first, note.second);
+        }
+        return "";
+    };
+    const std::string then = without(known, asked), now = without(asked, known);
+    if (then.empty() && now.empty()) return;
+    refuse(file, "facts for " + (then.empty() ? "pictures without " + now : then),
+           now.empty() ? "those for pictures without " + then : "those for " + now);
+}
+
+SlicesWanted wantedOf(const Json& json, const SlabShare& share, const std::filesystem::path& file) {
     SlicesWanted wanted;
-    const auto facts = std::make_shared<const SlabFacts>(factsOf(json.at("facts")));
+    const auto facts = std::make_shared<const SlabFacts>(factsOf(json.at("facts"), file));
     const int first = facts->endOf(share.first - 1, share.count);
     const int last = facts->endOf(share.last, share.count);
     // A part that holds no slab reads as little as there is.
-    const int axis = json.at("grid").at("slice_axis").get<int>();
+    const int axis = wholeNumberOf<int>(json.at("grid").at("slice_axis"));
     wanted.box = {vectorOf(json.at("box").at(0)), vectorOf(json.at("box").at(1))};
     wanted.blocks = glm::ivec2(toSliceOrder(wanted.box.min, axis % 3).x >> 3);
     for (int slab = first; slab < last; ++slab) {
@@ -147,12 +185,12 @@ SlicesWanted wantedOf(const Json& json, const SlabShare& share) {
 }  // namespace
 
 void writeSlabFacts(const LayeredPicture& picture, const Notes& options,
-                    const std::filesystem::path& file) {
+                    const std::filesystem::path& input, const std::filesystem::path& file) {
     const DefaultFloats floats;
     const LayeredPicture::Impl& all = picture.impl();
     const Volume& volume = *all.scene.impl().scene.volume;
     const bool byParts = isReadByParts(all);
-    Json json{{"options", notesJson(options)}, {"by_parts", byParts}};
+    Json json{{"options", notesJson(options)}, {"input", markOf(input)}, {"by_parts", byParts}};
     if (byParts) {
         SlabFacts facts = deltasplat::factsOf(all);
         facts.blocksSeen = all.scene.impl().blocksSeen(all.views.front()->axis().sliceAxis);
@@ -161,9 +199,7 @@ void writeSlabFacts(const LayeredPicture& picture, const Notes& options,
         json["facts"] = factsJson(facts);
         json["histogram"] = histogramJson(volume);
     }
-    const std::string text =
-        Json{{kTitle, json}}.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-    writeFileAtomically(file, text);
+    writeFileAtomically(file, dumped(Json{{kTitle, json}}) + "\n");
 }
 
 std::optional<Volume> readSlabVolume(const std::filesystem::path& input, const ReadOptions& reading,
@@ -174,11 +210,12 @@ std::optional<Volume> readSlabVolume(const std::filesystem::path& input, const R
     SlicesWanted wanted;
     Json grid;
     try {
-        if (json.at("options") != notesJson(options))
-            refuse(facts, "facts for other options", "the same");
+        requireOptions(json.at("options"), options, facts);
+        if (wholeNumberOf<std::uint64_t>(json.at("input")) != markOf(input))
+            refuse(facts, "facts of another volume", "those of " + input.string());
         if (!json.at("by_parts").get<bool>()) return std::nullopt;
         grid = json.at("grid");
-        wanted = wantedOf(json, share);
+        wanted = wantedOf(json, share, facts);
     } catch (const Error&) {
         throw;
     } catch (const std::exception&) {

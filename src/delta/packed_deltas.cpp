@@ -93,7 +93,7 @@ SlabPlan planOf(const Volume& volume, const PackOptions& options, const IndexBox
     // They may come from anywhere.
     if (!fits || plan.layout.count() != int(plan.slabs.size())) {
         throw Error(ErrorCode::kInput,
-                    gotExpected("facts of slabs", "those of another picture", "those of this one"));
+                    gotExpected(facts->file, "facts of another picture", "those of this one"));
     }
     for (int i = 0; i < plan.layout.count(); ++i)
         placeSlab(box, plan.layout, i, plan.slabs[std::size_t(i)]);

@@ -19,6 +19,7 @@ struct SlabFacts {
         glm::ivec2 blocks{0};  ///< of 8 slices of the volume, first and last, that it is made of
     };
 
+    std::string file;                ///< that they were read from, for messages
     std::size_t blocksSeen = 0;      ///< as PreparedScene::Impl::blocksSeen of the slice axis
     int blocksPerSlab = 1;           ///< as SlabLayout::blocksPerSlab
     std::vector<PlannedSlab> slabs;  ///< in increasing order

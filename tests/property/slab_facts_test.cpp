@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
 #include <string>
@@ -16,6 +18,9 @@
 
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/error.h"
+#include "file_mark.h"
+#include "ingest/vdb/leaf_sizes.h"
+#include "ingest/vdb/vdb_bytes.h"
 #include "support/some_scene.h"
 #include "unit/ingest_helpers.h"
 
@@ -75,7 +80,7 @@ Image wholePicture(const SplatOptions& options, const CameraOptions& camera) {
 
 void writeFacts(const SplatOptions& options, const CameraOptions& camera) {
     const PreparedScene scene = sceneOf(readVolume(kDeltas), options);
-    writeSlabFacts(pictureOf(scene, camera), kOptions, kFacts);
+    writeSlabFacts(pictureOf(scene, camera), kOptions, kDeltas, kFacts);
 }
 
 std::optional<Volume> readPart(const SlabShare& share) {
@@ -177,7 +182,7 @@ TEST(SlabFacts, WhatIsOfAnotherPictureIsRefused) {
     writeDeltas(2, 16);
     writeFacts({}, cameraOf("front"));
     testing::expectError(ErrorCode::kInput,
-                         "facts.json: got facts for other options; expected the same", [] {
+                         "facts.json: got facts for --view front; expected those for --view left", [] {
                              readSlabVolume(kDeltas, {}, kFacts, {{"--view", "left"}}, {1, 1, 2});
                          });
     writeDeltas(2, 24);
@@ -196,6 +201,72 @@ TEST(SlabFacts, WhatIsOfAnotherPictureIsRefused) {
                          [] {
                              readSlabVolume(kDeltas, {}, "none.json", kOptions, {1, 1, 2});
                          });
+}
+
+// Facts of a file as it is, whatever it was when they were written.
+void claimFactsOf(const std::string& file) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(std::ifstream(kFacts));
+    json.front()["input"] = markOf(file);
+    testing::writeBytes(kFacts, json.dump());
+}
+
+// OpenVDB's note of how long leaves are comes from the file as everything else: it may be wrong,
+// and is packed by Blosc, which believes what it says of itself.
+TEST(SlabFacts, DamagedNotesOfLeavesDoNoHarm) {
+    const TempFolder folder;
+    writeDeltas(2, 16);
+    writeFacts({}, cameraOf("front"));
+    const std::string sound = testing::readBytes(kDeltas);
+    const std::string type = "__delayedload";
+    const std::size_t begin = sound.find(type) + type.size();
+    ASSERT_GT(begin, type.size());
+    std::uint32_t size = 0;
+    std::memcpy(&size, sound.data() + begin, sizeof size);
+    const std::size_t end = begin + sizeof size + size;
+    const std::uint32_t odd[] = {0, 1, 15, 17, 0x60000000, 0x7ffffff0, 0xffffffff};
+    std::mt19937 random(3);
+    int refused = 0, parted = 0;
+    for (int i = 0; i < 400; ++i) {
+        std::string damaged = sound;
+        // Words at first, of which the first say most; then any byte of it.
+        const std::size_t word = begin + std::size_t(i / 7) * 4;
+        if (i < 140) {
+            std::memcpy(damaged.data() + word, &odd[i % 7], sizeof *odd);
+        } else {
+            const std::size_t at = begin + random() % (end - begin);
+            damaged[at] = char(random());
+        }
+        testing::writeBytes(kDeltas, damaged);
+        claimFactsOf(kDeltas);
+        try {
+            std::optional<Volume> volume = readPart({2, 2, 4});
+            volume ? ++parted : ++refused;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::kInput) << error.what();
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 20);
+    EXPECT_GT(parted, 5);
+}
+
+// A part reads no note that is longer than one can be.
+TEST(SlabFacts, NotesOfLeavesAreNoLongerThanTheirLeavesAllow) {
+    EXPECT_FALSE(leafSizesOf(std::string(mostLeafSizesBytes(3), '\0'), 3));
+    std::string raw;
+    appendU32(raw, 2);
+    appendU32(raw, 0);
+    raw += std::string(2, '\0');
+    appendU32(raw, 0);
+    for (const char packed : {5, 7}) raw += packed + std::string(7, '\0');
+    const auto sizes = leafSizesOf(raw, 2);
+    ASSERT_TRUE(sizes);
+    EXPECT_EQ(*sizes, (std::vector<std::uint64_t>{6, 8}));
+    EXPECT_FALSE(leafSizesOf(raw, 3));
+    EXPECT_FALSE(leafSizesOf(raw.substr(0, raw.size() - 1), 2));
+    // One byte that says to be a chunk of Blosc's.
+    raw[4] = 1;
+    EXPECT_FALSE(leafSizesOf(raw, 2));
 }
 
 // Nothing but the parts can be made of some slices.

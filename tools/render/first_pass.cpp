@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
+#include <glm/vec2.hpp>
 #include <nlohmann/json.hpp>
 
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
+#include "file_mark.h"
 #include "output_files.h"
 #include "printable.h"
 #include "render/render_options.h"
@@ -15,6 +17,7 @@
 #include "sequence/frames_to_make.h"
 #include "sequence/sequence_look.h"
 #include "text/utf8_text.h"
+#include "whole_number.h"
 
 namespace deltasplat {
 namespace {
@@ -46,40 +49,29 @@ std::string inputName(const RenderCommand& command) {
     return utf8(codePoints(command.input.filename().string()));
 }
 
-// A number by which one file is told from another of its name, nearly always: of its size, its
-// first bytes and its last. Of what is no file, or cannot be read, it is 0. Based on: the hash
-// FNV-1a (Fowler, Noll, Vo).
-std::uint64_t markOf(const std::filesystem::path& file) {
-    constexpr std::uint64_t kBytes = 65536;
-    std::error_code ignored;
-    std::ifstream in(file, std::ios::binary);
-    if (!std::filesystem::is_regular_file(file, ignored) || !in) return 0;
-    const std::uint64_t size = std::filesystem::file_size(file, ignored);
-    std::uint64_t mark = 0xcbf29ce484222325;
-    const auto add = [&](const std::string& bytes) {
-        for (const char byte : bytes)
-            mark = (mark ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
-    };
-    add(std::to_string(size));
-    std::string bytes(std::size_t(std::min(size, kBytes)), '\0');
-    for (const std::uint64_t at : {std::uint64_t(0), size - bytes.size()}) {
-        in.seekg(std::streamoff(at));
-        if (!in.read(bytes.data(), std::streamsize(bytes.size()))) return 0;
-        add(bytes);
-    }
-    return mark;
-}
-
 std::filesystem::path fileOf(const RenderCommand& command, int frame) {
     const std::optional<FrameName> name = FrameName::findInput(command.input);
     return name ? name->at(frame) : command.input;
 }
 
+// First and last of each run of frames. A file may say anything.
+std::vector<glm::ivec2> runsIn(const Json& json) {
+    std::vector<glm::ivec2> runs;
+    if (!json.at(kFrames).is_array() || json.at(kFrames).empty())
+        throw Error(ErrorCode::kInput, "no list of frames");
+    for (const Json& run : json.at(kFrames)) {
+        runs.emplace_back(wholeNumberOf<int>(run.at(0)), wholeNumberOf<int>(run.at(1)));
+        if (runs.back().x > runs.back().y) throw Error(ErrorCode::kInput, "a run of no frames");
+    }
+    return runs;
+}
+
 // The first frame's file, if it is no longer the one that a first pass was made of; else empty.
 std::filesystem::path otherFile(const Json& json, const RenderCommand& command) {
-    if (!json.contains(kFirstFile) || json.at(kFrames).empty()) return {};
-    const auto then = json.at(kFirstFile).get<std::uint64_t>();
-    std::filesystem::path file = fileOf(command, json.at(kFrames)[0][0].get<int>());
+    const std::vector<glm::ivec2> runs = runsIn(json);
+    if (!json.contains(kFirstFile)) return {};
+    const auto then = wholeNumberOf<std::uint64_t>(json.at(kFirstFile));
+    std::filesystem::path file = fileOf(command, runs.front().x);
     const std::uint64_t now = markOf(file);
     return then != 0 && now != 0 && then != now ? file : std::filesystem::path();
 }
@@ -104,14 +96,15 @@ void warnOfOthers(const Json& json, const RenderCommand& command, const Listener
                              named(command.readingOptions));
     }
     std::vector<int> absent;
+    const std::vector<glm::ivec2> runs = runsIn(json);
     const std::optional<FrameName> files = FrameName::findInput(command.input);
     for (const int frame : command.frames.frames) {
         // It had none to be read, either.
         if (files && command.frames.missing != MissingFrames::kError && !hasInput(files->at(frame)))
             continue;
-        const bool isKnown =
-            std::any_of(json.at(kFrames).begin(), json.at(kFrames).end(),
-                        [&](const Json& run) { return frame >= run.at(0) && frame <= run.at(1); });
+        const bool isKnown = std::any_of(runs.begin(), runs.end(), [&](const glm::ivec2& run) {
+            return frame >= run.x && frame <= run.y;
+        });
         if (!isKnown) absent.push_back(frame);
     }
     if (absent.empty()) return;
@@ -126,7 +119,6 @@ std::filesystem::path heldFile(const Json& json, const std::vector<int>& frames,
                                const std::filesystem::path& input) {
     const std::optional<FrameName> name = FrameName::findInput(input);
     if (!name || !std::is_sorted(frames.begin(), frames.end())) return {};
-    // A file may say anything.
     constexpr int kMostLooks = 1'000'000;
     int looks = 0;
     std::filesystem::path held;
@@ -136,12 +128,11 @@ std::filesystem::path heldFile(const Json& json, const std::vector<int>& frames,
              frame += step, ++looks)
             if (hasInput(name->at(int(frame)))) held = name->at(int(frame));
     };
-    const Json& runs = json.at(kFrames);
+    const std::vector<glm::ivec2> runs = runsIn(json);
     const std::int64_t first = frames.front();
     for (auto run = runs.rbegin(); run != runs.rend(); ++run)
-        look(std::min<std::int64_t>(run->at(1).get<int>(), first - 1), run->at(0).get<int>(), -1);
-    for (const Json& run : runs)
-        look(std::max<std::int64_t>(run.at(0).get<int>(), first + 1), run.at(1).get<int>(), 1);
+        look(std::min<std::int64_t>(run->y, first - 1), run->x, -1);
+    for (const glm::ivec2& run : runs) look(std::max<std::int64_t>(run.x, first + 1), run.y, 1);
     return held;
 }
 

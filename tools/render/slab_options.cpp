@@ -138,7 +138,7 @@ void writeSlabs(const CLI::App& app, const RenderCommand& command, const ReadSce
     const LayeredPicture picture(prepared, camera, partOf(listener, 0, kPrepareShare));
     if (!command.firstPass.empty() && !std::filesystem::exists(command.firstPass)) {
         makeFolderOf(command.firstPass);
-        writeSlabFacts(picture, optionsOf(app), command.firstPass);
+        writeSlabFacts(picture, optionsOf(app), command.input, command.firstPass);
     }
     const CodeText codes = codesOf(*scene.volume);
     PartNotes notes{optionsOf(app), commonMetadata(session)};

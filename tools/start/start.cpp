@@ -7,7 +7,6 @@
 #include <sys/auxv.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstdio>
@@ -36,6 +35,5 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "deltasplat: %s: got %s; expected a program, installed with this one\n",
                  file, std::strerror(errno));
     // diff has idiff's exit codes, where 1 is a warning.
-    const auto isDiff = [](const char* argument) { return std::strcmp(argument, "diff") == 0; };
-    return std::any_of(argv, argv + argc, isDiff) ? 4 : 1;
+    return argc > 1 && std::strcmp(argv[1], "diff") == 0 ? 4 : 1;
 }

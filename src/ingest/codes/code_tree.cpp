@@ -6,6 +6,7 @@
 #include "deltasplat/error.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/codes/slot_blocks.h"
+#include "memory.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -51,6 +52,10 @@ std::unique_ptr<CodeTree::Leaf> makeLeaf(const SlotBlock& block, int sliceAxis) 
 }
 
 void fillTree(const SlotBlocks& blocks, CodeTree::Tree& tree) {
+    // A leaf's codes and its mask, and what is kept of it beside them.
+    constexpr double kLeafBytes = sizeof(CodeTree::Leaf) + 512 * sizeof(Code) + 64;
+    requireMemory("codes of a delta grid that is not seen along its slices",
+                  kLeafBytes * double(blocks.blocks().size()));
     std::vector<std::unique_ptr<CodeTree::Leaf>> leaves(blocks.blocks().size());
     parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

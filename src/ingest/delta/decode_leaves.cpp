@@ -416,6 +416,8 @@ std::optional<DecodedLeaves> decodeLeaves(const VdbLeaves& leaves, const DeltaHe
     const auto placed = placeLeaves(leaves, layout);
     if (!placed) return std::nullopt;
     const std::vector<Column> columns = columnsOf(*placed, layout, header.restActive);
+    // Nearly all leaves become blocks; how many more there are is seen on the way.
+    requireMemory(where, double(leaves.leaves().size()) * 512 * sizeof(ShortSlot));
 
     // What a thread keeps is large: one for each, not for each piece of work.
     constexpr std::size_t kPiece = 8;  // columns

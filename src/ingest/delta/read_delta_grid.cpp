@@ -106,7 +106,9 @@ std::optional<glm::ivec2> slicesToRead(const DeltaHeader& header, const SlicesWa
 }
 
 // What is said of a whole volume may come from anywhere.
-bool isWithin(const IndexBox& box, const IndexBox& all) {
+bool mayBeBoxOf(const DeltaHeader& header, const IndexBox& box) {
+    const IndexBox& all = header.box;
+    if (header.restActive) return box == all;
     return !box.empty() && glm::all(glm::greaterThanEqual(box.min, all.min)) &&
            glm::all(glm::lessThanEqual(box.max, all.max));
 }
@@ -164,7 +166,7 @@ std::optional<Volume> readDeltaLeaves(const VdbFile& file, const VdbGrid& grid,
         header = takeDeltaHeader(*metadata, where);
         const bool becomesFog = options.levelSetToFog && sourceClass(*metadata) == "level set";
         if (!mayDecodeLeaves(header) || becomesFog) return std::nullopt;
-        if (wanted && !isWithin(wanted->box, header.box)) return std::nullopt;
+        if (wanted && !mayBeBoxOf(header, wanted->box)) return std::nullopt;
         leaves = file.readLeaves(grid, slicesToRead(header, wanted));
         if (!leaves) return std::nullopt;
         worldFromIndexOf(leaves->transform(), where);

@@ -14,6 +14,37 @@
 #include "ingest/vdb/vdb_bytes.h"
 
 namespace deltasplat {
+namespace {
+
+// Whether an array begins at `place` as OpenVDB writes one: how many bytes it is packed in, 0 if it
+// is not, and those. Moves `place` behind it. What a chunk of Blosc's says of its sizes, in the
+// second and fourth of its first four words, its decoder would believe.
+bool isArray(const std::string& stored, std::uint64_t bytes, std::uint64_t& place) {
+    const auto wordAt = [&](std::uint64_t at) {
+        std::uint32_t word;
+        std::memcpy(&word, stored.data() + at, sizeof word);
+        return word;
+    };
+    constexpr std::uint64_t kHeader = 16;
+    if (stored.size() - place < sizeof(std::uint32_t)) return false;
+    const std::uint32_t packed = wordAt(place);
+    place += sizeof packed;
+    if (stored.size() - place < (packed > 0 ? packed : bytes)) return false;
+    if (packed > 0 &&
+        (packed < kHeader || wordAt(place + 4) != bytes || wordAt(place + 12) != packed)) {
+        return false;
+    }
+    place += packed > 0 ? packed : bytes;
+    return true;
+}
+
+// Whether there is a byte for each leaf, and then a size of eight.
+bool isSound(const std::string& stored, std::size_t leaves) {
+    std::uint64_t place = sizeof(std::uint32_t);
+    return isArray(stored, leaves, place) && isArray(stored, 8 * std::uint64_t{leaves}, place);
+}
+
+}  // namespace
 
 std::optional<std::vector<std::uint64_t>> leafSizesOf(const std::string& stored,
                                                       std::size_t leaves) {
@@ -22,7 +53,7 @@ std::optional<std::vector<std::uint64_t>> leafSizesOf(const std::string& stored,
     if (stored.size() < sizeof count || !DelayedLoadMetadata::isRegisteredType())
         return std::nullopt;
     std::memcpy(&count, stored.data(), sizeof count);
-    if (count != leaves) return std::nullopt;
+    if (count != leaves || !isSound(stored, leaves)) return std::nullopt;
     try {
         std::string text;
         appendU32(text, 1);

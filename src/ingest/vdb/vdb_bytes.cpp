@@ -157,7 +157,7 @@ std::string VdbBytes::text(std::uint32_t most) {
     return bytes(length);
 }
 
-std::string readMetadata(VdbBytes& bytes, std::string* leafSizes) {
+std::string readMetadata(VdbBytes& bytes, VdbRange* leafSizes) {
     const std::uint32_t count = bytes.u32();
     std::uint32_t kept = 0;
     std::string entries;
@@ -166,10 +166,8 @@ std::string readMetadata(VdbBytes& bytes, std::string* leafSizes) {
         const std::string type = bytes.text();
         const std::uint32_t size = bytes.u32();
         if (!isKnown(type, size)) {
-            if (leafSizes && type == "__delayedload")
-                *leafSizes = bytes.bytes(size);
-            else
-                bytes.skip(size);
+            if (leafSizes && type == "__delayedload") *leafSizes = {bytes.position(), size};
+            bytes.skip(size);
             continue;
         }
         const std::string value = bytes.bytes(size);

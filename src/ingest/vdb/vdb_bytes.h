@@ -51,11 +51,18 @@ class VdbBytes {
     std::uint64_t bufferBegin_ = 0;
 };
 
+/// A part of a file.
+struct VdbRange {
+    std::uint64_t begin = 0;
+    std::uint64_t size = 0;
+};
+
 /// Reads the metadata at the current position, which moves behind it. Returns it in the file's
 /// form, reduced to entries whose types and sizes OpenVDB can be trusted with.
-/// @param leafSizes  null, or where to put the value of OpenVDB's "file_delayed_load" as it is
-///                   stored, if there is one; not trusted
-std::string readMetadata(VdbBytes& bytes, std::string* leafSizes = nullptr);
+/// @param leafSizes  null, or where to put where the value of OpenVDB's "file_delayed_load" lies,
+/// if
+///                   there is one; not read, and not to be trusted
+std::string readMetadata(VdbBytes& bytes, VdbRange* leafSizes = nullptr);
 
 /// Appends `value` to `text` as four bytes, little endian.
 void appendU32(std::string& text, std::uint32_t value);

@@ -92,7 +92,7 @@ auto guarded(VdbStreamBuf& buffer, const std::string& where, const Read& read) {
 // What stands before a grid's tree.
 struct GridHead {
     std::string metadata;         // as readMetadata returns it
-    std::string leafSizes;        // OpenVDB's "file_delayed_load" as it is stored; empty: none
+    VdbRange leafSizes;           // OpenVDB's "file_delayed_load"; empty: none
     std::uint64_t transform = 0;  // where it starts
     openvdb::math::Transform::ConstPtr map;
     VdbValueFormat format;
@@ -137,11 +137,15 @@ std::optional<std::vector<VdbRun>> readRuns(VdbBytes& bytes, const GridHead& hea
                                             std::vector<VdbLeaf>& leaves,
                                             const std::function<void(std::uint64_t)>& claim) {
     constexpr std::uint64_t kMaskBytes = 64;
-    const auto sizes = leafSizesOf(head.leafSizes, leaves.size());
+    std::uint64_t position = bytes.position();
+    if (head.leafSizes.size > mostLeafSizesBytes(leaves.size())) return std::nullopt;
+    claim(head.leafSizes.size);
+    bytes.hold(head.leafSizes.begin, head.leafSizes.begin + head.leafSizes.size);
+    const auto sizes = leafSizesOf(bytes.bytes(head.leafSizes.size), leaves.size());
+    bytes.seek(position);
     if (!sizes) return std::nullopt;
     std::vector<VdbRun> runs;
     std::vector<VdbLeaf> wanted;
-    std::uint64_t position = bytes.position();
     for (std::size_t i = 0; i < leaves.size();) {
         const auto isWanted = [&](const VdbLeaf& leaf) {
             return leaf.origin[0] <= slices.y && leaf.origin[0] + 7 >= slices.x;

@@ -133,6 +133,12 @@ expect_said "$said written with the same --mode"
 echo '{}' >other.json
 expect_code 3 "$program" "${frames[@]}" --first-pass other.json -o part.####.exr
 expect_said "deltasplat: other.json: got something else; expected what --first-pass has written"
+for runs in '[[]]' '[[8]]' '[]' '{}' '[[8,1e300]]' '[[10,8]]'; do
+    tr -d '\n ' <first.json | sed "s/\"frames\":\[\[8,10\]\]/\"frames\":$runs/" >other.json
+    ! cmp -s <(tr -d '\n ' <first.json) other.json || fail "got no other frames: $runs"
+    expect_code 3 "$program" "${frames[@]}" --first-pass other.json -o part.####.exr
+    expect_said "deltasplat: other.json: got something else; expected what --first-pass has written"
+done
 
 # Frames without a file.
 gaps=(render in.####.vdb --frames 7-12 --size 8x8)
