@@ -66,6 +66,7 @@ void checkOutput(const std::string& option, const std::filesystem::path& file, c
 void refuseLog(const std::string& option, const std::filesystem::path& file) {
     const std::filesystem::path log = runLogFile();
     if (log.empty() || !sameFile(file, log)) return;
+    dropRunLog();
     throw Error(ErrorCode::kUsage, gotExpected(option, file.string(), "another file than --log"));
 }
 

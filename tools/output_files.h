@@ -26,7 +26,7 @@ Files filesRead(const Files& inputs, const std::filesystem::path& transferFuncti
 void checkOutput(const std::string& option, const std::filesystem::path& file, const Files& others,
                  const std::string& names);
 
-/// @throw Error(kUsage) if an output is the run's log
+/// @throw Error(kUsage) if an output is the run's log, which then is no more
 void refuseLog(const std::string& option, const std::filesystem::path& file);
 
 /// Makes the folder of one of many outputs, unless it is there.

@@ -135,6 +135,31 @@ void spellWithTwoDashes(std::vector<std::string>& arguments,
     }
 }
 
+Error nothingGiven(const CLI::App& app, const std::string& name, const CLI::Option& option) {
+    return Error(ErrorCode::kUsage, gotExpected(name, "nothing", option.get_type_name()) +
+                                        " (see '" + callOf(app) + " --help')");
+}
+
+// Refuses empty values of options, as of a shell's variable that is not set: none is one, and for
+// the one of "--name=" CLI11 would take the next argument.
+void refuseEmptyValues(const std::vector<std::string>& arguments,
+                       const std::vector<Subcommand>& subcommands) {
+    CalledSubcommand called(subcommands);
+    for (std::size_t i = 0; i < arguments.size() && arguments[i] != "--"; ++i) {
+        const std::string& argument = arguments[i];
+        const CLI::App* const app = called.next(argument);
+        if (app == nullptr || !looksLikeOption(argument)) continue;
+        const std::size_t sign = argument.find('=');
+        const std::string name = argument.substr(0, sign);
+        const bool isEmpty = sign == std::string::npos
+                                 ? i + 1 < arguments.size() && arguments[i + 1].empty()
+                                 : sign + 1 == argument.size();
+        const CLI::Option* const option = isEmpty ? app->get_option_no_throw(name) : nullptr;
+        if (option != nullptr && option->get_items_expected_max() > 0)
+            throw nothingGiven(*app, name, *option);
+    }
+}
+
 // Joins an option that may have a value with what follows it, unless that is an option: CLI11 takes
 // it for an argument of the subcommand if one is missing, and then nobody knows which it is.
 void joinPossibleValues(std::vector<std::string>& arguments,
@@ -196,8 +221,7 @@ Error usageError(const CLI::App& app, const CLI::ParseError& problem) {
     if (option == nullptr || name == line) return Error(ErrorCode::kUsage, line);
     if (option->get_type_name().empty())
         return Error(ErrorCode::kUsage, gotExpected(name, "a value", "none, it is a flag"));
-    return Error(ErrorCode::kUsage, gotExpected(name, "nothing", option->get_type_name()) +
-                                        " (see '" + callOf(app) + " --help')");
+    return nothingGiven(app, name, *option);
 }
 
 // Declares the options of a subcommand that an argument names, as it must to call it, and of those
@@ -218,6 +242,7 @@ const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcom
     std::vector<std::string> spelt(arguments.begin() + 1, arguments.end());
     askForHelp(spelt, subcommands);
     spellWithTwoDashes(spelt, subcommands);
+    refuseEmptyValues(spelt, subcommands);
     joinPossibleValues(spelt, subcommands);
     std::vector<std::string> reversed(spelt.rbegin(), spelt.rend());
     try {

@@ -166,7 +166,13 @@ class JsonCamera {
             film.frameWidthWorld = positive(*width, "frame_width");
         if (const LocatedJson* near = json.find("near"))
             film.nearWorld = number(*near, "near", 0, kMost, "a number of at least 0");
-        if (const LocatedJson* far = json.find("far")) film.farWorld = positive(*far, "far");
+        if (const LocatedJson* far = json.find("far")) {
+            film.farWorld = positive(*far, "far");
+            if (!(*film.farWorld > film.nearWorld)) {
+                fail(*far, numberText(*film.farWorld) + " for far",
+                     "more than near, " + numberText(film.nearWorld));
+            }
+        }
     }
 
     void readAperture(const LocatedJson& json, FilmCamera& film) const {

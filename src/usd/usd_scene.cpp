@@ -228,7 +228,7 @@ UsdChain choosePrim(const UsdLayer& layer, std::string_view type, const std::str
                                            : "no prim of type " + kind + " at " + path;
     throw Error(ErrorCode::kInput,
                 gotExpected(layer.file.string(), got,
-                            all.empty()    ? "a prim of type " + kind
+                            all.empty()    ? "at least one"
                             : path.empty() ? "the path of one behind a colon: " + names
                                            : "one of " + names));
 }

@@ -181,7 +181,7 @@ TEST(UsdCamera, OneOfSeveralIsNamed) {
     EXPECT_EQ(said(text, "/w"), ": got 2 prims of type Camera; expected one of /w/a, /w/b, /c");
     EXPECT_EQ(said(text, "/d"),
               ": got no prim of type Camera at /d; expected one of /w/a, /w/b, /c");
-    EXPECT_EQ(said("#usda 1.0\n"), ": got no prim of type Camera; expected a prim of type Camera");
+    EXPECT_EQ(said("#usda 1.0\n"), ": got no prim of type Camera; expected at least one");
 }
 
 TEST(UsdCamera, WhatIsWrongIsSaidWithItsLine) {

@@ -117,7 +117,7 @@ TEST(UsdVolume, WhatIsWrongIsSaid) {
         const char* said;
     } cases[] = {
         {"#usda 1.0\n",
-         ".usda: got no prim of type OpenVDBAsset; expected a prim of type OpenVDBAsset"},
+         ".usda: got no prim of type OpenVDBAsset; expected at least one"},
         {volume("", ""),
          ".usda:2: got a Volume without fields; expected rel field:density, or another one"},
         {volume("rel field:density = </v/e>", ""),

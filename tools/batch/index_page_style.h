@@ -23,6 +23,7 @@ figure img, .none { aspect-ratio: var(--shape); object-fit: contain; background:
 .none { display: grid; place-items: center; color: #9ba0a8; }
 figcaption { padding: 9px 12px 11px; overflow-wrap: anywhere; line-height: 1.35; }
 figcaption .quiet { font-size: 13px; font-variant-numeric: tabular-nums; }
+#failures td:first-child { min-width: 18em; }
 #failures td { text-align: left; white-space: normal; overflow-wrap: anywhere; vertical-align: top; }
 #failures th { text-align: left; }
 )css";

@@ -51,18 +51,20 @@ int workersFor(const std::vector<FrameFiles>& frames) {
 ConversionStats convertFrames(const ConversionFiles& files, const FrameChoice& choice,
                               const Convert& convert, const Listener& listener) {
     interruptBetweenFiles();
+    std::optional<FrameName> stats;
+    if (!files.stats.empty()) stats = frameNameOf(choice, "--stats", files.stats);
+    const std::vector<FrameFiles> asked =
+        filesOfFrames(choice, files.input, false, "OUTPUT", files.output);
+    requireOwnOutputs("OUTPUT", asked, {}, "");
     const std::vector<FrameFiles> frames =
-        framesToMake(withInputs(filesOfFrames(choice, files.input, false, "OUTPUT", files.output),
-                                choice.missing, listener),
-                     choice);
+        framesToMake(withInputs(asked, choice.missing, listener), choice, stats);
     std::vector<ConversionStats> each(frames.size());
     OutputFolders folders;
     runFrames(
         frames, choice.keepGoing, workersFor(frames),
         [&](std::size_t i, const Listener& part) {
             ConversionFiles one{frames[i].input, frames[i].output, {}};
-            if (!files.stats.empty())
-                one.stats = frameNameOf(choice, "--stats", files.stats).at(frames[i].frame);
+            if (stats) one.stats = stats->at(frames[i].frame);
             folders.makeFor(one.output);
             folders.makeFor(one.stats);
             each[i] = convertOne(one, convert, part);

@@ -3,12 +3,14 @@
 
 #include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <memory>
@@ -18,6 +20,7 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "printable.h"
 #include "process/peak_bytes.h"
 
 namespace deltasplat {
@@ -50,8 +53,8 @@ double processorSeconds() {
 
 class RunLog {
   public:
-    RunLog(std::filesystem::path name, int file, bool asJson)
-        : name_(std::move(name)), file_(file), asJson_(asJson) {}
+    RunLog(std::filesystem::path name, int file, bool isNew, bool asJson)
+        : name_(std::move(name)), file_(file), isNew_(isNew), asJson_(asJson) {}
     ~RunLog() { close(file_); }
     RunLog(const RunLog&) = delete;
     RunLog& operator=(const RunLog&) = delete;
@@ -74,8 +77,20 @@ class RunLog {
         line += '\n';
         const std::lock_guard lock(mutex_);
         // In one piece, for others may write as well.
-        (void)!::write(file_, line.data(), line.size());
+        const ssize_t count = ::write(file_, line.data(), line.size());
+        if (count > 0) written_ += count;
+        if (count == ssize_t(line.size()) || failed_ != 0) return;
+        failed_ = count < 0 ? errno : ENOSPC;
     }
+
+    void drop() const {
+        struct stat status {};
+        if (isNew_ && ::fstat(file_, &status) == 0 && status.st_size == written_)
+            ::unlink(name_.c_str());
+    }
+
+    /// Why lines have been lost; empty: none were.
+    std::string failure() const { return failed_ == 0 ? "" : std::strerror(failed_); }
 
     const std::filesystem::path& name() const { return name_; }
     double seconds() const {
@@ -85,8 +100,11 @@ class RunLog {
   private:
     std::filesystem::path name_;
     int file_;
+    bool isNew_;
     bool asJson_;
     std::mutex mutex_;
+    off_t written_ = 0;
+    int failed_ = 0;  // what the system said first
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
@@ -110,7 +128,10 @@ bool isLog(int file) {
 }  // namespace
 
 void openRunLog(const std::filesystem::path& file, bool asJson) {
-    const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    constexpr int kFlags = O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC;
+    int descriptor = open(file.c_str(), kFlags | O_EXCL, 0666);
+    const bool isNew = descriptor >= 0;
+    if (!isNew) descriptor = open(file.c_str(), kFlags, 0666);
     if (descriptor >= 0 && !isLog(descriptor)) {
         close(descriptor);
         throw Error(ErrorCode::kUsage,
@@ -122,11 +143,16 @@ void openRunLog(const std::filesystem::path& file, bool asJson) {
                     gotExpected("--log", file.string() + " (" + std::strerror(errno) + ")",
                                 "a file that can be written"));
     }
-    log = std::make_unique<RunLog>(file, descriptor, asJson);
+    log = std::make_unique<RunLog>(file, descriptor, isNew, asJson);
 }
 
 std::filesystem::path runLogFile() {
     return log ? log->name() : std::filesystem::path();
+}
+
+void dropRunLog() {
+    if (log) log->drop();
+    log.reset();
 }
 
 void logLine(LogLevel level, const std::string& text) {
@@ -140,6 +166,10 @@ void logEnd(int exitCode) {
               {"seconds", log->seconds()},
               {"processor_seconds", processorSeconds()},
               {"peak_bytes", peakBytes()}});
+    if (const std::string failure = log->failure(); !failure.empty()) {
+        std::fprintf(stderr, "deltasplat: warning: --log: lines of %s are lost: %s\n",
+                     printable(log->name().string()).c_str(), failure.c_str());
+    }
     log.reset();
 }
 

@@ -17,11 +17,16 @@ void openRunLog(const std::filesystem::path& file, bool asJson);
 /// Returns the file; empty: there is no log.
 std::filesystem::path runLogFile();
 
+/// Closes the log, whose name is that of another file of the command; it goes if this process has
+/// made it and nobody else has written to it.
+void dropRunLog();
+
 /// Adds a line, with the time (UTC) and the process' number; without a log, nothing. Thread-safe.
 /// What cannot be written is lost: no picture fails for it.
 void logLine(LogLevel level, const std::string& text);
 
-/// Adds the last line: the exit code, seconds of wall clock and of processors, most bytes held.
+/// Adds the last line: the exit code, seconds of wall clock and of processors, most bytes held. Of
+/// lines that could not be written it warns, on standard error.
 void logEnd(int exitCode);
 
 }  // namespace deltasplat

@@ -153,8 +153,13 @@ std::optional<std::filesystem::path> readFirstPass(const RenderCommand& command,
                                                    const Listener& listener) {
     const std::filesystem::path& file = command.firstPass;
     if (file.empty()) return {};
+    std::error_code error;
+    if (!std::filesystem::exists(file, error) && !error) return {};
     std::ifstream in(file);
-    if (!in) return {};
+    if (!in) {
+        throw Error(ErrorCode::kInput, gotExpected(file.string(), "a file that cannot be opened",
+                                                   "a readable file, or none yet"));
+    }
     try {
         const Json json = Json::parse(in).at(kFirstPass);
         look.takeJson(json);
@@ -165,6 +170,12 @@ std::optional<std::filesystem::path> readFirstPass(const RenderCommand& command,
         throw Error(ErrorCode::kInput,
                     gotExpected(file.string(), "something else", "what --first-pass has written"));
     }
+}
+
+void requireWritableFirstPass(const RenderCommand& command) {
+    OutputFolders folders;
+    folders.makeFor(command.firstPass);
+    const AtomicFile probe(command.firstPass);
 }
 
 void writeFirstPass(const RenderCommand& command, const std::vector<int>& frames,

@@ -25,6 +25,9 @@ std::string readingOptions(const CLI::App& app);
 std::optional<std::filesystem::path> readFirstPass(const RenderCommand& command, SequenceLook& look,
                                                    const Listener& listener);
 
+/// @throw Error(kOutput) if the command's `--first-pass` file cannot be written
+void requireWritableFirstPass(const RenderCommand& command);
+
 /// Writes the command's `--first-pass` file.
 /// @param frames  those that were read, in any order
 /// @throw Error(kOutput)

@@ -397,6 +397,7 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
         refuseWithoutFrames("--first-pass");
     }
     if (!command.stats.empty()) frameNameOf(command.frames, "--stats", command.stats);
+    refuseLog("--first-pass", command.firstPass);
 }
 
 void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Listener& listener,
@@ -404,6 +405,13 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     interruptBetweenFiles();
     const std::vector<FrameFiles> all =
         withScene(command.scene, filesFor(command, sinks.areWritten() && !isLookAlone(command)));
+    const std::optional<FrameName> stats = FrameName::find(command.stats);
+    requireOwnOutputs("--output", all, command.firstPass, "the first pass");
+    if (stats) {
+        std::vector<FrameFiles> ofStats = all;
+        for (FrameFiles& one : ofStats) one.output = stats->at(one.frame);
+        requireOwnOutputs("--stats", ofStats, command.firstPass, "the first pass");
+    }
     SequenceLook look(kKeptShare * double(availableMemory()));
     const std::optional<std::filesystem::path> held = readFirstPass(command, look, listener);
     const bool isKnown = held.has_value();
@@ -417,6 +425,8 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     if (!isKnown && isAlone && !command.frames.keepGoing &&
         command.frames.missing == MissingFrames::kError)
         requireInputs(present);
+    // Asked now, rather than after all frames have been read.
+    if (!isKnown && !command.firstPass.empty()) requireWritableFirstPass(command);
     if (!isKnown) survey.run(look, partOf(listener, 0, readShare));
     RenderCommand fixed = fixedTo(look, command);
     fixWindow(present, isKnown, look, fixed, partOf(listener, readShare, surveyed));
@@ -426,8 +436,7 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
         return survey.throwFailure();
     }
     const Listener making = partOf(listener, surveyed, 1);
-    const std::vector<FrameFiles> frames = framesToMake(present, command.frames);
-    const std::optional<FrameName> stats = FrameName::find(command.stats);
+    const std::vector<FrameFiles> frames = framesToMake(present, command.frames, stats);
     OutputFolders folders;
     std::optional<PreparedScene> prepared;
     const auto first = std::find_if(frames.begin(), frames.end(), [&](const FrameFiles& one) {

@@ -12,6 +12,8 @@
 #include "image/whole_image.h"
 #include "ingest/files/input_files.h"
 #include "ingest/files/input_kind.h"
+#include "output_files.h"
+#include "process/run_log.h"
 
 namespace deltasplat {
 namespace {
@@ -49,8 +51,9 @@ bool isNew(const FrameFiles& frame) {
 }  // namespace
 
 bool hasInput(const fs::path& input) {
-    std::error_code ignored;
-    if (fs::exists(input, ignored)) return true;
+    // What cannot be looked at may be there: reading it says why.
+    std::error_code error;
+    if (fs::exists(input, error) || error) return true;
     if (!isImageName(input)) return false;
     try {
         return !findInput(input, {}).files.empty();  // a stack
@@ -111,12 +114,29 @@ void requireInputs(const std::vector<FrameFiles>& frames) {
                             "one of each, or --missing skip, hold or black"));
 }
 
-std::vector<FrameFiles> framesToMake(const std::vector<FrameFiles>& frames,
-                                     const FrameChoice& choice) {
-    std::vector<FrameFiles> result;
+void requireOwnOutputs(const std::string& option, const std::vector<FrameFiles>& frames,
+                       const fs::path& other, const std::string& name) {
+    const fs::path log = runLogFile();
     for (const FrameFiles& frame : frames) {
-        const bool isDone = (choice.skipExisting && isReadable(frame.output)) ||
-                            (choice.update && isReadable(frame.output) && isNew(frame));
+        // There may be a million of them: only such as are called the same are looked at.
+        const fs::path file = frame.output.filename();
+        if (file == log.filename()) refuseLog(option, frame.output);
+        if (other.empty() || file != other.filename() || !sameFile(frame.output, other)) continue;
+        throw Error(ErrorCode::kUsage,
+                    gotExpected(option, frame.output.string(), "another file than " + name));
+    }
+}
+
+std::vector<FrameFiles> framesToMake(const std::vector<FrameFiles>& frames,
+                                     const FrameChoice& choice,
+                                     const std::optional<FrameName>& stats) {
+    std::vector<FrameFiles> result;
+    std::error_code ignored;
+    for (const FrameFiles& frame : frames) {
+        const bool hasStats = !stats || fs::is_regular_file(stats->at(frame.frame), ignored);
+        const bool isDone =
+            hasStats && ((choice.skipExisting && isReadable(frame.output)) ||
+                         (choice.update && isReadable(frame.output) && isNew(frame)));
         if (!isDone) result.push_back(frame);
     }
     return result;

@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "deltasplat/progress.h"
+#include "sequence/frame_name.h"
 #include "sequence/frame_options.h"
 
 namespace deltasplat {
@@ -28,8 +30,18 @@ bool hasInput(const std::filesystem::path& input);
 /// @throw Error(kInput) that counts them if frames have no input, unless that is the same of all
 void requireInputs(const std::vector<FrameFiles>& frames);
 
-/// Returns the frames whose output is not there already, as far as the choice asks for that.
+/// Refuses, before any is made, frames whose output is the log or another file of the command.
+/// @param option  that gives the frames their outputs
+/// @param other   empty: none; called `name` in the message
+/// @throw Error(kUsage)
+void requireOwnOutputs(const std::string& option, const std::vector<FrameFiles>& frames,
+                       const std::filesystem::path& other, const std::string& name);
+
+/// Returns the frames whose output is not there already, as far as the choice asks for that, and
+/// what goes beside it.
+/// @param stats  the files that each frame's --stats go to, if any do
 std::vector<FrameFiles> framesToMake(const std::vector<FrameFiles>& frames,
-                                     const FrameChoice& choice);
+                                     const FrameChoice& choice,
+                                     const std::optional<FrameName>& stats = {});
 
 }  // namespace deltasplat

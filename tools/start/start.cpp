@@ -34,6 +34,10 @@ int main(int argc, char** argv) {
     if (findProgram(asksVersion ? "version" : "deltasplat", file)) ::execv(file, argv);
     std::fprintf(stderr, "deltasplat: %s: got %s; expected a program, installed with this one\n",
                  file, std::strerror(errno));
-    // diff has idiff's exit codes, where 1 is a warning.
-    return argc > 1 && std::strcmp(argv[1], "diff") == 0 ? 4 : 1;
+    // diff has idiff's exit codes, where 1 is a warning. Before it there may be options.
+    for (int i = 1; i < argc; ++i) {
+        if (std::strcmp(argv[i], "diff") == 0) return 4;
+        if (argv[i][0] != '-' && (i == 1 || argv[i - 1][0] != '-')) break;
+    }
+    return 1;
 }

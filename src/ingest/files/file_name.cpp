@@ -29,6 +29,13 @@ void requireRegularFile(const std::filesystem::path& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
     const std::string expected = "a readable file";
+    if (error && !std::filesystem::exists(status) &&
+        status.type() != std::filesystem::file_type::not_found) {
+        throw Error(
+            ErrorCode::kInput,
+            gotExpected(file.string(), "a file that cannot be opened (" + error.message() + ")",
+                        expected));
+    }
     if (!std::filesystem::exists(status)) {
         throw Error(ErrorCode::kInput, gotExpected(file.string(), "no such file", expected));
     }

@@ -77,7 +77,38 @@ expect_said "deltasplat: warning: --depth-shade: spans each frame's own voxels, 
 expect_code 2 "$program" render in.0008.vdb -o one.png --log one.png
 expect_said "deltasplat: --output: got one.png; expected another file than --log"
 expect_code 2 "$program" render in.####.vdb --frames 8-9 --first-pass p.0008.png -o p.####.png
-expect_said "deltasplat: frame 8: --output: got p.0008.png; expected another file than the first pass"
+expect_said "deltasplat: --output: got p.0008.png; expected another file than the first pass"
+# Names of any frame are looked at before one is made, and a log that is none does not stay.
+expect_code 2 "$program" render in.####.vdb --frames 8-10 --size 8x8 -o q.####.png --first-pass q.0009.png
+expect_said "deltasplat: --output: got q.0009.png; expected another file than the first pass"
+expect_code 2 "$program" render in.####.vdb --frames 8-10 --size 8x8 -o q.####.png --log q.0009.png
+expect_said "deltasplat: --output: got q.0009.png; expected another file than --log"
+expect_code 2 "$program" render in.####.vdb --frames 8-10 --size 8x8 -o q.png --contact-sheet 3x1 --first-pass q.png
+expect_code 2 "$program" render in.####.vdb --frames 8-10 --size 8x8 -o q.####.png --stats q.####.json --first-pass q.0010.json
+expect_said "deltasplat: --stats: got q.0010.json; expected another file than the first pass"
+expect_code 2 "$program" render in.####.vdb --frames 8-10 --first-pass q.json --log q.json
+expect_code 2 "$program" convert in.0008.vdb q.vdb --log q.vdb
+expect_code 2 "$program" convert in.####.vdb q.####.vdb --frames 8-10 --log q.0010.vdb
+expect_files "" 'q.*'
+# What reading warns of is said of the first frame whose file it is about.
+cp in.0009.vdb two.0009.vdb
+"$program" synth fire two.0008.vdb --dims 16x16x16 -qq
+expect_code 0 "$program" render two.####.vdb --frames 8-9 --size 8x8 -o q.####.png
+expect_said 'deltasplat: warning: frame 8: two.0008.vdb: reading grid "density" of 3 scalar grids (--grid chooses another)'
+# Nothing to be done again but what is not there.
+"$program" render in.####.vdb --frames 8-9 --size 8x8 -qq -o q.####.png --stats q.####.json
+rm q.0009.json
+"$program" render in.####.vdb --frames 8-9 --size 8x8 -qq -o q.####.png --stats q.####.json --skip-existing
+[[ -s q.0009.json ]] || fail "--skip-existing: got no stats that were not there"
+rm q.* two.*
+# A variable that is not set is no value, and takes no other's place.
+for option in --camera --tf --stats --log --grid --first-pass --threads; do
+    expect_code 2 "$program" render in.0008.vdb -o q.png --size 8x8 $option= --shade
+    grep -q "^deltasplat: $option: got nothing; expected " stderr.txt ||
+        fail "$option=: got $(cat stderr.txt)"
+    expect_code 2 "$program" render in.0008.vdb -o q.png --size 8x8 $option ""
+done
+expect_files "" 'q.*'
 expect_code 2 "$program" render in.0008.vdb -o p.####.png
 expect_said "deltasplat: --output: got p.####.png without --frames; expected --frames with it, as in --frames 1-100"
 expect_code 2 "$program" convert in.0008.vdb 'p.$F4.vdb'

@@ -75,7 +75,7 @@ noted tall3 tall.vdb --tf viridis --size 60x50 --view left
 noted tall4 tall.vdb --tf viridis --size 60x50 --view front --shade
 noted tall5 tall_64x64x128_uint8.raw --tf viridis --size 60x50 --view front
 expect_code 3 "$program" render tall.vdb -o p.slabs --slab-range 1/3 --first-pass tall1.json --size 60x50
-expect_said "deltasplat: tall1.json: got facts for other options; expected the same"
+expect_said "deltasplat: tall1.json: got facts for --view front; expected those for pictures without --view front"
 
 # What the program reads, by the system's count of the shell that has waited for it.
 bytes_read() { # ARGUMENTS...
