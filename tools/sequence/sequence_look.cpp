@@ -67,7 +67,10 @@ double ValueCounts::rounded(double value) const {
 
 void ValueCounts::add(double value, std::uint64_t count) {
     counts_[rounded(value)] += count;
-    // Cutting off bits gives the same, whichever are cut off first.
+}
+
+// Cutting off bits gives the same, whichever are cut off first.
+void ValueCounts::limit() {
     while (counts_.size() > kMost && bits_ > 0) {
         --bits_;
         std::map<double, std::uint64_t> fewer;
@@ -119,10 +122,12 @@ void SequenceLook::note(std::size_t frame, const Volume& volume, Grid& grid) {
     grid.least = grid.active == 0 ? volume.valueMin : std::min(grid.least, volume.valueMin);
     grid.most = grid.active == 0 ? volume.valueMax : std::max(grid.most, volume.valueMax);
     grid.active += volume.activeCount;
+    ++grid.volumes;
     for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
         if (volume.histogram[code] != 0)
             grid.values.add(volume.codeBook.valueOf(Code(code)), volume.histogram[code]);
     }
+    if (grid.volumes > 1) grid.values.limit();
     if (volume.mostFrequent)
         grid.mostFrequent[volume.mostFrequent->value] += volume.mostFrequent->count;
 }
@@ -263,7 +268,7 @@ SequenceLook::Grid SequenceLook::gridOf(const Json& json) {
     grid.values.counts_ = pairsOf(json.at("values"));
     const std::size_t values = grid.values.counts_.size();
     const int bits = grid.values.bits_;
-    if (bits < 0 || bits > 52 || values > ValueCounts::kMost || (grid.box && values == 0))
+    if (bits < 0 || bits > 52 || values > kCodeCount || (grid.box && values == 0))
         throw std::invalid_argument("values");
     requireInvertible(first.worldFromIndex);
     return grid;

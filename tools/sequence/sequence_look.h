@@ -15,13 +15,16 @@
 
 namespace deltasplat {
 
-/// How often values occur in all frames of a sequence: each by itself up to kMost different ones,
-/// then rounded to fewer and fewer bits. Whatever the order in which they are added.
+/// How often values occur in all frames of a sequence: those of one volume as they are, of several
+/// each by itself up to kMost different ones, then rounded to fewer and fewer bits. Whatever the
+/// order in which they are added.
 class ValueCounts {
   public:
     static constexpr std::size_t kMost = 4096;
 
     void add(double value, std::uint64_t count);
+    /// Rounds values until there are kMost at most.
+    void limit();
     const std::map<double, std::uint64_t>& counts() const { return counts_; }
     /// How many bits of the 52 behind the point of values are left.
     int bits() const { return bits_; }
@@ -85,6 +88,7 @@ class SequenceLook {
         std::vector<std::string> warnings;  // of reading it
     };
     struct Grid {
+        std::size_t volumes = 0;           // with values
         std::optional<std::size_t> order;  // of the frame that is first
         Volume first;                      // without voxels
         ValueCounts values;

@@ -101,6 +101,14 @@ rm q.0009.json
 "$program" render in.####.vdb --frames 8-9 --size 8x8 -qq -o q.####.png --stats q.####.json --skip-existing
 [[ -s q.0009.json ]] || fail "--skip-existing: got no stats that were not there"
 rm q.* two.*
+# What stands still is shown as it is by itself, the ramp that its values are fitted to included.
+"$program" synth cloud still.vdb --dims 32x32x32 -qq
+"$program" render still.vdb --size 48x48 --frame-width 40 -qq -o still.exr
+"$program" render still.vdb --size 48x48 --frame-width 40 -qq --turntable 4 --frames 1 --first-pass q.json -o q.#.exr
+same still.exr q.1.exr || fail "got a frame of a turntable other than the picture that it begins with"
+"$program" render still.vdb --size 48x48 --frame-width 40 -qq --turntable 4 --frames 1 --first-pass q.json -o q.#.exr
+same still.exr q.1.exr || fail "got another frame of a turntable by its first pass"
+rm q.* still.*
 # A variable that is not set is no value, and takes no other's place.
 for option in --camera --tf --stats --log --grid --first-pass --threads; do
     expect_code 2 "$program" render in.0008.vdb -o q.png --size 8x8 $option= --shade
