@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "deltasplat/threads.h"
+#include "ingest/grids/file_metadata.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -29,11 +30,7 @@ class ParallelGrid : public Grid {
         // A shallow copy has a transform of its own, and copying one rounds it.
         this->setTransform(const_cast<Grid&>(grid).transformPtr());
         // Writing sets these anew, and fails on one that a file gave another type.
-        for (const char* key :
-             {openvdb::GridBase::META_FILE_BBOX_MIN, openvdb::GridBase::META_FILE_BBOX_MAX,
-              openvdb::GridBase::META_FILE_COMPRESSION, openvdb::GridBase::META_FILE_MEM_BYTES,
-              openvdb::GridBase::META_FILE_VOXEL_COUNT, openvdb::GridBase::META_FILE_DELAYED_LOAD})
-            this->removeMeta(key);
+        for (const char* const key : fileMetadata()) this->removeMeta(key);
     }
 
     /// The copy that OpenVDB writes in a grid's place.

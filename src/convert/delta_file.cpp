@@ -6,31 +6,23 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
-#include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "convert/take_deltas.h"
 #include "convert/volume_grid.h"
 #include "default_floats.h"
-#include "delta/delta_tree.h"
-#include "delta/exact_deltas.h"
-#include "delta/hold_values.h"
-#include "delta/inactive_values.h"
+#include "delta/stream_writer.h"
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/error.h"
 #include "ingest/delta/delta_format.h"
-#include "ingest/delta/delta_origin.h"
-#include "ingest/delta/number_list.h"
 #include "ingest/delta/read_delta_grid.h"
-#include "ingest/delta/zigzag.h"
-#include "ingest/grids/grid_from_codes.h"
-#include "ingest/grids/leaf_bytes.h"
+#include "ingest/delta/word_grid.h"
+#include "ingest/grids/file_metadata.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/vdb/vdb_transform.h"
-#include "memory.h"
+#include "listener_part.h"
 #include "number_text.h"
-#include "parallel.h"
 #include "view/affine.h"
 #include "write_vdb.h"
 
@@ -40,39 +32,6 @@ namespace {
 void checkTolerance(const std::string& option, double tolerance) {
     if (std::isfinite(tolerance) && tolerance >= 0) return;
     throw Error(ErrorCode::kUsage, gotExpected(option, numberText(tolerance), "a number >= 0"));
-}
-
-// What no delta speaks of: inactive voxels, or in a volume without any the most frequent code.
-struct Rest {
-    bool active = false;
-    double background = 0;
-    std::vector<Slot> slotMap;  // makes the resting code empty
-};
-
-Rest restOf(const Volume& volume) {
-    Rest rest;
-    rest.active = !volume.hasBackground;
-    rest.background = volume.background;
-    if (!rest.active || volume.empty()) return rest;
-    const auto most = std::max_element(volume.histogram.begin(), volume.histogram.end());
-    const auto code = Code(most - volume.histogram.begin());
-    rest.background = volume.codeBook.valueOf(code);
-    rest.slotMap.resize(kSlotCount);
-    for (Slot slot = 0; slot < kSlotCount; ++slot) rest.slotMap[std::size_t(slot)] = slot;
-    rest.slotMap[code + 1u] = kEmptySlot;
-    return rest;
-}
-
-int mostComparableAxis(const Volume& volume, std::span<const Slot> slotMap) {
-    int best = 2;
-    std::uint64_t fewest = countDeltas(volume, 2, slotMap).deltas;
-    for (const int axis : {1, 0}) {
-        const std::uint64_t deltas = countDeltas(volume, axis, slotMap).deltas;
-        if (deltas >= fewest) continue;
-        fewest = deltas;
-        best = axis;
-    }
-    return best;
 }
 
 // The tolerance has to leave room for what the code book does to values.
@@ -100,26 +59,15 @@ void requireRoom(const Tolerance& tolerance, const Volume& volume) {
                "at least " + numberText(book.relativeError));
 }
 
-// The codes of a table, otherwise those up to the largest one in use.
-int codeCountOf(const Volume& volume) {
-    if (volume.codeBook.table) return int(volume.codeBook.table->size());
-    const auto& counts = volume.histogram;
-    const auto used = [](std::uint64_t count) { return count != 0; };
-    const auto last = std::find_if(counts.rbegin(), counts.rend(), used);
-    return std::max(1, int(counts.rend() - last));
-}
-
-IndexBox united(IndexBox box, const InactiveValues& inactive) {
-    openvdb::CoordBBox more;
-    if (!inactive.numbers || !inactive.numbers->tree().evalActiveVoxelBoundingBox(more)) return box;
-    return boxOfBoth(box, {{more.min().x(), more.min().y(), more.min().z()},
-                           {more.max().x(), more.max().y(), more.max().z()}});
-}
-
-// Copies what the source says of itself, under names of its own.
-void putSourceMetadata(const openvdb::GridBase& source, openvdb::MetaMap& metadata) {
-    for (auto entry = source.beginMeta(); entry != source.endMeta(); ++entry)
-        metadata.insertMeta(kSourcePrefix + entry->first, *entry->second);
+// Copies what the source says of itself, under names of its own. Packed grids go without what is
+// noted anew whenever a file is written.
+void putSourceMetadata(const openvdb::GridBase& source, bool isPacked, openvdb::MetaMap& metadata) {
+    const auto noted = fileMetadata();
+    for (auto entry = source.beginMeta(); entry != source.endMeta(); ++entry) {
+        const bool isNoted = std::find(noted.begin(), noted.end(), entry->first) != noted.end();
+        if (!isPacked || !isNoted)
+            metadata.insertMeta(kSourcePrefix + entry->first, *entry->second);
+    }
 }
 
 openvdb::math::Transform::Ptr permutedTransform(const glm::dmat4& worldFromIndex, int sliceAxis) {
@@ -127,127 +75,6 @@ openvdb::math::Transform::Ptr permutedTransform(const glm::dmat4& worldFromIndex
     glm::dmat4 permuted = worldFromIndex;
     for (int axis = 0; axis < 3; ++axis) permuted[axis] = worldFromIndex[order[axis]];
     return makeTransformOfType("AffineMap", permuted);
-}
-
-// Whether a table, which files have as text, is more than its codes can save, which is no more than
-// what values have beyond 16 bits.
-bool isTableLarger(const Volume& volume) {
-    if (volume.codeBook.kind != CodeBook::Kind::kTable) return false;
-    const bool isWide = volume.type == "double" || volume.type.ends_with("64");
-    return listText(*volume.codeBook.table).size() > (isWide ? 6 : 2) * volume.activeCount;
-}
-
-template <typename Grid>
-openvdb::GridBase::ConstPtr gridOfCodes(const Volume& volume) {
-    using Leaf = typename Grid::TreeType::LeafNodeType;
-    const CodeTree::Tree& codes = volume.codes->tree();
-    requireMemory("grid \"" + volume.name + "\"", double(codes.leafCount()) * leafBytes<Leaf>());
-    return gridFromCodes<Grid>(codes, volume.codeBook, 0);
-}
-
-// The grid of a volume without empty places, whose codes are exact.
-openvdb::GridBase::ConstPtr gridOfExactCodes(const Volume& volume) {
-    if (volume.type == "float32") return gridOfCodes<openvdb::FloatGrid>(volume);
-    if (volume.type == "int32") return gridOfCodes<openvdb::Int32Grid>(volume);
-    if (volume.type == "uint32" || volume.type == "int64")
-        return gridOfCodes<openvdb::Int64Grid>(volume);
-    return gridOfCodes<openvdb::DoubleGrid>(volume);
-}
-
-// What goes into the file by its values' own bits.
-struct StoredValues {
-    openvdb::GridBase::ConstPtr grid;
-    ExactValues type;
-};
-
-// Empty if codes go into the file: values have an exact code book that is worth its bytes, or less
-// is asked for, or there is no other way.
-std::optional<StoredValues> valuesToStore(const Volume& volume, const DeltaFileOptions& options) {
-    if (options.codesOnly || !options.tolerance.isExact()) return {};
-    // Deltas of codes have lost already what their source had besides.
-    if (isOfCodes(volume) && volume.origin->maxError > 0) return {};
-    const bool isExact = volume.codeBook.isExact();
-    if (isExact && !isTableLarger(volume)) return {};
-    if (!volume.hasBackground && volume.box.min != glm::ivec3(0)) return {};
-    openvdb::GridBase::ConstPtr grid;
-    if (volume.source) {
-        grid = volume.source->grid;
-    } else if (isExact && !volume.hasBackground) {
-        grid = gridOfExactCodes(volume);
-    }
-    if (!grid) return {};
-    const std::optional<ExactValues> type = exactValuesOf(*grid);
-    if (!type) return {};
-    return StoredValues{grid, *type};
-}
-
-// Deltas go into files as numbers without sign.
-void removeSigns(openvdb::Int32Grid& grid) {
-    std::vector<DeltaTree::Leaf*> leaves;
-    grid.tree().getNodes(leaves);
-    parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            std::int32_t* const values = leaves[i]->buffer().data();
-            for (auto on = leaves[i]->valueMask().beginOn(); on; ++on)
-                values[on.pos()] = toZigzag(values[on.pos()]);
-        }
-    });
-}
-
-DeltaHeader headerOf(const Volume& volume, const Rest& rest, const InactiveValues& inactive,
-                     const Tolerance& tolerance) {
-    DeltaHeader header;
-    header.book = volume.codeBook;
-    header.sourceType = volume.type;
-    header.space = volume.space;
-    header.background = rest.background;
-    header.restActive = rest.active;
-    header.inactiveValues = inactive.values;
-    header.active = volume.activeCount;
-    // A source that was a delta grid itself has an error of its own.
-    const DeltaOrigin before = volume.origin.value_or(DeltaOrigin());
-    // (1 + t) (1 + b) - 1, exact where there was none before.
-    const double t = tolerance.relative;
-    header.tolerance = t + before.tolerance + t * before.tolerance;
-    header.toleranceValue = tolerance.value + before.toleranceValue;
-    header.maxError = std::max(before.maxError, volume.readError);
-    return header;
-}
-
-openvdb::GridBase::Ptr takeCodes(const Volume& volume, const Rest& rest,
-                                 const InactiveValues& inactive, const Tolerance& tolerance,
-                                 DeltaHeader& header) {
-    DeltaOptions options;
-    options.slotMap = rest.slotMap;
-    options.inactive = inactive.numbers.get();
-    options.sliceAxis = header.sliceAxis;
-    options.keyInterval = header.keyInterval;
-    Volume held = volume;
-    held.box = header.box;
-    holdValues(held, options.sliceAxis, options.keyInterval, tolerance, rest.slotMap);
-    const DeltaGrid deltas = makeDeltaGrid(held, options);
-    header.codeCount = codeCountOf(held);
-    for (const Slab& slab : deltas.slabs) header.slabDeltas.push_back(slab.deltas);
-    removeSigns(*deltas.tree->grid);
-    return deltas.tree->grid;
-}
-
-openvdb::GridBase::Ptr takeValues(const Volume& volume, const StoredValues& values,
-                                  const InactiveValues& inactive, DeltaHeader& header) {
-    header.version = DeltaHeader::kExactVersion;
-    header.exact = values.type;
-    std::optional<double> rest;
-    if (header.restActive) {
-        rest = 0;
-        if (volume.mostFrequent && hasSlot(values.type, volume.mostFrequent->value))
-            rest = volume.mostFrequent->value;
-        header.background = *rest;
-    }
-    ExactDeltas taken = takeExactDeltas(
-        *values.grid, {header.sliceAxis, header.keyInterval, header.box, rest, inactive},
-        "grid \"" + volume.name + "\"");
-    header.slabDeltas = std::move(taken.slabDeltas);
-    return taken.grid;
 }
 
 }  // namespace
@@ -271,30 +98,16 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     requireRoom(options.tolerance, volume);
 
     const openvdb::GridBase::ConstPtr source = volume.source ? volume.source->grid : nullptr;
-    const InactiveValues inactive =
-        source && volume.hasBackground ? findInactiveValues(*source) : InactiveValues();
-    Rest rest = restOf(volume);
-    // A background that is no number has been replaced in `volume`, but not in its own grid.
-    if (volume.hasBackground && source) rest.background = backgroundOf(*source);
-    listener.report(0.1);
-
-    DeltaHeader header = headerOf(volume, rest, inactive, options.tolerance);
-    header.box = united(volume.box, inactive);
-    header.sliceAxis =
-        options.sliceAxis ? *options.sliceAxis : mostComparableAxis(volume, rest.slotMap);
-    header.keyInterval = options.keyInterval != 0
-                             ? options.keyInterval
-                             : defaultKeyInterval(header.box.dims()[header.sliceAxis]);
-    listener.report(0.3);
-    const std::optional<StoredValues> values = valuesToStore(volume, options);
-    const openvdb::GridBase::Ptr grid =
-        values ? takeValues(volume, *values, inactive, header)
-               : takeCodes(volume, rest, inactive, options.tolerance, header);
+    TakenDeltas taken = takeDeltas(volume, options, partOf(listener, 0, 0.6));
+    DeltaHeader& header = taken.header;
+    const InactiveValues& inactive = taken.inactive;
+    openvdb::GridBase::Ptr grid = std::exchange(taken.deltas, nullptr);
+    if (options.pack) grid = gridOfWords(streamOf(*grid, header));
     listener.report(0.7);
     if (source && volume.hasBackground) {
         header.sourceTree = typeOf(*source);
         header.sourceMap = source->transform().mapType();
-        putSourceMetadata(*source, *grid);
+        putSourceMetadata(*source, options.pack, *grid);
         if (impl_->grids.empty() && volume.source->fileMetadata)
             impl_->fileMetadata = *volume.source->fileMetadata;
     }

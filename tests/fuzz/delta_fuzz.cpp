@@ -22,17 +22,21 @@ void makePieces(openvdb::GridBase& grid) {
     grid.removeMeta("delta_table");
     grid.insertMeta("delta_pieces", openvdb::StringMetadata(pieces));
     grid.insertMeta("delta_code_book", openvdb::StringMetadata("pieces"));
-    // Any number is a delta, with a sign or without.
-    grid.insertMeta("delta_version", openvdb::Int32Metadata(2));
+    // Any number is a delta, with a sign or without; words of a stream are none.
+    if (grid.isType<openvdb::Int32Grid>())
+        grid.insertMeta("delta_version", openvdb::Int32Metadata(2));
 }
 
-// Half, table, linear, pieces, float32 and float64.
-constexpr int kKinds = 6;
+// Half, table, linear, pieces, float32 and float64; as voxels, and packed.
+constexpr int kBooks = 6;
+constexpr int kKinds = 2 * kBooks;
 
 // Returns the delta grid of a small volume of each kind of code book.
 template <typename Grid>
 openvdb::GridBase::Ptr deltaGrid(int kind) {
     using Value = typename Grid::ValueType;
+    const bool isPacked = kind >= kBooks;
+    kind %= kBooks;
     openvdb::initialize();
     auto source = Grid::create(Value(-0.5));
     source->setName("density");
@@ -54,6 +58,7 @@ openvdb::GridBase::Ptr deltaGrid(int kind) {
     if (kind == 2) reading.bits = 12;
     DeltaFileOptions options;
     options.codesOnly = kind < 4;
+    options.pack = isPacked;
     DeltaFile file;
     file.add(readVolume(path, reading), options);
     file.write(path);
@@ -116,11 +121,17 @@ void damageMetadata(Input& input, openvdb::MetaMap& metadata) {
 
 template <typename Tree>
 void damageVoxels(Input& input, Tree& tree) {
-    const openvdb::Coord at(std::int8_t(input.byte()), std::int8_t(input.byte()),
-                            std::int8_t(input.byte()));
+    openvdb::Coord at(std::int8_t(input.byte()), std::int8_t(input.byte()),
+                      std::int8_t(input.byte()));
     const std::uint8_t how = input.byte();
     typename Tree::ValueType value = how % 2 ? input.number() : std::int8_t(input.byte());
     if (sizeof value > 4 && how % 8 == 7) value <<= 31;
+    if (how % 4 == 2) {
+        // One bit, where the words of a stream are.
+        at = at & 7;
+        const auto bit = int(std::uint8_t(value) % (8 * sizeof value));
+        value = tree.getValue(at) ^ typename Tree::ValueType(1) << bit;
+    }
     if (how % 16 == 0) {
         tree.addTile(1, at, value, true);
     } else if (how % 4 == 1) {
@@ -138,6 +149,7 @@ std::vector<std::string> seeds() {
         inputs.push_back({kind, 0});
         inputs.push_back({kind, 1, 4, 2, 0, 0, 0, 3, 3, 3, 3, 3, 3});
         inputs.push_back({kind, 0, 1, 2, 3, 0, 7, 4, 4, 4, 1, 0, 0, 0, 1});
+        inputs.push_back({kind, 0, 1, 2, 3, 2, 7, 0, 0, 1, 6, 60, 5, 5, 5, 2, 33});
         inputs.push_back({kind, 3, 9, 3, 0, 0, 0, 9, 2, 1, 6, '1', ' ', '2', ' ', '3', '4'});
     }
     return inputs;
@@ -150,9 +162,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (size < 2 || size > 4096) return 0;
     using openvdb::DoubleGrid, openvdb::FloatGrid;
     static const openvdb::GridBase::Ptr grids[fuzz::kKinds] = {
-        fuzz::deltaGrid<FloatGrid>(0), fuzz::deltaGrid<FloatGrid>(1),
-        fuzz::deltaGrid<FloatGrid>(2), fuzz::deltaGrid<FloatGrid>(3),
-        fuzz::deltaGrid<FloatGrid>(4), fuzz::deltaGrid<DoubleGrid>(5)};
+        fuzz::deltaGrid<FloatGrid>(0),  fuzz::deltaGrid<FloatGrid>(1),
+        fuzz::deltaGrid<FloatGrid>(2),  fuzz::deltaGrid<FloatGrid>(3),
+        fuzz::deltaGrid<FloatGrid>(4),  fuzz::deltaGrid<DoubleGrid>(5),
+        fuzz::deltaGrid<FloatGrid>(6),  fuzz::deltaGrid<FloatGrid>(7),
+        fuzz::deltaGrid<FloatGrid>(8),  fuzz::deltaGrid<FloatGrid>(9),
+        fuzz::deltaGrid<FloatGrid>(10), fuzz::deltaGrid<DoubleGrid>(11)};
     const openvdb::GridBase::Ptr grid = grids[data[0] % fuzz::kKinds]->deepCopyGrid();
     fuzz::Input input(data + 2, size - 2);
     for (int n = data[1] % 4; n > 0; --n) fuzz::damageMetadata(input, *grid);

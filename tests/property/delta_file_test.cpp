@@ -19,14 +19,17 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/codes/code_tree.h"
+#include "ingest/grids/file_metadata.h"
 #include "ingest/grids/source_grid.h"
 #include "reference/plain_delta_reader.h"
+#include "support/same_volume.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {
 namespace {
 
 using openvdb::Coord;
+using test::expectSameVolume;
 using testing::PlainVolume;
 using testing::TempFolder;
 
@@ -166,6 +169,13 @@ void expectSameVoxels(const Grid& expected, const Grid& grid) {
     EXPECT_EQ(wrong, 0u);
 }
 
+// Metadata but what OpenVDB notes anew when it writes a file.
+openvdb::MetaMap ownMetadata(const openvdb::MetaMap& metadata) {
+    openvdb::MetaMap own(metadata);
+    for (const char* const key : fileMetadata()) own.removeMeta(key);
+    return own;
+}
+
 template <typename Grid>
 void expectEqual(const Grid& expected, const Volume& restored, const PlainVolume& plain) {
     ASSERT_TRUE(restored.source);
@@ -176,8 +186,8 @@ void expectEqual(const Grid& expected, const Volume& restored, const PlainVolume
     EXPECT_EQ(grid.transform(), expected.transform());
     EXPECT_EQ(grid.transform().mapType(), expected.transform().mapType());
     EXPECT_EQ(plain.worldFromIndex, expected.transform().baseMap()->getAffineMap()->getMat4());
-    EXPECT_TRUE(static_cast<const openvdb::MetaMap&>(grid) == expected);
-    EXPECT_TRUE(plain.metadata == expected);
+    EXPECT_TRUE(ownMetadata(grid) == ownMetadata(expected));
+    EXPECT_TRUE(ownMetadata(plain.metadata) == ownMetadata(expected));
     EXPECT_EQ(grid.getGridClass(), expected.getGridClass());
     EXPECT_EQ(grid.saveFloatAsHalf(), expected.saveFloatAsHalf());
     EXPECT_EQ(grid.activeVoxelCount(), expected.activeVoxelCount());
@@ -207,7 +217,26 @@ DeltaFileOptions codesOnly() {
     return options;
 }
 
-// Writes a grid as OpenVDB does, makes a delta grid of it, and reads that back.
+// Makes a delta grid of source.vdb in either form, and reads it back.
+template <typename Grid>
+DeltaFileEntry expectComesBack(const Grid& source, DeltaFileOptions options, bool pack) {
+    SCOPED_TRACE(pack ? "packed" : "voxels");
+    ReadOptions reading;
+    reading.keepSource = true;
+    reading.levelSetToFog = false;
+    options.pack = pack;
+    DeltaFile file;
+    const DeltaFileEntry entry = file.add(readVolume("source.vdb", reading), options);
+    file.write("delta.vdb");
+    EXPECT_EQ(entry.maxError, 0);
+    EXPECT_TRUE(entry.lossless);
+    const Volume restored = readVolume("delta.vdb", reading);
+    EXPECT_EQ(restored.origin->deltas, entry.deltas);
+    expectEqual(source, restored, testing::readPlainDeltas("delta.vdb", "density"));
+    return entry;
+}
+
+// Writes a grid as OpenVDB does, makes delta grids of it, and reads those back.
 template <typename Grid>
 void expectRoundTrip(unsigned seed, Kind kind, const std::string& codeBook = "") {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -222,23 +251,15 @@ void expectRoundTrip(unsigned seed, Kind kind, const std::string& codeBook = "")
     input.open();
     const auto source = openvdb::gridPtrCast<Grid>(input.readGrid("density"));
 
-    ReadOptions reading;
-    reading.keepSource = true;
-    reading.levelSetToFog = false;
     DeltaFileOptions options;
     if (seed % 4 != 3) options.sliceAxis = int(seed % 4);
     options.keyInterval = int(8 * (seed % 5));
-    DeltaFile file;
-    const DeltaFileEntry entry = file.add(readVolume("source.vdb", reading), options);
-    file.write("delta.vdb");
-    EXPECT_EQ(entry.maxError, 0);
-    EXPECT_TRUE(entry.lossless);
-    if (!codeBook.empty()) {
-        EXPECT_EQ(entry.codeBook, codeBook);
+    for (const bool pack : {false, true}) {
+        const DeltaFileEntry entry = expectComesBack(*source, options, pack);
+        if (!codeBook.empty()) {
+            EXPECT_EQ(entry.codeBook, codeBook);
+        }
     }
-    const Volume restored = readVolume("delta.vdb", reading);
-    EXPECT_EQ(restored.origin->deltas, entry.deltas);
-    expectEqual(*source, restored, testing::readPlainDeltas("delta.vdb", "density"));
 }
 
 TEST(DeltaFile, HalfGridsComeBack) {
@@ -296,14 +317,18 @@ TEST(DeltaFile, WideIntegersComeBackAsFarAsThereAreSlots) {
     openvdb::io::File("source.vdb").write({grid});
     ReadOptions reading;
     reading.keepSource = true;
-    DeltaFile file;
-    const DeltaFileEntry entry = file.add(readVolume("source.vdb", reading), {});
-    EXPECT_EQ(entry.codeBook, "int64");
-    EXPECT_TRUE(entry.lossless);
-    file.write("delta.vdb");
-    const Volume restored = readVolume("delta.vdb", reading);
-    const auto& back = static_cast<const openvdb::Int64Grid&>(*restored.source->grid);
-    expectSameVoxels(*grid, back);
+    for (const bool pack : {false, true}) {
+        DeltaFileOptions options;
+        options.pack = pack;
+        DeltaFile file;
+        const DeltaFileEntry entry = file.add(readVolume("source.vdb", reading), options);
+        EXPECT_EQ(entry.codeBook, "int64");
+        EXPECT_TRUE(entry.lossless);
+        file.write("delta.vdb");
+        const Volume restored = readVolume("delta.vdb", reading);
+        const auto& back = static_cast<const openvdb::Int64Grid&>(*restored.source->grid);
+        expectSameVoxels(*grid, back);
+    }
 
     grid->tree().setValueOn(Coord(3, 0, 0), kLargest + 1);
     openvdb::io::File("source.vdb").write({grid});
@@ -401,8 +426,10 @@ TEST(DeltaFile, LinearBooksKeepToHalfAStepAndSayTheLargestError) {
         const TempFolder folder;
         testing::writeBytes(kWavesFile, testing::bytesOf(values));
         const Volume volume = readKept(kWavesFile, inBits(bits));
+        DeltaFileOptions options = codesOnly();
+        options.pack = bits == 11;
         DeltaFile file;
-        const DeltaFileEntry entry = file.add(volume, codesOnly());
+        const DeltaFileEntry entry = file.add(volume, options);
         file.write("delta.vdb");
         const double found =
             largestError(values, testing::readPlainDeltas("delta.vdb", "waves_95x41x50_float32"));
@@ -433,6 +460,11 @@ void expectWithin(const std::vector<float>& values, const Volume& volume, int sl
     const DeltaFileEntry entry = file.add(volume, options);
     file.write("held.vdb");
     EXPECT_LT(entry.deltas, exact.deltas);
+    options.pack = true;
+    DeltaFile packed;
+    EXPECT_EQ(packed.add(volume, options).maxError, entry.maxError);
+    packed.write("packed.vdb");
+    expectSameVolume(readVolume("held.vdb"), readVolume("packed.vdb"));
     const PlainVolume plain = testing::readPlainDeltas("held.vdb", volume.name);
     double largest = 0;
     std::uint64_t over = 0, filled = 0;
@@ -550,30 +582,6 @@ TEST(DeltaFile, ToleranceKeepsActiveStates) {
     EXPECT_GT(held, 100u);
 }
 
-// A volume that is read from its deltas is the one that is read from its source.
-void expectSameVolume(const Volume& a, const Volume& b) {
-    EXPECT_EQ(a.type, b.type);
-    EXPECT_EQ(a.gridClass, b.gridClass);
-    EXPECT_EQ(a.hasBackground, b.hasBackground);
-    EXPECT_EQ(a.background, b.background);
-    EXPECT_EQ(a.box, b.box);
-    EXPECT_EQ(a.worldFromIndex, b.worldFromIndex);
-    EXPECT_EQ(a.codeBook.name(), b.codeBook.name());
-    EXPECT_EQ(*a.codeBook.table, *b.codeBook.table);
-    EXPECT_EQ(a.histogram, b.histogram);
-    EXPECT_EQ(a.valueMin, b.valueMin);
-    EXPECT_EQ(a.valueMax, b.valueMax);
-    ASSERT_EQ(a.mostFrequent.has_value(), b.mostFrequent.has_value());
-    EXPECT_EQ(a.mostFrequent->value, b.mostFrequent->value);
-    EXPECT_EQ(a.mostFrequent->count, b.mostFrequent->count);
-    EXPECT_EQ(a.codeError.absolute, b.codeError.absolute);
-    EXPECT_TRUE(a.codes->tree().hasSameTopology(b.codes->tree()));
-    std::uint64_t wrong = 0;
-    for (auto code = a.codes->tree().cbeginValueOn(); code; ++code)
-        wrong += *code == b.codes->tree().getValue(code.getCoord()) ? 0 : 1;
-    EXPECT_EQ(wrong, 0u);
-}
-
 // Volumes without empty places, a third of them of one value, on which deltas rest.
 TEST(DeltaFile, DenseVolumesOfManyValuesComeBackAsTheyAreRead) {
     std::mt19937 random(31);
@@ -589,7 +597,8 @@ TEST(DeltaFile, DenseVolumesOfManyValuesComeBackAsTheyAreRead) {
         {"int32", testing::bytesOf(ints), "int32"},
         {"uint32", testing::bytesOf(labels), "int64"}};
     for (const auto& [type, bytes, book] : sources) {
-        for (int axis = 0; axis < 3; ++axis) {
+        for (int form = 0; form < 6; ++form) {
+            const int axis = form / 2;
             SCOPED_TRACE(type + " along " + std::to_string(axis));
             const TempFolder folder;
             const std::string name = "waves_95x41x50_" + type;
@@ -599,6 +608,7 @@ TEST(DeltaFile, DenseVolumesOfManyValuesComeBackAsTheyAreRead) {
             DeltaFileOptions options;
             options.sliceAxis = axis;
             options.keyInterval = axis == 1 ? 16 : 0;
+            options.pack = form % 2 == 1;
             DeltaFile file;
             const DeltaFileEntry entry = file.add(volume, options);
             file.write("delta.vdb");
@@ -827,7 +837,9 @@ TEST(DeltaFile, FloatsBesideAnOutlierComeBackAsTheirCodes) {
     const Volume volume = readKept("fog_50x48x40_float32.raw");
     ASSERT_TRUE(volume.codeBook.pieces);
     DeltaFile file;
-    const DeltaFileEntry entry = file.add(volume, codesOnly());
+    DeltaFileOptions options = codesOnly();
+    options.pack = true;
+    const DeltaFileEntry entry = file.add(volume, options);
     file.write("delta.vdb");
     EXPECT_EQ(entry.maxError, volume.codeError.absolute);
     const Volume restored = readVolume("delta.vdb");
@@ -887,6 +899,53 @@ TEST(DeltaFile, OlderVersionsAreRead) {
             ASSERT_EQ(plain.valueAt(at), own);
         }
     }
+}
+
+// Whole numbers whose smallest in use is far from the first that their book has.
+TEST(DeltaFile, PackedWholeNumbersBeginWithTheSmallest) {
+    const TempFolder folder;
+    std::mt19937 random(14);
+    std::vector<std::int16_t> values(std::size_t(60) * 50 * 40);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = std::int16_t(i % 5 == 0 ? 1700 : 1200 + int(random() % 900));
+    values[31] = 20000;
+    testing::writeBytes("a_60x50x40_int16.raw", testing::bytesOf(values));
+    const Volume volume = readKept("a_60x50x40_int16.raw");
+    DeltaFileOptions options;
+    options.pack = true;
+    DeltaFile file;
+    EXPECT_TRUE(file.add(volume, options).lossless);
+    file.write("delta.vdb");
+    const Volume restored = readVolume("delta.vdb");
+    EXPECT_EQ(restored.codeBook.offset, 1200);
+    EXPECT_EQ(restored.valueMin, 1200);
+    EXPECT_EQ(restored.valueMax, 20000);
+    EXPECT_EQ(restored.mostFrequent->value, 1700);
+    const PlainVolume plain = testing::readPlainDeltas("delta.vdb", "a_60x50x40_int16");
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const Coord at(int(i % 60), int(i / 60 % 50), int(i / 3000));
+        ASSERT_EQ(plain.valueAt(at), values[i]);
+        ASSERT_EQ(restored.codeBook.valueOf(restored.codes->tree().getValue(at)), values[i]);
+    }
+}
+
+TEST(DeltaFile, PackedGridsWithoutVoxelsComeBack) {
+    const TempFolder folder;
+    openvdb::initialize();
+    auto grid = openvdb::FloatGrid::create(0.25f);
+    grid->setName("density");
+    openvdb::io::File("source.vdb").write({grid});
+    DeltaFileOptions options;
+    options.pack = true;
+    DeltaFile file;
+    EXPECT_TRUE(file.add(readKept("source.vdb"), options).lossless);
+    file.write("delta.vdb");
+    const Volume restored = readKept("delta.vdb");
+    EXPECT_EQ(restored.activeCount, 0u);
+    EXPECT_EQ(restored.background, 0.25);
+    ASSERT_TRUE(restored.source->grid->isType<openvdb::FloatGrid>());
+    EXPECT_EQ(restored.source->grid->constBaseTree().leafCount(), 0u);
+    EXPECT_EQ(testing::readPlainDeltas("delta.vdb", "density").background, 0.25);
 }
 
 // What one delta grid lost, another made of it does not forget.

@@ -20,12 +20,15 @@
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/slot_blocks.h"
 #include "support/same_picture.h"
+#include "support/same_volume.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {
 namespace {
 
 using openvdb::Coord;
+using test::expectSameCodes;
+using test::expectSameFacts;
 using testing::TempFolder;
 
 const std::string kDeltas = "deltas.vdb";
@@ -54,41 +57,9 @@ Volume throughDeltas(const Volume& volume, int sliceAxis, int keyInterval) {
     return readVolume(kDeltas);
 }
 
-void expectSameCodes(const Volume& a, const Volume& b) {
-    const CodeTree::Tree& p = a.codes->tree();
-    const CodeTree::Tree& q = b.codes->tree();
-    EXPECT_EQ(p.activeVoxelCount(), q.activeVoxelCount());
-    openvdb::CoordBBox box;
-    if (!p.evalActiveVoxelBoundingBox(box)) return;
-    std::uint64_t wrong = 0;
-    const openvdb::tree::ValueAccessor<const CodeTree::Tree> here(p), there(q);
-    for (auto at = box.begin(); at; ++at) {
-        Code codes[2] = {};
-        const bool isOn = here.probeValue(*at, codes[0]);
-        const bool isOnThere = there.probeValue(*at, codes[1]);
-        wrong += isOn == isOnThere && (!isOn || codes[0] == codes[1]) ? 0 : 1;
-    }
-    EXPECT_EQ(wrong, 0u);
-}
-
-void expectSameVolume(const Volume& a, const Volume& b) {
-    EXPECT_EQ(a.name, b.name);
-    EXPECT_EQ(a.type, b.type);
-    EXPECT_EQ(a.gridClass, b.gridClass);
-    EXPECT_EQ(a.hasBackground, b.hasBackground);
-    EXPECT_EQ(a.background, b.background);
-    EXPECT_EQ(a.codeBook.name(), b.codeBook.name());
-    EXPECT_EQ(a.box, b.box);
-    EXPECT_EQ(a.worldFromIndex, b.worldFromIndex);
-    EXPECT_EQ(a.activeCount, b.activeCount);
-    EXPECT_EQ(a.histogram, b.histogram);
-    EXPECT_EQ(a.valueMin, b.valueMin);
-    EXPECT_EQ(a.valueMax, b.valueMax);
-    ASSERT_EQ(a.mostFrequent.has_value(), b.mostFrequent.has_value());
-    if (a.mostFrequent) {
-        EXPECT_EQ(a.mostFrequent->value, b.mostFrequent->value);
-        EXPECT_EQ(a.mostFrequent->count, b.mostFrequent->count);
-    }
+// What is said of the volume and of its deltas, before any tree is made.
+void expectSameOfDeltas(const Volume& a, const Volume& b) {
+    expectSameFacts(a, b);
     ASSERT_TRUE(a.origin && b.origin);
     EXPECT_EQ(a.origin->deltas, b.origin->deltas);
     EXPECT_EQ(a.origin->keyInterval, b.origin->keyInterval);
@@ -127,7 +98,7 @@ void expectSameAsWhole(const Volume& quick) {
     ASSERT_NE(blocksOf(quick), nullptr);
     const Volume whole = readWhole(kDeltas);
     ASSERT_EQ(blocksOf(whole), nullptr);
-    expectSameVolume(quick, whole);
+    expectSameOfDeltas(quick, whole);
     const int axis = quick.origin->sliceAxis;
     const auto holds = [](Slot held, Slot slot) { return std::abs(held - slot) < 40; };
     for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller}) {
@@ -146,7 +117,7 @@ void expectSameAsWhole(const Volume& quick) {
     expectSameCodes(quick, whole);
     const ThreadLimit one(1);
     const Volume alone = readVolume(kDeltas);
-    expectSameVolume(alone, whole);
+    expectSameOfDeltas(alone, whole);
     expectSameCodes(alone, whole);
 }
 
@@ -344,7 +315,7 @@ TEST(DeltaLeaves, OtherWritersFiles) {
         output.close();
         const Volume quick = readVolume("other.vdb");
         EXPECT_EQ(blocksOf(quick) == nullptr, packing == COMPRESS_ZIP);
-        expectSameVolume(quick, whole);
+        expectSameOfDeltas(quick, whole);
         expectSameCodes(quick, whole);
     }
 }
@@ -359,7 +330,7 @@ TEST(DeltaLeaves, EmptyVolumes) {
     reading.keepSource = true;
     const Volume quick = throughDeltas(readVolume("source.vdb", reading), 1, 8);
     EXPECT_TRUE(quick.empty());
-    expectSameVolume(quick, readWhole(kDeltas));
+    expectSameOfDeltas(quick, readWhole(kDeltas));
 }
 
 // Returns the message, or what was read in short.

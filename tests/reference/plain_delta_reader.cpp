@@ -5,6 +5,7 @@
 #include <cstring>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 namespace deltasplat::testing {
 namespace {
@@ -16,6 +17,13 @@ T entry(const openvdb::GridBase& grid, const std::string& name) {
     return found->value();
 }
 
+// Section "Packed deltas": of version 5 what is usual may be missing.
+template <typename T>
+T entry(const openvdb::GridBase& grid, const std::string& name, const T& byDefault) {
+    const bool isThere = bool(grid[name]) || entry<std::int32_t>(grid, "delta_version") < 5;
+    return isThere ? entry<T>(grid, name) : byDefault;
+}
+
 std::vector<double> numbers(const std::string& text) {
     std::vector<double> list;
     std::istringstream words(text);
@@ -23,10 +31,51 @@ std::vector<double> numbers(const std::string& text) {
     return list;
 }
 
+// The same section: bits of words that are the voxels of a grid.
+class Bits {
+  public:
+    explicit Bits(const openvdb::Int64Grid& grid) : words_(grid.getConstAccessor()) {}
+    std::uint64_t take(int count) {
+        std::uint64_t taken = 0;
+        for (int i = 0; i < count; ++i, ++next_) taken |= (word(next_ / 64) >> next_ % 64 & 1) << i;
+        return taken;
+    }
+    std::uint64_t takeNumber() {
+        int zeros = 0;
+        while (take(1) == 0) ++zeros;
+        return (std::uint64_t{1} << zeros) + take(zeros) - 1;
+    }
+    std::uint64_t takeRice(int parameter, int width) {
+        std::uint64_t ones = 0;
+        while (ones < 8 && take(1) == 1) ++ones;
+        if (ones == 8) return take(width);
+        return (ones << parameter) + take(parameter);
+    }
+    int takeParameter(int width) { return int(take(width > 32 ? 6 : 5)); }
+    void skipToWord() { next_ = (next_ + 63) / 64 * 64; }
+
+  private:
+    std::uint64_t word(std::uint64_t i) {
+        const auto part = [&](int low, int bits) {
+            return int(i >> low & ((std::uint64_t{1} << bits) - 1));
+        };
+        const openvdb::Coord place(part(6, 3) + 8 * part(17, 4) + 128 * part(31, 20),
+                                   part(3, 3) + 8 * part(13, 4) + 128 * part(26, 5),
+                                   part(0, 3) + 8 * part(9, 4) + 128 * part(21, 5));
+        if (!words_.isValueOn(place)) throw std::runtime_error("the stream ends early");
+        return std::uint64_t(words_.getValue(place));
+    }
+    openvdb::Int64Grid::ConstAccessor words_;
+    std::uint64_t next_ = 0;
+};
+
 // Section "Exact books": slots of values, 32 or 64 bits, and the first of inactive ones.
 struct ExactBook {
     explicit ExactBook(const std::string& kind) : kind_(kind) {}
     bool is32() const { return kind_ == "float32"; }
+    bool isOne() const {
+        return is32() || kind_ == "float64" || kind_ == "int32" || kind_ == "int64";
+    }
     std::uint64_t firstInactive() const {
         if (kind_ == "float32") return 4286578689u;
         if (kind_ == "float64") return 18442240474082181121u;
@@ -60,8 +109,9 @@ struct ExactBook {
 class Book {
   public:
     explicit Book(const openvdb::GridBase& grid)
-        : kind_(entry<std::string>(grid, "delta_code_book")) {
-        if (kind_ == "integer" || kind_ == "linear") offset_ = entry<double>(grid, "delta_offset");
+        : kind_(entry<std::string>(grid, "delta_code_book", "integer")) {
+        if (kind_ == "integer" || kind_ == "linear")
+            offset_ = entry<double>(grid, "delta_offset", 0);
         if (kind_ == "linear") step_ = entry<double>(grid, "delta_step");
         if (kind_ == "table") table_ = numbers(entry<std::string>(grid, "delta_table"));
         if (kind_ != "pieces") return;
@@ -84,6 +134,71 @@ class Book {
     double offset_ = 0;
     double step_ = 1;
     std::vector<double> table_;
+};
+
+// Numbers of deltas as in the stream, [s][u][v] of the box in the order of slices; 0: none.
+class PackedDeltas {
+  public:
+    PackedDeltas(const openvdb::Coord& first, const openvdb::Coord& last)
+        : first_(first),
+          size_(last - first + openvdb::Coord(1)),
+          numbers_(std::size_t(size_.x()) * std::size_t(size_.y()) * std::size_t(size_.z())) {}
+    std::uint64_t& at(const openvdb::Coord& suv) {
+        const openvdb::Coord place = suv - first_;
+        if (!openvdb::CoordBBox({0, 0, 0}, size_ - openvdb::Coord(1)).isInside(place))
+            throw std::runtime_error("a delta outside of the box");
+        return numbers_[(std::size_t(place.x()) * std::size_t(size_.y()) + std::size_t(place.y())) *
+                            std::size_t(size_.z()) +
+                        std::size_t(place.z())];
+    }
+    void take(Bits& bits, int interval, int width) {
+        std::vector<openvdb::Coord> columns;
+        std::uint64_t slab = 0, u = 0, next = 0;
+        const auto block = [](int low, std::uint64_t more) { return (low >> 3) + int(more); };
+        for (std::uint64_t left = bits.takeNumber(); left > 0; --left) {
+            const std::uint64_t moreSlabs = bits.takeNumber();
+            slab += moreSlabs;
+            if (moreSlabs > 0) u = next = 0;
+            const std::uint64_t more = bits.takeNumber();
+            u += more;
+            if (more > 0) next = 0;
+            next += bits.takeNumber() + 1;
+            bits.takeNumber();  // its words: for those who read several at a time
+            columns.push_back({block(first_.x(), slab * std::uint64_t(interval / 8)),
+                               block(first_.y(), u), block(first_.z(), next - 1)});
+        }
+        for (const openvdb::Coord& column : columns) {
+            bits.skipToWord();
+            int s = column.x();
+            for (std::uint64_t left = bits.takeNumber() + 1; left > 0; --left, ++s) {
+                s += int(bits.takeNumber());
+                takeBlock(bits, openvdb::Coord(8 * s, 8 * column.y(), 8 * column.z()), width);
+            }
+        }
+    }
+
+  private:
+    void takeBlock(Bits& bits, const openvdb::Coord& corner, int width) {
+        for (int s = 0; s < 8; ++s) {
+            if (bits.take(1) == 0) continue;
+            const int form = int(bits.take(2)), parameter = bits.takeParameter(width);
+            std::uint64_t mask = form == 1 ? bits.take(64) : 0;
+            if (form == 2) {
+                const std::uint64_t rows = bits.take(8);
+                for (int row = 0; row < 8; ++row)
+                    mask |= (rows >> row & 1) == 0 ? 0 : bits.take(8) << 8 * row;
+            }
+            for (int n = 0; n < 64; ++n) {
+                if (form != 0 && (mask >> n & 1) == 0) continue;
+                const std::uint64_t number = bits.takeRice(parameter, width) + (form != 0);
+                if (number != 0) at(corner + openvdb::Coord(s, n / 8, n % 8)) = number;
+            }
+        }
+    }
+
+    openvdb::Coord first_;
+    openvdb::Coord size_;
+    std::vector<std::uint64_t> numbers_;
 };
 
 }  // namespace
@@ -111,18 +226,18 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
     const auto narrow = openvdb::gridPtrCast<openvdb::Int32Grid>(deltas);
     const auto wide = openvdb::gridPtrCast<openvdb::Int64Grid>(deltas);
     const int version = entry<std::int32_t>(*deltas, "delta_version");
-    if (version < 1 || version > 4) throw std::runtime_error("version");
+    if (version < 1 || version > 5) throw std::runtime_error("version");
 
     // Axis of the source that slices, u and v run along.
-    const int axis = entry<std::string>(*deltas, "delta_slice_axis")[0] - 'x';
+    const int axis = entry<std::string>(*deltas, "delta_slice_axis", "z")[0] - 'x';
     const int order[3] = {axis, (axis + 1) % 3, (axis + 2) % 3};
     PlainVolume volume;
-    const auto low = entry<openvdb::Vec3i>(*deltas, "delta_box_min");
-    const auto high = entry<openvdb::Vec3i>(*deltas, "delta_box_max");
+    const auto low = entry(*deltas, "delta_box_min", openvdb::Vec3i(0));
+    const auto high = entry(*deltas, "delta_box_max", openvdb::Vec3i(-1));
     volume.min = openvdb::Coord(low[0], low[1], low[2]);
     volume.max = openvdb::Coord(high[0], high[1], high[2]);
-    volume.background = entry<double>(*deltas, "delta_background");
-    volume.sourceType = entry<std::string>(*deltas, "delta_source_type");
+    volume.background = entry<double>(*deltas, "delta_background", 0);
+    volume.sourceType = entry<std::string>(*deltas, "delta_source_type", "float");
     const openvdb::Mat4d permuted = deltas->transform().baseMap()->getAffineMap()->getMat4();
     volume.worldFromIndex = permuted;
     for (int row = 0; row < 3; ++row) {
@@ -136,26 +251,41 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
     if (low[0] > high[0] || low[1] > high[1] || low[2] > high[2]) return volume;
 
     const Book book(*deltas);
-    const ExactBook exact(entry<std::string>(*deltas, "delta_code_book"));
-    const bool restActive = entry<std::string>(*deltas, "delta_rest") == "active";
+    const ExactBook exact(entry<std::string>(*deltas, "delta_code_book", "integer"));
+    const bool restActive = entry<std::string>(*deltas, "delta_rest", "inactive") == "active";
     const std::vector<double> inactive =
-        numbers(entry<std::string>(*deltas, "delta_inactive_values"));
-    const int interval = entry<std::int32_t>(*deltas, "delta_key_interval");
+        numbers(entry<std::string>(*deltas, "delta_inactive_values", ""));
+    const int interval = entry<std::int32_t>(*deltas, "delta_key_interval", 128);
     const int firstSlab = (low[axis] >> 3) << 3;
     const openvdb::Coord size = volume.max - volume.min + openvdb::Coord(1);
     const std::size_t count = std::size_t(size.x()) * std::size_t(size.y()) * std::size_t(size.z());
     volume.values.resize(count);
     volume.active.resize(count);
+    const bool isExact = exact.isOne();
+    PackedDeltas packed({low[order[0]], low[order[1]], low[order[2]]},
+                        {high[order[0]], high[order[1]], high[order[2]]});
+    if (version == 5 && !wide->empty()) {
+        const std::size_t codes =
+            isExact ? 0 : std::size_t(entry<std::int32_t>(*deltas, "delta_code_count", 1));
+        const std::size_t largest = inactive.empty() ? codes : 65536 + inactive.size();
+        int width = isExact ? (exact.is32() ? 32 : 64) : 0;
+        while (!isExact && 2 * largest >> width != 0) ++width;
+        Bits bits(*wide);
+        packed.take(bits, interval, width);
+    }
     for (int u = low[order[1]]; u <= high[order[1]]; ++u) {
         for (int v = low[order[2]]; v <= high[order[2]]; ++v) {
-            std::uint64_t slot = 0;  // of version 4 modulo 2^32 or 2^64
+            std::uint64_t slot = 0;  // of exact books modulo 2^32 or 2^64
             for (int s = low[axis]; s <= high[axis]; ++s) {
                 // A key slice is a change from nothing.
                 if ((s - firstSlab) % interval == 0) slot = 0;
                 const openvdb::Coord place(s, u, v);
                 std::int32_t delta = 0;
                 std::int64_t wideDelta = 0;
-                if (narrow && narrow->tree().probeValue(place, delta)) {
+                if (version == 5) {
+                    const std::uint64_t z = packed.at(place);
+                    slot += z % 2 == 0 ? z / 2 : ~(z / 2);
+                } else if (narrow && narrow->tree().probeValue(place, delta)) {
                     // Section "Reading it".
                     const auto z = std::int64_t(std::uint32_t(delta));
                     if (version < 3) {
@@ -167,17 +297,17 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
                     const auto z = std::uint64_t(wideDelta);
                     slot += z % 2 == 0 ? z / 2 : ~(z / 2);
                 }
-                if (version == 4 && exact.is32()) slot %= std::uint64_t{1} << 32;
+                if (isExact && exact.is32()) slot %= std::uint64_t{1} << 32;
                 openvdb::Coord xyz;
                 xyz[order[0]] = s;
                 xyz[order[1]] = u;
                 xyz[order[2]] = v;
                 const std::size_t at = volume.at(xyz);
-                const std::uint64_t first = version == 4 ? exact.firstInactive() : 65537;
+                const std::uint64_t first = isExact ? exact.firstInactive() : 65537;
                 const auto value = [&] {
                     if (slot == 0) return volume.background;
                     if (slot >= first) return inactive.at(std::size_t(slot - first));
-                    return version == 4 ? exact.value(slot - 1) : book.value(int(slot - 1));
+                    return isExact ? exact.value(slot - 1) : book.value(int(slot - 1));
                 };
                 volume.values[at] = value();
                 volume.active[at] = slot == 0 ? restActive : slot < first;

@@ -68,7 +68,9 @@ Damage without(const std::string& key) {
 }
 
 TEST(ReadDeltaError, UnknownVersion) {
-    expectRefused(": metadata \"delta_version\": got 5; expected an int32 within 1..4",
+    expectRefused(": metadata \"delta_version\": got 6; expected an int32 within 1..5",
+                  with<std::int32_t>("delta_version", 6));
+    expectRefused(": got deltas of type int32; expected int64 for packed deltas",
                   with<std::int32_t>("delta_version", 5));
 }
 

@@ -29,6 +29,9 @@ constexpr double kBytesPerInexactBlock = 4500;
 // A tolerance takes a second tree of codes and measures as well.
 constexpr double kBytesPerHeldBlock = 1200 + kBytesPerInexactBlock;
 
+// What packed deltas take beside those that they are packed from: most bits of noise, twice.
+constexpr double kBytesPerPackedBlock = 1600;
+
 // Share of the progress up to writing.
 constexpr double kTakeShare = 0.8;
 
@@ -91,6 +94,9 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
                     withDefault("Keep a voxel's value while the true one stays within V data\n"
                                 "units",
                                 numberText(command.file.tolerance.value)));
+    deltas.addFlag("--pack", command.file.pack,
+                   "Store deltas as a stream of bits: fewer bytes, which take longer to\n"
+                   "read and in which other programs see nothing");
     addConversionOptions(app, "sizes, deltas, largest error, seconds", command.files,
                          command.frames);
     addInputOptions(app, command.read);
@@ -137,6 +143,7 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
     const double relative = command.file.tolerance.relative;
     if (relative > 0) reading.relativeError = relative / 2;
     if (!command.file.tolerance.isExact()) reading.bytesPerBlock += kBytesPerHeldBlock;
+    if (command.file.pack) reading.bytesPerBlock += kBytesPerPackedBlock;
     warnOfUnusedInputOptions(app, {files.input}, listener);
     ConversionStats stats;
     DeltaFile file;

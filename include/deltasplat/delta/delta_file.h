@@ -21,6 +21,9 @@ struct DeltaFileOptions {
     /// Stores the volume's codes even where they are not exact: what pictures are made of, in a
     /// smaller file.
     bool codesOnly = false;
+    /// Writes deltas as a stream of bits in place of voxels: fewer bytes, of which other programs
+    /// see nothing, and which are not read straight from the file.
+    bool pack = false;
     /// The largest error that is let through, in data units; empty: any.
     std::optional<double> maxError;
 };

@@ -248,6 +248,54 @@ void requireHeldValues(const Entries& entries, const DeltaHeader& header) {
         entries.fail("delta_code_book", "\"half\"", "a book of whole numbers for type " + tree);
 }
 
+void putEntries(const DeltaHeader& header, openvdb::MetaMap& metadata) {
+    using namespace openvdb;
+    const auto vector = [](const glm::ivec3& v) { return Vec3IMetadata({v.x, v.y, v.z}); };
+    metadata.insertMeta(kVersionKey, Int32Metadata(header.version));
+    metadata.insertMeta("delta_slice_axis", StringMetadata(kAxisNames[header.sliceAxis]));
+    metadata.insertMeta("delta_key_interval", Int32Metadata(header.keyInterval));
+    metadata.insertMeta("delta_box_min", vector(header.box.min));
+    metadata.insertMeta("delta_box_max", vector(header.box.max));
+    metadata.insertMeta("delta_code_book", StringMetadata(header.bookName()));
+    if (!header.exact) putBook(header, metadata);
+    metadata.insertMeta("delta_source_type", StringMetadata(header.sourceType));
+    metadata.insertMeta("delta_source_tree", StringMetadata(header.sourceTree));
+    metadata.insertMeta("delta_source_map", StringMetadata(header.sourceMap));
+    metadata.insertMeta("delta_space", StringMetadata(header.space));
+    metadata.insertMeta("delta_background", DoubleMetadata(header.background));
+    metadata.insertMeta("delta_rest", StringMetadata(header.restActive ? "active" : "inactive"));
+    metadata.insertMeta("delta_inactive_values", StringMetadata(listText(header.inactiveValues)));
+    metadata.insertMeta("delta_active", Int64Metadata(std::int64_t(header.active)));
+    metadata.insertMeta("delta_slab_deltas", StringMetadata(listText(header.slabDeltas)));
+    metadata.insertMeta("delta_tolerance", DoubleMetadata(header.tolerance));
+    metadata.insertMeta("delta_tolerance_value", DoubleMetadata(header.toleranceValue));
+    metadata.insertMeta("delta_max_error", DoubleMetadata(header.maxError));
+}
+
+// The entries that packed grids leave out: those of an empty grid of floats.
+openvdb::MetaMap usualEntries() {
+    DeltaHeader usual;
+    usual.keyInterval = 128;
+    usual.box = {glm::ivec3(0), glm::ivec3(-1)};
+    usual.codeCount = 1;
+    usual.sourceType = usual.sourceTree = "float";
+    usual.sourceMap = "UniformScaleMap";
+    openvdb::MetaMap entries;
+    putEntries(usual, entries);
+    entries.removeMeta(kVersionKey);
+    return entries;
+}
+
+// Those of a packed grid with what it leaves out.
+openvdb::MetaMap withUsualEntries(const openvdb::MetaMap& metadata) {
+    openvdb::MetaMap all = metadata;
+    const openvdb::MetaMap usual = usualEntries();
+    for (auto entry = usual.beginMeta(); entry != usual.endMeta(); ++entry) {
+        if (!metadata[entry->first]) all.insertMeta(entry->first, *entry->second);
+    }
+    return all;
+}
+
 }  // namespace
 
 bool hasSlot(ExactValues type, double value) {
@@ -275,27 +323,13 @@ bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata)
 }
 
 void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
-    using namespace openvdb;
-    const auto vector = [](const glm::ivec3& v) { return Vec3IMetadata({v.x, v.y, v.z}); };
-    metadata.insertMeta(kVersionKey, Int32Metadata(header.version));
-    metadata.insertMeta("delta_slice_axis", StringMetadata(kAxisNames[header.sliceAxis]));
-    metadata.insertMeta("delta_key_interval", Int32Metadata(header.keyInterval));
-    metadata.insertMeta("delta_box_min", vector(header.box.min));
-    metadata.insertMeta("delta_box_max", vector(header.box.max));
-    metadata.insertMeta("delta_code_book", StringMetadata(header.bookName()));
-    if (!header.exact) putBook(header, metadata);
-    metadata.insertMeta("delta_source_type", StringMetadata(header.sourceType));
-    metadata.insertMeta("delta_source_tree", StringMetadata(header.sourceTree));
-    metadata.insertMeta("delta_source_map", StringMetadata(header.sourceMap));
-    metadata.insertMeta("delta_space", StringMetadata(header.space));
-    metadata.insertMeta("delta_background", DoubleMetadata(header.background));
-    metadata.insertMeta("delta_rest", StringMetadata(header.restActive ? "active" : "inactive"));
-    metadata.insertMeta("delta_inactive_values", StringMetadata(listText(header.inactiveValues)));
-    metadata.insertMeta("delta_active", Int64Metadata(std::int64_t(header.active)));
-    metadata.insertMeta("delta_slab_deltas", StringMetadata(listText(header.slabDeltas)));
-    metadata.insertMeta("delta_tolerance", DoubleMetadata(header.tolerance));
-    metadata.insertMeta("delta_tolerance_value", DoubleMetadata(header.toleranceValue));
-    metadata.insertMeta("delta_max_error", DoubleMetadata(header.maxError));
+    putEntries(header, metadata);
+    if (!header.isPacked()) return;
+    const openvdb::MetaMap usual = usualEntries();
+    for (auto entry = usual.beginMeta(); entry != usual.endMeta(); ++entry) {
+        const openvdb::Metadata::ConstPtr own = metadata[entry->first];
+        if (own && *own == *entry->second) metadata.removeMeta(entry->first);
+    }
 }
 
 std::string DeltaHeader::bookName() const {
@@ -306,10 +340,13 @@ std::uint64_t DeltaHeader::deltas() const {
     return std::accumulate(slabDeltas.begin(), slabDeltas.end(), std::uint64_t{0});
 }
 
-DeltaHeader takeDeltaHeader(const openvdb::MetaMap& metadata, const std::string& where) {
-    const Entries entries(metadata, where);
+DeltaHeader takeDeltaHeader(const openvdb::MetaMap& stored, const std::string& where) {
     DeltaHeader header;
-    header.version = entries.whole(kVersionKey, 1, DeltaHeader::kExactVersion);
+    header.version = Entries(stored, where).whole(kVersionKey, 1, DeltaHeader::kPackedVersion);
+    const openvdb::MetaMap whole =
+        header.isPacked() ? withUsualEntries(stored) : openvdb::MetaMap();
+    const openvdb::MetaMap& metadata = header.isPacked() ? whole : stored;
+    const Entries entries(metadata, where);
     header.sliceAxis = entries.choice("delta_slice_axis", {"x", "y", "z"});
     header.keyInterval = entries.whole("delta_key_interval", 8, 1 << 30);
     if (header.keyInterval % 8 != 0)

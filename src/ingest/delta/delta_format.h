@@ -19,8 +19,10 @@ struct DeltaHeader {
     /// The one that is written. Of 1 and 2 (books of pieces) deltas are plain numbers; from 3 on
     /// they are without sign (ingest/delta/zigzag.h).
     static constexpr int kVersion = 3;
-    /// The one that is written of exact values, and the largest that is read.
+    /// The one that is written of exact values.
     static constexpr int kExactVersion = 4;
+    /// The one that is written of packed deltas, exact values or not, and the largest that is read.
+    static constexpr int kPackedVersion = 5;
 
     int version = kVersion;
     int sliceAxis = 2;
@@ -46,6 +48,8 @@ struct DeltaHeader {
     std::string bookName() const;
     std::uint64_t deltas() const;  ///< of all slabs together
     bool hasZigzag() const { return version >= 3; }
+    /// Whether the grid's voxels are words of a stream (delta_stream.h) in place of deltas.
+    bool isPacked() const { return version >= kPackedVersion; }
 };
 
 /// Names of the source grid's own metadata in a delta grid begin with this.
@@ -56,7 +60,7 @@ bool isDeltaGrid(const openvdb::GridBase& grid);
 /// Returns the same by a grid's value type ("int32", "int64") and metadata.
 bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata);
 
-/// Adds the header to a grid's metadata.
+/// Adds the header to a grid's metadata: of packed deltas only what is not usual.
 void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata);
 
 /// Reads a delta grid's header and checks everything in it that can be checked without its voxels.

@@ -16,6 +16,7 @@
 #include "ingest/codes/code_statistics.h"
 #include "ingest/delta/decode_deltas.h"
 #include "ingest/delta/decode_leaves.h"
+#include "ingest/delta/delta_stream.h"
 #include "ingest/delta/read_exact_deltas.h"
 #include "ingest/delta/restored_grid.h"
 #include "ingest/grids/grid_codes.h"
@@ -25,6 +26,7 @@
 #include "ingest/readers.h"
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
+#include "listener_part.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -73,14 +75,15 @@ Volume describe(const DeltaHeader& header, const openvdb::MetaMap& metadata,
     return volume;
 }
 
-// The grid has the type that its code book asks for.
+// The grid has the type that its code book asks for, or of packed deltas that of words.
 void requireType(const openvdb::GridBase& grid, const DeltaHeader& header,
                  const std::string& where) {
     const bool isWide = header.exact && *header.exact != ExactValues::kFloat32;
-    const std::string expected = isWide ? "int64" : "int32";
+    const std::string expected = isWide || header.isPacked() ? "int64" : "int32";
     if (grid.valueType() == expected) return;
     fail(where, "deltas of type " + grid.valueType(),
-         expected + " for the code book " + header.bookName());
+         expected + " for " +
+             (header.isPacked() ? "packed deltas" : "the code book " + header.bookName()));
 }
 
 // @param active  box of the active voxels
@@ -115,11 +118,14 @@ bool mayBeBoxOf(const DeltaHeader& header, const IndexBox& box) {
 
 }  // namespace
 
-Volume readDeltaGrid(openvdb::GridBase& grid, const openvdb::MetaMap::ConstPtr& fileMetadata,
-                     const std::string& where, const ReadOptions& options,
-                     const Listener& listener) {
-    const DeltaHeader header = takeDeltaHeader(grid, where);
-    requireType(grid, header, where);
+Volume readDeltaGrid(openvdb::GridBase& stored, const openvdb::MetaMap::ConstPtr& fileMetadata,
+                     const std::string& where, const ReadOptions& options, const Listener& all) {
+    const DeltaHeader header = takeDeltaHeader(stored, where);
+    requireType(stored, header, where);
+    openvdb::GridBase::Ptr unpacked;
+    if (header.isPacked()) unpacked = unpackDeltas(stored, header, where, partOf(all, 0, 0.3));
+    const Listener listener = partOf(all, unpacked ? 0.3 : 0, 1);
+    openvdb::GridBase& grid = unpacked ? *unpacked : stored;
     Volume volume = describe(header, grid, grid.transform());
     volume.name = grid.getName();
     if (header.exact) {

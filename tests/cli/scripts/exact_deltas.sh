@@ -40,6 +40,11 @@ for source in "$raw" noise.vdb; do
     "$program" diff plain.vdb again.vdb --fail 0 --warn 0 -q
     "$program" info one.vdb | grep -q 'delta grid .* exact' || fail "info: got no exact delta grid"
 
+    "$program" delta "$source" packed.vdb --pack -q
+    "$program" restore packed.vdb again.vdb -q
+    "$program" diff plain.vdb again.vdb --fail 0 --warn 0 -q
+    (($(stat -c %s packed.vdb) < $(stat -c %s one.vdb))) || fail "delta --pack: got no less bytes"
+
     # Less is smaller, and says so.
     for less in --codes "--bits 12"; do
         # shellcheck disable=SC2086

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Grid.h>
+
+#include "delta/inactive_values.h"
+#include "deltasplat/delta/delta_file.h"
+#include "deltasplat/ingest/volume.h"
+#include "deltasplat/progress.h"
+#include "ingest/delta/delta_format.h"
+
+namespace deltasplat {
+
+/// What becomes a delta grid.
+struct TakenDeltas {
+    openvdb::GridBase::Ptr deltas;  ///< without sign, as voxels: if asked for, still to be packed
+    DeltaHeader header;             ///< but for what a .vdb source says of itself
+    InactiveValues inactive;
+};
+
+/// Takes the differences of a volume, of codes or of its values' own bits as DeltaFile::add does.
+/// Multi-threaded; deterministic.
+TakenDeltas takeDeltas(const Volume& volume, const DeltaFileOptions& options,
+                       const Listener& listener = {});
+
+}  // namespace deltasplat

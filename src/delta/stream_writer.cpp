@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/stream_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <span>
+#include <tuple>
+#include <type_traits>
+
+#include "delta/bit_writer.h"
+#include "delta/rice_writer.h"
+#include "ingest/delta/delta_stream.h"
+#include "ingest/delta/rice_code.h"
+#include "parallel.h"
+#include "run_begins.h"
+
+namespace deltasplat {
+namespace {
+
+glm::ivec3 blockAt(const openvdb::Coord& origin) {
+    return {origin.x() >> 3, origin.y() >> 3, origin.z() >> 3};
+}
+
+// Writes a slice of a block: its 64 numbers, of which those of `changed` are not 0.
+template <typename Number>
+void putSlice(std::uint64_t changed, const Number* numbers, RiceCode code, BitWriter& out) {
+    std::array<Number, 64> all{};
+    std::array<Number, 64> less;
+    std::size_t count = 0;
+    std::uint64_t rows = 0;
+    for (std::uint64_t left = changed; left != 0; left &= left - 1) {
+        const int n = std::countr_zero(left);
+        all[std::size_t(n)] = numbers[n];
+        less[count++] = Number(numbers[n] - 1);
+        rows |= std::uint64_t{1} << (n >> 3);
+    }
+    const RiceChoice ofAll = bestRice<Number>(code, all);
+    const RiceChoice ofChanged = bestRice<Number>(code, std::span(less.data(), count));
+    const int rowBits = 8 + 8 * std::popcount(rows);
+    const bool isMask = ofAll.bits > ofChanged.bits + std::uint64_t(std::min(64, rowBits));
+    const SliceForm form = !isMask        ? SliceForm::kAll
+                           : rowBits < 64 ? SliceForm::kRows
+                                          : SliceForm::kMask;
+    const int parameter = isMask ? ofChanged.parameter : ofAll.parameter;
+    out.put(1, 1);
+    out.put(std::uint64_t(form), 2);
+    out.put(std::uint64_t(parameter), code.parameterBits());
+    if (form == SliceForm::kMask) out.put(changed, 64);
+    if (form == SliceForm::kRows) {
+        out.put(rows, 8);
+        for (std::uint64_t left = rows; left != 0; left &= left - 1)
+            out.put(changed >> (8 * std::countr_zero(left)) & 0xff, 8);
+    }
+    for (const Number number : isMask ? std::span(less.data(), count) : std::span<Number>(all))
+        putRice(out, code, parameter, number);
+}
+
+template <typename Leaf>
+void putBlock(const Leaf& leaf, RiceCode code, BitWriter& out) {
+    using Number = std::make_unsigned_t<typename Leaf::ValueType>;
+    for (openvdb::Index s = 0; s < 8; ++s) {
+        const auto changed = leaf.getValueMask().template getWord<std::uint64_t>(s);
+        if (changed == 0) {
+            out.put(0, 1);
+        } else {
+            putSlice(changed, reinterpret_cast<const Number*>(leaf.buffer().data()) + 64 * s, code,
+                     out);
+        }
+    }
+}
+
+// Where blocks are, in slabs, u and v, from the box's first on.
+class Places {
+  public:
+    explicit Places(const DeltaHeader& header)
+        : first_(toSliceOrder(header.box.min, header.sliceAxis) >> 3),
+          blocksPerSlab_(header.keyInterval / 8) {}
+
+    template <typename Leaf>
+    glm::ivec3 columnOf(const Leaf& leaf) const {
+        const glm::ivec3 block = blockAt(leaf.origin()) - first_;
+        return {block.x / blocksPerSlab_, block.y, block.z};
+    }
+    int firstBlockOf(const glm::ivec3& column) const {
+        return first_.x + column.x * blocksPerSlab_;
+    }
+
+  private:
+    glm::ivec3 first_;
+    int blocksPerSlab_;
+};
+
+template <typename Leaf>
+BitWriter columnOf(std::span<const Leaf* const> leaves, int firstBlock, RiceCode code) {
+    BitWriter out;
+    out.putNumber(leaves.size() - 1);
+    int next = firstBlock;
+    for (const Leaf* const leaf : leaves) {
+        const int block = leaf->origin().x() >> 3;
+        out.putNumber(std::uint64_t(block - next));
+        putBlock(*leaf, code, out);
+        next = block + 1;
+    }
+    return out;
+}
+
+// Writes where a column is, beside the one before, and how long.
+void putColumn(const glm::ivec3& column, glm::ivec3& before, std::size_t words, BitWriter& out) {
+    if (column.x != before.x) before = {before.x, 0, -1};
+    if (column.y != before.y) before.z = -1;
+    out.putNumber(std::uint64_t(column.x - before.x));
+    out.putNumber(std::uint64_t(column.y - before.y));
+    out.putNumber(std::uint64_t(column.z - before.z - 1));
+    out.putNumber(words - 1);
+    before = column;
+}
+
+template <typename Grid>
+std::vector<std::uint64_t> wordsOf(const Grid& deltas, const DeltaHeader& header) {
+    using Leaf = typename Grid::TreeType::LeafNodeType;
+    const Places places(header);
+    const RiceCode code{deltaWidth(header)};
+    std::vector<const Leaf*> leaves;
+    deltas.tree().getNodes(leaves);
+    std::erase_if(leaves, [](const Leaf* leaf) { return leaf->isEmpty(); });
+    std::sort(leaves.begin(), leaves.end(), [&](const Leaf* a, const Leaf* b) {
+        const glm::ivec3 p = places.columnOf(*a), q = places.columnOf(*b);
+        return std::tuple(p.x, p.y, p.z, a->origin().x()) <
+               std::tuple(q.x, q.y, q.z, b->origin().x());
+    });
+    const std::vector<std::size_t> begins = runBegins(leaves, [&](const Leaf* a, const Leaf* b) {
+        return places.columnOf(*a) == places.columnOf(*b);
+    });
+    const std::size_t count = begins.size() - 1;
+    if (count == 0) return {};
+
+    std::vector<BitWriter> columns(count);
+    parallelForChunks(count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::span<const Leaf* const> own(&leaves[begins[i]], begins[i + 1] - begins[i]);
+            columns[i] = columnOf<Leaf>(own, places.firstBlockOf(places.columnOf(*own[0])), code);
+        }
+    });
+    BitWriter out;
+    out.putNumber(count);
+    glm::ivec3 before(0, 0, -1);
+    for (std::size_t i = 0; i < count; ++i)
+        putColumn(places.columnOf(*leaves[begins[i]]), before, columns[i].words().size(), out);
+    std::vector<std::uint64_t> words = out.words();
+    for (const BitWriter& column : columns)
+        words.insert(words.end(), column.words().begin(), column.words().end());
+    return words;
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> streamOf(const openvdb::GridBase& deltas, const DeltaHeader& header) {
+    if (deltas.isType<openvdb::Int64Grid>())
+        return wordsOf(static_cast<const openvdb::Int64Grid&>(deltas), header);
+    return wordsOf(static_cast<const openvdb::Int32Grid&>(deltas), header);
+}
+
+}  // namespace deltasplat

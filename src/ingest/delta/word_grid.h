@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace deltasplat {
+
+/// Returns the place in a grid of words of the leaf that has the words from 512 * `leaf` on: nodes
+/// are filled one behind the other, in OpenVDB's own order.
+openvdb::Coord wordLeafOrigin(std::size_t leaf);
+
+/// Returns a grid whose active voxels are words, one behind the other.
+openvdb::Int64Grid::Ptr gridOfWords(const std::vector<std::uint64_t>& words);
+
+/// Returns the words of such a grid, with `padding` zeros behind them.
+/// @throw Error(kInput) if there is a gap between them; Error(kFailed) if memory does not hold them
+std::vector<std::uint64_t> wordsOfGrid(const openvdb::Int64Grid& grid, std::size_t padding,
+                                       const std::string& where);
+
+}  // namespace deltasplat

@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stream of packed deltas: numbers come out as they went in, and what is damaged is refused
+// with one line that says what is wrong.
+#include "ingest/delta/delta_stream.h"
+
+#include <gtest/gtest.h>
+#include <openvdb/tools/Prune.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "delta/bit_writer.h"
+#include "delta/rice_writer.h"
+#include "deltasplat/delta/delta_file.h"
+#include "deltasplat/ingest/read_volume.h"
+#include "ingest/delta/word_grid.h"
+#include "support/error_of.h"
+#include "unit/ingest_helpers.h"
+
+namespace deltasplat {
+namespace {
+
+using openvdb::Coord;
+using testing::expectError;
+using testing::TempFolder;
+
+// What is read behind the end has to be there.
+BitReader readerOf(std::vector<std::uint64_t>& words) {
+    words.insert(words.end(), 4, 0);
+    return {words.data(), 0};
+}
+
+TEST(BitStream, NumbersOfAnyWidthComeBack) {
+    std::mt19937_64 random(1);
+    BitWriter out;
+    std::vector<std::pair<std::uint64_t, int>> numbers;
+    for (int i = 0; i < 5000; ++i) {
+        const int width = int(random() % 65);
+        numbers.emplace_back(random() & BitReader::lowBits(width), width);
+        out.put(numbers.back().first, width);
+    }
+    std::vector<std::uint64_t> words = out.words();
+    BitReader in = readerOf(words);
+    for (const auto& [number, width] : numbers) ASSERT_EQ(in.take(width), number);
+}
+
+TEST(BitStream, NumbersOfAnySizeComeBack) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+    BitWriter out;
+    std::vector<std::uint64_t> numbers = {0, 1, 2, 3, kMost - 2, kMost - 1};
+    for (int i = 0; i < 63; ++i) numbers.push_back(std::uint64_t{1} << i);
+    for (const std::uint64_t number : numbers) out.putNumber(number);
+    std::vector<std::uint64_t> words = out.words();
+    BitReader in = readerOf(words);
+    for (const std::uint64_t number : numbers) ASSERT_EQ(in.takeNumber(), number);
+    // Where nothing but zeros is left there is no number.
+    std::vector<std::uint64_t> none;
+    EXPECT_EQ(readerOf(none).takeNumber(), kMost);
+}
+
+// With every parameter, the smallest and largest numbers among them.
+template <typename Number>
+void expectRiceComesBack(int width) {
+    SCOPED_TRACE(width);
+    std::mt19937_64 random{unsigned(width)};
+    const RiceCode code{width};
+    const std::uint64_t most = BitReader::lowBits(width);
+    for (int parameter = 0; parameter < width; ++parameter) {
+        std::vector<Number> numbers = {0, 1, Number(most), Number(most - 1)};
+        for (int i = 0; i < 200; ++i) numbers.push_back(Number((random() & most) >> i % width));
+        BitWriter out;
+        for (const Number number : numbers) putRice(out, code, parameter, number);
+        std::vector<std::uint64_t> words = out.words();
+        BitReader in = readerOf(words);
+        for (const Number number : numbers) ASSERT_EQ(code.take(in, parameter), number);
+    }
+}
+
+TEST(BitStream, RiceCodesComeBack) {
+    expectRiceComesBack<std::uint32_t>(1);
+    expectRiceComesBack<std::uint32_t>(10);
+    expectRiceComesBack<std::uint32_t>(18);
+    expectRiceComesBack<std::uint32_t>(32);
+    expectRiceComesBack<std::uint64_t>(64);
+}
+
+// The parameter that is chosen takes as many bits as it says, and no other takes fewer.
+TEST(BitStream, TheBestParameterIsChosen) {
+    std::mt19937 random(3);
+    for (const int width : {9, 18, 32}) {
+        const RiceCode code{width};
+        for (int scale = 0; scale < width; ++scale) {
+            std::vector<std::uint32_t> numbers;
+            for (int i = 0; i < 64; ++i)
+                numbers.push_back(random() & std::uint32_t(BitReader::lowBits(1 + scale)));
+            if (scale % 3 == 0) numbers[5] = std::uint32_t(BitReader::lowBits(width));
+            const RiceChoice best = bestRice<std::uint32_t>(code, numbers);
+            std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();
+            for (int parameter = 0; parameter < width; ++parameter) {
+                BitWriter out;
+                for (const std::uint32_t number : numbers) putRice(out, code, parameter, number);
+                std::vector<std::uint64_t> words = out.words();
+                BitReader in = readerOf(words);
+                for (std::size_t i = 0; i < numbers.size(); ++i) code.take(in, parameter);
+                fewest = std::min<std::uint64_t>(fewest, in.position());
+                if (parameter == best.parameter) {
+                    EXPECT_EQ(in.position(), best.bits);
+                }
+            }
+            EXPECT_EQ(best.bits, fewest);
+        }
+    }
+}
+
+TEST(WordGrid, WordsComeBack) {
+    std::mt19937_64 random(2);
+    for (const std::size_t count : {0, 1, 511, 512, 513, 5000, (4096 + 17) * 512 + 3}) {
+        SCOPED_TRACE(count);
+        std::vector<std::uint64_t> words(count);
+        for (std::uint64_t& word : words) word = random();
+        const auto grid = gridOfWords(words);
+        EXPECT_EQ(grid->activeVoxelCount(), count);
+        std::vector<std::uint64_t> padded = words;
+        padded.resize(count + 3);
+        EXPECT_EQ(wordsOfGrid(*grid, 3, "words"), padded);
+        // OpenVDB walks them in this order.
+        std::size_t wrong = 0, next = 0;
+        for (auto word = grid->cbeginValueOn(); word; ++word, ++next)
+            wrong += std::uint64_t(*word) == words[next] ? 0 : 1;
+        EXPECT_EQ(wrong, 0u);
+    }
+}
+
+TEST(WordGrid, EveryLeafHasAPlaceOfItsOwn) {
+    std::set<Coord> places;
+    for (std::size_t leaf = 0; leaf < 300000; ++leaf) places.insert(wordLeafOrigin(leaf));
+    EXPECT_EQ(places.size(), 300000u);
+    // Behind a full node of nodes the next one begins.
+    EXPECT_EQ(wordLeafOrigin(std::size_t{1} << 27), Coord(4096, 0, 0));
+}
+
+TEST(WordGrid, TilesOfEqualWordsAreWords) {
+    const std::vector<std::uint64_t> words(1500, 7);
+    const auto grid = gridOfWords(words);
+    openvdb::tools::prune(grid->tree());
+    EXPECT_EQ(grid->tree().leafCount(), 1u);
+    EXPECT_EQ(wordsOfGrid(*grid, 0, "words"), words);
+}
+
+using Damage = std::function<void(openvdb::MetaMap& metadata, std::vector<std::uint64_t>& words)>;
+
+// Returns what reading damaged packed deltas says: of a 20 x 9 x 12 volume of bytes, sliced along
+// z, two slabs of 8 and 4 slices.
+std::string refusalOf(const Damage& damage) {
+    const TempFolder folder;
+    std::string voxels(20 * 9 * 12, '\0');
+    for (std::size_t i = 0; i < voxels.size(); i += 7) voxels[i] = char(i % 250);
+    testing::writeBytes("a_20x9x12_uint8.raw", voxels);
+    DeltaFileOptions options;
+    options.sliceAxis = 2;
+    options.keyInterval = 8;
+    options.pack = true;
+    DeltaFile file;
+    file.add(readVolume("a_20x9x12_uint8.raw"), options);
+    file.write("whole.vdb");
+    EXPECT_NO_THROW(readVolume("whole.vdb"));
+    openvdb::io::File input("whole.vdb");
+    input.open();
+    const auto grid = openvdb::gridPtrCast<openvdb::Int64Grid>(input.readGrid("a_20x9x12_uint8"));
+    std::vector<std::uint64_t> words = wordsOfGrid(*grid, 0, "whole");
+    openvdb::MetaMap metadata = *grid;
+    damage(metadata, words);
+    const auto damaged = gridOfWords(words);
+    damaged->insertMeta(metadata);
+    damaged->setTransform(grid->transform().copy());
+    openvdb::io::File("a.vdb").write({damaged});
+    return test::errorOf([] { readVolume("a.vdb"); });
+}
+
+const std::string kWhere = "input: a.vdb: grid \"a_20x9x12_uint8\": ";
+
+// Changes how many words there are.
+Damage resized(const std::function<std::size_t(std::size_t)>& change) {
+    return [=](openvdb::MetaMap&, std::vector<std::uint64_t>& words) {
+        words.resize(change(words.size()));
+    };
+}
+
+// Writes the stream anew.
+Damage rewritten(const std::function<void(BitWriter&)>& write) {
+    return [=](openvdb::MetaMap&, std::vector<std::uint64_t>& words) {
+        BitWriter out;
+        write(out);
+        words = out.words();
+    };
+}
+
+TEST(DeltaStreamError, WordsThatAreMissingOrTooMany) {
+    for (const int more : {-1, 1}) {
+        std::size_t count = 0;
+        const std::string refusal = refusalOf(
+            resized([&](std::size_t words) { return count = words + std::size_t(more); }));
+        EXPECT_EQ(refusal, kWhere + "got a stream of " + std::to_string(count) +
+                               " words; expected as many as its columns have");
+    }
+    EXPECT_EQ(refusalOf(resized([](std::size_t) { return 0; })),
+              kWhere + "got 0 deltas in slab 0; expected 384, as \"delta_slab_deltas\" says");
+    // A number that goes on behind the last word.
+    const auto unfinished = [](BitWriter& out) {
+        out.put(0, 40);
+        out.put(1, 1);
+    };
+    EXPECT_EQ(refusalOf(rewritten(unfinished)),
+              kWhere + "got a stream of 1 words that ends early; expected the rest of it");
+}
+
+// What is usual is not said; what is said has to be sound.
+TEST(DeltaStreamError, MetadataThatIsMissing) {
+    const auto without = [](const std::string& key) {
+        return [=](openvdb::MetaMap& metadata, std::vector<std::uint64_t>&) {
+            EXPECT_TRUE(metadata[key]);
+            metadata.removeMeta(key);
+        };
+    };
+    EXPECT_EQ(refusalOf(without("delta_box_max")),
+              kWhere + "got deltas outside of the box; expected columns within it, in order");
+    EXPECT_EQ(refusalOf(without("delta_slab_deltas")),
+              kWhere + "got 0 slabs in \"delta_slab_deltas\"; expected 2");
+    EXPECT_EQ(
+        refusalOf([](openvdb::MetaMap& metadata, std::vector<std::uint64_t>&) {
+            metadata.insertMeta("delta_slice_axis", openvdb::StringMetadata("w"));
+        }),
+        kWhere + "metadata \"delta_slice_axis\": got \"w\"; expected one of \"x\" \"y\" \"z\"");
+}
+
+// Writes one column, by where it is and its words.
+Damage column(std::uint64_t slab, std::uint64_t u, std::uint64_t v, std::uint64_t words,
+              const std::function<void(BitWriter&)>& write = {}) {
+    return rewritten([=](BitWriter& out) {
+        out.putNumber(1);
+        for (const std::uint64_t number : {slab, u, v, words - 1}) out.putNumber(number);
+        out.put(0, 64 - int(out.bits() % 64));
+        if (write) write(out);
+    });
+}
+
+TEST(DeltaStreamError, ColumnsThatAreNoneOfTheBox) {
+    const std::string outside =
+        kWhere + "got deltas outside of the box; expected columns within it, in order";
+    EXPECT_EQ(refusalOf(column(2, 0, 0, 1)), outside);
+    EXPECT_EQ(refusalOf(column(0, 3, 0, 1)), outside);
+    EXPECT_EQ(refusalOf(column(0, 0, 2, 1)), outside);
+    EXPECT_EQ(refusalOf(column(0, 0, std::uint64_t{1} << 40, 1)), outside);
+    EXPECT_EQ(refusalOf(column(0, 0, 0, 1000)),
+              kWhere +
+                  "got a column of more than 999 words; expected at most 1, those of the whole "
+                  "stream");
+    EXPECT_EQ(refusalOf(column(0, 0, 0, 1)),
+              kWhere + "got a stream of 1 words; expected as many as its columns have");
+}
+
+TEST(DeltaStreamError, BlocksThatAreNone) {
+    const auto damaged = [](const std::string& place) {
+        return kWhere + "got a damaged stream at " + place +
+               "; expected blocks one behind the other";
+    };
+    // The one block of the slab, of a slice in a form that there is not.
+    const auto form = [](BitWriter& out) {
+        out.putNumber(0);
+        out.putNumber(0);
+        out.put(1, 1);
+        out.put(3, 2);
+        out.put(0, 50);
+    };
+    EXPECT_EQ(refusalOf(column(1, 2, 1, 1, form)), damaged("(8, 16, 8)"));
+    // Without deltas.
+    const auto empty = [](BitWriter& out) {
+        out.putNumber(0);
+        out.putNumber(0);
+        out.put(0, 60);
+    };
+    EXPECT_EQ(refusalOf(column(0, 0, 0, 1, empty)), damaged("(0, 0, 0)"));
+    // Behind the slab.
+    const auto gap = [](BitWriter& out) {
+        out.putNumber(0);
+        out.putNumber(1);
+        out.put(0, 50);
+    };
+    EXPECT_EQ(refusalOf(column(0, 0, 0, 1, gap)), damaged("(0, 0, 0)"));
+    // More words than it needs, and fewer.
+    const auto one = [](int words) {
+        return [=](BitWriter& out) {
+            out.putNumber(0);
+            out.putNumber(0);
+            out.put(1, 1);
+            out.put(std::uint64_t(SliceForm::kMask), 2);
+            out.put(0, 5);
+            out.put(words > 1 ? 1 : ~std::uint64_t{0}, 64);
+            while (out.words().size() < std::size_t(words) + 1) out.put(0, 1);
+        };
+    };
+    EXPECT_EQ(refusalOf(column(0, 0, 0, 3, one(3))), damaged("(8, 0, 0)"));
+    EXPECT_EQ(refusalOf(column(0, 0, 0, 2, one(1))), damaged("(0, 0, 0)"));
+}
+
+TEST(DeltaStreamError, GapsBetweenWords) {
+    auto grid = gridOfWords(std::vector<std::uint64_t>(1500, 7));
+    grid->tree().setValueOff(Coord(0, 0, 8 + 2));
+    expectError(ErrorCode::kInput,
+                "a: got a gap in its words in or behind number 512; expected 1499, one behind the "
+                "other",
+                [&] { wordsOfGrid(*grid, 0, "a"); });
+}
+
+}  // namespace
+}  // namespace deltasplat
