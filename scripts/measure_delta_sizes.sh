@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Compares delta grids with plain .vdb files: makes both of every volume below FOLDER (of a .vdb all
-# scalar grids) and prints their bytes, the ratio, and whether the delta grids are lossless; at the
-# end the share of files that are smaller, the median ratio and the largest. Needs the program:
-# build/release/bin/deltasplat, or the one on the path.
+# scalar grids) and prints their bytes, the ratio, the one that `info` expects, and the largest
+# error; at the end the share of files that are smaller, the median ratio and the largest, and how
+# far `info` is off. Needs the program: build/release/bin/deltasplat, or the one on the path.
 # Usage: bash scripts/measure_delta_sizes.sh FOLDER [OPTION...]   (further options of `delta`)
 set -euo pipefail
 [[ $# -ge 1 ]] ||
@@ -12,6 +12,8 @@ folder=$1
 shift
 program=$(dirname "${BASH_SOURCE[0]}")/../build/release/bin/deltasplat
 [[ -x $program ]] || program=$(command -v deltasplat)
+expected_key=delta_bytes
+[[ " $* " != *" --pack "* ]] || expected_key=packed_bytes
 made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT
 
@@ -25,23 +27,40 @@ list_inputs() {
         done
 }
 
+# What `info` expects of all grids of a file; 0 where it says nothing.
+expected_ratio() {
+    { "$program" -qq info "$1" --json || true; } | awk -F '[:,]' -v key="\"$expected_key\"" '
+        /"plain_bytes"/ { plain += $2 } $0 ~ key { delta += $2 }
+        END { print (plain > 0 ? delta / plain : 0) }'
+}
+
 list_inputs | while read -r input; do
     "$program" -qq convert "$input" "$made/plain.vdb"
     # What is no volume at all, such as a file of vectors alone, is left out.
     "$program" -qq delta "$input" "$made/delta.vdb" --stats "$made/stats.json" "$@" || continue
     error=$(grep -o '"max_error": *[^,]*' "$made/stats.json" | grep -o "[^: ]*$")
     echo "${input#"$folder"/} $(stat -c %s "$made/plain.vdb") $(stat -c %s "$made/delta.vdb")" \
-        "$error"
+        "$error $(expected_ratio "$input")"
 done | awk '
-    { printf "%-60s %9d %9d  %.3f  error %s\n", $1, $2, $3, $3 / $2, $4
-      ratio[NR] = $3 / $2; smaller += $3 < $2 }
+    function sort(values, n,    i, k, t) {
+        for (i = 2; i <= n; ++i)
+            for (k = i; k > 1 && values[k] < values[k - 1]; --k) {
+                t = values[k]; values[k] = values[k - 1]; values[k - 1] = t
+            }
+    }
+    function median(values, n) {
+        return n % 2 ? values[(n + 1) / 2] : (values[n / 2] + values[n / 2 + 1]) / 2
+    }
+    { ratio[NR] = $3 / $2; smaller += $3 < $2
+      printf "%-60s %9d %9d  %.3f  expected %.3f  error %s\n", $1, $2, $3, ratio[NR], $5, $4
+      if ($5 > 0) off[++known] = $5 > ratio[NR] ? $5 / ratio[NR] - 1 : 1 - $5 / ratio[NR] }
     END {
         if (NR == 0) exit 1
-        for (i = 2; i <= NR; ++i)
-            for (k = i; k > 1 && ratio[k] < ratio[k - 1]; --k) {
-                t = ratio[k]; ratio[k] = ratio[k - 1]; ratio[k - 1] = t
-            }
-        median = NR % 2 ? ratio[(NR + 1) / 2] : (ratio[NR / 2] + ratio[NR / 2 + 1]) / 2
+        sort(ratio, NR)
         printf "%d files: %d smaller (%.0f %%), median %.3f, largest %.3f\n", NR, smaller,
-            100 * smaller / NR, median, ratio[NR]
+            100 * smaller / NR, median(ratio, NR), ratio[NR]
+        if (known == 0) exit
+        sort(off, known)
+        printf "expected of %d: median error %.1f %%, largest %.1f %%\n", known,
+            100 * median(off, known), 100 * off[known]
     }'

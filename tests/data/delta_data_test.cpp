@@ -7,8 +7,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "deltasplat/convert/write_volume.h"
+#include "deltasplat/delta/delta_estimate.h"
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/read_volume.h"
@@ -76,30 +79,79 @@ void expectRestored(const Volume& source, const DeltaFileEntry& entry, const Vol
     if (source.hasBackground) expectSameGrid(source, restored);
 }
 
+// Volumes of one file, and what was said of them as they became delta grids.
+struct Sources {
+    std::vector<Volume> volumes;
+    std::vector<DeltaFileEntry> entries;
+};
+
+// Makes delta.vdb of them, and expects them back.
+void expectAllComeBack(Sources& sources, bool pack) {
+    SCOPED_TRACE(pack ? "packed" : "voxels");
+    DeltaFileOptions options;
+    options.pack = pack;
+    DeltaFile deltas;
+    sources.entries.clear();
+    for (const Volume& volume : sources.volumes)
+        sources.entries.push_back(deltas.add(volume, options));
+    deltas.write("delta.vdb");
+    const std::vector<Volume> restored = readAllVolumes("delta.vdb", keeping());
+    ASSERT_EQ(restored.size(), sources.volumes.size());
+    for (std::size_t i = 0; i < restored.size(); ++i)
+        expectRestored(sources.volumes[i], sources.entries[i], restored[i]);
+}
+
+// Bytes of one file's delta grids as shares of its bytes as an ordinary .vdb.
+struct Ratios {
+    double real = 0;
+    double expected = 0;  // as estimated; 0: not at all
+};
+
+Ratios packedRatios(Sources sources) {
+    double plain = 0, packed = 0;
+    for (std::size_t i = 0; i < sources.volumes.size(); ++i) {
+        const auto estimate = estimateDeltaFile(sources.volumes[i], sources.entries[i].sliceAxis);
+        if (!estimate) continue;
+        plain += estimate->plainBytes;
+        packed += estimate->packedBytes;
+    }
+    writeVolumes("plain.vdb", std::move(sources.volumes));
+    return {double(fs::file_size("delta.vdb")) / double(fs::file_size("plain.vdb")),
+            plain > 0 ? packed / plain : 0};
+}
+
+// What docs/performance.md says of them, and a little room.
+void expectWorthTheirBytes(std::vector<Ratios> files) {
+    for (const Ratios& ratios : files) {
+        EXPECT_LE(ratios.real, 1.25);
+        if (ratios.expected > 0) {
+            EXPECT_NEAR(ratios.expected / ratios.real, 1, 0.06);
+        }
+    }
+    std::sort(files.begin(), files.end(),
+              [](const Ratios& a, const Ratios& b) { return a.real < b.real; });
+    EXPECT_LE(files[files.size() / 2].real, 0.7);
+    EXPECT_LT(files[files.size() * 85 / 100].real, 1);
+}
+
 TEST(DeltaData, EveryVolumeComesBack) {
     const auto files = inputs();
     if (files.empty()) GTEST_SKIP() << "no data sets at " << DELTASPLAT_SHARED_DATA;
     EXPECT_GE(files.size(), 55u);
     std::string exact;
+    std::vector<Ratios> ratios;
     for (const fs::path& file : files) {
         SCOPED_TRACE(file.string());
         const testing::TempFolder folder;
-        DeltaFile deltas;
-        std::vector<Volume> sources;
-        std::vector<DeltaFileEntry> entries;
-        VolumeVisitor visitor;
-        visitor.volume = [&](Volume volume) {
-            entries.push_back(deltas.add(volume, {}));
-            if (entries.back().codeBook == "float32") exact += " " + file.filename().string();
-            sources.push_back(std::move(volume));
-        };
-        forEachVolume(file, keeping(), visitor);
-        deltas.write("delta.vdb");
-        const std::vector<Volume> restored = readAllVolumes("delta.vdb", keeping());
-        ASSERT_EQ(restored.size(), sources.size());
-        for (std::size_t i = 0; i < sources.size(); ++i)
-            expectRestored(sources[i], entries[i], restored[i]);
+        Sources sources{readAllVolumes(file, keeping()), {}};
+        expectAllComeBack(sources, /*pack=*/false);
+        for (const DeltaFileEntry& entry : sources.entries) {
+            if (entry.codeBook == "float32") exact += " " + file.filename().string();
+        }
+        expectAllComeBack(sources, /*pack=*/true);
+        ratios.push_back(packedRatios(std::move(sources)));
     }
+    expectWorthTheirBytes(ratios);
     // Only these have more different 32-bit values than there are codes, or than a table is worth.
     EXPECT_EQ(exact,
               " test.vdb densityAndHeat.vdb densityAndHeat.vdb smoke_000002.vdb smoke_000003.vdb");

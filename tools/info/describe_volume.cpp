@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "info/describe_volume.h"
 
+#include <array>
+
 #include "deltasplat/ingest/value_statistics.h"
 #include "deltasplat/optics/class_table.h"
 #include "info/slice_plot.h"
@@ -30,6 +32,15 @@ std::string visibleText(const GridReport& report, const DescribeOptions& options
                                        : "voxels other than " + value + ", the guessed background";
 }
 
+// As `delta` chooses: of equal ones the last.
+int axisOfFewestDeltas(const std::array<SliceCounts, 3>& counts) {
+    int axis = 2;
+    for (const int other : {1, 0}) {
+        if (counts[other].deltas < counts[axis].deltas) axis = other;
+    }
+    return axis;
+}
+
 }  // namespace
 
 GridReport describeVolume(Volume volume, const DescribeOptions& options, bool plot) {
@@ -46,8 +57,12 @@ GridReport describeVolume(Volume volume, const DescribeOptions& options, bool pl
         report.columns[axis] =
             countDeltasPerSlice(report.volume, axis, slotMap, slicesPerColumn(slices));
     }
-    // The codes are counted, and the largest thing in memory.
+    report.deltaAxis = axisOfFewestDeltas(report.counts);
+    if (!report.volume.origin)
+        report.deltaEstimate = estimateDeltaFile(report.volume, report.deltaAxis);
+    // The codes are counted, and with the source the largest thing in memory.
     report.volume.codes.reset();
+    report.volume.source.reset();
     return report;
 }
 

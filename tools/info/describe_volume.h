@@ -16,7 +16,7 @@ struct DescribeOptions {
     std::string transferFunctionFile;  ///< its name, for people
 };
 
-/// Counts and predicts, and lets go of the volume's codes.
+/// Counts and predicts, and lets go of the volume's codes and source.
 /// @param plot  whether what a plot needs is counted as well
 GridReport describeVolume(Volume volume, const DescribeOptions& options, bool plot);
 

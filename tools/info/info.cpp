@@ -256,6 +256,7 @@ Subcommand addInfo(CLI::App& program) {
     const auto options = std::make_shared<InfoOptions>();
     // What is in a file is told as it is, not as it would be rendered.
     options->read.levelSetToFog = false;
+    options->read.keepInexact = true;  // what a delta grid would store
     CLI::App& app = addSubcommand(
         program, "info", "Tells what is in volume files, and how alike their slices are.",
         {"deltasplat info smoke.vdb --plot smoke.svg",

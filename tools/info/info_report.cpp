@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "info/info_report.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "deltasplat/ingest/value_statistics.h"
@@ -51,6 +52,14 @@ Json toJson(const DeltaOrigin& origin) {
             {"max_error", origin.maxError}};
 }
 
+Json toJson(const DeltaEstimate& estimate) {
+    return {{"plain_bytes", std::round(estimate.plainBytes)},
+            {"delta_bytes", std::round(estimate.deltaBytes)},
+            {"packed_bytes", std::round(estimate.packedBytes)},
+            {"faster", estimate.readsFromLeaves},
+            {"sampled", estimate.sampled}};
+}
+
 // How many active voxels have the guessed value; of a background nobody counts them.
 Json guessedVoxels(const GridReport& report) {
     if (report.volume.hasBackground || !report.backgroundGuess) return {};
@@ -88,6 +97,7 @@ Json toJson(const GridReport& report, const Json& transferFunction) {
             {"code_error",
              {{"absolute", volume.codeError.absolute}, {"relative", volume.codeError.relative}}},
             {"delta", volume.origin ? toJson(*volume.origin) : Json()},
+            {"delta_estimate", report.deltaEstimate ? toJson(*report.deltaEstimate) : Json()},
             {"axes", axes},
             {"transfer_function", transferFunction},
             {"stamps", stamps}};

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "deltasplat/delta/delta_estimate.h"
 #include "deltasplat/delta/stamp_counts.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/volume.h"
@@ -19,6 +20,8 @@ struct GridReport {
     std::int64_t volumeIndex = 0;       ///< which of these volumes
     std::array<SliceCounts, 3> counts;  ///< along x, y and z, every active voxel visible
     std::optional<double> backgroundGuess;
+    int deltaAxis = 2;                           ///< the one with the fewest deltas
+    std::optional<DeltaEstimate> deltaEstimate;  ///< what a delta grid along it would take
     /// Which voxels the stamps below take for visible: "not clear under ct", ...
     std::string visible;
     std::array<StampCounts, 3> stamps;  ///< predicted for a view along x, y and z
