@@ -182,7 +182,8 @@ TEST(SlabFacts, WhatIsOfAnotherPictureIsRefused) {
     writeDeltas(2, 16);
     writeFacts({}, cameraOf("front"));
     testing::expectError(ErrorCode::kInput,
-                         "facts.json: got facts for --view front; expected those for --view left", [] {
+                         "facts.json: got facts for --view front; expected those for --view left",
+                         [] {
                              readSlabVolume(kDeltas, {}, kFacts, {{"--view", "left"}}, {1, 1, 2});
                          });
     writeDeltas(2, 24);

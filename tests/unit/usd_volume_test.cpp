@@ -116,8 +116,7 @@ TEST(UsdVolume, WhatIsWrongIsSaid) {
         std::string text;
         const char* said;
     } cases[] = {
-        {"#usda 1.0\n",
-         ".usda: got no prim of type OpenVDBAsset; expected at least one"},
+        {"#usda 1.0\n", ".usda: got no prim of type OpenVDBAsset; expected at least one"},
         {volume("", ""),
          ".usda:2: got a Volume without fields; expected rel field:density, or another one"},
         {volume("rel field:density = </v/e>", ""),
