@@ -169,8 +169,8 @@ class JsonCamera {
         if (const LocatedJson* far = json.find("far")) {
             film.farWorld = positive(*far, "far");
             if (!(*film.farWorld > film.nearWorld)) {
-                fail(*far, numberText(*film.farWorld) + " for far",
-                     "more than near, " + numberText(film.nearWorld));
+                fail(*far, numberText(*film.farWorld) + " for \"far\"",
+                     "more than \"near\", " + numberText(film.nearWorld));
             }
         }
     }

@@ -177,6 +177,11 @@ std::string LocatedJson::quoted() const {
 LocatedJson readLocatedJson(const std::filesystem::path& file, const std::string& what,
                             const std::string& longName) {
     const std::string text = readSmallText(file, longName);
+    // The parser would take it for the end.
+    if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
+        const auto line = std::count(text.begin(), text.begin() + std::ptrdiff_t(zero), '\n');
+        fail(file, 1 + int(line), "a byte that is 0", "text");
+    }
     TreeBuilder builder(file, text, what);
     const char* const end = text.data() + text.size();
     Json::sax_parse(TrackingIterator{text.data(), &builder.place_},

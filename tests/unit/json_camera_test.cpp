@@ -154,8 +154,12 @@ TEST(JsonCamera, WhatIsWrongIsSaidWithItsLine) {
         {"{\"matrix\": [-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}",
          ":1: matrix: got a mirrored one; expected a rotation, perhaps evenly scaled, and a "
          "translation in the last row, row by row"},
+        {"{\"translate\": [0,0,0], \"near\": 100,\n\"far\": 100}",
+         ":2: got 100 for \"far\"; expected more than \"near\", 100"},
     };
     for (const auto& one : cases) EXPECT_EQ(said(one.text), one.said) << one.text;
+    const std::string more("{\"translate\": [0,0,0]}\n\0{", 25);
+    EXPECT_EQ(said(more), ":2: got a byte that is 0; expected text");
 }
 
 }  // namespace

@@ -417,8 +417,12 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     const bool isKnown = held.has_value();
     const std::vector<FrameFiles> present = withInputs(all, command.frames.missing, listener, held);
     if (present.empty() && sinks.any()) refuseWithoutInputs(all.front().input);
-    warnOfOwnRanges(command, listener);
     const bool isAlone = isLookAlone(command);
+    const std::vector<FrameFiles> frames = framesToMake(present, command.frames, stats);
+    // Nobody needs to know then what is in them.
+    if (frames.empty() && !isAlone && !sinks.any() && (isKnown || command.firstPass.empty()))
+        return listener.report(1);
+    warnOfOwnRanges(command, listener);
     const double surveyed = surveyShare(command, isKnown, present.size());
     const double readShare = choosesWindow(command) ? surveyed / 2 : surveyed;
     Survey survey(command, present, isAlone);
@@ -436,7 +440,6 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
         return survey.throwFailure();
     }
     const Listener making = partOf(listener, surveyed, 1);
-    const std::vector<FrameFiles> frames = framesToMake(present, command.frames, stats);
     OutputFolders folders;
     std::optional<PreparedScene> prepared;
     const auto first = std::find_if(frames.begin(), frames.end(), [&](const FrameFiles& one) {
