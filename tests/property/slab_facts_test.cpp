@@ -4,6 +4,7 @@
 #include "deltasplat/slab_facts.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 
 #include <cstdint>
 #include <cstring>
@@ -253,6 +254,7 @@ TEST(SlabFacts, DamagedNotesOfLeavesDoNoHarm) {
 
 // A part reads no note that is longer than one can be.
 TEST(SlabFacts, NotesOfLeavesAreNoLongerThanTheirLeavesAllow) {
+    openvdb::initialize();
     EXPECT_FALSE(leafSizesOf(std::string(mostLeafSizesBytes(3), '\0'), 3));
     std::string raw;
     appendU32(raw, 2);

@@ -100,6 +100,9 @@ expect_said 'deltasplat: warning: frame 8: two.0008.vdb: reading grid "density" 
 rm q.0009.json
 "$program" render in.####.vdb --frames 8-9 --size 8x8 -qq -o q.####.png --stats q.####.json --skip-existing
 [[ -s q.0009.json ]] || fail "--skip-existing: got no stats that were not there"
+mv in.0009.vdb away.vdb
+expect_code 0 "$program" render in.####.vdb --frames 8-9 --size 8x8 -qq -o q.####.png --skip-existing
+mv away.vdb in.0009.vdb
 rm q.* two.*
 # What stands still is shown as it is by itself, the ramp that its values are fitted to included.
 "$program" synth cloud still.vdb --dims 32x32x32 -qq
