@@ -27,6 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kTitle = "deltasplat_slab_facts";
+constexpr const char* kSum = "sum";  // by which it is whole
 
 Json notesJson(const Notes& notes) {
     Json json = Json::array();
@@ -136,19 +137,29 @@ Json read(const std::filesystem::path& file) {
     std::ifstream in(file);
     if (!in) refuse(file, "a file that cannot be opened", "a readable file");
     try {
-        return Json::parse(in).at(kTitle);
+        const Json whole = Json::parse(in);
+        Json json = whole.at(kTitle);
+        if (wholeNumberOf<std::uint64_t>(whole.at(kSum)) == hashOf(dumped(json))) return json;
+    } catch (const std::exception&) {
+    }
+    refuse(file, "something else", "facts of a picture's slabs");
+}
+
+// Parts belong together that are made alike, of one file: names the option that differs first.
+void requireFactsOf(const Json& json, const std::filesystem::path& input, const Notes& options,
+                    const std::filesystem::path& file) {
+    Notes known;
+    std::uint64_t mark = 0;
+    try {
+        known = notesOf(json.at("options"));
+        mark = wholeNumberOf<std::uint64_t>(json.at("input"));
     } catch (const std::exception&) {
         refuse(file, "something else", "facts of a picture's slabs");
     }
-}
-
-// Parts belong together that are made alike: names what differs first.
-void requireOptions(const Json& json, const Notes& options, const std::filesystem::path& file) {
     const auto text = [](const std::string& name, const std::string& value) {
         return name + (value.empty() ? "" : " ") + value;
     };
-    const Notes known = notesOf(json), asked = notesOf(Json::parse(dumped(notesJson(options))));
-    if (known == asked) return;
+    const Notes asked = notesOf(Json::parse(dumped(notesJson(options))));
     const auto without = [&](const Notes& notes, const Notes& others) -> std::string {
         for (const auto& note : notes) {
             if (std::find(others.begin(), others.end(), note) == others.end())
@@ -157,7 +168,10 @@ void requireOptions(const Json& json, const Notes& options, const std::filesyste
         return "";
     };
     const std::string then = without(known, asked), now = without(asked, known);
-    if (then.empty() && now.empty()) return;
+    if (then.empty() && now.empty()) {
+        if (mark == markOf(input)) return;
+        refuse(file, "facts of another volume", "those of " + input.string());
+    }
     refuse(file, "facts for " + (then.empty() ? "pictures without " + now : then),
            now.empty() ? "those for pictures without " + then : "those for " + now);
 }
@@ -169,8 +183,9 @@ SlicesWanted wantedOf(const Json& json, const SlabShare& share, const std::files
     const int last = facts->endOf(share.last, share.count);
     // A part that holds no slab reads as little as there is.
     const int axis = wholeNumberOf<int>(json.at("grid").at("slice_axis"));
+    if (axis < 0 || axis > 2) throw Error(ErrorCode::kInput, "an axis that there is not");
     wanted.box = {vectorOf(json.at("box").at(0)), vectorOf(json.at("box").at(1))};
-    wanted.blocks = glm::ivec2(toSliceOrder(wanted.box.min, axis % 3).x >> 3);
+    wanted.blocks = glm::ivec2(toSliceOrder(wanted.box.min, axis).x >> 3);
     for (int slab = first; slab < last; ++slab) {
         const glm::ivec2& blocks = facts->seen.at(std::size_t(slab)).blocks;
         const bool isFirst = slab == first;
@@ -199,7 +214,8 @@ void writeSlabFacts(const LayeredPicture& picture, const Notes& options,
         json["facts"] = factsJson(facts);
         json["histogram"] = histogramJson(volume);
     }
-    writeFileAtomically(file, dumped(Json{{kTitle, json}}) + "\n");
+    const Json whole{{kTitle, json}, {kSum, hashOf(dumped(json))}};
+    writeFileAtomically(file, dumped(whole) + "\n");
 }
 
 std::optional<Volume> readSlabVolume(const std::filesystem::path& input, const ReadOptions& reading,
@@ -207,17 +223,13 @@ std::optional<Volume> readSlabVolume(const std::filesystem::path& input, const R
                                      const SlabShare& share, const Listener& listener) {
     const DefaultFloats floats;
     const Json json = read(facts);
+    requireFactsOf(json, input, options, facts);
     SlicesWanted wanted;
     Json grid;
     try {
-        requireOptions(json.at("options"), options, facts);
-        if (wholeNumberOf<std::uint64_t>(json.at("input")) != markOf(input))
-            refuse(facts, "facts of another volume", "those of " + input.string());
         if (!json.at("by_parts").get<bool>()) return std::nullopt;
         grid = json.at("grid");
         wanted = wantedOf(json, share, facts);
-    } catch (const Error&) {
-        throw;
     } catch (const std::exception&) {
         refuse(facts, "something else", "facts of a picture's slabs");
     }

@@ -142,21 +142,22 @@ Error nothingGiven(const CLI::App& app, const std::string& name, const CLI::Opti
 
 // Refuses empty values of options, as of a shell's variable that is not set: none is one, and for
 // the one of "--name=" CLI11 would take the next argument.
-void refuseEmptyValues(const std::vector<std::string>& arguments,
+void refuseEmptyValues(const CLI::App& program, const std::vector<std::string>& arguments,
                        const std::vector<Subcommand>& subcommands) {
     CalledSubcommand called(subcommands);
     for (std::size_t i = 0; i < arguments.size() && arguments[i] != "--"; ++i) {
         const std::string& argument = arguments[i];
-        const CLI::App* const app = called.next(argument);
-        if (app == nullptr || !looksLikeOption(argument)) continue;
+        const CLI::App* const subcommand = called.next(argument);
+        const CLI::App& app = subcommand == nullptr ? program : *subcommand;
+        if (!looksLikeOption(argument)) continue;
         const std::size_t sign = argument.find('=');
         const std::string name = argument.substr(0, sign);
         const bool isEmpty = sign == std::string::npos
                                  ? i + 1 < arguments.size() && arguments[i + 1].empty()
                                  : sign + 1 == argument.size();
-        const CLI::Option* const option = isEmpty ? app->get_option_no_throw(name) : nullptr;
+        const CLI::Option* const option = isEmpty ? app.get_option_no_throw(name) : nullptr;
         if (option != nullptr && option->get_items_expected_max() > 0)
-            throw nothingGiven(*app, name, *option);
+            throw nothingGiven(app, name, *option);
     }
 }
 
@@ -242,7 +243,7 @@ const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcom
     std::vector<std::string> spelt(arguments.begin() + 1, arguments.end());
     askForHelp(spelt, subcommands);
     spellWithTwoDashes(spelt, subcommands);
-    refuseEmptyValues(spelt, subcommands);
+    refuseEmptyValues(program, spelt, subcommands);
     joinPossibleValues(spelt, subcommands);
     std::vector<std::string> reversed(spelt.rbegin(), spelt.rend());
     try {

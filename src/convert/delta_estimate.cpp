@@ -182,6 +182,8 @@ std::optional<DeltaEstimate> estimateFrom(const Volume& volume, int sliceAxis) {
         *voxels.deltas, 1 / share, share == 1 ? nodeBytes(voxels.deltas->constBaseTree()) : nodes);
     estimate.readsFromLeaves =
         mayDecodeLeaves(voxels.header) && volume.gridClass != "level set";  // made fog first
+    // What inactive voxels hold is not in the sample.
+    if (voxels.inactive.numbers || voxels.inactive.tooMany) return {};
     options.pack = true;
     estimate.packedBytes = packedBytes(takeDeltas(*sample, options), share);
     return estimate;

@@ -193,6 +193,16 @@ TEST(SlabFacts, WhatIsOfAnotherPictureIsRefused) {
                          [] {
                              readPart({1, 1, 2});
                          });
+    // What is not as it was written is no file of facts, though it may look like one.
+    const std::string facts = testing::readBytes(kFacts);
+    const std::size_t digit = facts.find_first_of("123456789", facts.find("histogram"));
+    std::string damaged = facts;
+    damaged[digit] = char(damaged[digit] == '9' ? '1' : damaged[digit] + 1);
+    testing::writeBytes(kFacts, damaged);
+    testing::expectError(ErrorCode::kInput,
+                         "facts.json: got something else; expected facts of a picture's slabs", [] {
+                             readPart({1, 1, 2});
+                         });
     testing::writeBytes(kFacts, "{}");
     testing::expectError(ErrorCode::kInput,
                          "facts.json: got something else; expected facts of a picture's slabs", [] {
@@ -209,6 +219,7 @@ TEST(SlabFacts, WhatIsOfAnotherPictureIsRefused) {
 void claimFactsOf(const std::string& file) {
     nlohmann::ordered_json json = nlohmann::ordered_json::parse(std::ifstream(kFacts));
     json.front()["input"] = markOf(file);
+    json["sum"] = hashOf(json.front().dump());
     testing::writeBytes(kFacts, json.dump());
 }
 

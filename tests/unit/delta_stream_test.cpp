@@ -257,10 +257,10 @@ TEST(DeltaStreamError, ColumnsThatAreNoneOfTheBox) {
     EXPECT_EQ(refusalOf(column(0, 3, 0, 1)), outside);
     EXPECT_EQ(refusalOf(column(0, 0, 2, 1)), outside);
     EXPECT_EQ(refusalOf(column(0, 0, std::uint64_t{1} << 40, 1)), outside);
-    EXPECT_EQ(refusalOf(column(0, 0, 0, 1000)),
-              kWhere +
-                  "got a column of more than 999 words; expected at most 1, those of the whole "
-                  "stream");
+    EXPECT_EQ(
+        refusalOf(column(0, 0, 0, 1000)),
+        kWhere +
+            "got columns of 1000 words or more; expected at most 1, those of the whole stream");
     EXPECT_EQ(refusalOf(column(0, 0, 0, 1)),
               kWhere + "got a stream of 1 words; expected as many as its columns have");
 }

@@ -175,8 +175,10 @@ class Survey {
     }
 
     void add(std::size_t i, const FrameFiles& files, SequenceLook& look, const Listener& part) {
+        // What there is to warn of is said when a frame is shown, if it is.
         Listener silent;
         silent.progress = part.progress;
+        if (isAlone_) silent.warning = part.warning;
         const FrameLook frame{look, i};
         try {
             RenderCommand command = command_;

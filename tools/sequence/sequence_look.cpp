@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "deltasplat/error.h"
 #include "ingest/codes/code_tree.h"
 #include "view/affine.h"
+#include "whole_number.h"
 
 namespace deltasplat {
 namespace {
@@ -96,8 +98,10 @@ Volume SequenceLook::read(const std::filesystem::path& input, const ReadOptions&
     }
     if (isFinished_) return readVolume(input, options, listener);
     std::vector<std::string> warnings;
-    const Listener reading{listener.progress,
-                           [&](const std::string& text) { warnings.push_back(text); }};
+    const Listener reading{listener.progress, [&](const std::string& text) {
+                               warnings.push_back(text);
+                               listener.warn(text);
+                           }};
     Volume volume = readVolume(input, options, reading);
     const std::lock_guard lock(mutex_);
     const double bytes = bytesOf(volume);
@@ -197,7 +201,11 @@ Json pairsJson(const Map& map) {
 
 std::map<double, std::uint64_t> pairsOf(const Json& json) {
     std::map<double, std::uint64_t> map;
-    for (const Json& pair : json) map[pair.at(0).get<double>()] = pair.at(1).get<std::uint64_t>();
+    for (const Json& pair : json) {
+        const auto count = wholeNumberOf<std::uint64_t>(pair.at(1));
+        if (count == 0) throw std::invalid_argument("values that none has");
+        map[pair.at(0).get<double>()] = count;
+    }
     return map;
 }
 
@@ -256,15 +264,18 @@ SequenceLook::Grid SequenceLook::gridOf(const Json& json) {
     json.at("background").get_to(first.background);
     json.at("space").get_to(first.space);
     first.worldFromIndex = matrixOf(json.at("world_from_index"));
-    json.at("active").get_to(grid.active);
+    grid.active = wholeNumberOf<std::uint64_t>(json.at("active"));
     grid.least = json.at("range").at(0);
     grid.most = json.at("range").at(1);
+    if (!(grid.least <= grid.most)) throw std::invalid_argument("range");
     if (json.contains("world_box")) {
         const Json& box = json.at("world_box");
         grid.box = WorldBox{vectorOf(box.at(0)), vectorOf(box.at(1))};
+        if (!glm::all(glm::lessThanEqual(grid.box->min, grid.box->max)))
+            throw std::invalid_argument("box");
     }
     grid.mostFrequent = pairsOf(json.at("most_frequent"));
-    json.at("bits").get_to(grid.values.bits_);
+    grid.values.bits_ = wholeNumberOf<int>(json.at("bits"));
     grid.values.counts_ = pairsOf(json.at("values"));
     const std::size_t values = grid.values.counts_.size();
     const int bits = grid.values.bits_;
@@ -284,6 +295,9 @@ Json SequenceLook::toJson() const {
 
 void SequenceLook::takeJson(const Json& json) {
     json.at("smallest_voxel").get_to(smallestVoxel_);
+    constexpr double kLeast = 1e-30;  // as lengths of cameras
+    const bool isLength = smallestVoxel_ >= kLeast && smallestVoxel_ <= 1 / kLeast;
+    if (smallestVoxel_ != 0 && !isLength) throw std::invalid_argument("smallest_voxel");
     seenGrid_ = gridOf(json.at("seen"));
     for (const auto& [name, grid] : json.at("grids").items()) grids_[name] = gridOf(grid);
     if (json.contains("window")) {

@@ -143,8 +143,20 @@ std::vector<Column> Unpacker::takePlaces(BitReader& in) const {
     glm::i64vec3 place(0, 0, -1);
     glm::i64vec3 most = glm::i64vec3(last_) - glm::i64vec3(first_);
     most.x /= blocksPerSlab;
+    // Each has a word, and bits in the stream, which both may be few in a file.
+    const auto failTooMany = [&](std::uint64_t words) {
+        fail("columns of " + std::to_string(words) + " words or more",
+             "at most " + std::to_string(count_) + ", those of the whole stream");
+    };
+    const std::uint64_t number = in.takeNumber();
+    requireBits(in);
+    if (number > count_) failTooMany(number);
+    requireClaimedMemory(where_, double(number) * sizeof(Column));
     std::vector<Column> columns;
-    for (std::uint64_t left = in.takeNumber(); left > 0; --left) {
+    columns.reserve(std::size_t(number));
+    constexpr std::uint64_t kMostNumber = std::uint64_t{1} << 62;
+    std::uint64_t words = 0;
+    for (std::uint64_t left = number; left > 0; --left) {
         requireBits(in);
         for (int axis = 0; axis < 3; ++axis) {
             const std::uint64_t more = in.takeNumber();
@@ -156,9 +168,8 @@ std::vector<Column> Unpacker::takePlaces(BitReader& in) const {
             if (more > 0 && axis == 0) place[1] = 0;
         }
         const std::uint64_t size = in.takeNumber();
-        if (size >= count_)
-            fail("a column of more than " + std::to_string(size) + " words",
-                 "at most " + std::to_string(count_) + ", those of the whole stream");
+        if (size >= count_ - words) failTooMany(words + std::min(size, kMostNumber) + 1);
+        words += size + 1;
         const glm::i64vec3 blocks(place.x * blocksPerSlab, place.y, place.z);
         columns.push_back({first_ + glm::ivec3(blocks), std::size_t(size) + 1, 0});
     }

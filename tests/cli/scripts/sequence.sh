@@ -95,6 +95,8 @@ cp in.0009.vdb two.0009.vdb
 "$program" synth fire two.0008.vdb --dims 16x16x16 -qq
 expect_code 0 "$program" render two.####.vdb --frames 8-9 --size 8x8 -o q.####.png
 expect_said 'deltasplat: warning: frame 8: two.0008.vdb: reading grid "density" of 3 scalar grids (--grid chooses another)'
+expect_code 0 "$program" render two.####.vdb --frames 8-9 --size 8x8 --first-pass q.json
+expect_said 'deltasplat: warning: frame 8: two.0008.vdb: reading grid "density" of 3 scalar grids (--grid chooses another)'
 # Nothing to be done again but what is not there.
 "$program" render in.####.vdb --frames 8-9 --size 8x8 -qq -o q.####.png --stats q.####.json
 rm q.0009.json
@@ -113,6 +115,11 @@ same still.exr q.1.exr || fail "got a frame of a turntable other than the pictur
 same still.exr q.1.exr || fail "got another frame of a turntable by its first pass"
 rm q.* still.*
 # A variable that is not set is no value, and takes no other's place.
+for option in --log --threads; do
+    expect_code 2 "$program" $option= render in.0008.vdb -o q.png --size 8x8
+    grep -q "^deltasplat: $option: got nothing; expected " stderr.txt || fail "$option= before: got $(cat stderr.txt)"
+    expect_code 2 "$program" $option "" render in.0008.vdb -o q.png --size 8x8
+done
 for option in --camera --tf --stats --log --grid --first-pass --threads; do
     expect_code 2 "$program" render in.0008.vdb -o q.png --size 8x8 $option= --shade
     grep -q "^deltasplat: $option: got nothing; expected " stderr.txt ||
