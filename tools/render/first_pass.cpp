@@ -6,7 +6,6 @@
 #include <fstream>
 #include <glm/vec2.hpp>
 #include <nlohmann/json.hpp>
-#include <ranges>
 
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
@@ -131,7 +130,8 @@ std::filesystem::path heldFile(const Json& json, const std::vector<int>& frames,
     };
     const std::vector<glm::ivec2> runs = runsIn(json);
     const std::int64_t first = frames.front();
-    for (const glm::ivec2& run : std::views::reverse(runs))
+    const std::vector<glm::ivec2> backwards(runs.rbegin(), runs.rend());
+    for (const glm::ivec2& run : backwards)
         look(std::min<std::int64_t>(run.y, first - 1), run.x, -1);
     for (const glm::ivec2& run : runs) look(std::max<std::int64_t>(run.x, first + 1), run.y, 1);
     return held;
