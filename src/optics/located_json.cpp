@@ -180,7 +180,7 @@ LocatedJson readLocatedJson(const std::filesystem::path& file, const std::string
     // The parser would take it for the end.
     if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
         const auto line = std::count(text.begin(), text.begin() + std::ptrdiff_t(zero), '\n');
-        fail(file, 1 + int(line), "a byte that is 0", "text");
+        fail(file, 1 + int(line), "a byte that is 0", "valid JSON");
     }
     TreeBuilder builder(file, text, what);
     const char* const end = text.data() + text.size();

@@ -159,7 +159,7 @@ TEST(JsonCamera, WhatIsWrongIsSaidWithItsLine) {
     };
     for (const auto& one : cases) EXPECT_EQ(said(one.text), one.said) << one.text;
     const std::string more("{\"translate\": [0,0,0]}\n\0{", 25);
-    EXPECT_EQ(said(more), ":2: got a byte that is 0; expected text");
+    EXPECT_EQ(said(more), ":2: got a byte that is 0; expected valid JSON");
 }
 
 }  // namespace
