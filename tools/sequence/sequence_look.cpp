@@ -61,24 +61,34 @@ std::string keyOf(const std::filesystem::path& input, const ReadOptions& options
 
 }  // namespace
 
-double ValueCounts::rounded(double value) const {
-    if (bits_ == 52) return value;
-    const std::uint64_t mask = ~((std::uint64_t{1} << (52 - bits_)) - 1);
+double ValueCounts::rounded(double value, int bits) {
+    if (bits == 52) return value;
+    const std::uint64_t mask = ~((std::uint64_t{1} << (52 - bits)) - 1);
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) & mask);
 }
 
 void ValueCounts::add(double value, std::uint64_t count) {
-    counts_[rounded(value)] += count;
+    // Mostly they come in order.
+    counts_.emplace_hint(counts_.end(), rounded(value, bits_), 0)->second += count;
 }
 
-// Cutting off bits gives the same, whichever are cut off first.
+// Cutting off bits gives the same, whichever are cut off first, and keeps the order of values.
 void ValueCounts::limit() {
-    while (counts_.size() > kMost && bits_ > 0) {
-        --bits_;
-        std::map<double, std::uint64_t> fewer;
-        for (const auto& [known, times] : counts_) fewer[rounded(known)] += times;
-        counts_ = std::move(fewer);
-    }
+    if (counts_.size() <= kMost) return;
+    std::vector<double> values;
+    values.reserve(counts_.size());
+    for (const auto& [value, count] : counts_) values.push_back(value);
+    const auto differentOnes = [&](int bits) {
+        std::size_t count = 1;
+        for (std::size_t i = 1; i < values.size(); ++i)
+            if (rounded(values[i], bits) != rounded(values[i - 1], bits)) ++count;
+        return count;
+    };
+    while (bits_ > 0 && differentOnes(bits_) > kMost) --bits_;
+    std::map<double, std::uint64_t> fewer;
+    for (const auto& [value, count] : counts_)
+        fewer.emplace_hint(fewer.end(), rounded(value, bits_), 0)->second += count;
+    counts_ = std::move(fewer);
 }
 
 double ValueCounts::relativeError() const {

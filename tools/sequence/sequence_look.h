@@ -33,7 +33,7 @@ class ValueCounts {
 
   private:
     friend class SequenceLook;
-    double rounded(double value) const;
+    static double rounded(double value, int bits);
 
     std::map<double, std::uint64_t> counts_;
     int bits_ = 52;
