@@ -53,14 +53,19 @@ Files filesRead(const Files& inputs, const std::filesystem::path& transferFuncti
 void checkOutput(const std::string& option, const std::filesystem::path& file, const Files& others,
                  const std::string& names) {
     if (file.empty()) return;
+    requireOther(option, file, others, names);
+    // Asked now, rather than after hours of work.
+    const AtomicFile probe(file);
+}
+
+void requireOther(const std::string& option, const std::filesystem::path& file, const Files& others,
+                  const std::string& names) {
     refuseLog(option, file);
     for (const std::filesystem::path& other : others) {
         if (other.empty() || !sameFile(file, other)) continue;
         throw Error(ErrorCode::kUsage,
                     gotExpected(option, file.string(), "another file than " + names));
     }
-    // Asked now, rather than after hours of work.
-    const AtomicFile probe(file);
 }
 
 void refuseLog(const std::string& option, const std::filesystem::path& file) {

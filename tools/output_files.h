@@ -26,6 +26,11 @@ Files filesRead(const Files& inputs, const std::filesystem::path& transferFuncti
 void checkOutput(const std::string& option, const std::filesystem::path& file, const Files& others,
                  const std::string& names);
 
+/// The same without asking whether it can be written.
+/// @throw Error(kUsage)
+void requireOther(const std::string& option, const std::filesystem::path& file, const Files& others,
+                  const std::string& names);
+
 /// @throw Error(kUsage) if an output is the run's log, which then is no more
 void refuseLog(const std::string& option, const std::filesystem::path& file);
 

@@ -177,13 +177,13 @@ std::optional<DeltaEstimate> estimateFrom(const Volume& volume, int sliceAxis) {
     DeltaFileOptions options;
     options.sliceAxis = sliceAxis;
     const TakenDeltas voxels = takeDeltas(*sample, options);
+    // Of what inactive voxels hold a sample says little.
+    if (voxels.inactive.numbers || voxels.inactive.tooMany) return {};
     putDeltaHeader(voxels.header, *voxels.deltas);
     estimate.deltaBytes = scaledBytes(
         *voxels.deltas, 1 / share, share == 1 ? nodeBytes(voxels.deltas->constBaseTree()) : nodes);
     estimate.readsFromLeaves =
         mayDecodeLeaves(voxels.header) && volume.gridClass != "level set";  // made fog first
-    // What inactive voxels hold is not in the sample.
-    if (voxels.inactive.numbers || voxels.inactive.tooMany) return {};
     options.pack = true;
     estimate.packedBytes = packedBytes(takeDeltas(*sample, options), share);
     return estimate;

@@ -14,6 +14,7 @@
 #include "deltasplat/optics/default_ramp.h"
 #include "deltasplat/optics/transfer_function.h"
 #include "support/make_volume.h"
+#include "support/same_volume.h"
 
 namespace deltasplat {
 namespace {
@@ -67,13 +68,7 @@ std::vector<Volume> someFrames() {
 }
 
 void expectTheSame(const Volume& a, const Volume& b) {
-    EXPECT_EQ(a.box, b.box);
-    EXPECT_EQ(a.worldFromIndex, b.worldFromIndex);
-    EXPECT_EQ(a.histogram, b.histogram);
-    EXPECT_EQ(a.valueMin, b.valueMin);
-    EXPECT_EQ(a.valueMax, b.valueMax);
-    EXPECT_EQ(a.activeCount, b.activeCount);
-    EXPECT_EQ(a.name, b.name);
+    test::expectSameFacts(a, b);
     EXPECT_EQ(defaultRange(a), defaultRange(b));
     EXPECT_EQ(bulkRange(a), bulkRange(b));
     for (Code code = 0; code < 200; ++code)

@@ -67,8 +67,8 @@ std::vector<glm::ivec2> runsIn(const Json& json) {
 }
 
 // The first frame's file, if it is no longer the one that a first pass was made of; else empty.
-std::filesystem::path otherFile(const Json& json, const RenderCommand& command) {
-    const std::vector<glm::ivec2> runs = runsIn(json);
+std::filesystem::path otherFile(const Json& json, const std::vector<glm::ivec2>& runs,
+                                const RenderCommand& command) {
     if (!json.contains(kFirstFile)) return {};
     const auto then = wholeNumberOf<std::uint64_t>(json.at(kFirstFile));
     std::filesystem::path file = fileOf(command, runs.front().x);
@@ -77,13 +77,14 @@ std::filesystem::path otherFile(const Json& json, const RenderCommand& command) 
 }
 
 // What was made of other frames, or of another thing, may not suit those in hand.
-void warnOfOthers(const Json& json, const RenderCommand& command, const Listener& listener) {
+void warnOfOthers(const Json& json, const std::vector<glm::ivec2>& runs,
+                  const RenderCommand& command, const Listener& listener) {
     const std::string begin = "--first-pass: " + command.firstPass.string() + " was made ";
     const auto input = json.at(kInput).get<std::string>();
     const std::string name = inputName(command);
     if (input != name)
         return listener.warn(begin + "of " + input + ", and is taken as it is for " + name);
-    if (const std::filesystem::path other = otherFile(json, command); !other.empty()) {
+    if (const std::filesystem::path other = otherFile(json, runs, command); !other.empty()) {
         return listener.warn(begin + "of another " + printable(other.filename().string()) +
                              " than there is now, and is taken as it is");
     }
@@ -96,7 +97,6 @@ void warnOfOthers(const Json& json, const RenderCommand& command, const Listener
                              named(command.readingOptions));
     }
     std::vector<int> absent;
-    const std::vector<glm::ivec2> runs = runsIn(json);
     const std::optional<FrameName> files = FrameName::findInput(command.input);
     for (const int frame : command.frames.frames) {
         // It had none to be read, either.
@@ -115,7 +115,7 @@ void warnOfOthers(const Json& json, const RenderCommand& command, const Listener
 
 // The file that the first of the frames in hand shows if it has none: of a first pass' frames that
 // are there the last before it, or else the first behind it.
-std::filesystem::path heldFile(const Json& json, const std::vector<int>& frames,
+std::filesystem::path heldFile(const std::vector<glm::ivec2>& runs, const std::vector<int>& frames,
                                const std::filesystem::path& input) {
     const std::optional<FrameName> name = FrameName::findInput(input);
     if (!name || !std::is_sorted(frames.begin(), frames.end())) return {};
@@ -128,7 +128,6 @@ std::filesystem::path heldFile(const Json& json, const std::vector<int>& frames,
              frame += step, ++looks)
             if (hasInput(name->at(int(frame)))) held = name->at(int(frame));
     };
-    const std::vector<glm::ivec2> runs = runsIn(json);
     const std::int64_t first = frames.front();
     const std::vector<glm::ivec2> backwards(runs.rbegin(), runs.rend());
     for (const glm::ivec2& run : backwards)
@@ -164,9 +163,10 @@ std::optional<std::filesystem::path> readFirstPass(const RenderCommand& command,
     try {
         const Json json = Json::parse(in).at(kFirstPass);
         look.takeJson(json);
-        warnOfOthers(json, command, listener);
+        const std::vector<glm::ivec2> runs = runsIn(json);
+        warnOfOthers(json, runs, command, listener);
         if (command.frames.missing != MissingFrames::kHold) return std::filesystem::path();
-        return heldFile(json, command.frames.frames, command.input);
+        return heldFile(runs, command.frames.frames, command.input);
     } catch (const std::exception&) {
         throw Error(ErrorCode::kInput,
                     gotExpected(file.string(), "something else", "what --first-pass has written"));

@@ -116,14 +116,12 @@ void requireInputs(const std::vector<FrameFiles>& frames) {
 
 void requireOwnOutputs(const std::string& option, const std::vector<FrameFiles>& frames,
                        const fs::path& other, const std::string& name) {
-    const fs::path log = runLogFile();
+    const fs::path log = runLogFile().filename();
     for (const FrameFiles& frame : frames) {
         // There may be a million of them: only such as are called the same are looked at.
         const fs::path file = frame.output.filename();
-        if (file == log.filename()) refuseLog(option, frame.output);
-        if (other.empty() || file != other.filename() || !sameFile(frame.output, other)) continue;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, frame.output.string(), "another file than " + name));
+        if (file == log || file == other.filename())
+            requireOther(option, frame.output, {other}, name);
     }
 }
 
