@@ -174,6 +174,17 @@ void Sheet::touchRows(glm::ivec2 block) {
     std::fill_n(&touchedRows_[firstTileOf(block).y], reach_.tiles(), std::uint8_t{1});
 }
 
+// Takes the bits of all but some rows out of `touched`, into left_. Returns whether there are any.
+bool Sheet::leaveOthers(std::span<std::uint8_t> touched, unsigned rows) {
+    unsigned left = 0;
+    for (std::size_t i = 0; i < touched.size(); ++i) {
+        left_[i] = std::uint8_t(touched[i] & ~rows);
+        touched[i] = std::uint8_t(touched[i] & rows);
+        left |= left_[i];
+    }
+    return left != 0;
+}
+
 void Sheet::settle() {
     refillTouched(
         0, layout_.sizePixels.y,

@@ -101,10 +101,10 @@ class Sheet {
     /// former reach are full, for no colour or weight is negative; those that only the latter reach
     /// are touched.
     void show(glm::ivec2 block, std::uint64_t visible, std::uint64_t vanished);
-    /// Calls `refill(tileRow, touched, full)` for every row of tiles that has touched ones and in
-    /// which any of the pixel rows [first, last) lies; others stay touched. Of each tile there is a
-    /// byte, bit y for its row y: where `touched` has bits, `refill` puts into `full` whether those
-    /// rows are not all zero now.
+    /// Calls `refill(tileRow, touched, full)` for rows of tiles in which any of the pixel rows
+    /// [first, last) may be touched; others stay so. Of each tile there is a byte, bit y for its
+    /// row y: where `touched` has bits, `refill` puts into `full` whether those rows are not all
+    /// zero now.
     /// @param isHidden  whether a tile (column, row) may stay as it is, touched; null: none may
     template <typename IsHidden, typename Refill>
     void refillTouched(int first, int last, const IsHidden& isHidden, const Refill& refill);
@@ -133,6 +133,15 @@ class Sheet {
     template <std::size_t kMasks, typename Use>
     void forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks], const Use& use);
     void touchRows(glm::ivec2 block);
+    bool leaveOthers(std::span<std::uint8_t> touched, unsigned rows);
+
+    static constexpr unsigned kAllRows = (1u << kTilePixels) - 1;
+    // Returns a bit for each row of a row of tiles that is one of the pixel rows [first, last).
+    static unsigned rowsOfTile(int tileRow, int first, int last) {
+        const int top = kTilePixels * tileRow;
+        return kAllRows << std::max(first - top, 0) &
+               kAllRows >> std::max(top + kTilePixels - last, 0);
+    }
 
     SheetLayout layout_;
     BlockReach reach_;
@@ -152,11 +161,12 @@ void Sheet::refillTouched(int first, int last, const IsHidden& isHidden, const R
         if (touchedRows_[row] == 0) continue;
         touchedRows_[row] = 0;
         const std::span touched(&touched_[bytesPerRow_ * row], bytesPerRow_);
-        bool isLeft = false;
+        const unsigned rows = rowsOfTile(row, first, last);
+        bool isLeft = rows != kAllRows && leaveOthers(touched, rows);
         if constexpr (!std::is_null_pointer_v<IsHidden>) {
             forTiles(touched, [&](std::size_t i) {
                 if (!isHidden(glm::ivec2(int(i), row))) return;
-                std::swap(left_[i], touched[i]);
+                left_[i] |= std::exchange(touched[i], std::uint8_t{0});
                 isLeft = true;
             });
         }

@@ -301,24 +301,42 @@ void touchAll(Sheet& sheet) {
         sheet.touch({i % blocks.x, i / blocks.x}, ~std::uint64_t{0});
 }
 
-TEST(Sheet, RefillsRowsOfTilesOnceTheyAreAskedFor) {
+TEST(Sheet, RefillsRowsOnceTheyAreAskedFor) {
     Sheet sheet(layoutSheet(kBox, pixelFootprint()));
     ASSERT_EQ(sheet.layout().tiles().y, 7);
     touchAll(sheet);
+    // Rows of tiles, and which of their rows.
+    using Rows = std::vector<std::pair<int, unsigned>>;
     const auto refilled = [&](int first, int last) {
-        std::vector<int> found;
+        Rows found;
         sheet.refillTouched(first, last, [&](int row, const auto& touched, const auto&) {
-            EXPECT_EQ(touched[1], 0xFF);
-            found.push_back(row);
+            if (touched[1] != 0) found.emplace_back(row, touched[1]);
         });
         return found;
     };
-    EXPECT_EQ(refilled(10, 17), (std::vector<int>{1, 2}));
-    EXPECT_EQ(refilled(-9, 9), std::vector<int>{});
-    EXPECT_EQ(refilled(25, 25), std::vector<int>{});
-    EXPECT_EQ(refilled(24, 25), std::vector<int>{3});
+    EXPECT_EQ(refilled(10, 17), (Rows{{1, 0xFC}, {2, 0x01}}));
+    EXPECT_EQ(refilled(-9, 9), (Rows{{1, 0x01}}));
+    EXPECT_EQ(refilled(25, 25), Rows{});
+    EXPECT_EQ(refilled(26, 29), (Rows{{3, 0x1C}}));
+    EXPECT_EQ(refilled(24, 32), (Rows{{3, 0xE3}}));
     // Voxels do not reach the outermost tiles.
-    EXPECT_EQ(refilled(0, 90), (std::vector<int>{4, 5}));
+    EXPECT_EQ(refilled(0, 90), (Rows{{1, 0x02}, {2, 0xFE}, {4, 0xFF}, {5, 0xFF}}));
+    EXPECT_EQ(refilled(0, 90), Rows{});
+}
+
+// What is hidden stays touched, and so do rows that nobody asks for.
+TEST(Sheet, RowsOfHiddenTilesAreLeftAsWell) {
+    Sheet sheet(layoutSheet(kBox, pixelFootprint()));
+    touchAll(sheet);
+    std::vector<unsigned> found;
+    const auto refill = [&](int row, const auto& touched, const auto&) {
+        if (row == 1) found = {touched[1], touched[2]};
+    };
+    sheet.refillTouched(
+        10, 13, [](glm::ivec2 tile) { return tile.x == 2; }, refill);
+    EXPECT_EQ(found, (std::vector<unsigned>{0x1C, 0}));
+    sheet.refillTouched(8, 16, refill);
+    EXPECT_EQ(found, (std::vector<unsigned>{0xE3, 0xFF}));
 }
 
 TEST_P(SheetOnEveryLevel, ClearMakesTouchedPixelsZero) {
