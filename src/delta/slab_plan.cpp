@@ -17,7 +17,7 @@ constexpr double kMostKeyDeltas = 0.03;
 
 // A stamp of a whole slice costs a little more: what it replaces must be taken away. Where few
 // voxels change, they are stamped, which is faster still; from how many on depends on the footprint
-// (TileSplatter::leastChanges), which is not known here: the least is right for the smallest ones.
+// (TileSplatter::leastStamps), which is not known here: the least is right for the smallest ones.
 bool isSmallerWhole(const PlannedSlab& slab) {
     constexpr std::uint64_t kFew = 12;
     return slab.changesFewerThan(kFew) ? 8 * slab.visible < 5 * slab.deltas

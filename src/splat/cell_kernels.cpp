@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums sheets of three and four pixels a voxel, compiled once for each SIMD level. Integer
-// arithmetic throughout, so that every level gives the same bits.
+// Sums sheets of wide footprints, compiled once for each SIMD level. Integer arithmetic throughout,
+// so that every level gives the same bits.
 // Based on: Lee Westover, "Footprint Evaluation for Volume Rendering", 1990. Deviates in that
 // pixels take from voxels what voxels would stamp: the same integers.
 #include "splat/cell_kernels.h"
@@ -25,20 +25,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Tiles that are made at a time, so that what they are made from stays in the first-level cache.
 constexpr int kRun = 16;
 
-template <int kChannels, int kResolution>
+template <int kChannels, int kResolution, int kTaps>
 class CellSums {
     static constexpr int kRow = kTilePixels * kChannels;
     // Vectors never reach over a tile's end.
     using Tag = hn::CappedTag < std::int32_t, kRow<16 ? kRow : 16>;
     using V = hn::Vec<Tag>;
-    static constexpr int kTaps = CellWeights::kTaps;
+    static constexpr int kBefore = (kTaps - 1) / 2;
+    static constexpr int kRowPairs = (kTaps + 1) / 2;
     // From one voxel to the next along a row.
     static constexpr int kStep = kResolution * kChannels;
     // Rows of cells that a tile may lie in, and the rows of pairs that they take.
     static constexpr int kMostCells = (kTilePixels - 2) / kResolution + 2;
-    static constexpr int kMostPairs = kMostCells + 2;
+    static constexpr int kMostPairs = kMostCells + 2 * (kRowPairs - 1);
     // Pixels of a run, of the cells around it, and what a vector may reach over the last.
-    static constexpr int kMostPixels = kRun * kTilePixels + 5 * kResolution + 8;
+    static constexpr int kMostPixels = kRun * kTilePixels + (kTaps + 1) * kResolution + 16;
 
   public:
     CellSums(const CellWeights& weights, const CellPlane& plane, const TileRow& row)
@@ -49,7 +50,7 @@ class CellSums {
             cells_[y] = cell - first;
             rowsInCell_[y] = plane.pixel.y + y - cell * kResolution;
         }
-        voxels_ = plane.voxel + (first - 1) * std::ptrdiff_t(plane.pitch);
+        voxels_ = plane.voxel + (first - kBefore) * std::ptrdiff_t(plane.pitch);
     }
 
     // Makes the touched rows of tiles [first, last).
@@ -75,18 +76,36 @@ class CellSums {
     // Repeats the pairs of voxels for each pixel of their cells, as far as tiles [first, last) take
     // them for their rows in rows of cells [firstCell, lastCell].
     HWY_INLINE void pairUp(int first, int last, int firstCell, int lastCell) {
-        const int firstPixel = plane_.pixel.x + kTilePixels * first - kResolution;
-        const int lastPixel = plane_.pixel.x + kTilePixels * last - 1 + 2 * kResolution;
+        const int firstPixel = plane_.pixel.x + kTilePixels * first - kBefore * kResolution;
+        const int lastPixel =
+            plane_.pixel.x + kTilePixels * last - 1 + (kTaps - 1 - kBefore) * kResolution;
         const int firstVoxel = floorDiv(firstPixel, kResolution);
         const int lastVoxel = floorDiv(lastPixel, kResolution);
         pairsBegin_ = firstVoxel * kResolution - plane_.pixel.x;
-        for (int row = firstCell; row <= lastCell + 2; ++row) {
+        for (int row = firstCell; row <= lastCell + 2 * (kRowPairs - 1); ++row) {
             std::int32_t* out = pairs_[row];
             const std::int16_t* voxel = voxels_ + row * std::ptrdiff_t(plane_.pitch) +
                                         kChannels * std::ptrdiff_t(firstVoxel);
-            for (int v = firstVoxel; v <= lastVoxel; ++v, voxel += kChannels, out += kStep)
-                repeat(voxel, out);
+            if constexpr (kResolution == 1) {
+                const Tag tag;
+                const int length = kChannels * (lastVoxel - firstVoxel + 1);
+                for (int i = 0; i < length; i += int(hn::Lanes(tag)))
+                    hn::StoreU(pair(tag, voxel + i), tag, out + i);
+            } else {
+                for (int v = firstVoxel; v <= lastVoxel; ++v, voxel += kChannels, out += kStep)
+                    repeat(voxel, out);
+            }
         }
+    }
+
+    // Returns colours, none of which is negative, in the low halves, and those behind them in the
+    // high ones.
+    template <class T>
+    HWY_INLINE hn::Vec<T> pair(T tag, const std::int16_t* voxel) const {
+        const hn::Rebind<std::int16_t, T> half;
+        const auto here = hn::PromoteTo(tag, hn::LoadU(half, voxel));
+        const auto behind = hn::PromoteTo(tag, hn::LoadU(half, voxel + plane_.pitch));
+        return hn::Or(here, hn::ShiftLeft<16>(behind));
     }
 
     // Writes a voxel and the one behind it for each pixel of a cell; what is too much is written
@@ -94,15 +113,12 @@ class CellSums {
     HWY_INLINE void repeat(const std::int16_t* voxel, std::int32_t* HWY_RESTRICT out) const {
         if constexpr (kChannels == 4) {
             const hn::FixedTag<std::int32_t, 4> tag;
-            const hn::Rebind<std::int16_t, decltype(tag)> half;
-            const auto here = hn::PromoteTo(tag, hn::LoadU(half, voxel));
-            const auto behind = hn::PromoteTo(tag, hn::LoadU(half, voxel + plane_.pitch));
-            const auto pair = hn::Or(here, hn::ShiftLeft<16>(behind));
-            for (int i = 0; i < kStep; i += 4) hn::StoreU(pair, tag, out + i);
+            const auto both = pair(tag, voxel);
+            for (int i = 0; i < kStep; i += 4) hn::StoreU(both, tag, out + i);
         } else {
             const hn::FixedTag<std::int32_t, 4> tag;
-            const std::int32_t pair = voxel[0] | std::int32_t{voxel[plane_.pitch]} << 16;
-            hn::StoreU(hn::Set(tag, pair), tag, out);
+            const std::int32_t both = voxel[0] | std::int32_t{voxel[plane_.pitch]} << 16;
+            hn::StoreU(hn::Set(tag, both), tag, out);
         }
     }
 
@@ -111,16 +127,15 @@ class CellSums {
     HWY_INLINE bool makeRow(int tile, int x, int y) const {
         const Tag tag;
         std::int32_t* sheet = row_.sheet + kRow * std::size_t(tile) + y * row_.sheetPitch;
-        const int first = kChannels * (kTilePixels * tile - kResolution - pairsBegin_);
-        const std::int32_t* before = &pairs_[cells_[y]][first];
-        const std::int32_t* behind = &pairs_[cells_[y] + 2][first];
+        const int first = kChannels * (kTilePixels * tile - kBefore * kResolution - pairsBegin_);
         V any = hn::Zero(tag);
         for (int i = 0; i < kRow; i += int(hn::Lanes(tag))) {
-            const CellWeights::Lines& weights = weights_.from(x, rowsInCell_[y]);
+            const CellWeights::Line* weights = weights_.from(x, rowsInCell_[y]);
             V sum = hn::Zero(tag);
-            for (int tap = 0; tap < kTaps; ++tap) {
-                sum = addPairs(sum, before + i + tap * kStep, weights[tap].data());
-                sum = addPairs(sum, behind + i + tap * kStep, weights[kTaps + tap].data());
+            for (int rows = 0; rows < kRowPairs; ++rows, weights += kTaps) {
+                const std::int32_t* pairs = &pairs_[cells_[y] + 2 * rows][first + i];
+                for (int tap = 0; tap < kTaps; ++tap)
+                    sum = addPairs(sum, pairs + tap * kStep, weights[tap].data());
             }
             hn::StoreU(sum, tag, sheet + i);
             any = hn::Or(any, sum);
@@ -145,10 +160,10 @@ class CellSums {
     HWY_ALIGN std::int32_t pairs_[kMostPairs][kChannels * kMostPixels];
 };
 
-template <int kChannels, int kResolution>
+template <int kChannels, int kResolution, int kTaps>
 void splatCellsOf(const CellWeights& weights, const CellPlane& plane, const TileRow& row,
                   std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-    CellSums<kChannels, kResolution> sums(weights, plane, row);
+    CellSums<kChannels, kResolution, kTaps> sums(weights, plane, row);
     const int tiles = int(touched.size());
     for (int first = 0; first < tiles;) {
         int last = first;
@@ -158,14 +173,28 @@ void splatCellsOf(const CellWeights& weights, const CellPlane& plane, const Tile
     }
 }
 
+template <int kChannels>
+void splatCellsBy(const CellWeights& weights, const CellPlane& plane, const TileRow& row,
+                  std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
+    const auto splat = [&]<int kResolution, int kTaps>() {
+        splatCellsOf<kChannels, kResolution, kTaps>(weights, plane, row, touched, full);
+    };
+    const int r = weights.resolution;
+    if (r == 1 && weights.taps == 5) return splat.template operator()<1, 5>();
+    if (r == 1) return splat.template operator()<1, 7>();
+    if (r == 2 && weights.taps == 4) return splat.template operator()<2, 4>();
+    if (r == 2 && weights.taps == 5) return splat.template operator()<2, 5>();
+    if (r == 2) return splat.template operator()<2, 6>();
+    if (r == 3 && weights.taps == 4) return splat.template operator()<3, 4>();
+    if (r == 3) return splat.template operator()<3, 6>();
+    if (weights.taps == 4) return splat.template operator()<4, 4>();
+    splat.template operator()<4, 6>();
+}
+
 void splatCellsKernel(const CellWeights& weights, const CellPlane& plane, const TileRow& row,
                       std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-    if (weights.resolution == 3) {
-        return weights.channels == 4 ? splatCellsOf<4, 3>(weights, plane, row, touched, full)
-                                     : splatCellsOf<1, 3>(weights, plane, row, touched, full);
-    }
-    return weights.channels == 4 ? splatCellsOf<4, 4>(weights, plane, row, touched, full)
-                                 : splatCellsOf<1, 4>(weights, plane, row, touched, full);
+    if (weights.channels == 4) return splatCellsBy<4>(weights, plane, row, touched, full);
+    splatCellsBy<1>(weights, plane, row, touched, full);
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -176,14 +205,29 @@ namespace deltasplat {
 
 HWY_EXPORT(splatCellsKernel);
 
-bool CellWeights::fits(const Footprint& footprint) {
+namespace {
+
+// Returns how many voxels each way there are kernels for, of a footprint; 0: none.
+int tapsOf(const Footprint& footprint) {
     const int r = footprint.resolution;
-    const int reachBehind = footprint.width - 1 - footprint.reach();
-    return (r == 3 || r == 4) && footprint.reach() <= 2 * r && reachBehind < 2 * r;
+    // Those that reach a cell's first pixel from before, and its last one from behind.
+    const int before = (footprint.width - 1 - footprint.reach()) / r;
+    const int behind = (r - 1 + footprint.reach()) / r;
+    if (footprint.voxelsPerPixel > 1 || r > 4 || (r == 1 && footprint.width % 2 == 0)) return 0;
+    if (r > 1 && before <= 1 && behind <= 2) return 4;
+    if (r <= 2 && before <= 2 && behind <= 2) return 5;
+    if (r > 1 && before <= 2 && behind <= 3) return 6;
+    return r == 1 && before <= 3 && behind <= 3 ? 7 : 0;
+}
+
+}  // namespace
+
+bool CellWeights::fits(const Footprint& footprint) {
+    return tapsOf(footprint) != 0;
 }
 
 CellWeights::CellWeights(const Footprint& footprint, int sheetChannels)
-    : resolution(footprint.resolution), channels(sheetChannels) {
+    : resolution(footprint.resolution), channels(sheetChannels), taps(tapsOf(footprint)) {
     // What a voxel gives to a pixel of a cell, the voxel's place counted from the cell's.
     const auto weightAt = [&](glm::ivec2 pixel, glm::ivec2 voxel) {
         const glm::ivec2 p = pixel - resolution * voxel + footprint.reach();
@@ -191,13 +235,12 @@ CellWeights::CellWeights(const Footprint& footprint, int sheetChannels)
         return inside ? footprint.at(p.x, p.y) : 0;
     };
     for (int n = 0; n < resolution * resolution; ++n) {
-        Lines& next = lines.emplace_back();
-        for (int tap = 0; tap < 2 * kTaps; ++tap) {
-            const glm::ivec2 voxel(tap % kTaps - 1, 2 * (tap / kTaps) - 1);
-            for (int i = 0; i < int(next[tap].size()); ++i) {
+        for (int tap = 0; tap < rowPairs() * taps; ++tap) {
+            const glm::ivec2 voxel(tap % taps - before(), 2 * (tap / taps) - before());
+            Line& line = lines.emplace_back();
+            for (int i = 0; i < int(line.size()); ++i) {
                 const glm::ivec2 pixel((n + i / channels) % resolution, n / resolution);
-                next[tap][i] = weightAt(pixel, voxel) | weightAt(pixel, voxel + glm::ivec2(0, 1))
-                                                            << 16;
+                line[i] = weightAt(pixel, voxel) | weightAt(pixel, voxel + glm::ivec2(0, 1)) << 16;
             }
         }
     }

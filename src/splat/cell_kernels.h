@@ -13,30 +13,35 @@
 
 namespace deltasplat {
 
-/// The weights of a footprint at three or four sheet pixels a voxel, as the kernel takes them. A
-/// voxel's cell is the r x r pixels from its own one on; what is seen in a cell comes from 4x4
-/// voxels: along rows and columns the one before it, its own, and two behind.
+/// The weights of a footprint that reaches farther than TileWeights, at one to four sheet pixels a
+/// voxel, as the kernel takes them. A voxel's cell is the r x r pixels from its own one on; what is
+/// seen in a cell comes from *taps* voxels along rows and as many along columns: before() of them
+/// before its own, and the rest from its own on.
 struct CellWeights {
-    static constexpr int kTaps = 4;
+    static constexpr int kMostTaps = 7;
     /// Weights of pixels in a row of a cell, from one of them on into the next cell,
     /// `[pixels][channels]`: low 16 bits that of a voxel, high 16 bits that of the one in the row
     /// behind it.
     struct alignas(64) Line : std::array<std::int32_t, 16> {};
-    /// By where the voxel is: rows before the cell's own and that one, then those behind; in each
-    /// the kTaps columns.
-    using Lines = std::array<Line, 2 * kTaps>;
 
-    /// Whether a footprint reaches no farther, and has three or four pixels a voxel.
+    /// Whether a footprint reaches no farther: over 7 voxels at one pixel a voxel, where its width
+    /// is odd, or 6 at two to four.
     static bool fits(const Footprint& footprint);
     /// @param footprint  one that fits
     CellWeights(const Footprint& footprint, int sheetChannels);
 
-    /// Returns those of a cell's row `y`, from its pixel `x` on.
-    const Lines& from(int x, int y) const { return lines[std::size_t(y) * resolution + x]; }
+    int before() const { return (taps - 1) / 2; }
+    /// Rows of voxels are taken two and two; of an odd number the last has no weight.
+    int rowPairs() const { return (taps + 1) / 2; }
+    /// Returns those of a cell's row `y`, from its pixel `x` on: `[pair of rows][tap]`.
+    const Line* from(int x, int y) const {
+        return &lines[std::size_t(y * resolution + x) * rowPairs() * taps];
+    }
 
     int resolution;  ///< r
     int channels;    ///< of plane and sheet: 1 or 4
-    std::vector<Lines> lines;
+    int taps;        ///< 5 or 7 at one pixel a voxel, 4 to 6 at more
+    std::vector<Line> lines;
 };
 
 /// The colours of voxels, and where their cells lie.

@@ -8,10 +8,13 @@ namespace deltasplat {
 // Both ways give the same integers.
 void DigitSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     whole_ = slab.whole;
-    const bool changesFew = isFew_.value_or(false) || slab.changesFewerThan(leastChanges());
-    // What is splatted anew for each slice has to be cleared as well, which tiles do by the way;
-    // and a low digit is added to what is summed anew.
-    stamping_ = !TileSplatter::fits(input_.footprint) || (!slab.whole && !addsLow_ && changesFew);
+    const bool isFew =
+        isFew_.value_or(false) || slab.stamps() < leastStamps() * slab.stampedWords();
+    // What is splatted anew for each slice has to be cleared as well, and a low digit be added,
+    // both of which tiles do by the way: that is more than small stamps are worth.
+    const bool isWide = !TileWeights::fits(input_.footprint);
+    stamping_ =
+        !TileSplatter::fits(input_.footprint) || (isFew && (isWide || (!slab.whole && !addsLow_)));
     sheet_.setLayout(layout);
     if (stamping_) {
         if (!stamps_) stamps_.emplace(input_, largest_, sheet_, digit_);
@@ -41,9 +44,9 @@ void DigitSplatter::end() {
 
 double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout) {
     const double blocks = double(layout.blocks.x) * layout.blocks.y;
-    // What stamps show, and their list as it grows.
+    // What stamps show, which wait, and their list as it grows.
     const double shownBytes = input.colors.own() ? sizeof(ClassTable::Color) : sizeof(ClassIndex);
-    const double stamps = blocks * (64 * shownBytes + 3 * sizeof(BlockStamps));
+    const double stamps = blocks * (64 * shownBytes + 4 * sizeof(BlockStamps));
     // The plane, which is at most half as large as a sheet of one pixel a voxel, and two lists of
     // blocks.
     const double voxels = layout.voxelsPerPixel * layout.voxelsPerPixel;

@@ -22,7 +22,7 @@ class DigitSplatter {
           addsLow_(addsLow),
           sheet_(largest, input.memory) {
         const DigitVoxels* voxels = input.colors.digitVoxels();
-        if (voxels && voxels->of(digit)) isFew_ = voxels->fewerThan(leastChanges(), digit);
+        if (voxels && voxels->of(digit)) isFew_ = voxels->fewerThan(leastStamps(), digit);
     }
     // Both ways refer to the sheet.
     DigitSplatter(const DigitSplatter&) = delete;
@@ -36,6 +36,8 @@ class DigitSplatter {
     /// @param needed  others may hold an earlier slice, or part of this one
     /// @param low     the sheet of the low digit, or null
     const Sheet& splat(int slice, const NeededPixels& needed, const Sheet* low = nullptr);
+    /// Whether the slab in hand is stamped: then the low digit's sheet is not added.
+    bool isStamping() const { return stamping_; }
     /// Ends a slab.
     void end();
 
@@ -43,8 +45,8 @@ class DigitSplatter {
     static double bytes(const SplatInput& input, const SheetLayout& layout);
 
   private:
-    std::uint64_t leastChanges() const {
-        return TileSplatter::leastChanges(input_.footprint, largest_.channels);
+    std::uint64_t leastStamps() const {
+        return TileSplatter::leastStamps(input_.footprint, largest_.channels);
     }
 
     const SplatInput& input_;

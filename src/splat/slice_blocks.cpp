@@ -53,6 +53,7 @@ void SliceBlocks::takeDigit(const DeltaWord& word, bool whole, SeenWord& seen) {
 
 void SliceBlocks::clear() {
     std::fill(shown_.begin(), shown_.end(), 0);
+    rowsBefore_ = {0, 0};
 }
 
 // Returns a mask word of the voxels of a block that lie in the volume's box.

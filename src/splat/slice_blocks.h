@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -69,6 +70,14 @@ class SliceBlocks {
     /// where nothing will be needed later either.
     template <typename Use>
     void forEach(int slice, bool whole, const NeededPixels& needed, const Use& use);
+    /// Returns the rows of blocks [x, y) that reach what is needed now.
+    glm::ivec2 rowsNeeded(const NeededPixels& needed) const {
+        return blocksReaching(layout_, needed.firstRow, needed.lastRow);
+    }
+    /// Calls `use(block)` for the blocks that reach what is needed now, but not what was needed
+    /// when it was last called.
+    template <typename Use>
+    void forEntering(const NeededPixels& needed, const Use& use);
     /// Makes everything as it was before the first slice.
     void clear();
     std::size_t count() const { return std::size_t(layout_.blocks.x) * layout_.blocks.y; }
@@ -102,11 +111,12 @@ class SliceBlocks {
     // [word]: of classes, that have the digit; null: all that are visible
     const std::uint64_t* voxels_ = nullptr;
     std::vector<std::uint64_t> shown_;  // [block]: those that changes left so
+    glm::ivec2 rowsBefore_{0};          // of blocks, that were needed before
 };
 
 template <typename Use>
 void SliceBlocks::forEach(int slice, bool whole, const NeededPixels& needed, const Use& use) {
-    const glm::ivec2 now = blocksReaching(layout_, needed.firstRow, needed.lastRow);
+    const glm::ivec2 now = rowsNeeded(needed);
     const glm::ivec2 rows =
         whole ? now : blocksReaching(layout_, needed.rowsFromNowOn.x, needed.rowsFromNowOn.y);
     const SheetCover* cover = whole ? needed.cover : needed.fromNowOn;
@@ -135,6 +145,18 @@ void SliceBlocks::forEach(int slice, bool whole, const NeededPixels& needed, con
             if (has) ++word;
         }
     }
+}
+
+template <typename Use>
+void SliceBlocks::forEntering(const NeededPixels& needed, const Use& use) {
+    const glm::ivec2 rows = rowsNeeded(needed);
+    const auto enter = [&](int first, int last) {
+        for (int u = first; u < last; ++u)
+            for (int v = 0; v < layout_.blocks.x; ++v) use(glm::ivec2(v, u));
+    };
+    enter(rows.x, std::min(rows.y, rowsBefore_.x));
+    enter(std::max(rows.x, rowsBefore_.y), rows.y);
+    rowsBefore_ = rows;
 }
 
 }  // namespace deltasplat

@@ -8,40 +8,47 @@ bool hasLow(const SplatInput& input, int plane) {
     return !DigitPlace{plane, true}.of(input.colors.table()).colors.empty();
 }
 
+// Whether the high digit of what has a low one may be stamped.
+bool mayStampHigh(const SplatInput& input) {
+    return !TileWeights::fits(input.footprint) && !CoarseWeights::fits(input.footprint);
+}
+
 }  // namespace
 
 PlaneSplatter::PlaneSplatter(const SplatInput& input, const SheetLayout& largest, int plane)
-    : high_(input, largest, {plane, false}, hasLow(input, plane)) {
-    if (!hasLow(input, plane)) return;
-    low_.emplace(input, largest, DigitPlace{plane, true}, false);
-    if (!TileSplatter::fits(input.footprint)) sum_.emplace(largest, input.memory);
+    : input_(input),
+      largest_(largest),
+      high_(input, largest, {plane, false}, hasLow(input, plane)) {
+    if (hasLow(input, plane)) low_.emplace(input, largest, DigitPlace{plane, true}, false);
 }
 
 void PlaneSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     if (low_) low_->begin(slab, layout);
     high_.begin(slab, layout);
-    if (sum_) sum_->setLayout(layout);
+    if (!low_ || !high_.isStamping()) return;
+    if (!sum_) sum_.emplace(largest_, input_.memory);
+    sum_->setLayout(layout);
 }
 
 const Sheet& PlaneSplatter::splat(int slice, const NeededPixels& needed) {
     if (!low_) return high_.splat(slice, needed);
     const Sheet& low = low_->splat(slice, needed);
-    const Sheet& high = high_.splat(slice, needed, sum_ ? nullptr : &low);
-    if (!sum_) return high;
+    if (!high_.isStamping()) return high_.splat(slice, needed, &low);
+    const Sheet& high = high_.splat(slice, needed);
     sum_->addDigits(high, low, needed.firstRow, needed.lastRow);
     return *sum_;
 }
 
 void PlaneSplatter::end() {
     if (low_) low_->end();
+    if (low_ && high_.isStamping()) sum_->clear();
     high_.end();
-    if (sum_) sum_->clear();
 }
 
 double PlaneSplatter::bytes(const SplatInput& input, const SheetLayout& layout, int plane) {
     const double one = DigitSplatter::bytes(input, layout);
     if (!hasLow(input, plane)) return one;
-    return 2 * one + (TileSplatter::fits(input.footprint) ? 0 : double(layout.bytes()));
+    return 2 * one + (mayStampHigh(input) ? double(layout.bytes()) : 0);
 }
 
 Splatter::Splatter(const SplatInput& input, const SheetLayout& largest) : input_(input) {

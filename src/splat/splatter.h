@@ -26,9 +26,11 @@ class PlaneSplatter {
     static double bytes(const SplatInput& input, const SheetLayout& layout, int plane);
 
   private:
+    const SplatInput& input_;
+    SheetLayout largest_;
     std::optional<DigitSplatter> low_;
     DigitSplatter high_;
-    std::optional<Sheet> sum_;  // of both, if stamps make the high one
+    std::optional<Sheet> sum_;  // of both, made when stamps first make the high one
 };
 
 /// Turns slabs into sheets of all planes of colours.

@@ -22,11 +22,24 @@ class StampSplatter {
     /// Takes on a layout, which the sheet must have by then.
     void setLayout(const SheetLayout& layout);
     /// Makes the sheet that of the slice, after the one before it if it is not whole.
+    /// @param needed  what will be read; the rest is made when it is
     void splat(int slice, bool whole, const NeededPixels& needed);
     /// Makes everything as it was before the first slice.
     void clear();
 
   private:
+    // Of a block's changes those that are not stamped yet, for nobody needs them.
+    struct Waiting {
+        std::uint64_t voxels = 0;
+        std::uint64_t visible = 0;
+        const ClassIndex* classes = nullptr;  // that they have become
+    };
+
+    void stampWholeSlice(int slice, const NeededPixels& needed);
+    void stampChangesOf(int slice, const NeededPixels& needed);
+    void addWaiting(glm::ivec2 block);
+    std::int32_t* firstOf(glm::ivec2 block);
+
     const std::vector<ClassTable::Color>& colors_;
     bool hasOwn_;  // whether voxels have colours of their own
     SliceBlocks blocks_;
@@ -41,6 +54,7 @@ class StampSplatter {
     std::pmr::vector<ClassIndex> shown_;
     std::vector<ColorStamps> stampedColors_;
     std::pmr::vector<ClassTable::Color> shownColors_;
+    std::pmr::vector<Waiting> waiting_;  // [block], likewise
 };
 
 }  // namespace deltasplat

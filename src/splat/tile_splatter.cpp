@@ -21,20 +21,20 @@ Weights weightsOf(const Footprint& footprint, int channels) {
 }
 
 // Voxels before the first block and behind the last. Tiles take one more than lie in them, which
-// the outermost, never touched, leaves room for. Cells need not begin where tiles do, and take up
-// to three more.
+// the outermost, never touched, leaves room for. Cells need not begin where tiles do, and take
+// more.
 int marginOf(const SheetLayout& layout, bool ofCells) {
     const int margin = layout.marginPixels / layout.resolution * layout.voxelsPerPixel;
-    return margin + (ofCells ? CellWeights::kTaps : 0);
+    return margin + (ofCells ? CellWeights::kMostTaps : 0);
 }
 
 }  // namespace
 
 // Measured (docs/decisions.md, "Few changes are stamped").
-std::uint64_t TileSplatter::leastChanges(const Footprint& footprint, int channels) {
+std::uint64_t TileSplatter::leastStamps(const Footprint& footprint, int channels) {
     if (CoarseWeights::fits(footprint)) return 0;
     if (TileWeights::fits(footprint)) return 12;
-    return channels == 4 ? 14 : 28;
+    return channels == 4 ? 20 : 28;
 }
 
 TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
@@ -106,14 +106,13 @@ void TileSplatter::clear() {
     blocks_.clear();
     for (const glm::ivec2 block : shownBlocks_) takeAway(block);
     shownBlocks_.clear();
-    rowsBefore_ = {0, 0};
     sheet_.clear();
 }
 
 // Changes in rows that are needed later, or never, wait: each word knows all voxels of its block,
 // so that the last one says it all.
 void TileSplatter::paintChanges(int slice, const NeededPixels& needed) {
-    const glm::ivec2 rows = blocksReaching(blocks_.layout(), needed.firstRow, needed.lastRow);
+    const glm::ivec2 rows = blocks_.rowsNeeded(needed);
     blocks_.forEach(slice, false, needed,
                     [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
                         Shown& shown = shown_[blocks_.placeOf(block)];
@@ -124,14 +123,7 @@ void TileSplatter::paintChanges(int slice, const NeededPixels& needed) {
                         if (word.hasOwn || (block.y >= rows.x && block.y < rows.y))
                             paintWaiting(block, word.colors);
                     });
-    const auto enter = [&](int first, int last) {
-        for (int u = first; u < last; ++u)
-            for (int v = 0; v < blocks_.layout().blocks.x; ++v)
-                paintWaiting({v, u}, colors_.data());
-    };
-    enter(rows.x, std::min(rows.y, rowsBefore_.x));
-    enter(std::max(rows.x, rowsBefore_.y), rows.y);
-    rowsBefore_ = rows;
+    blocks_.forEntering(needed, [&](glm::ivec2 block) { paintWaiting(block, colors_.data()); });
 }
 
 void TileSplatter::paintWaiting(glm::ivec2 block, const ClassTable::Color* colors) {

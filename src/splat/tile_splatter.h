@@ -25,7 +25,7 @@ class TileSplatter {
 
     /// Returns how many voxels of a block have to change in a slice for it to be faster than
     /// stamping them: none where voxels share pixels, which nobody stamps.
-    static std::uint64_t leastChanges(const Footprint& footprint, int channels);
+    static std::uint64_t leastStamps(const Footprint& footprint, int channels);
 
     /// @param input    with a footprint that fits
     /// @param largest  of the layouts to come
@@ -78,7 +78,6 @@ class TileSplatter {
     std::pmr::vector<Shown> shown_;         // [block]
     std::vector<glm::ivec2> shownBlocks_;   // those with voxels
     std::vector<glm::ivec2> before_;        // likewise, in the slice before
-    glm::ivec2 rowsBefore_{0};              // of blocks, that were needed in the slice before
     std::vector<std::int16_t> opacities_;   // of one colour: [classes]
     std::vector<std::uint8_t> lowRows_;     // [tile]: of the row of tiles in hand
 };

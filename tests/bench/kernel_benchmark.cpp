@@ -7,6 +7,7 @@
 
 #include <array>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "composite/over_kernels.h"
@@ -81,12 +82,14 @@ void tiles(benchmark::State& state) {
 }
 BENCHMARK(tiles)->ArgNames({"channels", "r"})->ArgsProduct({{1, 4}, {1, 2}});
 
-// At three and four pixels a voxel.
+// Of footprints that reach farther: sheet pixels a voxel, and widths.
+constexpr std::pair<int, int> kWide[] = {{1, 5},  {1, 7},  {2, 7},  {2, 9}, {2, 11},
+                                         {3, 10}, {3, 15}, {4, 13}, {4, 21}};
+
 void cells(benchmark::State& state) {
     const int channels = int(state.range(0));
-    const int resolution = int(state.range(1));
     const Footprint footprint =
-        makeFootprint(0.4, {0.5, -0.5}, resolution, 3 * resolution + (resolution % 2 == 0));
+        makeFootprint(0.6, {0.5, -0.5}, int(state.range(1)), int(state.range(2)));
     const CellWeights weights(footprint, channels);
     makeTiles(state, channels,
               [&](const std::int16_t* plane, std::size_t pitch, const TileRow& row,
@@ -94,7 +97,11 @@ void cells(benchmark::State& state) {
                   splatCells(weights, {plane, pitch, {0, 0}}, row, touched, full);
               });
 }
-BENCHMARK(cells)->ArgNames({"channels", "r"})->ArgsProduct({{1, 4}, {3, 4}});
+BENCHMARK(cells)->ArgNames({"channels", "r", "width"})->Apply([](auto* cells) {
+    for (const int channels : {1, 4}) {
+        for (const auto& [r, width] : kWide) cells->Args({channels, r, width});
+    }
+});
 
 // Spans of so many pixels of a sheet, read between its pixels or straight.
 void over(benchmark::State& state) {

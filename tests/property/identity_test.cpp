@@ -63,8 +63,11 @@ void expectSamePixels(const Volume& volume, RenderOptions options) {
 
 const IndexBox kBoxes[] = {{{0, 0, 0}, {40, 21, 33}}, {{-19, 5, -60}, {0, 70, 2}}};
 
+// At one pixel a voxel: 5x5 and 7x7, which are summed up as cells, and more, which is stamped.
+constexpr double kWideSigmas[] = {0.6, 0.9, 1.4};
+
 // Resolutions 1 and 2 sum up tiles, those below 1 do so of voxels that share pixels, 3 and 4 sum up
-// cells, 5 stamps footprints, and so does a wide one.
+// cells, and 5 stamps footprints.
 TEST(Identity, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
     for (const IndexBox& box : kBoxes) {
         const Volume volume = test::randomVolume(box, 17, 0.5, {1, 1.5, 0.8});
@@ -76,9 +79,14 @@ TEST(Identity, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
                 options.resolution = resolution;
                 expectSamePixels(volume, options);
             }
-            options.resolution = 1;
-            options.sigma = 0.9;
+            options.resolution = 2;
+            options.sigma = 0.6;
             expectSamePixels(volume, options);
+            options.resolution = 1;
+            for (const double sigma : kWideSigmas) {
+                options.sigma = sigma;
+                expectSamePixels(volume, options);
+            }
             options.footprintWidth = 6;
             expectSamePixels(volume, options);
         }
@@ -127,9 +135,11 @@ TEST(Identity, AlsoOfColorsThatTakeSeveralDigits) {
                     options.tolerance = {resolution == 2 ? 0.1 : 0.0, 0};
                     expectSamePixels(volume, options);
                 }
-                options.sigma = 0.9;
                 options.resolution = 1;
-                expectSamePixels(volume, options);
+                for (const double sigma : kWideSigmas) {
+                    options.sigma = sigma;
+                    expectSamePixels(volume, options);
+                }
                 options.sigma.reset();
             }
             makeWide(function, false);
@@ -250,11 +260,18 @@ TEST(Identity, AlsoWhereLittleChanges) {
             options.resolution = resolution;
             expectSamePixels(volume, options);
         }
-        options.optics.transferFunction.colors = {{0, {0.5, 0.7, 0.2}}};
         options.resolution = 1;
-        expectSamePixels(volume, options);
+        const auto expectAlsoOfWideFootprints = [&] {
+            options.sigma.reset();
+            expectSamePixels(volume, options);
+            options.sigma = kWideSigmas[1];
+            expectSamePixels(volume, options);
+        };
+        expectAlsoOfWideFootprints();
+        options.optics.transferFunction.colors = {{0, {0.5, 0.7, 0.2}}};
+        expectAlsoOfWideFootprints();
         makeWide(options.optics.transferFunction, true);
-        expectSamePixels(volume, options);
+        expectAlsoOfWideFootprints();
     }
 }
 

@@ -17,9 +17,9 @@
 namespace deltasplat {
 namespace {
 
-constexpr int kWidth = 56;  // pixels of the sheet
-constexpr int kHeight = 24;
-constexpr int kFirst = 8;  // the first pixel of the tiles
+constexpr int kWidth = 72;  // pixels of the sheet
+constexpr int kHeight = 40;
+constexpr int kFirst = 16;  // the first pixel of the tiles
 
 class TilesOnEveryLevel : public testing::TestWithParam<std::string> {
   protected:
@@ -132,24 +132,34 @@ TEST_P(TilesOnEveryLevel, TouchedRowsAreTheSumsOfStamps) {
     }
 }
 
+// The narrowest and the widest footprints that every kernel is for, and some between.
+struct WideFootprint {
+    int resolution;
+    int width;
+    int taps;
+};
+constexpr WideFootprint kWideFootprints[] = {
+    {1, 3, 5},  {1, 5, 5},  {1, 7, 7},  {2, 3, 4},  {2, 6, 4},  {2, 7, 4},  {2, 8, 4},  {2, 9, 5},
+    {2, 10, 6}, {2, 11, 6}, {2, 12, 6}, {3, 3, 4},  {3, 7, 4},  {3, 10, 4}, {3, 12, 4}, {3, 13, 6},
+    {3, 18, 6}, {4, 4, 4},  {4, 13, 4}, {4, 16, 4}, {4, 17, 6}, {4, 24, 6},
+};
+
 TEST_P(TilesOnEveryLevel, TouchedRowsOfCellsAreTheSumsOfStamps) {
     std::uint32_t seed = 100;
-    for (const int resolution : {3, 4}) {
-        for (const int width :
-             {resolution, 2 * resolution + 1, 3 * resolution + 1, 4 * resolution}) {
-            for (const glm::dvec2 d : kShifts) {
-                const Footprint footprint = makeFootprint(0.4, d, resolution, width);
-                ASSERT_TRUE(CellWeights::fits(footprint));
-                expectSumsOfStamps(footprint, seed,
-                                   [&](int channels, const Scene& scene, const TileRow& row,
-                                       std::vector<std::uint8_t>& full) {
-                                       splatCells(
-                                           CellWeights(footprint, channels),
-                                           {scene.plane.data(), std::size_t(channels * scene.width),
-                                            glm::ivec2(kFirst)},
-                                           row, kTouched, full);
-                                   });
-            }
+    for (const auto& [resolution, width, taps] : kWideFootprints) {
+        for (const glm::dvec2 d : kShifts) {
+            const Footprint footprint = makeFootprint(0.6, d, resolution, width);
+            ASSERT_TRUE(CellWeights::fits(footprint));
+            ASSERT_EQ(CellWeights(footprint, 4).taps, taps) << resolution << ' ' << width;
+            expectSumsOfStamps(footprint, seed,
+                               [&](int channels, const Scene& scene, const TileRow& row,
+                                   std::vector<std::uint8_t>& full) {
+                                   splatCells(
+                                       CellWeights(footprint, channels),
+                                       {scene.plane.data(), std::size_t(channels * scene.width),
+                                        glm::ivec2(kFirst)},
+                                       row, kTouched, full);
+                               });
         }
     }
 }
@@ -158,13 +168,13 @@ TEST_P(TilesOnEveryLevel, TouchedRowsOfCellsAreTheSumsOfStamps) {
 // cell.
 TEST_P(TilesOnEveryLevel, CellsOfLongRowsAreTheSumsOfStamps) {
     constexpr int kLong = 48;
-    constexpr int kEdge = 8;  // voxels around the one that places are counted from
+    constexpr int kEdge = 20;  // voxels around the one that places are counted from
     std::vector<std::uint8_t> touched(kLong, 0xFF);
     touched[0] = touched[16] = touched[33] = touched[35] = 0;
     touched[20] = 0x24;
     std::mt19937 random(7);
-    for (const int resolution : {3, 4}) {
-        const Footprint footprint = makeFootprint(0.4, {0.8, -0.6}, resolution, 3 * resolution + 1);
+    for (const auto& [resolution, footprintWidth, taps] : kWideFootprints) {
+        const Footprint footprint = makeFootprint(0.6, {0.8, -0.6}, resolution, footprintWidth);
         const int width = 8 * kLong / resolution + 2 * kEdge;
         const int height = 2 * kEdge;
         for (const int channels : {1, 4}) {
@@ -294,14 +304,21 @@ TEST_P(TilesOnEveryLevel, LowDigitsAreAddedRounded) {
     }
 }
 
-TEST(CellWeights, FitFootprintsThatReachTwoVoxels) {
-    EXPECT_TRUE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 3, 9)));
-    EXPECT_TRUE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 3, 12)));
-    EXPECT_FALSE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 3, 13)));
-    EXPECT_TRUE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 4, 16)));
-    EXPECT_FALSE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 4, 17)));
-    EXPECT_FALSE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 2, 5)));
-    EXPECT_FALSE(CellWeights::fits(makeFootprint(0.4, {0, 0}, 5, 5)));
+TEST(CellWeights, FitFootprintsThatReachSevenVoxelsOrSix) {
+    const auto fits = [](int resolution, int width) {
+        return CellWeights::fits(makeFootprint(0.6, {0, 0}, resolution, width));
+    };
+    EXPECT_TRUE(fits(1, 7));
+    EXPECT_FALSE(fits(1, 6));
+    EXPECT_FALSE(fits(1, 9));
+    EXPECT_TRUE(fits(2, 12));
+    EXPECT_FALSE(fits(2, 13));
+    EXPECT_TRUE(fits(3, 18));
+    EXPECT_FALSE(fits(3, 19));
+    EXPECT_TRUE(fits(4, 24));
+    EXPECT_FALSE(fits(4, 25));
+    EXPECT_FALSE(fits(5, 5));
+    EXPECT_FALSE(CellWeights::fits(makeCoarseFootprint(2)));
 }
 
 TEST(TileWeights, FitFootprintsThatReachNoFartherThanTheNextVoxel) {
