@@ -154,7 +154,7 @@ class CellSums {
     const TileRow& row_;
     int cells_[kTilePixels];       // [row]: its row of cells, from the first one's on
     int rowsInCell_[kTilePixels];  // [row]: where in it
-    const std::int16_t* voxels_;   // of the row before the first row of cells
+    const std::int16_t* voxels_;   // kBefore rows before the first row of cells
     int pairsBegin_ = 0;  // the pixel that pairs_ begin with, counted from the tiles' first
     // [row]: of voxels in a row, from voxels_ on, and behind it, for every pixel.
     HWY_ALIGN std::int32_t pairs_[kMostPairs][kChannels * kMostPixels];

@@ -41,10 +41,17 @@ class DigitSplatter {
     /// Ends a slab.
     void end();
 
+    /// Whether slabs of all kinds may be stamped where tiles fit: also whole ones, of which each
+    /// slice has to be cleared, and those that a low digit is added to, both of which tiles do by
+    /// the way. That is more than small stamps are worth.
+    static bool mayStampAll(const Footprint& footprint) {
+        return !TileWeights::fits(footprint) && !CoarseWeights::fits(footprint);
+    }
     /// Bytes that it takes.
     static double bytes(const SplatInput& input, const SheetLayout& layout);
 
   private:
+    bool isFew(const PlannedSlab& slab) const;
     std::uint64_t leastStamps() const {
         return TileSplatter::leastStamps(input_.footprint, largest_.channels);
     }

@@ -65,12 +65,14 @@ SheetBox readBox(const SheetReading& reading, const PlaneBox& box, const SheetLa
     const double reach = readingReach(reading);
     SheetBox read;
     for (int axis = 0; axis < 2; ++axis) {
-        const double start = reading.offset[axis] + reading.fraction[axis];
+        // Rounded as who reads rounds them.
+        const double start = reading.startOfWhole()[axis];
+        const double origin = reading.origin[axis];
         const double size = layout.sizePixels[axis];
-        const double first = std::floor(reading.scale * box.min[axis] + start - reach) + 1;
-        const double last = std::floor(reading.scale * (box.max[axis] - 1) + start + reach) + 1;
-        read.min[axis] = int(std::clamp(first, 0.0, size));
-        read.max[axis] = int(std::clamp(last, 0.0, size));
+        const double first = std::floor(start + reading.scale * box.min[axis] - reach) + 1;
+        const double last = std::floor(start + reading.scale * (box.max[axis] - 1) + reach) + 1;
+        read.min[axis] = int(std::clamp(first - origin, 0.0, size));
+        read.max[axis] = int(std::clamp(last - origin, 0.0, size));
     }
     return read;
 }

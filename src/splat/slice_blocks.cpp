@@ -53,6 +53,7 @@ void SliceBlocks::takeDigit(const DeltaWord& word, bool whole, SeenWord& seen) {
 
 void SliceBlocks::clear() {
     std::fill(shown_.begin(), shown_.end(), 0);
+    std::fill(waiting_.begin(), waiting_.end(), Waiting{});
     rowsBefore_ = {0, 0};
 }
 

@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <memory_resource>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "delta/packed_deltas.h"
@@ -63,23 +64,23 @@ class SliceBlocks {
     void setLayout(const SheetLayout& layout) { layout_ = layout; }
     const SheetLayout& layout() const { return layout_; }
 
-    /// Calls `use(block, voxels, word)` for the blocks (v, u) of a slice that have something to
-    /// stamp: a mask word of voxels, and a SeenWord of what else is known of them, as far as the
-    /// digit goes.
-    /// Blocks that reach nothing that is needed are left out; changes, which come in order, only
-    /// where nothing will be needed later either.
+    /// Calls `use(block, voxels, word)` for the blocks (v, u) of a slice that reach what is needed
+    /// and have something to stamp: a mask word of voxels, and a SeenWord of what else is known of
+    /// them, as far as the digit goes.
     template <typename Use>
-    void forEach(int slice, bool whole, const NeededPixels& needed, const Use& use);
-    /// Returns the rows of blocks [x, y) that reach what is needed now.
-    glm::ivec2 rowsNeeded(const NeededPixels& needed) const {
-        return blocksReaching(layout_, needed.firstRow, needed.lastRow);
+    void forWhole(int slice, const NeededPixels& needed, const Use& use) {
+        forWords(slice, true, needed, use);
     }
-    /// Calls `use(block)` for the blocks that reach what is needed now, but not what was needed
-    /// when it was last called.
+    /// The same of what has changed since the slice before, for slabs that are not whole; all
+    /// slices, in order. Changes of blocks that are needed later, or never, wait until they are:
+    /// each word knows all voxels of its block, so that the last one says it all. Not so where
+    /// voxels have colours of their own, which are those of this slice.
     template <typename Use>
-    void forEntering(const NeededPixels& needed, const Use& use);
+    void forChanges(int slice, const NeededPixels& needed, const Use& use);
     /// Makes everything as it was before the first slice.
     void clear();
+    /// Bytes that are kept of a block.
+    static constexpr std::size_t kBytesOfBlock = 4 * sizeof(std::uint64_t);
     std::size_t count() const { return std::size_t(layout_.blocks.x) * layout_.blocks.y; }
     /// Returns where what is kept of a block lies in an array of count().
     std::size_t placeOf(glm::ivec2 block) const {
@@ -87,6 +88,15 @@ class SliceBlocks {
     }
 
   private:
+    // Of a block, changes that nobody has been told of.
+    struct Waiting {
+        std::uint64_t voxels = 0;
+        std::uint64_t visible = 0;
+        const ClassIndex* classes = nullptr;  // that they have become
+    };
+
+    template <typename Use>
+    void forWords(int slice, bool whole, const NeededPixels& needed, const Use& use);
     std::span<const DeltaWord> wordsOf(int slice, glm::ivec2 rows) const;
     glm::ivec2 blockOf(const DeltaWord& word) const;
     // Rows are found by wordsOf().
@@ -111,12 +121,14 @@ class SliceBlocks {
     // [word]: of classes, that have the digit; null: all that are visible
     const std::uint64_t* voxels_ = nullptr;
     std::vector<std::uint64_t> shown_;  // [block]: those that changes left so
-    glm::ivec2 rowsBefore_{0};          // of blocks, that were needed before
+    std::vector<Waiting> waiting_;      // [block]
+    glm::ivec2 rowsBefore_{0};          // of blocks, that were needed in the slice before
 };
 
+// Changes come in order, and are left out only where nothing will be needed later either.
 template <typename Use>
-void SliceBlocks::forEach(int slice, bool whole, const NeededPixels& needed, const Use& use) {
-    const glm::ivec2 now = rowsNeeded(needed);
+void SliceBlocks::forWords(int slice, bool whole, const NeededPixels& needed, const Use& use) {
+    const glm::ivec2 now = blocksReaching(layout_, needed.firstRow, needed.lastRow);
     const glm::ivec2 rows =
         whole ? now : blocksReaching(layout_, needed.rowsFromNowOn.x, needed.rowsFromNowOn.y);
     const SheetCover* cover = whole ? needed.cover : needed.fromNowOn;
@@ -148,11 +160,28 @@ void SliceBlocks::forEach(int slice, bool whole, const NeededPixels& needed, con
 }
 
 template <typename Use>
-void SliceBlocks::forEntering(const NeededPixels& needed, const Use& use) {
-    const glm::ivec2 rows = rowsNeeded(needed);
+void SliceBlocks::forChanges(int slice, const NeededPixels& needed, const Use& use) {
+    if (waiting_.size() < count()) waiting_.resize(count());
+    const glm::ivec2 rows = blocksReaching(layout_, needed.firstRow, needed.lastRow);
+    forWords(slice, false, needed,
+             [&](glm::ivec2 block, std::uint64_t changed, const SeenWord& word) {
+                 Waiting& waiting = waiting_[placeOf(block)];
+                 if (word.hasOwn || (block.y >= rows.x && block.y < rows.y)) {
+                     use(block, std::exchange(waiting.voxels, 0) | changed, word);
+                 } else {
+                     waiting = {waiting.voxels | changed, word.visible, word.classes};
+                 }
+             });
     const auto enter = [&](int first, int last) {
-        for (int u = first; u < last; ++u)
-            for (int v = 0; v < layout_.blocks.x; ++v) use(glm::ivec2(v, u));
+        for (int u = first; u < last; ++u) {
+            for (int v = 0; v < layout_.blocks.x; ++v) {
+                Waiting& waiting = waiting_[placeOf({v, u})];
+                if (waiting.voxels == 0) continue;
+                const std::uint64_t changed = std::exchange(waiting.voxels, 0);
+                use(glm::ivec2(v, u), changed,
+                    SeenWord{waiting.visible, changed, waiting.classes, colors_, false});
+            }
+        }
     };
     enter(rows.x, std::min(rows.y, rowsBefore_.x));
     enter(std::max(rows.x, rowsBefore_.y), rows.y);

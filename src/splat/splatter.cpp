@@ -8,11 +8,6 @@ bool hasLow(const SplatInput& input, int plane) {
     return !DigitPlace{plane, true}.of(input.colors.table()).colors.empty();
 }
 
-// Whether the high digit of what has a low one may be stamped.
-bool mayStampHigh(const SplatInput& input) {
-    return !TileWeights::fits(input.footprint) && !CoarseWeights::fits(input.footprint);
-}
-
 }  // namespace
 
 PlaneSplatter::PlaneSplatter(const SplatInput& input, const SheetLayout& largest, int plane)
@@ -25,7 +20,7 @@ PlaneSplatter::PlaneSplatter(const SplatInput& input, const SheetLayout& largest
 void PlaneSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     if (low_) low_->begin(slab, layout);
     high_.begin(slab, layout);
-    if (!low_ || !high_.isStamping()) return;
+    if (!sumsDigits()) return;
     if (!sum_) sum_.emplace(largest_, input_.memory);
     sum_->setLayout(layout);
 }
@@ -33,7 +28,7 @@ void PlaneSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
 const Sheet& PlaneSplatter::splat(int slice, const NeededPixels& needed) {
     if (!low_) return high_.splat(slice, needed);
     const Sheet& low = low_->splat(slice, needed);
-    if (!high_.isStamping()) return high_.splat(slice, needed, &low);
+    if (!sumsDigits()) return high_.splat(slice, needed, &low);
     const Sheet& high = high_.splat(slice, needed);
     sum_->addDigits(high, low, needed.firstRow, needed.lastRow);
     return *sum_;
@@ -41,14 +36,14 @@ const Sheet& PlaneSplatter::splat(int slice, const NeededPixels& needed) {
 
 void PlaneSplatter::end() {
     if (low_) low_->end();
-    if (low_ && high_.isStamping()) sum_->clear();
+    if (sumsDigits()) sum_->clear();
     high_.end();
 }
 
 double PlaneSplatter::bytes(const SplatInput& input, const SheetLayout& layout, int plane) {
     const double one = DigitSplatter::bytes(input, layout);
     if (!hasLow(input, plane)) return one;
-    return 2 * one + (mayStampHigh(input) ? double(layout.bytes()) : 0);
+    return 2 * one + (DigitSplatter::mayStampAll(input.footprint) ? double(layout.bytes()) : 0);
 }
 
 Splatter::Splatter(const SplatInput& input, const SheetLayout& largest) : input_(input) {

@@ -26,6 +26,9 @@ class PlaneSplatter {
     static double bytes(const SplatInput& input, const SheetLayout& layout, int plane);
 
   private:
+    // Of the slab in hand: tiles add the low digit themselves.
+    bool sumsDigits() const { return low_ && high_.isStamping(); }
+
     const SplatInput& input_;
     SheetLayout largest_;
     std::optional<DigitSplatter> low_;

@@ -28,17 +28,7 @@ class StampSplatter {
     void clear();
 
   private:
-    // Of a block's changes those that are not stamped yet, for nobody needs them.
-    struct Waiting {
-        std::uint64_t voxels = 0;
-        std::uint64_t visible = 0;
-        const ClassIndex* classes = nullptr;  // that they have become
-    };
-
-    void stampWholeSlice(int slice, const NeededPixels& needed);
-    void stampChangesOf(int slice, const NeededPixels& needed);
-    void addWaiting(glm::ivec2 block);
-    std::int32_t* firstOf(glm::ivec2 block);
+    void add(glm::ivec2 block, std::uint64_t voxels, const SeenWord& word, bool whole);
 
     const std::vector<ClassTable::Color>& colors_;
     bool hasOwn_;  // whether voxels have colours of their own
@@ -54,7 +44,6 @@ class StampSplatter {
     std::pmr::vector<ClassIndex> shown_;
     std::vector<ColorStamps> stampedColors_;
     std::pmr::vector<ClassTable::Color> shownColors_;
-    std::pmr::vector<Waiting> waiting_;  // [block], likewise
 };
 
 }  // namespace deltasplat

@@ -20,14 +20,6 @@ Weights weightsOf(const Footprint& footprint, int channels) {
     return CellWeights(footprint, channels);
 }
 
-// Voxels before the first block and behind the last. Tiles take one more than lie in them, which
-// the outermost, never touched, leaves room for. Cells need not begin where tiles do, and take
-// more.
-int marginOf(const SheetLayout& layout, bool ofCells) {
-    const int margin = layout.marginPixels / layout.resolution * layout.voxelsPerPixel;
-    return margin + (ofCells ? CellWeights::kMostTaps : 0);
-}
-
 }  // namespace
 
 // Measured (docs/decisions.md, "Few changes are stamped").
@@ -37,18 +29,37 @@ std::uint64_t TileSplatter::leastStamps(const Footprint& footprint, int channels
     return channels == 4 ? 20 : 28;
 }
 
+// Tiles take one voxel more than lie in them, which the outermost, never touched, leaves room for.
+// Cells need not begin where tiles do, and take more.
+TileSplatter::PlaneSize TileSplatter::planeSize(const Footprint& footprint,
+                                                const SheetLayout& layout) {
+    const bool takesCells = !CoarseWeights::fits(footprint) && !TileWeights::fits(footprint);
+    const int margin = layout.marginPixels / layout.resolution * layout.voxelsPerPixel +
+                       (takesCells ? CellWeights::kMostTaps : 0);
+    return {margin, std::size_t(layout.channels) * (8 * layout.blocks.x + 2 * margin + 8),
+            std::size_t(8 * layout.blocks.y + 2 * margin)};
+}
+
 TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
                            DigitPlace digit)
     : colors_(digit.of(input.colors.table()).colors),
       blocks_(input, largest, digit),
       sheet_(sheet),
       weights_(weightsOf(input.footprint, largest.channels)),
-      marginVoxels_(marginOf(largest, std::holds_alternative<CellWeights>(weights_))),
-      pitch_(std::size_t(largest.channels) * (8 * largest.blocks.x + 2 * marginVoxels_ + 8)),
-      plane_(pitch_ * (8 * largest.blocks.y + 2 * marginVoxels_), &input.memory),
+      size_(planeSize(input.footprint, largest)),
+      plane_(size_.pitch * size_.rows, &input.memory),
       shown_(blocks_.count(), &input.memory) {
     if (largest.channels == 4) return;
     for (const ClassTable::Color& color : colors_) opacities_.push_back(color[3]);
+}
+
+double TileSplatter::bytes(const Footprint& footprint, const SheetLayout& layout) {
+    const PlaneSize plane = planeSize(footprint, layout);
+    const double blocks = double(layout.blocks.x) * layout.blocks.y;
+    // What blocks show, which of them do, twice, and what waits.
+    const double ofBlock = sizeof(Shown) + 4 * sizeof(glm::ivec2) + SliceBlocks::kBytesOfBlock;
+    return double(sizeof(std::int16_t)) * double(plane.pitch) * double(plane.rows) +
+           ofBlock * blocks;
 }
 
 void TileSplatter::splat(int slice, bool whole, const NeededPixels& needed, const Sheet* low) {
@@ -88,13 +99,13 @@ void TileSplatter::sumTiles(int row, std::span<const std::uint8_t> touched,
     const TileRow tiles = sheet_.tileRow(row);
     if (const auto* cells = std::get_if<CellWeights>(&weights_)) {
         const glm::ivec2 pixel(0, kTilePixels * row);
-        const CellPlane plane{planeAt(glm::ivec2(marginVoxels_)), pitch_,
+        const CellPlane plane{planeAt(glm::ivec2(size_.margin)), size_.pitch,
                               pixel - layout.marginPixels};
         splatCells(*cells, plane, tiles, touched, full);
         return;
     }
     const int voxel = kTilePixels * row * layout.voxelsPerPixel / layout.resolution;
-    const PlaneRow plane{planeAt({0, voxel}), pitch_};
+    const PlaneRow plane{planeAt({0, voxel}), size_.pitch};
     if (const auto* coarse = std::get_if<CoarseWeights>(&weights_)) {
         splatCoarse(*coarse, plane, tiles, touched, full);
     } else {
@@ -109,42 +120,27 @@ void TileSplatter::clear() {
     sheet_.clear();
 }
 
-// Changes in rows that are needed later, or never, wait: each word knows all voxels of its block,
-// so that the last one says it all.
 void TileSplatter::paintChanges(int slice, const NeededPixels& needed) {
-    const glm::ivec2 rows = blocks_.rowsNeeded(needed);
-    blocks_.forEach(slice, false, needed,
-                    [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
-                        Shown& shown = shown_[blocks_.placeOf(block)];
-                        if ((shown.voxels | shown.waiting) == 0) shownBlocks_.push_back(block);
-                        shown.waiting |= active;
-                        shown.classes = word.classes;
-                        // Colours of a word's own are those of this slice.
-                        if (word.hasOwn || (block.y >= rows.x && block.y < rows.y))
-                            paintWaiting(block, word.colors);
-                    });
-    blocks_.forEntering(needed, [&](glm::ivec2 block) { paintWaiting(block, colors_.data()); });
-}
-
-void TileSplatter::paintWaiting(glm::ivec2 block, const ClassTable::Color* colors) {
-    Shown& shown = shown_[blocks_.placeOf(block)];
-    if (shown.waiting == 0) return;
-    shown.voxels |= shown.waiting;
-    paint(block, shown.waiting, shown.classes, colors);
-    shown.waiting = 0;
+    blocks_.forChanges(slice, needed,
+                       [&](glm::ivec2 block, std::uint64_t changed, const SeenWord& word) {
+                           Shown& shown = shown_[blocks_.placeOf(block)];
+                           if (shown.voxels == 0) shownBlocks_.push_back(block);
+                           shown.voxels |= changed;
+                           paint(block, changed, word.classes, word.colors);
+                       });
 }
 
 // Only what the slice before showed and this one does not paint over has to be taken away.
 void TileSplatter::paintWhole(int slice, const NeededPixels& needed) {
     before_.swap(shownBlocks_);
     shownBlocks_.clear();
-    blocks_.forEach(slice, true, needed,
-                    [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
-                        Shown& shown = shown_[blocks_.placeOf(block)];
-                        paint(block, active | shown.voxels, word.classes, word.colors);
-                        shown = {active, slice};
-                        shownBlocks_.push_back(block);
-                    });
+    blocks_.forWhole(slice, needed,
+                     [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
+                         Shown& shown = shown_[blocks_.placeOf(block)];
+                         paint(block, active | shown.voxels, word.classes, word.colors);
+                         shown = {active, slice};
+                         shownBlocks_.push_back(block);
+                     });
     for (const glm::ivec2 block : before_) {
         if (shown_[blocks_.placeOf(block)].slice != slice) takeAway(block);
     }
@@ -154,7 +150,6 @@ void TileSplatter::takeAway(glm::ivec2 block) {
     Shown& shown = shown_[blocks_.placeOf(block)];
     if (shown.voxels != 0) paint(block, shown.voxels, kEmptyClasses.data(), colors_.data());
     shown.voxels = 0;
-    shown.waiting = 0;
 }
 
 // Writes the colours of voxels of a block.
@@ -162,7 +157,7 @@ void TileSplatter::paint(glm::ivec2 block, std::uint64_t voxels, const ClassInde
                          const ClassTable::Color* colors) {
     sheet_.touch(block, voxels);
     const SheetLayout& layout = sheet_.layout();
-    std::int16_t* first = planeAt(8 * block + marginVoxels_);
+    std::int16_t* first = planeAt(8 * block + size_.margin);
     if (layout.channels == 4) {
         paintColors(first, voxels, classes, colors);
     } else {
@@ -175,7 +170,7 @@ void TileSplatter::paintColors(std::int16_t* plane, std::uint64_t voxels, const 
     // Where most voxels change, it is faster to write all.
     constexpr int kFew = 24;
     if (std::popcount(voxels) >= kFew) {
-        for (int u = 0; u < 8; ++u, plane += pitch_) {
+        for (int u = 0; u < 8; ++u, plane += size_.pitch) {
             for (int v = 0; v < 8; ++v)
                 std::memcpy(plane + 4 * v, &colors[*classes++], sizeof *colors);
         }
@@ -183,18 +178,19 @@ void TileSplatter::paintColors(std::int16_t* plane, std::uint64_t voxels, const 
     }
     for (std::uint64_t rest = voxels; rest != 0; rest &= rest - 1) {
         const int n = std::countr_zero(rest);
-        std::memcpy(plane + (n >> 3) * pitch_ + 4 * (n & 7), &colors[classes[n]], sizeof *colors);
+        std::memcpy(plane + (n >> 3) * size_.pitch + 4 * (n & 7), &colors[classes[n]],
+                    sizeof *colors);
     }
 }
 
 void TileSplatter::paintOpacities(std::int16_t* plane, const ClassIndex* classes) const {
-    for (int u = 0; u < 8; ++u, plane += pitch_, classes += 8) {
+    for (int u = 0; u < 8; ++u, plane += size_.pitch, classes += 8) {
         for (int v = 0; v < 8; ++v) plane[v] = opacities_[classes[v]];
     }
 }
 
 std::int16_t* TileSplatter::planeAt(glm::ivec2 voxel) {
-    return &plane_[pitch_ * voxel.y + std::size_t(sheet_.layout().channels) * voxel.x];
+    return &plane_[size_.pitch * voxel.y + std::size_t(sheet_.layout().channels) * voxel.x];
 }
 
 }  // namespace deltasplat

@@ -23,9 +23,12 @@ class TileSplatter {
                CoarseWeights::fits(footprint);
     }
 
-    /// Returns how many voxels of a block have to change in a slice for it to be faster than
-    /// stamping them: none where voxels share pixels, which nobody stamps.
+    /// Returns how many voxels of a block a slice has to stamp for this to be faster than stamping
+    /// them: none where voxels share pixels, which nobody stamps.
     static std::uint64_t leastStamps(const Footprint& footprint, int channels);
+
+    /// Bytes that one takes, of a footprint that fits, without its sheet.
+    static double bytes(const Footprint& footprint, const SheetLayout& layout);
 
     /// @param input    with a footprint that fits
     /// @param largest  of the layouts to come
@@ -48,14 +51,16 @@ class TileSplatter {
     struct Shown {
         std::uint64_t voxels = 0;  // that may not be empty
         int slice = 0;             // that last painted it, in a slab that is whole
-        // Of changes that are not painted yet, for nobody needs them: which voxels, and what they
-        // have become.
-        std::uint64_t waiting = 0;
-        const ClassIndex* classes = nullptr;
     };
 
+    struct PlaneSize {
+        int margin;         // voxels before the first block and behind the last
+        std::size_t pitch;  // numbers from one row to the next
+        std::size_t rows;
+    };
+
+    static PlaneSize planeSize(const Footprint& footprint, const SheetLayout& layout);
     void paintChanges(int slice, const NeededPixels& needed);
-    void paintWaiting(glm::ivec2 block, const ClassTable::Color* colors);
     void paintWhole(int slice, const NeededPixels& needed);
     void takeAway(glm::ivec2 block);
     void sumTiles(int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
@@ -72,8 +77,7 @@ class TileSplatter {
     SliceBlocks blocks_;
     Sheet& sheet_;
     std::variant<TileWeights, CellWeights, CoarseWeights> weights_;
-    int marginVoxels_;                      // of the plane
-    std::size_t pitch_;                     // likewise
+    PlaneSize size_;                        // of the plane
     std::pmr::vector<std::int16_t> plane_;  // colours shown, a margin around them
     std::pmr::vector<Shown> shown_;         // [block]
     std::vector<glm::ivec2> shownBlocks_;   // those with voxels

@@ -120,6 +120,10 @@ struct Kind {
     int width;
 };
 
+constexpr Kind kMoving[] = {{1, 3}, {1, 5},  {1, 6}, {1, 7}, {2, 5},
+                            {2, 9}, {2, 11}, {3, 9}, {4, 13}};
+constexpr Kind kCovered[] = {{1, 3}, {1, 6}, {1, 7}, {2, 5}, {2, 9}, {3, 9}};
+
 // A window of rows that moves over the sheet from slice to slice, and comes back or not: in it the
 // sheet is that of the slice, whatever was passed over meanwhile, and in the end nothing is left.
 void expectMovingWindow(const Volume& volume, bool oneColor, const Footprint& footprint,
@@ -165,7 +169,7 @@ void expectMovingWindow(const Volume& volume, bool oneColor, const Footprint& fo
 TEST(Splatter, RowsOfAMovingWindowAreThoseOfTheSlice) {
     for (const Volume& volume : volumes()) {
         for (const bool oneColor : {false, true}) {
-            for (const Kind kind : {Kind{1, 3}, {1, 6}, {2, 5}, {3, 9}, {4, 13}}) {
+            for (const Kind kind : kMoving) {
                 const Footprint footprint =
                     makeFootprint(0.5, {0.3, -0.6}, kind.resolution, kind.width);
                 for (const Range range : {Range::kOneDigit, Range::kTwoDigits, Range::kTwoPlanes}) {
@@ -240,7 +244,7 @@ void expectCovered(const Volume& volume, bool oneColor, const Footprint& footpri
 TEST(Splatter, WhatIsNotCoveredIsThatOfTheSlice) {
     for (const Volume& volume : volumes()) {
         for (const bool oneColor : {false, true}) {
-            for (const Kind kind : {Kind{1, 3}, {1, 6}, {2, 5}, {3, 9}}) {
+            for (const Kind kind : kCovered) {
                 const Footprint footprint =
                     makeFootprint(0.5, {0.3, -0.6}, kind.resolution, kind.width);
                 for (const Range range : {Range::kOneDigit, Range::kTwoDigits, Range::kTwoPlanes})
@@ -290,13 +294,13 @@ TEST(SliceBlocks, TraditionalTakesEveryVoxelOfTheBox) {
     const SplatInput input{nothing, scene.colors, scene.footprint, true};
     SliceBlocks blocks(input, scene.layout);
     std::vector<glm::ivec2> found;
-    blocks.forEach(kBox.min.x, true, NeededPixels{0, scene.layout.sizePixels.y},
-                   [&](glm::ivec2 block, std::uint64_t voxels, const SeenWord&) {
-                       const glm::ivec2 first = scene.layout.firstVoxel + 8 * block;
-                       for (int n = 0; n < 64; ++n) {
-                           if (voxels >> n & 1) found.push_back(first + glm::ivec2(n % 8, n / 8));
-                       }
-                   });
+    blocks.forWhole(kBox.min.x, NeededPixels{0, scene.layout.sizePixels.y},
+                    [&](glm::ivec2 block, std::uint64_t voxels, const SeenWord&) {
+                        const glm::ivec2 first = scene.layout.firstVoxel + 8 * block;
+                        for (int n = 0; n < 64; ++n) {
+                            if (voxels >> n & 1) found.push_back(first + glm::ivec2(n % 8, n / 8));
+                        }
+                    });
     const auto inside = [&](glm::ivec2 voxel) {
         return voxel.x >= kBox.min.z && voxel.x <= kBox.max.z && voxel.y >= kBox.min.y &&
                voxel.y <= kBox.max.y;
