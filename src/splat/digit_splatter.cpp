@@ -23,7 +23,8 @@ void DigitSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
 bool DigitSplatter::isFew(const PlannedSlab& slab) const {
     // Then empty ones are stamped as well.
     if (input_.stampEmptyVoxels && digit_.plane == 0 && !digit_.low) return false;
-    return isFew_.value_or(false) || slab.stamps() < leastStamps() * slab.stampedWords();
+    return isFew_.value_or(false) ||
+           slab.stamps() < TileSplatter::leastStamps(input_.footprint) * slab.stampedWords();
 }
 
 const Sheet& DigitSplatter::splat(int slice, const NeededPixels& needed, const Sheet* low) {

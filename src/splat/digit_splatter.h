@@ -22,7 +22,8 @@ class DigitSplatter {
           addsLow_(addsLow),
           sheet_(largest, input.memory) {
         const DigitVoxels* voxels = input.colors.digitVoxels();
-        if (voxels && voxels->of(digit)) isFew_ = voxels->fewerThan(leastStamps(), digit);
+        if (voxels && voxels->of(digit))
+            isFew_ = voxels->fewerThan(TileSplatter::leastStamps(input.footprint), digit);
     }
     // Both ways refer to the sheet.
     DigitSplatter(const DigitSplatter&) = delete;
@@ -52,9 +53,6 @@ class DigitSplatter {
 
   private:
     bool isFew(const PlannedSlab& slab) const;
-    std::uint64_t leastStamps() const {
-        return TileSplatter::leastStamps(input_.footprint, largest_.channels);
-    }
 
     const SplatInput& input_;
     SheetLayout largest_;

@@ -23,10 +23,9 @@ Weights weightsOf(const Footprint& footprint, int channels) {
 }  // namespace
 
 // Measured (docs/decisions.md, "Few changes are stamped").
-std::uint64_t TileSplatter::leastStamps(const Footprint& footprint, int channels) {
+std::uint64_t TileSplatter::leastStamps(const Footprint& footprint) {
     if (CoarseWeights::fits(footprint)) return 0;
-    if (TileWeights::fits(footprint)) return 12;
-    return channels == 4 ? 20 : 28;
+    return TileWeights::fits(footprint) ? 12 : 20;
 }
 
 // Tiles take one voxel more than lie in them, which the outermost, never touched, leaves room for.

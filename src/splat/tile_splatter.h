@@ -25,7 +25,7 @@ class TileSplatter {
 
     /// Returns how many voxels of a block a slice has to stamp for this to be faster than stamping
     /// them: none where voxels share pixels, which nobody stamps.
-    static std::uint64_t leastStamps(const Footprint& footprint, int channels);
+    static std::uint64_t leastStamps(const Footprint& footprint);
 
     /// Bytes that one takes, of a footprint that fits, without its sheet.
     static double bytes(const Footprint& footprint, const SheetLayout& layout);
