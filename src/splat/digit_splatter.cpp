@@ -8,8 +8,10 @@ namespace deltasplat {
 // Both ways give the same integers.
 void DigitSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     whole_ = slab.whole;
-    stamping_ = !TileSplatter::fits(input_.footprint) ||
-                ((mayStampAll(input_.footprint) || (!slab.whole && !addsLow_)) && isFew(slab));
+    // What is splatted anew for each slice has to be cleared as well, and a low digit be added,
+    // both of which tiles do by the way: that is more than small stamps are worth.
+    const bool suitsStamps = TileSplatter::isWide(input_.footprint) || (!slab.whole && !addsLow_);
+    stamping_ = !TileSplatter::fits(input_.footprint) || (suitsStamps && isFew(slab));
     sheet_.setLayout(layout);
     if (stamping_) {
         if (!stamps_) stamps_.emplace(input_, largest_, sheet_, digit_);

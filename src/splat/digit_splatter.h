@@ -42,12 +42,6 @@ class DigitSplatter {
     /// Ends a slab.
     void end();
 
-    /// Whether slabs of all kinds may be stamped where tiles fit: also whole ones, of which each
-    /// slice has to be cleared, and those that a low digit is added to, both of which tiles do by
-    /// the way. That is more than small stamps are worth.
-    static bool mayStampAll(const Footprint& footprint) {
-        return !TileWeights::fits(footprint) && !CoarseWeights::fits(footprint);
-    }
     /// Bytes that it takes.
     static double bytes(const SplatInput& input, const SheetLayout& layout);
 

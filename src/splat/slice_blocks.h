@@ -79,7 +79,7 @@ class SliceBlocks {
     void forChanges(int slice, const NeededPixels& needed, const Use& use);
     /// Makes everything as it was before the first slice.
     void clear();
-    /// Bytes that are kept of a block.
+    /// Bytes that are kept of a block: what waits of it, and what changes left.
     static constexpr std::size_t kBytesOfBlock = 4 * sizeof(std::uint64_t);
     std::size_t count() const { return std::size_t(layout_.blocks.x) * layout_.blocks.y; }
     /// Returns where what is kept of a block lies in an array of count().

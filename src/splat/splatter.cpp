@@ -43,7 +43,7 @@ void PlaneSplatter::end() {
 double PlaneSplatter::bytes(const SplatInput& input, const SheetLayout& layout, int plane) {
     const double one = DigitSplatter::bytes(input, layout);
     if (!hasLow(input, plane)) return one;
-    return 2 * one + (DigitSplatter::mayStampAll(input.footprint) ? double(layout.bytes()) : 0);
+    return 2 * one + (TileSplatter::isWide(input.footprint) ? double(layout.bytes()) : 0);
 }
 
 Splatter::Splatter(const SplatInput& input, const SheetLayout& largest) : input_(input) {

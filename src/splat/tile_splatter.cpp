@@ -3,7 +3,6 @@
 // equation 9. Deviates in that pixels take from voxels what voxels would stamp: the same integers.
 #include "splat/tile_splatter.h"
 
-#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -32,9 +31,8 @@ std::uint64_t TileSplatter::leastStamps(const Footprint& footprint) {
 // Cells need not begin where tiles do, and take more.
 TileSplatter::PlaneSize TileSplatter::planeSize(const Footprint& footprint,
                                                 const SheetLayout& layout) {
-    const bool takesCells = !CoarseWeights::fits(footprint) && !TileWeights::fits(footprint);
     const int margin = layout.marginPixels / layout.resolution * layout.voxelsPerPixel +
-                       (takesCells ? CellWeights::kMostTaps : 0);
+                       (isWide(footprint) ? CellWeights::kMostTaps : 0);
     return {margin, std::size_t(layout.channels) * (8 * layout.blocks.x + 2 * margin + 8),
             std::size_t(8 * layout.blocks.y + 2 * margin)};
 }

@@ -23,6 +23,12 @@ class TileSplatter {
                CoarseWeights::fits(footprint);
     }
 
+    /// Whether a footprint is wider than those of the smallest weights, or of voxels that share
+    /// pixels: such as CellWeights are for, and those that do not fit.
+    static bool isWide(const Footprint& footprint) {
+        return !TileWeights::fits(footprint) && !CoarseWeights::fits(footprint);
+    }
+
     /// Returns how many voxels of a block a slice has to stamp for this to be faster than stamping
     /// them: none where voxels share pixels, which nobody stamps.
     static std::uint64_t leastStamps(const Footprint& footprint);

@@ -141,7 +141,7 @@ struct WideFootprint {
 constexpr WideFootprint kWideFootprints[] = {
     {1, 3, 5},  {1, 5, 5},  {1, 7, 7},  {2, 3, 4},  {2, 6, 4},  {2, 7, 4},  {2, 8, 4},  {2, 9, 5},
     {2, 10, 6}, {2, 11, 6}, {2, 12, 6}, {3, 3, 4},  {3, 7, 4},  {3, 10, 4}, {3, 12, 4}, {3, 13, 6},
-    {3, 18, 6}, {4, 4, 4},  {4, 13, 4}, {4, 16, 4}, {4, 17, 6}, {4, 24, 6},
+    {3, 18, 6}, {4, 4, 4},  {4, 9, 4},  {4, 13, 4}, {4, 16, 4}, {4, 17, 6}, {4, 24, 6},
 };
 
 TEST_P(TilesOnEveryLevel, TouchedRowsOfCellsAreTheSumsOfStamps) {
@@ -313,8 +313,11 @@ TEST(CellWeights, FitFootprintsThatReachSevenVoxelsOrSix) {
     EXPECT_FALSE(fits(1, 9));
     EXPECT_TRUE(fits(2, 12));
     EXPECT_FALSE(fits(2, 13));
+    EXPECT_TRUE(fits(3, 9));
+    EXPECT_TRUE(fits(3, 12));
     EXPECT_TRUE(fits(3, 18));
     EXPECT_FALSE(fits(3, 19));
+    EXPECT_TRUE(fits(4, 16));
     EXPECT_TRUE(fits(4, 24));
     EXPECT_FALSE(fits(4, 25));
     EXPECT_FALSE(fits(5, 5));
