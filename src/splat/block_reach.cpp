@@ -33,7 +33,7 @@ template <typename PixelsOf>
 BlockReach::Phase BlockReach::phaseOf(const PixelsOf& pixelsOf) const {
     Phase phase;
     phase.columns.resize(tiles_);
-    phase.pixelRows.resize(tiles_);
+    phase.pixelRows.resize((tiles_ + 7) / 8);
     for (int tile = 0; tile < tiles_; ++tile) {
         // Which of the tile's pixels each voxel of a row or column reaches.
         std::array<std::uint8_t, 8> pixels{};
@@ -47,7 +47,8 @@ BlockReach::Phase BlockReach::phaseOf(const PixelsOf& pixelsOf) const {
         }
         for (int rows = 0; rows < 256; ++rows) {
             for (int voxel = 0; voxel < 8; ++voxel) {
-                if (rows >> voxel & 1) phase.pixelRows[tile][rows] |= pixels[voxel];
+                if (rows >> voxel & 1)
+                    phase.pixelRows[tile / 8][rows] |= std::uint64_t{pixels[voxel]} << 8 * (tile % 8);
             }
         }
     }

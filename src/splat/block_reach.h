@@ -33,15 +33,17 @@ class BlockReach {
         const std::uint64_t any = (((reaching & kLow) + kLow) | reaching) & ~kLow;
         return std::uint8_t((any >> 7) * 0x0102040810204080 >> 56);
     }
-    /// Returns the pixel rows of a tile, bit y, that footprints reach from rows of voxels.
-    std::uint8_t pixelRows(int phase, int tileRow, std::uint8_t voxelRows) const {
-        return phases_[phase].pixelRows[tileRow][voxelRows];
+    /// Returns the pixel rows that footprints reach from rows of voxels, of the eight rows of tiles
+    /// from 8 * `group` on: bit y of byte i for row y of the tile in the i-th of them.
+    std::uint64_t pixelRows(int phase, int group, std::uint8_t voxelRows) const {
+        return phases_[phase].pixelRows[group][voxelRows];
     }
 
   private:
     struct Phase {
         std::vector<std::uint64_t> columns;  // [tile column]: the voxels that reach it
-        std::vector<std::array<std::uint8_t, 256>> pixelRows;  // [tile row][rows of voxels]
+        // [tile row / 8][rows of voxels]
+        std::vector<std::array<std::uint64_t, 256>> pixelRows;
     };
     template <typename PixelsOf>
     Phase phaseOf(const PixelsOf& pixelsOf) const;

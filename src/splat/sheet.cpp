@@ -36,15 +36,6 @@ void requireCountable(const glm::i64vec2& size, std::int64_t shift) {
                                                "at most 4294967295, a smaller `resolution`"));
 }
 
-// Sets bits of the eight bytes from `first` on, each in a byte of `bits`.
-void addBytes(std::uint8_t* first, std::uint64_t bits) {
-    static_assert(std::endian::native == std::endian::little);
-    std::uint64_t word;
-    std::memcpy(&word, first, sizeof word);
-    word |= bits;
-    std::memcpy(first, &word, sizeof word);
-}
-
 }  // namespace
 
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels) {
@@ -127,46 +118,64 @@ Sheet::Sheet(const SheetLayout& layout, std::pmr::memory_resource& memory)
 
 // Margins begin at tiles, and so do blocks, or as many as share one.
 glm::ivec2 Sheet::firstTileOf(glm::ivec2 block) const {
-    return layout_.resolution * block / layout_.voxelsPerPixel +
-           layout_.marginPixels / kTilePixels + reach_.firstTile();
+    // Powers of two.
+    const int shift = std::countr_zero(unsigned(layout_.voxelsPerPixel));
+    return (layout_.resolution * block >> shift) + layout_.marginPixels / kTilePixels +
+           reach_.firstTile();
 }
 
 void Sheet::touch(glm::ivec2 block, std::uint64_t voxels) {
     forReach(block, {voxels}, [&](std::size_t place, const auto& reached) {
-        addBytes(&touched_[place], reached[0]);
+        touched_[place] |= reached[0];
     });
     touchRows(block);
 }
 
 void Sheet::show(glm::ivec2 block, std::uint64_t visible, std::uint64_t vanished) {
     forReach(block, {visible, vanished}, [&](std::size_t place, const auto& reached) {
-        addBytes(&full_[place], reached[0]);
-        addBytes(&touched_[place], reached[1] & ~reached[0]);
+        full_[place] |= reached[0];
+        touched_[place] |= std::uint8_t(reached[1] & ~reached[0]);
     });
     if (vanished != 0) touchRows(block);
 }
 
-// Calls use(place, reached) for every row of eight tiles that a block may reach: where it lies in
-// full_ and touched_, and a byte for each tile, for each of some masks of voxels.
+// Calls use(place, reached) for every tile that a block may reach: where its byte lies in full_ and
+// touched_, and which of its rows, for each of some masks of voxels. Byte by byte: the next block
+// begins in the middle of these tiles, and to read more at once than was written makes the
+// processor wait.
 template <std::size_t kMasks, typename Use>
 void Sheet::forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks], const Use& use) {
+    // As most footprints do: so that loops unroll.
+    constexpr int kMostReach = 3;
     const glm::ivec2 first = firstTileOf(block);
-    const glm::ivec2 phase = block % layout_.voxelsPerPixel;
-    for (int column = 0; column < reach_.tiles(); column += 8) {
-        const int count = std::min(reach_.tiles() - column, 8);
-        std::array<std::array<std::uint8_t, 8>, kMasks> rows;
+    const glm::ivec2 phase = block & (layout_.voxelsPerPixel - 1);
+    const auto forGroup = [&](int column, int row, auto columns, auto rows) {
+        // Of each column of tiles, a byte for each row of them.
+        std::uint64_t reached[kMasks][8];
         for (std::size_t i = 0; i < kMasks; ++i) {
-            for (int x = 0; x < count; ++x)
-                rows[i][x] = reach_.rowsReaching(phase.x, column + x, voxels[i]);
-        }
-        for (int y = 0; y < reach_.tiles(); ++y) {
-            std::array<std::uint64_t, kMasks> reached{};
-            for (std::size_t i = 0; i < kMasks; ++i) {
-                for (int x = 0; x < count; ++x)
-                    reached[i] |= std::uint64_t{reach_.pixelRows(phase.y, y, rows[i][x])} << 8 * x;
+            for (int x = 0; x < columns; ++x) {
+                const std::uint8_t from = reach_.rowsReaching(phase.x, column + x, voxels[i]);
+                reached[i][x] = reach_.pixelRows(phase.y, row / 8, from);
             }
-            use(bytesPerRow_ * (first.y + y) + first.x + column, reached);
         }
+        for (int y = 0; y < rows; ++y) {
+            const std::size_t place = bytesPerRow_ * (first.y + row + y) + first.x + column;
+            for (int x = 0; x < columns; ++x) {
+                std::array<std::uint8_t, kMasks> here;
+                for (std::size_t i = 0; i < kMasks; ++i)
+                    here[i] = std::uint8_t(reached[i][x] >> 8 * y);
+                use(place + x, here);
+            }
+        }
+    };
+    if (reach_.tiles() == kMostReach) {
+        constexpr std::integral_constant<int, kMostReach> kTiles;
+        return forGroup(0, 0, kTiles, kTiles);
+    }
+    for (int column = 0; column < reach_.tiles(); column += 8) {
+        for (int row = 0; row < reach_.tiles(); row += 8)
+            forGroup(column, row, std::min(reach_.tiles() - column, 8),
+                     std::min(reach_.tiles() - row, 8));
     }
 }
 
