@@ -17,7 +17,7 @@ void DigitSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
         if (!stamps_) stamps_.emplace(input_, largest_, sheet_, digit_);
         stamps_->setLayout(layout);
     } else {
-        if (!tiles_) tiles_.emplace(input_, largest_, sheet_, digit_);
+        if (!tiles_) tiles_.emplace(input_, largest_, sheet_, digit_, addsLow_);
         tiles_->setLayout(layout);
     }
 }
@@ -29,11 +29,11 @@ bool DigitSplatter::isFew(const PlannedSlab& slab) const {
            slab.stamps() < TileSplatter::leastStamps(input_.footprint) * slab.stampedWords();
 }
 
-const Sheet& DigitSplatter::splat(int slice, const NeededPixels& needed, const Sheet* low) {
+const Sheet& DigitSplatter::splat(int slice, const NeededPixels& needed) {
     if (stamping_) {
         stamps_->splat(slice, whole_, needed);
     } else {
-        tiles_->splat(slice, whole_, needed, low);
+        tiles_->splat(slice, whole_, needed);
     }
     return sheet_;
 }
@@ -46,13 +46,14 @@ void DigitSplatter::end() {
     }
 }
 
-double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout) {
+double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout, bool addsLow) {
     const double blocks = double(layout.blocks.x) * layout.blocks.y;
     // What stamps show, which of them wait, and their list as it grows.
     const double shownBytes = input.colors.own() ? sizeof(ClassTable::Color) : sizeof(ClassIndex);
     const double ofBlock = 64 * shownBytes + 3 * sizeof(BlockStamps) + SliceBlocks::kBytesOfBlock;
-    const double tiles =
-        TileSplatter::fits(input.footprint) ? TileSplatter::bytes(input.footprint, layout) : 0;
+    const double tiles = TileSplatter::fits(input.footprint)
+                             ? TileSplatter::bytes(input.footprint, layout, addsLow)
+                             : 0;
     return double(layout.bytes()) + ofBlock * blocks + tiles;
 }
 

@@ -13,7 +13,7 @@ namespace deltasplat {
 class DigitSplatter {
   public:
     /// @param largest  of the layouts to come
-    /// @param addsLow  whether sheets of the low digit are added to those that are summed
+    /// @param addsLow  whether the low digit is added to this, the high one, where that is summed
     DigitSplatter(const SplatInput& input, const SheetLayout& largest, DigitPlace digit,
                   bool addsLow)
         : input_(input),
@@ -35,15 +35,14 @@ class DigitSplatter {
     /// Makes the sheet of the slab's next slice, and returns it. Deltas are added to what the slice
     /// before left; of a whole slab, each slice starts anew.
     /// @param needed  others may hold an earlier slice, or part of this one
-    /// @param low     the sheet of the low digit, or null
-    const Sheet& splat(int slice, const NeededPixels& needed, const Sheet* low = nullptr);
-    /// Whether the slab in hand is stamped: then the low digit's sheet is not added.
+    const Sheet& splat(int slice, const NeededPixels& needed);
+    /// Whether the slab in hand is stamped: then the low digit is not added.
     bool isStamping() const { return stamping_; }
     /// Ends a slab.
     void end();
 
     /// Bytes that it takes.
-    static double bytes(const SplatInput& input, const SheetLayout& layout);
+    static double bytes(const SplatInput& input, const SheetLayout& layout, bool addsLow);
 
   private:
     bool isFew(const PlannedSlab& slab) const;

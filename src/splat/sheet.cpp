@@ -125,9 +125,8 @@ glm::ivec2 Sheet::firstTileOf(glm::ivec2 block) const {
 }
 
 void Sheet::touch(glm::ivec2 block, std::uint64_t voxels) {
-    forReach(block, {voxels}, [&](std::size_t place, const auto& reached) {
-        touched_[place] |= reached[0];
-    });
+    forReach(block, {voxels},
+             [&](std::size_t place, const auto& reached) { touched_[place] |= reached[0]; });
     touchRows(block);
 }
 
@@ -139,12 +138,18 @@ void Sheet::show(glm::ivec2 block, std::uint64_t visible, std::uint64_t vanished
     if (vanished != 0) touchRows(block);
 }
 
+void Sheet::mark(glm::ivec2 block, std::uint64_t voxels, std::span<std::uint8_t> marks) const {
+    forReach(block, {voxels},
+             [&](std::size_t place, const auto& reached) { marks[place] |= reached[0]; });
+}
+
 // Calls use(place, reached) for every tile that a block may reach: where its byte lies in full_ and
 // touched_, and which of its rows, for each of some masks of voxels. Byte by byte: the next block
 // begins in the middle of these tiles, and to read more at once than was written makes the
 // processor wait.
 template <std::size_t kMasks, typename Use>
-void Sheet::forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks], const Use& use) {
+void Sheet::forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks],
+                     const Use& use) const {
     // As most footprints do: so that loops unroll.
     constexpr int kMostReach = 3;
     const glm::ivec2 first = firstTileOf(block);

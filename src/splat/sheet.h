@@ -101,6 +101,11 @@ class Sheet {
     /// former reach are full, for no colour or weight is negative; those that only the latter reach
     /// are touched.
     void show(glm::ivec2 block, std::uint64_t visible, std::uint64_t vanished);
+    /// Sets in bytes of tiles, which are laid out as fullRows() has them, row of tiles after row of
+    /// tiles, which rows voxels of a block reach.
+    /// @param marks  [markBytes()]
+    void mark(glm::ivec2 block, std::uint64_t voxels, std::span<std::uint8_t> marks) const;
+    std::size_t markBytes() const { return full_.size(); }
     /// Calls `refill(tileRow, touched, full)` for rows of tiles in which any of the pixel rows
     /// [first, last) may be touched; others stay so. Of each tile there is a byte, bit y for its
     /// row y: where `touched` has bits, `refill` puts into `full` whether those rows are not all
@@ -131,7 +136,7 @@ class Sheet {
     void clearRows(int tileRow);
     glm::ivec2 firstTileOf(glm::ivec2 block) const;
     template <std::size_t kMasks, typename Use>
-    void forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks], const Use& use);
+    void forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks], const Use& use) const;
     void touchRows(glm::ivec2 block);
     bool leaveOthers(std::span<std::uint8_t> touched, unsigned rows);
 

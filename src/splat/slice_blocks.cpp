@@ -7,6 +7,23 @@
 
 namespace deltasplat {
 
+SliceBlocks::SliceBlocks(const SplatInput& input, const SheetLayout& layout, DigitPlace digit,
+                         bool withLow)
+    : input_(input),
+      layout_(layout),
+      stampEmptyVoxels_(input.stampEmptyVoxels && digit.plane == 0 && !digit.low),
+      digit_(digit),
+      colors_(digit.of(input.colors.table()).colors.data()) {
+    const DigitVoxels* voxels = input.colors.digitVoxels();
+    if (voxels) voxels_ = voxels->of(digit);
+    const bool hasPlanes = input.colors.table().planes.size() > 1;
+    takesDigit_ = voxels_ || (input.lit && (hasPlanes || digit.low));
+    if (!withLow) return;
+    const DigitPlace low{digit.plane, true};
+    lowColors_ = low.of(input.colors.table()).colors.data();
+    if (voxels) lowVoxels_ = voxels->of(low);
+}
+
 // The words of a slice in rows of blocks; they are ordered by u.
 std::span<const DeltaWord> SliceBlocks::wordsOf(int slice, glm::ivec2 rows) const {
     const std::span<const DeltaWord> words = input_.deltas.slice(slice);
@@ -23,7 +40,10 @@ glm::ivec2 SliceBlocks::blockOf(const DeltaWord& word) const {
 
 // Own colours lie in the order of voxels.
 SeenWord SliceBlocks::seenOf(const DeltaWord& word) const {
-    if (!input_.lit) return {word.visible, word.changed, word.classes, colors_, false};
+    if (!input_.lit) {
+        return {word.visible, word.changed,      word.classes, colors_,
+                false,        lowVoxelsOf(word), lowColors_};
+    }
     static constexpr auto kInOrder = [] {
         std::array<ClassIndex, 64> places{};
         for (std::size_t n = 0; n < places.size(); ++n) places[n] = ClassIndex(n);
@@ -31,7 +51,8 @@ SeenWord SliceBlocks::seenOf(const DeltaWord& word) const {
     }();
     const LitWord& lit = input_.lit->of(numberOf(word), digit_.plane);
     const auto& colors = digit_.low ? lit.low : lit.high;
-    return {word.visible, word.changed, kInOrder.data(), colors.data(), true};
+    return {word.visible, word.changed,      kInOrder.data(), colors.data(),
+            true,         lowVoxelsOf(word), lit.low.data()};
 }
 
 // Of the low digit, voxels that have it; of the high one, those that have anything on the plane.
@@ -39,6 +60,12 @@ std::uint64_t SliceBlocks::voxelsOfDigit(const DeltaWord& word) const {
     if (!input_.lit) return voxels_[numberOf(word)];
     const LitWord& lit = input_.lit->of(numberOf(word), digit_.plane);
     return digit_.low ? lit.anyLow : lit.any;
+}
+
+std::uint64_t SliceBlocks::lowVoxelsOf(const DeltaWord& word) const {
+    if (!lowColors_) return 0;
+    return input_.lit ? input_.lit->of(numberOf(word), digit_.plane).anyLow
+                      : lowVoxels_[numberOf(word)];
 }
 
 // Leaves what a word is of the digit. Of changes, those of voxels that had it or have it.

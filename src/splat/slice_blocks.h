@@ -45,21 +45,18 @@ struct SeenWord {
     const ClassIndex* classes;  ///< [64]: places in `colors`
     const ClassTable::Color* colors;
     bool hasOwn;  ///< whether colours are those of this word's voxels alone, in their order
+    /// Where the low digit goes with the high one: which voxels have it, and its colours. Else
+    /// none.
+    std::uint64_t lowVoxels = 0;
+    const ClassTable::Color* lowColors = nullptr;
 };
 
 /// The blocks of slices that a sheet of a digit of colours, or a part of it, is made of.
 class SliceBlocks {
   public:
-    SliceBlocks(const SplatInput& input, const SheetLayout& layout, DigitPlace digit = {})
-        : input_(input),
-          layout_(layout),
-          stampEmptyVoxels_(input.stampEmptyVoxels && digit.plane == 0 && !digit.low),
-          digit_(digit),
-          colors_(digit.of(input.colors.table()).colors.data()) {
-        if (const DigitVoxels* voxels = input.colors.digitVoxels()) voxels_ = voxels->of(digit);
-        const bool hasPlanes = input.colors.table().planes.size() > 1;
-        takesDigit_ = voxels_ || (input.lit && (hasPlanes || digit.low));
-    }
+    /// @param withLow  whether the low digit goes with this, the high one; there must be one
+    SliceBlocks(const SplatInput& input, const SheetLayout& layout, DigitPlace digit = {},
+                bool withLow = false);
 
     void setLayout(const SheetLayout& layout) { layout_ = layout; }
     const SheetLayout& layout() const { return layout_; }
@@ -77,10 +74,14 @@ class SliceBlocks {
     /// voxels have colours of their own, which are those of this slice.
     template <typename Use>
     void forChanges(int slice, const NeededPixels& needed, const Use& use);
+    /// Returns what is seen of a block whose voxels are all empty.
+    SeenWord nothingSeen() const {
+        return {0, 0, kEmptyClasses.data(), colors_, false, 0, lowColors_};
+    }
     /// Makes everything as it was before the first slice.
     void clear();
     /// Bytes that are kept of a block: what waits of it, and what changes left.
-    static constexpr std::size_t kBytesOfBlock = 4 * sizeof(std::uint64_t);
+    static constexpr std::size_t kBytesOfBlock = 5 * sizeof(std::uint64_t);
     std::size_t count() const { return std::size_t(layout_.blocks.x) * layout_.blocks.y; }
     /// Returns where what is kept of a block lies in an array of count().
     std::size_t placeOf(glm::ivec2 block) const {
@@ -92,6 +93,7 @@ class SliceBlocks {
     struct Waiting {
         std::uint64_t voxels = 0;
         std::uint64_t visible = 0;
+        std::uint64_t lowVoxels = 0;
         const ClassIndex* classes = nullptr;  // that they have become
     };
 
@@ -103,6 +105,7 @@ class SliceBlocks {
     bool hasColumn(glm::ivec2 block) const { return block.x >= 0 && block.x < layout_.blocks.x; }
     SeenWord seenOf(const DeltaWord& word) const;
     std::uint64_t voxelsOfDigit(const DeltaWord& word) const;
+    std::uint64_t lowVoxelsOf(const DeltaWord& word) const;
     void takeDigit(const DeltaWord& word, bool whole, SeenWord& seen);
     std::size_t numberOf(const DeltaWord& word) const {
         return std::size_t(&word - input_.deltas.words.data());
@@ -120,6 +123,9 @@ class SliceBlocks {
     bool takesDigit_;                  // not all that is visible has it
     // [word]: of classes, that have the digit; null: all that are visible
     const std::uint64_t* voxels_ = nullptr;
+    // Null where no low digit goes with this one; likewise.
+    const ClassTable::Color* lowColors_ = nullptr;
+    const std::uint64_t* lowVoxels_ = nullptr;
     std::vector<std::uint64_t> shown_;  // [block]: those that changes left so
     std::vector<Waiting> waiting_;      // [block]
     glm::ivec2 rowsBefore_{0};          // of blocks, that were needed in the slice before
@@ -146,7 +152,7 @@ void SliceBlocks::forWords(int slice, bool whole, const NeededPixels& needed, co
         }
         return;
     }
-    const SeenWord nothing{0, 0, kEmptyClasses.data(), colors_, false};
+    const SeenWord nothing = nothingSeen();
     auto word = words.begin();
     for (int u = rows.x; u < rows.y; ++u) {
         for (int v = 0; v < layout_.blocks.x; ++v) {
@@ -163,15 +169,15 @@ template <typename Use>
 void SliceBlocks::forChanges(int slice, const NeededPixels& needed, const Use& use) {
     if (waiting_.size() < count()) waiting_.resize(count());
     const glm::ivec2 rows = blocksReaching(layout_, needed.firstRow, needed.lastRow);
-    forWords(slice, false, needed,
-             [&](glm::ivec2 block, std::uint64_t changed, const SeenWord& word) {
-                 Waiting& waiting = waiting_[placeOf(block)];
-                 if (word.hasOwn || (block.y >= rows.x && block.y < rows.y)) {
-                     use(block, std::exchange(waiting.voxels, 0) | changed, word);
-                 } else {
-                     waiting = {waiting.voxels | changed, word.visible, word.classes};
-                 }
-             });
+    forWords(
+        slice, false, needed, [&](glm::ivec2 block, std::uint64_t changed, const SeenWord& word) {
+            Waiting& waiting = waiting_[placeOf(block)];
+            if (word.hasOwn || (block.y >= rows.x && block.y < rows.y)) {
+                use(block, std::exchange(waiting.voxels, 0) | changed, word);
+            } else {
+                waiting = {waiting.voxels | changed, word.visible, word.lowVoxels, word.classes};
+            }
+        });
     const auto enter = [&](int first, int last) {
         for (int u = first; u < last; ++u) {
             for (int v = 0; v < layout_.blocks.x; ++v) {
@@ -179,7 +185,8 @@ void SliceBlocks::forChanges(int slice, const NeededPixels& needed, const Use& u
                 if (waiting.voxels == 0) continue;
                 const std::uint64_t changed = std::exchange(waiting.voxels, 0);
                 use(glm::ivec2(v, u), changed,
-                    SeenWord{waiting.visible, changed, waiting.classes, colors_, false});
+                    SeenWord{waiting.visible, changed, waiting.classes, colors_, false,
+                             waiting.lowVoxels, lowColors_});
             }
         }
     };

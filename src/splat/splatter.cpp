@@ -13,37 +13,40 @@ bool hasLow(const SplatInput& input, int plane) {
 PlaneSplatter::PlaneSplatter(const SplatInput& input, const SheetLayout& largest, int plane)
     : input_(input),
       largest_(largest),
-      high_(input, largest, {plane, false}, hasLow(input, plane)) {
-    if (hasLow(input, plane)) low_.emplace(input, largest, DigitPlace{plane, true}, false);
-}
+      plane_(plane),
+      hasLow_(hasLow(input, plane)),
+      high_(input, largest, {plane, false}, hasLow_) {}
 
 void PlaneSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
-    if (low_) low_->begin(slab, layout);
     high_.begin(slab, layout);
     if (!sumsDigits()) return;
-    if (!sum_) sum_.emplace(largest_, input_.memory);
+    if (!low_) {
+        low_.emplace(input_, largest_, DigitPlace{plane_, true}, false);
+        sum_.emplace(largest_, input_.memory);
+    }
+    low_->begin(slab, layout);
     sum_->setLayout(layout);
 }
 
 const Sheet& PlaneSplatter::splat(int slice, const NeededPixels& needed) {
-    if (!low_) return high_.splat(slice, needed);
-    const Sheet& low = low_->splat(slice, needed);
-    if (!sumsDigits()) return high_.splat(slice, needed, &low);
     const Sheet& high = high_.splat(slice, needed);
-    sum_->addDigits(high, low, needed.firstRow, needed.lastRow);
+    if (!sumsDigits()) return high;
+    sum_->addDigits(high, low_->splat(slice, needed), needed.firstRow, needed.lastRow);
     return *sum_;
 }
 
 void PlaneSplatter::end() {
-    if (low_) low_->end();
-    if (sumsDigits()) sum_->clear();
     high_.end();
+    if (!sumsDigits()) return;
+    low_->end();
+    sum_->clear();
 }
 
 double PlaneSplatter::bytes(const SplatInput& input, const SheetLayout& layout, int plane) {
-    const double one = DigitSplatter::bytes(input, layout);
-    if (!hasLow(input, plane)) return one;
-    return 2 * one + (TileSplatter::isWide(input.footprint) ? double(layout.bytes()) : 0);
+    const bool addsLow = hasLow(input, plane);
+    const double high = DigitSplatter::bytes(input, layout, addsLow);
+    if (!addsLow || !TileSplatter::isWide(input.footprint)) return high;
+    return high + DigitSplatter::bytes(input, layout, false) + double(layout.bytes());
 }
 
 Splatter::Splatter(const SplatInput& input, const SheetLayout& largest) : input_(input) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -21,6 +22,12 @@ inline void forTiles(std::span<const std::uint8_t> tiles, const Use& use) {
             if (tiles[i] != 0) use(i);
         }
     }
+}
+
+/// Returns which rows of a tile are made where some are touched: those between as well.
+inline unsigned rowsMade(unsigned touched) {
+    if (touched == 0) return 0;
+    return 0xFFu << std::countr_zero(touched) & ((1u << std::bit_width(touched)) - 1);
 }
 
 }  // namespace deltasplat

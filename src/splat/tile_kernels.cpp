@@ -70,6 +70,24 @@ class TileSums {
         return full;
     }
 
+    // Adds low digits to some rows of a tile that hold high ones.
+    // @param pairs  of low digits, from those of the first of the rows on
+    // @return of these rows, those in which any low digit is other than zero
+    HWY_INLINE unsigned addLowRows(const Pairs& pairs, std::int32_t* HWY_RESTRICT sheet,
+                                   std::size_t sheetPitch, unsigned rows, unsigned& full) const {
+        const int firstVoxel = std::countr_zero(rows) / kResolution;
+        unsigned low = 0;
+        for (unsigned rest = rows; rest != 0; rest &= rest - 1) {
+            const int y = std::countr_zero(rest);
+            bool isFull = false;
+            const bool any = addLowRow(pairs + (y / kResolution - firstVoxel), y % kResolution != 0,
+                                       sheet + y * sheetPitch, isFull);
+            low |= unsigned{any} << y;
+            full |= unsigned{isFull} << y;
+        }
+        return low;
+    }
+
   private:
     // Makes one row of pixels; `pairs` begins with the pair before the voxels' row.
     HWY_INLINE bool makeRow(const PairRow* pairs, bool between,
@@ -77,21 +95,51 @@ class TileSums {
         const Tag tag;
         V any = hn::Zero(tag);
         for (int i = 0; i < kRow; i += int(hn::Lanes(tag))) {
-            V sum = hn::Zero(tag);
-            for (int x = 0; x < 3; ++x) {
-                const int place = i + kStep * x;
-                const int phase = i / int(hn::Lanes(tag)) % kPhases;
-                if (between) {
-                    sum = addPairs(sum, pairs[1] + place, between_[phase][x]);
-                } else {
-                    sum = addPairs(sum, pairs[0] + place, firstRows_[phase][x]);
-                    sum = addPairs(sum, pairs[2] + place, lastRow_[phase][x]);
-                }
-            }
+            const V sum = sumAt(pairs, between, i);
             hn::StoreU(sum, tag, sheet + i);
             any = hn::Or(any, sum);
         }
-        return !hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)));
+        return isAny(any);
+    }
+
+    // The same of low digits, which are added to what is there.
+    HWY_INLINE bool addLowRow(const PairRow* pairs, bool between, std::int32_t* HWY_RESTRICT sheet,
+                              bool& isFull) const {
+        const Tag tag;
+        const V half = hn::Set(tag, 1 << (ClassTable::kDigitBits - 1));
+        V any = hn::Zero(tag);
+        V anyLow = hn::Zero(tag);
+        for (int i = 0; i < kRow; i += int(hn::Lanes(tag))) {
+            const V low = sumAt(pairs, between, i);
+            const V sum = hn::Add(hn::LoadU(tag, sheet + i),
+                                  hn::ShiftRight<ClassTable::kDigitBits>(hn::Add(low, half)));
+            hn::StoreU(sum, tag, sheet + i);
+            any = hn::Or(any, sum);
+            anyLow = hn::Or(anyLow, low);
+        }
+        isFull = isAny(any);
+        return isAny(anyLow);
+    }
+
+    static HWY_INLINE bool isAny(V lanes) {
+        return !hn::AllTrue(Tag(), hn::Eq(lanes, hn::Zero(Tag())));
+    }
+
+    // Sums up a vector of a row's pixels.
+    HWY_INLINE V sumAt(const PairRow* pairs, bool between, int i) const {
+        const Tag tag;
+        const int phase = i / int(hn::Lanes(tag)) % kPhases;
+        V sum = hn::Zero(tag);
+        for (int x = 0; x < 3; ++x) {
+            const int place = i + kStep * x;
+            if (between) {
+                sum = addPairs(sum, pairs[1] + place, between_[phase][x]);
+            } else {
+                sum = addPairs(sum, pairs[0] + place, firstRows_[phase][x]);
+                sum = addPairs(sum, pairs[2] + place, lastRow_[phase][x]);
+            }
+        }
+        return sum;
     }
 
     static HWY_INLINE V addPairs(V sum, const std::int32_t* colors, V weights) {
@@ -156,43 +204,61 @@ class TileSums {
 };
 
 template <int kChannels, int kResolution>
-void splatTilesOf(const TileWeights& weights, const PlaneRow& plane, const TileRow& row,
-                  std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
+void splatTilesOf(const TileWeights& weights, const PlaneRow& plane, const LowRow& low,
+                  const TileRow& row, std::span<const std::uint8_t> touched,
+                  std::span<std::uint8_t> full) {
     using Sums = TileSums<kChannels, kResolution>;
     const Sums sums(weights);
     // Two tiles are in work: rows are made while the pairs of the next tile are on their way to the
     // cache, for they are read otherwise than they were written.
     HWY_ALIGN typename Sums::Pairs pairs[2];
+    HWY_ALIGN typename Sums::Pairs lowPairs[2];
+    unsigned lowRows[2] = {};
     const auto columnOf = [](std::size_t i) { return std::size_t{kTilePixels} * kChannels * i; };
-    const auto finish = [&](std::size_t i, const typename Sums::Pairs& paired) HWY_ATTR {
-        const unsigned rows = touched[i];
-        const unsigned found = forRows(rows, [&](int first, int last) HWY_ATTR {
-            return sums.makeRows(paired, row.sheet + columnOf(i), row.sheetPitch, first, last);
+    const auto pairUp = [&](std::size_t i, const PlaneRow& from, unsigned rows,
+                            typename Sums::Pairs& out) HWY_ATTR {
+        forRows(rows, [&](int first, int last) HWY_ATTR {
+            Sums::pairUp(from.first + columnOf(i) / kResolution, from.pitch, first, last, out);
         });
-        full[i] = std::uint8_t((full[i] & ~rows) | (found & rows));
+    };
+    const auto finish = [&](std::size_t i, int buffer) HWY_ATTR {
+        const unsigned rows = touched[i];
+        std::int32_t* sheet = row.sheet + columnOf(i);
+        const unsigned found = forRows(rows, [&](int first, int last) HWY_ATTR {
+            return sums.makeRows(pairs[buffer], sheet, row.sheetPitch, first, last);
+        });
+        unsigned now = (full[i] & ~rows) | (found & rows);
+        if (const unsigned ofLow = lowRows[buffer]; ofLow != 0) {
+            const unsigned any =
+                sums.addLowRows(lowPairs[buffer], sheet, row.sheetPitch, ofLow, now);
+            low.rows[i] = std::uint8_t((low.rows[i] & ~ofLow) | any);
+        }
+        full[i] = std::uint8_t(now);
     };
     std::size_t before = touched.size();
     int buffer = 0;
     forTiles(touched, [&](std::size_t i) HWY_ATTR {
-        forRows(touched[i], [&](int first, int last) HWY_ATTR {
-            Sums::pairUp(plane.first + columnOf(i) / kResolution, plane.pitch, first, last,
-                         pairs[buffer]);
-        });
+        pairUp(i, plane, touched[i], pairs[buffer]);
+        if (!low.rows.empty()) {
+            lowRows[buffer] = rowsMade(touched[i]) & low.rows[i];
+            if (lowRows[buffer] != 0) pairUp(i, low.plane, lowRows[buffer], lowPairs[buffer]);
+        }
         buffer ^= 1;
-        if (before < touched.size()) finish(before, pairs[buffer]);
+        if (before < touched.size()) finish(before, buffer);
         before = i;
     });
-    if (before < touched.size()) finish(before, pairs[buffer ^ 1]);
+    if (before < touched.size()) finish(before, buffer ^ 1);
 }
 
-void splatTilesKernel(const TileWeights& weights, const PlaneRow& plane, const TileRow& row,
-                      std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
+void splatTilesKernel(const TileWeights& weights, const PlaneRow& plane, const LowRow& low,
+                      const TileRow& row, std::span<const std::uint8_t> touched,
+                      std::span<std::uint8_t> full) {
     if (weights.resolution == 1) {
-        return weights.channels == 4 ? splatTilesOf<4, 1>(weights, plane, row, touched, full)
-                                     : splatTilesOf<1, 1>(weights, plane, row, touched, full);
+        return weights.channels == 4 ? splatTilesOf<4, 1>(weights, plane, low, row, touched, full)
+                                     : splatTilesOf<1, 1>(weights, plane, low, row, touched, full);
     }
-    return weights.channels == 4 ? splatTilesOf<4, 2>(weights, plane, row, touched, full)
-                                 : splatTilesOf<1, 2>(weights, plane, row, touched, full);
+    return weights.channels == 4 ? splatTilesOf<4, 2>(weights, plane, low, row, touched, full)
+                                 : splatTilesOf<1, 2>(weights, plane, low, row, touched, full);
 }
 
 void findFullRowsKernel(const TileRow& row, int channels, std::span<const std::uint8_t> touched,
@@ -278,9 +344,10 @@ TileWeights::TileWeights(const Footprint& footprint, int sheetChannels)
     }
 }
 
-void splatTiles(const TileWeights& weights, const PlaneRow& plane, const TileRow& row,
-                std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-    HWY_DYNAMIC_DISPATCH(splatTilesKernel)(weights, plane, row, touched, full);
+void splatTiles(const TileWeights& weights, const PlaneRow& plane, const LowRow& low,
+                const TileRow& row, std::span<const std::uint8_t> touched,
+                std::span<std::uint8_t> full) {
+    HWY_DYNAMIC_DISPATCH(splatTilesKernel)(weights, plane, low, row, touched, full);
 }
 
 void addLowDigits(const DigitRows& digits, int channels, std::span<const std::uint8_t> rows,

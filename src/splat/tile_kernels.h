@@ -45,13 +45,22 @@ struct PlaneRow {
     std::size_t pitch;          ///< 16-bit integers from one row to the next
 };
 
+/// What low digits are summed from, where they go with high ones.
+struct LowRow {
+    PlaneRow plane{};  ///< their colours
+    /// Of each tile, rows that may have any, and after it those that do; empty if there are none.
+    std::span<std::uint8_t> rows;
+};
+
 /// Splats rows of tiles whole: makes each touched row the sum of colour times weight of all voxels
-/// that reach it, which lie in it and next to it: the very integers that stamps add up to.
+/// that reach it, which lie in it and next to it: the very integers that stamps add up to. Low
+/// digits are added as addLowDigits() adds them.
 /// @param touched  a byte for each tile, bit y for its row y, and zeros up to a multiple of eight;
 /// rows between touched ones are made too
 /// @param full     likewise; says of touched rows whether they are not all zero
-void splatTiles(const TileWeights& weights, const PlaneRow& plane, const TileRow& row,
-                std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
+void splatTiles(const TileWeights& weights, const PlaneRow& plane, const LowRow& low,
+                const TileRow& row, std::span<const std::uint8_t> touched,
+                std::span<std::uint8_t> full);
 
 /// The digits that a row of tiles is put together from, `[row][pitch]`.
 struct DigitRows {

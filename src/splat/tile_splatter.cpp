@@ -3,6 +3,7 @@
 // equation 9. Deviates in that pixels take from voxels what voxels would stamp: the same integers.
 #include "splat/tile_splatter.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -38,28 +39,40 @@ TileSplatter::PlaneSize TileSplatter::planeSize(const Footprint& footprint,
 }
 
 TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
-                           DigitPlace digit)
-    : colors_(digit.of(input.colors.table()).colors),
-      blocks_(input, largest, digit),
+                           DigitPlace digit, bool withLow)
+    : blocks_(input, largest, digit, withLow),
       sheet_(sheet),
       weights_(weightsOf(input.footprint, largest.channels)),
       size_(planeSize(input.footprint, largest)),
-      plane_(size_.pitch * size_.rows, &input.memory),
+      high_(planeOf(digit.of(input.colors.table()).colors, input.memory)),
       shown_(blocks_.count(), &input.memory) {
-    if (largest.channels == 4) return;
-    for (const ClassTable::Color& color : colors_) opacities_.push_back(color[3]);
+    if (!withLow) return;
+    const DigitPlace low{digit.plane, true};
+    low_.emplace(Low{planeOf(low.of(input.colors.table()).colors, input.memory),
+                     std::vector<std::uint8_t>(sheet.markBytes()),
+                     {},
+                     std::pmr::vector<std::int32_t>(&input.memory)});
 }
 
-double TileSplatter::bytes(const Footprint& footprint, const SheetLayout& layout) {
+TileSplatter::Plane TileSplatter::planeOf(const std::vector<ClassTable::Color>& colors,
+                                          std::pmr::memory_resource& memory) const {
+    Plane plane{std::pmr::vector<std::int16_t>(size_.pitch * size_.rows, &memory), {}};
+    if (sheet_.layout().channels == 4) return plane;
+    for (const ClassTable::Color& color : colors) plane.opacities.push_back(color[3]);
+    return plane;
+}
+
+double TileSplatter::bytes(const Footprint& footprint, const SheetLayout& layout, bool withLow) {
     const PlaneSize plane = planeSize(footprint, layout);
     const double blocks = double(layout.blocks.x) * layout.blocks.y;
     // What blocks show, which of them do, twice, and what waits.
     const double ofBlock = sizeof(Shown) + 4 * sizeof(glm::ivec2) + SliceBlocks::kBytesOfBlock;
-    return double(sizeof(std::int16_t)) * double(plane.pitch) * double(plane.rows) +
-           ofBlock * blocks;
+    const double ofPlane = double(sizeof(std::int16_t)) * double(plane.pitch) * double(plane.rows);
+    const double ofLow = ofPlane + double(layout.bytes()) / layout.tiles().y;
+    return ofPlane + (withLow ? ofLow : 0) + ofBlock * blocks;
 }
 
-void TileSplatter::splat(int slice, bool whole, const NeededPixels& needed, const Sheet* low) {
+void TileSplatter::splat(int slice, bool whole, const NeededPixels& needed) {
     if (whole) {
         paintWhole(slice, needed);
     } else {
@@ -67,47 +80,60 @@ void TileSplatter::splat(int slice, bool whole, const NeededPixels& needed, cons
     }
     const auto refill = [&](int row, std::span<const std::uint8_t> touched,
                             std::span<std::uint8_t> full) {
-        sumTiles(row, touched, full);
-        if (low) addLow(*low, row, touched, full);
+        const TileRow tiles = sheet_.tileRow(row);
+        if (const auto* weights = std::get_if<TileWeights>(&weights_)) {
+            LowRow low;
+            if (low_) low = {planeRow(low_->plane, row), lowRows(row)};
+            return splatTiles(*weights, planeRow(high_, row), low, tiles, touched, full);
+        }
+        sumTiles(high_, row, tiles, touched, full);
+        if (low_) addLow(row, tiles, touched, full);
     };
     if (!needed.cover) return sheet_.refillTouched(needed.firstRow, needed.lastRow, refill);
     const auto isHidden = [&](glm::ivec2 tile) { return needed.cover->hidesTile(tile); };
     sheet_.refillTouched(needed.firstRow, needed.lastRow, isHidden, refill);
 }
 
-// Rows between touched ones were made too.
-void TileSplatter::addLow(const Sheet& low, int row, std::span<const std::uint8_t> touched,
+// Adds the low digit to what has been made of a row of tiles: rows between touched ones as well.
+void TileSplatter::addLow(int row, const TileRow& tiles, std::span<const std::uint8_t> touched,
                           std::span<std::uint8_t> full) {
-    lowRows_.assign(touched.size(), 0);
-    const std::span<const std::uint8_t> lowFull = low.fullRows(row);
+    const std::span<std::uint8_t> low = lowRows(row);
+    low_->made.assign(touched.size(), 0);
+    unsigned any = 0;
     forTiles(touched, [&](std::size_t i) {
-        const unsigned first = unsigned(std::countr_zero(touched[i]));
-        const unsigned made = 0xFFu << first & ((1u << std::bit_width(touched[i])) - 1);
-        lowRows_[i] = std::uint8_t(made & lowFull[i]);
+        low_->made[i] = std::uint8_t(rowsMade(touched[i]) & low[i]);
+        any |= low_->made[i];
     });
-    const TileRow tiles = sheet_.tileRow(row);
-    addLowDigits({tiles.sheet, low.row(kTilePixels * row), tiles.sheetPitch},
-                 sheet_.layout().channels, lowRows_, tiles.sheet, full);
+    if (any == 0) return;
+    low_->sums.resize(kTilePixels * tiles.sheetPitch);
+    const TileRow sums{low_->sums.data(), tiles.sheetPitch};
+    sumTiles(low_->plane, row, sums, low_->made, low);
+    for (std::size_t i = 0; i < low.size(); ++i) low_->made[i] &= low[i];
+    addLowDigits({tiles.sheet, sums.sheet, sums.sheetPitch}, sheet_.layout().channels, low_->made,
+                 tiles.sheet, full);
 }
 
-void TileSplatter::sumTiles(int row, std::span<const std::uint8_t> touched,
-                            std::span<std::uint8_t> full) {
+std::span<std::uint8_t> TileSplatter::lowRows(int row) {
+    const std::size_t count = sheet_.fullRows(row).size();
+    return {&low_->rows[count * std::size_t(row)], count};
+}
+
+// Sums up touched rows of a digit, unless weights are of tiles, which do that to both.
+void TileSplatter::sumTiles(Plane& plane, int row, const TileRow& tiles,
+                            std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
+    if (const auto* coarse = std::get_if<CoarseWeights>(&weights_))
+        return splatCoarse(*coarse, planeRow(plane, row), tiles, touched, full);
+    const glm::ivec2 pixel(0, kTilePixels * row);
+    const CellPlane from{numbersAt(plane, glm::ivec2(size_.margin)), size_.pitch,
+                         pixel - sheet_.layout().marginPixels};
+    splatCells(std::get<CellWeights>(weights_), from, tiles, touched, full);
+}
+
+// The voxels of a row of tiles that begins with one, as margins do.
+PlaneRow TileSplatter::planeRow(Plane& plane, int row) const {
     const SheetLayout& layout = sheet_.layout();
-    const TileRow tiles = sheet_.tileRow(row);
-    if (const auto* cells = std::get_if<CellWeights>(&weights_)) {
-        const glm::ivec2 pixel(0, kTilePixels * row);
-        const CellPlane plane{planeAt(glm::ivec2(size_.margin)), size_.pitch,
-                              pixel - layout.marginPixels};
-        splatCells(*cells, plane, tiles, touched, full);
-        return;
-    }
     const int voxel = kTilePixels * row * layout.voxelsPerPixel / layout.resolution;
-    const PlaneRow plane{planeAt({0, voxel}), size_.pitch};
-    if (const auto* coarse = std::get_if<CoarseWeights>(&weights_)) {
-        splatCoarse(*coarse, plane, tiles, touched, full);
-    } else {
-        splatTiles(std::get<TileWeights>(weights_), plane, tiles, touched, full);
-    }
+    return {numbersAt(plane, {0, voxel}), size_.pitch};
 }
 
 void TileSplatter::clear() {
@@ -115,6 +141,7 @@ void TileSplatter::clear() {
     for (const glm::ivec2 block : shownBlocks_) takeAway(block);
     shownBlocks_.clear();
     sheet_.clear();
+    if (low_) std::fill(low_->rows.begin(), low_->rows.end(), std::uint8_t{0});
 }
 
 void TileSplatter::paintChanges(int slice, const NeededPixels& needed) {
@@ -123,7 +150,7 @@ void TileSplatter::paintChanges(int slice, const NeededPixels& needed) {
                            Shown& shown = shown_[blocks_.placeOf(block)];
                            if (shown.voxels == 0) shownBlocks_.push_back(block);
                            shown.voxels |= changed;
-                           paint(block, changed, word.classes, word.colors);
+                           paint(block, changed, word);
                        });
 }
 
@@ -134,8 +161,9 @@ void TileSplatter::paintWhole(int slice, const NeededPixels& needed) {
     blocks_.forWhole(slice, needed,
                      [&](glm::ivec2 block, std::uint64_t active, const SeenWord& word) {
                          Shown& shown = shown_[blocks_.placeOf(block)];
-                         paint(block, active | shown.voxels, word.classes, word.colors);
-                         shown = {active, slice};
+                         paint(block, active | shown.voxels, word);
+                         shown.voxels = active;
+                         shown.slice = slice;
                          shownBlocks_.push_back(block);
                      });
     for (const glm::ivec2 block : before_) {
@@ -145,20 +173,27 @@ void TileSplatter::paintWhole(int slice, const NeededPixels& needed) {
 
 void TileSplatter::takeAway(glm::ivec2 block) {
     Shown& shown = shown_[blocks_.placeOf(block)];
-    if (shown.voxels != 0) paint(block, shown.voxels, kEmptyClasses.data(), colors_.data());
+    if (shown.voxels != 0) paint(block, shown.voxels, blocks_.nothingSeen());
     shown.voxels = 0;
 }
 
 // Writes the colours of voxels of a block.
-void TileSplatter::paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes,
-                         const ClassTable::Color* colors) {
+void TileSplatter::paint(glm::ivec2 block, std::uint64_t voxels, const SeenWord& word) {
     sheet_.touch(block, voxels);
-    const SheetLayout& layout = sheet_.layout();
-    std::int16_t* first = planeAt(8 * block + size_.margin);
-    if (layout.channels == 4) {
-        paintColors(first, voxels, classes, colors);
-    } else {
-        paintOpacities(first, classes);
+    paintPlane(high_, block, voxels, word.classes, word.colors);
+    if (!low_) return;
+    std::uint64_t& lowVoxels = shown_[blocks_.placeOf(block)].lowVoxels;
+    if (word.lowVoxels != 0) sheet_.mark(block, word.lowVoxels, low_->rows);
+    const std::uint64_t either = word.lowVoxels | std::exchange(lowVoxels, word.lowVoxels);
+    if (either != 0) paintPlane(low_->plane, block, voxels & either, word.classes, word.lowColors);
+}
+
+void TileSplatter::paintPlane(Plane& plane, glm::ivec2 block, std::uint64_t voxels,
+                              const ClassIndex* classes, const ClassTable::Color* colors) {
+    std::int16_t* numbers = numbersAt(plane, 8 * block + size_.margin);
+    if (sheet_.layout().channels == 4) return paintColors(numbers, voxels, classes, colors);
+    for (int u = 0; u < 8; ++u, numbers += size_.pitch, classes += 8) {
+        for (int v = 0; v < 8; ++v) numbers[v] = plane.opacities[classes[v]];
     }
 }
 
@@ -180,14 +215,8 @@ void TileSplatter::paintColors(std::int16_t* plane, std::uint64_t voxels, const 
     }
 }
 
-void TileSplatter::paintOpacities(std::int16_t* plane, const ClassIndex* classes) const {
-    for (int u = 0; u < 8; ++u, plane += size_.pitch, classes += 8) {
-        for (int v = 0; v < 8; ++v) plane[v] = opacities_[classes[v]];
-    }
-}
-
-std::int16_t* TileSplatter::planeAt(glm::ivec2 voxel) {
-    return &plane_[size_.pitch * voxel.y + std::size_t(sheet_.layout().channels) * voxel.x];
+std::int16_t* TileSplatter::numbersAt(Plane& plane, glm::ivec2 voxel) const {
+    return &plane.numbers[size_.pitch * voxel.y + std::size_t(sheet_.layout().channels) * voxel.x];
 }
 
 }  // namespace deltasplat

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -34,29 +35,30 @@ class TileSplatter {
     static std::uint64_t leastStamps(const Footprint& footprint);
 
     /// Bytes that one takes, of a footprint that fits, without its sheet.
-    static double bytes(const Footprint& footprint, const SheetLayout& layout);
+    static double bytes(const Footprint& footprint, const SheetLayout& layout, bool withLow);
 
     /// @param input    with a footprint that fits
     /// @param largest  of the layouts to come
     /// @param sheet    of that layout; zero whenever a slab begins
     /// @param digit    of colours
+    /// @param withLow  whether the low digit is added to this, the high one; there must be one
     TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
-                 DigitPlace digit = {});
+                 DigitPlace digit = {}, bool withLow = false);
 
     /// Takes on a layout, which the sheet must have by then.
     void setLayout(const SheetLayout& layout) { blocks_.setLayout(layout); }
     /// Makes the sheet that of the slice, after the one before it if it is not whole.
     /// @param needed  what will be read; the rest is made when it is
-    /// @param low     if not null, the sheet of the low digit, which is added
-    void splat(int slice, bool whole, const NeededPixels& needed, const Sheet* low);
+    void splat(int slice, bool whole, const NeededPixels& needed);
     /// Makes everything as it was before the first slice.
     void clear();
 
   private:
-    // What the plane shows of a block.
+    // What is shown of a block.
     struct Shown {
-        std::uint64_t voxels = 0;  // that may not be empty
-        int slice = 0;             // that last painted it, in a slab that is whole
+        std::uint64_t voxels = 0;     // that may not be empty
+        int slice = 0;                // that last painted it, in a slab that is whole
+        std::uint64_t lowVoxels = 0;  // that have a low digit
     };
 
     struct PlaneSize {
@@ -65,31 +67,48 @@ class TileSplatter {
         std::size_t rows;
     };
 
+    // A digit of the colours shown.
+    struct Plane {
+        std::pmr::vector<std::int16_t> numbers;  // a margin around them
+        std::vector<std::int16_t> opacities;     // of one colour: [classes]
+    };
+
+    // What the low digit takes besides.
+    struct Low {
+        Plane plane;
+        std::vector<std::uint8_t> rows;       // [tile]: that may have it, as Sheet::mark() has them
+        std::vector<std::uint8_t> made;       // likewise, of the row of tiles in hand
+        std::pmr::vector<std::int32_t> sums;  // of that row, as the sheet's
+    };
+
     static PlaneSize planeSize(const Footprint& footprint, const SheetLayout& layout);
+    Plane planeOf(const std::vector<ClassTable::Color>& colors,
+                  std::pmr::memory_resource& memory) const;
     void paintChanges(int slice, const NeededPixels& needed);
     void paintWhole(int slice, const NeededPixels& needed);
     void takeAway(glm::ivec2 block);
-    void sumTiles(int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
-    void addLow(const Sheet& low, int row, std::span<const std::uint8_t> touched,
+    void sumTiles(Plane& plane, int row, const TileRow& tiles,
+                  std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
+    void addLow(int row, const TileRow& tiles, std::span<const std::uint8_t> touched,
                 std::span<std::uint8_t> full);
-    void paint(glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes,
-               const ClassTable::Color* colors);
+    std::span<std::uint8_t> lowRows(int row);
+    PlaneRow planeRow(Plane& plane, int row) const;
+    void paint(glm::ivec2 block, std::uint64_t voxels, const SeenWord& word);
+    void paintPlane(Plane& plane, glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes,
+                    const ClassTable::Color* colors);
     void paintColors(std::int16_t* plane, std::uint64_t voxels, const ClassIndex* classes,
                      const ClassTable::Color* colors) const;
-    void paintOpacities(std::int16_t* plane, const ClassIndex* classes) const;
-    std::int16_t* planeAt(glm::ivec2 voxel);
+    std::int16_t* numbersAt(Plane& plane, glm::ivec2 voxel) const;
 
-    const std::vector<ClassTable::Color>& colors_;
     SliceBlocks blocks_;
     Sheet& sheet_;
     std::variant<TileWeights, CellWeights, CoarseWeights> weights_;
-    PlaneSize size_;                        // of the plane
-    std::pmr::vector<std::int16_t> plane_;  // colours shown, a margin around them
-    std::pmr::vector<Shown> shown_;         // [block]
-    std::vector<glm::ivec2> shownBlocks_;   // those with voxels
-    std::vector<glm::ivec2> before_;        // likewise, in the slice before
-    std::vector<std::int16_t> opacities_;   // of one colour: [classes]
-    std::vector<std::uint8_t> lowRows_;     // [tile]: of the row of tiles in hand
+    PlaneSize size_;  // of planes
+    Plane high_;
+    std::optional<Low> low_;
+    std::pmr::vector<Shown> shown_;        // [block]
+    std::vector<glm::ivec2> shownBlocks_;  // those with voxels
+    std::vector<glm::ivec2> before_;       // likewise, in the slice before
 };
 
 }  // namespace deltasplat

@@ -77,7 +77,7 @@ void tiles(benchmark::State& state) {
     makeTiles(state, channels,
               [&](const std::int16_t* plane, std::size_t pitch, const TileRow& row,
                   const auto& touched, auto& full) {
-                  splatTiles(weights, {plane, pitch}, row, touched, full);
+                  splatTiles(weights, {plane, pitch}, {}, row, touched, full);
               });
 }
 BENCHMARK(tiles)->ArgNames({"channels", "r"})->ArgsProduct({{1, 4}, {1, 2}});

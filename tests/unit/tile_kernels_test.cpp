@@ -125,8 +125,57 @@ TEST_P(TilesOnEveryLevel, TouchedRowsAreTheSumsOfStamps) {
                                            TileWeights(footprint, channels),
                                            {&scene.plane[channels * voxel * (scene.width + 1)],
                                             std::size_t(channels * scene.width)},
-                                           row, kTouched, full);
+                                           {}, row, kTouched, full);
                                    });
+            }
+        }
+    }
+}
+
+// Rows that may have a low digit get it, and it is said which do have one.
+TEST_P(TilesOnEveryLevel, LowDigitsAreAddedWhereTheyMayBe) {
+    // Of kTouched, but one, rows made and others.
+    const std::vector<std::uint8_t> marked = {0x3F, 0x01, 0xFF, 0xFF, 0xF8, 0, 0, 0};
+    std::uint32_t seed = 100;
+    for (const int resolution : {1, 2}) {
+        const Footprint footprint = makeFootprint(0.4, {0.8, -0.6}, resolution, 2 * resolution + 1);
+        for (const int channels : {1, 4}) {
+            for (const double empty : {0.0, 0.97, 1.0}) {
+                Scene scene(footprint, channels, 0.9, ++seed);
+                const Scene low(footprint, channels, empty, ++seed);
+                const std::size_t pitch = std::size_t(channels * kWidth);
+                std::vector<std::uint8_t> expected = marked;
+                for (std::size_t i = 0; i < scene.sums.size(); ++i) {
+                    const int y = int(i / pitch) - kFirst;
+                    const int tile = (int(i % pitch) / channels - kFirst) / 8;
+                    if (y < 0 || y >= 8 || tile < 0 || tile >= kTiles) continue;
+                    const unsigned row = 1u << y;
+                    if ((marked[std::size_t(tile)] & kTouched[std::size_t(tile)] & row) == 0)
+                        continue;
+                    scene.sums[i] += (low.sums[i] + (1 << 14)) >> 15;
+                }
+                for (int tile = 0; tile < kTiles; ++tile) {
+                    for (int y = 0; y < 8; ++y) {
+                        if ((kTouched[std::size_t(tile)] >> y & 1) == 0) continue;
+                        const auto first = low.sums.begin() + (kFirst + y) * std::ptrdiff_t(pitch) +
+                                           channels * (kFirst + 8 * tile);
+                        const bool any = std::any_of(first, first + 8 * channels,
+                                                     [](std::int32_t sum) { return sum != 0; });
+                        if (!any) expected[std::size_t(tile)] &= std::uint8_t(~(1u << y));
+                    }
+                }
+                std::vector<std::int32_t> sheet(scene.sums.size(), -7);
+                std::vector<std::uint8_t> full(kTouched.size(), 0xFF);
+                std::vector<std::uint8_t> rows = marked;
+                const auto planeOf = [&](const Scene& of) {
+                    const std::size_t voxel = kFirst / resolution;
+                    return PlaneRow{&of.plane[channels * voxel * (of.width + 1)],
+                                    std::size_t(channels * of.width)};
+                };
+                splatTiles(TileWeights(footprint, channels), planeOf(scene), {planeOf(low), rows},
+                           {&sheet[kFirst * (pitch + channels)], pitch}, kTouched, full);
+                expectSums(scene, sheet, full);
+                EXPECT_EQ(rows, expected);
             }
         }
     }
