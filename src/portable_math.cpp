@@ -6,6 +6,9 @@
 #include "portable_math.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -19,6 +22,18 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 struct Pair {
     double high, low;
 };
+
+// As std::ldexp(), without a call where 2^exponent is a number like others.
+double timesPowerOfTwo(double x, int exponent) {
+    if (exponent < -1022 || exponent > 1023) return std::ldexp(x, exponent);
+    return x * std::bit_cast<double>(std::uint64_t(exponent + 1023) << 52);
+}
+
+// As std::floor(), likewise, of less than 2^62.
+double wholeBelow(double x) {
+    const auto cut = double(std::int64_t(x));
+    return cut > x ? cut - 1 : cut;
+}
 
 // a + b exactly, for |a| >= |b| or a = 0.
 Pair sumOfOrdered(double a, double b) {
@@ -102,7 +117,7 @@ struct Exponential {
 };
 
 Exponential exponential(const Pair& x) {
-    const double exponent = std::floor(x.high * std::numbers::log2e + 0.5);
+    const double exponent = wholeBelow(x.high * std::numbers::log2e + 0.5);
     const Pair r = sum(x.high - exponent * kLn2High, x.low - exponent * kLn2Low);
     // 1/14! ... 1/2!
     constexpr double kSeries[] = {
@@ -122,7 +137,7 @@ double exp(const Pair& x) {
     if (x.high > kMostExponent) return kInfinity;
     const Exponential e = exponential(x);
     const Pair main = sumOfOrdered(1, e.rest);
-    return std::ldexp(main.high + (main.low + e.tail), e.exponent);
+    return timesPowerOfTwo(main.high + (main.low + e.tail), e.exponent);
 }
 
 // x = quarter * pi / 2 + rest + tail, |rest| < 0.79.
@@ -192,8 +207,8 @@ double expm1(double x) {
     if (x > kMostExponent) return kInfinity;
     const Exponential e = exponential({x, 0});
     // 2^k (1 + r) - 1 = 2^k (1 - 2^-k + r)
-    const Pair main = sum(1 - std::ldexp(1.0, -e.exponent), e.rest);
-    return std::ldexp(main.high + (main.low + e.tail), e.exponent);
+    const Pair main = sum(1 - timesPowerOfTwo(1, -e.exponent), e.rest);
+    return timesPowerOfTwo(main.high + (main.low + e.tail), e.exponent);
 }
 
 double log(double x) {

@@ -12,8 +12,14 @@ namespace {
 constexpr double kFiner = double(1 << ClassTable::kPlaneBits);
 static_assert(kLeastUnits == kLeastOfPlane / kFiner);
 
+// As std::round(), without a call: of what is not negative and less than 2^53.
+std::int64_t rounded(double x) {
+    const auto cut = std::int64_t(x);
+    return cut + (x - double(cut) >= 0.5 ? 1 : 0);
+}
+
 double nearest(double units) {
-    return std::min(std::round(units), double(ClassTable::kMax));
+    return double(std::min(rounded(units), std::int64_t{ClassTable::kMax}));
 }
 
 // The share of itself that rounding to one digit adds.
@@ -27,6 +33,7 @@ bool oneDigitIsEnough(const glm::dvec4& units) {
     const double alpha = errorOf(units.a);
     if (std::abs(alpha) > kColorShare) return false;
     for (int c = 0; c < 3; ++c) {
+        if (units[c] == units.a) continue;  // and errs as much
         const double color = errorOf(units[c]);
         const bool seen = units[c] >= kLeastUnits;
         if (std::abs(color) > kColorShare) return false;
@@ -42,7 +49,7 @@ void writeChannel(double units, int c, ColorDigits& digits) {
         high = 2;
     }
     constexpr double kLow = double(1 << ClassTable::kDigitBits);
-    const auto whole = std::int64_t(std::round(units * kLow));
+    const std::int64_t whole = rounded(units * kLow);
     digits[high][c] = std::int16_t(whole >> ClassTable::kDigitBits);
     digits[high + 1][c] = std::int16_t(whole & ClassTable::kMax);
 }
