@@ -51,7 +51,8 @@ struct CellPlane {
     glm::ivec2 pixel;  ///< the first pixel of the first tile, counted from that voxel's own pixel
 };
 
-/// As splatTiles, for footprints of CellWeights.
+/// As splatTiles, for footprints of CellWeights; without low digits, and rows between touched ones
+/// are made too.
 void splatCells(const CellWeights& weights, const CellPlane& plane, const TileRow& row,
                 std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
 

@@ -21,7 +21,7 @@ struct CoarseWeights {
     int channels;        ///< of plane and sheet: 1 or 4
 };
 
-/// As splatTiles, for footprints of CoarseWeights; the first tile's voxels begin at its first
+/// As splatCells, for footprints of CoarseWeights; the first tile's voxels begin at its first
 /// pixel's cell.
 void splatCoarse(const CoarseWeights& weights, const PlaneRow& plane, const TileRow& row,
                  std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);

@@ -28,6 +28,23 @@ HWY_INLINE hn::Vec<Tag> productsOfPairs(Tag tag, hn::Vec<Tag> a, hn::Vec<Tag> b)
     return hn::RearrangeToOddPlusEven(even, odd);
 }
 
+// A sum of such products.
+template <class Tag>
+class PairSum {
+  public:
+    HWY_INLINE PairSum() : even_(hn::Zero(Tag())), odd_(hn::Zero(Tag())) {}
+    HWY_INLINE void add(hn::Vec<Tag> a, hn::Vec<Tag> b) {
+        const hn::Repartition<std::int16_t, Tag> half;
+        even_ = hn::ReorderWidenMulAccumulate(Tag(), hn::BitCast(half, a), hn::BitCast(half, b),
+                                              even_, odd_);
+    }
+    HWY_INLINE hn::Vec<Tag> total() const { return hn::RearrangeToOddPlusEven(even_, odd_); }
+
+  private:
+    hn::Vec<Tag> even_;
+    hn::Vec<Tag> odd_;
+};
+
 // Calls use(first, last) for the rows that a tile's byte has bits for, and those between them: with
 // constants if it has all, so that loops unroll.
 template <typename Use>

@@ -24,10 +24,10 @@ inline void forTiles(std::span<const std::uint8_t> tiles, const Use& use) {
     }
 }
 
-/// Returns which rows of a tile are made where some are touched: those between as well.
-inline unsigned rowsMade(unsigned touched) {
-    if (touched == 0) return 0;
-    return 0xFFu << std::countr_zero(touched) & ((1u << std::bit_width(touched)) - 1);
+/// Returns rows of a tile, and those between them.
+inline unsigned withRowsBetween(unsigned rows) {
+    if (rows == 0) return 0;
+    return 0xFFu << std::countr_zero(rows) & ((1u << std::bit_width(rows)) - 1);
 }
 
 }  // namespace deltasplat

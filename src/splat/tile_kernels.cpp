@@ -26,231 +26,164 @@ class TileSums {
     // Vectors never reach over a row's end.
     using Tag = hn::CappedTag < std::int32_t, kRow<16 ? kRow : 16>;
     using V = hn::Vec<Tag>;
-    // From one voxel to the next along a row.
-    static constexpr int kStep = kResolution * kChannels;
-    // A voxel more on either side, in whole vectors.
-    static constexpr int kPairs = (kRow + 2 * kStep + 15) / 16 * 16;
+    static constexpr int kLanes = int(hn::MaxLanes(Tag()));
+    // Of pixels, that a pair of rows of voxels has.
+    static constexpr int kPairRows = 2 * kResolution;
 
   public:
     explicit TileSums(const TileWeights& weights) {
-        load(weights.firstRows, firstRows_);
-        load(weights.lastRow, lastRow_);
-        load(weights.between, between_);
-    }
-
-    using PairRow = std::int32_t[kPairs];
-    // Rows of pairs for one tile: from the one before the first voxel's.
-    using Pairs = PairRow[kTilePixels + 2];
-
-    // Pairs up the rows of voxels that rows [first, last] of a tile take. Inlined, so that the
-    // loops unroll where all rows are asked for.
-    static HWY_INLINE void pairUp(const std::int16_t* plane, std::size_t planePitch, int first,
-                                  int last, Pairs& pairs) {
-        const int firstVoxel = first / kResolution;
-        const int rows = last / kResolution - firstVoxel + 3;
-        const std::int16_t* voxels = plane + (firstVoxel - 1) * std::ptrdiff_t(planePitch);
-        if constexpr (kResolution == 1) {
-            pairRows(voxels - kChannels, planePitch, rows, pairs);
-        } else {
-            pairDoubledRows(voxels - kChannels, planePitch, rows, pairs);
+        for (int row = 0; row < kPairRows; ++row) {
+            const TileWeights::Row& from = weights.rows[std::size_t(row)];
+            load(from.before, weights_[row].before);
+            load(from.here, weights_[row].here);
+            load(from.behind, weights_[row].behind);
         }
     }
 
-    // Makes rows [first, last] of a tile and returns which of them are not all zero.
-    HWY_INLINE unsigned makeRows(const Pairs& pairs, std::int32_t* HWY_RESTRICT sheet,
-                                 std::size_t sheetPitch, int first, int last) const {
-        const int firstVoxel = first / kResolution;
+    // Makes rows of a tile and returns which of them are not all zero. Inlined, so that the loops
+    // unroll where all rows are asked for.
+    HWY_INLINE unsigned makeRows(const PairedRow& tile, std::int32_t* HWY_RESTRICT sheet,
+                                 std::size_t sheetPitch, unsigned rows) const {
         unsigned full = 0;
-        sheet += first * sheetPitch;
-        for (int y = first; y <= last; ++y, sheet += sheetPitch) {
-            const bool any =
-                makeRow(pairs + (y / kResolution - firstVoxel), y % kResolution != 0, sheet);
-            full |= unsigned{any} << y;
-        }
+        forSums(tile, rows, [&](int y, int i, V sum) HWY_ATTR {
+            hn::StoreU(sum, Tag(), sheet + y * sheetPitch + i);
+            full |= unsigned{isAny(sum)} << y;
+        });
         return full;
     }
 
-    // Adds low digits to some rows of a tile that hold high ones.
-    // @param pairs  of low digits, from those of the first of the rows on
+    // Adds low digits to rows of a tile that hold high ones.
+    // @param full  bits are set of rows that are not all zero now
     // @return of these rows, those in which any low digit is other than zero
-    HWY_INLINE unsigned addLowRows(const Pairs& pairs, std::int32_t* HWY_RESTRICT sheet,
+    HWY_INLINE unsigned addLowRows(const PairedRow& tile, std::int32_t* HWY_RESTRICT sheet,
                                    std::size_t sheetPitch, unsigned rows, unsigned& full) const {
-        const int firstVoxel = std::countr_zero(rows) / kResolution;
+        const V half = hn::Set(Tag(), 1 << (ClassTable::kDigitBits - 1));
         unsigned low = 0;
-        for (unsigned rest = rows; rest != 0; rest &= rest - 1) {
-            const int y = std::countr_zero(rest);
-            bool isFull = false;
-            const bool any = addLowRow(pairs + (y / kResolution - firstVoxel), y % kResolution != 0,
-                                       sheet + y * sheetPitch, isFull);
-            low |= unsigned{any} << y;
-            full |= unsigned{isFull} << y;
-        }
+        forSums(tile, rows, [&](int y, int i, V sum) HWY_ATTR {
+            std::int32_t* to = sheet + y * sheetPitch + i;
+            const V all = hn::Add(hn::LoadU(Tag(), to),
+                                  hn::ShiftRight<ClassTable::kDigitBits>(hn::Add(sum, half)));
+            hn::StoreU(all, Tag(), to);
+            low |= unsigned{isAny(sum)} << y;
+            full |= unsigned{isAny(all)} << y;
+        });
         return low;
     }
 
   private:
-    // Makes one row of pixels; `pairs` begins with the pair before the voxels' row.
-    HWY_INLINE bool makeRow(const PairRow* pairs, bool between,
-                            std::int32_t* HWY_RESTRICT sheet) const {
-        const Tag tag;
-        V any = hn::Zero(tag);
-        for (int i = 0; i < kRow; i += int(hn::Lanes(tag))) {
-            const V sum = sumAt(pairs, between, i);
-            hn::StoreU(sum, tag, sheet + i);
-            any = hn::Or(any, sum);
-        }
-        return isAny(any);
-    }
-
-    // The same of low digits, which are added to what is there.
-    HWY_INLINE bool addLowRow(const PairRow* pairs, bool between, std::int32_t* HWY_RESTRICT sheet,
-                              bool& isFull) const {
-        const Tag tag;
-        const V half = hn::Set(tag, 1 << (ClassTable::kDigitBits - 1));
-        V any = hn::Zero(tag);
-        V anyLow = hn::Zero(tag);
-        for (int i = 0; i < kRow; i += int(hn::Lanes(tag))) {
-            const V low = sumAt(pairs, between, i);
-            const V sum = hn::Add(hn::LoadU(tag, sheet + i),
-                                  hn::ShiftRight<ClassTable::kDigitBits>(hn::Add(low, half)));
-            hn::StoreU(sum, tag, sheet + i);
-            any = hn::Or(any, sum);
-            anyLow = hn::Or(anyLow, low);
-        }
-        isFull = isAny(any);
-        return isAny(anyLow);
-    }
+    // What a vector of pixels takes from a pair of rows: its voxels, and those beside them.
+    struct Columns {
+        V before, here, behind;
+    };
+    // A vector may be shorter than the pixels of a voxel: then weights differ from one to the next.
+    static constexpr int kStep = kResolution * kChannels;
+    static constexpr int kPhases = kStep > kLanes ? kStep / kLanes : 1;
+    struct RowWeights {
+        Columns before[kPhases], here[kPhases], behind[kPhases];
+    };
 
     static HWY_INLINE bool isAny(V lanes) {
         return !hn::AllTrue(Tag(), hn::Eq(lanes, hn::Zero(Tag())));
     }
 
-    // Sums up a vector of a row's pixels.
-    HWY_INLINE V sumAt(const PairRow* pairs, bool between, int i) const {
-        const Tag tag;
-        const int phase = i / int(hn::Lanes(tag)) % kPhases;
-        V sum = hn::Zero(tag);
-        for (int x = 0; x < 3; ++x) {
-            const int place = i + kStep * x;
-            if (between) {
-                sum = addPairs(sum, pairs[1] + place, between_[phase][x]);
-            } else {
-                sum = addPairs(sum, pairs[0] + place, firstRows_[phase][x]);
-                sum = addPairs(sum, pairs[2] + place, lastRow_[phase][x]);
-            }
-        }
-        return sum;
-    }
-
-    static HWY_INLINE V addPairs(V sum, const std::int32_t* colors, V weights) {
-        const Tag tag;
-        return hn::Add(sum, productsOfPairs(tag, hn::LoadU(tag, colors), weights));
-    }
-
-    template <class T>
-    static HWY_INLINE hn::Vec<T> loadColors(T tag, const std::int16_t* colors) {
-        return hn::PromoteTo(tag, hn::LoadU(hn::Rebind<std::int16_t, T>(), colors));
-    }
-    template <class T>
-    static HWY_INLINE hn::Vec<T> paired(T tag, hn::Vec<T> row, hn::Vec<T> behind) {
-        return hn::Or(hn::And(row, hn::Set(tag, 0xFFFF)), hn::ShiftLeft<16>(behind));
-    }
-
-    // Puts each row of colours into the low halves and the row behind it into the high halves.
-    static HWY_INLINE void pairRows(const std::int16_t* plane, std::size_t pitch, int rows,
-                                    PairRow* HWY_RESTRICT pairs) {
-        const Tag tag;
-        for (int i = 0; i < kPairs; i += int(hn::Lanes(tag))) {
-            V row = loadColors(tag, plane + i);
-            for (int y = 0; y < rows; ++y) {
-                const V behind = loadColors(tag, plane + (y + 1) * pitch + i);
-                hn::Store(paired(tag, row, behind), tag, &pairs[y][i]);
-                row = behind;
+    // Calls use(y, i, sum) for each vector of pixels of rows, a bit for each; i is its first number
+    // in the row.
+    template <typename Use>
+    HWY_INLINE void forSums(const PairedRow& tile, unsigned rows, const Use& use) const {
+        const int firstPair = std::countr_zero(rows) / kPairRows;
+        const int lastPair = (int(std::bit_width(rows)) - 1) / kPairRows;
+        for (int i = 0; i < kRow; i += kLanes) {
+            const int phase = i / kLanes % kPhases;
+            Columns before = columnsAt(tile, firstPair - 1, i);
+            Columns here = columnsAt(tile, firstPair, i);
+            for (int pair = firstPair; pair <= lastPair; ++pair) {
+                const Columns behind = columnsAt(tile, pair + 1, i);
+                for (int row = 0; row < kPairRows; ++row) {
+                    const int y = kPairRows * pair + row;
+                    if ((rows >> y & 1) == 0) continue;
+                    PairSum<Tag> sum;
+                    if (row == 0) add(before, weights_[row].before[phase], sum);
+                    add(here, weights_[row].here[phase], sum);
+                    if (row >= kResolution) add(behind, weights_[row].behind[phase], sum);
+                    use(y, i, sum.total());
+                }
+                before = here;
+                here = behind;
             }
         }
     }
 
-    // Likewise, each voxel twice.
-    static HWY_INLINE void pairDoubledRows(const std::int16_t* plane, std::size_t pitch, int rows,
-                                           PairRow* HWY_RESTRICT pairs) {
-        const hn::FixedTag<std::int32_t, kChannels> tag;
-        for (int i = 0; i < kRow / kResolution + 2 * kChannels; i += kChannels) {
-            auto row = loadColors(tag, plane + i);
-            for (int y = 0; y < rows; ++y) {
-                const auto behind = loadColors(tag, plane + (y + 1) * pitch + i);
-                const auto pair = paired(tag, row, behind);
-                hn::StoreU(pair, tag, &pairs[y][2 * i]);
-                hn::StoreU(pair, tag, &pairs[y][2 * i + kChannels]);
-                row = behind;
-            }
-        }
+    static HWY_INLINE void add(const Columns& colors, const Columns& weights, PairSum<Tag>& sum) {
+        sum.add(colors.before, weights.before);
+        sum.add(colors.here, weights.here);
+        sum.add(colors.behind, weights.behind);
     }
 
-    // A vector may be shorter than a step: then weights differ from one to the next.
-    static constexpr int kLanes = int(hn::MaxLanes(Tag()));
-    static constexpr int kPhases = kStep > kLanes ? kStep / kLanes : 1;
-    using Weights = V[kPhases][3];
+    static HWY_INLINE Columns columnsAt(const PairedRow& tile, int pair, int i) {
+        const std::int16_t* row = tile.first + pair * std::ptrdiff_t(tile.pitch);
+        const auto at = [&](int column) HWY_ATTR {
+            const int voxel = i / kChannels / kResolution + column;
+            const int number = kResolution == 1 ? i + kChannels * column : kChannels * voxel;
+            const V loaded = hn::BitCast(
+                Tag(), hn::LoadU(hn::Repartition<std::int16_t, Tag>(), row + 2 * number));
+            return kResolution == 1 ? loaded : doubled(loaded);
+        };
+        return {at(-1), at(0), at(1)};
+    }
 
-    static void load(const TileWeights::Columns& columns, Weights& weights) {
+    // Repeats each voxel for the pixels that it has in a row.
+    static HWY_INLINE V doubled(V voxels) {
+        if constexpr (kLanes <= kChannels) return voxels;
+        const Tag tag;
+        HWY_ALIGN std::int32_t places[kLanes];
+        for (int lane = 0; lane < kLanes; ++lane)
+            places[lane] = lane / kChannels / 2 * kChannels + lane % kChannels;
+        return hn::TableLookupLanes(voxels, hn::SetTableIndices(tag, places));
+    }
+
+    static void load(const TileWeights::Columns& columns, Columns (&weights)[kPhases]) {
         for (int phase = 0; phase < kPhases; ++phase) {
-            for (int x = 0; x < 3; ++x)
-                weights[phase][x] = hn::LoadU(Tag(), &columns[x][phase * kLanes]);
+            const auto at = [&](std::size_t column) HWY_ATTR {
+                return hn::LoadU(Tag(), &columns[column][std::size_t(phase * kLanes)]);
+            };
+            weights[phase] = {at(0), at(1), at(2)};
         }
     }
 
-    Weights firstRows_;
-    Weights lastRow_;
-    Weights between_;
+    RowWeights weights_[kPairRows];
 };
 
 template <int kChannels, int kResolution>
-void splatTilesOf(const TileWeights& weights, const PlaneRow& plane, const LowRow& low,
+void splatTilesOf(const TileWeights& weights, const PairedRow& plane, const LowRow& low,
                   const TileRow& row, std::span<const std::uint8_t> touched,
                   std::span<std::uint8_t> full) {
-    using Sums = TileSums<kChannels, kResolution>;
-    const Sums sums(weights);
-    // Two tiles are in work: rows are made while the pairs of the next tile are on their way to the
-    // cache, for they are read otherwise than they were written.
-    HWY_ALIGN typename Sums::Pairs pairs[2];
-    HWY_ALIGN typename Sums::Pairs lowPairs[2];
-    unsigned lowRows[2] = {};
-    const auto columnOf = [](std::size_t i) { return std::size_t{kTilePixels} * kChannels * i; };
-    const auto pairUp = [&](std::size_t i, const PlaneRow& from, unsigned rows,
-                            typename Sums::Pairs& out) HWY_ATTR {
-        forRows(rows, [&](int first, int last) HWY_ATTR {
-            Sums::pairUp(from.first + columnOf(i) / kResolution, from.pitch, first, last, out);
-        });
+    const TileSums<kChannels, kResolution> sums(weights);
+    constexpr std::size_t kColumn = std::size_t{kTilePixels} * kChannels;
+    constexpr unsigned kAll = 0xFF;
+    const auto tileOf = [](const PairedRow& of, std::size_t i) {
+        return PairedRow{of.first + 2 * kColumn / kResolution * i, of.pitch};
     };
-    const auto finish = [&](std::size_t i, int buffer) HWY_ATTR {
+    forTiles(touched, [&](std::size_t i) HWY_ATTR {
         const unsigned rows = touched[i];
-        std::int32_t* sheet = row.sheet + columnOf(i);
-        const unsigned found = forRows(rows, [&](int first, int last) HWY_ATTR {
-            return sums.makeRows(pairs[buffer], sheet, row.sheetPitch, first, last);
-        });
-        unsigned now = (full[i] & ~rows) | (found & rows);
-        if (const unsigned ofLow = lowRows[buffer]; ofLow != 0) {
+        std::int32_t* sheet = row.sheet + kColumn * i;
+        const PairedRow tile = tileOf(plane, i);
+        // With a constant loops unroll.
+        const unsigned found = rows == kAll ? sums.makeRows(tile, sheet, row.sheetPitch, kAll)
+                                            : sums.makeRows(tile, sheet, row.sheetPitch, rows);
+        unsigned now = (full[i] & ~rows) | found;
+        const unsigned lowRows = low.rows.empty() ? 0 : rows & low.rows[i];
+        if (lowRows != 0) {
+            const PairedRow lowTile = tileOf(low.plane, i);
             const unsigned any =
-                sums.addLowRows(lowPairs[buffer], sheet, row.sheetPitch, ofLow, now);
-            low.rows[i] = std::uint8_t((low.rows[i] & ~ofLow) | any);
+                lowRows == kAll ? sums.addLowRows(lowTile, sheet, row.sheetPitch, kAll, now)
+                                : sums.addLowRows(lowTile, sheet, row.sheetPitch, lowRows, now);
+            low.rows[i] = std::uint8_t((low.rows[i] & ~lowRows) | any);
         }
         full[i] = std::uint8_t(now);
-    };
-    std::size_t before = touched.size();
-    int buffer = 0;
-    forTiles(touched, [&](std::size_t i) HWY_ATTR {
-        pairUp(i, plane, touched[i], pairs[buffer]);
-        if (!low.rows.empty()) {
-            lowRows[buffer] = rowsMade(touched[i]) & low.rows[i];
-            if (lowRows[buffer] != 0) pairUp(i, low.plane, lowRows[buffer], lowPairs[buffer]);
-        }
-        buffer ^= 1;
-        if (before < touched.size()) finish(before, buffer);
-        before = i;
     });
-    if (before < touched.size()) finish(before, buffer ^ 1);
 }
 
-void splatTilesKernel(const TileWeights& weights, const PlaneRow& plane, const LowRow& low,
+void splatTilesKernel(const TileWeights& weights, const PairedRow& plane, const LowRow& low,
                       const TileRow& row, std::span<const std::uint8_t> touched,
                       std::span<std::uint8_t> full) {
     if (weights.resolution == 1) {
@@ -329,22 +262,29 @@ TileWeights::TileWeights(const Footprint& footprint, int sheetChannels)
             column >= 0 && row >= 0 && column < footprint.width && row < footprint.width;
         return inside ? footprint.at(column, row) : 0;
     };
-    for (int column = 0; column < 3; ++column) {
-        for (int lane = 0; lane < 16; ++lane) {
+    for (std::size_t column = 0; column < 3; ++column) {
+        for (std::size_t lane = 0; lane < 16; ++lane) {
             // The pixel's place behind a voxel, and behind the voxel of this column.
-            const int phase = lane / channels % resolution;
-            const int x = phase - resolution * (column - 1);
+            const int phase = int(lane) / channels % resolution;
+            const int x = phase - resolution * (int(column) - 1);
+            // What a pixel takes from rows of voxels that lie so far before it.
             const auto pair = [&](int y, int yBehind) {
                 return std::int32_t(weightAt(x, yBehind) << 16 | weightAt(x, y));
             };
-            firstRows[column][lane] = pair(resolution, 0);
-            lastRow[column][lane] = weightAt(x, -resolution);
-            if (resolution == 2) between[column][lane] = pair(1, -1);
+            constexpr int kNone = 1 << 10;
+            const int r = resolution;
+            for (int row = 0; row < 2 * r; ++row) {
+                // The pair's rows of voxels lie at 0 and r.
+                Row& weights = rows[std::size_t(row)];
+                weights.before[column][lane] = pair(kNone, row + r);
+                weights.here[column][lane] = pair(row, row - r);
+                weights.behind[column][lane] = pair(row - 2 * r, kNone);
+            }
         }
     }
 }
 
-void splatTiles(const TileWeights& weights, const PlaneRow& plane, const LowRow& low,
+void splatTiles(const TileWeights& weights, const PairedRow& plane, const LowRow& low,
                 const TileRow& row, std::span<const std::uint8_t> touched,
                 std::span<std::uint8_t> full) {
     HWY_DYNAMIC_DISPATCH(splatTilesKernel)(weights, plane, low, row, touched, full);

@@ -19,6 +19,13 @@ struct TileWeights {
     /// For one vector of pixels, by the column of the voxel (before, here, behind): low 16 bits the
     /// weight of a row of voxels, high 16 bits that of the row behind it.
     using Columns = std::array<std::array<std::int32_t, 16>, 3>;
+    /// What a row of pixels takes from the pair of rows of voxels that it belongs to, and from
+    /// those before and behind it.
+    struct Row {
+        Columns before{};
+        Columns here{};
+        Columns behind{};
+    };
 
     /// Whether a footprint is small enough: at most 3x3 pixels at one sheet pixel a voxel, or 5x5
     /// at two.
@@ -26,11 +33,9 @@ struct TileWeights {
     /// @param footprint  one that fits
     TileWeights(const Footprint& footprint, int sheetChannels);
 
-    int resolution;       ///< 1 or 2 sheet pixels a voxel
-    int channels;         ///< of plane and sheet: 1 or 4
-    Columns firstRows{};  ///< for pixels at voxels' rows: the row before and the row itself
-    Columns lastRow{};    ///< likewise: the row behind (low 16 bits)
-    Columns between{};    ///< for pixels between two rows of voxels: these two
+    int resolution;             ///< 1 or 2 sheet pixels a voxel
+    int channels;               ///< of plane and sheet: 1 or 4
+    std::array<Row, 4> rows{};  ///< of a pair's 2 * resolution rows of pixels
 };
 
 /// Where a row of tiles lies.
@@ -45,9 +50,16 @@ struct PlaneRow {
     std::size_t pitch;          ///< 16-bit integers from one row to the next
 };
 
+/// Colours of a row of tiles' voxels that lie two rows together, number by number: one of an even
+/// row, then that of the row behind it. Rows of tiles begin with a pair.
+struct PairedRow {
+    const std::int16_t* first = nullptr;  ///< of the first tile's voxels, `[pair of rows][pitch]`
+    std::size_t pitch = 0;                ///< 16-bit integers from one pair to the next
+};
+
 /// What low digits are summed from, where they go with high ones.
 struct LowRow {
-    PlaneRow plane{};  ///< their colours
+    PairedRow plane;  ///< their colours
     /// Of each tile, rows that may have any, and after it those that do; empty if there are none.
     std::span<std::uint8_t> rows;
 };
@@ -55,10 +67,9 @@ struct LowRow {
 /// Splats rows of tiles whole: makes each touched row the sum of colour times weight of all voxels
 /// that reach it, which lie in it and next to it: the very integers that stamps add up to. Low
 /// digits are added as addLowDigits() adds them.
-/// @param touched  a byte for each tile, bit y for its row y, and zeros up to a multiple of eight;
-/// rows between touched ones are made too
+/// @param touched  a byte for each tile, bit y for its row y, and zeros up to a multiple of eight
 /// @param full     likewise; says of touched rows whether they are not all zero
-void splatTiles(const TileWeights& weights, const PlaneRow& plane, const LowRow& low,
+void splatTiles(const TileWeights& weights, const PairedRow& plane, const LowRow& low,
                 const TileRow& row, std::span<const std::uint8_t> touched,
                 std::span<std::uint8_t> full);
 

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstring>
 
+#include "splat/paint_kernels.h"
 #include "splat/tile_bytes.h"
 
 namespace deltasplat {
@@ -83,8 +84,8 @@ void TileSplatter::splat(int slice, bool whole, const NeededPixels& needed) {
         const TileRow tiles = sheet_.tileRow(row);
         if (const auto* weights = std::get_if<TileWeights>(&weights_)) {
             LowRow low;
-            if (low_) low = {planeRow(low_->plane, row), lowRows(row)};
-            return splatTiles(*weights, planeRow(high_, row), low, tiles, touched, full);
+            if (low_) low = {pairedRow(low_->plane, row), lowRows(row)};
+            return splatTiles(*weights, pairedRow(high_, row), low, tiles, touched, full);
         }
         sumTiles(high_, row, tiles, touched, full);
         if (low_) addLow(row, tiles, touched, full);
@@ -94,14 +95,15 @@ void TileSplatter::splat(int slice, bool whole, const NeededPixels& needed) {
     sheet_.refillTouched(needed.firstRow, needed.lastRow, isHidden, refill);
 }
 
-// Adds the low digit to what has been made of a row of tiles: rows between touched ones as well.
+// Adds the low digit to what has been made of a row of tiles, of rows between touched ones as well,
+// unless weights are of tiles, which do that themselves.
 void TileSplatter::addLow(int row, const TileRow& tiles, std::span<const std::uint8_t> touched,
                           std::span<std::uint8_t> full) {
     const std::span<std::uint8_t> low = lowRows(row);
     low_->made.assign(touched.size(), 0);
     unsigned any = 0;
     forTiles(touched, [&](std::size_t i) {
-        low_->made[i] = std::uint8_t(rowsMade(touched[i]) & low[i]);
+        low_->made[i] = std::uint8_t(withRowsBetween(touched[i]) & low[i]);
         any |= low_->made[i];
     });
     if (any == 0) return;
@@ -118,7 +120,7 @@ std::span<std::uint8_t> TileSplatter::lowRows(int row) {
     return {&low_->rows[count * std::size_t(row)], count};
 }
 
-// Sums up touched rows of a digit, unless weights are of tiles, which do that to both.
+// Sums up touched rows of a digit; likewise.
 void TileSplatter::sumTiles(Plane& plane, int row, const TileRow& tiles,
                             std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
     if (const auto* coarse = std::get_if<CoarseWeights>(&weights_))
@@ -127,6 +129,10 @@ void TileSplatter::sumTiles(Plane& plane, int row, const TileRow& tiles,
     const CellPlane from{numbersAt(plane, glm::ivec2(size_.margin)), size_.pitch,
                          pixel - sheet_.layout().marginPixels};
     splatCells(std::get<CellWeights>(weights_), from, tiles, touched, full);
+}
+
+PairedRow TileSplatter::pairedRow(Plane& plane, int row) const {
+    return {planeRow(plane, row).first, 2 * size_.pitch};
 }
 
 // The voxels of a row of tiles that begins with one, as margins do.
@@ -191,7 +197,12 @@ void TileSplatter::paint(glm::ivec2 block, std::uint64_t voxels, const SeenWord&
 void TileSplatter::paintPlane(Plane& plane, glm::ivec2 block, std::uint64_t voxels,
                               const ClassIndex* classes, const ClassTable::Color* colors) {
     std::int16_t* numbers = numbersAt(plane, 8 * block + size_.margin);
-    if (sheet_.layout().channels == 4) return paintColors(numbers, voxels, classes, colors);
+    const bool hasColors = sheet_.layout().channels == 4;
+    if (isPaired() && hasColors)
+        return paintPairs(voxels, classes, colors, numbers, 2 * size_.pitch);
+    if (isPaired())
+        return paintPairs(voxels, classes, plane.opacities.data(), numbers, 2 * size_.pitch);
+    if (hasColors) return paintColors(numbers, voxels, classes, colors);
     for (int u = 0; u < 8; ++u, numbers += size_.pitch, classes += 8) {
         for (int v = 0; v < 8; ++v) numbers[v] = plane.opacities[classes[v]];
     }
@@ -215,8 +226,10 @@ void TileSplatter::paintColors(std::int16_t* plane, std::uint64_t voxels, const 
     }
 }
 
+// @param voxel  of an even row, where rows lie in pairs
 std::int16_t* TileSplatter::numbersAt(Plane& plane, glm::ivec2 voxel) const {
-    return &plane.numbers[size_.pitch * voxel.y + std::size_t(sheet_.layout().channels) * voxel.x];
+    const auto numbers = std::size_t(sheet_.layout().channels) * (isPaired() ? 2 : 1);
+    return &plane.numbers[size_.pitch * voxel.y + numbers * voxel.x];
 }
 
 }  // namespace deltasplat

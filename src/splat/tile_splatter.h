@@ -93,6 +93,9 @@ class TileSplatter {
                 std::span<std::uint8_t> full);
     std::span<std::uint8_t> lowRows(int row);
     PlaneRow planeRow(Plane& plane, int row) const;
+    PairedRow pairedRow(Plane& plane, int row) const;
+    // Whether planes hold two rows together, as the smallest weights take them.
+    bool isPaired() const { return std::holds_alternative<TileWeights>(weights_); }
     void paint(glm::ivec2 block, std::uint64_t voxels, const SeenWord& word);
     void paintPlane(Plane& plane, glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes,
                     const ClassTable::Color* colors);

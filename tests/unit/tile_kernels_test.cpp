@@ -61,12 +61,30 @@ struct Scene {
         }
     }
 
+    // As PairedRow has it.
+    std::vector<std::int16_t> paired() const {
+        const std::size_t pitch = std::size_t(channels * width);
+        std::vector<std::int16_t> pairs(plane.size());
+        for (std::size_t i = 0; i < plane.size(); ++i) {
+            const std::size_t row = i / pitch;
+            pairs[(row / 2 * pitch + i % pitch) * 2 + row % 2] = plane[i];
+        }
+        return pairs;
+    }
+
     int channels;
     int width;  // of the plane
     int height;
     std::vector<std::int16_t> plane;
     std::vector<std::int32_t> sums;
 };
+
+// Where the tiles begin in such pairs.
+PairedRow firstTileOf(const Scene& scene, const std::vector<std::int16_t>& pairs) {
+    const std::size_t voxel = std::size_t(kFirst * scene.width / kWidth);
+    const std::size_t pitch = std::size_t(scene.channels * scene.width);
+    return {&pairs[voxel * (pitch + 2 * std::size_t(scene.channels))], 2 * pitch};
+}
 
 constexpr int kTiles = 5;
 const std::vector<std::uint8_t> kTouched = {0xFF, 0x01, 0, 0x80, 0x18, 0, 0, 0};
@@ -117,15 +135,13 @@ TEST_P(TilesOnEveryLevel, TouchedRowsAreTheSumsOfStamps) {
             for (const glm::dvec2 d : kShifts) {
                 const Footprint footprint = makeFootprint(0.4, d, resolution, width);
                 ASSERT_TRUE(TileWeights::fits(footprint));
-                const std::size_t voxel = kFirst / resolution;
                 expectSumsOfStamps(footprint, seed,
                                    [&](int channels, const Scene& scene, const TileRow& row,
                                        std::vector<std::uint8_t>& full) {
-                                       splatTiles(
-                                           TileWeights(footprint, channels),
-                                           {&scene.plane[channels * voxel * (scene.width + 1)],
-                                            std::size_t(channels * scene.width)},
-                                           {}, row, kTouched, full);
+                                       const std::vector<std::int16_t> pairs = scene.paired();
+                                       splatTiles(TileWeights(footprint, channels),
+                                                  firstTileOf(scene, pairs), {}, row, kTouched,
+                                                  full);
                                    });
             }
         }
@@ -167,12 +183,10 @@ TEST_P(TilesOnEveryLevel, LowDigitsAreAddedWhereTheyMayBe) {
                 std::vector<std::int32_t> sheet(scene.sums.size(), -7);
                 std::vector<std::uint8_t> full(kTouched.size(), 0xFF);
                 std::vector<std::uint8_t> rows = marked;
-                const auto planeOf = [&](const Scene& of) {
-                    const std::size_t voxel = kFirst / resolution;
-                    return PlaneRow{&of.plane[channels * voxel * (of.width + 1)],
-                                    std::size_t(channels * of.width)};
-                };
-                splatTiles(TileWeights(footprint, channels), planeOf(scene), {planeOf(low), rows},
+                const std::vector<std::int16_t> pairs = scene.paired();
+                const std::vector<std::int16_t> lowPairs = low.paired();
+                splatTiles(TileWeights(footprint, channels), firstTileOf(scene, pairs),
+                           {firstTileOf(low, lowPairs), rows},
                            {&sheet[kFirst * (pitch + channels)], pitch}, kTouched, full);
                 expectSums(scene, sheet, full);
                 EXPECT_EQ(rows, expected);

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "delta/packed_deltas.h"
+#include "deltasplat/optics/class_table.h"
+
+namespace deltasplat {
+
+/// Writes colours of voxels of a block where two rows lie together (PairedRow). Others may be
+/// written as well.
+/// @param voxels   a mask word, bit 8 * u + v
+/// @param classes  [64]: of all voxels of the block
+/// @param plane    the block's first voxel, `[pair of rows][pitch]`
+void paintPairs(std::uint64_t voxels, const ClassIndex* classes, const ClassTable::Color* colors,
+                std::int16_t* plane, std::size_t pitch);
+/// The same of opacity alone.
+/// @param opacities  [classes]
+void paintPairs(std::uint64_t voxels, const ClassIndex* classes, const std::int16_t* opacities,
+                std::int16_t* plane, std::size_t pitch);
+
+}  // namespace deltasplat
