@@ -48,7 +48,8 @@ BlockReach::Phase BlockReach::phaseOf(const PixelsOf& pixelsOf) const {
         for (int rows = 0; rows < 256; ++rows) {
             for (int voxel = 0; voxel < 8; ++voxel) {
                 if (rows >> voxel & 1)
-                    phase.pixelRows[tile / 8][rows] |= std::uint64_t{pixels[voxel]} << 8 * (tile % 8);
+                    phase.pixelRows[tile / 8][rows] |= std::uint64_t{pixels[voxel]}
+                                                       << 8 * (tile % 8);
             }
         }
     }

@@ -53,8 +53,8 @@ void paintColorsKernel(std::uint64_t voxels, const ClassIndex* classes,
 void paintOpacitiesKernel(std::uint64_t voxels, const ClassIndex* classes,
                           const std::int16_t* opacities, std::int16_t* plane, std::size_t pitch) {
     forPairs(voxels, [&](int u, int v) {
-        const std::int32_t both = opacities[classes[8 * u + v]] |
-                                  std::int32_t{opacities[classes[8 * (u + 1) + v]]} << 16;
+        const std::int32_t both =
+            opacities[classes[8 * u + v]] | std::int32_t{opacities[classes[8 * (u + 1) + v]]} << 16;
         std::memcpy(plane + std::size_t(u / 2) * pitch + 2 * v, &both, sizeof both);
     });
 }
