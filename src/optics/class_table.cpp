@@ -129,11 +129,15 @@ class ColorRounder {
     const glm::dvec4& scale() const { return scale_; }
 
     ColorDigits operator()(const StepLight& one) const {
-        glm::dvec4 exact = premultiplied(one);
-        for (int c = 0; c < 4; ++c)
-            exact[c] = scale_[c] == 0 ? 0 : exact[c] / largest_[c] * ClassTable::kMax;
+        const glm::dvec4 light = premultiplied(one);
+        const auto unitsOf = [&](int c) {
+            return scale_[c] == 0 ? 0 : light[c] / largest_[c] * ClassTable::kMax;
+        };
+        glm::dvec4 exact(unitsOf(3));
         // Of one colour, all channels are the opacity: equal, however division rounds.
-        for (int c = 0; oneColor_ && c < 3; ++c) exact[c] = scale_[c] == 0 ? 0 : exact.a;
+        for (int c = 0; c < 3; ++c) {
+            if (!oneColor_ || scale_[c] == 0) exact[c] = unitsOf(c);
+        }
         const ColorDigits digits = digitsOf(exact);
         const auto isClear = [](const ClassTable::Color& color) { return color[3] == 0; };
         // What lets all light through shows nothing.
@@ -270,9 +274,8 @@ std::vector<Slot> orderByDigits(std::vector<ColorDigits>& colors, std::vector<Lo
 // Takes a digit of all classes. None are kept if all are zero, unless they must be.
 void takeDigit(const std::vector<ColorDigits>& colors, std::size_t i, bool always,
                ClassTable::Digit& digit) {
-    digit.colors.clear();
-    digit.colors.reserve(colors.size());
-    for (const ColorDigits& color : colors) digit.colors.push_back(color[i]);
+    digit.colors.resize(colors.size());
+    for (std::size_t n = 0; n < colors.size(); ++n) digit.colors[n] = colors[n][i];
     if (!noteUse(digit) && !always) digit.colors.clear();
 }
 

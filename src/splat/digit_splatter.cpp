@@ -10,14 +10,17 @@ void DigitSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     whole_ = slab.whole;
     // What is splatted anew for each slice has to be cleared as well, and a low digit be added,
     // both of which tiles do by the way: that is more than small stamps are worth.
-    const bool suitsStamps = TileSplatter::isWide(input_.footprint) || (!slab.whole && !addsLow_);
+    const bool suitsStamps = TileSplatter::isWide(input_.footprint) || (!slab.whole && !hasLow_);
     stamping_ = !TileSplatter::fits(input_.footprint) || (suitsStamps && isFew(slab));
     sheet_.setLayout(layout);
     if (stamping_) {
         if (!stamps_) stamps_.emplace(input_, largest_, sheet_, digit_);
         stamps_->setLayout(layout);
     } else {
-        if (!tiles_) tiles_.emplace(input_, largest_, sheet_, digit_, addsLow_);
+        if (!tiles_) {
+            const bool withLow = hasLow_ && TileSplatter::addsLow(input_.footprint);
+            tiles_.emplace(input_, largest_, sheet_, digit_, withLow);
+        }
         tiles_->setLayout(layout);
     }
 }
@@ -29,11 +32,11 @@ bool DigitSplatter::isFew(const PlannedSlab& slab) const {
            slab.stamps() < TileSplatter::leastStamps(input_.footprint) * slab.stampedWords();
 }
 
-const Sheet& DigitSplatter::splat(int slice, const NeededPixels& needed) {
+const Sheet& DigitSplatter::splat(int slice, const NeededPixels& needed, const Sheet* low) {
     if (stamping_) {
         stamps_->splat(slice, whole_, needed);
     } else {
-        tiles_->splat(slice, whole_, needed);
+        tiles_->splat(slice, whole_, needed, low);
     }
     return sheet_;
 }
@@ -46,13 +49,14 @@ void DigitSplatter::end() {
     }
 }
 
-double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout, bool addsLow) {
+double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout, bool hasLow) {
     const double blocks = double(layout.blocks.x) * layout.blocks.y;
     // What stamps show, which of them wait, and their list as it grows.
     const double shownBytes = input.colors.own() ? sizeof(ClassTable::Color) : sizeof(ClassIndex);
     const double ofBlock = 64 * shownBytes + 3 * sizeof(BlockStamps) + SliceBlocks::kBytesOfBlock;
+    const bool withLow = hasLow && TileSplatter::addsLow(input.footprint);
     const double tiles = TileSplatter::fits(input.footprint)
-                             ? TileSplatter::bytes(input.footprint, layout, addsLow)
+                             ? TileSplatter::bytes(input.footprint, layout, withLow)
                              : 0;
     return double(layout.bytes()) + ofBlock * blocks + tiles;
 }

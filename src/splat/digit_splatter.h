@@ -13,13 +13,14 @@ namespace deltasplat {
 class DigitSplatter {
   public:
     /// @param largest  of the layouts to come
-    /// @param addsLow  whether the low digit is added to this, the high one, where that is summed
+    /// @param hasLow   whether the low digit is added to this, the high one, where that is summed:
+    ///                 along with it (TileSplatter::addsLow), or as a sheet
     DigitSplatter(const SplatInput& input, const SheetLayout& largest, DigitPlace digit,
-                  bool addsLow)
+                  bool hasLow)
         : input_(input),
           largest_(largest),
           digit_(digit),
-          addsLow_(addsLow),
+          hasLow_(hasLow),
           sheet_(largest, input.memory) {
         const DigitVoxels* voxels = input.colors.digitVoxels();
         if (voxels && voxels->of(digit))
@@ -35,14 +36,15 @@ class DigitSplatter {
     /// Makes the sheet of the slab's next slice, and returns it. Deltas are added to what the slice
     /// before left; of a whole slab, each slice starts anew.
     /// @param needed  others may hold an earlier slice, or part of this one
-    const Sheet& splat(int slice, const NeededPixels& needed);
+    /// @param low     the sheet of the low digit, or null
+    const Sheet& splat(int slice, const NeededPixels& needed, const Sheet* low = nullptr);
     /// Whether the slab in hand is stamped: then the low digit is not added.
     bool isStamping() const { return stamping_; }
     /// Ends a slab.
     void end();
 
     /// Bytes that it takes.
-    static double bytes(const SplatInput& input, const SheetLayout& layout, bool addsLow);
+    static double bytes(const SplatInput& input, const SheetLayout& layout, bool hasLow);
 
   private:
     bool isFew(const PlannedSlab& slab) const;
@@ -50,7 +52,7 @@ class DigitSplatter {
     const SplatInput& input_;
     SheetLayout largest_;
     DigitPlace digit_;
-    bool addsLow_;
+    bool hasLow_;
     std::optional<bool> isFew_;  // of several digits: whether few voxels of a block have this one
     Sheet sheet_;
     std::optional<StampSplatter> stamps_;  // each made when it is first needed

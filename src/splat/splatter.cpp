@@ -13,40 +13,39 @@ bool hasLow(const SplatInput& input, int plane) {
 PlaneSplatter::PlaneSplatter(const SplatInput& input, const SheetLayout& largest, int plane)
     : input_(input),
       largest_(largest),
-      plane_(plane),
-      hasLow_(hasLow(input, plane)),
-      high_(input, largest, {plane, false}, hasLow_) {}
+      high_(input, largest, {plane, false}, hasLow(input, plane)) {
+    if (hasLow(input, plane) && !TileSplatter::addsLow(input.footprint))
+        low_.emplace(input, largest, DigitPlace{plane, true}, false);
+}
 
 void PlaneSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
+    if (low_) low_->begin(slab, layout);
     high_.begin(slab, layout);
     if (!sumsDigits()) return;
-    if (!low_) {
-        low_.emplace(input_, largest_, DigitPlace{plane_, true}, false);
-        sum_.emplace(largest_, input_.memory);
-    }
-    low_->begin(slab, layout);
+    if (!sum_) sum_.emplace(largest_, input_.memory);
     sum_->setLayout(layout);
 }
 
 const Sheet& PlaneSplatter::splat(int slice, const NeededPixels& needed) {
+    if (!low_) return high_.splat(slice, needed);
+    const Sheet& low = low_->splat(slice, needed);
+    if (!sumsDigits()) return high_.splat(slice, needed, &low);
     const Sheet& high = high_.splat(slice, needed);
-    if (!sumsDigits()) return high;
-    sum_->addDigits(high, low_->splat(slice, needed), needed.firstRow, needed.lastRow);
+    sum_->addDigits(high, low, needed.firstRow, needed.lastRow);
     return *sum_;
 }
 
 void PlaneSplatter::end() {
+    if (low_) low_->end();
+    if (sumsDigits()) sum_->clear();
     high_.end();
-    if (!sumsDigits()) return;
-    low_->end();
-    sum_->clear();
 }
 
 double PlaneSplatter::bytes(const SplatInput& input, const SheetLayout& layout, int plane) {
-    const bool addsLow = hasLow(input, plane);
-    const double high = DigitSplatter::bytes(input, layout, addsLow);
-    if (!addsLow || !TileSplatter::isWide(input.footprint)) return high;
-    return high + DigitSplatter::bytes(input, layout, false) + double(layout.bytes());
+    const bool isTwo = hasLow(input, plane);
+    const double high = DigitSplatter::bytes(input, layout, isTwo);
+    if (!isTwo || TileSplatter::addsLow(input.footprint)) return high;
+    return 2 * high + (TileSplatter::isWide(input.footprint) ? double(layout.bytes()) : 0);
 }
 
 Splatter::Splatter(const SplatInput& input, const SheetLayout& largest) : input_(input) {

@@ -27,16 +27,13 @@ class PlaneSplatter {
 
   private:
     // Of the slab in hand: tiles add the low digit themselves.
-    bool sumsDigits() const { return hasLow_ && high_.isStamping(); }
+    bool sumsDigits() const { return low_ && high_.isStamping(); }
 
     const SplatInput& input_;
     SheetLayout largest_;
-    int plane_;
-    bool hasLow_;
+    std::optional<DigitSplatter> low_;  // where it is not summed along with the high one
     DigitSplatter high_;
-    // Made when stamps first make the high one; the sum is that of both.
-    std::optional<DigitSplatter> low_;
-    std::optional<Sheet> sum_;
+    std::optional<Sheet> sum_;  // of both, made when stamps first make the high one
 };
 
 /// Turns slabs into sheets of all planes of colours.

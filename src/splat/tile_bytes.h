@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -22,12 +21,6 @@ inline void forTiles(std::span<const std::uint8_t> tiles, const Use& use) {
             if (tiles[i] != 0) use(i);
         }
     }
-}
-
-/// Returns rows of a tile, and those between them.
-inline unsigned withRowsBetween(unsigned rows) {
-    if (rows == 0) return 0;
-    return 0xFFu << std::countr_zero(rows) & ((1u << std::bit_width(rows)) - 1);
 }
 
 }  // namespace deltasplat

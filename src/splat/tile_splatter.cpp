@@ -50,9 +50,7 @@ TileSplatter::TileSplatter(const SplatInput& input, const SheetLayout& largest, 
     if (!withLow) return;
     const DigitPlace low{digit.plane, true};
     low_.emplace(Low{planeOf(low.of(input.colors.table()).colors, input.memory),
-                     std::vector<std::uint8_t>(sheet.markBytes()),
-                     {},
-                     std::pmr::vector<std::int32_t>(&input.memory)});
+                     std::vector<std::uint8_t>(sheet.markBytes())});
 }
 
 TileSplatter::Plane TileSplatter::planeOf(const std::vector<ClassTable::Color>& colors,
@@ -69,11 +67,10 @@ double TileSplatter::bytes(const Footprint& footprint, const SheetLayout& layout
     // What blocks show, which of them do, twice, and what waits.
     const double ofBlock = sizeof(Shown) + 4 * sizeof(glm::ivec2) + SliceBlocks::kBytesOfBlock;
     const double ofPlane = double(sizeof(std::int16_t)) * double(plane.pitch) * double(plane.rows);
-    const double ofLow = ofPlane + double(layout.bytes()) / layout.tiles().y;
-    return ofPlane + (withLow ? ofLow : 0) + ofBlock * blocks;
+    return (withLow ? 2 : 1) * ofPlane + ofBlock * blocks;
 }
 
-void TileSplatter::splat(int slice, bool whole, const NeededPixels& needed) {
+void TileSplatter::splat(int slice, bool whole, const NeededPixels& needed, const Sheet* low) {
     if (whole) {
         paintWhole(slice, needed);
     } else {
@@ -81,54 +78,46 @@ void TileSplatter::splat(int slice, bool whole, const NeededPixels& needed) {
     }
     const auto refill = [&](int row, std::span<const std::uint8_t> touched,
                             std::span<std::uint8_t> full) {
-        const TileRow tiles = sheet_.tileRow(row);
-        if (const auto* weights = std::get_if<TileWeights>(&weights_)) {
-            LowRow low;
-            if (low_) low = {pairedRow(low_->plane, row), lowRows(row)};
-            return splatTiles(*weights, pairedRow(high_, row), low, tiles, touched, full);
-        }
-        sumTiles(high_, row, tiles, touched, full);
-        if (low_) addLow(row, tiles, touched, full);
+        sumTiles(row, touched, full);
+        if (low) addLow(*low, row, touched, full);
     };
     if (!needed.cover) return sheet_.refillTouched(needed.firstRow, needed.lastRow, refill);
     const auto isHidden = [&](glm::ivec2 tile) { return needed.cover->hidesTile(tile); };
     sheet_.refillTouched(needed.firstRow, needed.lastRow, isHidden, refill);
 }
 
-// Adds the low digit to what has been made of a row of tiles, of rows between touched ones as well,
-// unless weights are of tiles, which do that themselves.
-void TileSplatter::addLow(int row, const TileRow& tiles, std::span<const std::uint8_t> touched,
+// Rows between touched ones were made too.
+void TileSplatter::addLow(const Sheet& low, int row, std::span<const std::uint8_t> touched,
                           std::span<std::uint8_t> full) {
-    const std::span<std::uint8_t> low = lowRows(row);
-    low_->made.assign(touched.size(), 0);
-    unsigned any = 0;
+    lowRows_.assign(touched.size(), 0);
+    const std::span<const std::uint8_t> lowFull = low.fullRows(row);
     forTiles(touched, [&](std::size_t i) {
-        low_->made[i] = std::uint8_t(withRowsBetween(touched[i]) & low[i]);
-        any |= low_->made[i];
+        const unsigned first = unsigned(std::countr_zero(touched[i]));
+        const unsigned made = 0xFFu << first & ((1u << std::bit_width(touched[i])) - 1);
+        lowRows_[i] = std::uint8_t(made & lowFull[i]);
     });
-    if (any == 0) return;
-    low_->sums.resize(kTilePixels * tiles.sheetPitch);
-    const TileRow sums{low_->sums.data(), tiles.sheetPitch};
-    sumTiles(low_->plane, row, sums, low_->made, low);
-    for (std::size_t i = 0; i < low.size(); ++i) low_->made[i] &= low[i];
-    addLowDigits({tiles.sheet, sums.sheet, sums.sheetPitch}, sheet_.layout().channels, low_->made,
-                 tiles.sheet, full);
+    const TileRow tiles = sheet_.tileRow(row);
+    addLowDigits({tiles.sheet, low.row(kTilePixels * row), tiles.sheetPitch},
+                 sheet_.layout().channels, lowRows_, tiles.sheet, full);
 }
 
-std::span<std::uint8_t> TileSplatter::lowRows(int row) {
-    const std::size_t count = sheet_.fullRows(row).size();
-    return {&low_->rows[count * std::size_t(row)], count};
-}
-
-// Sums up touched rows of a digit; likewise.
-void TileSplatter::sumTiles(Plane& plane, int row, const TileRow& tiles,
-                            std::span<const std::uint8_t> touched, std::span<std::uint8_t> full) {
-    if (const auto* coarse = std::get_if<CoarseWeights>(&weights_))
-        return splatCoarse(*coarse, planeRow(plane, row), tiles, touched, full);
-    const glm::ivec2 pixel(0, kTilePixels * row);
-    const CellPlane from{numbersAt(plane, glm::ivec2(size_.margin)), size_.pitch,
-                         pixel - sheet_.layout().marginPixels};
-    splatCells(std::get<CellWeights>(weights_), from, tiles, touched, full);
+void TileSplatter::sumTiles(int row, std::span<const std::uint8_t> touched,
+                            std::span<std::uint8_t> full) {
+    const TileRow tiles = sheet_.tileRow(row);
+    if (const auto* weights = std::get_if<TileWeights>(&weights_)) {
+        LowRow low;
+        if (low_)
+            low = {pairedRow(low_->plane, row),
+                   {&low_->rows[touched.size() * row], touched.size()}};
+        splatTiles(*weights, pairedRow(high_, row), low, tiles, touched, full);
+    } else if (const auto* coarse = std::get_if<CoarseWeights>(&weights_)) {
+        splatCoarse(*coarse, planeRow(high_, row), tiles, touched, full);
+    } else {
+        const glm::ivec2 pixel(0, kTilePixels * row);
+        const CellPlane from{numbersAt(high_, glm::ivec2(size_.margin)), size_.pitch,
+                             pixel - sheet_.layout().marginPixels};
+        splatCells(std::get<CellWeights>(weights_), from, tiles, touched, full);
+    }
 }
 
 PairedRow TileSplatter::pairedRow(Plane& plane, int row) const {

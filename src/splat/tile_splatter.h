@@ -30,6 +30,9 @@ class TileSplatter {
         return !TileWeights::fits(footprint) && !CoarseWeights::fits(footprint);
     }
 
+    /// Whether low digits are summed along with high ones.
+    static bool addsLow(const Footprint& footprint) { return TileWeights::fits(footprint); }
+
     /// Returns how many voxels of a block a slice has to stamp for this to be faster than stamping
     /// them: none where voxels share pixels, which nobody stamps.
     static std::uint64_t leastStamps(const Footprint& footprint);
@@ -41,7 +44,8 @@ class TileSplatter {
     /// @param largest  of the layouts to come
     /// @param sheet    of that layout; zero whenever a slab begins
     /// @param digit    of colours
-    /// @param withLow  whether the low digit is added to this, the high one; there must be one
+    /// @param withLow  whether the low digit is added to this, the high one: there must be one, and
+    ///                 the smallest footprints, as addsLow() says
     TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
                  DigitPlace digit = {}, bool withLow = false);
 
@@ -49,7 +53,8 @@ class TileSplatter {
     void setLayout(const SheetLayout& layout) { blocks_.setLayout(layout); }
     /// Makes the sheet that of the slice, after the one before it if it is not whole.
     /// @param needed  what will be read; the rest is made when it is
-    void splat(int slice, bool whole, const NeededPixels& needed);
+    /// @param low     if not null, the sheet of the low digit, which is added
+    void splat(int slice, bool whole, const NeededPixels& needed, const Sheet* low = nullptr);
     /// Makes everything as it was before the first slice.
     void clear();
 
@@ -76,9 +81,7 @@ class TileSplatter {
     // What the low digit takes besides.
     struct Low {
         Plane plane;
-        std::vector<std::uint8_t> rows;       // [tile]: that may have it, as Sheet::mark() has them
-        std::vector<std::uint8_t> made;       // likewise, of the row of tiles in hand
-        std::pmr::vector<std::int32_t> sums;  // of that row, as the sheet's
+        std::vector<std::uint8_t> rows;  // [tile]: that may have it, as Sheet::mark() has them
     };
 
     static PlaneSize planeSize(const Footprint& footprint, const SheetLayout& layout);
@@ -87,11 +90,9 @@ class TileSplatter {
     void paintChanges(int slice, const NeededPixels& needed);
     void paintWhole(int slice, const NeededPixels& needed);
     void takeAway(glm::ivec2 block);
-    void sumTiles(Plane& plane, int row, const TileRow& tiles,
-                  std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
-    void addLow(int row, const TileRow& tiles, std::span<const std::uint8_t> touched,
+    void sumTiles(int row, std::span<const std::uint8_t> touched, std::span<std::uint8_t> full);
+    void addLow(const Sheet& low, int row, std::span<const std::uint8_t> touched,
                 std::span<std::uint8_t> full);
-    std::span<std::uint8_t> lowRows(int row);
     PlaneRow planeRow(Plane& plane, int row) const;
     PairedRow pairedRow(Plane& plane, int row) const;
     // Whether planes hold two rows together, as the smallest weights take them.
@@ -108,7 +109,8 @@ class TileSplatter {
     std::variant<TileWeights, CellWeights, CoarseWeights> weights_;
     PlaneSize size_;  // of planes
     Plane high_;
-    std::optional<Low> low_;
+    std::optional<Low> low_;               // if summed along
+    std::vector<std::uint8_t> lowRows_;    // [tile]: of another sheet, of the row of tiles in hand
     std::pmr::vector<Shown> shown_;        // [block]
     std::vector<glm::ivec2> shownBlocks_;  // those with voxels
     std::vector<glm::ivec2> before_;       // likewise, in the slice before
