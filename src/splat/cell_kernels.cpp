@@ -63,6 +63,7 @@ class CellSums {
         for (int i = first; i < last; ++i) {
             const int pixel = plane_.pixel.x + kTilePixels * i;
             const int x = pixel - kResolution * floorDiv(pixel, kResolution);
+            if (touched[i] == 0xFF && makeTile(i, x, full[i])) continue;
             const unsigned found = forRows(touched[i], [&](int low, int high) HWY_ATTR {
                 unsigned any = 0;
                 for (int y = low; y <= high; ++y) any |= unsigned{makeRow(i, x, y)} << y;
@@ -120,6 +121,80 @@ class CellSums {
             const std::int32_t both = voxel[0] | std::int32_t{voxel[plane_.pitch]} << 16;
             hn::StoreU(hn::Set(tag, both), tag, out);
         }
+    }
+
+    // Makes all rows of a tile whose first pixel is the x-th of its cell, if its first row is one
+    // that tiles begin with: of cells of three pixels any, else the first.
+    HWY_INLINE bool makeTile(int tile, int x, std::uint8_t& full) const {
+        if constexpr (kResolution == 3) {
+            full = std::uint8_t(rowsInCell_[0] == 0   ? makeTileFrom<0>(tile, x)
+                                : rowsInCell_[0] == 1 ? makeTileFrom<1>(tile, x)
+                                                      : makeTileFrom<2>(tile, x));
+            return true;
+        }
+        if (rowsInCell_[0] != 0) return false;
+        full = std::uint8_t(makeTileFrom<0>(tile, x));
+        return true;
+    }
+
+    // Makes all rows of a tile that begins with row kFirst of a cell, and returns which are not all
+    // zero. What is read of a row of pairs goes to all rows of pixels that take it; each sum has a
+    // name, so that it stays in a register.
+    template <int kFirst>
+    HWY_INLINE unsigned makeTileFrom(int tile, int x) const {
+        const Tag tag;
+        const int first = kChannels * (kTilePixels * tile - kBefore * kResolution - pairsBegin_);
+        unsigned full = 0;
+        for (int i = 0; i < kRow; i += int(hn::Lanes(tag))) {
+            const CellWeights::Line* weights[kResolution];
+            for (int y = 0; y < kResolution; ++y) weights[y] = weights_.from(x, y);
+            V s0 = hn::Zero(tag), s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0;
+            addRowsOfPairs<kFirst, 0>(first + i, weights, s0, s1, s2, s3, s4, s5, s6, s7);
+            std::int32_t* sheet = row_.sheet + kRow * std::size_t(tile) + i;
+            const auto finish = [&](int y, V sum) HWY_ATTR {
+                hn::StoreU(sum, tag, sheet + y * row_.sheetPitch);
+                full |= unsigned{!hn::AllTrue(tag, hn::Eq(sum, hn::Zero(tag)))} << y;
+            };
+            finish(0, s0);
+            finish(1, s1);
+            finish(2, s2);
+            finish(3, s3);
+            finish(4, s4);
+            finish(5, s5);
+            finish(6, s6);
+            finish(7, s7);
+            x = (x + int(hn::Lanes(tag)) / kChannels) % kResolution;
+        }
+        return full;
+    }
+
+    // Adds what rows of pixels take of rows of pairs from kPairs on.
+    template <int kFirst, int kPairs, class... Sums>
+    HWY_INLINE void addRowsOfPairs(int first,
+                                   const CellWeights::Line* const (&weights)[kResolution],
+                                   Sums&... sums) const {
+        constexpr int kLastCell = (kFirst + kTilePixels - 1) / kResolution;
+        const std::int32_t* pairs = &pairs_[kPairs][first];
+        // Unrolled by GCC, products would wait for their turn in memory.
+#pragma GCC unroll 1
+        for (int tap = 0; tap < kTaps; ++tap) {
+            const V colors = hn::LoadU(Tag(), pairs + tap * kStep);
+            addTo<kPairs, kFirst>(colors, tap, weights, sums...);
+        }
+        if constexpr (kPairs < kLastCell + 2 * (kRowPairs - 1))
+            addRowsOfPairs<kFirst, kPairs + 1>(first, weights, sums...);
+    }
+    // To the row that is the kY-th from where the first cell begins, and to those behind it.
+    template <int kPairs, int kY, class... Sums>
+    static HWY_INLINE void addTo(V colors, int tap,
+                                 const CellWeights::Line* const (&weights)[kResolution], V& sum,
+                                 Sums&... behind) {
+        constexpr int kBehind = kPairs - kY / kResolution;
+        if constexpr (kBehind >= 0 && kBehind < 2 * kRowPairs && kBehind % 2 == 0) {
+            const CellWeights::Line& line = weights[kY % kResolution][kBehind / 2 * kTaps + tap];
+            sum = hn::Add(sum, productsOfPairs(Tag(), colors, hn::Load(Tag(), line.data())));
+        }
+        if constexpr (sizeof...(Sums) > 0) addTo<kPairs, kY + 1>(colors, tap, weights, behind...);
     }
 
     // Makes row y of a tile whose first pixel is the x-th of its cell, and returns whether it is

@@ -31,43 +31,27 @@ class TileSums {
     static constexpr int kPairRows = 2 * kResolution;
 
   public:
-    explicit TileSums(const TileWeights& weights) {
-        for (int row = 0; row < kPairRows; ++row) {
-            const TileWeights::Row& from = weights.rows[std::size_t(row)];
-            load(from.before, weights_[row].before);
-            load(from.here, weights_[row].here);
-            load(from.behind, weights_[row].behind);
-        }
-    }
+    explicit TileSums(const TileWeights& weights) : weights_(weights) {}
 
-    // Makes rows of a tile and returns which of them are not all zero. Inlined, so that the loops
-    // unroll where all rows are asked for.
+    // Makes rows of a tile and returns which of them are not all zero.
+    template <bool kIsAll>
     HWY_INLINE unsigned makeRows(const PairedRow& tile, std::int32_t* HWY_RESTRICT sheet,
                                  std::size_t sheetPitch, unsigned rows) const {
-        unsigned full = 0;
-        forSums(tile, rows, [&](int y, int i, V sum) HWY_ATTR {
-            hn::StoreU(sum, Tag(), sheet + y * sheetPitch + i);
-            full |= unsigned{isAny(sum)} << y;
-        });
-        return full;
+        Made made{0, 0};
+        sumRows<kIsAll, false>(tile, sheet, sheetPitch, rows, made);
+        return made.full;
     }
 
     // Adds low digits to rows of a tile that hold high ones.
     // @param full  bits are set of rows that are not all zero now
     // @return of these rows, those in which any low digit is other than zero
+    template <bool kIsAll>
     HWY_INLINE unsigned addLowRows(const PairedRow& tile, std::int32_t* HWY_RESTRICT sheet,
                                    std::size_t sheetPitch, unsigned rows, unsigned& full) const {
-        const V half = hn::Set(Tag(), 1 << (ClassTable::kDigitBits - 1));
-        unsigned low = 0;
-        forSums(tile, rows, [&](int y, int i, V sum) HWY_ATTR {
-            std::int32_t* to = sheet + y * sheetPitch + i;
-            const V all = hn::Add(hn::LoadU(Tag(), to),
-                                  hn::ShiftRight<ClassTable::kDigitBits>(hn::Add(sum, half)));
-            hn::StoreU(all, Tag(), to);
-            low |= unsigned{isAny(sum)} << y;
-            full |= unsigned{isAny(all)} << y;
-        });
-        return low;
+        Made made{full, 0};
+        sumRows<kIsAll, true>(tile, sheet, sheetPitch, rows, made);
+        full = made.full;
+        return made.low;
     }
 
   private:
@@ -78,34 +62,64 @@ class TileSums {
     // A vector may be shorter than the pixels of a voxel: then weights differ from one to the next.
     static constexpr int kStep = kResolution * kChannels;
     static constexpr int kPhases = kStep > kLanes ? kStep / kLanes : 1;
-    struct RowWeights {
-        Columns before[kPhases], here[kPhases], behind[kPhases];
+    // Those that are not zero, of rows 0 to 3 of a pair. Each by its name, so that they stay in
+    // registers.
+    struct Weights {
+        Columns before0, here0, here1, here2, here3, behind1, behind2, behind3;
     };
 
     static HWY_INLINE bool isAny(V lanes) {
         return !hn::AllTrue(Tag(), hn::Eq(lanes, hn::Zero(Tag())));
     }
 
-    // Calls use(y, i, sum) for each vector of pixels of rows, a bit for each; i is its first number
-    // in the row.
-    template <typename Use>
-    HWY_INLINE void forSums(const PairedRow& tile, unsigned rows, const Use& use) const {
-        const int firstPair = std::countr_zero(rows) / kPairRows;
-        const int lastPair = (int(std::bit_width(rows)) - 1) / kPairRows;
+    // Rows that are not all zero, and those with low digits.
+    struct Made {
+        unsigned full, low;
+    };
+
+    // Writes what a row has from number `to` on, or adds it as the low digit.
+    template <bool kIsLow>
+    static HWY_INLINE void finish(V sum, std::int32_t* HWY_RESTRICT to, int y, Made& made) {
+        const Tag tag;
+        if constexpr (kIsLow) {
+            made.low |= unsigned{isAny(sum)} << y;
+            const V half = hn::Set(tag, 1 << (ClassTable::kDigitBits - 1));
+            sum = hn::Add(hn::LoadU(tag, to),
+                          hn::ShiftRight<ClassTable::kDigitBits>(hn::Add(sum, half)));
+        }
+        hn::StoreU(sum, tag, to);
+        made.full |= unsigned{isAny(sum)} << y;
+    }
+
+    template <bool kIsAll, bool kIsLow>
+    HWY_INLINE void sumRows(const PairedRow& tile, std::int32_t* HWY_RESTRICT sheet,
+                            std::size_t pitch, unsigned rows, Made& made) const {
+        constexpr int kPairs = kTilePixels / kPairRows;
+        const int firstPair = kIsAll ? 0 : std::countr_zero(rows) / kPairRows;
+        const int lastPair = kIsAll ? kPairs - 1 : (int(std::bit_width(rows)) - 1) / kPairRows;
         for (int i = 0; i < kRow; i += kLanes) {
-            const int phase = i / kLanes % kPhases;
+            const Weights w = weightsAt(i / kLanes % kPhases);
             Columns before = columnsAt(tile, firstPair - 1, i);
             Columns here = columnsAt(tile, firstPair, i);
-            for (int pair = firstPair; pair <= lastPair; ++pair) {
+            std::int32_t* to = sheet + kPairRows * firstPair * pitch + i;
+#pragma GCC unroll 4
+            for (int pair = firstPair; pair <= lastPair; ++pair, to += kPairRows * pitch) {
                 const Columns behind = columnsAt(tile, pair + 1, i);
-                for (int row = 0; row < kPairRows; ++row) {
-                    const int y = kPairRows * pair + row;
-                    if ((rows >> y & 1) == 0) continue;
-                    PairSum<Tag> sum;
-                    if (row == 0) add(before, weights_[row].before[phase], sum);
-                    add(here, weights_[row].here[phase], sum);
-                    if (row >= kResolution) add(behind, weights_[row].behind[phase], sum);
-                    use(y, i, sum.total());
+                const int y = kPairRows * pair;
+                const unsigned asked = kIsAll ? 0xFF : rows >> y;
+                if (asked & 1) finish<kIsLow>(sumOf(before, w.before0, here, w.here0), to, y, made);
+                if constexpr (kResolution == 1) {
+                    if (asked & 2)
+                        finish<kIsLow>(sumOf(here, w.here1, behind, w.behind1), to + pitch, y + 1,
+                                       made);
+                } else {
+                    if (asked & 2) finish<kIsLow>(sumOf(here, w.here1), to + pitch, y + 1, made);
+                    if (asked & 4)
+                        finish<kIsLow>(sumOf(here, w.here2, behind, w.behind2), to + 2 * pitch,
+                                       y + 2, made);
+                    if (asked & 8)
+                        finish<kIsLow>(sumOf(here, w.here3, behind, w.behind3), to + 3 * pitch,
+                                       y + 3, made);
                 }
                 before = here;
                 here = behind;
@@ -113,10 +127,16 @@ class TileSums {
         }
     }
 
-    static HWY_INLINE void add(const Columns& colors, const Columns& weights, PairSum<Tag>& sum) {
+    static HWY_INLINE V sumOf(const Columns& colors, const Columns& weights) {
+        PairSum<Tag> sum;
         sum.add(colors.before, weights.before);
         sum.add(colors.here, weights.here);
         sum.add(colors.behind, weights.behind);
+        return sum.total();
+    }
+    static HWY_INLINE V sumOf(const Columns& a, const Columns& weightsOfA, const Columns& b,
+                              const Columns& weightsOfB) {
+        return hn::Add(sumOf(a, weightsOfA), sumOf(b, weightsOfB));
     }
 
     static HWY_INLINE Columns columnsAt(const PairedRow& tile, int pair, int i) {
@@ -141,16 +161,20 @@ class TileSums {
         return hn::TableLookupLanes(voxels, hn::SetTableIndices(tag, places));
     }
 
-    static void load(const TileWeights::Columns& columns, Columns (&weights)[kPhases]) {
-        for (int phase = 0; phase < kPhases; ++phase) {
+    HWY_INLINE Weights weightsAt(int phase) const {
+        const auto load = [&](const TileWeights::Columns& columns) HWY_ATTR {
             const auto at = [&](std::size_t column) HWY_ATTR {
                 return hn::LoadU(Tag(), &columns[column][std::size_t(phase * kLanes)]);
             };
-            weights[phase] = {at(0), at(1), at(2)};
-        }
+            return Columns{at(0), at(1), at(2)};
+        };
+        const auto& rows = weights_.rows;
+        return {load(rows[0].before), load(rows[0].here),  load(rows[1].here),
+                load(rows[2].here),   load(rows[3].here),  load(rows[1].behind),
+                load(rows[2].behind), load(rows[3].behind)};
     }
 
-    RowWeights weights_[kPairRows];
+    const TileWeights& weights_;
 };
 
 template <int kChannels, int kResolution>
@@ -167,16 +191,17 @@ void splatTilesOf(const TileWeights& weights, const PairedRow& plane, const LowR
         const unsigned rows = touched[i];
         std::int32_t* sheet = row.sheet + kColumn * i;
         const PairedRow tile = tileOf(plane, i);
-        // With a constant loops unroll.
-        const unsigned found = rows == kAll ? sums.makeRows(tile, sheet, row.sheetPitch, kAll)
-                                            : sums.makeRows(tile, sheet, row.sheetPitch, rows);
+        const unsigned found =
+            rows == kAll ? sums.template makeRows<true>(tile, sheet, row.sheetPitch, kAll)
+                         : sums.template makeRows<false>(tile, sheet, row.sheetPitch, rows);
         unsigned now = (full[i] & ~rows) | found;
         const unsigned lowRows = low.rows.empty() ? 0 : rows & low.rows[i];
         if (lowRows != 0) {
             const PairedRow lowTile = tileOf(low.plane, i);
             const unsigned any =
-                lowRows == kAll ? sums.addLowRows(lowTile, sheet, row.sheetPitch, kAll, now)
-                                : sums.addLowRows(lowTile, sheet, row.sheetPitch, lowRows, now);
+                lowRows == kAll
+                    ? sums.template addLowRows<true>(lowTile, sheet, row.sheetPitch, kAll, now)
+                    : sums.template addLowRows<false>(lowTile, sheet, row.sheetPitch, lowRows, now);
             low.rows[i] = std::uint8_t((low.rows[i] & ~lowRows) | any);
         }
         full[i] = std::uint8_t(now);
