@@ -15,13 +15,14 @@ constexpr int kShortSlab = 4;  // blocks of 8 slices: slabs up to this length ma
 // The most deltas that key slices may add, as a share of all others, as long as there may be fewer.
 constexpr double kMostKeyDeltas = 0.03;
 
-// A stamp of a whole slice costs a little more: what it replaces must be taken away. Where few
-// voxels change, they are stamped, which is faster still; from how many on depends on the footprint
-// (TileSplatter::leastStamps), which is not known here: the least is right for the smallest ones.
-bool isSmallerWhole(const PlannedSlab& slab) {
+// At equal numbers whole slices cost a little less: nobody has to keep account of what waits. Where
+// few voxels change, they may be stamped, which is faster still; from how many on depends on the
+// footprint (TileSplatter::leastStamps), which is not known here: the least is right for the
+// smallest ones.
+bool isSmallerWhole(const PlannedSlab& slab, bool stampsFew) {
     constexpr std::uint64_t kFew = 12;
-    return slab.changesFewerThan(kFew) ? 8 * slab.visible < 5 * slab.deltas
-                                       : 5 * slab.visible < 4 * slab.deltas;
+    return stampsFew && slab.changesFewerThan(kFew) ? 8 * slab.visible < 5 * slab.deltas
+                                                    : 4 * slab.visible < 5 * slab.deltas;
 }
 
 bool isWhole(const PlannedSlab& slab, Encoding encoding) {
@@ -31,7 +32,9 @@ bool isWhole(const PlannedSlab& slab, Encoding encoding) {
         case Encoding::kWhole:
             return true;
         case Encoding::kSmaller:
-            return isSmallerWhole(slab);
+            return isSmallerWhole(slab, true);
+        case Encoding::kSmallerOfSums:
+            return isSmallerWhole(slab, false);
         case Encoding::kFewerWords:
             return slab.seenWords <= slab.words;
     }

@@ -11,11 +11,12 @@ namespace deltasplat {
 
 /// How the slices of a picture's slabs are splatted.
 enum class Encoding {
-    kChanges,    ///< as one key slice a slab, then deltas (method `delta`)
-    kWhole,      ///< every slice anew (`sparse` and `traditional`)
-    kSmaller,    ///< for each slab kWhole if that takes fewer stamps by a fifth, or by three
-                 ///< eighths where few voxels of a block change, which kChanges suits
-    kFewerWords  ///< for each slab kWhole if no more of its words have anything to stamp
+    kChanges,  ///< as one key slice a slab, then deltas (method `delta`)
+    kWhole,    ///< every slice anew (`sparse` and `traditional`)
+    kSmaller,  ///< for each slab kWhole unless kChanges takes fewer stamps by a fifth; where few
+               ///< voxels of a block change, only if it takes fewer itself by three eighths
+    kSmallerOfSums,  ///< the same where few voxels are nothing else, for they are not stamped
+    kFewerWords      ///< for each slab kWhole if no more of its words have anything to stamp
 };
 
 /// A slab as a picture is rendered from it.

@@ -57,13 +57,15 @@ class CellSums {
     HWY_INLINE void makeRun(int first, int last, std::span<const std::uint8_t> touched,
                             std::span<std::uint8_t> full) {
         unsigned rows = 0;
-        for (int i = first; i < last; ++i) rows |= touched[i];
+        for (int i = first; i < last; ++i)
+            rows |= rowsBetween(touched[i]) >= kMostRows ? 0xFFu : touched[i];
         forRows(rows, [&](int low, int high)
                           HWY_ATTR { pairUp(first, last, cells_[low], cells_[high]); });
         for (int i = first; i < last; ++i) {
             const int pixel = plane_.pixel.x + kTilePixels * i;
             const int x = pixel - kResolution * floorDiv(pixel, kResolution);
-            if (touched[i] == 0xFF && makeTile(i, x, full[i])) continue;
+            if (rowsBetween(touched[i]) >= kMostRows && makeTile(i, x, touched[i], full[i]))
+                continue;
             const unsigned found = forRows(touched[i], [&](int low, int high) HWY_ATTR {
                 unsigned any = 0;
                 for (int y = low; y <= high; ++y) any |= unsigned{makeRow(i, x, y)} << y;
@@ -123,27 +125,38 @@ class CellSums {
         }
     }
 
-    // Makes all rows of a tile whose first pixel is the x-th of its cell, if its first row is one
+    // Of so many rows, the first touched one to the last, summing all of a tile is faster.
+    static constexpr int kMostRows = 6;
+    static HWY_INLINE int rowsBetween(unsigned touched) {
+        return int(std::bit_width(touched)) - std::countr_zero(touched);
+    }
+
+    // Makes the rows of a tile whose first pixel is the x-th of its cell, if its first row is one
     // that tiles begin with: of cells of three pixels any, else the first.
-    HWY_INLINE bool makeTile(int tile, int x, std::uint8_t& full) const {
+    HWY_INLINE bool makeTile(int tile, int x, unsigned touched, std::uint8_t& full) const {
+        if (kResolution != 3 && rowsInCell_[0] != 0) return false;
+        unsigned found = 0;
         if constexpr (kResolution == 3) {
-            full = std::uint8_t(rowsInCell_[0] == 0   ? makeTileFrom<0>(tile, x)
-                                : rowsInCell_[0] == 1 ? makeTileFrom<1>(tile, x)
-                                                      : makeTileFrom<2>(tile, x));
-            return true;
+            found = rowsInCell_[0] == 0   ? makeTileFrom<0>(tile, x, touched)
+                    : rowsInCell_[0] == 1 ? makeTileFrom<1>(tile, x, touched)
+                                          : makeTileFrom<2>(tile, x, touched);
+        } else {
+            found = makeTileFrom<0>(tile, x, touched);
         }
-        if (rowsInCell_[0] != 0) return false;
-        full = std::uint8_t(makeTileFrom<0>(tile, x));
+        full = std::uint8_t((full & ~touched) | (found & touched));
         return true;
     }
 
-    // Makes all rows of a tile that begins with row kFirst of a cell, and returns which are not all
-    // zero. What is read of a row of pairs goes to all rows of pixels that take it; each sum has a
-    // name, so that it stays in a register.
+    // Sums up all rows of a tile that begins with row kFirst of a cell, writes those that are
+    // touched or between touched ones, and says which are not all zero. What is read of a row of
+    // pairs goes to all rows of pixels that take it; each sum has a name, so that it stays in a
+    // register.
     template <int kFirst>
-    HWY_INLINE unsigned makeTileFrom(int tile, int x) const {
+    HWY_INLINE unsigned makeTileFrom(int tile, int x, unsigned touched) const {
         const Tag tag;
         const int first = kChannels * (kTilePixels * tile - kBefore * kResolution - pairsBegin_);
+        const unsigned made =
+            0xFFu << std::countr_zero(touched) & ((1u << std::bit_width(touched)) - 1);
         unsigned full = 0;
         for (int i = 0; i < kRow; i += int(hn::Lanes(tag))) {
             const CellWeights::Line* weights[kResolution];
@@ -152,6 +165,7 @@ class CellSums {
             addRowsOfPairs<kFirst, 0>(first + i, weights, s0, s1, s2, s3, s4, s5, s6, s7);
             std::int32_t* sheet = row_.sheet + kRow * std::size_t(tile) + i;
             const auto finish = [&](int y, V sum) HWY_ATTR {
+                if ((made >> y & 1) == 0) return;
                 hn::StoreU(sum, tag, sheet + y * row_.sheetPitch);
                 full |= unsigned{!hn::AllTrue(tag, hn::Eq(sum, hn::Zero(tag)))} << y;
             };

@@ -94,16 +94,21 @@ TEST(SlabPlan, TakesTheEncodingWithFewerStamps) {
     EXPECT_EQ(plan.slabs[1].visible, 128u);
 }
 
-// Of few changes in a block, whole slices have to save more.
-TEST(SlabPlan, KeepsFewChangesUnlessWholeSlicesSaveMuch) {
-    const auto isWhole = [](int visible, int changed) {
-        const SlabPlan plan = planned(0, 16, visible, changed).plan(Encoding::kSmaller);
-        return plan.slabs.back().whole;
+// Changes have to save a fifth; of few in a block whole slices have to save more, unless these are
+// summed like others.
+TEST(SlabPlan, TakesChangesThatSaveAFifthAndFewUnlessWholeSlicesSaveMuch) {
+    const auto isWhole = [](int visible, int changed, Encoding encoding) {
+        return planned(0, 16, visible, changed).plan(encoding).slabs.back().whole;
     };
-    EXPECT_FALSE(isWhole(5, 7));
-    EXPECT_TRUE(isWhole(5, 9));
-    EXPECT_TRUE(isWhole(20, 28));
-    EXPECT_FALSE(isWhole(20, 22));
+    EXPECT_FALSE(isWhole(5, 7, Encoding::kSmaller));
+    EXPECT_TRUE(isWhole(5, 9, Encoding::kSmaller));
+    for (const Encoding encoding : {Encoding::kSmaller, Encoding::kSmallerOfSums}) {
+        EXPECT_TRUE(isWhole(20, 28, encoding));
+        EXPECT_TRUE(isWhole(20, 17, encoding));
+        EXPECT_FALSE(isWhole(20, 15, encoding));
+    }
+    EXPECT_TRUE(isWhole(5, 7, Encoding::kSmallerOfSums));
+    EXPECT_FALSE(isWhole(8, 5, Encoding::kSmallerOfSums));
 }
 
 TEST(SlabPlan, TakesWholeSlicesWhereTheyHaveNoMoreWords) {

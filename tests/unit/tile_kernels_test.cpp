@@ -87,7 +87,7 @@ PairedRow firstTileOf(const Scene& scene, const std::vector<std::int16_t>& pairs
 }
 
 constexpr int kTiles = 5;
-const std::vector<std::uint8_t> kTouched = {0xFF, 0x01, 0, 0x80, 0x18, 0, 0, 0};
+const std::vector<std::uint8_t> kTouched = {0xFF, 0x01, 0, 0x7E, 0x18, 0, 0, 0};
 
 // Compares every pixel of the tiles and around them, and what is said to be full.
 void expectSums(const Scene& scene, const std::vector<std::int32_t>& sheet,
