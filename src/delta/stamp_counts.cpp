@@ -6,7 +6,8 @@
 
 namespace deltasplat {
 
-StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap) {
+StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap,
+                          bool oneDigit) {
     StampCounts stamps;
     if (volume.empty()) return stamps;
     stamps.traditional = std::uint64_t(volume.box.voxels());
@@ -21,7 +22,8 @@ StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const S
         for (int s = 0; s < layout.slicesOf(block); ++s)
             planner.add(8 * block + s, changes[i].visible[s], changes[i].changed[s]);
     }
-    for (const PlannedSlab& slab : planner.plan(Encoding::kSmaller).slabs) {
+    const Encoding automatic = oneDigit ? Encoding::kSmaller : Encoding::kSmallerOfSums;
+    for (const PlannedSlab& slab : planner.plan(automatic).slabs) {
         stamps.sparse += slab.visible;
         stamps.delta += slab.deltas;
         stamps.automatic += slab.stamps();
