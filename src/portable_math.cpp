@@ -29,7 +29,7 @@ double timesPowerOfTwo(double x, int exponent) {
     return x * std::bit_cast<double>(std::uint64_t(exponent + 1023) << 52);
 }
 
-// As std::floor(), likewise, of less than 2^62.
+// As std::floor(), likewise, of less than 2^62 but -0.
 double wholeBelow(double x) {
     const auto cut = double(std::int64_t(x));
     return cut > x ? cut - 1 : cut;

@@ -95,8 +95,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
         classes = classify(seen, scene.optics, straight);
     }
     listener.report(0.05);
-    // Two digits are summed along with each other (TileSplatter::addsLow).
-    if (encoding == Encoding::kSmaller && !classes.oneDigit()) encoding = Encoding::kSmallerOfSums;
+    if (encoding == Encoding::kSmaller) encoding = smallerEncoding(classes.oneDigit());
     std::shared_ptr<const PackedDeltas> words = sharedWords(before, scene, classes);
     PackOptions pack{sliceAxis, encoding, classes.classOfSlot, holdRule(seen, classes, tolerance),
                      mixer ? &*mixer : nullptr};

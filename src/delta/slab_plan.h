@@ -19,6 +19,12 @@ enum class Encoding {
     kFewerWords      ///< for each slab kWhole if no more of its words have anything to stamp
 };
 
+/// Returns what method `auto` takes of classes that look the same wherever they are.
+/// @param oneDigit  as ClassTable::oneDigit(): small footprints of two digits are never stamped
+constexpr Encoding smallerEncoding(bool oneDigit) {
+    return oneDigit ? Encoding::kSmaller : Encoding::kSmallerOfSums;
+}
+
 /// A slab as a picture is rendered from it.
 struct PlannedSlab : Slab {
     bool whole = false;  ///< every slice is splatted anew

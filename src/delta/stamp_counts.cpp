@@ -22,8 +22,7 @@ StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const S
         for (int s = 0; s < layout.slicesOf(block); ++s)
             planner.add(8 * block + s, changes[i].visible[s], changes[i].changed[s]);
     }
-    const Encoding automatic = oneDigit ? Encoding::kSmaller : Encoding::kSmallerOfSums;
-    for (const PlannedSlab& slab : planner.plan(automatic).slabs) {
+    for (const PlannedSlab& slab : planner.plan(smallerEncoding(oneDigit)).slabs) {
         stamps.sparse += slab.visible;
         stamps.delta += slab.deltas;
         stamps.automatic += slab.stamps();

@@ -10,6 +10,7 @@
 
 #include "floor_div.h"
 #include "simd_targets.h"
+#include "splat/tile_bytes.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "splat/cell_kernels.cpp"
@@ -57,20 +58,19 @@ class CellSums {
     HWY_INLINE void makeRun(int first, int last, std::span<const std::uint8_t> touched,
                             std::span<std::uint8_t> full) {
         unsigned rows = 0;
-        for (int i = first; i < last; ++i)
-            rows |= rowsBetween(touched[i]) >= kMostRows ? 0xFFu : touched[i];
+        for (int i = first; i < last; ++i) rows |= sumsTile(touched[i]) ? 0xFFu : touched[i];
         forRows(rows, [&](int low, int high)
                           HWY_ATTR { pairUp(first, last, cells_[low], cells_[high]); });
         for (int i = first; i < last; ++i) {
             const int pixel = plane_.pixel.x + kTilePixels * i;
             const int x = pixel - kResolution * floorDiv(pixel, kResolution);
-            if (rowsBetween(touched[i]) >= kMostRows && makeTile(i, x, touched[i], full[i]))
-                continue;
-            const unsigned found = forRows(touched[i], [&](int low, int high) HWY_ATTR {
+            const auto makeRows = [&](int low, int high) HWY_ATTR {
                 unsigned any = 0;
                 for (int y = low; y <= high; ++y) any |= unsigned{makeRow(i, x, y)} << y;
                 return any;
-            });
+            };
+            const unsigned found =
+                sumsTile(touched[i]) ? makeTile(i, x, touched[i]) : forRows(touched[i], makeRows);
             full[i] = std::uint8_t((full[i] & ~touched[i]) | (found & touched[i]));
         }
     }
@@ -125,26 +125,25 @@ class CellSums {
         }
     }
 
-    // Of so many rows, the first touched one to the last, summing all of a tile is faster.
-    static constexpr int kMostRows = 6;
-    static HWY_INLINE int rowsBetween(unsigned touched) {
-        return int(std::bit_width(touched)) - std::countr_zero(touched);
+    // Whether most rows of a tile are touched or lie between touched ones, and the tile begins
+    // where makeTile() takes it: of cells of three pixels anywhere, else with a cell, as all do
+    // whose margins are whole tiles.
+    HWY_INLINE bool sumsTile(unsigned touched) const {
+        constexpr int kMost = 6;
+        // Short registers, which are few as well, would gain little from it.
+        constexpr bool kIsWorthIt = HWY_MAX_BYTES >= 32;
+        return kIsWorthIt && std::popcount(withRowsBetween(touched)) >= kMost &&
+               (kResolution == 3 || rowsInCell_[0] == 0);
     }
 
-    // Makes the rows of a tile whose first pixel is the x-th of its cell, if its first row is one
-    // that tiles begin with: of cells of three pixels any, else the first.
-    HWY_INLINE bool makeTile(int tile, int x, unsigned touched, std::uint8_t& full) const {
-        if (kResolution != 3 && rowsInCell_[0] != 0) return false;
-        unsigned found = 0;
+    // Makes the rows of a tile whose first pixel is the x-th of its cell, and returns which are not
+    // all zero.
+    HWY_INLINE unsigned makeTile(int tile, int x, unsigned touched) const {
         if constexpr (kResolution == 3) {
-            found = rowsInCell_[0] == 0   ? makeTileFrom<0>(tile, x, touched)
-                    : rowsInCell_[0] == 1 ? makeTileFrom<1>(tile, x, touched)
-                                          : makeTileFrom<2>(tile, x, touched);
-        } else {
-            found = makeTileFrom<0>(tile, x, touched);
+            if (rowsInCell_[0] == 1) return makeTileFrom<1>(tile, x, touched);
+            if (rowsInCell_[0] == 2) return makeTileFrom<2>(tile, x, touched);
         }
-        full = std::uint8_t((full & ~touched) | (found & touched));
-        return true;
+        return makeTileFrom<0>(tile, x, touched);
     }
 
     // Sums up all rows of a tile that begins with row kFirst of a cell, writes those that are
@@ -155,8 +154,7 @@ class CellSums {
     HWY_INLINE unsigned makeTileFrom(int tile, int x, unsigned touched) const {
         const Tag tag;
         const int first = kChannels * (kTilePixels * tile - kBefore * kResolution - pairsBegin_);
-        const unsigned made =
-            0xFFu << std::countr_zero(touched) & ((1u << std::bit_width(touched)) - 1);
+        const unsigned made = withRowsBetween(touched);
         unsigned full = 0;
         for (int i = 0; i < kRow; i += int(hn::Lanes(tag))) {
             const CellWeights::Line* weights[kResolution];

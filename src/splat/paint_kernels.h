@@ -9,9 +9,9 @@
 
 namespace deltasplat {
 
-/// Writes colours of voxels of a block where two rows lie together (PairedRow). Others may be
-/// written as well.
-/// @param voxels   a mask word, bit 8 * u + v
+/// Writes colours of voxels of a block where two rows lie together (PairedRow). Others are written
+/// as well, so that all must be what they are now.
+/// @param voxels   a mask word, bit 8 * u + v: those that may have changed
 /// @param classes  [64]: of all voxels of the block
 /// @param plane    the block's first voxel, `[pair of rows][pitch]`
 void paintPairs(std::uint64_t voxels, const ClassIndex* classes, const ClassTable::Color* colors,

@@ -19,19 +19,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Multiplies the 16-bit halves of 32-bit lanes, and adds up the two products of each.
 template <class Tag>
-HWY_INLINE hn::Vec<Tag> productsOfPairs(Tag tag, hn::Vec<Tag> a, hn::Vec<Tag> b) {
-    const hn::Repartition<std::int16_t, Tag> half;
-    // Into sums that begin at zero, for NEON adds up neighbouring lanes of both.
-    auto odd = hn::Zero(tag);
-    const auto even = hn::ReorderWidenMulAccumulate(tag, hn::BitCast(half, a), hn::BitCast(half, b),
-                                                    hn::Zero(tag), odd);
-    return hn::RearrangeToOddPlusEven(even, odd);
-}
-
-// A sum of such products.
-template <class Tag>
 class PairSum {
   public:
+    // Begins with zero, for NEON adds up neighbouring lanes of both.
     HWY_INLINE PairSum() : even_(hn::Zero(Tag())), odd_(hn::Zero(Tag())) {}
     HWY_INLINE void add(hn::Vec<Tag> a, hn::Vec<Tag> b) {
         const hn::Repartition<std::int16_t, Tag> half;
@@ -44,6 +34,13 @@ class PairSum {
     hn::Vec<Tag> even_;
     hn::Vec<Tag> odd_;
 };
+
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> productsOfPairs(Tag, hn::Vec<Tag> a, hn::Vec<Tag> b) {
+    PairSum<Tag> sum;
+    sum.add(a, b);
+    return sum.total();
+}
 
 // Calls use(first, last) for the rows that a tile's byte has bits for, and those between them: with
 // constants if it has all, so that loops unroll.

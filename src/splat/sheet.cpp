@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 #include <limits>
 #include <string>
 
@@ -111,7 +110,7 @@ Sheet::Sheet(const SheetLayout& layout, std::pmr::memory_resource& memory)
                  : BlockReach(layout.resolution, layout.reachPixels, layout.footprintPixels)),
       bytesPerRow_((layout.tiles().x + 7) / 8 * 8),
       pixels_(layout.bytes() / sizeof(std::int32_t), &memory),
-      full_(bytesPerRow_ * layout.tiles().y + sizeof(std::uint64_t)),
+      full_(bytesPerRow_ * layout.tiles().y),
       touched_(full_.size()),
       touchedRows_(layout.tiles().y),
       left_(bytesPerRow_) {}

@@ -152,7 +152,7 @@ class Sheet {
     BlockReach reach_;
     std::size_t bytesPerRow_;
     std::pmr::vector<std::int32_t> pixels_;
-    std::vector<std::uint8_t> full_;         // [tile row][bytesPerRow_], and a word more
+    std::vector<std::uint8_t> full_;         // [tile row][bytesPerRow_]
     std::vector<std::uint8_t> touched_;      // likewise
     std::vector<std::uint8_t> touchedRows_;  // [tile row]: whether any is
     std::vector<std::uint8_t> left_;         // [bytesPerRow_], zeros: touched ones that stay so

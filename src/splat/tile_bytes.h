@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -21,6 +22,11 @@ inline void forTiles(std::span<const std::uint8_t> tiles, const Use& use) {
             if (tiles[i] != 0) use(i);
         }
     }
+}
+
+/// Returns rows of a tile, of which there is one, and those between them.
+inline unsigned withRowsBetween(unsigned rows) {
+    return 0xFFu << std::countr_zero(rows) & ((1u << std::bit_width(rows)) - 1);
 }
 
 }  // namespace deltasplat

@@ -4,6 +4,7 @@
 #include "splat/tile_kernels.h"
 
 #include <bit>
+#include <type_traits>
 
 #include "deltasplat/optics/class_table.h"
 #include "simd_targets.h"
@@ -31,7 +32,9 @@ class TileSums {
     static constexpr int kPairRows = 2 * kResolution;
 
   public:
-    explicit TileSums(const TileWeights& weights) : weights_(weights) {}
+    explicit TileSums(const TileWeights& weights) {
+        for (int phase = 0; phase < kPhases; ++phase) weights_[phase] = weightsOf(weights, phase);
+    }
 
     // Makes rows of a tile and returns which of them are not all zero.
     template <bool kIsAll>
@@ -67,6 +70,8 @@ class TileSums {
     struct Weights {
         Columns before0, here0, here1, here2, here3, behind1, behind2, behind3;
     };
+    // Of short vectors there are more than registers: these are read where they are used.
+    using KeptWeights = std::conditional_t<(kLanes > 4), const Weights, const Weights&>;
 
     static HWY_INLINE bool isAny(V lanes) {
         return !hn::AllTrue(Tag(), hn::Eq(lanes, hn::Zero(Tag())));
@@ -98,7 +103,7 @@ class TileSums {
         const int firstPair = kIsAll ? 0 : std::countr_zero(rows) / kPairRows;
         const int lastPair = kIsAll ? kPairs - 1 : (int(std::bit_width(rows)) - 1) / kPairRows;
         for (int i = 0; i < kRow; i += kLanes) {
-            const Weights w = weightsAt(i / kLanes % kPhases);
+            KeptWeights w = weights_[i / kLanes % kPhases];
             Columns before = columnsAt(tile, firstPair - 1, i);
             Columns here = columnsAt(tile, firstPair, i);
             std::int32_t* to = sheet + kPairRows * firstPair * pitch + i;
@@ -127,16 +132,22 @@ class TileSums {
         }
     }
 
-    static HWY_INLINE V sumOf(const Columns& colors, const Columns& weights) {
-        PairSum<Tag> sum;
+    static HWY_INLINE void add(const Columns& colors, const Columns& weights, PairSum<Tag>& sum) {
         sum.add(colors.before, weights.before);
         sum.add(colors.here, weights.here);
         sum.add(colors.behind, weights.behind);
+    }
+    static HWY_INLINE V sumOf(const Columns& colors, const Columns& weights) {
+        PairSum<Tag> sum;
+        add(colors, weights, sum);
         return sum.total();
     }
     static HWY_INLINE V sumOf(const Columns& a, const Columns& weightsOfA, const Columns& b,
                               const Columns& weightsOfB) {
-        return hn::Add(sumOf(a, weightsOfA), sumOf(b, weightsOfB));
+        PairSum<Tag> sum;
+        add(a, weightsOfA, sum);
+        add(b, weightsOfB, sum);
+        return sum.total();
     }
 
     static HWY_INLINE Columns columnsAt(const PairedRow& tile, int pair, int i) {
@@ -161,20 +172,20 @@ class TileSums {
         return hn::TableLookupLanes(voxels, hn::SetTableIndices(tag, places));
     }
 
-    HWY_INLINE Weights weightsAt(int phase) const {
+    static HWY_INLINE Weights weightsOf(const TileWeights& weights, int phase) {
         const auto load = [&](const TileWeights::Columns& columns) HWY_ATTR {
             const auto at = [&](std::size_t column) HWY_ATTR {
-                return hn::LoadU(Tag(), &columns[column][std::size_t(phase * kLanes)]);
+                return hn::LoadU(Tag(), &columns[column][std::size_t(phase) * kLanes]);
             };
             return Columns{at(0), at(1), at(2)};
         };
-        const auto& rows = weights_.rows;
+        const auto& rows = weights.rows;
         return {load(rows[0].before), load(rows[0].here),  load(rows[1].here),
                 load(rows[2].here),   load(rows[3].here),  load(rows[1].behind),
                 load(rows[2].behind), load(rows[3].behind)};
     }
 
-    const TileWeights& weights_;
+    Weights weights_[kPhases];
 };
 
 template <int kChannels, int kResolution>

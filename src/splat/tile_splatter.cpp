@@ -92,9 +92,7 @@ void TileSplatter::addLow(const Sheet& low, int row, std::span<const std::uint8_
     lowRows_.assign(touched.size(), 0);
     const std::span<const std::uint8_t> lowFull = low.fullRows(row);
     forTiles(touched, [&](std::size_t i) {
-        const unsigned first = unsigned(std::countr_zero(touched[i]));
-        const unsigned made = 0xFFu << first & ((1u << std::bit_width(touched[i])) - 1);
-        lowRows_[i] = std::uint8_t(made & lowFull[i]);
+        lowRows_[i] = std::uint8_t(withRowsBetween(touched[i]) & lowFull[i]);
     });
     const TileRow tiles = sheet_.tileRow(row);
     addLowDigits({tiles.sheet, low.row(kTilePixels * row), tiles.sheetPitch},

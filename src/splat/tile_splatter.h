@@ -47,14 +47,14 @@ class TileSplatter {
     /// @param withLow  whether the low digit is added to this, the high one: there must be one, and
     ///                 the smallest footprints, as addsLow() says
     TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
-                 DigitPlace digit = {}, bool withLow = false);
+                 DigitPlace digit, bool withLow);
 
     /// Takes on a layout, which the sheet must have by then.
     void setLayout(const SheetLayout& layout) { blocks_.setLayout(layout); }
     /// Makes the sheet that of the slice, after the one before it if it is not whole.
     /// @param needed  what will be read; the rest is made when it is
     /// @param low     if not null, the sheet of the low digit, which is added
-    void splat(int slice, bool whole, const NeededPixels& needed, const Sheet* low = nullptr);
+    void splat(int slice, bool whole, const NeededPixels& needed, const Sheet* low);
     /// Makes everything as it was before the first slice.
     void clear();
 

@@ -86,8 +86,8 @@ PairedRow firstTileOf(const Scene& scene, const std::vector<std::int16_t>& pairs
     return {&pairs[voxel * (pitch + 2 * std::size_t(scene.channels))], 2 * pitch};
 }
 
-constexpr int kTiles = 5;
-const std::vector<std::uint8_t> kTouched = {0xFF, 0x01, 0, 0x7E, 0x18, 0, 0, 0};
+constexpr int kTiles = 6;
+const std::vector<std::uint8_t> kTouched = {0xFF, 0x01, 0, 0x80, 0x18, 0x7E, 0, 0};
 
 // Compares every pixel of the tiles and around them, and what is said to be full.
 void expectSums(const Scene& scene, const std::vector<std::int32_t>& sheet,
@@ -150,8 +150,8 @@ TEST_P(TilesOnEveryLevel, TouchedRowsAreTheSumsOfStamps) {
 
 // Rows that may have a low digit get it, and it is said which do have one.
 TEST_P(TilesOnEveryLevel, LowDigitsAreAddedWhereTheyMayBe) {
-    // Of kTouched, but one, rows made and others.
-    const std::vector<std::uint8_t> marked = {0x3F, 0x01, 0xFF, 0xFF, 0xF8, 0, 0, 0};
+    // Of touched rows some, and others.
+    const std::vector<std::uint8_t> marked = {0x3F, 0x01, 0xFF, 0xFF, 0xF8, 0x5B, 0, 0};
     std::uint32_t seed = 100;
     for (const int resolution : {1, 2}) {
         const Footprint footprint = makeFootprint(0.4, {0.8, -0.6}, resolution, 2 * resolution + 1);
