@@ -74,11 +74,8 @@ LayeredPicture::Impl::Impl(const PreparedScene& ofScene, const Camera& ofCamera,
     const SheetPlan plan(prepared, all.front(), listener);
     if (volume.empty()) return;
     for (const Factorization& view : all) {
-        views.push_back(std::make_unique<PictureView>(
-            prepared, camera, view, plan,
-            prepared.axis(view.sliceAxis, plan.partsAlong(view.sliceAxis), stepsOf(view, volume),
-                          view.eye.has_value(), listener),
-            memory));
+        views.push_back(std::make_unique<PictureView>(prepared, camera, view, plan,
+                                                      prepared.axis(view, plan, listener), memory));
         seen.push_back(seenSlabs(views.back()->slabs()));
         for (int slab = 0; slab < int(seen.back().size()); ++slab)
             slabs.push_back({views.size() - 1, slab});

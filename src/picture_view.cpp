@@ -10,6 +10,7 @@
 
 #include "deltasplat/error.h"
 #include "dims_text.h"
+#include "splat/pixel_splatter.h"
 #include "view/thin_voxels.h"
 
 namespace deltasplat {
@@ -90,12 +91,17 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
         colors_.emplace(axis_->deltas(), std::move(classes), std::move(light));
     }
     plane_.emplace(camera, placePlane());
+    const StepColors& colors = colors_ ? *colors_ : axis_->colors;
+    if (!colors.own() && !colors.classes().oneDigit()) {
+        const bool withLow = !PixelSplatter::fits(footprint_);
+        digitVoxels_.emplace(axis_->deltas(), colors.classes(), withLow);
+    }
     const bool stampEmptyVoxels = scene.options.method == Method::kTraditional;
-    slabs_.emplace(SlabInput{
-        {axis_->deltas(), colors_ ? *colors_ : axis_->colors, footprint_, stampEmptyVoxels, memory},
-        layout_,
-        plane_->plane(),
-        memory});
+    slabs_.emplace(SlabInput{{axis_->deltas(), colors, footprint_,
+                              digitVoxels_ ? &*digitVoxels_ : nullptr, stampEmptyVoxels, memory},
+                             layout_,
+                             plane_->plane(),
+                             memory});
 }
 
 glm::dmat4 PictureView::worldFromSlices() const {
@@ -107,12 +113,12 @@ Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
     if (plan.resolution() < 1) return makeCoarseFootprint(int(1 / plan.resolution()));
     const int within = axis_->parts.within;
     const double pixels = view_.pixelsPerVoxel / within;
-    const double sigma = options.sigma.value_or(defaultSigma(pixels) / within);
+    const double sigma = options.sigma.value_or(defaultSigma(pixels, plan.resolution()) / within);
     // The kernel is round in voxels, however many slices there are; seen along the middle line of
     // sight.
     const glm::dvec2 shift = view_.eye ? middleSlope(camera_, view_) : view_.shiftPerSlice;
-    return makeFootprint(sigma, {shift.y, shift.x}, int(plan.resolution()), options.footprintWidth,
-                         within);
+    return makeFootprint(sigma, {shift.y, shift.x}, int(plan.resolution()),
+                         plan.footprintWidth(view_), within);
 }
 
 // Base plane pixels that a slope of 1 takes: as many as the farthest slice has sheet pixels, which

@@ -72,6 +72,7 @@ class PictureView {
     std::optional<StepColors> colors_;  // if the axis' are those of other steps, or not lit
     Factorization thinView_;
     Footprint footprint_;
+    std::optional<DigitVoxels> digitVoxels_;
     SheetLayout layout_;
     std::optional<PlaneView> plane_;
     std::optional<SlabInput> slabs_;

@@ -13,16 +13,18 @@
 #include "optics/hold_rule.h"
 #include "optics/largest_alpha.h"
 #include "parallel.h"
+#include "picture_view.h"
+#include "sheet_plan.h"
 
 namespace deltasplat {
 namespace {
 
-// Changes that a picture passes over wait until they are needed, but for looks of voxels' own:
-// these are lit for the slice in hand.
-Encoding encodingOf(Method method, bool hasLooks) {
+// A word costs much where voxels have looks of their own, for it is lit, and more than its voxels
+// where these are written to pixels of their own.
+Encoding encodingOf(Method method, bool hasLooks, bool hasPixels) {
     switch (method) {
         case Method::kAuto:
-            return hasLooks ? Encoding::kFewerWords : Encoding::kSmaller;
+            return hasLooks || hasPixels ? Encoding::kFewerWords : Encoding::kSmaller;
         case Method::kDelta:
             return Encoding::kChanges;
         default:
@@ -184,16 +186,18 @@ PreparedScene::Impl::Axes PreparedScene::Impl::axes() const {
     return axes;
 }
 
-std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
-                                                              const Subdivision& parts,
-                                                              double steps, bool fromEye,
+std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorization& view,
+                                                              const SheetPlan& plan,
                                                               const Listener& listener,
                                                               bool inParts) const {
+    const int sliceAxis = view.sliceAxis;
+    const Subdivision parts = plan.partsAlong(sliceAxis);
     const bool isWhole =
-        painter && (painter->isEverywhereOther() || (fromEye && painter->dependsOnCamera()));
+        painter && (painter->isEverywhereOther() || (view.eye && painter->dependsOnCamera()));
+    const bool hasPixels = plan.footprintWidth(view) == 1;
     const Encoding encoding =
-        isWhole ? Encoding::kWhole : encodingOf(options.method, painter != nullptr);
-    const Key key{sliceAxis, parts.slices, parts.within, isWhole};
+        isWhole ? Encoding::kWhole : encodingOf(options.method, painter != nullptr, hasPixels);
+    const Key key{sliceAxis, parts.slices, parts.within, int(encoding)};
     std::shared_ptr<Place> place;
     {
         const std::lock_guard lock(mutex_);
@@ -206,7 +210,8 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(int sliceAxis,
     if (!place->axis)
         isolated([&] {
             const auto before = before_.find(key);
-            place->axis = prepare(*this, sliceAxis, parts, isForOne ? steps : 1, encoding,
+            const double steps = isForOne ? stepsOf(view, *scene.volume) : 1;
+            place->axis = prepare(*this, sliceAxis, parts, steps, encoding,
                                   before == before_.end() ? nullptr : before->second.get(),
                                   isForOne && inParts, listener);
         });

@@ -15,6 +15,8 @@
 
 namespace deltasplat {
 
+class SheetPlan;
+
 /// A volume as slices along one axis: what slabs are rendered from, whatever the camera.
 struct PreparedAxis {
     int sliceAxis;
@@ -52,20 +54,17 @@ struct PreparedScene::Impl {
     /// The most that words of an axis are to take where a picture may be made in parts.
     double wordBytes = 256.0 * 1024 * 1024;
 
-    /// Returns an axis, made if it is not there.
-    /// @param steps    what the picture in hand wants classes to be coloured for, for which they
-    ///                 are if there will be no other
-    /// @param fromEye  whether each voxel has a line of sight of its own: what is lit then looks
-    ///                 different in each slice, and slabs are whole
+    /// Returns the axis of a view, made if it is not there. Classes are coloured for the view's
+    /// steps if there will be no other picture. From an eye, what is lit looks different in each
+    /// slice, and slabs are whole.
     /// @param inParts  whether a few slabs at a time will do, of a scene for one picture
-    std::shared_ptr<const PreparedAxis> axis(int sliceAxis, const Subdivision& parts, double steps,
-                                             bool fromEye, const Listener& listener,
-                                             bool inParts = false) const;
+    std::shared_ptr<const PreparedAxis> axis(const Factorization& view, const SheetPlan& plan,
+                                             const Listener& listener, bool inParts = false) const;
     /// Returns how many blocks of 8x8x8 voxels can be seen; counted once for each axis.
     std::size_t blocksSeen(int sliceAxis) const;
 
   private:
-    using Key = std::array<int, 4>;  // axis, parts and whole slabs
+    using Key = std::array<int, 4>;  // axis, parts and encoding
     using Axes = std::map<Key, std::shared_ptr<const PreparedAxis>>;
     struct Place {
         std::mutex mutex;

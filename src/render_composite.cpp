@@ -70,9 +70,7 @@ class CompositeRender {
     void runView(std::size_t number, const Factorization& view, const Listener& listener) {
         const Clock::time_point start = Clock::now();
         const bool isFlat = !wanted_.views && !wanted_.step && !wanted_.deep;
-        std::shared_ptr<const PreparedAxis> axis =
-            scene_.axis(view.sliceAxis, plan_->partsAlong(view.sliceAxis), stepsOf(view, volume_),
-                        view.eye.has_value(), listener, isFlat);
+        std::shared_ptr<const PreparedAxis> axis = scene_.axis(view, *plan_, listener, isFlat);
         stats_.prepareSeconds += secondsSince(start);
         countIn(*axis);
         listener.report(0.2);

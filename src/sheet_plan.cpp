@@ -74,13 +74,15 @@ bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
 
 SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view,
                      const Listener& listener)
-    : firstVoxel_(scene.scene.volume->box.min), resolution_(view.resolution) {
+    : asksForSigma_(scene.options.sigma.has_value()),
+      footprintWidth_(scene.options.footprintWidth),
+      firstVoxel_(scene.scene.volume->box.min),
+      resolution_(view.resolution) {
     const IndexBox& box = scene.scene.volume->box;
     const SplatOptions& options = scene.options;
     checkKernel(options);
-    // Where the screen asks for two sheet pixels a voxel, but not for more, what is thin gets one.
-    const bool few = view.pixelsPerVoxel < 2.5;
-    if (!options.resolution && few && scene.isThin) resolution_ = 1;
+    // What is thin shows nothing else with more sheet pixels, while it is not smoothed.
+    if (!options.resolution && scene.isThin && hasOwnPixel(view.pixelsPerVoxel, 1)) resolution_ = 1;
     int between = 0;
     if (options.between) {
         between = *options.between;
@@ -100,6 +102,12 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view
     }
     if (between > 0 && !options.resolution) resolution_ = 2;
     parts_ = {between + 1, between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1, {}};
+}
+
+std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
+    if (footprintWidth_ || asksForSigma_) return footprintWidth_;
+    if (!hasOwnPixel(view.pixelsPerVoxel / parts_.within, resolution())) return {};
+    return 1;
 }
 
 Subdivision SheetPlan::partsAlong(int sliceAxis) const {

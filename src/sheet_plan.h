@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "prepared_axis.h"
 
 namespace deltasplat {
@@ -17,8 +19,13 @@ class SheetPlan {
     Subdivision partsAlong(int sliceAxis) const;
     /// Sheet pixels of what voxels are divided into.
     double resolution() const { return resolution_ / parts_.within; }
+    /// How wide the footprint of one is in a view: 1 where it has a sheet pixel of its own and is
+    /// seen in no other. Empty: as wide as sigma asks for.
+    std::optional<int> footprintWidth(const Factorization& view) const;
 
   private:
+    bool asksForSigma_;
+    std::optional<int> footprintWidth_;  // asked for
     Subdivision parts_;
     glm::ivec3 firstVoxel_;
     double resolution_;  // of undivided voxels

@@ -6,8 +6,7 @@
 
 namespace deltasplat {
 
-StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap,
-                          bool oneDigit) {
+StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap) {
     StampCounts stamps;
     if (volume.empty()) return stamps;
     stamps.traditional = std::uint64_t(volume.box.voxels());
@@ -22,7 +21,7 @@ StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const S
         for (int s = 0; s < layout.slicesOf(block); ++s)
             planner.add(8 * block + s, changes[i].visible[s], changes[i].changed[s]);
     }
-    for (const PlannedSlab& slab : planner.plan(smallerEncoding(oneDigit)).slabs) {
+    for (const PlannedSlab& slab : planner.plan(Encoding::kFewerWords).slabs) {
         stamps.sparse += slab.visible;
         stamps.delta += slab.deltas;
         stamps.automatic += slab.stamps();

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "bit_matrix.h"
+
 namespace deltasplat {
 
 /// Which rows of which tiles the footprints of a block's 8x8 voxels reach. Tiles are counted from
@@ -27,11 +29,7 @@ class BlockReach {
     /// Returns the rows of voxels, bit u, in which any of `voxels` (bit 8 * u + v) reaches a column
     /// of tiles.
     std::uint8_t rowsReaching(int phase, int tileColumn, std::uint64_t voxels) const {
-        // Into the highest bit of each byte whether it is not zero, then the eight together.
-        constexpr std::uint64_t kLow = 0x7F7F7F7F7F7F7F7F;
-        const std::uint64_t reaching = voxels & phases_[phase].columns[tileColumn];
-        const std::uint64_t any = (((reaching & kLow) + kLow) | reaching) & ~kLow;
-        return std::uint8_t((any >> 7) * 0x0102040810204080 >> 56);
+        return rowsWithAny(voxels & phases_[phase].columns[tileColumn]);
     }
     /// Returns the pixel rows that footprints reach from rows of voxels, of the eight rows of tiles
     /// from 8 * `group` on: bit y of byte i for row y of the tile in the i-th of them.

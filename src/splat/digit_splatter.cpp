@@ -5,9 +5,14 @@
 
 namespace deltasplat {
 
-// Both ways give the same integers.
+// All ways give the same integers.
 void DigitSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     whole_ = slab.whole;
+    if (PixelSplatter::fits(input_.footprint)) {
+        sheet_.setLayout(layout);
+        if (!pixels_) pixels_.emplace(input_, largest_, sheet_, digit_, hasLow_);
+        return pixels_->setLayout(layout);
+    }
     // What is splatted anew for each slice has to be cleared as well, and a low digit be added,
     // both of which tiles do by the way: that is more than small stamps are worth.
     const bool suitsStamps = TileSplatter::isWide(input_.footprint) || (!slab.whole && !hasLow_);
@@ -33,7 +38,9 @@ bool DigitSplatter::isFew(const PlannedSlab& slab) const {
 }
 
 const Sheet& DigitSplatter::splat(int slice, const NeededPixels& needed, const Sheet* low) {
-    if (stamping_) {
+    if (pixels_) {
+        pixels_->splat(slice, whole_, needed);
+    } else if (stamping_) {
         stamps_->splat(slice, whole_, needed);
     } else {
         tiles_->splat(slice, whole_, needed, low);
@@ -42,7 +49,9 @@ const Sheet& DigitSplatter::splat(int slice, const NeededPixels& needed, const S
 }
 
 void DigitSplatter::end() {
-    if (stamping_) {
+    if (pixels_) {
+        pixels_->clear();
+    } else if (stamping_) {
         stamps_->clear();
     } else {
         tiles_->clear();
@@ -50,6 +59,8 @@ void DigitSplatter::end() {
 }
 
 double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout, bool hasLow) {
+    if (PixelSplatter::fits(input.footprint))
+        return double(layout.bytes()) + PixelSplatter::bytes(layout);
     const double blocks = double(layout.blocks.x) * layout.blocks.y;
     // What stamps show, which of them wait, and their list as it grows.
     const double shownBytes = input.colors.own() ? sizeof(ClassTable::Color) : sizeof(ClassIndex);

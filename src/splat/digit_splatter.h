@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "splat/pixel_splatter.h"
 #include "splat/stamp_splatter.h"
 #include "splat/tile_splatter.h"
 
@@ -22,8 +23,8 @@ class DigitSplatter {
           digit_(digit),
           hasLow_(hasLow),
           sheet_(largest, input.memory) {
-        const DigitVoxels* voxels = input.colors.digitVoxels();
-        if (voxels && voxels->of(digit))
+        const DigitVoxels* voxels = input.digitVoxels;
+        if (voxels && voxels->of(digit) && !PixelSplatter::fits(input.footprint))
             isFew_ = voxels->fewerThan(TileSplatter::leastStamps(input.footprint), digit);
     }
     // Both ways refer to the sheet.
@@ -55,7 +56,8 @@ class DigitSplatter {
     bool hasLow_;
     std::optional<bool> isFew_;  // of several digits: whether few voxels of a block have this one
     Sheet sheet_;
-    std::optional<StampSplatter> stamps_;  // each made when it is first needed
+    std::optional<PixelSplatter> pixels_;  // each made when it is first needed
+    std::optional<StampSplatter> stamps_;
     std::optional<TileSplatter> tiles_;
     bool stamping_ = false;  // of the slab in hand
     bool whole_ = false;     // likewise

@@ -63,12 +63,12 @@ ClassTable::Digit rangeOf(const ClassTable::Plane& plane, bool low) {
 
 }  // namespace
 
-DigitVoxels::DigitVoxels(const PackedDeltas& deltas, const ClassTable& classes) {
+DigitVoxels::DigitVoxels(const PackedDeltas& deltas, const ClassTable& classes, bool withLow) {
     const std::vector<DeltaWord>& words = deltas.words;
     for (std::size_t p = 0; p < classes.planes.size(); ++p) {
         const ClassTable::Plane& plane = classes.planes[p];
         for (const bool low : {false, true}) {
-            if (low ? plane.low.colors.empty() : classes.planes.size() == 1) continue;
+            if (low ? !withLow || plane.low.colors.empty() : classes.planes.size() == 1) continue;
             requireMemory("digits of colours",
                           double(sizeof(std::uint64_t)) * double(words.size()));
             std::vector<std::uint64_t>& voxels = voxels_[p][low];

@@ -24,13 +24,14 @@ struct DigitPlace {
 /// Which voxels of slices have which digits, where colours have more than one.
 class DigitVoxels {
   public:
-    /// Looks at every word. Multi-threaded.
+    /// Looks at every word, once for each digit. Multi-threaded.
+    /// @param withLow  whether it is asked which voxels have a low digit
     /// @throw Error(kFailed) if there is not enough memory
-    DigitVoxels(const PackedDeltas& deltas, const ClassTable& classes);
+    DigitVoxels(const PackedDeltas& deltas, const ClassTable& classes, bool withLow);
 
     /// Returns mask words as DeltaWord has them, one for each of the deltas' words: of the low
     /// digit, voxels that have it; of the high one, those that have anything on the plane. Null if
-    /// that is all that are visible.
+    /// that is all that are visible, or is not asked.
     const std::uint64_t* of(DigitPlace digit) const {
         const auto& voxels = voxels_[std::size_t(digit.plane)][digit.low ? 1 : 0];
         return voxels.empty() ? nullptr : voxels.data();

@@ -223,15 +223,16 @@ void Sheet::addDigits(const Sheet& high, const Sheet& low, int firstRow, int las
 }
 
 void Sheet::clearRows(int tileRow) {
-    const std::span full(&full_[bytesPerRow_ * tileRow], bytesPerRow_);
-    const std::size_t length = std::size_t{kTilePixels} * layout_.channels;
-    forTiles(full, [&](std::size_t column) {
-        for (unsigned rest = full[column]; rest != 0; rest &= rest - 1) {
-            const int y = kTilePixels * tileRow + std::countr_zero(rest);
-            std::fill_n(&pixels_[pitch() * y + length * column], length, 0);
-        }
-        full[column] = 0;
+    forTiles(std::span(&full_[bytesPerRow_ * tileRow], bytesPerRow_), [&](std::size_t column) {
+        clear(tileAt({int(column), tileRow}));
     });
+}
+
+void Sheet::clear(const Tile& tile) {
+    for (unsigned rest = tile.full; rest != 0; rest &= rest - 1)
+        std::fill_n(tile.pixels + pitch() * std::countr_zero(rest), kTilePixels * layout_.channels,
+                    0);
+    tile.full = 0;
 }
 
 void Sheet::clear() {

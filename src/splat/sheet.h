@@ -129,10 +129,22 @@ class Sheet {
     std::span<const std::uint8_t> fullRows(int tileRow) const {
         return {&full_[bytesPerRow_ * tileRow], bytesPerRow_};
     }
+    /// A block's tile, where footprints have one pixel.
+    struct Tile {
+        std::uint8_t& full;  ///< as fullRows() has it
+        std::int32_t* pixels;
+    };
+    Tile tileOf(glm::ivec2 block) { return tileAt(block + layout_.marginPixels / kTilePixels); }
+    /// Makes a tile zero.
+    void clear(const Tile& tile);
     /// Returns where a row of tiles lies.
     TileRow tileRow(int row) { return {&pixels_[pitch() * row * kTilePixels], pitch()}; }
 
   private:
+    Tile tileAt(glm::ivec2 tile) {
+        return {full_[bytesPerRow_ * tile.y + tile.x],
+                &pixels_[(pitch() * tile.y + layout_.channels * tile.x) * kTilePixels]};
+    }
     void clearRows(int tileRow);
     glm::ivec2 firstTileOf(glm::ivec2 block) const;
     template <std::size_t kMasks, typename Use>

@@ -14,7 +14,7 @@ SliceBlocks::SliceBlocks(const SplatInput& input, const SheetLayout& layout, Dig
       stampEmptyVoxels_(input.stampEmptyVoxels && digit.plane == 0 && !digit.low),
       digit_(digit),
       colors_(digit.of(input.colors.table()).colors.data()) {
-    const DigitVoxels* voxels = input.colors.digitVoxels();
+    const DigitVoxels* voxels = input.digitVoxels;
     if (voxels) voxels_ = voxels->of(digit);
     const bool hasPlanes = input.colors.table().planes.size() > 1;
     takesDigit_ = voxels_ || (input.lit && (hasPlanes || digit.low));
@@ -64,8 +64,8 @@ std::uint64_t SliceBlocks::voxelsOfDigit(const DeltaWord& word) const {
 
 std::uint64_t SliceBlocks::lowVoxelsOf(const DeltaWord& word) const {
     if (!lowColors_) return 0;
-    return input_.lit ? input_.lit->of(numberOf(word), digit_.plane).anyLow
-                      : lowVoxels_[numberOf(word)];
+    if (input_.lit) return input_.lit->of(numberOf(word), digit_.plane).anyLow;
+    return lowVoxels_ ? lowVoxels_[numberOf(word)] : 0;
 }
 
 // Leaves what a word is of the digit. Of changes, those of voxels that had it or have it.

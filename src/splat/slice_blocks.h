@@ -13,6 +13,7 @@
 #include "delta/packed_deltas.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/splat/footprint.h"
+#include "splat/digit_voxels.h"
 #include "splat/lit_slice.h"
 #include "splat/sheet.h"
 #include "splat/sheet_cover.h"
@@ -25,6 +26,8 @@ struct SplatInput {
     const PackedDeltas& deltas;
     const StepColors& colors;
     const Footprint& footprint;
+    /// Which voxels have which digits; null where there is but one, and with own colours.
+    const DigitVoxels* digitVoxels;
     /// Stamp every voxel of the box, the empty ones too (method `traditional`); all slabs must be
     /// whole.
     bool stampEmptyVoxels;

@@ -8,11 +8,7 @@ namespace deltasplat {
 StepColors::StepColors(const PackedDeltas& deltas, ClassTable classes,
                        std::unique_ptr<const LookLight> light)
     : classes_(std::move(classes)) {
-    if (light) {
-        own_.emplace(deltas, classes_, std::move(light));
-    } else if (!classes_.oneDigit()) {
-        digitVoxels_.emplace(deltas, classes_);
-    }
+    if (light) own_.emplace(deltas, classes_, std::move(light));
 }
 
 }  // namespace deltasplat

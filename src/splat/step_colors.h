@@ -7,7 +7,6 @@
 
 #include "deltasplat/optics/class_table.h"
 #include "optics/voxel_painter.h"
-#include "splat/digit_voxels.h"
 #include "splat/word_colors.h"
 
 namespace deltasplat {
@@ -15,27 +14,22 @@ namespace deltasplat {
 /// What the voxels of words are seen as in steps of one length, in digits.
 class StepColors {
   public:
-    /// Looks at every word, if there are several digits and no own looks. Multi-threaded.
     /// @param deltas  must outlive the colours
     /// @param light   what own looks are seen as; null: they look as their classes do
-    /// @throw Error(kFailed) if there is not enough memory
     StepColors(const PackedDeltas& deltas, ClassTable classes,
                std::unique_ptr<const LookLight> light);
-    /// Of classes alone, whose words are not looked at: of looks that are seen from nowhere yet.
+    /// Of classes alone: of looks that are seen from nowhere yet.
     explicit StepColors(ClassTable classes) : classes_(std::move(classes)) {}
 
     const ClassTable& classes() const { return classes_; }
     /// Which planes and digits there are, in which units, and of which colour, if of one; with own
     /// colours there are no others' to look up in it.
     const ClassTable& table() const { return own_ ? own_->table() : classes_; }
-    /// Which voxels have which digits; null where there is but one digit, and with own colours.
-    const DigitVoxels* digitVoxels() const { return digitVoxels_ ? &*digitVoxels_ : nullptr; }
     /// Colours that voxels have of their own; null if they look as their classes do.
     const WordColors* own() const { return own_ ? &*own_ : nullptr; }
 
   private:
     ClassTable classes_;
-    std::optional<DigitVoxels> digitVoxels_;  // of classes
     std::optional<WordColors> own_;
 };
 

@@ -361,7 +361,7 @@ TEST(Between, aMagnifiedGaussianIsSmooth) {
     function.colors = {{0, {1, 1, 1}}};
     function.opacities = {{0, 0, 0.5, 0}, {255, 0.02, 0.5, 0}};
     const Volume volume = throughVdb(blob);
-    for (const double pixelsPerVoxel : {5.0, 20.0, 50.0}) {
+    for (const double pixelsPerVoxel : {1.2, 2.0, 2.9, 5.0, 20.0, 50.0}) {
         for (const glm::dvec3 direction : {glm::dvec3(0, 0, -1), glm::dvec3(-1, 0.8, -0.6)}) {
             RenderOptions options;
             options.camera.direction = direction;
@@ -391,7 +391,9 @@ TEST(Between, aMagnifiedGaussianIsSmooth) {
                     worst = std::max(worst, std::abs(got - expected));
                 }
             }
-            EXPECT_LT(worst, 6e-4) << pixelsPerVoxel << " pixels a voxel, " << direction.x;
+            // Below, voxels have a sheet pixel of their own, and nothing smooths them.
+            const double most = pixelsPerVoxel < 3 ? 1.4e-3 : 6e-4;
+            EXPECT_LT(worst, most) << pixelsPerVoxel << " pixels a voxel, " << direction.x;
         }
     }
 }

@@ -13,7 +13,9 @@
 #include "deltasplat/render.h"
 #include "deltasplat/threads.h"
 #include "kept_memory.h"
+#include "picture_view.h"
 #include "prepared_axis.h"
+#include "sheet_plan.h"
 #include "support/error_of.h"
 #include "support/some_scene.h"
 
@@ -78,13 +80,25 @@ TEST(Prepared, picturesInPartsAreThoseOfAllAtOnce) {
     }
 }
 
+// What a view along an axis is rendered from.
+std::shared_ptr<const PreparedAxis> axisOf(const PreparedScene& scene, int axis,
+                                           const Listener& listener = {}) {
+    const Volume& volume = *scene.scene().volume;
+    CameraOptions options;
+    options.sizePixels = {24, 20};
+    options.direction = glm::dvec3(0);
+    (*options.direction)[axis] = -1;
+    const Camera camera = cameraOf(volume, options);
+    const Factorization view = viewsOf(camera, volume, scene.options()).front();
+    EXPECT_EQ(view.sliceAxis, axis);
+    return scene.impl().axis(view, SheetPlan(scene.impl(), view, listener), listener);
+}
+
 // A camera that turns needs each axis once, whatever the angle.
 TEST(Prepared, preparesEachAxisOnce) {
     const PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, SplatOptions());
-    const Subdivision whole;
     std::vector<std::shared_ptr<const PreparedAxis>> axes;
-    for (int axis = 0; axis < 3; ++axis)
-        axes.push_back(scene.impl().axis(axis, whole, 1, false, {}));
+    for (int axis = 0; axis < 3; ++axis) axes.push_back(axisOf(scene, axis));
     int told = 0;
     Listener listener;
     listener.progress = [&](double) { ++told; };
@@ -96,7 +110,7 @@ TEST(Prepared, preparesEachAxisOnce) {
         pictureOf(scene, camera);
     }
     for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_EQ(scene.impl().axis(axis, whole, 1, false, listener), axes[std::size_t(axis)]);
+        EXPECT_EQ(axisOf(scene, axis, listener), axes[std::size_t(axis)]);
         EXPECT_EQ(told, 0);
     }
 }
@@ -136,9 +150,7 @@ TEST(Prepared, otherOpticsGiveThePixelsOfRender) {
 // What is told apart is what words are made of.
 TEST(Prepared, wordsAreSharedWhereTheSameIsToldApart) {
     const PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, SplatOptions());
-    const auto wordsOf = [](const PreparedScene& one) {
-        return one.impl().axis(1, Subdivision(), 1, false, {})->words;
-    };
+    const auto wordsOf = [](const PreparedScene& one) { return axisOf(one, 1)->words; };
     const auto words = wordsOf(scene);
     Optics optics = scene.scene().optics;
     optics.transferFunction.colors = {{0, {1, 1, 0}}, {255, {0.3, 0.1, 0}}};

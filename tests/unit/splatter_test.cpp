@@ -23,7 +23,8 @@ struct Scene {
           colors(deltas, classes, nullptr),
           footprint(print),
           layout(layoutSheet(deltas.box, footprint, oneColor ? 1 : 4)),
-          input{deltas, colors, footprint, false} {}
+          digits(deltas, classes, footprint.width > 1),
+          input{deltas, colors, footprint, classes.oneDigit() ? nullptr : &digits, false} {}
 
     static ClassTable classesOf(const Volume& volume, bool oneColor, Range range) {
         Optics optics;
@@ -47,6 +48,7 @@ struct Scene {
     StepColors colors;
     Footprint footprint;
     SheetLayout layout;
+    DigitVoxels digits;
     SplatInput input;
 };
 
@@ -120,9 +122,9 @@ struct Kind {
     int width;
 };
 
-constexpr Kind kMoving[] = {{1, 3}, {1, 5},  {1, 6}, {1, 7}, {2, 5},
-                            {2, 9}, {2, 11}, {3, 9}, {4, 13}};
-constexpr Kind kCovered[] = {{1, 3}, {1, 6}, {1, 7}, {2, 5}, {2, 9}, {3, 9}};
+constexpr Kind kMoving[] = {{1, 1}, {1, 3}, {1, 5},  {1, 6}, {1, 7},
+                            {2, 5}, {2, 9}, {2, 11}, {3, 9}, {4, 13}};
+constexpr Kind kCovered[] = {{1, 1}, {1, 3}, {1, 6}, {1, 7}, {2, 5}, {2, 9}, {3, 9}};
 
 // A window of rows that moves over the sheet from slice to slice, and comes back or not: in it the
 // sheet is that of the slice, whatever was passed over meanwhile, and in the end nothing is left.
@@ -257,7 +259,7 @@ TEST(Splatter, WhatIsNotCoveredIsThatOfTheSlice) {
 // Nothing is made where all is covered.
 TEST(Splatter, MakesNothingThatIsCovered) {
     const Volume volume = volumes()[0];
-    for (const Kind kind : {Kind{1, 3}, {1, 6}}) {
+    for (const Kind kind : {Kind{1, 1}, {1, 3}, {1, 6}}) {
         const Footprint footprint = makeFootprint(0.5, {0, 0}, kind.resolution, kind.width);
         for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole}) {
             const Scene scene(volume, encoding, footprint, false);
@@ -291,7 +293,7 @@ TEST(SliceBlocks, TraditionalTakesEveryVoxelOfTheBox) {
     PackedDeltas nothing;
     nothing.box = scene.deltas.box;
     nothing.begins.resize(std::size_t(nothing.box.dims().x) + 1);
-    const SplatInput input{nothing, scene.colors, scene.footprint, true};
+    const SplatInput input{nothing, scene.colors, scene.footprint, nullptr, true};
     SliceBlocks blocks(input, scene.layout);
     std::vector<glm::ivec2> found;
     blocks.forWhole(kBox.min.x, NeededPixels{0, scene.layout.sizePixels.y},

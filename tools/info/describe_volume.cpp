@@ -13,23 +13,17 @@
 namespace deltasplat {
 namespace {
 
-// What codes look like in a view along an axis.
-struct SeenCodes {
-    std::vector<Slot> slotMap = {};  // which look alike, and which cannot be seen
-    bool oneDigit = true;            // as ClassTable::oneDigit
-};
-
-SeenCodes seenCodes(const GridReport& report, const DescribeOptions& options, int axis) {
+// Which codes look alike in a view along an axis, and which cannot be seen.
+std::vector<Slot> seenSlots(const GridReport& report, const DescribeOptions& options, int axis) {
     const Volume& volume = report.volume;
     if (options.transferFunction) {
         Optics optics;
         optics.transferFunction = *options.transferFunction;
         if (options.preset) fitPreset(*options.preset, volume, optics);
-        ClassTable classes = classify(volume, optics, volume.voxelSize()[axis]);
-        return {std::move(classes.classOfSlot), classes.oneDigit()};
+        return classify(volume, optics, volume.voxelSize()[axis]).classOfSlot;
     }
     if (!report.backgroundGuess) return {};
-    return {slotsWithout(volume.codeBook, *report.backgroundGuess)};
+    return slotsWithout(volume.codeBook, *report.backgroundGuess);
 }
 
 std::string visibleText(const GridReport& report, const DescribeOptions& options) {
@@ -58,12 +52,12 @@ GridReport describeVolume(Volume volume, const DescribeOptions& options, bool pl
     report.visible = visibleText(report, options);
     for (int axis = 0; axis < 3; ++axis) {
         report.counts[axis] = countDeltas(report.volume, axis);
-        const SeenCodes seen = seenCodes(report, options, axis);
-        report.stamps[axis] = predictStamps(report.volume, axis, seen.slotMap, seen.oneDigit);
+        const std::vector<Slot> seen = seenSlots(report, options, axis);
+        report.stamps[axis] = predictStamps(report.volume, axis, seen);
         if (!plot) continue;
         const int slices = report.volume.box.dims()[axis];
         report.columns[axis] =
-            countDeltasPerSlice(report.volume, axis, seen.slotMap, slicesPerColumn(slices));
+            countDeltasPerSlice(report.volume, axis, seen, slicesPerColumn(slices));
     }
     report.deltaAxis = axisOfFewestDeltas(report.counts);
     if (!report.volume.origin)

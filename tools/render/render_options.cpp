@@ -348,10 +348,10 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
     group.addValue("--sigma", "V", options.sigma, number(kMinSigma, kMaxSigma),
                    "Standard deviation of the footprint in voxels, " + numberText(kMinSigma) +
                        " to " + numberText(kMaxSigma) +
-                       "\n(default: " + numberText(defaultSigma(1)) +
-                       " of a voxel, or of what it is divided into,\ngrowing where that covers "
-                       "more than 2 pixels, to " +
-                       numberText(defaultSigma(3)) + "\nfrom 3 pixels on)");
+                       "\n(default: a voxel, or what it is divided into, is seen in one sheet\n"
+                       "pixel where it covers less than 3 pixels; else " +
+                       numberText(kLeastSigma) + " of it,\ngrowing to " + numberText(kMostSigma) +
+                       " with what it covers)");
     group.addValue(
         "--between", "N", options.between, wholeNumber(0, kMostBetween),
         "Slices put between two neighbouring ones, 0 to " + std::to_string(kMostBetween) +

@@ -14,17 +14,15 @@ struct StampCounts {
     std::uint64_t traditional = 0;  ///< voxels of the box
     std::uint64_t sparse = 0;       ///< visible voxels
     std::uint64_t delta = 0;        ///< deltas, those of key slices included
-    /// For each slab `delta` if clearly less, else `sparse`; predicted as for voxels that have no
-    /// looks of their own (shading, color by another grid), of which more slabs would be `sparse`.
+    /// For each slab `delta` if fewer of its slices of 8x8x8 blocks have any to stamp, else
+    /// `sparse`: as for footprints of one pixel, which undivided voxels of less than three have.
     std::uint64_t automatic = 0;
 };
 
 /// Returns what `render` takes for a picture along a slice axis, without rendering or storing
 /// deltas: exact for the slot map of its transfer function (see ClassTable::classOfSlot).
-/// @param slotMap   as DeltaOptions::slotMap
-/// @param oneDigit  as ClassTable::oneDigit(): few changes of two digits are not stamped
-StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap = {},
-                          bool oneDigit = true);
+/// @param slotMap  as DeltaOptions::slotMap
+StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap = {});
 
 /// Returns the slot map that makes voxels of one value empty and keeps all others apart.
 std::vector<Slot> slotsWithout(const CodeBook& codeBook, double value);

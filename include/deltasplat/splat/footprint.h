@@ -44,11 +44,22 @@ struct Footprint {
 inline constexpr double kMinSigma = 0.2;
 inline constexpr double kMaxSigma = 4.0;
 
-/// Returns the width used when none is asked for: 0.3 voxels, which is sharpest, where a voxel
-/// covers at most two pixels of the screen, and more where it would begin to show as a
-/// square, up to 0.6 from three pixels on.
-inline double defaultSigma(double pixelsPerVoxel) {
-    return pixelsPerVoxel < 3 ? std::max(0.3, 0.3 * (pixelsPerVoxel - 1)) : 0.6;
+/// Whether a voxel has a sheet pixel of its own and is seen in no other, if nothing else is asked
+/// for: where there is one for each, and a voxel covers less than three pixels of the screen.
+/// Nothing is sharper or faster; from there on steps would begin to show at edges.
+inline bool hasOwnPixel(double pixelsPerVoxel, double resolution) {
+    return resolution == 1 && pixelsPerVoxel < 3;
+}
+
+inline constexpr double kLeastSigma = 0.3;
+inline constexpr double kMostSigma = 0.6;
+
+/// Returns the width of others used when none is asked for: kLeastSigma voxels, which is sharpest,
+/// and more where a voxel would begin to show as a square, or as a step: up to kMostSigma from
+/// three pixels of the screen on if it has several sheet pixels, from six on if it has one.
+inline double defaultSigma(double pixelsPerVoxel, double resolution) {
+    const double sigma = resolution > 1 ? 0.3 * (pixelsPerVoxel - 1) : 0.1 * pixelsPerVoxel;
+    return std::clamp(sigma, kLeastSigma, kMostSigma);
 }
 
 /// Makes the Gaussian footprint with covariance sigma^2 (I + d d^T) in slice units: a round kernel

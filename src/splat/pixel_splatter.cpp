@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: "Accelerating Footprint Method Based on Comparability of Consecutive Image Slices",
+// equation 9, for footprints that do not overlap: what a voxel was is written over.
+#include "splat/pixel_splatter.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "bit_matrix.h"
+
+namespace deltasplat {
+
+double PixelSplatter::bytes(const SheetLayout& layout) {
+    // Which slice blocks show, which of them do, twice, and what waits.
+    const double ofBlock = sizeof(int) + 4 * sizeof(glm::ivec2) + SliceBlocks::kBytesOfBlock;
+    return ofBlock * double(layout.blocks.x) * layout.blocks.y;
+}
+
+PixelSplatter::PixelSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
+                             DigitPlace digit, bool withLow)
+    : blocks_(input, largest, digit, withLow),
+      sheet_(sheet),
+      one_(input.footprint.weights.front()),
+      slices_(blocks_.count()) {
+    const ClassTable& table = input.colors.table();
+    const std::vector<ClassTable::Color>& high = digit.of(table).colors;
+    const ClassTable::Color* low =
+        withLow ? DigitPlace{digit.plane, true}.of(table).colors.data() : nullptr;
+    for (std::size_t i = 0; i < high.size(); ++i) {
+        const Pixel pixel = pixelOf(high[i], low ? low + i : nullptr);
+        if (largest.channels == 4) {
+            pixels_.push_back(pixel);
+        } else {
+            opacities_.push_back(pixel[3]);
+        }
+    }
+}
+
+// What stamping both digits and adding them up gives (Sheet::addDigits).
+PixelSplatter::Pixel PixelSplatter::pixelOf(const ClassTable::Color& high,
+                                            const ClassTable::Color* low) const {
+    constexpr int kBits = ClassTable::kDigitBits;
+    Pixel pixel;
+    for (std::size_t c = 0; c < 4; ++c) {
+        const std::int32_t fine = low ? (one_ * (*low)[c] + (1 << (kBits - 1))) >> kBits : 0;
+        pixel[c] = one_ * high[c] + fine;
+    }
+    return pixel;
+}
+
+void PixelSplatter::splat(int slice, bool whole, const NeededPixels& needed) {
+    if (whole) {
+        splatWhole(slice, needed);
+    } else {
+        splatChanges(slice, needed);
+    }
+}
+
+void PixelSplatter::splatChanges(int slice, const NeededPixels& needed) {
+    blocks_.forChanges(slice, needed,
+                       [&](glm::ivec2 block, std::uint64_t changed, const SeenWord& word) {
+                           const Sheet::Tile tile = sheet_.tileOf(block);
+                           write(tile.pixels, changed, rowsWithAny(changed), word);
+                           tile.full = rowsWithAny(word.visible);
+                       });
+}
+
+// Rows that the slice before showed are written over, or taken away with their block.
+void PixelSplatter::splatWhole(int slice, const NeededPixels& needed) {
+    before_.swap(shownBlocks_);
+    shownBlocks_.clear();
+    blocks_.forWhole(slice, needed,
+                     [&](glm::ivec2 block, std::uint64_t voxels, const SeenWord& word) {
+                         const Sheet::Tile tile = sheet_.tileOf(block);
+                         constexpr std::uint64_t kAll = ~std::uint64_t{0};
+                         write(tile.pixels, kAll, rowsWithAny(voxels) | tile.full, word);
+                         tile.full = rowsWithAny(word.visible);
+                         slices_[blocks_.placeOf(block)] = slice;
+                         shownBlocks_.push_back(block);
+                     });
+    for (const glm::ivec2 block : before_) {
+        if (slices_[blocks_.placeOf(block)] != slice) sheet_.clear(sheet_.tileOf(block));
+    }
+}
+
+void PixelSplatter::clear() {
+    blocks_.clear();
+    sheet_.clear();
+    shownBlocks_.clear();
+}
+
+// Writes voxels of a block, or all of the rows that have any of them.
+void PixelSplatter::write(std::int32_t* tile, std::uint64_t voxels, unsigned rows,
+                          const SeenWord& word) {
+    if (word.hasOwn) {
+        for (std::size_t n = 0; n < own_.size(); ++n)
+            own_[n] = pixelOf(word.colors[n], word.lowColors ? word.lowColors + n : nullptr);
+        if (sheet_.layout().channels == 4)
+            return writeValues(tile, voxels, rows, word.classes, own_.data());
+        std::array<std::int32_t, 64> opacities;
+        for (std::size_t n = 0; n < own_.size(); ++n) opacities[n] = own_[n][3];
+        return writeValues(tile, voxels, rows, word.classes, opacities.data());
+    }
+    if (sheet_.layout().channels == 4) {
+        writeValues(tile, voxels, rows, word.classes, pixels_.data());
+    } else {
+        writeValues(tile, voxels, rows, word.classes, opacities_.data());
+    }
+}
+
+template <typename Value>
+void PixelSplatter::writeValues(std::int32_t* tile, std::uint64_t voxels, unsigned rows,
+                                const ClassIndex* classes, const Value* values) {
+    const std::size_t pitch = sheet_.pitch();
+    constexpr std::size_t kNumbers = sizeof(Value) / sizeof(std::int32_t);
+    // A whole row takes as long as some voxels one by one.
+    constexpr int kFew = 3;
+    if (std::popcount(voxels) <= kFew * std::popcount(rows)) {
+        for (; voxels != 0; voxels &= voxels - 1) {
+            const unsigned n = unsigned(std::countr_zero(voxels));
+            std::memcpy(tile + pitch * (n >> 3) + kNumbers * (n & 7), &values[classes[n]],
+                        sizeof(Value));
+        }
+        return;
+    }
+    for (; rows != 0; rows &= rows - 1) {
+        const unsigned u = unsigned(std::countr_zero(rows));
+        std::int32_t* const row = tile + pitch * u;
+        for (std::size_t v = 0; v < 8; ++v)
+            std::memcpy(row + kNumbers * v, &values[classes[8 * u + v]], sizeof(Value));
+    }
+}
+
+}  // namespace deltasplat
