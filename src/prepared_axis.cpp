@@ -20,7 +20,7 @@ namespace deltasplat {
 namespace {
 
 // A word costs much where voxels have looks of their own, for it is lit, and more than its voxels
-// where these are written to pixels of their own.
+// do where these are written to pixels of their own.
 Encoding encodingOf(Method method, bool hasLooks, bool hasPixels) {
     switch (method) {
         case Method::kAuto:

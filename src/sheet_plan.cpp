@@ -48,6 +48,13 @@ bool dividesVoxels(const PreparedScene::Impl& scene) {
     return !scene.painter || scene.painter->dividesVoxels();
 }
 
+// Whether voxels of a view, or what they are divided into, have a sheet pixel of their own if
+// nothing else is asked for. What a turning camera rounds must not decide.
+bool hasOwnPixelIn(const Factorization& view, int parts, double resolution) {
+    constexpr double kSnap = 1e-9;
+    return hasOwnPixel(view.pixelsPerVoxel / parts * (1 + kSnap), resolution);
+}
+
 // Whether voxels are divided where the screen asks for it and nobody says otherwise.
 bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
                     const Listener& listener) {
@@ -82,7 +89,7 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view
     const SplatOptions& options = scene.options;
     checkKernel(options);
     // What is thin shows nothing else with more sheet pixels, while it is not smoothed.
-    if (!options.resolution && scene.isThin && hasOwnPixel(view.pixelsPerVoxel, 1)) resolution_ = 1;
+    if (!options.resolution && scene.isThin && hasOwnPixelIn(view, 1, 1)) resolution_ = 1;
     int between = 0;
     if (options.between) {
         between = *options.between;
@@ -106,7 +113,7 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view
 
 std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
     if (footprintWidth_ || asksForSigma_) return footprintWidth_;
-    if (!hasOwnPixel(view.pixelsPerVoxel / parts_.within, resolution())) return {};
+    if (!hasOwnPixelIn(view, parts_.within, resolution())) return {};
     return 1;
 }
 

@@ -16,7 +16,7 @@ namespace deltasplat {
 
 /// Which voxels are stamped. All give the same pixels, bit for bit.
 enum class Method {
-    kAuto,        ///< `sparse` or `delta` for each slab, by the stamps each would need
+    kAuto,        ///< `sparse` or `delta` for each slab, by what each would look at
     kDelta,       ///< every changed voxel
     kSparse,      ///< every visible voxel
     kTraditional  ///< every voxel of the bounding box (Westover 1990)
@@ -41,7 +41,7 @@ std::string modeName(Mode mode);
 /// How voxels are splatted.
 struct SplatOptions {
     Method method = Method::kAuto;
-    /// Footprint's standard deviation in voxels, kMinSigma..kMaxSigma; empty: defaultSigma.
+    /// Footprint's deviation in voxels, kMinSigma..kMaxSigma; empty: hasOwnPixel, defaultSigma.
     std::optional<double> sigma;
     std::optional<double> resolution;  ///< as in factorize(); empty: chosen from the screen
     /// Slices put between two neighbouring ones, 0..kMostBetween, with values mixed. If any, then
@@ -53,7 +53,7 @@ struct SplatOptions {
     /// where more than kMostDivided blocks of 8x8x8 voxels can be seen.
     std::optional<int> between;
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
-    std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as wide as sigma asks for
+    std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as for an empty sigma
     PictureFilter filter = PictureFilter::kCatmullRom;
 };
 

@@ -36,7 +36,7 @@ bool isWhole(const PlannedSlab& slab, Encoding encoding) {
         case Encoding::kSmallerOfSums:
             return isSmallerWhole(slab, false);
         case Encoding::kFewerWords:
-            return slab.seenWords <= slab.words;
+            return 4 * slab.seenWords < 5 * slab.words;
     }
     return false;
 }

@@ -16,7 +16,8 @@ enum class Encoding {
     kSmaller,  ///< for each slab kWhole unless kChanges takes fewer stamps by a fifth; where few
                ///< voxels of a block change, only if it takes fewer itself by three eighths
     kSmallerOfSums,  ///< the same where few voxels are nothing else, for they are not stamped
-    kFewerWords      ///< for each slab kWhole if no more of its words have anything to stamp
+    /// For each slab kWhole unless kChanges has something to stamp in fewer words by a fifth.
+    kFewerWords
 };
 
 /// Returns what method `auto` takes of classes that look the same wherever they are.

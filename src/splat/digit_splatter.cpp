@@ -60,7 +60,7 @@ void DigitSplatter::end() {
 
 double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout, bool hasLow) {
     if (PixelSplatter::fits(input.footprint))
-        return double(layout.bytes()) + PixelSplatter::bytes(layout);
+        return double(layout.bytes()) + PixelSplatter::bytes(input, layout);
     const double blocks = double(layout.blocks.x) * layout.blocks.y;
     // What stamps show, which of them wait, and their list as it grows.
     const double shownBytes = input.colors.own() ? sizeof(ClassTable::Color) : sizeof(ClassIndex);

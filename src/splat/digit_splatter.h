@@ -14,8 +14,9 @@ namespace deltasplat {
 class DigitSplatter {
   public:
     /// @param largest  of the layouts to come
-    /// @param hasLow   whether the low digit is added to this, the high one, where that is summed:
-    ///                 along with it (TileSplatter::addsLow), or as a sheet
+    /// @param hasLow   whether the low digit is added to this, the high one: in the table of
+    /// colours
+    ///                 (PixelSplatter), along with it (TileSplatter::addsLow), or as a sheet
     DigitSplatter(const SplatInput& input, const SheetLayout& largest, DigitPlace digit,
                   bool hasLow)
         : input_(input),
@@ -27,7 +28,7 @@ class DigitSplatter {
         if (voxels && voxels->of(digit) && !PixelSplatter::fits(input.footprint))
             isFew_ = voxels->fewerThan(TileSplatter::leastStamps(input.footprint), digit);
     }
-    // Both ways refer to the sheet.
+    // All ways refer to the sheet.
     DigitSplatter(const DigitSplatter&) = delete;
     DigitSplatter& operator=(const DigitSplatter&) = delete;
 

@@ -11,10 +11,12 @@
 
 namespace deltasplat {
 
-double PixelSplatter::bytes(const SheetLayout& layout) {
+double PixelSplatter::bytes(const SplatInput& input, const SheetLayout& layout) {
     // Which slice blocks show, which of them do, twice, and what waits.
     const double ofBlock = sizeof(int) + 4 * sizeof(glm::ivec2) + SliceBlocks::kBytesOfBlock;
-    return ofBlock * double(layout.blocks.x) * layout.blocks.y;
+    const double ofClass = sizeof(std::int32_t) * layout.channels;
+    return ofBlock * double(layout.blocks.x) * layout.blocks.y +
+           ofClass * double(input.colors.table().looks.size());
 }
 
 PixelSplatter::PixelSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
@@ -27,6 +29,7 @@ PixelSplatter::PixelSplatter(const SplatInput& input, const SheetLayout& largest
     const std::vector<ClassTable::Color>& high = digit.of(table).colors;
     const ClassTable::Color* low =
         withLow ? DigitPlace{digit.plane, true}.of(table).colors.data() : nullptr;
+    largest.channels == 4 ? pixels_.reserve(high.size()) : opacities_.reserve(high.size());
     for (std::size_t i = 0; i < high.size(); ++i) {
         const Pixel pixel = pixelOf(high[i], low ? low + i : nullptr);
         if (largest.channels == 4) {

@@ -18,7 +18,7 @@ class PixelSplatter {
     }
 
     /// Bytes that one takes, of a footprint that fits, without its sheet.
-    static double bytes(const SheetLayout& layout);
+    static double bytes(const SplatInput& input, const SheetLayout& layout);
 
     /// @param input    with a footprint that fits
     /// @param largest  of the layouts to come

@@ -48,8 +48,8 @@ struct SeenWord {
     const ClassIndex* classes;  ///< [64]: places in `colors`
     const ClassTable::Color* colors;
     bool hasOwn;  ///< whether colours are those of this word's voxels alone, in their order
-    /// Where the low digit goes with the high one: which voxels have it, and its colours. Else
-    /// none.
+    /// Where the low digit goes with the high one: which voxels have it, if that is known
+    /// (SplatInput::digitVoxels) or they have own colours, and its colours. Else none.
     std::uint64_t lowVoxels = 0;
     const ClassTable::Color* lowColors = nullptr;
 };

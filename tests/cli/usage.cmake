@@ -16,7 +16,7 @@ deltasplat_cli_test(help_short ARGS -h STDOUT_MATCHES "Usage: deltasplat")
 deltasplat_cli_test(help_info ARGS info --help
     STDOUT_MATCHES "--level-set.*default keep.*Examples:.*deltasplat info.*deltasplat info")
 deltasplat_cli_test(help_render ARGS render --help
-    STDOUT_MATCHES "default 512x512.*sheet\n *pixel where.*else 0.3.*Examples:.*deltasplat render.*deltasplat render")
+    STDOUT_MATCHES "default 512x512.*one sheet pixel each.*0.3 of a voxel.*Examples:.*deltasplat render.*deltasplat render")
 deltasplat_cli_test(help_fold ARGS fold --help
     STDOUT_MATCHES "PARTS.*--background.*--region.*Examples:.*deltasplat fold.*deltasplat fold")
 deltasplat_cli_test(help_synth ARGS synth -h

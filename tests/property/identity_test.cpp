@@ -66,8 +66,8 @@ const IndexBox kBoxes[] = {{{0, 0, 0}, {40, 21, 33}}, {{-19, 5, -60}, {0, 70, 2}
 // At one pixel a voxel: 5x5 and 7x7, which are summed up as cells, and more, which is stamped.
 constexpr double kWideSigmas[] = {0.6, 0.9, 1.4};
 
-// Resolutions 1 and 2 sum up tiles, those below 1 do so of voxels that share pixels, 3 and 4 sum up
-// cells, and 5 stamps footprints.
+// At resolution 1 a footprint of one pixel is written, of 3x3 summed up, as at 2; below 1 voxels
+// share pixels, 3 and 4 sum up cells, and 5 stamps footprints.
 TEST(Identity, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
     for (const IndexBox& box : kBoxes) {
         const Volume volume = test::randomVolume(box, 17, 0.5, {1, 1.5, 0.8});
@@ -83,6 +83,11 @@ TEST(Identity, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
             options.sigma = 0.6;
             expectSamePixels(volume, options);
             options.resolution = 1;
+            for (const int width : {1, 3}) {
+                options.footprintWidth = width;
+                expectSamePixels(volume, options);
+            }
+            options.footprintWidth = {};
             for (const double sigma : kWideSigmas) {
                 options.sigma = sigma;
                 expectSamePixels(volume, options);

@@ -23,7 +23,7 @@ const char* stampedBy(Method method) {
         case Method::kAuto:
             break;
     }
-    return "sparse for slabs where that saves a fifth of the stamps or more, else delta";
+    return "delta for slabs where that is clearly less work, else sparse";
 }
 
 std::string fileName(const std::string& input) {

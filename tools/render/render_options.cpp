@@ -348,10 +348,10 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
     group.addValue("--sigma", "V", options.sigma, number(kMinSigma, kMaxSigma),
                    "Standard deviation of the footprint in voxels, " + numberText(kMinSigma) +
                        " to " + numberText(kMaxSigma) +
-                       "\n(default: a voxel, or what it is divided into, is seen in one sheet\n"
-                       "pixel where it covers less than 3 pixels; else " +
-                       numberText(kLeastSigma) + " of it,\ngrowing to " + numberText(kMostSigma) +
-                       " with what it covers)");
+                       "\n(default: with one sheet pixel each, voxels, or what they are divided\n"
+                       "into, are seen in it alone where they cover less than 3 pixels; else\n" +
+                       numberText(kLeastSigma) + " of a voxel, growing to " +
+                       numberText(kMostSigma) + " with what it covers)");
     group.addValue(
         "--between", "N", options.between, wholeNumber(0, kMostBetween),
         "Slices put between two neighbouring ones, 0 to " + std::to_string(kMostBetween) +
@@ -362,8 +362,8 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
             std::to_string(kMostDivided) + " blocks of voxels; else 0)");
     group.addValue("--resolution", "R", options.resolution, resolution(),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
-                       ", or 1/2, 1/4 or 1/8:\nvoxels share a pixel, which is faster, softer, "
-                       "and denser where\nthin and opaque things lie along the line of sight\n"
+                       ", or 1/2, 1/4 or 1/8:\nvoxels share a pixel, which is softer, not faster, "
+                       "and denser\nwhere thin and opaque things lie along the line of sight\n"
                        "(default: 1 or 2, chosen from the screen)");
     group.addValue("--filter", "NAME", options.filter, pictureFilter(),
                    withDefault("What makes pixels of the rendered plane: catmull-rom (sharp),\n"

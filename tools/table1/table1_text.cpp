@@ -141,10 +141,9 @@ const char* footnotes() {
            "to be\n    compared with the paper's\n"
            "  Here every method stamps footprints one by one, as the paper does, with the same "
            "kernel.\n"
-           "  Footprints of up to 3 x 3, the default at one sheet pixel a voxel, are summed tile "
-           "by "
-           "tile\n"
-           "  instead where much changes, which helps dense work (traditional) most.\n";
+           "  Footprints that screens ask for are mostly of one pixel, which is written, and "
+           "others\n"
+           "  summed tile by tile where much changes, which helps dense work (traditional) most.\n";
 }
 
 }  // namespace

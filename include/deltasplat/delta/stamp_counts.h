@@ -14,13 +14,14 @@ struct StampCounts {
     std::uint64_t traditional = 0;  ///< voxels of the box
     std::uint64_t sparse = 0;       ///< visible voxels
     std::uint64_t delta = 0;        ///< deltas, those of key slices included
-    /// For each slab `delta` if fewer of its slices of 8x8x8 blocks have any to stamp, else
-    /// `sparse`: as for footprints of one pixel, which undivided voxels of less than three have.
+    /// For each slab `delta` if fewer of its slices of 8x8x8 blocks have any to stamp, by a fifth,
+    /// else `sparse`: what `render` takes where footprints have one pixel (hasOwnPixel).
     std::uint64_t automatic = 0;
 };
 
 /// Returns what `render` takes for a picture along a slice axis, without rendering or storing
-/// deltas: exact for the slot map of its transfer function (see ClassTable::classOfSlot).
+/// deltas: exact (but for `automatic` of wider footprints) for the slot map of its transfer
+/// function (see ClassTable::classOfSlot).
 /// @param slotMap  as DeltaOptions::slotMap
 StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap = {});
 

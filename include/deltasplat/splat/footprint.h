@@ -54,9 +54,9 @@ inline bool hasOwnPixel(double pixelsPerVoxel, double resolution) {
 inline constexpr double kLeastSigma = 0.3;
 inline constexpr double kMostSigma = 0.6;
 
-/// Returns the width of others used when none is asked for: kLeastSigma voxels, which is sharpest,
-/// and more where a voxel would begin to show as a square, or as a step: up to kMostSigma from
-/// three pixels of the screen on if it has several sheet pixels, from six on if it has one.
+/// Returns sigma, in voxels, where none is asked for and hasOwnPixel() is not so: kLeastSigma, the
+/// sharpest, and more where a voxel would begin to show as a square, or as a step: up to kMostSigma
+/// from three pixels of the screen on if it has several sheet pixels, from six on if it has one.
 inline double defaultSigma(double pixelsPerVoxel, double resolution) {
     const double sigma = resolution > 1 ? 0.3 * (pixelsPerVoxel - 1) : 0.1 * pixelsPerVoxel;
     return std::clamp(sigma, kLeastSigma, kMostSigma);
