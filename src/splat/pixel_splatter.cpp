@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <type_traits>
 
 #include "bit_matrix.h"
 
@@ -116,7 +117,7 @@ template <typename Value>
 void PixelSplatter::writeValues(std::int32_t* tile, std::uint64_t voxels, unsigned rows,
                                 const ClassIndex* classes, const Value* values) {
     const std::size_t pitch = sheet_.pitch();
-    constexpr std::size_t kNumbers = sizeof(Value) / sizeof(std::int32_t);
+    constexpr std::size_t kNumbers = std::is_same_v<Value, Pixel> ? 4 : 1;
     // A whole row takes as long as some voxels one by one.
     constexpr int kFew = 3;
     if (std::popcount(voxels) <= kFew * std::popcount(rows)) {
