@@ -10,6 +10,7 @@
 #include "plane_view.h"
 #include "prepared_axis.h"
 #include "sheet_plan.h"
+#include "splat/digit_voxels.h"
 
 namespace deltasplat {
 
@@ -72,7 +73,7 @@ class PictureView {
     std::optional<StepColors> colors_;  // if the axis' are those of other steps, or not lit
     Factorization thinView_;
     Footprint footprint_;
-    std::optional<DigitVoxels> digitVoxels_;
+    std::optional<DigitVoxels> digitVoxels_;  // of several digits, without own colours
     SheetLayout layout_;
     std::optional<PlaneView> plane_;
     std::optional<SlabInput> slabs_;

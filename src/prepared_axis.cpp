@@ -97,7 +97,8 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
         classes = classify(seen, scene.optics, straight);
     }
     listener.report(0.05);
-    if (encoding == Encoding::kSmaller) encoding = smallerEncoding(classes.oneDigit());
+    // Small footprints of two digits are never stamped.
+    if (encoding == Encoding::kSmaller && !classes.oneDigit()) encoding = Encoding::kSmallerOfSums;
     std::shared_ptr<const PackedDeltas> words = sharedWords(before, scene, classes);
     PackOptions pack{sliceAxis, encoding, classes.classOfSlot, holdRule(seen, classes, tolerance),
                      mixer ? &*mixer : nullptr};

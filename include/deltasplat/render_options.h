@@ -53,7 +53,7 @@ struct SplatOptions {
     /// where more than kMostDivided blocks of 8x8x8 voxels can be seen.
     std::optional<int> between;
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
-    std::optional<int> footprintWidth;  ///< in sheet pixels; empty: as for an empty sigma
+    std::optional<int> footprintWidth;  ///< in sheet pixels; empty: 1 (hasOwnPixel) or by sigma
     PictureFilter filter = PictureFilter::kCatmullRom;
 };
 

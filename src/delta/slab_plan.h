@@ -20,12 +20,6 @@ enum class Encoding {
     kFewerWords
 };
 
-/// Returns what method `auto` takes of classes that look the same wherever they are.
-/// @param oneDigit  as ClassTable::oneDigit(): small footprints of two digits are never stamped
-constexpr Encoding smallerEncoding(bool oneDigit) {
-    return oneDigit ? Encoding::kSmaller : Encoding::kSmallerOfSums;
-}
-
 /// A slab as a picture is rendered from it.
 struct PlannedSlab : Slab {
     bool whole = false;  ///< every slice is splatted anew

@@ -14,9 +14,8 @@ namespace deltasplat {
 class DigitSplatter {
   public:
     /// @param largest  of the layouts to come
-    /// @param hasLow   whether the low digit is added to this, the high one: in the table of
-    /// colours
-    ///                 (PixelSplatter), along with it (TileSplatter::addsLow), or as a sheet
+    /// @param hasLow   whether the low digit is added to this, the high one: along with it
+    ///                 (addsLow), or as a sheet where it is summed
     DigitSplatter(const SplatInput& input, const SheetLayout& largest, DigitPlace digit,
                   bool hasLow)
         : input_(input),
@@ -31,6 +30,11 @@ class DigitSplatter {
     // All ways refer to the sheet.
     DigitSplatter(const DigitSplatter&) = delete;
     DigitSplatter& operator=(const DigitSplatter&) = delete;
+
+    /// Whether the low digit goes along with the high one, and has no sheet of its own.
+    static bool addsLow(const Footprint& footprint) {
+        return PixelSplatter::fits(footprint) || TileSplatter::addsLow(footprint);
+    }
 
     /// Begins with a slab.
     /// @param layout  of the whole sheet, or of a part of it (layoutPart)

@@ -98,15 +98,11 @@ void PixelSplatter::clear() {
 void PixelSplatter::write(std::int32_t* tile, std::uint64_t voxels, unsigned rows,
                           const SeenWord& word) {
     if (word.hasOwn) {
+        // Which are not all the same, and have a low digit.
         for (std::size_t n = 0; n < own_.size(); ++n)
-            own_[n] = pixelOf(word.colors[n], word.lowColors ? word.lowColors + n : nullptr);
-        if (sheet_.layout().channels == 4)
-            return writeValues(tile, voxels, rows, word.classes, own_.data());
-        std::array<std::int32_t, 64> opacities;
-        for (std::size_t n = 0; n < own_.size(); ++n) opacities[n] = own_[n][3];
-        return writeValues(tile, voxels, rows, word.classes, opacities.data());
-    }
-    if (sheet_.layout().channels == 4) {
+            own_[n] = pixelOf(word.colors[n], word.lowColors + n);
+        writeValues(tile, voxels, rows, word.classes, own_.data());
+    } else if (sheet_.layout().channels == 4) {
         writeValues(tile, voxels, rows, word.classes, pixels_.data());
     } else {
         writeValues(tile, voxels, rows, word.classes, opacities_.data());

@@ -14,7 +14,7 @@ PlaneSplatter::PlaneSplatter(const SplatInput& input, const SheetLayout& largest
     : input_(input),
       largest_(largest),
       high_(input, largest, {plane, false}, hasLow(input, plane)) {
-    if (hasLow(input, plane) && !TileSplatter::addsLow(input.footprint))
+    if (hasLow(input, plane) && !DigitSplatter::addsLow(input.footprint))
         low_.emplace(input, largest, DigitPlace{plane, true}, false);
 }
 
@@ -44,7 +44,7 @@ void PlaneSplatter::end() {
 double PlaneSplatter::bytes(const SplatInput& input, const SheetLayout& layout, int plane) {
     const bool isTwo = hasLow(input, plane);
     const double high = DigitSplatter::bytes(input, layout, isTwo);
-    if (!isTwo || TileSplatter::addsLow(input.footprint)) return high;
+    if (!isTwo || DigitSplatter::addsLow(input.footprint)) return high;
     return 2 * high + (TileSplatter::isWide(input.footprint) ? double(layout.bytes()) : 0);
 }
 
