@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <type_traits>
+#include <utility>
 
 #include "deltasplat/optics/class_table.h"
 #include "simd_targets.h"
@@ -32,9 +33,8 @@ class TileSums {
     static constexpr int kPairRows = 2 * kResolution;
 
   public:
-    explicit TileSums(const TileWeights& weights) {
-        for (int phase = 0; phase < kPhases; ++phase) weights_[phase] = weightsOf(weights, phase);
-    }
+    explicit TileSums(const TileWeights& weights)
+        : TileSums(weights, std::make_integer_sequence<int, kPhases>()) {}
 
     // Makes rows of a tile and returns which of them are not all zero.
     template <bool kIsAll>
@@ -58,6 +58,11 @@ class TileSums {
     }
 
   private:
+    // Vectors are made from values: a constructor that the compiler writes is not of a SIMD level.
+    template <int... kPhase>
+    TileSums(const TileWeights& weights, std::integer_sequence<int, kPhase...>)
+        : weights_{weightsOf(weights, kPhase)...} {}
+
     // What a vector of pixels takes from a pair of rows: its voxels, and those beside them.
     struct Columns {
         V before, here, behind;
