@@ -1,34 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/codes/code_statistics.h"
 
-#include <algorithm>
-
-#include "deltasplat/threads.h"
+#include "ingest/codes/code_counts.h"
 #include "ingest/grids/grid_values.h"
-#include "parallel.h"
 
 namespace deltasplat {
 
 std::vector<std::uint64_t> histogramOf(const CodeTree::Tree& tree) {
     std::vector<const CodeTree::Leaf*> leaves;
     tree.getNodes(leaves);
-    // Histograms are large: one for each thread, not for each piece of work.
-    const std::size_t strips = std::size_t(std::max(1, threadCount()));
-    std::vector<std::vector<std::uint64_t>> counts(strips);
-    parallelFor(strips, [&](std::size_t strip) {
-        counts[strip].resize(kCodeCount);
-        for (std::size_t i = strip; i < leaves.size(); i += strips) {
-            const Code* codes = leaves[i]->buffer().data();
-            for (auto on = leaves[i]->valueMask().beginOn(); on; ++on)
-                ++counts[strip][codes[on.pos()]];
-        }
-    });
-    std::vector<std::uint64_t>& sum = counts[0];
-    for (std::size_t strip = 1; strip < strips; ++strip) {
-        for (std::size_t code = 0; code < sum.size(); ++code) sum[code] += counts[strip][code];
-    }
-    forActiveTiles(tree, [&](const auto& tile) { sum[*tile] += tile.getVoxelCount(); });
-    return std::move(sum);
+    CodeCounts counts;
+    forLeafRuns(leaves.size(), counts.workers(),
+                [&](std::size_t worker, std::size_t begin, std::size_t end) {
+                    LeafRoom<CodeTree::Leaf> room;
+                    for (std::size_t i = begin; i < end; ++i)
+                        counts.add(worker, activeValues(*leaves[i], room));
+                });
+    forActiveTiles(tree, [&](const auto& tile) { counts.add(0, *tile, tile.getVoxelCount()); });
+    return counts.take();
 }
 
 IndexBox activeBox(const CodeTree::Tree& tree) {

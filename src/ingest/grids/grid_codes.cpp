@@ -5,21 +5,22 @@
 #include <openvdb/tools/LevelSetUtil.h>
 
 #include <algorithm>
-#include <atomic>
+#include <bit>
 #include <cmath>
-#include <limits>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "deltasplat/error.h"
 #include "ingest/codes/book_encoder.h"
-#include "ingest/codes/code_statistics.h"
+#include "ingest/codes/code_counts.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/error_meter.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/not_finite.h"
 #include "ingest/grids/scalar_grids.h"
 #include "ingest/readers.h"
+#include "ingest/values/float_kernels.h"
 #include "number_text.h"
 
 namespace deltasplat {
@@ -30,33 +31,12 @@ namespace {
     throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
 }
 
-// Whether any value is NaN or infinite, active or not: there hardly ever is, and this is told soon.
-template <typename Tree>
-bool hasNonFinite(Tree& tree) {
-    using T = typename Tree::ValueType;
-    std::vector<typename Tree::LeafNodeType*> leaves;
-    tree.getNodes(leaves);
-    std::atomic<bool> found = false;
-    forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end && !found; ++i) {
-            const T* values = leaves[i]->buffer().data();
-            bool areFinite = true;
-            for (openvdb::Index n = 0; n < Tree::LeafNodeType::SIZE; ++n)
-                areFinite &= std::fabs(values[n]) <= std::numeric_limits<T>::max();
-            if (!areFinite) found = true;
-        }
-    });
-    forActiveTiles(tree, [&](const auto& tile) {
-        if (!isFinite(*tile)) found = true;
-    });
-    return found;
-}
+// What is told soon, and mostly is enough.
+constexpr ScanWishes kNumbersAlone{.distinct = false, .survey = false};
 
+// Replaces what is not finite, or refuses it.
 template <typename Grid>
-std::uint64_t settleNonFinite(Grid& grid, const GridCodesOptions& options) {
-    if (!hasNonFinite(grid.tree())) return 0;
-    const GridScan range = scanTree(grid.tree(), {.distinct = false, .survey = false});
-    if (range.nonFinite == 0) return 0;
+void settleNonFinite(Grid& grid, const GridScan& range, const GridCodesOptions& options) {
     if (!options.reading.nanValue) {
         const std::string got =
             std::to_string(range.nonFinite) + " NaN or infinite active values, the first at (" +
@@ -73,7 +53,6 @@ std::uint64_t settleNonFinite(Grid& grid, const GridCodesOptions& options) {
     options.listener.warn(options.where + ": " + std::to_string(range.nonFinite) +
                           " NaN or infinite active values replaced by " +
                           numberText(*options.reading.nanValue));
-    return range.nonFinite;
 }
 
 // Returns whether the grid was a level set, and has been made fog.
@@ -92,36 +71,80 @@ bool makeFog(Grid& grid, const GridCodesOptions& options) {
     return true;
 }
 
+// Puts the codes of a leaf's active voxels where these are.
+void spread(const Code* codes, CodeTree::Leaf& leaf) {
+    Code* out = leaf.buffer().data();
+    for (openvdb::Index row = 0; row < CodeTree::Leaf::SIZE; row += 64) {
+        auto active = leaf.valueMask().getWord<std::uint64_t>(row / 64);
+        if (active == ~std::uint64_t{0}) {
+            std::copy_n(codes, 64, out + row);
+            codes += 64;
+            continue;
+        }
+        for (; active != 0; active &= active - 1) out[row + std::countr_zero(active)] = *codes++;
+    }
+}
+
+// Fills the leaves of a tree, and counts their codes: codesOf(worker, i, out) writes those of the
+// active voxels of leaf i, in the order of their places.
+template <typename CodesOf>
+void fillLeaves(CodeTree::Tree& codes, CodeCounts& counts, const CodesOf& codesOf) {
+    std::vector<CodeTree::Leaf*> leaves;
+    codes.getNodes(leaves);
+    forLeafRuns(leaves.size(), counts.workers(),
+                [&](std::size_t worker, std::size_t begin, std::size_t end) {
+                    LeafRoom<CodeTree::Leaf> room;
+                    for (std::size_t i = begin; i < end; ++i) {
+                        CodeTree::Leaf& leaf = *leaves[i];
+                        const bool isDense = leaf.isDense();
+                        Code* const out = isDense ? leaf.buffer().data() : room.data();
+                        codesOf(worker, i, out);
+                        counts.add(worker, {out, std::size_t(leaf.onVoxelCount())});
+                        if (!isDense) spread(out, leaf);
+                    }
+                });
+}
+
+// Turns values into the codes of a book.
+template <typename T>
+void encodeAll(const CodeBook& book, const BookEncoder& encode, std::span<const T> values,
+               Code* codes) {
+    if constexpr (std::is_same_v<T, float>) {
+        constexpr double kLargest = (1 << 24) - kCodeCount;
+        if (book.kind == CodeBook::Kind::kHalf) return codesOfHalves(values, codes);
+        if (book.kind == CodeBook::Kind::kInteger && std::abs(book.offset) <= kLargest)
+            return codesOfWhole(values, float(book.offset), codes);
+    }
+    for (const T value : values) *codes++ = encode(double(value));
+}
+
 template <typename Tree>
-std::shared_ptr<CodeTree> codesOfTree(Tree& tree, const CodeBook& book, ErrorMeter& meter) {
+std::shared_ptr<CodeTree> codesOfTree(const Tree& tree, const CodeBook& book, ErrorMeter& meter,
+                                      CodeCounts& counts) {
     const BookEncoder encode(book);
     const bool exact = book.isExact();
     using SourceLeaf = typename Tree::LeafNodeType;
     // OpenVDB's trees cannot be assigned, only made in place.
     std::shared_ptr<CodeTree> codes(
         new CodeTree(std::in_place, tree, Code{0}, openvdb::TopologyCopy()));
-    std::vector<SourceLeaf*> sources;
-    std::vector<CodeTree::Leaf*> targets;
+    std::vector<const SourceLeaf*> sources;
     tree.getNodes(sources);
-    codes->tree().getNodes(targets);
-    forLeafRuns(sources.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        ErrorMeter::Part part(meter);
-        for (std::size_t i = begin; i < end; ++i) {
-            Code* out = targets[i]->buffer().data();
-            forActiveVoxels(*sources[i], [&](openvdb::Index n, const auto& value) {
-                out[n] = encode(double(value));
-                if (!exact) part.add(double(value), out[n]);
-            });
-        }
-        meter.add(part);
+    std::vector<ErrorMeter::Part> parts(counts.workers(), ErrorMeter::Part(meter));
+    fillLeaves(codes->tree(), counts, [&](std::size_t worker, std::size_t i, Code* out) {
+        LeafRoom<SourceLeaf> room;
+        const auto values = activeValues(*sources[i], room);
+        encodeAll(book, encode, values, out);
+        if (exact) return;
+        for (std::size_t n = 0; n < values.size(); ++n)
+            parts[worker].add(double(values[n]), out[n]);
     });
     forActiveTiles(codes->tree(), [&](const auto& tile) {
         const auto value = double(tree.getValue(tile.getCoord()));
         tile.setValue(encode(value));
-        ErrorMeter::Part part(meter);
-        if (!exact) part.add(value, *tile);
-        meter.add(part);
+        counts.add(0, *tile, tile.getVoxelCount());
+        if (!exact) parts[0].add(value, *tile);
     });
+    for (const ErrorMeter::Part& part : parts) meter.add(part);
     return codes;
 }
 
@@ -148,13 +171,15 @@ IndexBox boxOf(const CodeTree::Tree& tree, const std::string& where) {
 template <typename Grid>
 void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     using T = typename Grid::ValueType;
+    GridScan scan = scanTree(grid.tree(), kNumbersAlone);
     if constexpr (std::is_floating_point_v<T>) {
-        volume.replaced = settleNonFinite(grid, options);
+        volume.replaced = scan.nonFinite;
+        if (scan.nonFinite > 0) settleNonFinite(grid, scan, options);
         volume.fromLevelSet = makeFog(grid, options);
+        if (volume.replaced > 0 || volume.fromLevelSet) scan = scanTree(grid.tree(), kNumbersAlone);
     }
     constexpr bool kReal = std::is_floating_point_v<T>;
     const bool isLinear = kReal && options.reading.bits;
-    GridScan scan = scanTree(grid.tree(), {.distinct = false, .survey = false});
     if (isLinear || !plainBook(scan.census, kReal))
         scan = scanTree(grid.tree(), {.distinct = !isLinear, .survey = sizeof(T) > 1});
     // Active voxels may be as empty as inactive ones: then they have that very value.
@@ -166,9 +191,10 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     volume.hasBackground = true;
     volume.background = double(grid.background());
     ErrorMeter meter(volume.codeBook, bulkMagnitude(scan.census));
-    auto codes = codesOfTree(grid.tree(), volume.codeBook, meter);
+    CodeCounts counts;
+    auto codes = codesOfTree(grid.tree(), volume.codeBook, meter, counts);
     volume.box = boxOf(codes->tree(), options.where);
-    volume.histogram = histogramOf(codes->tree());
+    volume.histogram = counts.take();
     volume.codes = std::move(codes);
     summarize(volume);
     if (volume.codeBook.isExact()) return;

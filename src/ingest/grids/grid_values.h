@@ -5,9 +5,12 @@
 #include <openvdb/math/Coord.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -53,6 +56,18 @@ void forLeafRuns(std::size_t count, const Body& body) {
     });
 }
 
+/// The same on so many workers, as body(worker, begin, end): of one worker, one call after the
+/// other.
+template <typename Body>
+void forLeafRuns(std::size_t count, std::size_t workers, const Body& body) {
+    const std::size_t runs = (count + kLeafRun - 1) / kLeafRun;
+    std::atomic<std::size_t> next = 0;
+    parallelFor(workers, [&](std::size_t worker) {
+        for (std::size_t run = next++; run < runs; run = next++)
+            body(worker, run * kLeafRun, std::min(count, (run + 1) * kLeafRun));
+    });
+}
+
 /// Calls use(n, value) for the active voxels of a leaf, n being their places in it.
 template <typename Leaf, typename Use>
 void forActiveVoxels(const Leaf& leaf, const Use& use) {
@@ -68,6 +83,22 @@ void forActiveVoxels(const Leaf& leaf, const Use& use) {
             }
         }
     }
+}
+
+/// Room for the values of a leaf's active voxels.
+template <typename Leaf>
+using LeafRoom = std::array<typename Leaf::ValueType, Leaf::SIZE>;
+
+/// Returns the values of a leaf's active voxels, in the order of their places: the leaf's own where
+/// all are active, otherwise a copy in `room`.
+template <typename Leaf>
+std::span<const typename Leaf::ValueType> activeValues(const Leaf& leaf, LeafRoom<Leaf>& room) {
+    if constexpr (!std::is_same_v<typename Leaf::ValueType, bool>) {
+        if (leaf.isDense()) return {leaf.buffer().data(), Leaf::SIZE};
+    }
+    std::size_t count = 0;
+    forActiveVoxels(leaf, [&](openvdb::Index, const auto& value) { room[count++] = value; });
+    return {room.data(), count};
 }
 
 /// Calls use(iterator) for every active tile of `tree`, of any level.
@@ -105,7 +136,9 @@ GridScan scanTree(Tree& tree, const ScanWishes& wishes) {
             ValueCensus& census = scans[run].census;
             if (whole.census.distinct.tooMany()) census.distinct.giveUp();
             census.skipSurvey = !wishes.survey;
+            LeafRoom<typename Tree::LeafNodeType> room;
             for (std::size_t i = start + begin; i < start + end; ++i) {
+                if (census.addAll(activeValues(*leaves[i], room))) continue;
                 forActiveVoxels(*leaves[i], [&](openvdb::Index n, const auto& value) {
                     if (isFinite(value)) {
                         census.add(value);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 
@@ -15,6 +16,7 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/codes/fitted_book.h"
 #include "ingest/values/distinct_values.h"
+#include "ingest/values/float_kernels.h"
 #include "ingest/values/value_survey.h"
 
 namespace deltasplat {
@@ -57,6 +59,26 @@ struct ValueCensus {
         distinct.add(number);
         if (!skipSurvey) survey.add(number);
     }
+    /// Adds finite values, as add() does each of them. Returns false, and adds none, if one is not
+    /// finite; integers are.
+    template <typename T>
+    bool addAll(std::span<const T> values) {
+        if constexpr (std::is_same_v<T, float>) {
+            if (values.empty()) return true;
+            const FloatFacts facts = factsOf(values);
+            if (!facts.isFinite) return false;
+            if (distinct.tooMany() && skipSurvey) {
+                add(facts, values.size());
+                return true;
+            }
+        } else if constexpr (std::is_floating_point_v<T>) {
+            for (const T value : values) {
+                if (!std::isfinite(value)) return false;
+            }
+        }
+        for (const T value : values) add(value);
+        return true;
+    }
     /// Adds a value that was added before, so many times more.
     void repeat(double value, std::uint64_t times) {
         count += times;
@@ -65,6 +87,15 @@ struct ValueCensus {
     void append(const ValueCensus& next);
 
   private:
+    void add(const FloatFacts& facts, std::uint64_t values) {
+        min = count == 0 ? double(facts.min) : std::min(min, double(facts.min));
+        max = count == 0 ? double(facts.max) : std::max(max, double(facts.max));
+        count += values;
+        if (facts.least > 0 && (least == 0 || double(facts.least) < least))
+            least = double(facts.least);
+        half = half && facts.isHalf;
+        whole = whole && facts.isWhole;
+    }
     static bool isHalf(double number) {
         // Binary16 has 10 of the 52 bits behind the point, and most numbers have more.
         if ((std::bit_cast<std::uint64_t>(number) & ((std::uint64_t{1} << 42) - 1)) != 0)
