@@ -199,7 +199,8 @@ class StripDecoder {
     // Adds a leaf's deltas, slice by slice.
     bool addLeaf(const glm::ivec3& position, const VdbLeaf& leaf, const VdbLeaves::Mask& mask,
                  ShortSlot* out) {
-        const std::span<const std::int32_t> deltas = leaves_.activeValues(leaf, mask, values_);
+        const std::span<const std::int32_t> deltas =
+            leaves_.activeValues<std::int32_t>(leaf, mask, values_);
         std::size_t active = 0;
         for (int s = 0; s < 8; ++s) {
             const std::uint64_t word = mask[std::size_t(s)];
@@ -311,7 +312,7 @@ class StripDecoder {
     // Of the column in hand.
     std::array<std::uint32_t, 64> slots_{};
     std::uint64_t inside_ = 0;
-    VdbLeaves::Values values_;
+    VdbLeaves::Values<std::int32_t> values_;
 };
 
 // Returns the leaves by u, v and slice; none if one lies outside of the box.
@@ -406,7 +407,6 @@ std::optional<DecodedLeaves> decodeLeaves(const VdbLeaves& leaves, const DeltaHe
                                           const std::string& where,
                                           const std::optional<glm::ivec2>& wanted,
                                           const Listener& listener) {
-    if (leaves.background() != 0) return std::nullopt;
     const Layout layout(header, wanted);
     if (layout.keptFirst > layout.keptLast) return std::nullopt;
     if (header.slabDeltas.size() != std::size_t(layout.slabs())) return std::nullopt;

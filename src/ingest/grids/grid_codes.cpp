@@ -5,6 +5,7 @@
 #include <openvdb/tools/LevelSetUtil.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <memory>
@@ -22,6 +23,7 @@
 #include "ingest/readers.h"
 #include "ingest/values/float_kernels.h"
 #include "number_text.h"
+#include "shared_progress.h"
 
 namespace deltasplat {
 namespace {
@@ -168,6 +170,25 @@ IndexBox boxOf(const CodeTree::Tree& tree, const std::string& where) {
     return box;
 }
 
+void takeCodes(std::shared_ptr<CodeTree> codes, CodeCounts& counts, const GridCodesOptions& options,
+               Volume& volume) {
+    volume.box = boxOf(codes->tree(), options.where);
+    volume.histogram = counts.take();
+    volume.codes = std::move(codes);
+    summarize(volume);
+}
+
+template <typename Grid>
+void takeBackground(const Grid& grid, Volume& volume) {
+    volume.hasBackground = true;
+    volume.background = double(grid.background());
+}
+
+void describeGrid(const openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume) {
+    volume.type = options.type;
+    volume.gridClass = openvdb::GridBase::gridClassToString(grid.getGridClass());
+}
+
 template <typename Grid>
 void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     using T = typename Grid::ValueType;
@@ -188,15 +209,10 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     volume.codeBook = std::is_same_v<T, bool>
                           ? CodeBook::integer(0)
                           : chooseBook(scan.census, kReal, options.reading, options.where);
-    volume.hasBackground = true;
-    volume.background = double(grid.background());
     ErrorMeter meter(volume.codeBook, bulkMagnitude(scan.census));
     CodeCounts counts;
-    auto codes = codesOfTree(grid.tree(), volume.codeBook, meter, counts);
-    volume.box = boxOf(codes->tree(), options.where);
-    volume.histogram = counts.take();
-    volume.codes = std::move(codes);
-    summarize(volume);
+    takeCodes(codesOfTree(grid.tree(), volume.codeBook, meter, counts), counts, options, volume);
+    takeBackground(grid, volume);
     if (volume.codeBook.isExact()) return;
     volume.valueMin = scan.census.min;
     volume.valueMax = scan.census.max;
@@ -204,13 +220,50 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     warnOfCodeError(options.where, volume, options.reading, options.listener);
 }
 
+// Writes the codes of active tiles; returns whether all are halves.
+bool codeHalfTiles(const openvdb::FloatTree& tree, CodeTree::Tree& codes, CodeCounts& counts) {
+    const CodeBook book = CodeBook::half();
+    bool areHalves = true;
+    forActiveTiles(codes, [&](const auto& tile) {
+        const float value = tree.getValue(tile.getCoord());
+        areHalves = areHalves && isFinite(value) && book.valueOf(book.codeOf(value)) == value;
+        tile.setValue(areHalves ? book.codeOf(value) : Code{0});
+        counts.add(0, *tile, tile.getVoxelCount());
+    });
+    return areHalves;
+}
+
 }  // namespace
+
+bool fillFromHalves(const VdbHalves& halves, const GridCodesOptions& options, Volume& volume) {
+    const openvdb::FloatTree& topology = halves.topology->tree();
+    const std::vector<VdbLeaf>& leaves = halves.leaves.leaves();
+    CodeCounts counts;
+    auto codes =
+        std::make_shared<CodeTree>(std::in_place, topology, Code{0}, openvdb::TopologyCopy());
+    if (!codeHalfTiles(topology, codes->tree(), counts)) return false;
+    std::atomic<bool> areSound = true;
+    SharedProgress progress(options.listener);
+    fillLeaves(codes->tree(), counts, [&](std::size_t, std::size_t i, Code* out) {
+        if (i % kLeafRun == 0) progress.report(double(i) / double(leaves.size()));
+        VdbLeaves::Values<std::uint16_t> room;
+        const VdbLeaves::Mask mask = halves.leaves.maskOf(leaves[i]);
+        const auto bits = halves.leaves.activeValues<std::uint16_t>(leaves[i], mask, room);
+        if (bits.empty() && mask != VdbLeaves::Mask{}) areSound = false;
+        if (!codesOfHalfBits(bits, out)) areSound = false;
+    });
+    if (!areSound) return false;
+    volume.codeBook = CodeBook::half();
+    takeCodes(std::move(codes), counts, options, volume);
+    takeBackground(*halves.topology, volume);
+    describeGrid(*halves.topology, options, volume);
+    return true;
+}
 
 void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume) {
     const bool known = grid.apply<ScalarGrids>([&](auto& typed) { fill(typed, options, volume); });
     if (!known) fail(options.where, "type " + options.type, "a scalar grid");
-    volume.type = options.type;
-    volume.gridClass = openvdb::GridBase::gridClassToString(grid.getGridClass());
+    describeGrid(grid, options, volume);
 }
 
 }  // namespace deltasplat

@@ -8,6 +8,7 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/progress.h"
+#include "ingest/vdb/vdb_file.h"
 
 namespace deltasplat {
 
@@ -25,5 +26,10 @@ struct GridCodesOptions {
 /// @throw NotFinite if values are NaN or infinite and not replaced; Error(kInput) if they lie too
 ///        far apart
 void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume);
+
+/// Does the same with a grid of halves whose tree was not made. Returns false if a value is
+/// damaged, or not finite, or a tile's is no half: then the grid is to be read as a whole. Level
+/// sets stay what they are.
+bool fillFromHalves(const VdbHalves& halves, const GridCodesOptions& options, Volume& volume);
 
 }  // namespace deltasplat

@@ -24,6 +24,16 @@ std::string spaceOf(const openvdb::GridBase& grid) {
     return space == "RAS" || space == "LPS" ? space : "";
 }
 
+// A volume that has its place, and no voxels.
+Volume placedVolume(const openvdb::GridBase& grid, const GridCodesOptions& options) {
+    Volume volume;
+    volume.worldFromIndex = worldFromIndexOf(grid.transform(), options.where);
+    volume.space = spaceOf(grid);
+    requireMemory(options.where,
+                  double(grid.constBaseTree().leafCount()) * leafBytes<CodeTree::Leaf>());
+    return volume;
+}
+
 }  // namespace
 
 glm::dmat4 worldFromIndexOf(const openvdb::math::Transform& transform, const std::string& where) {
@@ -61,17 +71,20 @@ void settleEmpty(Volume& volume, const GridCodesOptions& options) {
 
 Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& options,
                     openvdb::MetaMap::ConstPtr fileMetadata) {
-    Volume volume;
-    volume.worldFromIndex = worldFromIndexOf(grid->transform(), options.where);
-    requireMemory(options.where,
-                  double(grid->constBaseTree().leafCount()) * leafBytes<CodeTree::Leaf>());
+    Volume volume = placedVolume(*grid, options);
     fillFromGrid(*grid, options, volume);
     const ReadOptions& reading = options.reading;
     if (reading.keepSource || (reading.keepInexact && !volume.codeBook.isExact())) {
         volume.source =
             std::make_shared<const SourceGrid>(SourceGrid{grid, std::move(fileMetadata)});
     }
-    volume.space = spaceOf(*grid);
+    settleEmpty(volume, options);
+    return volume;
+}
+
+std::optional<Volume> volumeOfHalves(const VdbHalves& halves, const GridCodesOptions& options) {
+    Volume volume = placedVolume(*halves.topology, options);
+    if (!fillFromHalves(halves, options, volume)) return std::nullopt;
     settleEmpty(volume, options);
     return volume;
 }

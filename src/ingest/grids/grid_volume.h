@@ -23,4 +23,8 @@ glm::dmat4 worldFromIndexOf(const openvdb::math::Transform& transform, const std
 /// one for a volume without active voxels as well.
 void settleEmpty(Volume& volume, const GridCodesOptions& options);
 
+/// Turns a grid of halves into a volume; nothing where fillFromHalves() says so.
+/// @throw as volumeOfGrid
+std::optional<Volume> volumeOfHalves(const VdbHalves& halves, const GridCodesOptions& options);
+
 }  // namespace deltasplat

@@ -125,6 +125,28 @@ Volume readWholeGrid(const VdbFile& file, const ChosenGrid& chosen, const std::s
     return volume;
 }
 
+bool isLevelSet(const VdbFile& file, const VdbGrid& grid) {
+    return textMetadata(*file.metadata(grid), openvdb::GridBase::META_GRID_CLASS) ==
+           openvdb::GridBase::gridClassToString(openvdb::GRID_LEVEL_SET);
+}
+
+// Reads halves that nothing but their codes is wanted of; nothing where that cannot be.
+std::optional<Volume> readHalfGrid(const VdbFile& file, const VdbGrid& grid,
+                                   const std::string& where, const ReadOptions& options,
+                                   const Listener& listener) {
+    if (options.keepSource || options.bits) return std::nullopt;
+    try {
+        if (options.levelSetToFog && isLevelSet(file, grid)) return std::nullopt;
+        const std::optional<VdbHalves> halves = file.readHalves(grid);
+        if (!halves) return std::nullopt;
+        return volumeOfHalves(*halves, {listener, where, grid.valueType(), options});
+    } catch (const Error& error) {
+        // What is wrong is said by who reads the grid as a whole.
+        if (error.code() != ErrorCode::kInput) throw;
+        return std::nullopt;
+    }
+}
+
 Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string& where,
                 const ReadOptions& options, const Listener& listener) {
     const VdbGrid& grid = *chosen.grid;
@@ -136,18 +158,11 @@ Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string
     };
     std::optional<Volume> volume;
     if (!chosen.part) volume = readDeltaLeaves(file, grid, where, options, onward);
-    if (volume) {
-        settleEmpty(*volume, {listener, where, grid.valueType(), options});
-    } else {
-        volume = readWholeGrid(file, chosen, where, options, onward);
-    }
+    if (volume) settleEmpty(*volume, {listener, where, grid.valueType(), options});
+    if (!volume && !chosen.part) volume = readHalfGrid(file, grid, where, options, onward);
+    if (!volume) volume = readWholeGrid(file, chosen, where, options, onward);
     volume->name = chosen.name();
     return std::move(*volume);
-}
-
-bool isLevelSet(const VdbFile& file, const VdbGrid& grid) {
-    return textMetadata(*file.metadata(grid), openvdb::GridBase::META_GRID_CLASS) ==
-           openvdb::GridBase::gridClassToString(openvdb::GRID_LEVEL_SET);
 }
 
 // Reads grids one after the other and hands them to a visitor.

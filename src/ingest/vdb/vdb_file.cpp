@@ -306,9 +306,49 @@ std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid,
     }
     if (places.hasActiveTiles || places.background < begin) return std::nullopt;
     bytes.seek(places.background);
-    const auto background = std::int32_t(bytes.u32());
-    const bool isPacked = (head.format.compression & openvdb::io::COMPRESS_BLOSC) != 0;
-    return VdbLeaves(std::move(runs), std::move(places.leaves), background, isPacked, head.map);
+    if (bytes.u32() != 0) return std::nullopt;
+    return VdbLeaves(std::move(runs), std::move(places.leaves), head.format, head.map);
+}
+
+std::optional<VdbHalves> VdbFile::readHalves(const VdbGrid& grid) const {
+    if (!grid.parentName.empty() || grid.type != "float" || !grid.half) return std::nullopt;
+    VdbBytes bytes(file_);
+    const GridHead head = readHead(bytes, grid, file_);
+    if ((head.format.compression & openvdb::io::COMPRESS_ZIP) != 0) return std::nullopt;
+    const std::string where = file_.string() + ": grid \"" + grid.name + "\"";
+    const std::uint64_t begin = bytes.position();
+    if (begin > grid.end) return std::nullopt;
+    requireMemory(where, double(grid.end - begin));
+    bytes.hold(begin, grid.end);
+    VdbTreePlaces places;
+    const VdbTreeSize size = walkTree(bytes, head.format, &places);
+    requireEnd(bytes, grid);
+    requireMemory(where, size.topologyBytes(head.format));
+
+    VdbStreamBuf buffer(file_);
+    buffer.addRange(begin, grid.end);
+    const auto topology = openvdb::FloatGrid::create();
+    guarded(buffer, where, [&](std::istream& stream) {
+        openvdb::io::setDataCompression(stream, head.format.compression);
+        topology->setSaveFloatAsHalf(true);
+        topology->readTopology(stream);
+        return 0;
+    });
+    const openvdb::MetaMap::ConstPtr metadata = parseMetadata(head.metadata);
+    for (auto entry = metadata->beginMeta(); entry != metadata->endMeta(); ++entry)
+        topology->insertMeta(entry->first, *entry->second);
+    topology->setTransform(std::make_shared<openvdb::math::Transform>(*head.map));
+    std::size_t next = 0;
+    for (auto leaf = topology->tree().cbeginLeaf(); leaf; ++leaf, ++next) {
+        const openvdb::Coord& origin = leaf->origin();
+        if (next == places.leaves.size() ||
+            places.leaves[next].origin != std::array{origin.x(), origin.y(), origin.z()})
+            return std::nullopt;
+    }
+    if (next != places.leaves.size()) return std::nullopt;
+    std::vector<VdbRun> runs;
+    runs.push_back({begin, bytes.takeHeld()});
+    return VdbHalves{topology, {std::move(runs), std::move(places.leaves), head.format, head.map}};
 }
 
 }  // namespace deltasplat

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
+#include <openvdb/openvdb.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -38,6 +38,12 @@ struct VdbGrid {
     std::string plainName() const { return uniqueName.substr(0, uniqueName.find('\x1e')); }
 };
 
+/// A grid of floats that are stored as halves.
+struct VdbHalves {
+    openvdb::FloatGrid::Ptr topology;  ///< all but the values of leaves
+    VdbLeaves leaves;                  ///< in the tree's order
+};
+
 /// A .vdb file that is checked before OpenVDB sees any of it, since OpenVDB 10 crashes on damaged
 /// ones; then OpenVDB is handed only the bytes of the grid asked for. Grids are in file order;
 /// types that OpenVDB does not know do no harm.
@@ -57,14 +63,19 @@ class VdbFile {
     /// into
     ///        memory, whatever the listener throws
     openvdb::GridBase::Ptr read(const VdbGrid& grid, const Listener& listener) const;
-    /// Returns the packed leaves of a grid of int32, unless there are active tiles beside them, the
-    /// grid shares its voxels with another, or values are packed by zip.
+    /// Returns the packed leaves of a grid of int32 with background 0, unless there are active
+    /// tiles beside them, the grid shares its voxels with another, or values are packed by zip.
     /// @param slices  which leaves are wanted: those with voxels whose x is within [x, y]. The
     ///                values of others are not read, if the file says how long they are
     ///                (OpenVDB's "file_delayed_load"). None: all.
     /// @throw Error(kInput) as read()
     std::optional<VdbLeaves> readLeaves(const VdbGrid& grid,
                                         const std::optional<glm::ivec2>& slices = {}) const;
+
+    /// Reads a grid of floats that are stored as halves without making a tree of their values,
+    /// unless it shares its voxels with another, or values are packed by zip.
+    /// @throw as read()
+    std::optional<VdbHalves> readHalves(const VdbGrid& grid) const;
 
   private:
     void readDirectory();

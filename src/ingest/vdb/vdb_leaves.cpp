@@ -3,6 +3,7 @@
 // io/Compression.h).
 #include "ingest/vdb/vdb_leaves.h"
 
+#include <openvdb/io/Compression.h>
 #include <openvdb/points/StreamCompression.h>
 
 #include <algorithm>
@@ -14,12 +15,11 @@
 
 namespace deltasplat {
 
-VdbLeaves::VdbLeaves(std::vector<VdbRun> runs, std::vector<VdbLeaf> leaves, std::int32_t background,
-                     bool isPacked, openvdb::math::Transform::ConstPtr transform)
+VdbLeaves::VdbLeaves(std::vector<VdbRun> runs, std::vector<VdbLeaf> leaves,
+                     const VdbValueFormat& format, openvdb::math::Transform::ConstPtr transform)
     : runs_(std::move(runs)),
       leaves_(std::move(leaves)),
-      background_(background),
-      isPacked_(isPacked),
+      format_(format),
       transform_(std::move(transform)) {}
 
 // Where a byte of a leaf is in memory, and those of the leaf behind it.
@@ -39,11 +39,13 @@ VdbLeaves::Mask VdbLeaves::maskOf(const VdbLeaf& leaf) const {
     return mask;
 }
 
-std::span<const std::int32_t> VdbLeaves::activeValues(const VdbLeaf& leaf, const Mask& mask,
-                                                      Values& room) const {
+template <typename Stored>
+std::span<const Stored> VdbLeaves::activeValues(const VdbLeaf& leaf, const Mask& mask,
+                                                Values<Stored>& room) const {
     std::size_t active = 0;
     for (const std::uint64_t word : mask) active += std::size_t(std::popcount(word));
-    if (active == 0 || !unpack(leaf, room)) return {};
+    const std::span<char> bytes(reinterpret_cast<char*>(room.data()), sizeof room);
+    if (active == 0 || !unpack(leaf, bytes)) return {};
     if (leaf.count == active) return {room.data(), active};
     // All values are there.
     std::size_t kept = 0;
@@ -54,19 +56,23 @@ std::span<const std::int32_t> VdbLeaves::activeValues(const VdbLeaf& leaf, const
     return {room.data(), kept};
 }
 
+template std::span<const std::int32_t> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
+                                                               Values<std::int32_t>&) const;
+template std::span<const std::uint16_t> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
+                                                                Values<std::uint16_t>&) const;
+
 // The walk has found that sizes are what the file says.
-bool VdbLeaves::unpack(const VdbLeaf& leaf, Values& values) const {
-    const std::size_t size = sizeof(std::int32_t) * leaf.count;
+bool VdbLeaves::unpack(const VdbLeaf& leaf, std::span<char> values) const {
+    const std::size_t size = std::size_t{format_.stored} * leaf.count;
     std::uint64_t data = leaf.data;
-    if (isPacked_) {
+    if ((format_.compression & openvdb::io::COMPRESS_BLOSC) != 0) {
         std::int64_t packed;
         std::memcpy(&packed, at(data), sizeof packed);
         data += sizeof packed;
         if (packed > 0) {
             const char* chunk = at(data);
             try {
-                openvdb::compression::bloscDecompress(reinterpret_cast<char*>(values.data()), size,
-                                                      sizeof values, chunk);
+                openvdb::compression::bloscDecompress(values.data(), size, values.size(), chunk);
             } catch (const std::exception&) {
                 return false;
             }

@@ -244,6 +244,10 @@ double VdbTreeSize::memoryBytes(const VdbValueFormat& format) const {
     return double(leaves) * leafBytes + double(lower) * 4096 * slot + double(upper) * 32768 * slot;
 }
 
+double VdbTreeSize::topologyBytes(const VdbValueFormat& format) const {
+    return memoryBytes(format) - double(leaves) * 512 * format.bytes;
+}
+
 VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format, VdbTreePlaces* places) {
     return Walk(bytes, format, places).run();
 }

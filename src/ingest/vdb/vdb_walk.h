@@ -29,6 +29,8 @@ struct VdbTreeSize {
     std::uint64_t upper = 0;   ///< nodes of 32^3 lower nodes
     /// Returns about how much memory the tree and a tree of codes beside it take.
     double memoryBytes(const VdbValueFormat& format) const;
+    /// Returns the same where the first tree's leaves have no values.
+    double topologyBytes(const VdbValueFormat& format) const;
 };
 
 /// Where a leaf of values lies in a file.
