@@ -35,7 +35,8 @@ void cutSource(Volume& volume) {
         const auto cut = grid.deepCopy();
         dropVoxels(cut->tree(), volume.codes->tree());
         if (!volume.codeBook.isExact()) {
-            const GridScan scan = scanTree(cut->tree(), {.distinct = false, .survey = false});
+            const GridScan scan =
+                scanLeaves(TreeLeaves(cut->tree()), {.distinct = false, .survey = false});
             volume.valueMin = scan.census.min;
             volume.valueMax = scan.census.max;
         }

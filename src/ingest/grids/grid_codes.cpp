@@ -17,6 +17,7 @@
 #include "ingest/codes/code_counts.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/error_meter.h"
+#include "ingest/grids/file_leaves.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/not_finite.h"
 #include "ingest/grids/scalar_grids.h"
@@ -88,23 +89,28 @@ void spread(const Code* codes, CodeTree::Leaf& leaf) {
 }
 
 // Fills the leaves of a tree, and counts their codes: codesOf(worker, i, out) writes those of the
-// active voxels of leaf i, in the order of their places.
+// active voxels of leaf i, in the order of their places. Ends, and returns false, where it does.
 template <typename CodesOf>
-void fillLeaves(CodeTree::Tree& codes, CodeCounts& counts, const CodesOf& codesOf) {
+bool fillLeaves(CodeTree::Tree& codes, CodeCounts& counts, const CodesOf& codesOf) {
     std::vector<CodeTree::Leaf*> leaves;
     codes.getNodes(leaves);
+    std::atomic<bool> areSound = true;
     forLeafRuns(leaves.size(), counts.workers(),
                 [&](std::size_t worker, std::size_t begin, std::size_t end) {
                     LeafRoom<CodeTree::Leaf> room;
-                    for (std::size_t i = begin; i < end; ++i) {
+                    for (std::size_t i = begin; i < end && areSound; ++i) {
                         CodeTree::Leaf& leaf = *leaves[i];
                         const bool isDense = leaf.isDense();
                         Code* const out = isDense ? leaf.buffer().data() : room.data();
-                        codesOf(worker, i, out);
+                        if (!codesOf(worker, i, out)) {
+                            areSound = false;
+                            break;
+                        }
                         counts.add(worker, {out, std::size_t(leaf.onVoxelCount())});
                         if (!isDense) spread(out, leaf);
                     }
                 });
+    return areSound;
 }
 
 // Turns values into the codes of a book.
@@ -120,25 +126,24 @@ void encodeAll(const CodeBook& book, const BookEncoder& encode, std::span<const 
     for (const T value : values) *codes++ = encode(double(value));
 }
 
-template <typename Tree>
-std::shared_ptr<CodeTree> codesOfTree(const Tree& tree, const CodeBook& book, ErrorMeter& meter,
-                                      CodeCounts& counts) {
+template <typename Leaves>
+std::shared_ptr<CodeTree> codesOfLeaves(const Leaves& leaves, const CodeBook& book,
+                                        ErrorMeter& meter, CodeCounts& counts) {
     const BookEncoder encode(book);
     const bool exact = book.isExact();
-    using SourceLeaf = typename Tree::LeafNodeType;
+    const auto& tree = leaves.tree();
     // OpenVDB's trees cannot be assigned, only made in place.
     std::shared_ptr<CodeTree> codes(
         new CodeTree(std::in_place, tree, Code{0}, openvdb::TopologyCopy()));
-    std::vector<const SourceLeaf*> sources;
-    tree.getNodes(sources);
     std::vector<ErrorMeter::Part> parts(counts.workers(), ErrorMeter::Part(meter));
     fillLeaves(codes->tree(), counts, [&](std::size_t worker, std::size_t i, Code* out) {
-        LeafRoom<SourceLeaf> room;
-        const auto values = activeValues(*sources[i], room);
+        typename Leaves::Room room;
+        const auto values = leaves.values(i, room);
+        if (values.size() != leaves[i].onVoxelCount()) return false;
         encodeAll(book, encode, values, out);
-        if (exact) return;
-        for (std::size_t n = 0; n < values.size(); ++n)
+        for (std::size_t n = 0; !exact && n < values.size(); ++n)
             parts[worker].add(double(values[n]), out[n]);
+        return true;
     });
     forActiveTiles(codes->tree(), [&](const auto& tile) {
         const auto value = double(tree.getValue(tile.getCoord()));
@@ -179,40 +184,33 @@ void takeCodes(std::shared_ptr<CodeTree> codes, CodeCounts& counts, const GridCo
 }
 
 template <typename Grid>
-void takeBackground(const Grid& grid, Volume& volume) {
+void describeGrid(const Grid& grid, const GridCodesOptions& options, Volume& volume) {
     volume.hasBackground = true;
     volume.background = double(grid.background());
-}
-
-void describeGrid(const openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume) {
     volume.type = options.type;
     volume.gridClass = openvdb::GridBase::gridClassToString(grid.getGridClass());
 }
 
-template <typename Grid>
-void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
-    using T = typename Grid::ValueType;
-    GridScan scan = scanTree(grid.tree(), kNumbersAlone);
-    if constexpr (std::is_floating_point_v<T>) {
-        volume.replaced = scan.nonFinite;
-        if (scan.nonFinite > 0) settleNonFinite(grid, scan, options);
-        volume.fromLevelSet = makeFog(grid, options);
-        if (volume.replaced > 0 || volume.fromLevelSet) scan = scanTree(grid.tree(), kNumbersAlone);
-    }
+// Chooses a code book and turns values into codes of it.
+// @param scan  of kNumbersAlone
+template <typename Leaves>
+void fillFromLeaves(const Leaves& leaves, GridScan scan, const GridCodesOptions& options,
+                    Volume& volume) {
+    using T = std::decay_t<decltype(leaves.tree().background())>;
     constexpr bool kReal = std::is_floating_point_v<T>;
     const bool isLinear = kReal && options.reading.bits;
     if (isLinear || !plainBook(scan.census, kReal))
-        scan = scanTree(grid.tree(), {.distinct = !isLinear, .survey = sizeof(T) > 1});
+        scan = scanLeaves(leaves, {.distinct = !isLinear, .survey = sizeof(T) > 1});
+    const T background = leaves.tree().background();
     // Active voxels may be as empty as inactive ones: then they have that very value.
-    if (isFinite(grid.background())) scan.census.frequent = {{double(grid.background()), 0}};
+    if (isFinite(background)) scan.census.frequent = {{double(background), 0}};
     // Masks have nothing but true, which stays 1.
     volume.codeBook = std::is_same_v<T, bool>
                           ? CodeBook::integer(0)
                           : chooseBook(scan.census, kReal, options.reading, options.where);
     ErrorMeter meter(volume.codeBook, bulkMagnitude(scan.census));
     CodeCounts counts;
-    takeCodes(codesOfTree(grid.tree(), volume.codeBook, meter, counts), counts, options, volume);
-    takeBackground(grid, volume);
+    takeCodes(codesOfLeaves(leaves, volume.codeBook, meter, counts), counts, options, volume);
     if (volume.codeBook.isExact()) return;
     volume.valueMin = scan.census.min;
     volume.valueMax = scan.census.max;
@@ -220,50 +218,87 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     warnOfCodeError(options.where, volume, options.reading, options.listener);
 }
 
+template <typename Grid>
+void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
+    GridScan scan = scanLeaves(TreeLeaves(grid.tree()), kNumbersAlone);
+    if constexpr (std::is_floating_point_v<typename Grid::ValueType>) {
+        volume.replaced = scan.nonFinite;
+        if (scan.nonFinite > 0) settleNonFinite(grid, scan, options);
+        volume.fromLevelSet = makeFog(grid, options);
+        if (volume.replaced > 0 || volume.fromLevelSet)
+            scan = scanLeaves(TreeLeaves(grid.tree()), kNumbersAlone);
+    }
+    fillFromLeaves(TreeLeaves(grid.tree()), std::move(scan), options, volume);
+    describeGrid(grid, options, volume);
+}
+
 // Writes the codes of active tiles; returns whether all are halves.
-bool codeHalfTiles(const openvdb::FloatTree& tree, CodeTree::Tree& codes, CodeCounts& counts) {
+template <typename Tree>
+bool codeHalfTiles(const Tree& tree, CodeTree::Tree& codes, CodeCounts& counts) {
     const CodeBook book = CodeBook::half();
     bool areHalves = true;
     forActiveTiles(codes, [&](const auto& tile) {
-        const float value = tree.getValue(tile.getCoord());
-        areHalves = areHalves && isFinite(value) && book.valueOf(book.codeOf(value)) == value;
+        const auto value = double(tree.getValue(tile.getCoord()));
+        areHalves = areHalves && std::isfinite(value) && book.valueOf(book.codeOf(value)) == value;
         tile.setValue(areHalves ? book.codeOf(value) : Code{0});
         counts.add(0, *tile, tile.getVoxelCount());
     });
     return areHalves;
 }
 
-}  // namespace
-
-bool fillFromHalves(const VdbHalves& halves, const GridCodesOptions& options, Volume& volume) {
-    const openvdb::FloatTree& topology = halves.topology->tree();
-    const std::vector<VdbLeaf>& leaves = halves.leaves.leaves();
+template <typename Tree>
+bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCodesOptions& options,
+                    Volume& volume) {
     CodeCounts counts;
     auto codes =
         std::make_shared<CodeTree>(std::in_place, topology, Code{0}, openvdb::TopologyCopy());
     if (!codeHalfTiles(topology, codes->tree(), counts)) return false;
-    std::atomic<bool> areSound = true;
+    const std::vector<VdbLeaf>& leaves = packed.leaves();
     SharedProgress progress(options.listener);
-    fillLeaves(codes->tree(), counts, [&](std::size_t, std::size_t i, Code* out) {
-        if (i % kLeafRun == 0) progress.report(double(i) / double(leaves.size()));
-        VdbLeaves::Values<std::uint16_t> room;
-        const VdbLeaves::Mask mask = halves.leaves.maskOf(leaves[i]);
-        const auto bits = halves.leaves.activeValues<std::uint16_t>(leaves[i], mask, room);
-        if (bits.empty() && mask != VdbLeaves::Mask{}) areSound = false;
-        if (!codesOfHalfBits(bits, out)) areSound = false;
-    });
+    const bool areSound =
+        fillLeaves(codes->tree(), counts, [&](std::size_t, std::size_t i, Code* out) {
+            if (i % kLeafRun == 0) progress.report(double(i) / double(leaves.size()));
+            VdbLeaves::Values<std::uint16_t> room;
+            const VdbLeaves::Mask mask = packed.maskOf(leaves[i]);
+            const auto bits = packed.activeValues<std::uint16_t>(leaves[i], mask, room);
+            const bool isWhole = !bits.empty() || mask == VdbLeaves::Mask{};
+            return isWhole && codesOfHalfBits(bits, out);
+        });
     if (!areSound) return false;
     volume.codeBook = CodeBook::half();
     takeCodes(std::move(codes), counts, options, volume);
-    takeBackground(*halves.topology, volume);
-    describeGrid(*halves.topology, options, volume);
     return true;
+}
+
+template <typename Tree>
+bool fillFromFile(const Tree& topology, const VdbLeaves& packed, const GridCodesOptions& options,
+                  Volume& volume) {
+    const FileLeaves<Tree> leaves(topology, packed);
+    GridScan scan = scanLeaves(leaves, kNumbersAlone);
+    if (scan.nonFinite > 0 || leaves.areDamaged()) return false;
+    fillFromLeaves(leaves, std::move(scan), options, volume);
+    return !leaves.areDamaged();
+}
+
+}  // namespace
+
+bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Volume& volume) {
+    bool isFilled = false;
+    values.topology->apply<ScalarGrids>([&](const auto& grid) {
+        using T = typename std::decay_t<decltype(grid)>::ValueType;
+        if constexpr (!std::is_same_v<T, bool>) {
+            isFilled = values.areHalves
+                           ? fillFromHalves(grid.tree(), values.leaves, options, volume)
+                           : fillFromFile(grid.tree(), values.leaves, options, volume);
+            if (isFilled) describeGrid(grid, options, volume);
+        }
+    });
+    return isFilled;
 }
 
 void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume) {
     const bool known = grid.apply<ScalarGrids>([&](auto& typed) { fill(typed, options, volume); });
     if (!known) fail(options.where, "type " + options.type, "a scalar grid");
-    describeGrid(grid, options, volume);
 }
 
 }  // namespace deltasplat

@@ -27,9 +27,9 @@ struct GridCodesOptions {
 ///        far apart
 void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume);
 
-/// Does the same with a grid of halves whose tree was not made. Returns false if a value is
-/// damaged, or not finite, or a tile's is no half: then the grid is to be read as a whole. Level
-/// sets stay what they are.
-bool fillFromHalves(const VdbHalves& halves, const GridCodesOptions& options, Volume& volume);
+/// Does the same with a grid whose leaves' values are still in their file. Returns false if a value
+/// is damaged, or not finite, or a tile's is no half where leaves have halves: then the grid is to
+/// be read as a whole. Level sets stay what they are.
+bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Volume& volume);
 
 }  // namespace deltasplat

@@ -19,6 +19,12 @@
 
 namespace deltasplat {
 
+template <typename T>
+bool isFinite(T value) {
+    if constexpr (std::is_floating_point_v<T>) return std::isfinite(value);
+    return true;
+}
+
 /// What the active values of a grid hold.
 struct GridScan {
     ValueCensus census;           ///< of the finite values
@@ -29,6 +35,18 @@ struct GridScan {
         if (nonFinite == 0 || isBefore(place, first)) first = place;
         nonFinite += voxels;
     }
+    /// @param values  of the leaf's active voxels, some of them not finite
+    template <typename Leaf, typename T>
+    void addOneByOne(const Leaf& leaf, std::span<const T> values) {
+        auto value = values.begin();
+        for (auto voxel = leaf.cbeginValueOn(); voxel && value != values.end(); ++voxel, ++value) {
+            if (isFinite(*value)) {
+                census.add(*value);
+            } else {
+                addNonFinite(leaf.offsetToGlobalCoord(voxel.pos()), 1);
+            }
+        }
+    }
     void append(const GridScan& other) {
         census.append(other.census);
         if (other.nonFinite > 0) addNonFinite(other.first, other.nonFinite);
@@ -38,12 +56,6 @@ struct GridScan {
         return a.y() != b.y() ? a.y() < b.y() : a.x() < b.x();
     }
 };
-
-template <typename T>
-bool isFinite(T value) {
-    if constexpr (std::is_floating_point_v<T>) return std::isfinite(value);
-    return true;
-}
 
 /// How many leaves one thread takes at a time.
 inline constexpr std::size_t kLeafRun = 128;
@@ -101,6 +113,29 @@ std::span<const typename Leaf::ValueType> activeValues(const Leaf& leaf, LeafRoo
     return {room.data(), count};
 }
 
+/// The leaves of a tree, and what their active voxels hold.
+template <typename Tree>
+class TreeLeaves {
+  public:
+    using Room = LeafRoom<typename Tree::LeafNodeType>;
+
+    explicit TreeLeaves(const Tree& tree) : tree_(tree) { tree.getNodes(leaves_); }
+
+    const Tree& tree() const { return tree_; }
+    std::size_t count() const { return leaves_.size(); }
+    /// Returns a leaf, for its place and its mask.
+    const typename Tree::LeafNodeType& operator[](std::size_t i) const { return *leaves_[i]; }
+    /// Returns the values of a leaf's active voxels, in the order of their places. Thread-safe.
+    /// @param room  may be written to
+    std::span<const typename Tree::ValueType> values(std::size_t i, Room& room) const {
+        return activeValues(*leaves_[i], room);
+    }
+
+  private:
+    const Tree& tree_;
+    std::vector<const typename Tree::LeafNodeType*> leaves_;
+};
+
 /// Calls use(iterator) for every active tile of `tree`, of any level.
 template <typename Tree, typename Use>
 void forActiveTiles(Tree& tree, const Use& use) {
@@ -115,11 +150,10 @@ struct ScanWishes {
     bool survey = true;    ///< where values lie
 };
 
-/// Returns what the active values of `tree` hold; the result does not depend on the thread count.
-template <typename Tree>
-GridScan scanTree(Tree& tree, const ScanWishes& wishes) {
-    std::vector<typename Tree::LeafNodeType*> leaves;
-    tree.getNodes(leaves);
+/// Returns what the active values of a tree hold; the result does not depend on the thread count.
+/// @param leaves  TreeLeaves, or what does the same
+template <typename Leaves>
+GridScan scanLeaves(const Leaves& leaves, const ScanWishes& wishes) {
     GridScan whole;
     if (!wishes.distinct) whole.census.distinct.giveUp();
     whole.census.skipSurvey = !wishes.survey;
@@ -128,29 +162,23 @@ GridScan scanTree(Tree& tree, const ScanWishes& wishes) {
     constexpr std::size_t kMostRuns = 64;
     std::size_t runs = 8;
     std::size_t count = 0;
-    for (std::size_t start = 0; start < leaves.size(); start += count) {
-        count = std::min(runs * kLeafRun, leaves.size() - start);
+    for (std::size_t start = 0; start < leaves.count(); start += count) {
+        count = std::min(runs * kLeafRun, leaves.count() - start);
         runs = std::min(2 * runs, kMostRuns);
         std::vector<GridScan> scans((count + kLeafRun - 1) / kLeafRun);
         forLeafRuns(count, [&](std::size_t run, std::size_t begin, std::size_t end) {
             ValueCensus& census = scans[run].census;
             if (whole.census.distinct.tooMany()) census.distinct.giveUp();
             census.skipSurvey = !wishes.survey;
-            LeafRoom<typename Tree::LeafNodeType> room;
+            typename Leaves::Room room;
             for (std::size_t i = start + begin; i < start + end; ++i) {
-                if (census.addAll(activeValues(*leaves[i], room))) continue;
-                forActiveVoxels(*leaves[i], [&](openvdb::Index n, const auto& value) {
-                    if (isFinite(value)) {
-                        census.add(value);
-                    } else {
-                        scans[run].addNonFinite(leaves[i]->offsetToGlobalCoord(n), 1);
-                    }
-                });
+                const auto values = leaves.values(i, room);
+                if (!census.addAll(values)) scans[run].addOneByOne(leaves[i], values);
             }
         });
         for (const GridScan& scan : scans) whole.append(scan);
     }
-    forActiveTiles(tree, [&](const auto& tile) {
+    forActiveTiles(leaves.tree(), [&](const auto& tile) {
         if (isFinite(*tile)) {
             whole.census.add(*tile);
         } else {

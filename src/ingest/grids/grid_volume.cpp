@@ -82,9 +82,9 @@ Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& 
     return volume;
 }
 
-std::optional<Volume> volumeOfHalves(const VdbHalves& halves, const GridCodesOptions& options) {
-    Volume volume = placedVolume(*halves.topology, options);
-    if (!fillFromHalves(halves, options, volume)) return std::nullopt;
+std::optional<Volume> volumeOfLeaves(const VdbValues& values, const GridCodesOptions& options) {
+    Volume volume = placedVolume(*values.topology, options);
+    if (!fillFromLeaves(values, options, volume)) return std::nullopt;
     settleEmpty(volume, options);
     return volume;
 }

@@ -23,8 +23,9 @@ glm::dmat4 worldFromIndexOf(const openvdb::math::Transform& transform, const std
 /// one for a volume without active voxels as well.
 void settleEmpty(Volume& volume, const GridCodesOptions& options);
 
-/// Turns a grid of halves into a volume; nothing where fillFromHalves() says so.
+/// Does the same with a grid whose leaves' values are still in their file; nothing where
+/// fillFromLeaves() says so. There is no source.
 /// @throw as volumeOfGrid
-std::optional<Volume> volumeOfHalves(const VdbHalves& halves, const GridCodesOptions& options);
+std::optional<Volume> volumeOfLeaves(const VdbValues& values, const GridCodesOptions& options);
 
 }  // namespace deltasplat

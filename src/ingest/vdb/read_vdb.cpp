@@ -130,16 +130,18 @@ bool isLevelSet(const VdbFile& file, const VdbGrid& grid) {
            openvdb::GridBase::gridClassToString(openvdb::GRID_LEVEL_SET);
 }
 
-// Reads halves that nothing but their codes is wanted of; nothing where that cannot be.
-std::optional<Volume> readHalfGrid(const VdbFile& file, const VdbGrid& grid,
-                                   const std::string& where, const ReadOptions& options,
-                                   const Listener& listener) {
-    if (options.keepSource || options.bits) return std::nullopt;
+// Reads a grid of which nothing but its codes is wanted; nothing where that cannot be.
+std::optional<Volume> readGridLeaves(const VdbFile& file, const VdbGrid& grid,
+                                     const std::string& where, const ReadOptions& options,
+                                     const Listener& listener) {
+    // Codes of halves are exact.
+    const bool mayNeedSource = options.keepInexact && grid.valueType() != "half";
+    if (options.keepSource || options.bits || mayNeedSource) return std::nullopt;
     try {
         if (options.levelSetToFog && isLevelSet(file, grid)) return std::nullopt;
-        const std::optional<VdbHalves> halves = file.readHalves(grid);
-        if (!halves) return std::nullopt;
-        return volumeOfHalves(*halves, {listener, where, grid.valueType(), options});
+        const std::optional<VdbValues> values = file.readValues(grid);
+        if (!values) return std::nullopt;
+        return volumeOfLeaves(*values, {listener, where, grid.valueType(), options});
     } catch (const Error& error) {
         // What is wrong is said by who reads the grid as a whole.
         if (error.code() != ErrorCode::kInput) throw;
@@ -159,7 +161,7 @@ Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string
     std::optional<Volume> volume;
     if (!chosen.part) volume = readDeltaLeaves(file, grid, where, options, onward);
     if (volume) settleEmpty(*volume, {listener, where, grid.valueType(), options});
-    if (!volume && !chosen.part) volume = readHalfGrid(file, grid, where, options, onward);
+    if (!volume && !chosen.part) volume = readGridLeaves(file, grid, where, options, onward);
     if (!volume) volume = readWholeGrid(file, chosen, where, options, onward);
     volume->name = chosen.name();
     return std::move(*volume);

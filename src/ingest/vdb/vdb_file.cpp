@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "ingest/grids/scalar_grids.h"
 #include "ingest/vdb/leaf_sizes.h"
 #include "ingest/vdb/vdb_bytes.h"
 #include "ingest/vdb/vdb_stream.h"
@@ -32,19 +33,20 @@ constexpr std::uint64_t kUuidBytes = 36;
 constexpr std::array<const char*, 6> kScalarTypes{"float", "double", "int32",
                                                   "int64", "bool",   "mask"};
 
+const std::string kTreeFront = "Tree_";
+const std::string kTreeBack = "_5_4_3";
+
 // Splits a stored type such as "Tree_float_5_4_3_HalfFloat".
 void parseType(const std::string& stored, VdbGrid& grid) {
     static const std::string kHalf = "_HalfFloat";
-    static const std::string kFront = "Tree_";
-    static const std::string kBack = "_5_4_3";
     std::string type = stored;
     if (type.ends_with(kHalf)) {
         type.resize(type.size() - kHalf.size());
         grid.half = true;
     }
-    grid.supported = type.starts_with(kFront) && type.ends_with(kBack);
+    grid.supported = type.starts_with(kTreeFront) && type.ends_with(kTreeBack);
     if (grid.supported) {
-        type = type.substr(kFront.size(), type.size() - kFront.size() - kBack.size());
+        type = type.substr(kTreeFront.size(), type.size() - kTreeFront.size() - kTreeBack.size());
     }
     grid.type = type;
 }
@@ -171,11 +173,51 @@ std::optional<std::vector<VdbRun>> readRuns(VdbBytes& bytes, const GridHead& hea
     return runs;
 }
 
+std::string treeType(const std::string& type) {
+    return kTreeFront + type + kTreeBack;
+}
+
+// Whether leaves of a file are those of a tree, in its order.
+bool areInOrder(const std::vector<VdbLeaf>& leaves, const openvdb::GridBase& grid) {
+    bool areSame = false;
+    grid.apply<ScalarGrids>([&](const auto& typed) {
+        std::size_t next = 0;
+        areSame = true;
+        for (auto leaf = typed.tree().cbeginLeaf(); leaf && areSame; ++leaf, ++next) {
+            const openvdb::Coord& origin = leaf->origin();
+            areSame = next < leaves.size() &&
+                      leaves[next].origin == std::array{origin.x(), origin.y(), origin.z()};
+        }
+        areSame = areSame && next == leaves.size();
+    });
+    return areSame;
+}
+
 openvdb::MetaMap::ConstPtr parseMetadata(const std::string& bytes) {
     std::istringstream stream(bytes);
     const auto metadata = std::make_shared<openvdb::MetaMap>();
     metadata->readMeta(stream);
     return metadata;
+}
+
+// Reads all but the values of leaves.
+openvdb::GridBase::Ptr readTopology(const std::filesystem::path& file, const VdbGrid& grid,
+                                    const GridHead& head, const VdbRange& tree,
+                                    const std::string& where) {
+    openvdb::GridBase::Ptr topology = openvdb::GridBase::createGrid(treeType(grid.type));
+    topology->setSaveFloatAsHalf(grid.half);
+    VdbStreamBuf buffer(file);
+    buffer.addRange(tree.begin, tree.begin + tree.size);
+    guarded(buffer, where, [&](std::istream& stream) {
+        openvdb::io::setDataCompression(stream, head.format.compression);
+        topology->readTopology(stream);
+        return 0;
+    });
+    const openvdb::MetaMap::ConstPtr metadata = parseMetadata(head.metadata);
+    for (auto entry = metadata->beginMeta(); entry != metadata->endMeta(); ++entry)
+        topology->insertMeta(entry->first, *entry->second);
+    topology->setTransform(std::make_shared<openvdb::math::Transform>(*head.map));
+    return topology;
 }
 
 }  // namespace
@@ -310,8 +352,8 @@ std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid,
     return VdbLeaves(std::move(runs), std::move(places.leaves), head.format, head.map);
 }
 
-std::optional<VdbHalves> VdbFile::readHalves(const VdbGrid& grid) const {
-    if (!grid.parentName.empty() || grid.type != "float" || !grid.half) return std::nullopt;
+std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid) const {
+    if (!grid.parentName.empty() || grid.type == "bool" || grid.type == "mask") return std::nullopt;
     VdbBytes bytes(file_);
     const GridHead head = readHead(bytes, grid, file_);
     if ((head.format.compression & openvdb::io::COMPRESS_ZIP) != 0) return std::nullopt;
@@ -324,31 +366,14 @@ std::optional<VdbHalves> VdbFile::readHalves(const VdbGrid& grid) const {
     const VdbTreeSize size = walkTree(bytes, head.format, &places);
     requireEnd(bytes, grid);
     requireMemory(where, size.topologyBytes(head.format));
-
-    VdbStreamBuf buffer(file_);
-    buffer.addRange(begin, grid.end);
-    const auto topology = openvdb::FloatGrid::create();
-    guarded(buffer, where, [&](std::istream& stream) {
-        openvdb::io::setDataCompression(stream, head.format.compression);
-        topology->setSaveFloatAsHalf(true);
-        topology->readTopology(stream);
-        return 0;
-    });
-    const openvdb::MetaMap::ConstPtr metadata = parseMetadata(head.metadata);
-    for (auto entry = metadata->beginMeta(); entry != metadata->endMeta(); ++entry)
-        topology->insertMeta(entry->first, *entry->second);
-    topology->setTransform(std::make_shared<openvdb::math::Transform>(*head.map));
-    std::size_t next = 0;
-    for (auto leaf = topology->tree().cbeginLeaf(); leaf; ++leaf, ++next) {
-        const openvdb::Coord& origin = leaf->origin();
-        if (next == places.leaves.size() ||
-            places.leaves[next].origin != std::array{origin.x(), origin.y(), origin.z()})
-            return std::nullopt;
-    }
-    if (next != places.leaves.size()) return std::nullopt;
+    openvdb::GridBase::Ptr topology =
+        readTopology(file_, grid, head, {begin, grid.end - begin}, where);
+    if (!areInOrder(places.leaves, *topology)) return std::nullopt;
     std::vector<VdbRun> runs;
     runs.push_back({begin, bytes.takeHeld()});
-    return VdbHalves{topology, {std::move(runs), std::move(places.leaves), head.format, head.map}};
+    return VdbValues{std::move(topology),
+                     {std::move(runs), std::move(places.leaves), head.format, head.map},
+                     head.format.stored != head.format.bytes};
 }
 
 }  // namespace deltasplat

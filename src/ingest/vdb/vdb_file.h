@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
+#include <openvdb/Grid.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -38,10 +38,11 @@ struct VdbGrid {
     std::string plainName() const { return uniqueName.substr(0, uniqueName.find('\x1e')); }
 };
 
-/// A grid of floats that are stored as halves.
-struct VdbHalves {
-    openvdb::FloatGrid::Ptr topology;  ///< all but the values of leaves
-    VdbLeaves leaves;                  ///< in the tree's order
+/// A grid of numbers whose leaves are still packed.
+struct VdbValues {
+    openvdb::GridBase::Ptr topology;  ///< all but the values of leaves
+    VdbLeaves leaves;                 ///< in the tree's order
+    bool areHalves;                   ///< whether floats are stored as binary16
 };
 
 /// A .vdb file that is checked before OpenVDB sees any of it, since OpenVDB 10 crashes on damaged
@@ -72,10 +73,10 @@ class VdbFile {
     std::optional<VdbLeaves> readLeaves(const VdbGrid& grid,
                                         const std::optional<glm::ivec2>& slices = {}) const;
 
-    /// Reads a grid of floats that are stored as halves without making a tree of their values,
-    /// unless it shares its voxels with another, or values are packed by zip.
+    /// Reads a grid of numbers without making a tree of them, unless it shares its voxels with
+    /// another, or values are packed by zip.
     /// @throw as read()
-    std::optional<VdbHalves> readHalves(const VdbGrid& grid) const;
+    std::optional<VdbValues> readValues(const VdbGrid& grid) const;
 
   private:
     void readDirectory();

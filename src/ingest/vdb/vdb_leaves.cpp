@@ -56,10 +56,16 @@ std::span<const Stored> VdbLeaves::activeValues(const VdbLeaf& leaf, const Mask&
     return {room.data(), kept};
 }
 
-template std::span<const std::int32_t> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
-                                                               Values<std::int32_t>&) const;
 template std::span<const std::uint16_t> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
                                                                 Values<std::uint16_t>&) const;
+template std::span<const float> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
+                                                        Values<float>&) const;
+template std::span<const double> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
+                                                         Values<double>&) const;
+template std::span<const std::int32_t> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
+                                                               Values<std::int32_t>&) const;
+template std::span<const std::int64_t> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
+                                                               Values<std::int64_t>&) const;
 
 // The walk has found that sizes are what the file says.
 bool VdbLeaves::unpack(const VdbLeaf& leaf, std::span<char> values) const {

@@ -39,7 +39,7 @@ class VdbLeaves {
     Mask maskOf(const VdbLeaf& leaf) const;
     /// Unpacks the values of a leaf's active voxels, in the order of the mask's bits: `mask` is
     /// that of the leaf. Thread-safe.
-    /// @tparam Stored  of the format's size: std::int32_t, or the std::uint16_t that halves are
+    /// @tparam Stored  of the format's size: a number, or the std::uint16_t that a half is
     /// @param room     may be written to
     /// @return within `room`; none, with `mask` not empty, if the values are damaged
     template <typename Stored>

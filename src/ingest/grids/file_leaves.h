@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "ingest/vdb/vdb_leaves.h"
+
+namespace deltasplat {
+
+/// What TreeLeaves is, of a tree whose leaves' values are still in their file, packed.
+template <typename Tree>
+class FileLeaves {
+  public:
+    using Room = VdbLeaves::Values<typename Tree::ValueType>;
+
+    /// @param topology  all but the values of leaves
+    /// @param leaves    in the tree's order, of values as they are in memory
+    FileLeaves(const Tree& topology, const VdbLeaves& leaves) : tree_(topology), packed_(leaves) {
+        topology.getNodes(leaves_);
+    }
+
+    const Tree& tree() const { return tree_; }
+    std::size_t count() const { return leaves_.size(); }
+    const typename Tree::LeafNodeType& operator[](std::size_t i) const { return *leaves_[i]; }
+    /// Of a leaf whose values are damaged there are none.
+    std::span<const typename Tree::ValueType> values(std::size_t i, Room& room) const {
+        const VdbLeaf& leaf = packed_.leaves()[i];
+        const VdbLeaves::Mask mask = packed_.maskOf(leaf);
+        const auto values = packed_.activeValues<typename Tree::ValueType>(leaf, mask, room);
+        if (values.empty() && mask != VdbLeaves::Mask{}) areDamaged_ = true;
+        return values;
+    }
+    /// Whether any that were asked for were.
+    bool areDamaged() const { return areDamaged_; }
+
+  private:
+    const Tree& tree_;
+    const VdbLeaves& packed_;
+    std::vector<const typename Tree::LeafNodeType*> leaves_;
+    mutable std::atomic<bool> areDamaged_ = false;
+};
+
+}  // namespace deltasplat
