@@ -14,6 +14,7 @@
 #include "listener_part.h"
 #include "number_text.h"
 #include "output_files.h"
+#include "process/leave_to_system.h"
 #include "render/aov_options.h"
 #include "render/deep_options.h"
 #include "render/ground_options.h"
@@ -234,6 +235,7 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
         made.times.preview = secondsSince(start);
     }
     showScene(command, scene, part, session, showing, made);
+    if (part.endsProgram) leaveToSystem(std::make_shared<const ReadScene>(scene));
     made.times.total = secondsSince(session.begin);
     writeStats(command.stats, statsJson(made.result, volume, made.times, made.deep));
     listener.report(1);

@@ -250,7 +250,9 @@ void runRender(const CLI::App& app, RenderCommand command, const Session& sessio
     {
         ProgressDisplay display(session.common);
         warnOfUnusedOptions(app, command, {command.input}, display);
-        made = makePicture(app, command, session, {}, display.stage(0, 1));
+        SequencePart single;
+        single.endsProgram = true;
+        made = makePicture(app, command, session, single, display.stage(0, 1));
     }
     const RenderStats& stats = made.result.stats;
     if (!stats.tolerance.isExact() && !session.common.quiet) showErrorBound(stats);

@@ -25,6 +25,7 @@ struct SequencePart {
     bool isWritten = true;  ///< whether it has a file of its own
     std::optional<int> frame = {};
     FrameChain::Frame* behind = nullptr;  ///< renders it behind another, if that may be
+    bool endsProgram = false;  ///< whether nothing comes after it: what it is of need not be freed
 };
 
 /// Makes and writes one picture; an input that is empty is that of a black one.
