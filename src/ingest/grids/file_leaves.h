@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,13 +12,14 @@
 namespace deltasplat {
 
 /// What TreeLeaves is, of a tree whose leaves' values are still in their file, packed.
-template <typename Tree>
+/// @tparam Stored  what they are there: the tree's own type, or the std::uint16_t that a half is
+template <typename Tree, typename Stored = typename Tree::ValueType>
 class FileLeaves {
   public:
-    using Room = VdbLeaves::Values<typename Tree::ValueType>;
+    using Room = VdbLeaves::Values<Stored>;
 
     /// @param topology  all but the values of leaves
-    /// @param leaves    in the tree's order, of values as they are in memory
+    /// @param leaves    in the tree's order
     FileLeaves(const Tree& topology, const VdbLeaves& leaves) : tree_(topology), packed_(leaves) {
         topology.getNodes(leaves_);
     }
@@ -26,10 +28,10 @@ class FileLeaves {
     std::size_t count() const { return leaves_.size(); }
     const typename Tree::LeafNodeType& operator[](std::size_t i) const { return *leaves_[i]; }
     /// Of a leaf whose values are damaged there are none.
-    std::span<const typename Tree::ValueType> values(std::size_t i, Room& room) const {
+    std::span<const Stored> values(std::size_t i, Room& room) const {
         const VdbLeaf& leaf = packed_.leaves()[i];
         const VdbLeaves::Mask mask = packed_.maskOf(leaf);
-        const auto values = packed_.activeValues<typename Tree::ValueType>(leaf, mask, room);
+        const auto values = packed_.activeValues<Stored>(leaf, mask, room);
         if (values.empty() && mask != VdbLeaves::Mask{}) areDamaged_ = true;
         return values;
     }

@@ -246,6 +246,10 @@ bool codeHalfTiles(const Tree& tree, CodeTree::Tree& codes, CodeCounts& counts) 
     return areHalves;
 }
 
+[[noreturn]] void failDamaged(const GridCodesOptions& options) {
+    fail(options.where, "values that cannot be unpacked", "a sound OpenVDB grid");
+}
+
 template <typename Tree>
 bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCodesOptions& options,
                     Volume& volume) {
@@ -253,31 +257,31 @@ bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCod
     auto codes =
         std::make_shared<CodeTree>(std::in_place, topology, Code{0}, openvdb::TopologyCopy());
     if (!codeHalfTiles(topology, codes->tree(), counts)) return false;
-    const std::vector<VdbLeaf>& leaves = packed.leaves();
+    const FileLeaves<Tree, std::uint16_t> leaves(topology, packed);
     SharedProgress progress(options.listener);
-    const bool areSound =
+    const bool areFinite =
         fillLeaves(codes->tree(), counts, [&](std::size_t, std::size_t i, Code* out) {
-            if (i % kLeafRun == 0) progress.report(double(i) / double(leaves.size()));
-            VdbLeaves::Values<std::uint16_t> room;
-            const VdbLeaves::Mask mask = packed.maskOf(leaves[i]);
-            const auto bits = packed.activeValues<std::uint16_t>(leaves[i], mask, room);
-            const bool isWhole = !bits.empty() || mask == VdbLeaves::Mask{};
-            return isWhole && codesOfHalfBits(bits, out);
+            if (i % kLeafRun == 0) progress.report(double(i) / double(leaves.count()));
+            typename decltype(leaves)::Room room;
+            const auto bits = leaves.values(i, room);
+            return bits.size() == leaves[i].onVoxelCount() && codesOfHalfBits(bits, out);
         });
-    if (!areSound) return false;
+    if (leaves.areDamaged()) failDamaged(options);
+    if (!areFinite) return false;
     volume.codeBook = CodeBook::half();
     takeCodes(std::move(codes), counts, options, volume);
     return true;
 }
 
 template <typename Tree>
-bool fillFromFile(const Tree& topology, const VdbLeaves& packed, const GridCodesOptions& options,
-                  Volume& volume) {
+bool fillFromNumbers(const Tree& topology, const VdbLeaves& packed, const GridCodesOptions& options,
+                     Volume& volume) {
     const FileLeaves<Tree> leaves(topology, packed);
     GridScan scan = scanLeaves(leaves, kNumbersAlone);
-    if (scan.nonFinite > 0 || leaves.areDamaged()) return false;
+    if (leaves.areDamaged()) failDamaged(options);
+    if (scan.nonFinite > 0) return false;
     fillFromLeaves(leaves, std::move(scan), options, volume);
-    return !leaves.areDamaged();
+    return true;
 }
 
 }  // namespace
@@ -289,7 +293,7 @@ bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Vo
         if constexpr (!std::is_same_v<T, bool>) {
             isFilled = values.areHalves
                            ? fillFromHalves(grid.tree(), values.leaves, options, volume)
-                           : fillFromFile(grid.tree(), values.leaves, options, volume);
+                           : fillFromNumbers(grid.tree(), values.leaves, options, volume);
             if (isFilled) describeGrid(grid, options, volume);
         }
     });

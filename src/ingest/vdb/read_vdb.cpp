@@ -137,16 +137,16 @@ std::optional<Volume> readGridLeaves(const VdbFile& file, const VdbGrid& grid,
     // Codes of halves are exact.
     const bool mayNeedSource = options.keepInexact && grid.valueType() != "half";
     if (options.keepSource || options.bits || mayNeedSource) return std::nullopt;
+    std::optional<VdbValues> values;
     try {
         if (options.levelSetToFog && isLevelSet(file, grid)) return std::nullopt;
-        const std::optional<VdbValues> values = file.readValues(grid);
-        if (!values) return std::nullopt;
-        return volumeOfLeaves(*values, {listener, where, grid.valueType(), options});
+        values = file.readValues(grid);
     } catch (const Error& error) {
         // What is wrong is said by who reads the grid as a whole.
         if (error.code() != ErrorCode::kInput) throw;
-        return std::nullopt;
     }
+    if (!values) return std::nullopt;
+    return volumeOfLeaves(*values, {listener, where, grid.valueType(), options});
 }
 
 Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string& where,

@@ -326,7 +326,6 @@ std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid,
     if (!grid.parentName.empty() || grid.type != "int32") return std::nullopt;
     VdbBytes bytes(file_);
     const GridHead head = readHead(bytes, grid, file_);
-    if ((head.format.compression & openvdb::io::COMPRESS_ZIP) != 0) return std::nullopt;
     const std::uint64_t begin = bytes.position();
     if (begin > grid.end) return std::nullopt;
     const auto claim = [&](std::uint64_t more) {
@@ -356,7 +355,6 @@ std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid) const {
     if (!grid.parentName.empty() || grid.type == "bool" || grid.type == "mask") return std::nullopt;
     VdbBytes bytes(file_);
     const GridHead head = readHead(bytes, grid, file_);
-    if ((head.format.compression & openvdb::io::COMPRESS_ZIP) != 0) return std::nullopt;
     const std::string where = file_.string() + ": grid \"" + grid.name + "\"";
     const std::uint64_t begin = bytes.position();
     if (begin > grid.end) return std::nullopt;

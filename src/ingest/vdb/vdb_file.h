@@ -65,7 +65,7 @@ class VdbFile {
     ///        memory, whatever the listener throws
     openvdb::GridBase::Ptr read(const VdbGrid& grid, const Listener& listener) const;
     /// Returns the packed leaves of a grid of int32 with background 0, unless there are active
-    /// tiles beside them, the grid shares its voxels with another, or values are packed by zip.
+    /// tiles beside them, or the grid shares its voxels with another.
     /// @param slices  which leaves are wanted: those with voxels whose x is within [x, y]. The
     ///                values of others are not read, if the file says how long they are
     ///                (OpenVDB's "file_delayed_load"). None: all.
@@ -74,7 +74,7 @@ class VdbFile {
                                         const std::optional<glm::ivec2>& slices = {}) const;
 
     /// Reads a grid of numbers without making a tree of them, unless it shares its voxels with
-    /// another, or values are packed by zip.
+    /// another.
     /// @throw as read()
     std::optional<VdbValues> readValues(const VdbGrid& grid) const;
 

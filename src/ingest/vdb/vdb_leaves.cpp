@@ -5,6 +5,7 @@
 
 #include <openvdb/io/Compression.h>
 #include <openvdb/points/StreamCompression.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
@@ -14,6 +15,27 @@
 #include <utility>
 
 namespace deltasplat {
+
+namespace {
+
+bool unpackBlosc(std::span<const char> chunk, std::span<char> values, std::size_t size) {
+    try {
+        openvdb::compression::bloscDecompress(values.data(), size, values.size(), chunk.data());
+    } catch (const std::exception&) {
+        return false;
+    }
+    return true;
+}
+
+bool unpackZip(std::span<const char> chunk, std::span<char> values, std::size_t size) {
+    uLongf unpacked = values.size();
+    const int status =
+        ::uncompress(reinterpret_cast<Bytef*>(values.data()), &unpacked,
+                     reinterpret_cast<const Bytef*>(chunk.data()), uLong(chunk.size()));
+    return status == Z_OK && unpacked == size;
+}
+
+}  // namespace
 
 VdbLeaves::VdbLeaves(std::vector<VdbRun> runs, std::vector<VdbLeaf> leaves,
                      const VdbValueFormat& format, openvdb::math::Transform::ConstPtr transform)
@@ -71,18 +93,14 @@ template std::span<const std::int64_t> VdbLeaves::activeValues(const VdbLeaf&, c
 bool VdbLeaves::unpack(const VdbLeaf& leaf, std::span<char> values) const {
     const std::size_t size = std::size_t{format_.stored} * leaf.count;
     std::uint64_t data = leaf.data;
-    if ((format_.compression & openvdb::io::COMPRESS_BLOSC) != 0) {
+    const bool isBlosc = (format_.compression & openvdb::io::COMPRESS_BLOSC) != 0;
+    if (isBlosc || (format_.compression & openvdb::io::COMPRESS_ZIP) != 0) {
         std::int64_t packed;
         std::memcpy(&packed, at(data), sizeof packed);
         data += sizeof packed;
         if (packed > 0) {
-            const char* chunk = at(data);
-            try {
-                openvdb::compression::bloscDecompress(values.data(), size, values.size(), chunk);
-            } catch (const std::exception&) {
-                return false;
-            }
-            return true;
+            const std::span<const char> chunk(at(data), std::size_t(packed));
+            return isBlosc ? unpackBlosc(chunk, values, size) : unpackZip(chunk, values, size);
         }
     }
     std::memcpy(values.data(), at(data), size);

@@ -29,7 +29,6 @@ class VdbLeaves {
     using Values = std::array<Stored, kVoxels + 64 / sizeof(Stored)>;
 
     /// @param runs    that hold the leaves' values, by where they begin
-    /// @param format  of values that are not packed by zip
     VdbLeaves(std::vector<VdbRun> runs, std::vector<VdbLeaf> leaves, const VdbValueFormat& format,
               openvdb::math::Transform::ConstPtr transform);
 
