@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 
 #include "deltasplat/progress.h"
@@ -17,9 +18,8 @@ class SharedProgress {
     void report(double share) {
         if (telling_.test_and_set(std::memory_order_acquire)) return;
         const Release release{telling_};
-        if (share < told_) return;
-        told_ = share;
-        listener_.report(share);
+        told_ = std::max(told_, share);
+        listener_.report(told_);
     }
 
   private:

@@ -17,7 +17,9 @@ namespace deltasplat {
 /// what goes on at the same time, not for each piece of work.
 class CodeCounts {
   public:
-    CodeCounts() : counts_(std::size_t(std::max(1, threadCount()))) {}
+    /// @param workers  at least one
+    explicit CodeCounts(std::size_t workers) : counts_(workers) {}
+    CodeCounts() : CodeCounts(std::size_t(std::max(1, threadCount()))) {}
 
     std::size_t workers() const { return counts_.size(); }
     /// One call at a time for each worker.

@@ -13,6 +13,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/memory_limit.h"
+#include "ingest/codes/code_counts.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/dense/dense_source.h"
 #include "ingest/dense/dense_tree_builder.h"
@@ -183,35 +184,17 @@ class LayerAdder {
     DenseTreeBuilder<Tree> builder_;
 };
 
-// Counts codes, strip by strip.
-class CodeCounter {
-  public:
-    explicit CodeCounter(int strips) : counts_(std::size_t(strips)) {}
-
-    void operator()(std::size_t strip, const glm::ivec3& size, const Code* codes, bool uniform) {
-        std::vector<std::uint64_t>& counts = counts_[strip];
-        counts.resize(kCodeCount);
-        constexpr int kVoxels = 512;
-        if (uniform) {
-            counts[codes[0]] += kVoxels;
-            return;
-        }
-        // Places beyond the volume's end hold 0.
-        for (int n = 0; n < kVoxels; ++n) ++counts[codes[n]];
-        counts[0] -= std::uint64_t(kVoxels - size.x * size.y * size.z);
+// Counts the codes of a block of a volume that has `size` voxels of it.
+void countCodes(std::size_t strip, const glm::ivec3& size, const Code* codes, bool uniform,
+                CodeCounts& counts) {
+    constexpr int kVoxels = 512;
+    if (uniform) return counts.add(strip, codes[0], kVoxels);
+    if (size == glm::ivec3(8)) return counts.add(strip, {codes, kVoxels});
+    for (int x = 0; x < size.x; ++x) {
+        for (int y = 0; y < size.y; ++y)
+            counts.add(strip, {codes + 64 * x + 8 * y, std::size_t(size.z)});
     }
-
-    std::vector<std::uint64_t> sum() const {
-        std::vector<std::uint64_t> sum(kCodeCount);
-        for (const std::vector<std::uint64_t>& counts : counts_) {
-            for (std::size_t code = 0; code < counts.size(); ++code) sum[code] += counts[code];
-        }
-        return sum;
-    }
-
-  private:
-    std::vector<std::vector<std::uint64_t>> counts_;
-};
+}
 
 // Keeps the most frequent of some values.
 void keepMostFrequent(const std::vector<double>& values, const std::vector<std::uint64_t>& counts,
@@ -241,7 +224,7 @@ void readCodes(const DenseSource& source, const ReadOptions& options, const Surv
                            options.nanValue.value_or(0),
                            exact ? nullptr : &meter};
     const EncodeBlock encode = blockEncoder(coding);
-    CodeCounter counter(adder.strips());
+    CodeCounts codeCounts(std::size_t(adder.strips()));
     const std::vector<double> frequent = exact ? std::vector<double>() : survey.frequent;
     std::vector<std::uint64_t> counts(frequent.size());
     source.forEachLayer(
@@ -253,10 +236,10 @@ void readCodes(const DenseSource& source, const ReadOptions& options, const Surv
             adder.add(
                 first, bytes,
                 [&](const RawBlock& block, Code* values) { encode(block, coding, values); },
-                [&](auto&&... block) { counter(block...); });
+                [&](auto&&... block) { countCodes(block..., codeCounts); });
         },
         listener);
-    volume.histogram = counter.sum();
+    volume.histogram = codeCounts.take();
     volume.codes = std::move(codes);
     summarize(volume);
     if (exact) return;

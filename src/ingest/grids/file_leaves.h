@@ -7,7 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "ingest/grids/grid_values.h"
 #include "ingest/vdb/vdb_leaves.h"
+#include "shared_progress.h"
 
 namespace deltasplat {
 
@@ -20,7 +22,9 @@ class FileLeaves {
 
     /// @param topology  all but the values of leaves
     /// @param leaves    in the tree's order
-    FileLeaves(const Tree& topology, const VdbLeaves& leaves) : tree_(topology), packed_(leaves) {
+    /// @param listener  hears how far leaves are asked for, in each pass over them
+    FileLeaves(const Tree& topology, const VdbLeaves& leaves, const Listener& listener)
+        : tree_(topology), packed_(leaves), progress_(listener) {
         topology.getNodes(leaves_);
     }
 
@@ -29,19 +33,31 @@ class FileLeaves {
     const typename Tree::LeafNodeType& operator[](std::size_t i) const { return *leaves_[i]; }
     /// Of a leaf whose values are damaged there are none.
     std::span<const Stored> values(std::size_t i, Room& room) const {
+        if (i % kLeafRun == 0) progress_.report(double(i) / double(leaves_.size()));
         const VdbLeaf& leaf = packed_.leaves()[i];
         const VdbLeaves::Mask mask = packed_.maskOf(leaf);
         const auto values = packed_.activeValues<Stored>(leaf, mask, room);
-        if (values.empty() && mask != VdbLeaves::Mask{}) areDamaged_ = true;
-        return values;
+        if (values.size() == leaves_[i]->onVoxelCount() && isMaskOf(*leaves_[i], mask))
+            return values;
+        areDamaged_ = true;
+        return {};
     }
     /// Whether any that were asked for were.
     bool areDamaged() const { return areDamaged_; }
 
   private:
+    // A mask is in the file twice: with the topology, and with the values.
+    static bool isMaskOf(const typename Tree::LeafNodeType& leaf, const VdbLeaves::Mask& mask) {
+        for (openvdb::Index x = 0; x < mask.size(); ++x) {
+            if (leaf.valueMask().template getWord<std::uint64_t>(x) != mask[x]) return false;
+        }
+        return true;
+    }
+
     const Tree& tree_;
     const VdbLeaves& packed_;
     std::vector<const typename Tree::LeafNodeType*> leaves_;
+    mutable SharedProgress progress_;
     mutable std::atomic<bool> areDamaged_ = false;
 };
 

@@ -24,7 +24,6 @@
 #include "ingest/readers.h"
 #include "ingest/values/float_kernels.h"
 #include "number_text.h"
-#include "shared_progress.h"
 
 namespace deltasplat {
 namespace {
@@ -247,7 +246,7 @@ bool codeHalfTiles(const Tree& tree, CodeTree::Tree& codes, CodeCounts& counts) 
 }
 
 [[noreturn]] void failDamaged(const GridCodesOptions& options) {
-    fail(options.where, "values that cannot be unpacked", "a sound OpenVDB grid");
+    fail(options.where, "leaves that are damaged", "a sound OpenVDB grid");
 }
 
 template <typename Tree>
@@ -257,14 +256,12 @@ bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCod
     auto codes =
         std::make_shared<CodeTree>(std::in_place, topology, Code{0}, openvdb::TopologyCopy());
     if (!codeHalfTiles(topology, codes->tree(), counts)) return false;
-    const FileLeaves<Tree, std::uint16_t> leaves(topology, packed);
-    SharedProgress progress(options.listener);
+    const FileLeaves<Tree, std::uint16_t> leaves(topology, packed, options.listener);
     const bool areFinite =
         fillLeaves(codes->tree(), counts, [&](std::size_t, std::size_t i, Code* out) {
-            if (i % kLeafRun == 0) progress.report(double(i) / double(leaves.count()));
             typename decltype(leaves)::Room room;
             const auto bits = leaves.values(i, room);
-            return bits.size() == leaves[i].onVoxelCount() && codesOfHalfBits(bits, out);
+            return !leaves.areDamaged() && codesOfHalfBits(bits, out);
         });
     if (leaves.areDamaged()) failDamaged(options);
     if (!areFinite) return false;
@@ -276,7 +273,7 @@ bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCod
 template <typename Tree>
 bool fillFromNumbers(const Tree& topology, const VdbLeaves& packed, const GridCodesOptions& options,
                      Volume& volume) {
-    const FileLeaves<Tree> leaves(topology, packed);
+    const FileLeaves<Tree> leaves(topology, packed, options.listener);
     GridScan scan = scanLeaves(leaves, kNumbersAlone);
     if (leaves.areDamaged()) failDamaged(options);
     if (scan.nonFinite > 0) return false;

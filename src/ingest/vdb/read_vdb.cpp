@@ -125,8 +125,8 @@ Volume readWholeGrid(const VdbFile& file, const ChosenGrid& chosen, const std::s
     return volume;
 }
 
-bool isLevelSet(const VdbFile& file, const VdbGrid& grid) {
-    return textMetadata(*file.metadata(grid), openvdb::GridBase::META_GRID_CLASS) ==
+bool isLevelSet(const openvdb::MetaMap& metadata) {
+    return textMetadata(metadata, openvdb::GridBase::META_GRID_CLASS) ==
            openvdb::GridBase::gridClassToString(openvdb::GRID_LEVEL_SET);
 }
 
@@ -139,7 +139,9 @@ std::optional<Volume> readGridLeaves(const VdbFile& file, const VdbGrid& grid,
     if (options.keepSource || options.bits || mayNeedSource) return std::nullopt;
     std::optional<VdbValues> values;
     try {
-        if (options.levelSetToFog && isLevelSet(file, grid)) return std::nullopt;
+        const openvdb::MetaMap::ConstPtr metadata = file.metadata(grid);
+        const bool becomesFog = options.levelSetToFog && isLevelSet(*metadata);
+        if (becomesFog || isDeltaGrid(grid.type, *metadata)) return std::nullopt;
         values = file.readValues(grid);
     } catch (const Error& error) {
         // What is wrong is said by who reads the grid as a whole.
@@ -194,7 +196,7 @@ class GridReader {
             return readGrid(file_, grid, where, options_, listener);
         } catch (const NotFinite& error) {
             // Solvers leave undefined distances in caches, which are of use to nobody else.
-            if (!amongOthers || !visitor_.other || !isLevelSet(file_, *grid.grid)) {
+            if (!amongOthers || !visitor_.other || !isLevelSet(*file_.metadata(*grid.grid))) {
                 refuse(error);
             } else {
                 passedOver_ = error;
