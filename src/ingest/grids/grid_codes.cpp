@@ -257,12 +257,14 @@ bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCod
         std::make_shared<CodeTree>(std::in_place, topology, Code{0}, openvdb::TopologyCopy());
     if (!codeHalfTiles(topology, codes->tree(), counts)) return false;
     const FileLeaves<Tree, std::uint16_t> leaves(topology, packed, options.listener);
-    const bool areFinite =
-        fillLeaves(codes->tree(), counts, [&](std::size_t, std::size_t i, Code* out) {
-            typename decltype(leaves)::Room room;
-            const auto bits = leaves.values(i, room);
-            return !leaves.areDamaged() && codesOfHalfBits(bits, out);
-        });
+    std::atomic<bool> areFinite = true;
+    // All leaves are looked at, so that what is damaged is said however many threads there are.
+    fillLeaves(codes->tree(), counts, [&](std::size_t, std::size_t i, Code* out) {
+        typename decltype(leaves)::Room room;
+        const auto bits = leaves.values(i, room);
+        if (!codesOfHalfBits(bits, out)) areFinite = false;
+        return !leaves.areDamaged();
+    });
     if (leaves.areDamaged()) failDamaged(options);
     if (!areFinite) return false;
     volume.codeBook = CodeBook::half();

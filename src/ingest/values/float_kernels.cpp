@@ -22,7 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <std::size_t kLanes, typename T, typename Use>
 HWY_INLINE void forVectors(std::span<const T> values, Code* codes, const Use& use) {
     std::size_t n = 0;
-    for (; n + kLanes <= values.size(); n += kLanes) use(&values[n], codes + n);
+    for (; n + kLanes <= values.size(); n += kLanes) use(&values[n], codes ? codes + n : nullptr);
     if (n == values.size()) return;
     T rest[kLanes];
     Code codesOfRest[kLanes];

@@ -126,8 +126,8 @@ Volume readWholeGrid(const VdbFile& file, const ChosenGrid& chosen, const std::s
 }
 
 bool isLevelSet(const openvdb::MetaMap& metadata) {
-    return textMetadata(metadata, openvdb::GridBase::META_GRID_CLASS) ==
-           openvdb::GridBase::gridClassToString(openvdb::GRID_LEVEL_SET);
+    const std::string text = textMetadata(metadata, openvdb::GridBase::META_GRID_CLASS);
+    return openvdb::GridBase::stringToGridClass(text) == openvdb::GRID_LEVEL_SET;
 }
 
 // Reads a grid of which nothing but its codes is wanted; nothing where that cannot be.
@@ -146,6 +146,8 @@ std::optional<Volume> readGridLeaves(const VdbFile& file, const VdbGrid& grid,
     } catch (const Error& error) {
         // What is wrong is said by who reads the grid as a whole.
         if (error.code() != ErrorCode::kInput) throw;
+    } catch (const openvdb::Exception&) {
+        // Nor is metadata that OpenVDB refuses.
     }
     if (!values) return std::nullopt;
     return volumeOfLeaves(*values, {listener, where, grid.valueType(), options});

@@ -205,6 +205,9 @@ openvdb::GridBase::Ptr readTopology(const std::filesystem::path& file, const Vdb
                                     const GridHead& head, const VdbRange& tree,
                                     const std::string& where) {
     openvdb::GridBase::Ptr topology = openvdb::GridBase::createGrid(treeType(grid.type));
+    const openvdb::MetaMap::ConstPtr metadata = parseMetadata(head.metadata);
+    static_cast<openvdb::MetaMap&>(*topology) = *metadata;
+    topology->removeMeta(openvdb::GridBase::META_SAVE_HALF_FLOAT);
     topology->setSaveFloatAsHalf(grid.half);
     VdbStreamBuf buffer(file);
     buffer.addRange(tree.begin, tree.begin + tree.size);
@@ -213,9 +216,6 @@ openvdb::GridBase::Ptr readTopology(const std::filesystem::path& file, const Vdb
         topology->readTopology(stream);
         return 0;
     });
-    const openvdb::MetaMap::ConstPtr metadata = parseMetadata(head.metadata);
-    for (auto entry = metadata->beginMeta(); entry != metadata->endMeta(); ++entry)
-        topology->insertMeta(entry->first, *entry->second);
     topology->setTransform(std::make_shared<openvdb::math::Transform>(*head.map));
     return topology;
 }
