@@ -35,8 +35,7 @@ void cutSource(Volume& volume) {
         const auto cut = grid.deepCopy();
         dropVoxels(cut->tree(), volume.codes->tree());
         if (!volume.codeBook.isExact()) {
-            const GridScan scan =
-                scanLeaves(TreeLeaves(cut->tree()), {.distinct = false, .survey = false});
+            const GridScan scan = scanLeaves(TreeLeaves(cut->tree()), kNumbersAlone);
             volume.valueMin = scan.census.min;
             volume.valueMax = scan.census.max;
         }

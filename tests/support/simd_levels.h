@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string>
 #include <vector>
 
@@ -22,6 +24,17 @@ inline std::vector<std::string> testedSimdLevels() {
     std::vector<std::string> levels = simdLevels();
     if (kIsSanitized && levels.size() > 1) std::erase(levels, "EMU128");
     return levels;
+}
+
+/// Calls use() at each of these levels.
+template <typename Use>
+void atEveryLevel(const Use& use) {
+    for (const std::string& level : testedSimdLevels()) {
+        SCOPED_TRACE(level);
+        setSimdLevel(level);
+        use();
+    }
+    setSimdLevel("auto");
 }
 
 }  // namespace deltasplat::test

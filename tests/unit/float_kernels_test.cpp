@@ -20,16 +20,7 @@ namespace deltasplat {
 namespace {
 
 using Floats = std::vector<float>;
-
-template <typename Use>
-void atEveryLevel(const Use& use) {
-    for (const std::string& level : test::testedSimdLevels()) {
-        SCOPED_TRACE(level);
-        setSimdLevel(level);
-        use();
-    }
-    setSimdLevel("auto");
-}
+using test::atEveryLevel;
 
 // What a census of one value after the other says.
 void expectFacts(const Floats& values) {

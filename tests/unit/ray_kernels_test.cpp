@@ -17,16 +17,7 @@
 namespace deltasplat {
 namespace {
 
-// Calls use() at every SIMD level.
-template <typename Use>
-void atEveryLevel(const Use& use) {
-    for (const std::string& level : test::testedSimdLevels()) {
-        SCOPED_TRACE(level);
-        setSimdLevel(level);
-        use();
-    }
-    setSimdLevel("auto");
-}
+using test::atEveryLevel;
 
 std::vector<float> randomValues(std::size_t count, std::uint32_t seed) {
     std::mt19937 random(seed);

@@ -33,9 +33,6 @@ namespace {
     throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
 }
 
-// What is told soon, and mostly is enough.
-constexpr ScanWishes kNumbersAlone{.distinct = false, .survey = false};
-
 // Replaces what is not finite, or refuses it.
 template <typename Grid>
 void settleNonFinite(Grid& grid, const GridScan& range, const GridCodesOptions& options) {
@@ -88,9 +85,10 @@ void spread(const Code* codes, CodeTree::Leaf& leaf) {
 }
 
 // Fills the leaves of a tree, and counts their codes: codesOf(worker, i, out) writes those of the
-// active voxels of leaf i, in the order of their places. Ends, and returns false, where it does.
+// active voxels of leaf i, in the order of their places; where it returns false, no more are
+// filled.
 template <typename CodesOf>
-bool fillLeaves(CodeTree::Tree& codes, CodeCounts& counts, const CodesOf& codesOf) {
+void fillLeaves(CodeTree::Tree& codes, CodeCounts& counts, const CodesOf& codesOf) {
     std::vector<CodeTree::Leaf*> leaves;
     codes.getNodes(leaves);
     std::atomic<bool> areSound = true;
@@ -109,7 +107,6 @@ bool fillLeaves(CodeTree::Tree& codes, CodeCounts& counts, const CodesOf& codesO
                         if (!isDense) spread(out, leaf);
                     }
                 });
-    return areSound;
 }
 
 // Turns values into the codes of a book.

@@ -30,9 +30,8 @@ void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volu
 /// Does the same with a grid whose leaves' values are still in their file. Returns false if a value
 /// is not finite, or a tile's is no half where leaves have halves: then the grid is to be read as a
 /// whole. Level sets stay what they are.
-/// @throw Error(kInput) also if values cannot be unpacked, where OpenVDB goes on with what it has
-/// if
-///        they are packed by zip, or are of other voxels than the topology says
+/// @throw Error(kInput) also if values cannot be unpacked, or are of other voxels than the topology
+///        says
 bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Volume& volume);
 
 }  // namespace deltasplat

@@ -150,6 +150,9 @@ struct ScanWishes {
     bool survey = true;    ///< where values lie
 };
 
+/// What is told soon, and mostly is enough.
+inline constexpr ScanWishes kNumbersAlone{.distinct = false, .survey = false};
+
 /// Returns what the active values of a tree hold; the result does not depend on the thread count.
 /// @param leaves  TreeLeaves, or what does the same
 template <typename Leaves>
