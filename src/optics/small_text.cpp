@@ -19,10 +19,16 @@ std::string readSmallText(const std::filesystem::path& file, const std::string& 
     std::ifstream in;
     if (regular) in.open(file, std::ios::binary);
     if (!in.is_open()) fail("no file that can be read");
-    std::string text(kMaxBytes + 1, '\0');
-    in.read(text.data(), std::streamsize(text.size()));
+    // As much at a time as most have in all: room for the largest takes longer than reading them.
+    constexpr std::size_t kPart = std::size_t{64} << 10;
+    std::string text;
+    while (in && text.size() <= kMaxBytes) {
+        const std::size_t begin = text.size();
+        text.resize(begin + kPart);
+        in.read(text.data() + begin, std::streamsize(kPart));
+        text.resize(begin + std::size_t(in.gcount()));
+    }
     if (in.bad()) fail("no file that can be read");
-    text.resize(std::size_t(in.gcount()));
     if (text.size() > kMaxBytes) fail("more than 16 MiB");
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
     return text;
