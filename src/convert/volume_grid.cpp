@@ -42,7 +42,7 @@ typename Grid::Ptr translate(const Tree& tree, const ValueOf& valueOf, double ba
     // OpenVDB's trees cannot be assigned, only made in place.
     typename Grid::TreePtrType made(
         new typename Grid::TreeType(tree, valueAs<T>(background), openvdb::TopologyCopy()));
-    // The tree of a mask is all topology.
+    // The leaves of a mask are all topology.
     if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
         std::vector<const typename Tree::LeafNodeType*> sources;
         std::vector<typename Grid::TreeType::LeafNodeType*> leaves;
@@ -51,10 +51,9 @@ typename Grid::Ptr translate(const Tree& tree, const ValueOf& valueOf, double ba
         forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) fillLeaf(*sources[i], *leaves[i], valueOf);
         });
-        forActiveTiles(*made, [&](const auto& tile) {
-            tile.setValue(valueOf(tree.getValue(tile.getCoord())));
-        });
     }
+    forActiveTiles(
+        *made, [&](const auto& tile) { tile.setValue(valueOf(tree.getValue(tile.getCoord()))); });
     return Grid::create(made);
 }
 

@@ -8,6 +8,7 @@
 
 #include "ingest/codes/book_encoder.h"
 #include "ingest/grids/grid_values.h"
+#include "ingest/grids/scalar_grids.h"
 #include "ingest/values/distinct_values.h"
 #include "ingest/values/same_bits.h"
 #include "ingest/values/value_cast.h"
@@ -74,21 +75,17 @@ InactiveValues find(const Tree& tree) {
     return found;
 }
 
-// Masks have no values but their active states.
-using ValueGrids = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                     openvdb::Int64Grid, openvdb::BoolGrid>;
-
 }  // namespace
 
 double backgroundOf(const openvdb::GridBase& grid) {
     double background = 0;
-    grid.apply<ValueGrids>([&](const auto& typed) { background = double(typed.background()); });
+    grid.apply<ScalarGrids>([&](const auto& typed) { background = double(typed.background()); });
     return background;
 }
 
 InactiveValues findInactiveValues(const openvdb::GridBase& grid) {
     InactiveValues found;
-    grid.apply<ValueGrids>([&](const auto& typed) { found = find(typed.tree()); });
+    grid.apply<ScalarGrids>([&](const auto& typed) { found = find(typed.tree()); });
     return found;
 }
 

@@ -284,6 +284,30 @@ TEST(DeltaFile, IntegerGridsComeBack) {
     }
 }
 
+// Voxels of a mask are true where they are active; its tiles have values.
+TEST(DeltaFile, MaskGridsComeBack) {
+    openvdb::initialize();
+    for (unsigned seed = 51; seed <= 54; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const TempFolder folder;
+        std::mt19937 random(seed);
+        const auto grid = openvdb::MaskGrid::create();
+        const Coord low(-30, 7, -100), size(150, 60, 40);
+        for (int i = 0; i < 5; ++i) {
+            const Coord a = randomCoord(random, low, size), b = randomCoord(random, low, size);
+            grid->tree().fill({Coord::minComponent(a, b), Coord::maxComponent(a, b)}, true, i != 3);
+        }
+        grid->tree().addTile(1, low + Coord(400, 0, 0), true, true);
+        grid->tree().addTile(1, low + Coord(440, 0, 0), false, true);
+        grid->tree().addTile(2, low + Coord(600, 0, 0), true, true);
+        dress(*grid, random);
+        openvdb::io::File("source.vdb").write({grid});
+        DeltaFileOptions options;
+        options.sliceAxis = int(seed % 3);
+        for (const bool pack : {false, true}) expectComesBack(*grid, options, pack);
+    }
+}
+
 TEST(DeltaFile, FloatGridsOfAnyValuesComeBack) {
     for (unsigned seed = 61; seed <= 68; ++seed)
         expectRoundTrip<openvdb::FloatGrid>(seed, Kind::kAny, "float32");

@@ -266,21 +266,21 @@ TEST(SlabFacts, DamagedNotesOfLeavesDoNoHarm) {
 // A part reads no note that is longer than one can be.
 TEST(SlabFacts, NotesOfLeavesAreNoLongerThanTheirLeavesAllow) {
     openvdb::initialize();
-    EXPECT_FALSE(leafSizesOf(std::string(mostLeafSizesBytes(3), '\0'), 3));
+    EXPECT_FALSE(leafSizesOf(std::string(mostLeafSizesBytes(3), '\0'), 3, {}));
     std::string raw;
     appendU32(raw, 2);
     appendU32(raw, 0);
     raw += std::string(2, '\0');
     appendU32(raw, 0);
     for (const char packed : {5, 7}) raw += packed + std::string(7, '\0');
-    const auto sizes = leafSizesOf(raw, 2);
+    const auto sizes = leafSizesOf(raw, 2, {});
     ASSERT_TRUE(sizes);
     EXPECT_EQ(*sizes, (std::vector<std::uint64_t>{6, 8}));
-    EXPECT_FALSE(leafSizesOf(raw, 3));
-    EXPECT_FALSE(leafSizesOf(raw.substr(0, raw.size() - 1), 2));
+    EXPECT_FALSE(leafSizesOf(raw, 3, {}));
+    EXPECT_FALSE(leafSizesOf(raw.substr(0, raw.size() - 1), 2, {}));
     // One byte that says to be a chunk of Blosc's.
     raw[4] = 1;
-    EXPECT_FALSE(leafSizesOf(raw, 2));
+    EXPECT_FALSE(leafSizesOf(raw, 2, {}));
 }
 
 // Nothing but the parts can be made of some slices.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -67,7 +68,7 @@ void expectSameBothWays(const openvdb::GridBase::Ptr& grid) {
         SCOPED_TRACE(compression);
         writeAs(compression, grid);
         const VdbFile file("a.vdb");
-        ASSERT_TRUE(file.readValues(file.grids().front()));
+        ASSERT_TRUE(file.readValues(file.grids().front(), VdbFile::Find::kByWalking));
         const Volume volume = readVolume("a.vdb");
         EXPECT_EQ(volume.source, nullptr);
         expectSame(volume, readByTree());
@@ -162,7 +163,7 @@ TEST(VdbValues, WhatIsNotFiniteIsRefusedOrReplaced) {
     }
 }
 
-// Every bit of a file that is packed, turned: an error, or a volume; never more.
+// Bytes of a file that is packed, changed: an error, or a volume; never more.
 TEST(VdbValues, DamagedValues) {
     const TempFolder folder;
     openvdb::initialize();
@@ -188,6 +189,161 @@ TEST(VdbValues, DamagedValues) {
         }
         if (compression == openvdb::io::COMPRESS_ZIP) {
             EXPECT_GT(refused, 40);
+        }
+    }
+}
+
+// Whether values are halves is in a file twice. OpenVDB believes one for how long they are, and the
+// other for how they are packed.
+TEST(VdbValues, HalvesThatMetadataCallsFloats) {
+    const TempFolder folder;
+    for (const bool half : {true, false}) {
+        const auto grid = gridOf<openvdb::FloatGrid>(halfOf);
+        grid->setSaveFloatAsHalf(half);
+        for (const std::uint32_t compression : compressions()) {
+            SCOPED_TRACE(compression);
+            writeAs(compression, grid);
+            const Volume sound = readVolume("a.vdb");
+            std::string bytes = readBytes("a.vdb");
+            const std::string key = openvdb::GridBase::META_SAVE_HALF_FLOAT;
+            const std::size_t at = bytes.find(key);
+            ASSERT_NE(at, std::string::npos);
+            // Of another name, and of another value: behind its name come type and size.
+            std::string renamed = bytes;
+            renamed[at] = 'X';
+            bytes[at + key.size() + 4 + 4 + 4] = char(!half);
+            for (const std::string& contradictory : {renamed, bytes}) {
+                writeBytes("a.vdb", contradictory);
+                expectSame(readVolume("a.vdb"), sound);
+                expectSame(readByTree(), sound);
+            }
+        }
+    }
+}
+
+TEST(VdbValues, MetadataOfTwoTypes) {
+    const TempFolder folder;
+    const auto grid = gridOf<openvdb::FloatGrid>(halfOf);
+    grid->insertMeta("frame_a", openvdb::Int32Metadata(1));
+    grid->insertMeta("frame_b", openvdb::StringMetadata("1"));
+    writeAs(openvdb::io::COMPRESS_BLOSC, grid);
+    std::string bytes = readBytes("a.vdb");
+    bytes[bytes.find("frame_b") + 6] = 'a';
+    writeBytes("a.vdb", bytes);
+    const std::string message =
+        "a.vdb: got metadata \"frame_a\" of two types; expected a sound OpenVDB file";
+    expectError(ErrorCode::kInput, message, [] { readVolume("a.vdb"); });
+    expectError(ErrorCode::kInput, message, [] { readByTree(); });
+}
+
+TEST(VdbValues, MasksThatDiffer) {
+    const TempFolder folder;
+    const auto grid = gridOf<openvdb::FloatGrid>(halfOf);
+    writeAs(openvdb::io::COMPRESS_NONE, grid);
+    std::string bytes = readBytes("a.vdb");
+    // The last leaf: its mask, a byte that says what is inactive, and 512 values.
+    const std::size_t mask = bytes.size() - 512 * sizeof(float) - 1 - 64;
+    bytes[mask] = char(bytes[mask] ^ 1);
+    writeBytes("a.vdb", bytes);
+    const std::string message =
+        "a.vdb: got a leaf of two different masks; expected a sound OpenVDB tree";
+    expectError(ErrorCode::kInput, message, [] { readVolume("a.vdb"); });
+    expectError(ErrorCode::kInput, message, [] { readByTree(); });
+}
+
+// OpenVDB takes zipped values that have the right size, whatever their checksum says.
+TEST(VdbValues, DamagedZipIsRefusedByWhoeverReadsIt) {
+    const TempFolder folder;
+    openvdb::initialize();
+    const auto vectors = openvdb::Vec3SGrid::create();
+    vectors->setName("a");
+    for (int i = 0; i < 512; ++i) {
+        vectors->tree().setValue(openvdb::Coord(i / 64, i / 8 % 8, i % 8),
+                                 openvdb::Vec3s(halfOf(i * i), 0, 1));
+    }
+    for (const openvdb::GridBase::Ptr& grid :
+         {openvdb::GridBase::Ptr(gridOf<openvdb::FloatGrid>(halfOf)),
+          openvdb::GridBase::Ptr(vectors)}) {
+        writeAs(openvdb::io::COMPRESS_ZIP, grid);
+        const std::string sound = readBytes("a.vdb");
+        ReadOptions options;
+        options.keepSource = true;
+        if (grid->isType<openvdb::Vec3SGrid>()) options.gridName = "a.x";
+        readVolume("a.vdb", options);
+        // The last bytes of the last chunk are its checksum.
+        for (const std::size_t back : {1, 3, 40}) {
+            std::string bytes = sound;
+            bytes[sound.size() - back] = char(bytes[sound.size() - back] ^ 1);
+            writeBytes("a.vdb", bytes);
+            expectError(ErrorCode::kInput,
+                        "a.vdb: grid \"a\": got leaves that are damaged; expected a sound "
+                        "OpenVDB grid",
+                        [&] { readVolume("a.vdb", options); });
+        }
+    }
+}
+
+// Tiles of an upper node are zipped as well.
+TEST(VdbValues, DamagedZipOfTiles) {
+    const TempFolder folder;
+    openvdb::initialize();
+    auto grid = openvdb::FloatGrid::create(0);
+    grid->setName("a");
+    for (int i = 0; i < 500; ++i)
+        grid->tree().addTile(1, openvdb::Coord(8 * (i % 16), 8 * (i / 16 % 16), 8 * (i / 256)),
+                             halfOf(i * i), true);
+    writeAs(openvdb::io::COMPRESS_ZIP, grid);
+    std::string bytes = readBytes("a.vdb");
+    bytes[bytes.size() - 8 - 64] = char(bytes[bytes.size() - 8 - 64] ^ 1);
+    writeBytes("a.vdb", bytes);
+    EXPECT_THROW(readVolume("a.vdb"), Error);
+    EXPECT_THROW(readByTree(), Error);
+}
+
+// What a file notes of its leaves' sizes is believed only where leaves are found by it.
+TEST(VdbValues, NotesThatAreWrong) {
+    const TempFolder folder;
+    const auto grid = gridOf<openvdb::FloatGrid>(halfOf);
+    for (const bool half : {true, false}) {
+        grid->setSaveFloatAsHalf(half);
+        writeAs(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK, grid);
+        const std::string sound = readBytes("a.vdb");
+        const Volume whole = readByTree();
+        const std::size_t note = sound.find("__delayedload");
+        ASSERT_NE(note, std::string::npos);
+        int believed = 0;
+        for (std::size_t at = note + 17; at < note + 17 + 120; ++at) {
+            SCOPED_TRACE(at);
+            std::string bytes = sound;
+            bytes[at] = char(bytes[at] ^ 1);
+            writeBytes("a.vdb", bytes);
+            const VdbFile file("a.vdb");
+            believed += file.readValues(file.grids().front(), VdbFile::Find::kByNotes) ? 1 : 0;
+            expectSame(readVolume("a.vdb"), whole);
+        }
+        EXPECT_GT(believed, 0);
+    }
+}
+
+// Whoever reads may be told to stop, while leaves are looked for and while they are unpacked.
+TEST(VdbValues, AListenerMayEndIt) {
+    struct Stop {};
+    const TempFolder folder;
+    writeAs(openvdb::io::COMPRESS_NONE,
+            gridOf<openvdb::FloatGrid>([](int i) { return std::sin(float(i)); }));
+    for (const int threads : {1, 3}) {
+        const ThreadLimit limit(threads);
+        std::vector<double> shares;
+        Listener listener;
+        listener.progress = [&](double share) { shares.push_back(share); };
+        readVolume("a.vdb", {}, listener);
+        EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+        EXPECT_GT(shares.size(), 1u);
+        for (const double at : {shares.front(), shares.back()}) {
+            listener.progress = [at](double share) {
+                if (share >= at) throw Stop();
+            };
+            EXPECT_THROW(readVolume("a.vdb", {}, listener), Stop);
         }
     }
 }

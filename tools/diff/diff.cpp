@@ -9,7 +9,7 @@
 #include "diff/diff_options.h"
 #include "diff/diff_report.h"
 #include "ingest/files/file_name.h"
-#include "ingest/grids/not_finite.h"
+#include "ingest/grids/grid_errors.h"
 #include "listener.h"
 #include "options/input_options.h"
 #include "options/volume_choices.h"

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "deltasplat/ingest/code_book.h"
@@ -24,31 +23,41 @@ class CodeCounts {
     std::size_t workers() const { return counts_.size(); }
     /// One call at a time for each worker.
     void add(std::size_t worker, std::span<const Code> codes) {
-        std::vector<std::uint64_t>& counts = countsOf(worker);
-        for (const Code code : codes) ++counts[code];
+        std::vector<Count>& counts = countsOf(worker);
+        std::size_t i = 0;
+        for (; i + 2 <= codes.size(); i += 2) {
+            ++counts[codes[i]].even;
+            ++counts[codes[i + 1]].odd;
+        }
+        if (i < codes.size()) ++counts[codes[i]].even;
     }
     void add(std::size_t worker, Code code, std::uint64_t times) {
-        countsOf(worker)[code] += times;
+        countsOf(worker)[code].even += times;
     }
     /// Returns the sums, [kCodeCount], and leaves none.
     std::vector<std::uint64_t> take() {
-        std::vector<std::uint64_t> sum = std::move(countsOf(0));
-        for (std::size_t worker = 1; worker < counts_.size(); ++worker) {
-            const std::vector<std::uint64_t>& counts = counts_[worker];
-            for (std::size_t code = 0; code < counts.size(); ++code) sum[code] += counts[code];
-        }
+        std::vector<std::uint64_t> sum(kCodeCount);
+        for (const std::vector<Count>& counts : counts_)
+            for (std::size_t code = 0; code < counts.size(); ++code)
+                sum[code] += counts[code].even + counts[code].odd;
         counts_.clear();
         return sum;
     }
 
   private:
+    // Neighbours are often alike, and who adds to what was just written waits for it.
+    struct Count {
+        std::uint64_t even = 0;
+        std::uint64_t odd = 0;
+    };
+
     // Made by who fills it, where it is wanted.
-    std::vector<std::uint64_t>& countsOf(std::size_t worker) {
+    std::vector<Count>& countsOf(std::size_t worker) {
         if (counts_[worker].empty()) counts_[worker].resize(kCodeCount);
         return counts_[worker];
     }
 
-    std::vector<std::vector<std::uint64_t>> counts_;
+    std::vector<std::vector<Count>> counts_;
 };
 
 }  // namespace deltasplat

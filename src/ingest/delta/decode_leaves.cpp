@@ -164,7 +164,6 @@ class StripDecoder {
         ShortSlot* out = room();
         VdbLeaves::Mask mask{};
         if (leaf) {
-            mask = leaves_.maskOf(*leaf);
             if (!addLeaf(position, *leaf, mask, out)) return false;
         } else {
             for (int s = 0; s < 8; ++s)
@@ -197,26 +196,24 @@ class StripDecoder {
     }
 
     // Adds a leaf's deltas, slice by slice.
-    bool addLeaf(const glm::ivec3& position, const VdbLeaf& leaf, const VdbLeaves::Mask& mask,
+    // @param mask  becomes the leaf's
+    bool addLeaf(const glm::ivec3& position, const VdbLeaf& leaf, VdbLeaves::Mask& mask,
                  ShortSlot* out) {
-        const std::span<const std::int32_t> deltas =
-            leaves_.activeValues<std::int32_t>(leaf, mask, values_);
-        std::size_t active = 0;
+        const auto deltas = leaves_.activeValues(leaf, mask, room_);
+        if (!deltas) return false;
         for (int s = 0; s < 8; ++s) {
             const std::uint64_t word = mask[std::size_t(s)];
-            active += std::size_t(std::popcount(word));
             if (word != 0 && ((word & ~inside_) != 0 || !layout_.hasSlice(8 * position.x + s)))
                 return false;
         }
-        if (deltas.size() != active) return false;
-        const std::int32_t* next = deltas.data();
+        const std::int32_t* next = deltas->data();
         for (int s = 0; s < 8; ++s) {
             const std::uint64_t word = mask[std::size_t(s)];
             addDeltas(word, next, slots_.data());
             next += std::popcount(word);
             if (!writeSlice(position, s, out + 64 * s)) return false;
         }
-        slabDeltas_[std::size_t(layout_.slabOf(position.x))] += active;
+        slabDeltas_[std::size_t(layout_.slabOf(position.x))] += deltas->size();
         return true;
     }
 
@@ -312,7 +309,7 @@ class StripDecoder {
     // Of the column in hand.
     std::array<std::uint32_t, 64> slots_{};
     std::uint64_t inside_ = 0;
-    VdbLeaves::Values<std::int32_t> values_;
+    VdbLeaves::Room<std::int32_t> room_;
 };
 
 // Returns the leaves by u, v and slice; none if one lies outside of the box.

@@ -37,9 +37,7 @@ openvdb::GridBase::Ptr restoredGrid(const DeltaHeader& header, const DecodedDelt
     using Value = typename Grid::ValueType;
     auto grid =
         gridFromCodes<Grid>(decoded.codes->tree(), header.book, valueAs<Value>(header.background));
-    if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
-        setInactive(decoded.inactive->tree(), header.inactiveValues, grid->tree());
-    }
+    setInactive(decoded.inactive->tree(), header.inactiveValues, grid->tree());
     return grid;
 }
 

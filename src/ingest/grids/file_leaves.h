@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -18,13 +19,14 @@ namespace deltasplat {
 template <typename Tree, typename Stored = typename Tree::ValueType>
 class FileLeaves {
   public:
-    using Room = VdbLeaves::Values<Stored>;
+    using Room = VdbLeaves::Room<Stored>;
 
     /// @param topology  all but the values of leaves
     /// @param leaves    in the tree's order
-    /// @param listener  hears how far leaves are asked for, in each pass over them
-    FileLeaves(const Tree& topology, const VdbLeaves& leaves, const Listener& listener)
-        : tree_(topology), packed_(leaves), progress_(listener) {
+    /// @param passes    over all leaves, how many are to be expected
+    /// @param listener  hears how far leaves are asked for
+    FileLeaves(const Tree& topology, const VdbLeaves& leaves, int passes, const Listener& listener)
+        : tree_(topology), packed_(leaves), passes_(passes), progress_(listener) {
         topology.getNodes(leaves_);
     }
 
@@ -33,12 +35,14 @@ class FileLeaves {
     const typename Tree::LeafNodeType& operator[](std::size_t i) const { return *leaves_[i]; }
     /// Of a leaf whose values are damaged there are none.
     std::span<const Stored> values(std::size_t i, Room& room) const {
-        if (i % kLeafRun == 0) progress_.report(double(i) / double(leaves_.size()));
-        const VdbLeaf& leaf = packed_.leaves()[i];
-        const VdbLeaves::Mask mask = packed_.maskOf(leaf);
-        const auto values = packed_.activeValues<Stored>(leaf, mask, room);
-        if (values.size() == leaves_[i]->onVoxelCount() && isMaskOf(*leaves_[i], mask))
-            return values;
+        if (i == 0) ++pass_;
+        if (i % kLeafRun == 0) {
+            const double done = pass_ - 1 + double(i) / double(leaves_.size());
+            progress_.report(std::min(1.0, done / passes_));
+        }
+        VdbLeaves::Mask mask;
+        const auto values = packed_.activeValues(packed_.leaves()[i], mask, room);
+        if (values) return *values;
         areDamaged_ = true;
         return {};
     }
@@ -46,17 +50,11 @@ class FileLeaves {
     bool areDamaged() const { return areDamaged_; }
 
   private:
-    // A mask is in the file twice: with the topology, and with the values.
-    static bool isMaskOf(const typename Tree::LeafNodeType& leaf, const VdbLeaves::Mask& mask) {
-        for (openvdb::Index x = 0; x < mask.size(); ++x) {
-            if (leaf.valueMask().template getWord<std::uint64_t>(x) != mask[x]) return false;
-        }
-        return true;
-    }
-
     const Tree& tree_;
     const VdbLeaves& packed_;
     std::vector<const typename Tree::LeafNodeType*> leaves_;
+    int passes_;
+    mutable std::atomic<int> pass_ = 0;
     mutable SharedProgress progress_;
     mutable std::atomic<bool> areDamaged_ = false;
 };

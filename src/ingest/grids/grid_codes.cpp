@@ -18,8 +18,8 @@
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/error_meter.h"
 #include "ingest/grids/file_leaves.h"
+#include "ingest/grids/grid_errors.h"
 #include "ingest/grids/grid_values.h"
-#include "ingest/grids/not_finite.h"
 #include "ingest/grids/scalar_grids.h"
 #include "ingest/readers.h"
 #include "ingest/values/float_kernels.h"
@@ -84,22 +84,24 @@ void spread(const Code* codes, CodeTree::Leaf& leaf) {
     }
 }
 
-// Fills the leaves of a tree, and counts their codes: codesOf(worker, i, out) writes those of the
-// active voxels of leaf i, in the order of their places; where it returns false, no more are
+// Fills the leaves of a tree, and counts their codes: codesOf(worker, i, room, out) writes those of
+// the active voxels of leaf i, in the order of their places; where it returns false, no more are
 // filled.
-template <typename CodesOf>
+template <typename Room, typename CodesOf>
 void fillLeaves(CodeTree::Tree& codes, CodeCounts& counts, const CodesOf& codesOf) {
     std::vector<CodeTree::Leaf*> leaves;
     codes.getNodes(leaves);
     std::atomic<bool> areSound = true;
+    std::vector<std::unique_ptr<Room>> rooms(counts.workers());
     forLeafRuns(leaves.size(), counts.workers(),
                 [&](std::size_t worker, std::size_t begin, std::size_t end) {
-                    LeafRoom<CodeTree::Leaf> room;
+                    LeafRoom<CodeTree::Leaf> activeCodes;
+                    if (!rooms[worker]) rooms[worker] = std::make_unique_for_overwrite<Room>();
                     for (std::size_t i = begin; i < end && areSound; ++i) {
                         CodeTree::Leaf& leaf = *leaves[i];
                         const bool isDense = leaf.isDense();
-                        Code* const out = isDense ? leaf.buffer().data() : room.data();
-                        if (!codesOf(worker, i, out)) {
+                        Code* const out = isDense ? leaf.buffer().data() : activeCodes.data();
+                        if (!codesOf(worker, i, *rooms[worker], out)) {
                             areSound = false;
                             break;
                         }
@@ -132,15 +134,16 @@ std::shared_ptr<CodeTree> codesOfLeaves(const Leaves& leaves, const CodeBook& bo
     std::shared_ptr<CodeTree> codes(
         new CodeTree(std::in_place, tree, Code{0}, openvdb::TopologyCopy()));
     std::vector<ErrorMeter::Part> parts(counts.workers(), ErrorMeter::Part(meter));
-    fillLeaves(codes->tree(), counts, [&](std::size_t worker, std::size_t i, Code* out) {
-        typename Leaves::Room room;
-        const auto values = leaves.values(i, room);
-        if (values.size() != leaves[i].onVoxelCount()) return false;
-        encodeAll(book, encode, values, out);
-        for (std::size_t n = 0; !exact && n < values.size(); ++n)
-            parts[worker].add(double(values[n]), out[n]);
-        return true;
-    });
+    using Room = typename Leaves::Room;
+    fillLeaves<Room>(codes->tree(), counts,
+                     [&](std::size_t worker, std::size_t i, Room& room, Code* out) {
+                         const auto values = leaves.values(i, room);
+                         if (values.size() != leaves[i].onVoxelCount()) return false;
+                         encodeAll(book, encode, values, out);
+                         for (std::size_t n = 0; !exact && n < values.size(); ++n)
+                             parts[worker].add(double(values[n]), out[n]);
+                         return true;
+                     });
     forActiveTiles(codes->tree(), [&](const auto& tile) {
         const auto value = double(tree.getValue(tile.getCoord()));
         tile.setValue(encode(value));
@@ -243,7 +246,8 @@ bool codeHalfTiles(const Tree& tree, CodeTree::Tree& codes, CodeCounts& counts) 
 }
 
 [[noreturn]] void failDamaged(const GridCodesOptions& options) {
-    fail(options.where, "leaves that are damaged", "a sound OpenVDB grid");
+    throw DamagedLeaves(ErrorCode::kInput, gotExpected(options.where, "leaves that are damaged",
+                                                       "a sound OpenVDB grid"));
 }
 
 template <typename Tree>
@@ -253,11 +257,11 @@ bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCod
     auto codes =
         std::make_shared<CodeTree>(std::in_place, topology, Code{0}, openvdb::TopologyCopy());
     if (!codeHalfTiles(topology, codes->tree(), counts)) return false;
-    const FileLeaves<Tree, std::uint16_t> leaves(topology, packed, options.listener);
+    const FileLeaves<Tree, std::uint16_t> leaves(topology, packed, 1, options.listener);
+    using Room = typename decltype(leaves)::Room;
     std::atomic<bool> areFinite = true;
     // All leaves are looked at, so that what is damaged is said however many threads there are.
-    fillLeaves(codes->tree(), counts, [&](std::size_t, std::size_t i, Code* out) {
-        typename decltype(leaves)::Room room;
+    fillLeaves<Room>(codes->tree(), counts, [&](std::size_t, std::size_t i, Room& room, Code* out) {
         const auto bits = leaves.values(i, room);
         if (!codesOfHalfBits(bits, out)) areFinite = false;
         return !leaves.areDamaged();
@@ -272,7 +276,8 @@ bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCod
 template <typename Tree>
 bool fillFromNumbers(const Tree& topology, const VdbLeaves& packed, const GridCodesOptions& options,
                      Volume& volume) {
-    const FileLeaves<Tree> leaves(topology, packed, options.listener);
+    // One to see what there is and one for codes; rarely one more.
+    const FileLeaves<Tree> leaves(topology, packed, 2, options.listener);
     GridScan scan = scanLeaves(leaves, kNumbersAlone);
     if (leaves.areDamaged()) failDamaged(options);
     if (scan.nonFinite > 0) return false;

@@ -34,10 +34,10 @@ typename Grid::Ptr gridFromCodes(const CodeTree::Tree& codes, const CodeBook& bo
                     targets[i]->setValueOnly(on.pos(), valueOf(from[on.pos()]));
             }
         });
-        forActiveTiles(*tree, [&](const auto& tile) {
-            tile.setValue(valueOf(codes.getValue(tile.getCoord())));
-        });
     }
+    // Tiles of a mask have values, too.
+    forActiveTiles(
+        *tree, [&](const auto& tile) { tile.setValue(valueOf(codes.getValue(tile.getCoord()))); });
     return Grid::create(tree);
 }
 

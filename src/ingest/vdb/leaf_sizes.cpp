@@ -46,8 +46,8 @@ bool isSound(const std::string& stored, std::size_t leaves) {
 
 }  // namespace
 
-std::optional<std::vector<std::uint64_t>> leafSizesOf(const std::string& stored,
-                                                      std::size_t leaves) {
+std::optional<std::vector<std::uint64_t>> leafSizesOf(const std::string& stored, std::size_t leaves,
+                                                      const VdbValueFormat& format) {
     using openvdb::io::DelayedLoadMetadata;
     std::uint32_t count = 0;
     if (stored.size() < sizeof count || !DelayedLoadMetadata::isRegisteredType())
@@ -80,11 +80,8 @@ std::optional<std::vector<std::uint64_t>> leafSizesOf(const std::string& stored,
                 kind >= MASK_AND_NO_INACTIVE_VALS && kind <= MASK_AND_TWO_INACTIVE_VALS;
             const std::int64_t packed = metadata->getCompressedSize(i);
             if (packed < 0 || packed > std::int64_t{1} << 20) return std::nullopt;
-            sizes.push_back(1 +
-                            (two   ? 8u
-                             : one ? 4u
-                                   : 0u) +
-                            (hasMask ? 64u : 0u) + std::uint64_t(packed));
+            const std::uint64_t inactive = format.bytes * (two ? 2u : one ? 1u : 0u);
+            sizes.push_back(1 + inactive + (hasMask ? 64u : 0u) + std::uint64_t(packed));
         }
         return sizes;
     } catch (const std::exception&) {

@@ -9,14 +9,15 @@
 #include "deltasplat/error.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/read_delta_grid.h"
+#include "ingest/grids/grid_errors.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_volume.h"
-#include "ingest/grids/not_finite.h"
 #include "ingest/readers.h"
 #include "ingest/vdb/default_grid.h"
 #include "ingest/vdb/read_slices.h"
 #include "ingest/vdb/vdb_file.h"
 #include "ingest/vdb/vector_part.h"
+#include "listener_part.h"
 #include "suggest.h"
 
 namespace deltasplat {
@@ -130,27 +131,40 @@ bool isLevelSet(const openvdb::MetaMap& metadata) {
     return openvdb::GridBase::stringToGridClass(text) == openvdb::GRID_LEVEL_SET;
 }
 
-// Reads a grid of which nothing but its codes is wanted; nothing where that cannot be.
+// Whether a grid may be read leaf by leaf: of which nothing but its codes is wanted.
+bool mayReadLeaves(const VdbFile& file, const VdbGrid& grid, const ReadOptions& options) {
+    // Codes of halves are exact.
+    const bool mayNeedSource = options.keepInexact && grid.valueType() != "half";
+    if (options.keepSource || options.bits || mayNeedSource) return false;
+    const openvdb::MetaMap::ConstPtr metadata = file.metadata(grid);
+    const bool becomesFog = options.levelSetToFog && isLevelSet(*metadata);
+    return !becomesFog && !isDeltaGrid(grid.type, *metadata);
+}
+
+// Reads such a grid; nothing where that cannot be.
 std::optional<Volume> readGridLeaves(const VdbFile& file, const VdbGrid& grid,
                                      const std::string& where, const ReadOptions& options,
                                      const Listener& listener) {
-    // Codes of halves are exact.
-    const bool mayNeedSource = options.keepInexact && grid.valueType() != "half";
-    if (options.keepSource || options.bits || mayNeedSource) return std::nullopt;
-    std::optional<VdbValues> values;
-    try {
-        const openvdb::MetaMap::ConstPtr metadata = file.metadata(grid);
-        const bool becomesFog = options.levelSetToFog && isLevelSet(*metadata);
-        if (becomesFog || isDeltaGrid(grid.type, *metadata)) return std::nullopt;
-        values = file.readValues(grid);
-    } catch (const Error& error) {
-        // What is wrong is said by who reads the grid as a whole.
-        if (error.code() != ErrorCode::kInput) throw;
-    } catch (const openvdb::Exception&) {
-        // Nor is metadata that OpenVDB refuses.
+    constexpr double kFindShare = 0.2;  // of finding where leaves lie
+    for (const auto how : {VdbFile::Find::kByNotes, VdbFile::Find::kByWalking}) {
+        std::optional<VdbValues> values;
+        try {
+            if (!mayReadLeaves(file, grid, options)) return std::nullopt;
+            values = file.readValues(grid, how, partOf(listener, 0, kFindShare));
+        } catch (const Error& error) {
+            // What is wrong is said by who reads the grid as a whole.
+            if (error.code() != ErrorCode::kInput) throw;
+        }
+        if (!values) return std::nullopt;
+        try {
+            const Listener unpacking = partOf(listener, kFindShare, 1);
+            return volumeOfLeaves(*values, {unpacking, where, grid.valueType(), options});
+        } catch (const DamagedLeaves&) {
+            // Or the file's notes are.
+            if (how == VdbFile::Find::kByWalking) throw;
+        }
     }
-    if (!values) return std::nullopt;
-    return volumeOfLeaves(*values, {listener, where, grid.valueType(), options});
+    return std::nullopt;
 }
 
 Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string& where,

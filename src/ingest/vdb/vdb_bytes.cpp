@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/vdb/vdb_bytes.h"
 
+#include <openvdb/Grid.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
 #include <string_view>
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "printable.h"
 
 namespace deltasplat {
 namespace {
@@ -111,16 +115,11 @@ void VdbBytes::fill(std::uint64_t begin, std::uint64_t count) {
     file_.seekg(std::streamoff(begin));
     file_.read(buffer_.data(), std::streamsize(count));
     if (!file_) failCorrupt("a read error", "a readable file");
-}
-
-void VdbBytes::hold(std::uint64_t begin, std::uint64_t end) {
-    seek(end);
-    seek(begin);
-    fill(begin, end - begin);
-}
-
-std::vector<char> VdbBytes::takeHeld() {
-    return std::move(buffer_);
+    constexpr std::uint64_t kStepBytes = std::uint64_t{4} << 20;
+    untold_ += count;
+    if (!step_ || untold_ < kStepBytes) return;
+    untold_ = 0;
+    step_(begin);
 }
 
 std::string VdbBytes::bytes(std::uint64_t count) {
@@ -157,10 +156,19 @@ std::string VdbBytes::text(std::uint32_t most) {
     return bytes(length);
 }
 
-std::string readMetadata(VdbBytes& bytes, VdbRange* leafSizes) {
+std::string readMetadata(VdbBytes& bytes, bool half, VdbRange* leafSizes) {
+    const std::string kHalf = openvdb::GridBase::META_SAVE_HALF_FLOAT;
     const std::uint32_t count = bytes.u32();
     std::uint32_t kept = 0;
     std::string entries;
+    std::map<std::string, std::string> types;  // by names
+    const auto add = [&](const std::string& name, const std::string& type,
+                         const std::string& value) {
+        appendText(entries, name);
+        appendText(entries, type);
+        appendText(entries, value);
+        ++kept;
+    };
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::string name = bytes.text();
         const std::string type = bytes.text();
@@ -171,11 +179,14 @@ std::string readMetadata(VdbBytes& bytes, VdbRange* leafSizes) {
             continue;
         }
         const std::string value = bytes.bytes(size);
-        appendText(entries, name);
-        appendText(entries, type);
-        appendText(entries, value);
-        ++kept;
+        if (name == kHalf) continue;
+        if (types.try_emplace(name, type).first->second != type) {
+            bytes.failCorrupt("metadata \"" + printable(name) + "\" of two types",
+                              "a sound OpenVDB file");
+        }
+        add(name, type, value);
     }
+    if (half) add(kHalf, "bool", "\1");
     std::string metadata;
     appendU32(metadata, kept);
     return metadata + entries;

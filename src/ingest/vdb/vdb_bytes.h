@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace deltasplat {
@@ -28,11 +30,8 @@ class VdbBytes {
     /// A 32-bit length and that many bytes, at most `most`.
     std::string text(std::uint32_t most = 65536);
 
-    /// Reads a range at once: what is read within it comes from memory, until something outside of
-    /// it is read. The position is then where it begins.
-    void hold(std::uint64_t begin, std::uint64_t end);
-    /// Hands over what hold() has read.
-    std::vector<char> takeHeld();
+    /// Calls `step` with the position, every few megabytes that are read; it may throw.
+    void onProgress(std::function<void(std::uint64_t)> step) { step_ = std::move(step); }
 
     [[noreturn]] void failCorrupt(const std::string& got, const std::string& expected) const;
 
@@ -49,6 +48,8 @@ class VdbBytes {
     std::vector<char> buffer_;                          // what the file holds from bufferBegin_ on
     std::uint64_t nextBytes_ = std::uint64_t{1} << 14;  // that are read at once
     std::uint64_t bufferBegin_ = 0;
+    std::function<void(std::uint64_t)> step_;
+    std::uint64_t untold_ = 0;  // bytes read since it was called
 };
 
 /// A part of a file.
@@ -59,10 +60,11 @@ struct VdbRange {
 
 /// Reads the metadata at the current position, which moves behind it. Returns it in the file's
 /// form, reduced to entries whose types and sizes OpenVDB can be trusted with.
+/// @param half       what "is_saved_as_half_float" shall say: OpenVDB believes it where the grid's
+///                   type says otherwise
 /// @param leafSizes  null, or where to put where the value of OpenVDB's "file_delayed_load" lies,
-/// if
-///                   there is one; not read, and not to be trusted
-std::string readMetadata(VdbBytes& bytes, VdbRange* leafSizes = nullptr);
+///                   if there is one; not read, and not to be trusted
+std::string readMetadata(VdbBytes& bytes, bool half = false, VdbRange* leafSizes = nullptr);
 
 /// Appends `value` to `text` as four bytes, little endian.
 void appendU32(std::string& text, std::uint32_t value);

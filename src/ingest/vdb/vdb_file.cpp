@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "ingest/files/file_bytes.h"
 #include "ingest/grids/scalar_grids.h"
 #include "ingest/vdb/leaf_sizes.h"
 #include "ingest/vdb/vdb_bytes.h"
@@ -109,7 +110,7 @@ GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::p
     }
     bytes.seek(grid.data);
     head.format.compression = bytes.u32();
-    head.metadata = readMetadata(bytes, &head.leafSizes);
+    head.metadata = readMetadata(bytes, grid.half, &head.leafSizes);
     head.transform = bytes.position();
     bytes.text(256);  // the transform's type: a length that OpenVDB would trust
     VdbStreamBuf buffer(file);
@@ -125,52 +126,42 @@ GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::p
     return head;
 }
 
+// Whether OpenVDB reads leaves without finding out whether they are whole.
+bool mayBeUnsound(const VdbValueFormat& format) {
+    return (format.compression & openvdb::io::COMPRESS_ZIP) != 0 &&
+           (format.compression & openvdb::io::COMPRESS_BLOSC) == 0 &&
+           format.leaf == VdbValueFormat::Leaf::kValues;
+}
+
 void requireEnd(const VdbBytes& bytes, const VdbGrid& grid) {
     if (bytes.position() == grid.end) return;
     bytes.failCorrupt("a grid that ends at byte " + std::to_string(bytes.position()),
                       std::to_string(grid.end));
 }
 
-// Reads the leaves of some slices alone, those that lie one behind the other at once, and leaves
-// these in `leaves`.
-// @param bytes  at the first leaf
-std::optional<std::vector<VdbRun>> readRuns(VdbBytes& bytes, const GridHead& head,
-                                            std::uint64_t end, const glm::ivec2& slices,
-                                            std::vector<VdbLeaf>& leaves,
-                                            const std::function<void(std::uint64_t)>& claim) {
+// Finds where leaves lie by what the file notes of their sizes; returns whether it does, and they
+// end where the grid does. A note may be wrong all the same.
+// @param bytes  at the first leaf, which they are left at
+bool placeBySizes(VdbBytes& bytes, const GridHead& head, std::uint64_t end,
+                  std::vector<VdbLeaf>& leaves, const std::string& where) {
     constexpr std::uint64_t kMaskBytes = 64;
     std::uint64_t position = bytes.position();
-    if (head.leafSizes.size > mostLeafSizesBytes(leaves.size())) return std::nullopt;
-    claim(head.leafSizes.size);
-    bytes.hold(head.leafSizes.begin, head.leafSizes.begin + head.leafSizes.size);
-    const auto sizes = leafSizesOf(bytes.bytes(head.leafSizes.size), leaves.size());
+    const std::uint64_t noteBytes = head.leafSizes.size;
+    if (noteBytes == 0 || noteBytes > mostLeafSizesBytes(leaves.size())) return false;
+    requireMemory(where, double(noteBytes));
+    bytes.seek(head.leafSizes.begin);
+    const std::string note = bytes.bytes(noteBytes);
     bytes.seek(position);
-    if (!sizes) return std::nullopt;
-    std::vector<VdbRun> runs;
-    std::vector<VdbLeaf> wanted;
-    for (std::size_t i = 0; i < leaves.size();) {
-        const auto isWanted = [&](const VdbLeaf& leaf) {
-            return leaf.origin[0] <= slices.y && leaf.origin[0] + 7 >= slices.x;
-        };
-        const std::size_t first = i;
-        const std::uint64_t begin = position;
-        const bool areWanted = isWanted(leaves[i]);
-        for (; i < leaves.size() && isWanted(leaves[i]) == areWanted; ++i)
-            position += kMaskBytes + (*sizes)[i];
-        if (position > end) return std::nullopt;
-        if (!areWanted) continue;
-        claim(position - begin);
-        bytes.hold(begin, position);
-        for (std::size_t n = first; n < i; ++n) {
-            walkLeaf(bytes, head.format, leaves[n]);
-            wanted.push_back(leaves[n]);
-        }
-        if (bytes.position() != position) return std::nullopt;
-        runs.push_back({begin, bytes.takeHeld()});
+    const auto sizes = leafSizesOf(note, leaves.size(), head.format);
+    if (!sizes) return false;
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        const std::uint64_t size = kMaskBytes + (*sizes)[i];
+        if (size > end - position) return false;
+        leaves[i].begin = position;
+        leaves[i].size = std::uint32_t(size);
+        position += size;
     }
-    if (position != end) return std::nullopt;
-    leaves = std::move(wanted);
-    return runs;
+    return position == end;
 }
 
 std::string treeType(const std::string& type) {
@@ -193,10 +184,16 @@ bool areInOrder(const std::vector<VdbLeaf>& leaves, const openvdb::GridBase& gri
     return areSame;
 }
 
-openvdb::MetaMap::ConstPtr parseMetadata(const std::string& bytes) {
+openvdb::MetaMap::ConstPtr parseMetadata(const std::string& bytes,
+                                         const std::filesystem::path& file) {
     std::istringstream stream(bytes);
     const auto metadata = std::make_shared<openvdb::MetaMap>();
-    metadata->readMeta(stream);
+    try {
+        metadata->readMeta(stream);
+    } catch (const openvdb::Exception& error) {
+        throw Error(ErrorCode::kInput, gotExpected(file.string(), printable(error.what()),
+                                                   "metadata that OpenVDB can read"));
+    }
     return metadata;
 }
 
@@ -205,9 +202,8 @@ openvdb::GridBase::Ptr readTopology(const std::filesystem::path& file, const Vdb
                                     const GridHead& head, const VdbRange& tree,
                                     const std::string& where) {
     openvdb::GridBase::Ptr topology = openvdb::GridBase::createGrid(treeType(grid.type));
-    const openvdb::MetaMap::ConstPtr metadata = parseMetadata(head.metadata);
+    const openvdb::MetaMap::ConstPtr metadata = parseMetadata(head.metadata, file);
     static_cast<openvdb::MetaMap&>(*topology) = *metadata;
-    topology->removeMeta(openvdb::GridBase::META_SAVE_HALF_FLOAT);
     topology->setSaveFloatAsHalf(grid.half);
     VdbStreamBuf buffer(file);
     buffer.addRange(tree.begin, tree.begin + tree.size);
@@ -266,12 +262,12 @@ void VdbFile::readDirectory() {
 }
 
 openvdb::MetaMap::ConstPtr VdbFile::metadata() const {
-    return parseMetadata(metadata_);
+    return parseMetadata(metadata_, file_);
 }
 
 openvdb::MetaMap::ConstPtr VdbFile::metadata(const VdbGrid& grid) const {
     VdbBytes bytes(file_);
-    return parseMetadata(readHead(bytes, grid, file_).metadata);
+    return parseMetadata(readHead(bytes, grid, file_).metadata, file_);
 }
 
 // A file written as a stream says nowhere how long its grids are.
@@ -292,6 +288,10 @@ const VdbGrid& VdbFile::parentOf(const VdbGrid& grid) const {
                                                "a sound .vdb file"));
 }
 
+std::string VdbFile::whereOf(const VdbGrid& grid) const {
+    return file_.string() + ": grid \"" + grid.name + "\"";
+}
+
 openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listener) const {
     std::vector<const VdbGrid*> needed{&grid};
     if (!grid.parentName.empty()) needed.insert(needed.begin(), &parentOf(grid));
@@ -303,12 +303,23 @@ openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listen
     appendU32(counts, 0);
     appendU32(counts, std::uint32_t(needed.size()));
     buffer.addText(counts);
-    const std::string where = file_.string() + ": grid \"" + grid.name + "\"";
+    const std::string where = whereOf(grid);
     VdbBytes bytes(file_);
     for (const VdbGrid* part : needed) {
         const GridHead head = readHead(bytes, *part, file_);
         if (part->parentName.empty()) {
-            requireMemory(where, walkTree(bytes, head.format).memoryBytes(head.format));
+            VdbTreePlaces places;
+            const VdbTreeSize size = walkTopology(bytes, head.format, places);
+            walkLeaves(bytes, head.format, places.leaves);
+            requireMemory(where, size.memoryBytes(head.format));
+            if (mayBeUnsound(head.format)) {
+                const VdbLeaves leaves(std::make_shared<const FileBytes>(file_),
+                                       std::move(places.leaves), head.format, head.map);
+                if (!leaves.areSound()) {
+                    throw Error(ErrorCode::kInput, gotExpected(where, "leaves that are damaged",
+                                                               "a sound OpenVDB grid"));
+                }
+            }
         }
         requireEnd(bytes, *part);
         buffer.addRange(part->begin, part->data + sizeof(std::uint32_t));
@@ -324,54 +335,59 @@ openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listen
 std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid,
                                              const std::optional<glm::ivec2>& slices) const {
     if (!grid.parentName.empty() || grid.type != "int32") return std::nullopt;
+    const std::string where = whereOf(grid);
     VdbBytes bytes(file_);
     const GridHead head = readHead(bytes, grid, file_);
+    VdbTreePlaces places;
+    walkTopology(bytes, head.format, places);
     const std::uint64_t begin = bytes.position();
     if (begin > grid.end) return std::nullopt;
-    const auto claim = [&](std::uint64_t more) {
-        requireMemory(file_.string() + ": grid \"" + grid.name + "\"", double(more));
-    };
-    VdbTreePlaces places;
-    std::vector<VdbRun> runs;
-    if (slices) {
-        walkTopology(bytes, head.format, places);
-        auto read = readRuns(bytes, head, grid.end, *slices, places.leaves, claim);
-        if (!read) return std::nullopt;
-        runs = std::move(*read);
-    } else {
-        claim(grid.end - begin);
-        bytes.hold(begin, grid.end);
-        walkTree(bytes, head.format, &places);
+    if (!placeBySizes(bytes, head, grid.end, places.leaves, where)) {
+        if (slices) return std::nullopt;
+        walkLeaves(bytes, head.format, places.leaves);
         requireEnd(bytes, grid);
-        runs.push_back({begin, bytes.takeHeld()});
     }
-    if (places.hasActiveTiles || places.background < begin) return std::nullopt;
     bytes.seek(places.background);
-    if (bytes.u32() != 0) return std::nullopt;
-    return VdbLeaves(std::move(runs), std::move(places.leaves), head.format, head.map);
+    if (places.hasActiveTiles || bytes.u32() != 0) return std::nullopt;
+    if (slices) {
+        std::erase_if(places.leaves, [&](const VdbLeaf& leaf) {
+            return leaf.origin[0] > slices->y || leaf.origin[0] + 7 < slices->x;
+        });
+    }
+    VdbLeaves leaves(std::make_shared<const FileBytes>(file_), std::move(places.leaves),
+                     head.format, head.map);
+    requireMemory(where, double(leaves.bytes()));
+    leaves.hold();
+    return leaves;
 }
 
-std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid) const {
+std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
+                                             const Listener& listener) const {
     if (!grid.parentName.empty() || grid.type == "bool" || grid.type == "mask") return std::nullopt;
+    const std::string where = whereOf(grid);
     VdbBytes bytes(file_);
     const GridHead head = readHead(bytes, grid, file_);
-    const std::string where = file_.string() + ": grid \"" + grid.name + "\"";
     const std::uint64_t begin = bytes.position();
     if (begin > grid.end) return std::nullopt;
-    requireMemory(where, double(grid.end - begin));
-    bytes.hold(begin, grid.end);
+    bytes.onProgress([&](std::uint64_t position) {
+        if (position >= begin && position < grid.end)
+            listener.report(double(position - begin) / double(grid.end - begin));
+    });
     VdbTreePlaces places;
-    const VdbTreeSize size = walkTree(bytes, head.format, &places);
-    requireEnd(bytes, grid);
+    const VdbTreeSize size = walkTopology(bytes, head.format, places);
+    const std::uint64_t topologyEnd = bytes.position();
     requireMemory(where, size.topologyBytes(head.format));
+    if (how == Find::kByWalking || !placeBySizes(bytes, head, grid.end, places.leaves, where)) {
+        walkLeaves(bytes, head.format, places.leaves);
+        requireEnd(bytes, grid);
+    }
     openvdb::GridBase::Ptr topology =
-        readTopology(file_, grid, head, {begin, grid.end - begin}, where);
+        readTopology(file_, grid, head, {begin, topologyEnd - begin}, where);
     if (!areInOrder(places.leaves, *topology)) return std::nullopt;
-    std::vector<VdbRun> runs;
-    runs.push_back({begin, bytes.takeHeld()});
-    return VdbValues{std::move(topology),
-                     {std::move(runs), std::move(places.leaves), head.format, head.map},
-                     head.format.stored != head.format.bytes};
+    return VdbValues{
+        std::move(topology),
+        {std::make_shared<const FileBytes>(file_), std::move(places.leaves), head.format, head.map},
+        head.format.stored != head.format.bytes};
 }
 
 }  // namespace deltasplat

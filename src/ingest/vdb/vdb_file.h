@@ -73,14 +73,21 @@ class VdbFile {
     std::optional<VdbLeaves> readLeaves(const VdbGrid& grid,
                                         const std::optional<glm::ivec2>& slices = {}) const;
 
+    /// How to find where leaves lie: by what the file notes of their sizes (OpenVDB's
+    /// "file_delayed_load"), if it does, or by walking over all of them. Notes may be wrong: then
+    /// leaves look damaged.
+    enum class Find { kByNotes, kByWalking };
     /// Reads a grid of numbers without making a tree of them, unless it shares its voxels with
     /// another.
+    /// @param listener  hears how far the file is read here; leaves are read when they are unpacked
     /// @throw as read()
-    std::optional<VdbValues> readValues(const VdbGrid& grid) const;
+    std::optional<VdbValues> readValues(const VdbGrid& grid, Find how,
+                                        const Listener& listener = {}) const;
 
   private:
     void readDirectory();
     void findEnd(VdbBytes& bytes, VdbGrid& grid) const;
+    std::string whereOf(const VdbGrid& grid) const;
     const VdbGrid& parentOf(const VdbGrid& grid) const;
 
     std::filesystem::path file_;

@@ -5,20 +5,95 @@
 
 #include <openvdb/io/Compression.h>
 #include <openvdb/points/StreamCompression.h>
-#include <zlib.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cstring>
 #include <exception>
 #include <iterator>
 #include <utility>
 
+#include "ingest/vdb/zip_chunk.h"
+#include "parallel.h"
+
 namespace deltasplat {
 
 namespace {
 
+// The values of a leaf, as its bytes have them.
+struct PackedValues {
+    std::uint32_t count;  // of all voxels, or of the active ones
+    std::span<const char> data;
+    bool isPacked;
+};
+
+// Takes what is stored from the front of some bytes.
+class Front {
+  public:
+    explicit Front(std::span<const char> bytes) : rest_(bytes) {}
+
+    template <typename T>
+    bool take(T& value) {
+        if (rest_.size() < sizeof value) return false;
+        std::memcpy(&value, rest_.data(), sizeof value);
+        rest_ = rest_.subspan(sizeof value);
+        return true;
+    }
+    bool skip(std::size_t bytes) {
+        if (rest_.size() < bytes) return false;
+        rest_ = rest_.subspan(bytes);
+        return true;
+    }
+    std::span<const char> rest() const { return rest_; }
+
+  private:
+    std::span<const char> rest_;
+};
+
+std::uint32_t countOf(const VdbLeaves::Mask& mask) {
+    std::uint32_t active = 0;
+    for (const std::uint64_t word : mask) active += std::uint32_t(std::popcount(word));
+    return active;
+}
+
+// Returns nothing if the bytes are not those of the leaf, from the first to the last.
+std::optional<PackedValues> valuesOf(const VdbLeaf& leaf, std::span<const char> bytes,
+                                     const VdbValueFormat& format, VdbLeaf::Mask& mask) {
+    using namespace openvdb::io;
+    Front front(bytes);
+    std::uint8_t kind = 0;
+    if (!front.take(mask) || !front.take(kind)) return std::nullopt;
+    if (VdbLeaf::sumOf(mask) != leaf.maskSum) return std::nullopt;
+    const bool one = kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL;
+    const bool two = kind == MASK_AND_TWO_INACTIVE_VALS;
+    const bool hasMask = kind >= MASK_AND_NO_INACTIVE_VALS && kind <= MASK_AND_TWO_INACTIVE_VALS;
+    const std::size_t inactive = format.bytes * (two ? 2 : one ? 1 : 0);
+    if (!front.skip(inactive + (hasMask ? sizeof mask : 0))) return std::nullopt;
+    const bool activeAlone =
+        (format.compression & COMPRESS_ACTIVE_MASK) != 0 && kind != NO_MASK_AND_ALL_VALS;
+    const std::uint32_t count = activeAlone ? countOf(mask) : std::uint32_t(VdbLeaves::kVoxels);
+    const std::size_t size = std::size_t{format.stored} * count;
+    const bool isHalf = format.stored != format.bytes;
+    if ((format.compression & (COMPRESS_BLOSC | COMPRESS_ZIP)) == 0 || (isHalf && count == 0)) {
+        if (front.rest().size() != size) return std::nullopt;
+        return PackedValues{count, front.rest(), false};
+    }
+    std::int64_t packed = 0;
+    if (!front.take(packed)) return std::nullopt;
+    // Stored as they are, with the size's sign turned.
+    const std::uint64_t stored = packed > 0 ? std::uint64_t(packed) : size;
+    if (front.rest().size() != stored || (packed <= 0 && packed != -std::int64_t(size)))
+        return std::nullopt;
+    return PackedValues{count, front.rest(), packed > 0};
+}
+
+// The decoder believes what a chunk says of its sizes, in the second and fourth of its words.
 bool unpackBlosc(std::span<const char> chunk, std::span<char> values, std::size_t size) {
+    std::array<std::uint32_t, 4> words;
+    if (chunk.size() < sizeof words) return false;
+    std::memcpy(words.data(), chunk.data(), sizeof words);
+    if (words[1] != size || words[3] != chunk.size()) return false;
     try {
         openvdb::compression::bloscDecompress(values.data(), size, values.size(), chunk.data());
     } catch (const std::exception&) {
@@ -27,84 +102,150 @@ bool unpackBlosc(std::span<const char> chunk, std::span<char> values, std::size_
     return true;
 }
 
-bool unpackZip(std::span<const char> chunk, std::span<char> values, std::size_t size) {
-    uLongf unpacked = values.size();
-    const int status =
-        ::uncompress(reinterpret_cast<Bytef*>(values.data()), &unpacked,
-                     reinterpret_cast<const Bytef*>(chunk.data()), uLong(chunk.size()));
-    return status == Z_OK && unpacked == size;
+bool unpack(const PackedValues& packed, const VdbValueFormat& format, std::span<char> values) {
+    const std::size_t size = std::size_t{format.stored} * packed.count;
+    if (packed.isPacked) {
+        const bool isBlosc = (format.compression & openvdb::io::COMPRESS_BLOSC) != 0;
+        return isBlosc ? unpackBlosc(packed.data, values, size)
+                       : unpackZip(packed.data, values, size);
+    }
+    std::memcpy(values.data(), packed.data.data(), size);
+    return true;
 }
 
 }  // namespace
 
-VdbLeaves::VdbLeaves(std::vector<VdbRun> runs, std::vector<VdbLeaf> leaves,
+bool VdbRun::read(const FileBytes& file, std::uint64_t begin, std::uint64_t end) {
+    constexpr std::uint64_t kPart = std::uint64_t{1} << 20;
+    const std::uint64_t size = end - begin;
+    begin_ = end_ = 0;
+    if (size > capacity_) {
+        bytes_ = std::make_unique_for_overwrite<char[]>(size);
+        capacity_ = size;
+    }
+    std::atomic<bool> isThere = true;
+    const auto readPart = [&](std::size_t part) {
+        const std::uint64_t first = part * kPart;
+        const std::uint64_t wanted = std::min(kPart, size - first);
+        if (file.read(begin + first, bytes_.get() + first, wanted) != wanted) isThere = false;
+    };
+    if (size <= kPart) {
+        readPart(0);
+    } else {
+        parallelFor((size + kPart - 1) / kPart, readPart);
+    }
+    if (!isThere) return false;
+    begin_ = begin;
+    end_ = end;
+    return true;
+}
+
+VdbLeaves::VdbLeaves(std::shared_ptr<const FileBytes> file, std::vector<VdbLeaf> leaves,
                      const VdbValueFormat& format, openvdb::math::Transform::ConstPtr transform)
-    : runs_(std::move(runs)),
+    : file_(std::move(file)),
       leaves_(std::move(leaves)),
       format_(format),
       transform_(std::move(transform)) {}
 
-// Where a byte of a leaf is in memory, and those of the leaf behind it.
-const char* VdbLeaves::at(std::uint64_t position) const {
-    const VdbRun* run = &runs_.back();
-    if (position < run->begin) {
-        run = &*std::prev(std::upper_bound(
-            runs_.begin(), runs_.end(), position,
-            [](std::uint64_t place, const VdbRun& later) { return place < later.begin; }));
-    }
-    return run->bytes.data() + (position - run->begin);
+std::uint64_t VdbLeaves::bytes() const {
+    std::uint64_t sum = 0;
+    for (const VdbLeaf& leaf : leaves_) sum += leaf.size;
+    return sum;
 }
 
-VdbLeaves::Mask VdbLeaves::maskOf(const VdbLeaf& leaf) const {
-    Mask mask;
-    std::memcpy(mask.data(), at(leaf.mask), sizeof mask);
-    return mask;
+void VdbLeaves::hold() {
+    for (std::size_t i = 0; i < leaves_.size();) {
+        const std::uint64_t begin = leaves_[i].begin;
+        std::uint64_t end = begin;
+        for (; i < leaves_.size() && leaves_[i].begin == end; ++i) end = leaves_[i].end();
+        VdbRun run;
+        if (run.read(*file_, begin, end)) held_.push_back(std::move(run));
+    }
+}
+
+// Reads a leaf, and those that are asked for next.
+bool VdbLeaves::readRun(const VdbLeaf& leaf, VdbRun& run) const {
+    constexpr std::size_t kLeaves = 128;
+    // Sound leaves are far from it.
+    constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 20;
+    const auto first = std::size_t(&leaf - leaves_.data());
+    const std::size_t last = std::min(leaves_.size(), (first / kLeaves + 1) * kLeaves) - 1;
+    std::uint64_t end = leaf.end();
+    for (std::size_t i = first + 1; i <= last && leaves_[i].begin == end; ++i) {
+        if (leaves_[i].end() - leaf.begin > kMostBytes) break;
+        end = leaves_[i].end();
+    }
+    return run.read(*file_, leaf.begin, end);
+}
+
+std::optional<std::span<const char>> VdbLeaves::bytesOf(const VdbLeaf& leaf, VdbRun& room) const {
+    if (held_.empty()) {
+        if (!room.has(leaf) && !readRun(leaf, room)) return std::nullopt;
+        return room.of(leaf);
+    }
+    const VdbRun* run = &held_.back();
+    if (leaf.begin < run->begin()) {
+        const auto later = std::upper_bound(
+            held_.begin(), held_.end(), leaf.begin,
+            [](std::uint64_t place, const VdbRun& other) { return place < other.begin(); });
+        if (later == held_.begin()) return std::nullopt;
+        run = &*std::prev(later);
+    }
+    if (!run->has(leaf)) return std::nullopt;
+    return run->of(leaf);
 }
 
 template <typename Stored>
-std::span<const Stored> VdbLeaves::activeValues(const VdbLeaf& leaf, const Mask& mask,
-                                                Values<Stored>& room) const {
-    std::size_t active = 0;
-    for (const std::uint64_t word : mask) active += std::size_t(std::popcount(word));
-    const std::span<char> bytes(reinterpret_cast<char*>(room.data()), sizeof room);
-    if (active == 0 || !unpack(leaf, bytes)) return {};
-    if (leaf.count == active) return {room.data(), active};
-    // All values are there.
-    std::size_t kept = 0;
-    for (std::size_t x = 0; x < mask.size(); ++x) {
-        for (std::uint64_t rest = mask[x]; rest != 0; rest &= rest - 1)
-            room[kept++] = room[64 * x + std::size_t(std::countr_zero(rest))];
-    }
-    return {room.data(), kept};
-}
-
-template std::span<const std::uint16_t> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
-                                                                Values<std::uint16_t>&) const;
-template std::span<const float> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
-                                                        Values<float>&) const;
-template std::span<const double> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
-                                                         Values<double>&) const;
-template std::span<const std::int32_t> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
-                                                               Values<std::int32_t>&) const;
-template std::span<const std::int64_t> VdbLeaves::activeValues(const VdbLeaf&, const Mask&,
-                                                               Values<std::int64_t>&) const;
-
-// The walk has found that sizes are what the file says.
-bool VdbLeaves::unpack(const VdbLeaf& leaf, std::span<char> values) const {
-    const std::size_t size = std::size_t{format_.stored} * leaf.count;
-    std::uint64_t data = leaf.data;
-    const bool isBlosc = (format_.compression & openvdb::io::COMPRESS_BLOSC) != 0;
-    if (isBlosc || (format_.compression & openvdb::io::COMPRESS_ZIP) != 0) {
-        std::int64_t packed;
-        std::memcpy(&packed, at(data), sizeof packed);
-        data += sizeof packed;
-        if (packed > 0) {
-            const std::span<const char> chunk(at(data), std::size_t(packed));
-            return isBlosc ? unpackBlosc(chunk, values, size) : unpackZip(chunk, values, size);
+std::optional<std::span<const Stored>> VdbLeaves::activeValues(const VdbLeaf& leaf, Mask& mask,
+                                                               Room<Stored>& room) const {
+    const auto bytes = bytesOf(leaf, room.run);
+    if (!bytes) return std::nullopt;
+    const auto packed = valuesOf(leaf, *bytes, format_, mask);
+    if (!packed) return std::nullopt;
+    const std::uint32_t active = countOf(mask);
+    if (active == 0) return std::span<const Stored>{};
+    auto& values = room.values;
+    if (!unpack(*packed, format_, {reinterpret_cast<char*>(values.data()), sizeof values}))
+        return std::nullopt;
+    std::size_t kept = active;
+    if (packed->count != active) {
+        // All values are there.
+        kept = 0;
+        for (std::size_t x = 0; x < mask.size(); ++x) {
+            for (std::uint64_t rest = mask[x]; rest != 0; rest &= rest - 1)
+                values[kept++] = values[64 * x + std::size_t(std::countr_zero(rest))];
         }
     }
-    std::memcpy(values.data(), at(data), size);
-    return true;
+    return std::span<const Stored>(values.data(), kept);
 }
+
+bool VdbLeaves::areSound() const {
+    constexpr std::size_t kLeaves = 128;
+    // Of a grid of vectors of doubles.
+    constexpr std::size_t kMostBytes = 24 * std::size_t{kVoxels} + 64;
+    std::atomic<bool> areSound = true;
+    parallelFor((leaves_.size() + kLeaves - 1) / kLeaves, [&](std::size_t part) {
+        VdbRun run;
+        std::vector<char> values(kMostBytes);
+        const std::size_t end = std::min(leaves_.size(), (part + 1) * kLeaves);
+        for (std::size_t i = part * kLeaves; i < end && areSound; ++i) {
+            Mask mask;
+            const auto bytes = bytesOf(leaves_[i], run);
+            const auto packed = bytes ? valuesOf(leaves_[i], *bytes, format_, mask) : std::nullopt;
+            if (!packed || !unpack(*packed, format_, values)) areSound = false;
+        }
+    });
+    return areSound;
+}
+
+#define DELTASPLAT_ACTIVE_VALUES(Stored)                                     \
+    template std::optional<std::span<const Stored>> VdbLeaves::activeValues( \
+        const VdbLeaf&, VdbLeaves::Mask&, VdbLeaves::Room<Stored>&) const;
+DELTASPLAT_ACTIVE_VALUES(std::uint16_t)
+DELTASPLAT_ACTIVE_VALUES(float)
+DELTASPLAT_ACTIVE_VALUES(double)
+DELTASPLAT_ACTIVE_VALUES(std::int32_t)
+DELTASPLAT_ACTIVE_VALUES(std::int64_t)
+#undef DELTASPLAT_ACTIVE_VALUES
 
 }  // namespace deltasplat

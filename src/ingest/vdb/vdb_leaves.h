@@ -4,55 +4,86 @@
 #include <openvdb/math/Transform.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "ingest/files/file_bytes.h"
 #include "ingest/vdb/vdb_walk.h"
 
 namespace deltasplat {
 
-/// Some bytes of a file, from `begin` on.
-struct VdbRun {
-    std::uint64_t begin;
-    std::vector<char> bytes;
+/// Some bytes of a file that are in memory.
+class VdbRun {
+  public:
+    /// Becomes the bytes [begin, end); returns whether they are there. Uses its memory again, if
+    /// that is large enough.
+    /// @throw Error(kInput) if the file cannot be read
+    bool read(const FileBytes& file, std::uint64_t begin, std::uint64_t end);
+    bool has(const VdbLeaf& leaf) const { return leaf.begin >= begin_ && leaf.end() <= end_; }
+    /// Returns the bytes of a leaf that it has.
+    std::span<const char> of(const VdbLeaf& leaf) const {
+        return {bytes_.get() + (leaf.begin - begin_), leaf.size};
+    }
+    std::uint64_t begin() const { return begin_; }
+
+  private:
+    std::uint64_t begin_ = 0;
+    std::uint64_t end_ = 0;
+    std::unique_ptr<char[]> bytes_;
+    std::uint64_t capacity_ = 0;
 };
 
 /// The leaves of a grid as they lie in its file, packed: each is unpacked by whoever wants its
-/// values, on any thread, and no tree is made of them. They may be some of the grid's.
+/// values, on any thread, and no tree is made of them. They may be some of the grid's. What the
+/// file says of a leaf is checked whenever it is unpacked.
 class VdbLeaves {
   public:
     static constexpr int kVoxels = 512;
-    using Mask = std::array<std::uint64_t, kVoxels / 64>;  ///< [x]: bit 8 y + z
-    /// Room for a leaf's values as they are stored, and what Blosc wants besides to unpack them.
-    template <typename Stored>
-    using Values = std::array<Stored, kVoxels + 64 / sizeof(Stored)>;
+    using Mask = VdbLeaf::Mask;
 
-    /// @param runs    that hold the leaves' values, by where they begin
-    VdbLeaves(std::vector<VdbRun> runs, std::vector<VdbLeaf> leaves, const VdbValueFormat& format,
-              openvdb::math::Transform::ConstPtr transform);
+    /// What a thread keeps from leaf to leaf.
+    template <typename Stored>
+    struct Room {
+        /// A leaf's values as they are stored, and what Blosc wants besides to unpack them.
+        std::array<Stored, kVoxels + 64 / sizeof(Stored)> values;
+        VdbRun run;
+    };
+
+    /// @param leaves  in the order of the file
+    VdbLeaves(std::shared_ptr<const FileBytes> file, std::vector<VdbLeaf> leaves,
+              const VdbValueFormat& format, openvdb::math::Transform::ConstPtr transform);
 
     const std::vector<VdbLeaf>& leaves() const { return leaves_; }
     const openvdb::math::Transform& transform() const { return *transform_; }
-    /// Returns which voxels of a leaf are active.
-    Mask maskOf(const VdbLeaf& leaf) const;
-    /// Unpacks the values of a leaf's active voxels, in the order of the mask's bits: `mask` is
-    /// that of the leaf. Thread-safe.
+    std::uint64_t bytes() const;
+    /// Reads the bytes of all leaves, on all threads, for leaves that are wanted in another order
+    /// than they have. Otherwise some at a time are read, when one of them is wanted.
+    void hold();
+    /// Unpacks all leaves, of numbers or of vectors, on all threads; returns whether none is
+    /// damaged.
+    bool areSound() const;
+    /// Unpacks the values of a leaf's active voxels, in the order of the mask's bits. Thread-safe.
     /// @tparam Stored  of the format's size: a number, or the std::uint16_t that a half is
-    /// @param room     may be written to
-    /// @return within `room`; none, with `mask` not empty, if the values are damaged
+    /// @param leaf     of leaves()
+    /// @param mask     becomes which voxels are active
+    /// @return within `room`; nothing if the leaf's bytes are damaged
     template <typename Stored>
-    std::span<const Stored> activeValues(const VdbLeaf& leaf, const Mask& mask,
-                                         Values<Stored>& room) const;
+    std::optional<std::span<const Stored>> activeValues(const VdbLeaf& leaf, Mask& mask,
+                                                        Room<Stored>& room) const;
 
   private:
-    const char* at(std::uint64_t position) const;
-    bool unpack(const VdbLeaf& leaf, std::span<char> values) const;
+    std::optional<std::span<const char>> bytesOf(const VdbLeaf& leaf, VdbRun& room) const;
+    bool readRun(const VdbLeaf& leaf, VdbRun& run) const;
 
-    std::vector<VdbRun> runs_;
+    std::shared_ptr<const FileBytes> file_;
     std::vector<VdbLeaf> leaves_;
     VdbValueFormat format_;
     openvdb::math::Transform::ConstPtr transform_;
+    std::vector<VdbRun> held_;  // by where they begin
 };
 
 }  // namespace deltasplat

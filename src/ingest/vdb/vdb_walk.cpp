@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "ingest/vdb/zip_chunk.h"
+
 namespace deltasplat {
 namespace {
 
@@ -34,35 +36,35 @@ class Walk {
     VdbTreeSize run() {
         topology();
         // Values follow in the order of the root's map, not in that of the nodes before.
-        for (const auto& [origin, leaves] : root_) {
-            for (const Place& leaf : leaves) leafValues(leaf);
-        }
+        for (const auto& [origin, leaves] : root_)
+            for (const VdbLeaf& leaf : leaves) leafValues(leaf);
         return size_;
     }
 
-    void runTopology() {
+    VdbTreeSize runTopology() {
         topology();
+        places_->leaves.reserve(size_.leaves);
         for (const auto& [origin, leaves] : root_)
-            for (const Place& leaf : leaves) places_->leaves.push_back({leaf, 0, 0, 0});
+            places_->leaves.insert(places_->leaves.end(), leaves.begin(), leaves.end());
+        return size_;
     }
 
-    void leafValues(const Place& origin) {
-        const std::uint64_t begin = bytes_.position();
-        const auto active = mask<kLeafLog2>();
-        if (format_.leaf == Leaf::kValues) {
-            const ValuesPlace values = nodeValues<kLeafLog2>(active);
-            if (places_) places_->leaves.push_back({origin, values.count, begin, values.data});
-            return;
-        }
-        if (place() != origin) fail("a misplaced leaf");
-        if (format_.leaf == Leaf::kBools) mask<kLeafLog2>();
+    void noteLeaf(VdbLeaf& leaf) {
+        leaf.begin = bytes_.position();
+        leafValues(leaf);
+        const std::uint64_t size = bytes_.position() - leaf.begin;
+        leaf.size = std::uint32_t(size);
+        if (leaf.size != size) fail("a leaf of " + std::to_string(size) + " bytes");
     }
 
   private:
-    struct ValuesPlace {
-        std::uint64_t data;
-        std::uint32_t count;
-    };
+    void leafValues(const VdbLeaf& leaf) {
+        const auto active = mask<kLeafLog2>();
+        if (VdbLeaf::sumOf(active) != leaf.maskSum) fail("a leaf of two different masks");
+        if (format_.leaf == Leaf::kValues) return nodeValues<kLeafLog2>(active);
+        if (place() != leaf.origin) fail("a misplaced leaf");
+        if (format_.leaf == Leaf::kBools) mask<kLeafLog2>();
+    }
 
     void topology() {
         if (bytes_.u32() != 1) fail("a tree of several buffers");
@@ -94,7 +96,7 @@ class Walk {
         return place;
     }
 
-    std::vector<Place>& addRoot(const Place& origin) {
+    std::vector<VdbLeaf>& addRoot(const Place& origin) {
         for (const std::int32_t index : origin) {
             if ((index & (kUpperExtent - 1)) != 0) fail("a misplaced root node");
         }
@@ -143,8 +145,7 @@ class Walk {
         if constexpr (kLog2 == kUpperLog2) {
             node<kLowerLog2>(place);
         } else {
-            mask<kLeafLog2>();
-            leaves_->push_back(place);
+            leaves_->push_back({place, 0, 0, VdbLeaf::sumOf(mask<kLeafLog2>())});
             ++size_.leaves;
         }
     }
@@ -154,7 +155,7 @@ class Walk {
     }
 
     template <int kLog2>
-    ValuesPlace nodeValues(const Mask<kLog2>& active) {
+    void nodeValues(const Mask<kLog2>& active) {
         using namespace openvdb::io;
         const int kind = bytes_.u8();
         const bool one = kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL;
@@ -168,12 +169,11 @@ class Walk {
             count = 0;
             for (const std::uint64_t word : active) count += std::uint64_t(std::popcount(word));
         }
-        const std::uint64_t begin = bytes_.position();
-        data(count);
-        return {begin, std::uint32_t(count)};
+        data(count, kLog2 == kLeafLog2);
     }
 
-    void data(std::uint64_t count) {
+    // @param ofLeaf  where values are unpacked later, by who says whether they can be
+    void data(std::uint64_t count, bool ofLeaf) {
         const bool half = format_.stored != format_.bytes;
         if (half && count == 0) return;
         const std::uint64_t expected = count * format_.stored;
@@ -193,8 +193,12 @@ class Walk {
             bytes_.skip(expected);
         } else if (blosc) {
             bloscData(std::uint64_t(size), expected);
-        } else {
+        } else if (ofLeaf) {
             bytes_.skip(std::uint64_t(size));
+        } else {
+            std::vector<char> values(expected);
+            if (!unpackZip(bytes_.bytes(std::uint64_t(size)), values, expected))
+                fail("a compressed node that is damaged");
         }
     }
 
@@ -215,11 +219,20 @@ class Walk {
     const VdbValueFormat& format_;
     VdbTreePlaces* places_;
     VdbTreeSize size_;
-    std::map<Place, std::vector<Place>> root_;  // leaves of each root node, in file order
-    std::vector<Place>* leaves_ = nullptr;
+    std::map<Place, std::vector<VdbLeaf>> root_;  // leaves of each root node, in file order
+    std::vector<VdbLeaf>* leaves_ = nullptr;
 };
 
 }  // namespace
+
+std::uint64_t VdbLeaf::sumOf(const Mask& mask) {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t word : mask) {
+        sum = (sum ^ word) * 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio (D. Knuth)
+        sum ^= sum >> 32;
+    }
+    return sum;
+}
 
 bool VdbValueFormat::setType(const std::string& type, bool half) {
     static const std::map<std::string, std::pair<std::uint32_t, bool>> kTypes{
@@ -248,18 +261,17 @@ double VdbTreeSize::topologyBytes(const VdbValueFormat& format) const {
     return memoryBytes(format) - double(leaves) * 512 * format.bytes;
 }
 
-VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format, VdbTreePlaces* places) {
-    return Walk(bytes, format, places).run();
+VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format) {
+    return Walk(bytes, format, nullptr).run();
 }
 
-void walkTopology(VdbBytes& bytes, const VdbValueFormat& format, VdbTreePlaces& places) {
-    Walk(bytes, format, &places).runTopology();
+VdbTreeSize walkTopology(VdbBytes& bytes, const VdbValueFormat& format, VdbTreePlaces& places) {
+    return Walk(bytes, format, &places).runTopology();
 }
 
-void walkLeaf(VdbBytes& bytes, const VdbValueFormat& format, VdbLeaf& leaf) {
-    VdbTreePlaces places;
-    Walk(bytes, format, &places).leafValues(leaf.origin);
-    leaf = places.leaves.front();
+void walkLeaves(VdbBytes& bytes, const VdbValueFormat& format, std::vector<VdbLeaf>& leaves) {
+    Walk walk(bytes, format, nullptr);
+    for (VdbLeaf& leaf : leaves) walk.noteLeaf(leaf);
 }
 
 }  // namespace deltasplat

@@ -35,10 +35,17 @@ struct VdbTreeSize {
 
 /// Where a leaf of values lies in a file.
 struct VdbLeaf {
+    using Mask = std::array<std::uint64_t, 8>;  ///< [x]: bit 8 y + z
+
     std::array<std::int32_t, 3> origin;  ///< of its first voxel
-    std::uint32_t count;  ///< values that are stored: of all voxels, or of the active ones
-    std::uint64_t mask;   ///< where its mask is, 64 bytes
-    std::uint64_t data;   ///< where its values are, before them their packed size, if they have one
+    std::uint32_t size = 0;              ///< bytes: its mask of 64, and its values
+    std::uint64_t begin = 0;
+    /// Of the mask that lies before all values: the leaf has it once more.
+    std::uint64_t maskSum = 0;
+
+    static std::uint64_t sumOf(const Mask& mask);
+
+    std::uint64_t end() const { return begin + size; }
 };
 
 /// What of a tree has values, and where these lie in a file.
@@ -51,18 +58,17 @@ struct VdbTreePlaces {
 /// Walks a grid's tree from its first byte to its last without unpacking it; `bytes` moves along.
 /// Everything that OpenVDB takes on trust is checked: counts, masks, places of nodes, and that each
 /// node's stored size is the size of its values (OpenVDB 10 writes past its buffer where it is
-/// not).
-/// @param places  null, or where to note what lies where; of leaves that have values
+/// not). Whether zipped values of leaves are whole is left to who unpacks them.
 /// @throw Error(kInput) at the first contradiction
-VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format,
-                     VdbTreePlaces* places = nullptr);
+VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format);
 
-/// Walks what comes before the values of leaves, as walkTree does; `bytes` moves behind it. Of
-/// leaves, no more than their places is known then.
-void walkTopology(VdbBytes& bytes, const VdbValueFormat& format, VdbTreePlaces& places);
+/// Walks what comes before the values of leaves, as walkTree does; `bytes` moves behind it. Where
+/// leaves lie is not known then.
+VdbTreeSize walkTopology(VdbBytes& bytes, const VdbValueFormat& format, VdbTreePlaces& places);
 
-/// Walks the values of one leaf, as walkTree does, and notes where they lie; `bytes` moves from
-/// their beginning behind them.
-void walkLeaf(VdbBytes& bytes, const VdbValueFormat& format, VdbLeaf& leaf);
+/// Walks the values of all leaves, as walkTree does, and notes where they lie.
+/// @param bytes   where walkTopology left them
+/// @param leaves  that it found
+void walkLeaves(VdbBytes& bytes, const VdbValueFormat& format, std::vector<VdbLeaf>& leaves);
 
 }  // namespace deltasplat

@@ -10,4 +10,9 @@ struct NotFinite : Error {
     using Error::Error;
 };
 
+/// Says that leaves of a grid cannot be unpacked where they were looked for.
+struct DamagedLeaves : Error {
+    using Error::Error;
+};
+
 }  // namespace deltasplat
