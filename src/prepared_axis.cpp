@@ -2,6 +2,7 @@
 #include "prepared_axis.h"
 
 #include <utility>
+#include <vector>
 
 #include "default_floats.h"
 #include "delta/code_blocks.h"
@@ -14,7 +15,9 @@
 #include "optics/largest_alpha.h"
 #include "parallel.h"
 #include "picture_view.h"
+#include "portable_math.h"
 #include "sheet_plan.h"
+#include "view/affine.h"
 
 namespace deltasplat {
 namespace {
@@ -66,15 +69,31 @@ bool shorterMayShowLess(const ClassTable& classes, double times) {
     return false;
 }
 
+// Returns how opaque a voxel of each class is along its shortest side: what is mixed must depend on
+// no camera.
+std::vector<float> opacitiesOf(const Volume& volume, const ClassTable& classes) {
+    const double side = smallestSize(volume) / classes.unitDistanceWorld * classes.extinctionScale;
+    std::vector<float> opacities;
+    for (const Look& look : classes.looks) {
+        const double depth = look.extinction > 0 ? look.extinction * side : 0;
+        opacities.push_back(float(-portable::expm1(-depth)));
+    }
+    return opacities;
+}
+
 // Returns the words that other optics have, if these tell the same codes apart, or null; classes
 // then get the others' numbers. Where nothing is held and nothing has looks of its own, all that
-// words know of optics is the classes of codes.
+// words know of optics is the classes of codes, and of divided voxels how opaque these are.
 std::shared_ptr<const PackedDeltas> sharedWords(const PreparedAxis* before,
                                                 const PreparedScene::Impl& scene,
                                                 ClassTable& classes) {
     const bool areOfClasses = !scene.painter && scene.options.tolerance.isExact();
     if (!before || !areOfClasses) return {};
-    return takeNumbers(before->classes().classOfSlot, classes) ? before->words : nullptr;
+    if (!takeNumbers(before->classes().classOfSlot, classes)) return {};
+    const Volume& volume = *scene.scene.volume;
+    const bool areAlike = !before->parts.divides() ||
+                          opacitiesOf(volume, classes) == opacitiesOf(volume, before->classes());
+    return areAlike ? before->words : nullptr;
 }
 
 // @param before  the same axis as other optics have it; null: none
@@ -102,6 +121,9 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     std::shared_ptr<const PackedDeltas> words = sharedWords(before, scene, classes);
     PackOptions pack{sliceAxis, encoding, classes.classOfSlot, holdRule(seen, classes, tolerance),
                      mixer ? &*mixer : nullptr};
+    const std::vector<float> opacities =
+        mixer ? opacitiesOf(volume, classes) : std::vector<float>();
+    pack.opacities = opacities;
     const bool isLit = painter && painter->dependsOnCamera();
     std::unique_ptr<const LookLight> light;
     if (painter) {

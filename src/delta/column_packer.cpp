@@ -175,7 +175,8 @@ void ColumnPacker::addMixed(const CodeBlock& block) {
     if (uncut_) uncut_->reader.read(block.position, uncut_->window);
     const bool isSeen = tools_.sight->canBeSeen(window_->window);
     const bool isPainted = choosesClasses(options_);
-    if (isSeen && !isPainted) tools_.mixer->mix(window_->window, slotMap_, mixed_);
+    if (isSeen && !isPainted)
+        tools_.mixer->mix(window_->window, slotMap_, tools_.opacities, mixed_);
     for (int s = 0; s < parts_.slices; ++s) {
         forParts([&](const glm::ivec2& part) {
             const glm::ivec3 position = partOf(block, firstPart(block).x + s, part);

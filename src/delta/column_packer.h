@@ -27,8 +27,9 @@ struct PackTools {
     const SlotHolder* holder = nullptr;
     const ValueMixer* mixer = nullptr;
     const MixedSight* sight = nullptr;
-    const CodeTree* codes = nullptr;  ///< that values are mixed from
-    const CodeTree* uncut = nullptr;  ///< that gradients are taken of
+    const CodeTree* codes = nullptr;        ///< that values are mixed from
+    const CodeTree* uncut = nullptr;        ///< that gradients are taken of
+    std::span<const float> opacities = {};  ///< as ValueMixer::mix takes them
 };
 
 /// What a packer packs: columns of blocks (same u and v), slices in increasing order.

@@ -127,12 +127,21 @@ struct DeltaPacker::Impl {
         options.classOfSlot = classOfSlot;
         if (options.holds) holder.emplace(mixer ? mixer->levels() : volume, options);
         slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
+        if (mixer && !options.opacities.empty()) noteOpacities();
         if (mixer) sight.emplace(*mixer, slotMap, choosesClasses(options));
         blocks = sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
                        : listBlocks(*volume.codes, options.sliceAxis, slotMap);
         if (options.painter && options.painter->more())
             addBlocks(*options.painter->more(), options.sliceAxis, blocks);
         runs = cutAtColumns(blocks, divided.within > 1);
+    }
+
+    void noteOpacities() {
+        const Slot last = *std::max_element(slotMap.begin(), slotMap.end());
+        opacities.resize(std::size_t(last) + 1);
+        for (std::size_t slot = 0; slot < slotMap.size(); ++slot)
+            opacities[std::size_t(slotMap[slot])] =
+                options.opacities[std::size_t(classOfSlot[slot])];
     }
 
     PackedDeltas noWords() const {
@@ -149,9 +158,12 @@ struct DeltaPacker::Impl {
     }
 
     std::vector<ColumnPacker> run(const PackRange& range) const {
-        const PackTools tools{holder ? &*holder : nullptr, options.mixer, sight ? &*sight : nullptr,
+        const PackTools tools{holder ? &*holder : nullptr,
+                              options.mixer,
+                              sight ? &*sight : nullptr,
                               volume.codes.get(),
-                              volume.uncut ? volume.uncut.get() : volume.codes.get()};
+                              volume.uncut ? volume.uncut.get() : volume.codes.get(),
+                              opacities};
         std::vector<ColumnPacker> packers;
         packers.reserve(runs.size());
         for (std::size_t i = 0; i < runs.size(); ++i)
@@ -175,6 +187,7 @@ struct DeltaPacker::Impl {
     IndexBox box;
     std::optional<SlotHolder> holder;
     std::span<const Slot> slotMap;
+    std::vector<float> opacities;  // [what slotMap makes of slots]
     std::optional<MixedSight> sight;
     std::vector<CodeBlock> blocks;
     std::vector<Columns> runs;

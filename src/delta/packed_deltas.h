@@ -68,6 +68,8 @@ struct PackOptions {
     /// Divides voxels into thin ones, which then are what voxels are. Slots are those of its
     /// levels. Null: none.
     const ValueMixer* mixer = nullptr;
+    /// With a mixer, [classes]: how opaque a voxel of each is, as ValueMixer::mix takes it.
+    std::span<const float> opacities = {};
     /// Gives voxels looks of their own. Null: classes say all. With one that chooses classes there
     /// has to be a mixer, and nothing is held.
     const VoxelPainter* painter = nullptr;

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "delta/mix_rows.h"
@@ -168,7 +169,7 @@ auto valuesOf(const MixWindow& window, const ValueOf& valueOf) {
 }  // namespace
 
 void ValueMixer::mix(const MixWindow& window, std::span<const Slot> slotMap,
-                     std::span<BlockSlots> mixed) const {
+                     std::span<const float> opacities, std::span<BlockSlots> mixed) const {
     if (window.slots[0] != kEmptySlot && window.isUniform()) {
         const Slot slot = slotMap[std::size_t(levelOf(Code(window.slots[0] - 1))) + 1];
         for (BlockSlots& block : mixed) block.fill(slot);
@@ -196,12 +197,47 @@ void ValueMixer::mix(const MixWindow& window, std::span<const Slot> slotMap,
         mixThem(valuesOf<double>(window, [&](Code code) { return table_.ofCode[code]; }),
                 [&](double value) { return levelOfValue(value); });
     }
-    keepSeen(window, slotMap, mixed);
+    keepSeen(window, slotMap, opacities, mixed);
 }
 
-// Lets voxels that can be seen, but nothing that they become, be what they are.
+namespace {
+
+// Returns of the voxels of a block the least opacity among those that each is mixed with, and its
+// own: what is not active is mixed with nothing.
+template <typename OpacityOf>
+std::array<float, 512> leastAround(const MixWindow& window, const OpacityOf& opacityOf) {
+    constexpr int kSide = MixWindow::kSide;
+    std::array<float, MixWindow::kSide * MixWindow::kPlane> least;
+    for (std::size_t n = 0; n < least.size(); ++n)
+        least[n] = window.slots[n] == kEmptySlot ? 1.0f : opacityOf(window.slots[n]);
+    // Along one axis after the other, of each three that follow each other at the place of the
+    // first.
+    for (const int step : {MixWindow::kPlane, kSide, 1}) {
+        for (std::size_t n = 0; n + 2 * std::size_t(step) < least.size(); ++n) {
+            const float next = std::min(least[n + step], least[n + 2 * step]);
+            least[n] = std::min(least[n], next);
+        }
+    }
+    std::array<float, 512> inner;
+    for (int n = 0; n < 512; ++n)
+        inner[std::size_t(n)] =
+            least[std::size_t(n / 64 * MixWindow::kPlane + n / 8 % 8 * kSide + n % 8)];
+    return inner;
+}
+
+}  // namespace
+
+// Lets voxels be what they are of whose opacity, above what is around them, nothing is left in what
+// they become.
 void ValueMixer::keepSeen(const MixWindow& window, std::span<const Slot> slotMap,
-                          std::span<BlockSlots> mixed) const {
+                          std::span<const float> opacities, std::span<BlockSlots> mixed) const {
+    constexpr float kLeast = 1.0f / 32;
+    const auto opacityOf = [&](Slot slot) {
+        return opacities.empty() ? (slot == kEmptySlot ? 0.0f : 1.0f)
+                                 : opacities[std::size_t(slot)];
+    };
+    const auto seenOf = [&](Slot own) { return slotMap[std::size_t(levelOf(Code(own - 1))) + 1]; };
+    std::optional<std::array<float, 512>> around;  // for the few that need it
     const auto forParts = [&](const glm::ivec3& place, const auto& use) {
         const glm::ivec3 per(parts_.slices, parts_.within, parts_.within);
         const glm::ivec3 first = place * per;
@@ -219,11 +255,17 @@ void ValueMixer::keepSeen(const MixWindow& window, std::span<const Slot> slotMap
         const glm::ivec3 place(n / 64, n / 8 % 8, n % 8);
         const Slot own = window.at(place);
         if (own == kEmptySlot) continue;
-        const Slot seen = slotMap[std::size_t(levelOf(Code(own - 1))) + 1];
+        const Slot seen = seenOf(own);
         if (seen == kEmptySlot) continue;
-        Slot any = kEmptySlot;
-        forParts(place, [&](Slot slot) { any |= slot; });
-        if (any == kEmptySlot) forParts(place, [&](Slot& slot) { slot = seen; });
+        const float opacity = opacityOf(seen);
+        float most = 0;
+        forParts(place, [&](Slot slot) { most = std::max(most, opacityOf(slot)); });
+        if (most >= 0.5f * opacity) continue;
+        if (!around)
+            around = leastAround(window, [&](Slot slot) { return opacityOf(seenOf(slot)); });
+        const float least = (*around)[std::size_t(n)];
+        const bool isShown = most > 0 && most - least >= kLeast * (opacity - least);
+        if (!isShown) forParts(place, [&](Slot& slot) { slot = seen; });
     }
 }
 

@@ -32,10 +32,13 @@ class ValueMixer {
     Code levelOf(Code code) const { return ownLevel_[code]; }
 
     /// Mixes the blocks that a block becomes.
-    /// @param slotMap  [kSlotCount]: what becomes of the slots of levels
-    /// @param mixed    [parts.within along u][parts.slices][parts.within along v]
+    /// @param slotMap    [kSlotCount]: what becomes of the slots of levels
+    /// @param opacities  [what becomes of them]: of a voxel, above 0 for all that can be seen;
+    /// none:
+    ///                   they are alike
+    /// @param mixed      [parts.within along u][parts.slices][parts.within along v]
     void mix(const MixWindow& window, std::span<const Slot> slotMap,
-             std::span<BlockSlots> mixed) const;
+             std::span<const float> opacities, std::span<BlockSlots> mixed) const;
 
   private:
     // Levels of evenly spaced codes are evenly spaced themselves.
@@ -66,7 +69,7 @@ class ValueMixer {
     void makeBuckets();
     int levelOfValue(double value) const;
     void keepSeen(const MixWindow& window, std::span<const Slot> slotMap,
-                  std::span<BlockSlots> mixed) const;
+                  std::span<const float> opacities, std::span<BlockSlots> mixed) const;
 
     Subdivision parts_;
     Volume levels_;

@@ -41,7 +41,7 @@ std::vector<double> mixed(const Volume& volume, int perVoxel, Slot here, Slot be
             window.at({s, n / 8, n % 8}) = s < 0 ? before : s > 7 ? behind : here;
     }
     std::vector<BlockSlots> parts(static_cast<std::size_t>(perVoxel));
-    mixer.mix(window, sameSlots(), parts);
+    mixer.mix(window, sameSlots(), {}, parts);
     std::vector<double> values;
     for (const BlockSlots& slots : parts) {
         for (std::size_t t = 0; t < 8; ++t) {
@@ -116,7 +116,7 @@ TEST(ValueMixer, WithinSlicesValuesAreTrilinear) {
         for (int i = 0; !full && i < 1000; i += 2)
             window.slots[std::size_t(i)] = (i / 100 + i / 10) % 4 == 0 ? kEmptySlot : Slot(7);
         std::vector<BlockSlots> blocks(8);
-        mixer.mix(window, sameSlots(), blocks);
+        mixer.mix(window, sameSlots(), {}, blocks);
         const auto place = [](int thin) { return 0.5 * thin - 0.25; };
         for (int s = 0; s < 16; ++s) {
             for (int u = 0; u < 16; ++u) {
@@ -154,7 +154,7 @@ TEST(ValueMixer, WithinSlicesAloneIsUnmixed) {
     MixWindow window;
     window.at({4, 3, 7}) = 78;
     std::vector<BlockSlots> parts(12);
-    mixer.mix(window, sameSlots(), parts);
+    mixer.mix(window, sameSlots(), {}, parts);
     int found = 0;
     for (const BlockSlots& block : parts) {
         for (const Slot slot : block) {
@@ -182,7 +182,7 @@ TEST(ValueMixer, NothingThatCanBeSeenVanishes) {
         for (int v = -1; v <= 8; ++v) window.at({0, 0, v}) = 101;                    // a line,
         for (int n = 0; n < 100; ++n) window.at({6, n / 10 - 1, n % 10 - 1}) = 101;  // a plate
         std::vector<BlockSlots> blocks(8);
-        mixer.mix(window, map, blocks);
+        mixer.mix(window, map, {}, blocks);
         const auto seenOf = [&](const glm::ivec3& place) {
             int seen = 0;
             for (int part = 0; part < 8; ++part) {
@@ -200,6 +200,36 @@ TEST(ValueMixer, NothingThatCanBeSeenVanishes) {
     }
 }
 
+// Haze around it hides nothing, as long as the voxel is clearly more opaque.
+TEST(ValueMixer, NothingVanishesInHaze) {
+    const Volume volume = volumeOf(CodeBook::integer(), {2, 100});
+    const ValueMixer mixer(volume, {2, 2});
+    std::vector<Slot> all(kSlotCount, kEmptySlot);
+    for (int level = 0; level < kCodeCount; ++level)
+        if (mixer.levels().histogram[std::size_t(level)] != 0)
+            all[std::size_t(level) + 1] = level + 1;
+    for (const double haze : {1e-12, 1e-3, 0.05, 0.4}) {
+        SCOPED_TRACE(haze);
+        // Opaque from 80 on.
+        std::vector<float> opacities(kSlotCount);
+        for (int level = 0; level < kCodeCount; ++level) {
+            const double value = mixer.levels().codeBook.valueOf(Code(level));
+            opacities[std::size_t(level) + 1] = float(value < 80 ? haze : 1);
+        }
+        MixWindow window;
+        window.slots.fill(3);
+        window.at({3, 4, 5}) = 101;
+        for (int n = 0; n < 100; ++n) window.at({6, n / 10 - 1, n % 10 - 1}) = 101;
+        std::vector<BlockSlots> blocks(8);
+        mixer.mix(window, all, opacities, blocks);
+        std::size_t opaque = 0;
+        for (const BlockSlots& block : blocks)
+            for (const Slot slot : block) opaque += opacities[std::size_t(slot)] == 1;
+        // Of the voxel, and of the plate's 64.
+        EXPECT_EQ(opaque, 8u * 65);
+    }
+}
+
 // However values lie, none that the volume has is rounded, and those between are near.
 TEST(ValueMixer, OwnValuesAreKeptExactly) {
     const auto check = [](const std::vector<double>& values, double precision) {
@@ -213,7 +243,7 @@ TEST(ValueMixer, OwnValuesAreKeptExactly) {
         std::mt19937 random(3);
         for (Slot& slot : window.slots) slot = Slot(random() % values.size() + 1);
         std::vector<BlockSlots> blocks(8);
-        mixer.mix(window, sameSlots(), blocks);
+        mixer.mix(window, sameSlots(), {}, blocks);
         const auto at = [&](int s, int u, int v) {
             return values[std::size_t(window.at({s, u, v})) - 1];
         };
