@@ -169,35 +169,76 @@ void ColumnPacker::hold(const BlockSlots& slots, const glm::ivec3& position, con
     }
 }
 
+// Calls use(position, number, part of the column, slices) for the blocks that a block becomes, but
+// for those outside of the box: it may begin and end within a block.
+template <typename Use>
+void ColumnPacker::forMixed(const CodeBlock& block, const Use& use) const {
+    for (int s = 0; s < parts_.slices; ++s) {
+        forParts([&](const glm::ivec2& part) {
+            const glm::ivec3 position = partOf(block, firstPart(block).x + s, part);
+            const int slices = range_.layout.slicesOf(position.x);
+            if (position.x < range_.layout.firstBlock || slices <= 0) return;
+            const int number = (part.x * parts_.slices + s) * parts_.within + part.y;
+            use(position, number, part, slices);
+        });
+    }
+}
+
 void ColumnPacker::addMixed(const CodeBlock& block) {
     inHand_ = &block;
     window_->reader.read(block, window_->window);
     if (uncut_) uncut_->reader.read(block.position, uncut_->window);
     const bool isSeen = tools_.sight->canBeSeen(window_->window);
     const bool isPainted = choosesClasses(options_);
+    if (isSeen && isPainted) paintMixed(block);
     if (isSeen && !isPainted)
         tools_.mixer->mix(window_->window, slotMap_, tools_.opacities, mixed_);
-    for (int s = 0; s < parts_.slices; ++s) {
-        forParts([&](const glm::ivec2& part) {
-            const glm::ivec3 position = partOf(block, firstPart(block).x + s, part);
-            const int slices = range_.layout.slicesOf(position.x);
-            // The box may begin and end within a block: some of what it becomes lies outside.
-            if (position.x < range_.layout.firstBlock || slices <= 0) return;
-            const int number = (part.x * parts_.slices + s) * parts_.within + part.y;
-            const BlockSlots& slots = mixed_[std::size_t(number)];
-            if (!isSeen) {
-                classes_.fill(kEmptySlot);
-                held_[numberOf(part)].fill(kEmptySlot);
-            } else if (isPainted) {
-                own_->paint(position, number, classes_);
-                if (uncut_) clearCutOff(position);
-            } else if (tools_.holder) {
-                hold(slots, position, part, number);
-            } else {
-                std::copy(slots.begin(), slots.end(), classes_.begin());
-                if (own_) own_->paint(position, number, classes_);
-            }
-            add(position, part, slices);
+    forMixed(block,
+             [&](const glm::ivec3& position, int number, const glm::ivec2& part, int slices) {
+                 const BlockSlots& slots = mixed_[std::size_t(number)];
+                 if (!isSeen) {
+                     classes_.fill(kEmptySlot);
+                     held_[numberOf(part)].fill(kEmptySlot);
+                 } else if (isPainted) {
+                     classes_ = painted_[std::size_t(number)].classes;
+                     own_->block() = painted_[std::size_t(number)].looks;
+                 } else if (tools_.holder) {
+                     hold(slots, position, part, number);
+                 } else {
+                     std::copy(slots.begin(), slots.end(), classes_.begin());
+                     if (own_) own_->paint(position, number, classes_);
+                 }
+                 add(position, part, slices);
+             });
+}
+
+// Paints all that a block becomes.
+void ColumnPacker::paintMixed(const CodeBlock& block) {
+    painted_.resize(mixed_.size());
+    for (PaintedBlock& painted : painted_) painted.classes.fill(0);
+    forMixed(block, [&](const glm::ivec3& position, int number, const glm::ivec2&, int) {
+        own_->paint(position, number, classes_);
+        if (uncut_) clearCutOff(position);
+        painted_[std::size_t(number)] = {classes_, own_->block()};
+    });
+    if (parts_.divides()) keepSeen();
+}
+
+// Lets voxels that are seen for themselves be what they are, if nothing that they become is seen.
+void ColumnPacker::keepSeen() {
+    for (int n = 0; n < 512; ++n) {
+        const glm::ivec3 place(n / 64, n / 8 % 8, n % 8);
+        const Slot own = window_->window.at(place);
+        if (own == kEmptySlot || !options_.painter->isSeenItself(Code(own - 1))) continue;
+        bool isSeen = false;
+        const ValueMixer& mixer = *tools_.mixer;
+        mixer.forPartsOf(place, [&](std::size_t part, std::size_t voxel) {
+            isSeen = isSeen || painted_[part].classes[voxel] != 0;
+        });
+        if (isSeen) continue;
+        mixer.forPartsOf(place, [&](std::size_t part, std::size_t voxel) {
+            painted_[part].classes[voxel] = 1;
+            painted_[part].looks[voxel] = {};
         });
     }
 }

@@ -92,6 +92,10 @@ class ColumnPacker {
     void holdLooks(const BlockSlots& slots, const glm::ivec3& position, int number,
                    HeldSlots& before, BlockLooks::Slice& looksBefore);
     void addMixed(const CodeBlock& block);
+    template <typename Use>
+    void forMixed(const CodeBlock& block, const Use& use) const;
+    void paintMixed(const CodeBlock& block);
+    void keepSeen();
     void clearCutOff(const glm::ivec3& position);
     void add(const glm::ivec3& position, const glm::ivec2& part, int slices);
 
@@ -109,6 +113,12 @@ class ColumnPacker {
     std::optional<Window> window_;
     std::optional<Window> uncut_;    // what was there before, if surfaces are cut
     std::vector<BlockSlots> mixed_;  // [part along u][along slices][along v]
+    // Likewise, where classes are painted.
+    struct PaintedBlock {
+        std::array<ClassIndex, 512> classes;
+        std::array<OwnLook, 512> looks;
+    };
+    std::vector<PaintedBlock> painted_;
     std::array<PackedColumns, 2> halves_;
     std::unique_ptr<BlockLooks> own_;  // null: classes say all
     const CodeBlock* inHand_ = nullptr;

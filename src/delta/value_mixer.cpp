@@ -238,19 +238,6 @@ void ValueMixer::keepSeen(const MixWindow& window, std::span<const Slot> slotMap
     };
     const auto seenOf = [&](Slot own) { return slotMap[std::size_t(levelOf(Code(own - 1))) + 1]; };
     std::optional<std::array<float, 512>> around;  // for the few that need it
-    const auto forParts = [&](const glm::ivec3& place, const auto& use) {
-        const glm::ivec3 per(parts_.slices, parts_.within, parts_.within);
-        const glm::ivec3 first = place * per;
-        for (int s = first.x; s < first.x + per.x; ++s) {
-            for (int u = first.y; u < first.y + per.y; ++u) {
-                for (int v = first.z; v < first.z + per.z; ++v) {
-                    const int part = (u / 8 * per.x + s / 8) * per.z + v / 8;
-                    const int slot = 64 * (s % 8) + 8 * (u % 8) + v % 8;
-                    use(mixed[std::size_t(part)][std::size_t(slot)]);
-                }
-            }
-        }
-    };
     for (int n = 0; n < 512; ++n) {
         const glm::ivec3 place(n / 64, n / 8 % 8, n % 8);
         const Slot own = window.at(place);
@@ -259,13 +246,16 @@ void ValueMixer::keepSeen(const MixWindow& window, std::span<const Slot> slotMap
         if (seen == kEmptySlot) continue;
         const float opacity = opacityOf(seen);
         float most = 0;
-        forParts(place, [&](Slot slot) { most = std::max(most, opacityOf(slot)); });
+        forPartsOf(place, [&](std::size_t part, std::size_t slot) {
+            most = std::max(most, opacityOf(mixed[part][slot]));
+        });
         if (most >= 0.5f * opacity) continue;
         if (!around)
             around = leastAround(window, [&](Slot slot) { return opacityOf(seenOf(slot)); });
         const float least = (*around)[std::size_t(n)];
         const bool isShown = most > 0 && most - least >= kLeast * (opacity - least);
-        if (!isShown) forParts(place, [&](Slot& slot) { slot = seen; });
+        if (isShown) continue;
+        forPartsOf(place, [&](std::size_t part, std::size_t slot) { mixed[part][slot] = seen; });
     }
 }
 

@@ -40,6 +40,11 @@ class ValueMixer {
     void mix(const MixWindow& window, std::span<const Slot> slotMap,
              std::span<const float> opacities, std::span<BlockSlots> mixed) const;
 
+    /// Calls use(part, n) for what the voxel at `place` (0..7 each) of a block becomes: voxel n of
+    /// one of the blocks of `mixed`.
+    template <typename Use>
+    void forPartsOf(const glm::ivec3& place, const Use& use) const;
+
   private:
     // Levels of evenly spaced codes are evenly spaced themselves.
     struct EvenLevels {
@@ -77,5 +82,19 @@ class ValueMixer {
     TableLevels table_;
     std::vector<Code> ownLevel_;  // [kCodeCount]
 };
+
+template <typename Use>
+void ValueMixer::forPartsOf(const glm::ivec3& place, const Use& use) const {
+    const glm::ivec3 per(parts_.slices, parts_.within, parts_.within);
+    const glm::ivec3 first = place * per;
+    for (int s = first.x; s < first.x + per.x; ++s) {
+        for (int u = first.y; u < first.y + per.y; ++u) {
+            for (int v = first.z; v < first.z + per.z; ++v) {
+                const int part = (u / 8 * per.x + s / 8) * per.z + v / 8;
+                use(std::size_t(part), std::size_t(64 * (s % 8) + 8 * (u % 8) + v % 8));
+            }
+        }
+    }
+}
 
 }  // namespace deltasplat

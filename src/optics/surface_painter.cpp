@@ -39,6 +39,7 @@ class SurfacePainter : public VoxelPainter {
 
     bool needsColors() const override { return true; }
     bool choosesClasses() const override { return true; }
+    bool isSeenItself(Code code) const override { return scale_.ofCode[code] >= 0; }
     bool dependsOnCamera() const override { return true; }
     const GradientScale* gradientScale() const override { return &scale_; }
 

@@ -131,6 +131,9 @@ class VoxelPainter {
     /// Whether it says of which class voxels are. A voxel may then be seen if it or one beside it
     /// is of a class that is.
     virtual bool choosesClasses() const { return false; }
+    /// If it does, whether a voxel of a code is seen for itself: then it is shown, in class 1 and
+    /// as any OwnLook is at first, where nothing that it is divided into is seen.
+    virtual bool isSeenItself(Code /*code*/) const { return false; }
     /// What gradients are to be taken of; null: it needs none.
     virtual const GradientScale* gradientScale() const { return nullptr; }
     /// Paints the voxels of a block that can be seen; what others get is of no consequence.

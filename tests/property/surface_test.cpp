@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <random>
+#include <string>
 
 #include "deltasplat/cut/cut_volume.h"
 #include "deltasplat/render.h"
@@ -239,6 +241,44 @@ TEST(Surface, isOpaqueAndExact) {
     EXPECT_EQ(result.image.rgba, image.rgba);
     EXPECT_EQ(result.stats.errorBoundColor, 0);
     EXPECT_NEAR(image.pixel(96, 96)[3], 1, 1e-6);
+}
+
+// However thin, what a voxel's own value says to be inside is seen, divided or not.
+TEST(Surface, nothingInsideVanishes) {
+    const Volume volume = makeVolume({glm::ivec3(0), glm::ivec3(14)}, [](int x, int y, int z) {
+        const bool isPlate = y == 7;
+        const bool isWire = y == 3 && z == 3;
+        return isPlate || isWire || (x == 4 && y == 11 && z == 11) ? 255 : 0;
+    });
+    RenderOptions options = surfaceAt(200);
+    options.camera.view = "front";
+    options.camera.frameWidthWorld = 15;
+    for (const int size : {15, 22, 30, 60}) {
+        for (const std::optional<int> between : {std::optional<int>(), std::optional(3)}) {
+            SCOPED_TRACE(std::to_string(size) + " " + std::to_string(between.value_or(-1)));
+            options.camera.sizePixels = {size, size};
+            options.between = between;
+            const Image image = render(volume, options).image;
+            // From the front z goes up.
+            const auto alphaAt = [&](double x, double z) {
+                const int column = int((x + 0.5) * size / 15), row = int((14.5 - z) * size / 15);
+                return image.pixel(column, row)[3];
+            };
+            EXPECT_GT(alphaAt(7, 7), 0.7);   // the plate lies across the line of sight,
+            EXPECT_GT(alphaAt(7, 3), 0.7);   // behind the wire,
+            EXPECT_GT(alphaAt(4, 11), 0.7);  // and before the voxel
+        }
+    }
+    // The plate taken away, the wire and the voxel are what is left.
+    const Volume thin = makeVolume({glm::ivec3(0), glm::ivec3(14)}, [](int x, int y, int z) {
+        return (y == 3 && z == 3) || (x == 4 && y == 11 && z == 11) ? 255 : 0;
+    });
+    options.camera.sizePixels = {60, 60};
+    options.between.reset();
+    const Image image = render(thin, options).image;
+    EXPECT_GT(image.pixel(30, 46)[3], 0.6);
+    EXPECT_GT(image.pixel(18, 14)[3], 0.5);
+    EXPECT_EQ(image.pixel(30, 20)[3], 0);
 }
 
 // Without light it is of one colour.
