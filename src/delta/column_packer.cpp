@@ -269,11 +269,8 @@ void ColumnPacker::add(const glm::ivec3& position, const glm::ivec2& part, int s
         const std::uint64_t visible = changes.visible[s];
         const std::uint64_t changed = changes.changed[s];
         const int slice = 8 * position.x + s;
-        const bool isKey = range_.layout.startsLaterSlab(slice);
         planner_.add(slice, visible, changed);
-        const bool needed = (options_.encoding != Encoding::kWhole && changed != 0) ||
-                            ((options_.encoding != Encoding::kChanges || isKey) && visible != 0);
-        if (!needed || !range_.storesWords) continue;
+        if (!isNeeded(slice, visible, changed)) continue;
         packed.words.push_back(
             {visible, changed, packed.storage.size(), slice, {position.y, position.z}});
         packed.storage.insert(packed.storage.end(), &classes_[64 * s], &classes_[64 * s] + 64);
@@ -283,6 +280,18 @@ void ColumnPacker::add(const glm::ivec3& position, const glm::ivec2& part, int s
     }
     std::copy_n(&classes_[7 * 64], 64, before.begin());
     if (own_) own_->endBlock(numberOf(part));
+}
+
+// Whether a word is needed of what a slice shows.
+bool ColumnPacker::isNeeded(int slice, std::uint64_t visible, std::uint64_t changed) const {
+    if (!range_.storesWords) return false;
+    const bool isKey = range_.layout.startsLaterSlab(slice);
+    if (!range_.planned.empty()) {
+        const auto slab = std::size_t(range_.layout.slabOf(slice >> 3));
+        return (range_.planned[slab].whole || isKey ? visible : changed) != 0;
+    }
+    return (options_.encoding != Encoding::kWhole && changed != 0) ||
+           ((options_.encoding != Encoding::kChanges || isKey) && visible != 0);
 }
 
 }  // namespace deltasplat

@@ -44,6 +44,9 @@ struct PackRange {
     int firstBlock;
     int lastBlock;
     bool storesWords = true;
+    /// Of the layout, which slabs are whole: words that these do not need are left out. Empty: that
+    /// is not known yet.
+    std::span<const PlannedSlab> planned = {};
 };
 
 /// Words that a block may make: its slices, and one behind it that takes away what it showed.
@@ -98,6 +101,7 @@ class ColumnPacker {
     void keepSeen();
     void clearCutOff(const glm::ivec3& position);
     void add(const glm::ivec3& position, const glm::ivec2& part, int slices);
+    bool isNeeded(int slice, std::uint64_t visible, std::uint64_t changed) const;
 
     const PackOptions& options_;
     PackTools tools_;

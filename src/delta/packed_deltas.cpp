@@ -260,7 +260,8 @@ PackedDeltas DeltaPacker::pack(const SlabRange& part) const {
     for (int i = part.first; i < part.last; ++i)
         words += double(packed.slabs[std::size_t(i)].stampedWords());
     requireMemory("part of a delta grid", words * kBytesPerWord);
-    std::vector<ColumnPacker> packers = impl_->run({layout, firstBlock, lastBlock});
+    std::vector<ColumnPacker> packers =
+        impl_->run({layout, firstBlock, lastBlock, true, impl_->planned.slabs});
     collectWords(inOrder(impl_->runs, packers, 1), layout, false, packed);
     return packed;
 }
