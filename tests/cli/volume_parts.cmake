@@ -81,6 +81,16 @@ foreach(mode mip min average)
         ARGS render cube_8x8x8_uint8.raw -o out.png --tf labels --mode ${mode}
         STDERR "deltasplat: warning: --tf: --mode ${mode} mixes values of neighbouring voxels, so that between labels it shows others that are not there; composite keeps them apart")
 endforeach()
+deltasplat_cli_test(parts.labels_divided CREATES out.png
+    ARGS render cube_8x8x8_uint8.raw -o out.png --tf labels --between 1
+    STDERR "deltasplat: warning: --tf: --between 1 mixes values of neighbouring voxels, so that between labels it shows others that are not there; --between 0 keeps them apart")
+# A file may say so itself.
+deltasplat_cli_test(parts.labels_of_file CREATES out.png
+    ARGS render cube_labels.nhdr -o out.png --mode mip
+    STDERR "deltasplat: warning: cube_labels.nhdr: --mode mip mixes values of neighbouring voxels, so that between labels it shows others that are not there; composite keeps them apart")
+deltasplat_cli_test(parts.labels_converted CREATES out.nrrd
+    ARGS convert cube_labels.nhdr out.nrrd
+    STDERR "deltasplat: warning: out.nrrd: does not say that its values are labels, as the input does; --tf labels shows them as such")
 deltasplat_cli_test(parts.labels_of_xray CREATES out.exr
     ARGS render cube_8x8x8_uint8.raw -o out.exr --mode xray --tf labels.ctbl --hide-labels 1
     STDERR "deltasplat: warning: --tf: has no effect with --mode xray

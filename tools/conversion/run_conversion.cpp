@@ -12,6 +12,7 @@
 #include "conversion/conversion_files.h"
 #include "deltasplat/threads.h"
 #include "ingest/files/file_name.h"
+#include "ingest/label_claim.h"
 #include "memory.h"
 #include "output_files.h"
 #include "process/interrupt.h"
@@ -28,13 +29,23 @@ namespace {
 constexpr double kWorkShare = 0.5;
 constexpr double kBytesPerByte = 40;
 
+// No output says of itself that it holds labels, and who reads it takes them for quantities.
+void warnOfLostLabels(const ConversionFiles& files, bool areLabels, const Listener& listener) {
+    if (!areLabels) return;
+    listener.warn(files.output.string() +
+                  ": does not say that its values are labels, as the input does; --tf labels shows "
+                  "them as such");
+}
+
 ConversionStats convertOne(const ConversionFiles& files, const Convert& convert,
                            const Listener& listener) {
     const auto begin = std::chrono::steady_clock::now();
     // Asked before writing, which may take the input's place.
     const std::uint64_t bytes =
         bytesOf(checkConversionFiles(files.input, files.output, files.stats));
+    const bool areLabels = saysLabels(files.input);
     ConversionStats stats = convert(files, listener);
+    warnOfLostLabels(files, areLabels, listener);
     stats.inputBytes = bytes;
     stats.seconds = secondsSince(begin);
     return stats;

@@ -245,20 +245,28 @@ glm::dvec3 upOf(const PictureOptions& picture, const Volume& volume) {
 namespace {
 
 // Labels stand apart; what is between two of them looks like a third.
-void warnOfMixedLabels(const PictureOptions& picture, const Listener& listener) {
+// @param option  that says there are labels, or the file that does
+void warnOfMixedLabels(const std::string& option, const PictureOptions& picture,
+                       const Listener& listener) {
     const Mode mode = picture.render.mode;
-    if (mode == Mode::kComposite) return;
-    listener.warn("--tf: --mode " + modeName(mode) +
+    const bool areDivided = picture.render.between.value_or(0) > 0;
+    if (mode == Mode::kComposite && !areDivided) return;
+    const std::string what = mode == Mode::kComposite
+                                 ? "--between " + std::to_string(*picture.render.between)
+                                 : "--mode " + modeName(mode);
+    listener.warn(option + ": " + what +
                   " mixes values of neighbouring voxels, so that between labels it shows others "
-                  "that are not there; composite keeps them apart");
+                  "that are not there; " +
+                  (mode == Mode::kComposite ? "--between 0" : "composite") + " keeps them apart");
 }
 
 // What is said of a volume that a table of labels shows.
-void warnOfLabels(const PictureOptions& picture, const Preset* preset, const Volume& volume,
-                  const TransferFunction& table, const Listener& listener) {
+// @param who  says that there are labels
+void warnOfLabels(const std::string& who, const PictureOptions& picture, const Preset* preset,
+                  const Volume& volume, const TransferFunction& table, const Listener& listener) {
     const bool isShown = picture.render.mode == Mode::kComposite || picture.render.mipColors;
     if (!isShown) return;
-    warnOfMixedLabels(picture, listener);
+    warnOfMixedLabels(who, picture, listener);
     warnOfAbsentLabels(picture.parts.labels, table, volume, listener);
     // The preset has all labels that there are.
     if (!preset) warnOfUnlistedLabels(picture.parts.labels, table, volume, listener);
@@ -292,8 +300,14 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
     }
     options.optics.transferFunction =
         changeLabels(options.optics.transferFunction, picture.parts.labels);
-    if (options.optics.transferFunction.categorical && !options.optics.surface)
-        warnOfLabels(picture, preset, volume, options.optics.transferFunction, listener);
+    const bool saysTable = !picture.transferFunction.empty();
+    if (options.optics.transferFunction.categorical && !options.optics.surface) {
+        warnOfLabels(saysTable ? "--tf" : input.string(), picture, preset, volume,
+                     options.optics.transferFunction, listener);
+    } else if (!saysTable && picture.render.mode != Mode::kComposite && saysLabels(input) &&
+               !anyBroken(volume)) {
+        warnOfMixedLabels(input.string(), picture, listener);
+    }
     if (options.optics.surface) finishSurface(picture, volume, options.optics, listener);
 }
 
