@@ -207,6 +207,40 @@ TEST(ReadImages, SlicesThatPackWell) {
     }
 }
 
+// Samples are what a file holds, whatever the largest may be.
+TEST(ReadImages, SamplesOfPgmAreNotStretched) {
+    const TempFolder folder;
+    std::string all = "P5\n# a comment\n256 256\n65535\n";
+    for (int n = 0; n < 65536; ++n) all += {char(n >> 8), char(n & 255)};
+    writeBytes("all.pgm", all);
+    Warnings warnings;
+    const Volume whole = readVolume("all.pgm", {}, warnings.listener());
+    int wrong = 0;
+    for (int n = 0; n < 65536; ++n) wrong += valueAt(whole, n % 256, n / 256, 0) != n;
+    EXPECT_EQ(wrong, 0);
+    const auto expectSamples = [&](const std::string& bytes, std::vector<int> samples) {
+        writeBytes("a.pgm", bytes);
+        const Volume volume = readVolume("a.pgm", {}, warnings.listener());
+        for (int n = 0; n < int(samples.size()); ++n)
+            EXPECT_EQ(valueAt(volume, n, 0, 0), samples[std::size_t(n)]) << bytes.substr(0, 20);
+    };
+    expectSamples(std::string("P5 3 1 4095\n\x0f\xff\0\1\4\0", 18), {4095, 1, 1024});
+    expectSamples("P2\n3 1\n4095\n4095 1\n# of twelve bits\n 3543", {4095, 1, 3543});
+    expectSamples("P2 3 1 15 15 0 7", {15, 0, 7});
+    expectSamples(std::string("P5 3 1 15\n\17\0\7", 13), {15, 0, 7});
+    EXPECT_TRUE(warnings.lines.empty());
+    const auto expectBad = [&](const std::string& bytes, const std::string& message) {
+        writeBytes("a.pgm", bytes);
+        expectRefused("a.pgm: got " + message, "a.pgm");
+    };
+    expectBad("P2 3 1 15 15 0", "a file that is cut short; expected a whole .pgm image");
+    expectBad("P2 3 1 15 15 0 x",
+              "a byte 120 where a number should be; expected a whole .pgm image");
+    expectBad("P2 3 1 15 15 0 16", "a sample of 16; expected at most 15, as its header says");
+    expectBad(std::string("P5 3 1 4095\n\x0f\xff\0\1\4", 17),
+              "a file that is cut short; expected a whole .pgm image");
+}
+
 TEST(ReadImagesError, Stacks) {
     const TempFolder folder;
     expectRefused("a.####.png: got no file of that name; expected files such as a.0001.png",

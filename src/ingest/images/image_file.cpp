@@ -12,6 +12,7 @@
 #include "ingest/files/file_name.h"
 #include "ingest/guards/cleared_memory.h"
 #include "ingest/guards/silent_stderr.h"
+#include "ingest/images/pgm_samples.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -165,6 +166,7 @@ ImageFile::ImageFile(const std::filesystem::path& file, const ImagePages& pages,
     }
     input_ = openInput(file, proxy_.get(), spec_);
     if (page_ > 0) spec_ = input_->spec(page_);
+    isPgm_ = spec_.nchannels == 1 && lowerExtension(file) == ".pgm" && isPgm(file);
 }
 
 ImageFile::~ImageFile() {
@@ -174,6 +176,11 @@ ImageFile::~ImageFile() {
 
 // OpenImageIO's read_image would take, and here clear, 64 MiB for each image.
 bool ImageFile::readNative(int channels, void* to) {
+    if (isPgm_) {
+        const std::size_t pixels = std::size_t(spec_.width) * std::size_t(spec_.height);
+        readPgm(file_, pixels, {static_cast<std::byte*>(to), pixels * spec_.format.size()});
+        return true;
+    }
     if (spec_.tile_width == 0) {
         return input_->read_native_scanlines(page_, 0, spec_.y, spec_.y + spec_.height, 0, 0,
                                              channels, to);

@@ -62,6 +62,7 @@ class ImageFile {
     std::unique_ptr<OIIO::ImageInput> input_;
     OIIO::ImageSpec spec_;
     int page_ = 0;  // as OpenImageIO counts
+    bool isPgm_ = false;
 };
 
 }  // namespace deltasplat
