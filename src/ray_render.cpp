@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "deltasplat/ingest/slot.h"
+#include "empty_picture.h"
 #include "eye_render.h"
 #include "image/warp.h"
 #include "parallel.h"
@@ -185,6 +186,12 @@ void renderParallel(const ParallelView& view, const Listener& listener, RenderRe
     stats.warpSeconds = stats.renderSeconds - stats.splatSeconds - stats.compositeSeconds;
 }
 
+bool isEmpty(const Image& image) {
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+        if (image.rgba[i] != 0) return false;
+    return true;
+}
+
 }  // namespace
 
 void renderRays(const Volume& volume, const RenderOptions& options, const Listener& listener,
@@ -203,6 +210,9 @@ void renderRays(const Volume& volume, const RenderOptions& options, const Listen
         } else {
             renderFromEye(volume, options, listener, result);
         }
+        // Sums may be 0 of what is there.
+        if (!showsSums(options.mode) && isEmpty(result.image))
+            listener.warn(emptyPictureText(volume, "fills less than half of any pixel"));
     }
     if (options.mode == Mode::kDrr) showTransmission(options.drr, result.image);
 }

@@ -10,13 +10,13 @@
 #include "deep_view.h"
 #include "default_floats.h"
 #include "deltasplat/prepared_scene.h"
+#include "empty_picture.h"
 #include "kept_memory.h"
 #include "kept_view.h"
 #include "listener_part.h"
 #include "number_text.h"
 #include "render_frame.h"
 #include "stopwatch.h"
-#include "view/affine.h"
 #include "view_changes.h"
 
 namespace deltasplat {
@@ -255,11 +255,7 @@ class CompositeRender {
                 " none of the values " + numberText(volume_.valueMin) + " to " +
                 numberText(volume_.valueMax));
         } else {
-            const WorldBox world = worldBox(volume_.box, volume_.worldFromIndex);
-            listener.warn(
-                "picture: empty, for what can be seen of the volume lies outside of it, before the "
-                "near plane, or is far smaller than a pixel; the volume lies in the world from " +
-                numberText(world.min) + " to " + numberText(world.max));
+            listener.warn(emptyPictureText(volume_, "is far smaller than a pixel"));
         }
     }
 

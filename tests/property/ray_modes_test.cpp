@@ -533,5 +533,27 @@ TEST(RayModes, RadiographsOfOtherUnitsAreWarnedOf) {
     EXPECT_EQ(warningsOf(volume, Mode::kMip), "");
 }
 
+// One voxel fills no pixel by half: values are not shown of so little, and that is said.
+TEST(RayModes, APictureOfNothingIsSaidToBeEmpty) {
+    const Volume volume = makeVolume({glm::ivec3(0), glm::ivec3(63)}, [](int x, int y, int z) {
+        return x == 30 && y == 31 && z == 32 ? 100 : kInactive;
+    });
+    const auto warningsOf = [&](Mode mode, int size) {
+        RenderOptions options;
+        options.mode = mode;
+        options.camera.sizePixels = {size, size};
+        std::string lines;
+        Listener listener;
+        listener.warning = [&](const std::string& line) { lines += line; };
+        render(volume, options, listener);
+        return lines;
+    };
+    for (const Mode mode : {Mode::kMip, Mode::kMin, Mode::kAverage}) {
+        EXPECT_NE(warningsOf(mode, 8).find("picture: empty"), std::string::npos);
+        EXPECT_EQ(warningsOf(mode, 128), "");
+    }
+    EXPECT_EQ(warningsOf(Mode::kXray, 8), "");
+}
+
 }  // namespace
 }  // namespace deltasplat::test
