@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "deltasplat/threads.h"
 #include "ingest/values/value_census.h"
 #include "parallel.h"
 
@@ -160,14 +161,15 @@ GridScan scanLeaves(const Leaves& leaves, const ScanWishes& wishes) {
     GridScan whole;
     if (!wishes.distinct) whole.census.distinct.giveUp();
     whole.census.skipSurvey = !wishes.survey;
-    // Runs are put together as they are done: what each of them collects is large. The first few
-    // tell the others whether there is any use in collecting.
-    constexpr std::size_t kMostRuns = 64;
-    std::size_t runs = 8;
+    // Runs are put together as they are done: what each of them collects takes megabytes. The first
+    // few tell the others whether there is any use in collecting.
+    constexpr std::size_t kFewRuns = 8;
+    const std::size_t mostRuns = std::clamp<std::size_t>(2 * threadCount(), kFewRuns, 64);
+    std::size_t runs = kFewRuns;
     std::size_t count = 0;
     for (std::size_t start = 0; start < leaves.count(); start += count) {
         count = std::min(runs * kLeafRun, leaves.count() - start);
-        runs = std::min(2 * runs, kMostRuns);
+        runs = std::min(2 * runs, mostRuns);
         std::vector<GridScan> scans((count + kLeafRun - 1) / kLeafRun);
         forLeafRuns(count, [&](std::size_t run, std::size_t begin, std::size_t end) {
             ValueCensus& census = scans[run].census;
