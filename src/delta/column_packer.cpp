@@ -75,6 +75,7 @@ void ColumnPacker::run(const Columns& columns) {
         forParts([&](const glm::ivec2& part) { add(partOf(*block, next, part), part, 1); });
     }
     own_.reset();
+    painted_ = {};
 }
 
 // What is mixed is needed around any slab: it is never taken in parts.

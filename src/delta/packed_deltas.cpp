@@ -142,6 +142,7 @@ struct DeltaPacker::Impl {
         for (std::size_t slot = 0; slot < slotMap.size(); ++slot)
             opacities[std::size_t(slotMap[slot])] =
                 options.opacities[std::size_t(classOfSlot[slot])];
+        options.opacities = {};
     }
 
     PackedDeltas noWords() const {

@@ -205,23 +205,31 @@ namespace {
 // Returns of the voxels of a block the least opacity among those that each is mixed with, and its
 // own: what is not active is mixed with nothing.
 template <typename OpacityOf>
-std::array<float, 512> leastAround(const MixWindow& window, const OpacityOf& opacityOf) {
+std::array<float, 512> leastAround(const MixWindow& window, bool alongSlicesOnly,
+                                   const OpacityOf& opacityOf) {
     constexpr int kSide = MixWindow::kSide;
     std::array<float, MixWindow::kSide * MixWindow::kPlane> least;
     for (std::size_t n = 0; n < least.size(); ++n)
         least[n] = window.slots[n] == kEmptySlot ? 1.0f : opacityOf(window.slots[n]);
     // Along one axis after the other, of each three that follow each other at the place of the
     // first.
-    for (const int step : {MixWindow::kPlane, kSide, 1}) {
+    const auto takeLeast = [&](int step) {
         for (std::size_t n = 0; n + 2 * std::size_t(step) < least.size(); ++n) {
             const float next = std::min(least[n + step], least[n + 2 * step]);
             least[n] = std::min(least[n], next);
         }
+    };
+    takeLeast(MixWindow::kPlane);
+    if (!alongSlicesOnly) {
+        takeLeast(kSide);
+        takeLeast(1);
     }
+    const int first = alongSlicesOnly ? kSide + 1 : 0;
     std::array<float, 512> inner;
-    for (int n = 0; n < 512; ++n)
-        inner[std::size_t(n)] =
-            least[std::size_t(n / 64 * MixWindow::kPlane + n / 8 % 8 * kSide + n % 8)];
+    for (int n = 0; n < 512; ++n) {
+        const int place = n / 64 * MixWindow::kPlane + n / 8 % 8 * kSide + n % 8;
+        inner[std::size_t(n)] = least[std::size_t(first + place)];
+    }
     return inner;
 }
 
@@ -251,7 +259,8 @@ void ValueMixer::keepSeen(const MixWindow& window, std::span<const Slot> slotMap
         });
         if (most >= 0.5f * opacity) continue;
         if (!around)
-            around = leastAround(window, [&](Slot slot) { return opacityOf(seenOf(slot)); });
+            around = leastAround(window, parts_.within == 1,
+                                 [&](Slot slot) { return opacityOf(seenOf(slot)); });
         const float least = (*around)[std::size_t(n)];
         const bool isShown = most > 0 && most - least >= kLeast * (opacity - least);
         if (isShown) continue;

@@ -33,9 +33,8 @@ class ValueMixer {
 
     /// Mixes the blocks that a block becomes.
     /// @param slotMap    [kSlotCount]: what becomes of the slots of levels
-    /// @param opacities  [what becomes of them]: of a voxel, above 0 for all that can be seen;
-    /// none:
-    ///                   they are alike
+    /// @param opacities  [what becomes of them]: of a voxel, above 0 for all that can be seen; if
+    ///                   there are none, they are alike
     /// @param mixed      [parts.within along u][parts.slices][parts.within along v]
     void mix(const MixWindow& window, std::span<const Slot> slotMap,
              std::span<const float> opacities, std::span<BlockSlots> mixed) const;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "prepared_axis.h"
 #include "sheet_plan.h"
 #include "support/error_of.h"
+#include "support/make_volume.h"
 #include "support/some_scene.h"
 
 namespace deltasplat {
@@ -168,6 +170,31 @@ TEST(Prepared, wordsAreSharedWhereTheSameIsToldApart) {
     optics = scene.scene().optics;
     optics.extinctionScale = 2.5;
     EXPECT_NE(wordsOf(holding.withOptics(optics)), wordsOf(holding));
+}
+
+// What voxels are divided into depends on how opaque they are, though the same are told apart.
+TEST(Prepared, dividedVoxelsAreThoseOfTheirOptics) {
+    const auto volume = std::make_shared<const Volume>(test::makeVolume(
+        {glm::ivec3(0), glm::ivec3(14)}, [](int, int y, int) { return y == 7 ? 100 : 2; }));
+    const auto opticsOf = [](double haze) {
+        Optics optics;
+        optics.transferFunction.normalized = false;
+        optics.transferFunction.colors = {{0, glm::dvec3(1)}};
+        optics.transferFunction.opacities = {{0, haze}, {80, haze}, {81, 0.999}};
+        return optics;
+    };
+    RenderOptions options;
+    options.between = 1;
+    options.camera.sizePixels = {45, 45};
+    options.optics = opticsOf(0.6);
+    PreparedScene scene({volume, options.optics}, options);
+    pictureOf(scene, options.camera);
+    for (const double haze : {0.01, 0.55, 1e-6}) {
+        options.optics = opticsOf(haze);
+        scene = scene.withOptics(options.optics);
+        EXPECT_EQ(pictureOf(scene, options.camera).rgba, render(*volume, options).image.rgba)
+            << haze;
+    }
 }
 
 // A painter may clear all that classes show, and then leaves no words, nor looks.

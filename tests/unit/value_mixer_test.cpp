@@ -230,6 +230,32 @@ TEST(ValueMixer, NothingVanishesInHaze) {
     }
 }
 
+// What lies beside a voxel is not mixed with it where slices alone are divided, and has no say.
+TEST(ValueMixer, NothingVanishesInHazeBesideAnything) {
+    const Volume volume = volumeOf(CodeBook::integer(), {0, 2, 100});
+    const ValueMixer mixer(volume, {2, 1});
+    std::vector<Slot> map(kSlotCount, kEmptySlot);
+    std::vector<float> opacities(kSlotCount);
+    for (int level = 0; level < kCodeCount; ++level) {
+        if (mixer.levels().histogram[std::size_t(level)] == 0) continue;
+        const double value = mixer.levels().codeBook.valueOf(Code(level));
+        map[std::size_t(level) + 1] = value < 1 ? kEmptySlot : level + 1;
+        opacities[std::size_t(map[std::size_t(level) + 1])] = value < 1    ? 0.0f
+                                                              : value < 80 ? 0.1f
+                                                                           : 1.0f;
+    }
+    MixWindow window;
+    window.slots.fill(3);
+    window.at({3, 4, 5}) = 101;
+    window.at({3, 4, 6}) = 1;  // clear
+    std::vector<BlockSlots> blocks(2);
+    mixer.mix(window, map, opacities, blocks);
+    int opaque = 0;
+    for (const BlockSlots& block : blocks)
+        for (const Slot slot : block) opaque += opacities[std::size_t(slot)] == 1;
+    EXPECT_EQ(opaque, 2);
+}
+
 // However values lie, none that the volume has is rounded, and those between are near.
 TEST(ValueMixer, OwnValuesAreKeptExactly) {
     const auto check = [](const std::vector<double>& values, double precision) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -251,6 +252,53 @@ TEST(VdbValues, MasksThatDiffer) {
     expectError(ErrorCode::kInput, message, [] { readByTree(); });
 }
 
+// Masks of other bits may have the sum by which most that differ are told apart.
+TEST(VdbValues, MasksThatDifferUnseen) {
+    const TempFolder folder;
+    for (const bool half : {true, false}) {
+        const auto grid = gridOf<openvdb::FloatGrid>(halfOf);
+        grid->setSaveFloatAsHalf(half);
+        writeAs(openvdb::io::COMPRESS_NONE, grid);
+        std::string bytes = readBytes("a.vdb");
+        const std::size_t at = bytes.size() - 512 * (half ? 2 : 4) - 1 - sizeof(VdbLeaf::Mask);
+        VdbLeaf::Mask mask;
+        std::memcpy(mask.data(), &bytes[at], sizeof mask);
+        // What one word changes in the sum, the next can take back.
+        const auto after = [](std::uint64_t word) {
+            const std::uint64_t sum = word * 0x9E3779B97F4A7C15;
+            return sum ^ sum >> 32;
+        };
+        VdbLeaf::Mask other = mask;
+        other[0] ^= 7;
+        other[1] ^= after(mask[0]) ^ after(other[0]);
+        ASSERT_EQ(VdbLeaf::sumOf(other), VdbLeaf::sumOf(mask));
+        std::memcpy(&bytes[at], other.data(), sizeof other);
+        writeBytes("a.vdb", bytes);
+        expectError(ErrorCode::kInput,
+                    "a.vdb: grid \"a\": got leaves that are damaged; expected a sound OpenVDB grid",
+                    [] { readVolume("a.vdb"); });
+    }
+}
+
+// A size makes nobody ask for as much memory.
+TEST(VdbValues, ChunksOfAnySize) {
+    const TempFolder folder;
+    for (const auto compression : {openvdb::io::COMPRESS_BLOSC, openvdb::io::COMPRESS_ZIP}) {
+        const auto grid = gridOf<openvdb::FloatGrid>([](int i) { return std::sin(float(i)); });
+        writeAs(compression, grid);
+        std::string bytes = readBytes("a.vdb");
+        const VdbFile file("a.vdb");
+        const auto values = file.readValues(file.grids().front(), VdbFile::Find::kByWalking);
+        ASSERT_TRUE(values);
+        const VdbLeaf& leaf = values->leaves.leaves().back();
+        const std::int64_t size = 1000000;
+        std::memcpy(&bytes[leaf.begin + 64 + 1], &size, sizeof size);
+        writeBytes("a.vdb", bytes + std::string(2000000, '\0'));
+        EXPECT_THROW(readVolume("a.vdb"), Error);
+        EXPECT_THROW(readByTree(), Error);
+    }
+}
+
 // OpenVDB takes zipped values that have the right size, whatever their checksum says.
 TEST(VdbValues, DamagedZipIsRefusedByWhoeverReadsIt) {
     const TempFolder folder;
@@ -281,6 +329,24 @@ TEST(VdbValues, DamagedZipIsRefusedByWhoeverReadsIt) {
                         [&] { readVolume("a.vdb", options); });
         }
     }
+}
+
+// So are values that nobody sees.
+TEST(VdbValues, DamagedZipOfInactiveVoxels) {
+    const TempFolder folder;
+    openvdb::initialize();
+    const auto grid = openvdb::FloatGrid::create();
+    grid->setName("a");
+    for (int i = 0; i < 512; ++i) {
+        grid->tree().setValue(openvdb::Coord(i / 64, i / 8 % 8, i % 8), 1);
+        grid->tree().setValueOff(openvdb::Coord(64 + i / 64, i / 8 % 8, i % 8), halfOf(i * i));
+    }
+    writeAs(openvdb::io::COMPRESS_ZIP, grid);
+    std::string bytes = readBytes("a.vdb");
+    bytes.back() = char(bytes.back() ^ 1);
+    writeBytes("a.vdb", bytes);
+    EXPECT_THROW(readVolume("a.vdb"), Error);
+    EXPECT_THROW(readByTree(), Error);
 }
 
 // Tiles of an upper node are zipped as well.

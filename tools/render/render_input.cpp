@@ -304,8 +304,7 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
     if (options.optics.transferFunction.categorical && !options.optics.surface) {
         warnOfLabels(saysTable ? "--tf" : input.string(), picture, preset, volume,
                      options.optics.transferFunction, listener);
-    } else if (!saysTable && picture.render.mode != Mode::kComposite && saysLabels(input) &&
-               !anyBroken(volume)) {
+    } else if (!saysTable && saysLabels(input) && !anyBroken(volume)) {
         warnOfMixedLabels(input.string(), picture, listener);
     }
     if (options.optics.surface) finishSurface(picture, volume, options.optics, listener);

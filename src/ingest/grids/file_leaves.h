@@ -42,7 +42,7 @@ class FileLeaves {
         }
         VdbLeaves::Mask mask;
         const auto values = packed_.activeValues(packed_.leaves()[i], mask, room);
-        if (values) return *values;
+        if (values && isMaskOf(*leaves_[i], mask)) return *values;
         areDamaged_ = true;
         return {};
     }
@@ -50,6 +50,14 @@ class FileLeaves {
     bool areDamaged() const { return areDamaged_; }
 
   private:
+    // Sums of masks may be alike where these are not.
+    static bool isMaskOf(const typename Tree::LeafNodeType& leaf, const VdbLeaf::Mask& mask) {
+        for (openvdb::Index x = 0; x < mask.size(); ++x) {
+            if (leaf.valueMask().template getWord<std::uint64_t>(x) != mask[x]) return false;
+        }
+        return true;
+    }
+
     const Tree& tree_;
     const VdbLeaves& packed_;
     std::vector<const typename Tree::LeafNodeType*> leaves_;

@@ -282,6 +282,8 @@ bool fillFromNumbers(const Tree& topology, const VdbLeaves& packed, const GridCo
     if (leaves.areDamaged()) failDamaged(options);
     if (scan.nonFinite > 0) return false;
     fillFromLeaves(leaves, std::move(scan), options, volume);
+    // Each pass reads the file anew.
+    if (leaves.areDamaged()) failDamaged(options);
     return true;
 }
 

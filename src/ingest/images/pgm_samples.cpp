@@ -2,6 +2,7 @@
 // Based on: Netpbm's description of its pgm format.
 #include "ingest/images/pgm_samples.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdint>
 #include <cstring>
@@ -10,6 +11,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/files/file_bytes.h"
+#include "memory.h"
 
 namespace deltasplat {
 namespace {
@@ -72,10 +74,18 @@ bool isPgm(const std::filesystem::path& file) {
 
 void readPgm(const std::filesystem::path& file, std::size_t pixels, std::span<std::byte> to) {
     const FileBytes source(file);
-    std::vector<unsigned char> bytes(source.size());
-    bytes.resize(source.read(0, bytes.data(), bytes.size()));
-    Numbers numbers(file, bytes);
+    const auto read = [&](std::uint64_t place, std::uint64_t size) {
+        requireClaimedMemory(file.string(), double(size));
+        std::vector<unsigned char> bytes(size);
+        bytes.resize(source.read(place, bytes.data(), bytes.size()));
+        return bytes;
+    };
+    // Comments aside, a header has some twenty bytes.
+    constexpr std::uint64_t kMostHeader = std::uint64_t{1} << 16;
+    std::vector<unsigned char> bytes = read(0, std::min(kMostHeader, source.size()));
     const bool isBinary = bytes.size() > 1 && bytes[1] == '5';
+    if (!isBinary) bytes = read(0, source.size());
+    Numbers numbers(file, bytes);
     numbers.skip(2);
     const std::uint64_t size = std::uint64_t{numbers.next()} * numbers.next();
     const std::uint32_t most = numbers.next();
@@ -88,18 +98,19 @@ void readPgm(const std::filesystem::path& file, std::size_t pixels, std::span<st
     if (to.size() != pixels * width) {
         fail(file, std::to_string(width) + " bytes a sample", std::to_string(to.size() / pixels));
     }
+    std::vector<unsigned char> raster;
     if (isBinary) {
-        numbers.skip(1);
-        if (bytes.size() < numbers.place() + pixels * width)
+        raster = read(numbers.place() + 1, pixels * width);
+        if (raster.size() < pixels * width)
             fail(file, "a file that is cut short", "a whole .pgm image");
     }
-    const unsigned char* raster = bytes.data() + numbers.place();
+    const unsigned char* next = raster.data();
     for (std::size_t i = 0; i < pixels; ++i) {
         std::uint32_t sample = 0;
         if (!isBinary) {
             sample = numbers.next();
         } else {
-            for (std::size_t n = 0; n < width; ++n) sample = sample << 8 | *raster++;
+            for (std::size_t n = 0; n < width; ++n) sample = sample << 8 | *next++;
         }
         if (sample > most) {
             fail(file, "a sample of " + std::to_string(sample),

@@ -161,7 +161,7 @@ std::optional<Volume> readGridLeaves(const VdbFile& file, const VdbGrid& grid,
             return volumeOfLeaves(*values, {unpacking, where, grid.valueType(), options});
         } catch (const DamagedLeaves&) {
             // Or the file's notes are.
-            if (how == VdbFile::Find::kByWalking) throw;
+            if (!values->byNotes) throw;
         }
     }
     return std::nullopt;

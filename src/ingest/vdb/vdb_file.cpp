@@ -377,7 +377,9 @@ std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
     const VdbTreeSize size = walkTopology(bytes, head.format, places);
     const std::uint64_t topologyEnd = bytes.position();
     requireMemory(where, size.topologyBytes(head.format));
-    if (how == Find::kByWalking || !placeBySizes(bytes, head, grid.end, places.leaves, where)) {
+    const bool byNotes =
+        how == Find::kByNotes && placeBySizes(bytes, head, grid.end, places.leaves, where);
+    if (!byNotes) {
         walkLeaves(bytes, head.format, places.leaves);
         requireEnd(bytes, grid);
     }
@@ -387,7 +389,8 @@ std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
     return VdbValues{
         std::move(topology),
         {std::make_shared<const FileBytes>(file_), std::move(places.leaves), head.format, head.map},
-        head.format.stored != head.format.bytes};
+        head.format.stored != head.format.bytes,
+        byNotes};
 }
 
 }  // namespace deltasplat

@@ -43,6 +43,7 @@ struct VdbValues {
     openvdb::GridBase::Ptr topology;  ///< all but the values of leaves
     VdbLeaves leaves;                 ///< in the tree's order
     bool areHalves;                   ///< whether floats are stored as binary16
+    bool byNotes;                     ///< how they were found, as VdbFile::Find
 };
 
 /// A .vdb file that is checked before OpenVDB sees any of it, since OpenVDB 10 crashes on damaged
@@ -61,8 +62,7 @@ class VdbFile {
     openvdb::MetaMap::ConstPtr metadata(const VdbGrid& grid) const;
     /// Reads one grid of grids().
     /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if it does not fit
-    /// into
-    ///        memory, whatever the listener throws
+    ///        into memory, whatever the listener throws
     openvdb::GridBase::Ptr read(const VdbGrid& grid, const Listener& listener) const;
     /// Returns the packed leaves of a grid of int32 with background 0, unless there are active
     /// tiles beside them, or the grid shares its voxels with another.

@@ -203,7 +203,8 @@ std::optional<std::span<const Stored>> VdbLeaves::activeValues(const VdbLeaf& le
     const auto packed = valuesOf(leaf, *bytes, format_, mask);
     if (!packed) return std::nullopt;
     const std::uint32_t active = countOf(mask);
-    if (active == 0) return std::span<const Stored>{};
+    // What nobody sees must be whole, too.
+    if (active == 0 && !packed->isPacked) return std::span<const Stored>{};
     auto& values = room.values;
     if (!unpack(*packed, format_, {reinterpret_cast<char*>(values.data()), sizeof values}))
         return std::nullopt;

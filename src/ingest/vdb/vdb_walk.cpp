@@ -44,8 +44,10 @@ class Walk {
     VdbTreeSize runTopology() {
         topology();
         places_->leaves.reserve(size_.leaves);
-        for (const auto& [origin, leaves] : root_)
+        for (auto& [origin, leaves] : root_) {
             places_->leaves.insert(places_->leaves.end(), leaves.begin(), leaves.end());
+            leaves = {};
+        }
         return size_;
     }
 
@@ -191,6 +193,9 @@ class Walk {
                      std::to_string(expected));
             }
             bytes_.skip(expected);
+        } else if (std::uint64_t(size) > expected + expected / 8 + 1024) {
+            // Packing adds next to nothing to what does not pack: this is no size to make room for.
+            fail("a compressed node of " + std::to_string(size) + " bytes");
         } else if (blosc) {
             bloscData(std::uint64_t(size), expected);
         } else if (ofLeaf) {
