@@ -224,11 +224,11 @@ std::array<float, 512> leastAround(const MixWindow& window, bool alongSlicesOnly
         takeLeast(kSide);
         takeLeast(1);
     }
-    const int first = alongSlicesOnly ? kSide + 1 : 0;
+    const auto first = std::size_t(alongSlicesOnly ? kSide + 1 : 0);
     std::array<float, 512> inner;
     for (int n = 0; n < 512; ++n) {
         const int place = n / 64 * MixWindow::kPlane + n / 8 % 8 * kSide + n % 8;
-        inner[std::size_t(n)] = least[std::size_t(first + place)];
+        inner[std::size_t(n)] = least[first + std::size_t(place)];
     }
     return inner;
 }
