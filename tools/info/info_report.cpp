@@ -56,7 +56,7 @@ Json toJson(const DeltaEstimate& estimate) {
     return {{"plain_bytes", std::round(estimate.plainBytes)},
             {"delta_bytes", std::round(estimate.deltaBytes)},
             {"packed_bytes", std::round(estimate.packedBytes)},
-            {"faster", estimate.readsFromLeaves},
+            {"faster", isRenderedFaster(estimate)},
             {"sampled", estimate.sampled}};
 }
 
@@ -131,6 +131,10 @@ std::string jsonText(const std::vector<FileReport>& reports, const std::string& 
     Json json{{"files", files}};
     if (isSequence) json["sequence"] = sequenceJson(reports);
     return dumpJson(json);
+}
+
+bool isRenderedFaster(const DeltaEstimate& estimate) {
+    return estimate.readsFromLeaves && estimate.deltaBytes < 0.95 * estimate.plainBytes;
 }
 
 }  // namespace deltasplat

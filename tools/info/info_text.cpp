@@ -87,7 +87,9 @@ std::string estimateText(const DeltaEstimate& estimate, int axis) {
                                             : "about as large as";
     return std::string(size) + " an ordinary .vdb, " + ratio(estimate.deltaBytes) + " of its " +
            humanBytes(estimate.plainBytes) + ", packed " + ratio(estimate.packedBytes) +
-           "; rendered " + (estimate.readsFromLeaves ? "faster " + alongText(axis) : "no faster") +
+           "; rendered " +
+           (isRenderedFaster(estimate) ? "faster " + alongText(axis) + " where voxels are divided"
+                                       : "no faster") +
            "; estimated from " + percent(estimate.sampled, 1) + " of the blocks";
 }
 
