@@ -83,17 +83,14 @@ std::vector<float> opacitiesOf(const Volume& volume, const ClassTable& classes) 
 
 // Returns the words that other optics have, if these tell the same codes apart, or null; classes
 // then get the others' numbers. Where nothing is held and nothing has looks of its own, all that
-// words know of optics is the classes of codes, and of divided voxels how opaque these are.
+// words know of optics is the classes of codes; and of divided voxels how opaque these are, which
+// is left to the caller.
 std::shared_ptr<const PackedDeltas> sharedWords(const PreparedAxis* before,
                                                 const PreparedScene::Impl& scene,
                                                 ClassTable& classes) {
     const bool areOfClasses = !scene.painter && scene.options.tolerance.isExact();
     if (!before || !areOfClasses) return {};
-    if (!takeNumbers(before->classes().classOfSlot, classes)) return {};
-    const Volume& volume = *scene.scene.volume;
-    const bool areAlike = !before->parts.divides() ||
-                          opacitiesOf(volume, classes) == opacitiesOf(volume, before->classes());
-    return areAlike ? before->words : nullptr;
+    return takeNumbers(before->classes().classOfSlot, classes) ? before->words : nullptr;
 }
 
 // @param before  the same axis as other optics have it; null: none
@@ -119,10 +116,13 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     // Small footprints of two digits are never stamped.
     if (encoding == Encoding::kSmaller && !classes.oneDigit()) encoding = Encoding::kSmallerOfSums;
     std::shared_ptr<const PackedDeltas> words = sharedWords(before, scene, classes);
+    std::vector<float> opacities;
+    if (parts.divides()) {
+        opacities = opacitiesOf(volume, classes);
+        if (words && opacities != opacitiesOf(volume, before->classes())) words = nullptr;
+    }
     PackOptions pack{sliceAxis, encoding, classes.classOfSlot, holdRule(seen, classes, tolerance),
                      mixer ? &*mixer : nullptr};
-    const std::vector<float> opacities =
-        mixer ? opacitiesOf(volume, classes) : std::vector<float>();
     pack.opacities = opacities;
     const bool isLit = painter && painter->dependsOnCamera();
     std::unique_ptr<const LookLight> light;

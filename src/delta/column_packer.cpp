@@ -289,7 +289,7 @@ bool ColumnPacker::isNeeded(int slice, std::uint64_t visible, std::uint64_t chan
     const bool isKey = range_.layout.startsLaterSlab(slice);
     if (!range_.planned.empty()) {
         const auto slab = std::size_t(range_.layout.slabOf(slice >> 3));
-        return (range_.planned[slab].whole || isKey ? visible : changed) != 0;
+        return range_.planned[slab].needs(isKey, visible, changed);
     }
     return (options_.encoding != Encoding::kWhole && changed != 0) ||
            ((options_.encoding != Encoding::kChanges || isKey) && visible != 0);

@@ -27,6 +27,11 @@ struct PlannedSlab : Slab {
     std::uint64_t words = 0;      ///< mask words with deltas
     std::uint64_t seenWords = 0;  ///< mask words with visible voxels
 
+    /// Whether a word of a slice of it has anything to splat.
+    /// @param isKey  whether that slice begins a slab behind another
+    bool needs(bool isKey, std::uint64_t visible, std::uint64_t changed) const {
+        return (whole || isKey ? visible : changed) != 0;
+    }
     std::uint64_t stamps() const { return whole ? visible : deltas; }
     /// Words that have any.
     std::uint64_t stampedWords() const { return whole ? seenWords : words; }

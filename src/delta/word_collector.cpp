@@ -53,8 +53,9 @@ class WordCollector {
         return layout_.startsLaterSlab(word.slice) ? word.visible : word.changed;
     }
     bool isNeeded(const PendingWord& word) const {
-        const bool whole = packed_.slabs[std::size_t(layout_.slabOf(word.slice >> 3))].whole;
-        return (whole ? word.visible : changed(word)) != 0;
+        const auto slab = std::size_t(layout_.slabOf(word.slice >> 3));
+        return packed_.slabs[slab].needs(layout_.startsLaterSlab(word.slice), word.visible,
+                                         word.changed);
     }
 
     // Calls use(column, word) for the words of a run that are needed.

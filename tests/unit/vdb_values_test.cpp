@@ -51,6 +51,16 @@ Volume readByTree() {
     return volume;
 }
 
+void expectErrorBothWays() {
+    EXPECT_THROW(readVolume("a.vdb"), Error);
+    EXPECT_THROW(readByTree(), Error);
+}
+
+void expectErrorBothWays(const std::string& message) {
+    expectError(ErrorCode::kInput, message, [] { readVolume("a.vdb"); });
+    expectError(ErrorCode::kInput, message, [] { readByTree(); });
+}
+
 // The same nodes, tiles and codes.
 void expectSame(const Volume& a, const Volume& b) {
     test::expectSameFacts(a, b);
@@ -231,10 +241,8 @@ TEST(VdbValues, MetadataOfTwoTypes) {
     std::string bytes = readBytes("a.vdb");
     bytes[bytes.find("frame_b") + 6] = 'a';
     writeBytes("a.vdb", bytes);
-    const std::string message =
-        "a.vdb: got metadata \"frame_a\" of two types; expected a sound OpenVDB file";
-    expectError(ErrorCode::kInput, message, [] { readVolume("a.vdb"); });
-    expectError(ErrorCode::kInput, message, [] { readByTree(); });
+    expectErrorBothWays(
+        "a.vdb: got metadata \"frame_a\" of two types; expected a sound OpenVDB file");
 }
 
 TEST(VdbValues, MasksThatDiffer) {
@@ -246,10 +254,7 @@ TEST(VdbValues, MasksThatDiffer) {
     const std::size_t mask = bytes.size() - 512 * sizeof(float) - 1 - 64;
     bytes[mask] = char(bytes[mask] ^ 1);
     writeBytes("a.vdb", bytes);
-    const std::string message =
-        "a.vdb: got a leaf of two different masks; expected a sound OpenVDB tree";
-    expectError(ErrorCode::kInput, message, [] { readVolume("a.vdb"); });
-    expectError(ErrorCode::kInput, message, [] { readByTree(); });
+    expectErrorBothWays("a.vdb: got a leaf of two different masks; expected a sound OpenVDB tree");
 }
 
 // Masks of other bits may have the sum by which most that differ are told apart.
@@ -294,8 +299,7 @@ TEST(VdbValues, ChunksOfAnySize) {
         const std::int64_t size = 1000000;
         std::memcpy(&bytes[leaf.begin + 64 + 1], &size, sizeof size);
         writeBytes("a.vdb", bytes + std::string(2000000, '\0'));
-        EXPECT_THROW(readVolume("a.vdb"), Error);
-        EXPECT_THROW(readByTree(), Error);
+        expectErrorBothWays();
     }
 }
 
@@ -345,8 +349,7 @@ TEST(VdbValues, DamagedZipOfInactiveVoxels) {
     std::string bytes = readBytes("a.vdb");
     bytes.back() = char(bytes.back() ^ 1);
     writeBytes("a.vdb", bytes);
-    EXPECT_THROW(readVolume("a.vdb"), Error);
-    EXPECT_THROW(readByTree(), Error);
+    expectErrorBothWays();
 }
 
 // Tiles of an upper node are zipped as well.
@@ -362,8 +365,7 @@ TEST(VdbValues, DamagedZipOfTiles) {
     std::string bytes = readBytes("a.vdb");
     bytes[bytes.size() - 8 - 64] = char(bytes[bytes.size() - 8 - 64] ^ 1);
     writeBytes("a.vdb", bytes);
-    EXPECT_THROW(readVolume("a.vdb"), Error);
-    EXPECT_THROW(readByTree(), Error);
+    expectErrorBothWays();
 }
 
 // What a file notes of its leaves' sizes is believed only where leaves are found by it.

@@ -244,13 +244,16 @@ glm::dvec3 upOf(const PictureOptions& picture, const Volume& volume) {
 
 namespace {
 
+bool mixesVoxels(const PictureOptions& picture) {
+    return picture.render.mode != Mode::kComposite || picture.render.between.value_or(0) > 0;
+}
+
 // Labels stand apart; what is between two of them looks like a third.
 // @param option  that says there are labels, or the file that does
 void warnOfMixedLabels(const std::string& option, const PictureOptions& picture,
                        const Listener& listener) {
     const Mode mode = picture.render.mode;
-    const bool areDivided = picture.render.between.value_or(0) > 0;
-    if (mode == Mode::kComposite && !areDivided) return;
+    if (!mixesVoxels(picture)) return;
     const std::string what = mode == Mode::kComposite
                                  ? "--between " + std::to_string(*picture.render.between)
                                  : "--mode " + modeName(mode);
@@ -304,7 +307,7 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
     if (options.optics.transferFunction.categorical && !options.optics.surface) {
         warnOfLabels(saysTable ? "--tf" : input.string(), picture, preset, volume,
                      options.optics.transferFunction, listener);
-    } else if (!saysTable && saysLabels(input) && !anyBroken(volume)) {
+    } else if (!saysTable && mixesVoxels(picture) && saysLabels(input) && !anyBroken(volume)) {
         warnOfMixedLabels(input.string(), picture, listener);
     }
     if (options.optics.surface) finishSurface(picture, volume, options.optics, listener);

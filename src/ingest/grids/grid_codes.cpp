@@ -245,11 +245,6 @@ bool codeHalfTiles(const Tree& tree, CodeTree::Tree& codes, CodeCounts& counts) 
     return areHalves;
 }
 
-[[noreturn]] void failDamaged(const GridCodesOptions& options) {
-    throw DamagedLeaves(ErrorCode::kInput, gotExpected(options.where, "leaves that are damaged",
-                                                       "a sound OpenVDB grid"));
-}
-
 template <typename Tree>
 bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCodesOptions& options,
                     Volume& volume) {
@@ -266,7 +261,7 @@ bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCod
         if (!codesOfHalfBits(bits, out)) areFinite = false;
         return !leaves.areDamaged();
     });
-    if (leaves.areDamaged()) failDamaged(options);
+    if (leaves.areDamaged()) throw DamagedLeaves(options.where);
     if (!areFinite) return false;
     volume.codeBook = CodeBook::half();
     takeCodes(std::move(codes), counts, options, volume);
@@ -279,11 +274,11 @@ bool fillFromNumbers(const Tree& topology, const VdbLeaves& packed, const GridCo
     // One to see what there is and one for codes; rarely one more.
     const FileLeaves<Tree> leaves(topology, packed, 2, options.listener);
     GridScan scan = scanLeaves(leaves, kNumbersAlone);
-    if (leaves.areDamaged()) failDamaged(options);
+    if (leaves.areDamaged()) throw DamagedLeaves(options.where);
     if (scan.nonFinite > 0) return false;
     fillFromLeaves(leaves, std::move(scan), options, volume);
     // Each pass reads the file anew.
-    if (leaves.areDamaged()) failDamaged(options);
+    if (leaves.areDamaged()) throw DamagedLeaves(options.where);
     return true;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "deltasplat/error.h"
 
 namespace deltasplat {
@@ -12,7 +14,10 @@ struct NotFinite : Error {
 
 /// Says that leaves of a grid cannot be unpacked where they were looked for.
 struct DamagedLeaves : Error {
-    using Error::Error;
+    /// @param where  file and grid
+    explicit DamagedLeaves(const std::string& where)
+        : Error(ErrorCode::kInput,
+                gotExpected(where, "leaves that are damaged", "a sound OpenVDB grid")) {}
 };
 
 }  // namespace deltasplat

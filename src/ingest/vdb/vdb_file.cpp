@@ -16,6 +16,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/files/file_bytes.h"
+#include "ingest/grids/grid_errors.h"
 #include "ingest/grids/scalar_grids.h"
 #include "ingest/vdb/leaf_sizes.h"
 #include "ingest/vdb/vdb_bytes.h"
@@ -315,10 +316,7 @@ openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listen
             if (mayBeUnsound(head.format)) {
                 const VdbLeaves leaves(std::make_shared<const FileBytes>(file_),
                                        std::move(places.leaves), head.format, head.map);
-                if (!leaves.areSound()) {
-                    throw Error(ErrorCode::kInput, gotExpected(where, "leaves that are damaged",
-                                                               "a sound OpenVDB grid"));
-                }
+                if (!leaves.areSound()) throw DamagedLeaves(where);
             }
         }
         requireEnd(bytes, *part);
