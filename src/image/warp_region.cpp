@@ -13,6 +13,7 @@
 #include <glm/gtc/type_precision.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -82,7 +83,14 @@ class RegionWarper {
           flat_(camera.projection == Projection::kPerspective),
           plane_(plane),
           part_(part),
-          ladder_(filter) {}
+          ladder_(filter) {
+        // Elsewhere it ends where there is nothing more.
+        const glm::ivec2 end = raster.min + raster.size;
+        for (int axis = 0; axis < 2; ++axis) {
+            if (raster.min[axis] <= plane.limits().min[axis]) goesOnBefore_[axis] = true;
+            if (end[axis] >= plane.limits().max[axis]) goesOnBehind_[axis] = true;
+        }
+    }
 
     void run() {
         const int first = part_.first.y / kBand;
@@ -129,9 +137,23 @@ class RegionWarper {
         const glm::dvec2 x = moved(alongX);
         const glm::dvec2 y = moved(alongY);
         // In whichever direction is worst.
-        const glm::dvec2 squares = x * x + y * y;
+        glm::dvec2 squares = x * x + y * y;
+        for (int axis = 0; axis < 2; ++axis) {
+            const double most = mostStretch(place.position, axis);
+            squares[axis] = std::min(squares[axis], most * most);
+        }
         place.rungs = {FilterLadder::rungOf(squares.x), FilterLadder::rungOf(squares.y)};
         return place;
+    }
+
+    // Where the plane ends and the volume goes on, filters stay on the plane: there a pixel may be
+    // wider than what is left of it, since its region is, or since its angle is wide.
+    double mostStretch(glm::dvec2 position, int axis) const {
+        constexpr double kReach = 2.1;  // of a filter of stretch 1, and of rungs that are rounded
+        double room = std::numeric_limits<double>::infinity();
+        if (goesOnBefore_[axis]) room = std::min(room, position[axis]);
+        if (goesOnBehind_[axis]) room = std::min(room, raster_.size[axis] - 1 - position[axis]);
+        return room / kReach;
     }
 
     // Whether a glance at a tile's corners shows that there is nothing: rays between those of a
@@ -219,6 +241,8 @@ class RegionWarper {
     const BasePlane& plane_;
     const PicturePart& part_;
     FilterLadder ladder_;
+    glm::bvec2 goesOnBefore_{false};  // along each axis: whether the plane ends the raster
+    glm::bvec2 goesOnBehind_{false};
 };
 
 }  // namespace

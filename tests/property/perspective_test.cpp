@@ -537,6 +537,31 @@ TEST(Perspective, whatCannotBeSeenIsAnEmptyPicture) {
     EXPECT_TRUE(isEmpty(volume));
 }
 
+// Where slices are thick, a region is as narrow as a pixel, and filters as wide as it.
+TEST(Perspective, nothingIsSeenThroughFogAroundTheEye) {
+    TestVolume fog({0, 0, 0}, {32, 32, 32});
+    std::fill(fog.values.begin(), fog.values.end(), 200.0f);
+    for (const double thickness : {1.0, 10.0, 50.0}) {
+        fog.worldFromIndex = spaced({1, 1, thickness});
+        const Volume volume = throughRaw(fog, {1, 1, thickness});
+        for (const Projection projection : {Projection::kPerspective, Projection::kLatlong}) {
+            for (const double fov : {60.0, 90.0, 179.0}) {
+                for (const int side : {32, 64, 128}) {
+                    RenderOptions options = optionsOf(0.97, projection, {side, side / 2});
+                    if (projection == Projection::kPerspective) options.camera.fovDegrees = fov;
+                    options.camera.eyeWorld = glm::dvec3(15.2, 14.3, 14.1 * thickness);
+                    options.camera.direction = glm::dvec3(0.05, 0.03, -1);
+                    const Image image = render(volume, options).image;
+                    float least = 1;
+                    for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+                        least = std::min(least, image.rgba[i]);
+                    EXPECT_GE(least, 0.999f) << thickness << ", " << fov << ", " << side;
+                }
+            }
+        }
+    }
+}
+
 // A floor of checkered voxels from five pixels a voxel to a fifth of one, against the mean of
 // sixteen pixels for each.
 TEST(Perspective, farSlicesDoNotAlias) {
