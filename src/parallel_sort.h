@@ -2,33 +2,64 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "deltasplat/threads.h"
 #include "parallel.h"
 
 namespace deltasplat {
 
-/// Sorts as std::sort does, on all threads.
+/// Sorts as std::sort does, on all threads: items go to the buckets between some of them, and each
+/// bucket is sorted.
 /// @param isBefore  which of two items comes first; where it says of neither, either may
 template <typename T, typename IsBefore>
 void parallelSort(std::vector<T>& items, const IsBefore& isBefore) {
-    // Of fewer items, pieces are sorted before a thread begins.
-    constexpr std::size_t kLeast = 4096;
-    constexpr std::size_t kMostPieces = 64;
-    const std::size_t pieces =
-        std::bit_floor(std::clamp<std::size_t>(items.size() / kLeast, 1, kMostPieces));
-    const auto edge = [&](std::size_t i) {
-        return items.begin() + std::ptrdiff_t(i * items.size() / pieces);
-    };
-    parallelFor(pieces, [&](std::size_t i) { std::sort(edge(i), edge(i + 1), isBefore); });
-    for (std::size_t width = 1; width < pieces; width *= 2) {
-        parallelFor(pieces / (2 * width), [&](std::size_t i) {
-            const std::size_t first = 2 * width * i;
-            std::inplace_merge(edge(first), edge(first + width), edge(first + 2 * width), isBefore);
-        });
+    // Of fewer items, all are sorted before a thread begins.
+    constexpr std::size_t kLeast = 8192;
+    constexpr std::size_t kBuckets = 64;
+    constexpr std::size_t kSamplesPerBucket = 16;
+    constexpr std::size_t kPieces = 64;
+    if (items.size() < kLeast || threadCount() == 1)
+        return std::sort(items.begin(), items.end(), isBefore);
+    std::vector<const T*> samples;
+    for (std::size_t i = 0; i < kBuckets * kSamplesPerBucket; ++i)
+        samples.push_back(&items[i * (items.size() / (kBuckets * kSamplesPerBucket))]);
+    const auto isLess = [&](const T* a, const T* b) { return isBefore(*a, *b); };
+    std::sort(samples.begin(), samples.end(), isLess);
+    std::vector<const T*> firsts;  // of all buckets but the first one
+    for (std::size_t i = 1; i < kBuckets; ++i) firsts.push_back(samples[i * kSamplesPerBucket]);
+
+    using Counts = std::array<std::size_t, kBuckets>;
+    const auto edge = [&](std::size_t piece) { return piece * items.size() / kPieces; };
+    std::vector<std::uint8_t> buckets(items.size());
+    std::vector<Counts> places(kPieces);  // how many items of a bucket; then where they go
+    parallelFor(kPieces, [&](std::size_t piece) {
+        for (std::size_t i = edge(piece); i < edge(piece + 1); ++i) {
+            const auto bucket = std::upper_bound(firsts.begin(), firsts.end(), &items[i], isLess);
+            buckets[i] = std::uint8_t(bucket - firsts.begin());
+            ++places[piece][buckets[i]];
+        }
+    });
+    Counts ends{};
+    std::size_t place = 0;
+    for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
+        for (Counts& counts : places) place += std::exchange(counts[bucket], place);
+        ends[bucket] = place;
     }
+    std::vector<T> sorted(items.size());
+    parallelFor(kPieces, [&](std::size_t piece) {
+        for (std::size_t i = edge(piece); i < edge(piece + 1); ++i)
+            sorted[places[piece][buckets[i]]++] = std::move(items[i]);
+    });
+    parallelFor(kBuckets, [&](std::size_t bucket) {
+        const auto begin = sorted.begin() + std::ptrdiff_t(bucket == 0 ? 0 : ends[bucket - 1]);
+        std::sort(begin, sorted.begin() + std::ptrdiff_t(ends[bucket]), isBefore);
+    });
+    items = std::move(sorted);
 }
 
 }  // namespace deltasplat

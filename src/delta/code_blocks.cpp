@@ -2,11 +2,12 @@
 #include "delta/code_blocks.h"
 
 #include <algorithm>
-#include <iterator>
+#include <optional>
 #include <tuple>
 
 #include "ingest/codes/leaf_slices.h"
 #include "memory.h"
+#include "parallel.h"
 #include "parallel_sort.h"
 
 namespace deltasplat {
@@ -53,15 +54,25 @@ class SeenCodes {
     std::vector<int> before_;  // how many codes before each have a slot
 };
 
-// Returns the leaves with active voxels whose slots may be other than empty.
-std::vector<CodeLeaf> visibleLeaves(const CodeTree& codes, std::span<const Slot> slotMap) {
+// Returns, in parts, the leaves with active voxels whose slots may be other than empty.
+std::vector<std::vector<CodeBlock>> visibleLeaves(const CodeTree& codes, int sliceAxis,
+                                                  std::span<const Slot> slotMap) {
+    constexpr std::size_t kPart = 4096;
     const auto all = codes.leaves();
-    if (slotMap.empty()) return *all;
-    const SeenCodes seen(slotMap);
-    std::vector<CodeLeaf> leaves;
-    std::copy_if(all->begin(), all->end(), std::back_inserter(leaves),
-                 [&](const CodeLeaf& leaf) { return seen.hasAny(leaf.lowest, leaf.highest); });
-    return leaves;
+    std::optional<SeenCodes> seen;
+    if (!slotMap.empty()) seen.emplace(slotMap);
+    std::vector<std::vector<CodeBlock>> parts((all->size() + kPart - 1) / kPart);
+    parallelFor(parts.size(), [&](std::size_t part) {
+        const std::size_t end = std::min((part + 1) * kPart, all->size());
+        for (std::size_t i = part * kPart; i < end; ++i) {
+            const CodeLeaf& one = (*all)[i];
+            if (seen && !seen->hasAny(one.lowest, one.highest)) continue;
+            // Shifting keeps the floor of negative positions.
+            parts[part].push_back({toSliceOrder(one.leaf->origin() >> 3, sliceAxis), one.leaf,
+                                   kEmptySlot, nullptr, one.lowest, one.highest});
+        }
+    });
+    return parts;
 }
 
 Slot inactiveSlot(Code number) {
@@ -82,9 +93,10 @@ BlockReader::BlockReader(const CodeTree& codes, const CodeTree* inactive, int sl
 }
 
 void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
-    const std::vector<CodeLeaf> leaves = visibleLeaves(codes, slotMap_);
+    const std::vector<std::vector<CodeBlock>> leaves = visibleLeaves(codes, sliceAxis_, slotMap_);
     // A tile may stand for any number of blocks: know how many before they are listed.
-    double blocks = double(leaves.size());
+    double blocks = 0;
+    for (const std::vector<CodeBlock>& part : leaves) blocks += double(part.size());
     const auto slotOfCode = [this](Code code) { return slotOf(code); };
     const auto count = [&](const openvdb::CoordBBox& box, Slot) { blocks += box.volume() / 512.0; };
     forVisibleTiles(codes, slotOfCode, count);
@@ -93,11 +105,8 @@ void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
     requireMemory("list of voxel blocks", blocks * kBytesPerBlock);
 
     blocks_.reserve(std::size_t(blocks));
-    // Shifting keeps the floor of negative positions.
-    for (const CodeLeaf& entry : leaves) {
-        blocks_.push_back({toSliceOrder(entry.leaf->origin() >> 3, sliceAxis_), entry.leaf,
-                           kEmptySlot, nullptr, entry.lowest, entry.highest});
-    }
+    for (const std::vector<CodeBlock>& part : leaves)
+        blocks_.insert(blocks_.end(), part.begin(), part.end());
     const auto add = [&](const openvdb::CoordBBox& box, Slot slot) { addTile(box, slot); };
     forVisibleTiles(codes, slotOfCode, add);
     if (!inactive) return;

@@ -199,8 +199,8 @@ TEST(ReadRawError, MoreThanMemoryHolds) {
 TEST(ReadRawError, TheListenerStopsTheWork) {
     const TempFolder folder;
     for (const std::string type : {"uint8", "float32"}) {
-        const std::string file = "a_8x8x80_" + type + ".raw";
-        writeBytes(file, std::string(8 * 8 * 80 * (type == "uint8" ? 1 : 4), '\0'));
+        const std::string file = "a_8x8x800_" + type + ".raw";
+        writeBytes(file, std::string(8 * 8 * 800 * (type == "uint8" ? 1 : 4), '\0'));
         int calls = 0;
         Listener listener;
         listener.progress = [&](double) {

@@ -365,7 +365,7 @@ TEST(ReadRaw, ThreadsDoNotMatter) {
 
 TEST(ReadRaw, ReportsRisingProgressUpToOne) {
     const TempFolder folder;
-    Plain<float> plain = randomPlain<float>({8, 8, 50}, -1, 1, 9);
+    Plain<float> plain = randomPlain<float>({8, 8, 1000}, -1, 1, 9);
     writeBytes(plain.file("float32"), bytesOf(plain.values));
     std::vector<double> shares;
     Listener listener;

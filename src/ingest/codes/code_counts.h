@@ -9,6 +9,7 @@
 
 #include "deltasplat/ingest/code_book.h"
 #include "deltasplat/threads.h"
+#include "parallel.h"
 
 namespace deltasplat {
 
@@ -37,9 +38,15 @@ class CodeCounts {
     /// Returns the sums, [kCodeCount], and leaves none.
     std::vector<std::uint64_t> take() {
         std::vector<std::uint64_t> sum(kCodeCount);
-        for (const std::vector<Count>& counts : counts_)
-            for (std::size_t code = 0; code < counts.size(); ++code)
-                sum[code] += counts[code].even + counts[code].odd;
+        std::erase_if(counts_, [](const std::vector<Count>& counts) { return counts.empty(); });
+        constexpr std::size_t kPart = 4096;
+        static_assert(kCodeCount % kPart == 0);
+        parallelFor(kCodeCount / kPart, [&](std::size_t part) {
+            for (const std::vector<Count>& counts : counts_) {
+                for (std::size_t code = part * kPart; code < (part + 1) * kPart; ++code)
+                    sum[code] += counts[code].even + counts[code].odd;
+            }
+        });
         counts_.clear();
         return sum;
     }

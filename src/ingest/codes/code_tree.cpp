@@ -2,26 +2,37 @@
 #include "ingest/codes/code_tree.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
 
 #include "deltasplat/error.h"
+#include "heap_growth.h"
+#include "ingest/codes/code_nodes.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/codes/slot_blocks.h"
 #include "memory.h"
 #include "parallel.h"
+#include "parallel_sort.h"
 
 namespace deltasplat {
 
-CodeLeaf describeLeaf(const CodeTree::Leaf& leaf) {
-    const Code* codes = leaf.buffer().data();
-    CodeLeaf described{&leaf, codes[leaf.valueMask().findFirstOn()], 0};
-    const auto add = [&](Code code) {
+CodeLeaf describeLeaf(const CodeTree::Leaf& leaf, std::span<const Code> codes) {
+    CodeLeaf described{&leaf, codes.front(), codes.front()};
+    for (const Code code : codes) {
         described.lowest = std::min(described.lowest, code);
         described.highest = std::max(described.highest, code);
-    };
-    if (leaf.isDense()) {
-        for (openvdb::Index n = 0; n < CodeTree::Leaf::SIZE; ++n) add(codes[n]);
-    } else {
-        for (auto on = leaf.valueMask().beginOn(); on; ++on) add(codes[on.pos()]);
+    }
+    return described;
+}
+
+CodeLeaf describeLeaf(const CodeTree::Leaf& leaf) {
+    const Code* codes = leaf.buffer().data();
+    if (leaf.isDense()) return describeLeaf(leaf, {codes, CodeTree::Leaf::SIZE});
+    CodeLeaf described = describeLeaf(leaf, {codes + leaf.valueMask().findFirstOn(), 1});
+    for (auto on = leaf.valueMask().beginOn(); on; ++on) {
+        described.lowest = std::min(described.lowest, codes[on.pos()]);
+        described.highest = std::max(described.highest, codes[on.pos()]);
     }
     return described;
 }
@@ -40,39 +51,70 @@ std::vector<CodeLeaf> listLeaves(const CodeTree::Tree& tree) {
     return described;
 }
 
-std::unique_ptr<CodeTree::Leaf> makeLeaf(const SlotBlock& block, int sliceAxis) {
-    auto leaf = std::make_unique<CodeTree::Leaf>(blockOrigin(block.position, sliceAxis), Code{0},
-                                                 /*active=*/false);
-    const ShortSlot* slot = block.slots;
-    forLeafVoxels(sliceAxis, [&](const glm::ivec3&, int n) {
-        if (*slot != kEmptySlot) leaf->setValueOn(openvdb::Index(n), Code(*slot - 1));
-        ++slot;
-    });
-    return leaf;
+// A block, and where its first voxel lies.
+struct PlacedBlock {
+    openvdb::Coord origin;
+    const SlotBlock* block;
+};
+
+// Blocks of one node one after the other.
+bool isBefore(const PlacedBlock& a, const PlacedBlock& b) {
+    constexpr int kNode = CodeTree::Tree::RootNodeType::ChildNodeType::ChildNodeType::DIM;
+    const openvdb::Coord nodeA = a.origin & ~(kNode - 1);
+    const openvdb::Coord nodeB = b.origin & ~(kNode - 1);
+    return nodeA != nodeB ? nodeA < nodeB : a.origin < b.origin;
 }
 
-void fillTree(const SlotBlocks& blocks, CodeTree::Tree& tree) {
+// @param leaf  without room
+void fillLeaf(const SlotBlock& block, int sliceAxis, CodeTree::Leaf& leaf) {
+    expectPieces(CodeTree::Leaf::SIZE * sizeof(Code));
+    leaf.allocate();
+    Code* const codes = leaf.buffer().data();
+    std::array<std::uint64_t, 8> mask{};
+    const ShortSlot* slot = block.slots;
+    forLeafVoxels(sliceAxis, [&](const glm::ivec3&, int n) {
+        const bool isActive = *slot != kEmptySlot;
+        codes[n] = isActive ? Code(*slot - 1) : Code{0};
+        mask[std::size_t(n) / 64] |= std::uint64_t{isActive} << (n % 64);
+        ++slot;
+    });
+    for (openvdb::Index x = 0; x < mask.size(); ++x)
+        leaf.getValueMask().getWord<std::uint64_t>(x) = mask[x];
+}
+
+// Returns the leaves.
+std::vector<CodeLeaf> fillTree(const SlotBlocks& blocks, CodeTree::Tree& tree) {
     // A leaf's codes and its mask, and what is kept of it beside them.
     constexpr double kLeafBytes = sizeof(CodeTree::Leaf) + 512 * sizeof(Code) + 64;
     requireMemory("codes of a delta grid that is not seen along its slices",
                   kLeafBytes * double(blocks.blocks().size()));
-    std::vector<std::unique_ptr<CodeTree::Leaf>> leaves(blocks.blocks().size());
-    parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const SlotBlock& block = blocks.blocks()[i];
-            if (block.slots) leaves[i] = makeLeaf(block, blocks.sliceAxis());
-        }
-    });
-    openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(tree);
-    for (std::size_t i = 0; i < leaves.size(); ++i) {
-        const SlotBlock& block = blocks.blocks()[i];
-        if (leaves[i]) {
-            accessor.addLeaf(leaves[i].release());
+    std::vector<PlacedBlock> placed;
+    placed.reserve(blocks.blocks().size());
+    for (const SlotBlock& block : blocks.blocks())
+        placed.push_back({blockOrigin(block.position, blocks.sliceAxis()), &block});
+    parallelSort(placed, isBefore);
+    std::vector<openvdb::Coord> places;
+    std::vector<const SlotBlock*> ofLeaves;
+    std::vector<TilePlace> tiles;
+    std::vector<Code> tileCodes;
+    for (const PlacedBlock& one : placed) {
+        if (one.block->slots) {
+            places.push_back(one.origin);
+            ofLeaves.push_back(one.block);
         } else {
-            accessor.addTile(1, blockOrigin(block.position, blocks.sliceAxis()),
-                             Code(block.tileSlot - 1), true);
+            tiles.push_back({one.origin, 1});
+            tileCodes.push_back(Code(one.block->tileSlot - 1));
         }
     }
+    const std::vector<CodeTree::Leaf*> leaves = addNodes(places, tiles, tileCodes, tree);
+    std::vector<CodeLeaf> described(leaves.size());
+    parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            fillLeaf(*ofLeaves[i], blocks.sliceAxis(), *leaves[i]);
+            described[i] = {leaves[i], ofLeaves[i]->lowest, ofLeaves[i]->highest};
+        }
+    });
+    return described;
 }
 
 }  // namespace
@@ -87,7 +129,11 @@ const CodeTree::Tree& CodeTree::tree() const {
     }
     const std::lock_guard lock(mutex_);
     // Work taken on while waiting here might want the same tree.
-    if (!hasTree_.load(std::memory_order_relaxed)) isolated([&] { fillTree(*blocks_, tree_); });
+    if (!hasTree_.load(std::memory_order_relaxed)) {
+        isolated([&] {
+            leaves_.store(std::make_shared<const std::vector<CodeLeaf>>(fillTree(*blocks_, tree_)));
+        });
+    }
     hasTree_.store(true, std::memory_order_release);
     return tree_;
 }
@@ -108,6 +154,10 @@ std::shared_ptr<const std::vector<CodeLeaf>> CodeTree::leaves() const {
     known = std::make_shared<const std::vector<CodeLeaf>>(listLeaves(tree()));
     leaves_.store(known);
     return known;
+}
+
+void CodeTree::noteLeaves(std::vector<CodeLeaf> leaves) {
+    leaves_.store(std::make_shared<const std::vector<CodeLeaf>>(std::move(leaves)));
 }
 
 }  // namespace deltasplat

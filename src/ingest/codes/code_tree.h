@@ -6,6 +6,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -45,6 +46,9 @@ struct CodeTree {
     /// Lists the leaves that have active voxels, with the ranges of their codes: made on the first
     /// call, after which the tree must not change. Thread-safe.
     std::shared_ptr<const std::vector<CodeLeaf>> leaves() const;
+    /// Tells leaves() what it would find out, for who has filled the tree: it must not change then.
+    /// @param leaves  all that have active voxels, in the tree's order
+    void noteLeaves(std::vector<CodeLeaf> leaves);
 
   private:
     mutable Tree tree_{Code{0}};
@@ -64,5 +68,7 @@ struct CodeLeaf {
 
 /// @param leaf  one that has active voxels
 CodeLeaf describeLeaf(const CodeTree::Leaf& leaf);
+/// @param codes  of its active voxels, in any order
+CodeLeaf describeLeaf(const CodeTree::Leaf& leaf, std::span<const Code> codes);
 
 }  // namespace deltasplat

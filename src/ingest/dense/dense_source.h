@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "deltasplat/ingest/read_volume.h"
+#include "deltasplat/memory_limit.h"
 #include "ingest/raw/raw_format.h"
 
 namespace deltasplat {
@@ -28,12 +30,22 @@ struct DenseSource {
 
     /// Receives `slices` slices from number `first` on, x fastest, without gaps.
     using LayerUse = std::function<void(int first, int slices, const std::byte* bytes)>;
-    /// Calls the function for layers of kLayerSlices slices (fewer at the end) from first to last,
-    /// and reports the share done. May be called more than once, and then starts again.
+    /// Calls the function for a multiple of kLayerSlices slices, at most stepSlices() (fewer at the
+    /// end), from first to last, and reports the share done. May be called more than once, and then
+    /// starts again.
     /// @throw Error(kInput) if the file turns out not to be what it claimed
     std::function<void(const LayerUse& use, const Listener& listener)> forEachLayer;
 
     static constexpr int kLayerSlices = 8;
+    /// Returns how many slices make enough work for all threads; the fewest where memory is
+    /// limited.
+    int stepSlices() const {
+        const std::int64_t mostLayers = memoryLimit() > 0 ? 1 : 16;
+        constexpr std::int64_t kBytes = std::int64_t{8} << 20;
+        const auto layer = std::int64_t(sliceBytes()) * kLayerSlices;
+        const std::int64_t layers = std::clamp(kBytes / layer, std::int64_t{1}, mostLayers);
+        return int(std::min<std::int64_t>(dims.z, layers * kLayerSlices));
+    }
     std::size_t rowBytes() const { return std::size_t(dims.x) * std::size_t(rawTypeBytes(type)); }
     std::size_t sliceBytes() const { return rowBytes() * std::size_t(dims.y); }
 };

@@ -1,24 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/tree/ValueAccessor.h>
-
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <map>
 #include <memory>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "deltasplat/threads.h"
+#include "heap_growth.h"
+#include "ingest/codes/code_tree.h"
 #include "parallel.h"
 
 namespace deltasplat {
 
-/// Builds the OpenVDB tree of a dense volume, one layer of 8 slices at a time. Every voxel of the
+/// Builds the OpenVDB tree of a dense volume, some layers of 8 slices at a time. Every voxel of the
 /// volume is active; a whole block of one value becomes a tile. Deterministic whatever the thread
 /// count.
 template <typename Tree>
@@ -33,43 +37,53 @@ class DenseTreeBuilder {
     /// @param dims  voxels along x, y and z
     DenseTreeBuilder(Tree& tree, const glm::ivec3& dims)
         : dims_(dims),
-          blocks_((glm::ivec2(dims) + (kBlock - 1)) / kBlock),
-          strips_(std::clamp(threadCount(), 1, blocks_.y)),
+          blocks_((dims + (kBlock - 1)) / kBlock),
+          workers_(std::size_t(std::max(1, threadCount()))),
           tree_(tree) {}
 
-    /// How many parts of a layer are worked on at the same time, each by one thread.
-    int strips() const { return strips_; }
+    /// How many parts of the work go on at the same time.
+    std::size_t workers() const { return workers_; }
 
-    /// Adds the slices firstSlice .. firstSlice + 7, or to the last; firstSlice is a multiple of 8.
-    /// @param fill   fill(corner, size, values) writes the values of the block at voxel corner
-    ///               (x, y) into values[512], in leaf order; called from all threads
-    /// @param tally  tally(strip, size, values, uniform) hears of every block after it is filled;
-    ///               `uniform`: it is whole and has one value
+    /// Adds slices from firstSlice on, behind those that were added before.
+    /// @param slices  a multiple of 8, or all that are left
+    /// @param fill    fill(corner, size, values) writes the values of the block at voxel corner
+    ///                (x, y, z), counted from firstSlice, into values[512], in leaf order; called
+    ///                from all threads
+    /// @param tally   tally(worker, size, values, uniform) hears of every block after it is filled;
+    ///                `uniform`: it is whole and has one value
     template <typename Fill, typename Tally>
-    void addLayer(int firstSlice, const Fill& fill, const Tally& tally) {
-        std::vector<Block> layer(std::size_t(blocks_.x) * std::size_t(blocks_.y));
-        parallelFor(std::size_t(strips_), [&](std::size_t strip) {
-            for (int y = int(strip); y < blocks_.y; y += strips_) {
-                for (int x = 0; x < blocks_.x; ++x) {
-                    const glm::ivec3 corner(x * kBlock, y * kBlock, firstSlice);
-                    Block& block = layer[std::size_t(y) * std::size_t(blocks_.x) + std::size_t(x)];
-                    block = makeBlock(strip, corner, fill, tally);
-                }
-            }
-        });
-        hangIn(layer, firstSlice);
+    void add(int firstSlice, int slices, const Fill& fill, const Tally& tally) {
+        const int firstLayer = firstSlice / kBlock;
+        const int layers = (slices + kBlock - 1) / kBlock;
+        for (int layer = firstLayer, count = 0; layer < firstLayer + layers; layer += count) {
+            // Those that hang in one row of nodes.
+            count = std::min(firstLayer + layers, (layer / kNode + 1) * kNode) - layer;
+            makeBlocks(layer, count, firstSlice, fill, tally);
+            if ((layer + count) % kNode == 0 || layer + count == blocks_.z) hangIn(layer / kNode);
+        }
     }
 
-    /// Returns the most bytes that one layer can add to the tree.
-    double worstLayerBytes() const {
-        const double blocks = double(blocks_.x) * blocks_.y;
-        return blocks * (sizeof(Leaf) + kBlockVoxels * sizeof(Value) + sizeof(Block));
+    /// Returns the leaves with the ranges of their codes, once all slices are there.
+    std::vector<CodeLeaf> takeLeaves() { return std::move(leaves_); }
+
+    /// Returns the most bytes that slices can add to the tree.
+    double worstBytes(int slices) const {
+        const double row = double(blocks_.x) * blocks_.y;
+        const double added = row * ((slices + kBlock - 1) / kBlock);
+        return added * (sizeof(Leaf) + kBlockVoxels * sizeof(Value)) +
+               row * layersKept() * sizeof(Block);
     }
 
   private:
+    using Upper = typename Tree::RootNodeType::ChildNodeType;
+    using Lower = typename Upper::ChildNodeType;
+    static constexpr bool kHasCodes = std::is_same_v<Tree, CodeTree::Tree>;
+    static constexpr int kNode = Lower::DIM / kBlock;  // blocks of a node along an axis
+
     struct Block {
-        std::unique_ptr<Leaf> leaf;  // empty: a tile of `value`
-        Value value{};
+        std::unique_ptr<Leaf> leaf;  // empty: a tile of `low`
+        Value low{};                 // and `high`: the range of a leaf's codes
+        Value high{};
     };
 
     static bool isUniform(const Value* values) {
@@ -90,44 +104,108 @@ class DenseTreeBuilder {
     }
 
     template <typename Fill, typename Tally>
-    Block makeBlock(std::size_t strip, const glm::ivec3& corner, const Fill& fill,
+    void makeBlocks(int firstLayer, int layers, int firstSlice, const Fill& fill,
+                    const Tally& tally) {
+        made_.resize(std::size_t(blocks_.x) * std::size_t(blocks_.y) * std::size_t(layersKept()));
+        std::atomic<int> next = 0;
+        parallelFor(workers_, [&](std::size_t worker) {
+            for (int row = next++; row < layers * blocks_.y; row = next++) {
+                const int y = row % blocks_.y;
+                const int z = firstLayer + row / blocks_.y;
+                for (int x = 0; x < blocks_.x; ++x) {
+                    madeAt(x, y, z) = makeBlock(worker, {x * kBlock, y * kBlock, z * kBlock},
+                                                firstSlice, fill, tally);
+                }
+            }
+        });
+    }
+
+    template <typename Fill, typename Tally>
+    Block makeBlock(std::size_t worker, const glm::ivec3& corner, int firstSlice, const Fill& fill,
                     const Tally& tally) const {
         alignas(64) std::array<Value, kBlockVoxels> values;
         const glm::ivec3 size = glm::min(dims_ - corner, glm::ivec3(kBlock));
         const bool whole = size == glm::ivec3(kBlock);
         if (!whole) values.fill(Value{});
-        fill(glm::ivec2(corner), size, values.data());
+        fill(corner - glm::ivec3(0, 0, firstSlice), size, values.data());
         const bool uniform = whole && isUniform(values.data());
-        tally(strip, size, values.data(), uniform);
-        if (uniform) return {nullptr, values[0]};
+        tally(worker, size, values.data(), uniform);
+        if (uniform) return {nullptr, values[0], values[0]};
 
-        auto leaf =
-            std::make_unique<Leaf>(openvdb::Coord(corner.x, corner.y, corner.z), Value{}, true);
+        expectPieces(sizeof(Leaf) + sizeof values);
+        auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(),
+                                           openvdb::Coord(corner.x, corner.y, corner.z), Value{},
+                                           /*active=*/true);
+        leaf->allocate();
         std::copy(values.begin(), values.end(), leaf->buffer().data());
         if (!whole) deactivateOutside(*leaf, size);
-        return {std::move(leaf), Value{}};
+        if constexpr (kHasCodes) {
+            const CodeLeaf described = describeLeaf(*leaf);
+            return {std::move(leaf), described.lowest, described.highest};
+        }
+        return {std::move(leaf), Value{}, Value{}};
     }
 
-    // The tree is not made for several writers; hanging finished blocks in is the small part.
-    void hangIn(std::vector<Block>& layer, int firstSlice) {
-        openvdb::tree::ValueAccessor<Tree> accessor(tree_);
-        for (int y = 0; y < blocks_.y; ++y) {
-            for (int x = 0; x < blocks_.x; ++x) {
-                Block& block = layer[std::size_t(y) * std::size_t(blocks_.x) + std::size_t(x)];
-                if (block.leaf) {
-                    accessor.addLeaf(block.leaf.release());
-                } else {
-                    const openvdb::Coord corner(x * kBlock, y * kBlock, firstSlice);
-                    accessor.addTile(1, corner, block.value, true);
-                }
+    int layersKept() const { return std::min(blocks_.z, kNode); }
+
+    Block& madeAt(int x, int y, int z) {
+        return made_[(std::size_t(z % kNode) * std::size_t(blocks_.y) + std::size_t(y)) *
+                         std::size_t(blocks_.x) +
+                     std::size_t(x)];
+    }
+
+    // Hangs the blocks of a row of nodes into the tree.
+    void hangIn(int nodeZ) {
+        const glm::ivec2 nodes = (glm::ivec2(blocks_) + (kNode - 1)) / kNode;
+        std::vector<std::unique_ptr<Lower>> made(std::size_t(nodes.x) * std::size_t(nodes.y));
+        std::vector<std::vector<CodeLeaf>> leaves(made.size());
+        parallelFor(made.size(), [&](std::size_t n) {
+            const glm::ivec3 first(int(n) % nodes.x * kNode, int(n) / nodes.x * kNode,
+                                   nodeZ * kNode);
+            made[n] = makeNode(first, leaves[n]);
+        });
+        for (std::size_t n = 0; n < made.size(); ++n) {
+            leaves_.insert(leaves_.end(), leaves[n].begin(), leaves[n].end());
+            const openvdb::Coord origin = made[n]->origin() & ~(Upper::DIM - 1);
+            Upper*& upper = uppers_[origin];
+            if (!upper) {
+                upper = new Upper(origin, tree_.background(), /*active=*/false);
+                tree_.root().addChild(upper);
             }
+            upper->addChild(made[n].release());
         }
     }
 
+    std::unique_ptr<Lower> makeNode(const glm::ivec3& first, std::vector<CodeLeaf>& leaves) {
+        auto node = std::make_unique<Lower>(
+            openvdb::Coord(first.x * kBlock, first.y * kBlock, first.z * kBlock),
+            tree_.background(), /*active=*/false);
+        const glm::ivec3 last = glm::min(first + kNode, blocks_);
+        for (int x = first.x; x < last.x; ++x) {
+            for (int y = first.y; y < last.y; ++y) {
+                for (int z = first.z; z < last.z; ++z) {
+                    Block& block = madeAt(x, y, z);
+                    if (!block.leaf) {
+                        const openvdb::Coord corner(x * kBlock, y * kBlock, z * kBlock);
+                        node->addTile(Lower::coordToOffset(corner), block.low, true);
+                        continue;
+                    }
+                    if constexpr (kHasCodes)
+                        leaves.push_back({block.leaf.get(), block.low, block.high});
+                    node->addChild(block.leaf.release());
+                }
+            }
+        }
+        return node;
+    }
+
     glm::ivec3 dims_;
-    glm::ivec2 blocks_;
-    int strips_;
+    glm::ivec3 blocks_;
+    std::size_t workers_;
     Tree& tree_;
+    std::vector<Block> made_;  // [z % kNode][y][x]
+    std::map<openvdb::Coord, Upper*> uppers_;
+    std::vector<CodeLeaf> leaves_;
 };
 
 }  // namespace deltasplat

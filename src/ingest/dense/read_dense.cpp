@@ -148,31 +148,32 @@ void warnOfChanges(const DenseSource& source, const ReadOptions& options, const 
     }
 }
 
-// Adds the layers of a source to a tree, block by block.
+// Adds the slices of a source to a tree, block by block.
 template <typename Tree>
-class LayerAdder {
+class SliceAdder {
   public:
     using Value = typename Tree::ValueType;
 
-    LayerAdder(const DenseSource& source, Tree& tree)
+    SliceAdder(const DenseSource& source, Tree& tree)
         : source_(source), builder_(tree, glm::ivec3(source.dims)) {
-        const int slices = std::min<int>(int(source.dims.z), DenseSource::kLayerSlices);
+        const int slices = source.stepSlices();
         requireMemory(source.where,
-                      double(source.sliceBytes()) * slices + builder_.worstLayerBytes());
+                      double(source.sliceBytes()) * slices + builder_.worstBytes(slices));
     }
 
-    int strips() const { return builder_.strips(); }
+    DenseTreeBuilder<Tree>& builder() { return builder_; }
 
     /// Reads a block by fill(block, values).
     template <typename Fill, typename Tally>
-    void add(int first, const std::byte* bytes, const Fill& fill, const Tally& tally) {
-        requireMemory(source_.where, builder_.worstLayerBytes());
+    void add(int first, int slices, const std::byte* bytes, const Fill& fill, const Tally& tally) {
+        requireMemory(source_.where, builder_.worstBytes(slices));
         const std::size_t valueBytes = std::size_t(rawTypeBytes(source_.type));
-        builder_.addLayer(
-            first,
-            [&](const glm::ivec2& corner, const glm::ivec3& size, Value* values) {
-                const std::size_t start =
-                    std::size_t(corner.y) * source_.rowBytes() + std::size_t(corner.x) * valueBytes;
+        builder_.add(
+            first, slices,
+            [&](const glm::ivec3& corner, const glm::ivec3& size, Value* values) {
+                const std::size_t start = std::size_t(corner.z) * source_.sliceBytes() +
+                                          std::size_t(corner.y) * source_.rowBytes() +
+                                          std::size_t(corner.x) * valueBytes;
                 fill(RawBlock{bytes + start, source_.rowBytes(), source_.sliceBytes(), size},
                      values);
             },
@@ -185,14 +186,14 @@ class LayerAdder {
 };
 
 // Counts the codes of a block of a volume that has `size` voxels of it.
-void countCodes(std::size_t strip, const glm::ivec3& size, const Code* codes, bool uniform,
+void countCodes(std::size_t worker, const glm::ivec3& size, const Code* codes, bool uniform,
                 CodeCounts& counts) {
     constexpr int kVoxels = 512;
-    if (uniform) return counts.add(strip, codes[0], kVoxels);
-    if (size == glm::ivec3(8)) return counts.add(strip, {codes, kVoxels});
+    if (uniform) return counts.add(worker, codes[0], kVoxels);
+    if (size == glm::ivec3(8)) return counts.add(worker, {codes, kVoxels});
     for (int x = 0; x < size.x; ++x) {
         for (int y = 0; y < size.y; ++y)
-            counts.add(strip, {codes + 64 * x + 8 * y, std::size_t(size.z)});
+            counts.add(worker, {codes + 64 * x + 8 * y, std::size_t(size.z)});
     }
 }
 
@@ -213,7 +214,7 @@ void keepMostFrequent(const std::vector<double>& values, const std::vector<std::
 void readCodes(const DenseSource& source, const ReadOptions& options, const Survey& survey,
                const Listener& listener, Volume& volume) {
     auto codes = std::make_shared<CodeTree>();
-    LayerAdder<CodeTree::Tree> adder(source, codes->tree());
+    SliceAdder<CodeTree::Tree> adder(source, codes->tree());
     const BookEncoder encoder(volume.codeBook);
     ErrorMeter meter(volume.codeBook, survey.bulkMagnitude);
     const bool exact = volume.codeBook.isExact();
@@ -224,7 +225,7 @@ void readCodes(const DenseSource& source, const ReadOptions& options, const Surv
                            options.nanValue.value_or(0),
                            exact ? nullptr : &meter};
     const EncodeBlock encode = blockEncoder(coding);
-    CodeCounts codeCounts(std::size_t(adder.strips()));
+    CodeCounts codeCounts(adder.builder().workers());
     const std::vector<double> frequent = exact ? std::vector<double>() : survey.frequent;
     std::vector<std::uint64_t> counts(frequent.size());
     source.forEachLayer(
@@ -234,12 +235,13 @@ void readCodes(const DenseSource& source, const ReadOptions& options, const Surv
             const auto more = countEqual(bytes, values, coding, frequent);
             std::transform(more.begin(), more.end(), counts.begin(), counts.begin(), std::plus());
             adder.add(
-                first, bytes,
+                first, slices, bytes,
                 [&](const RawBlock& block, Code* values) { encode(block, coding, values); },
                 [&](auto&&... block) { countCodes(block..., codeCounts); });
         },
         listener);
     volume.histogram = codeCounts.take();
+    codes->noteLeaves(adder.builder().takeLeaves());
     volume.codes = std::move(codes);
     summarize(volume);
     if (exact) return;
@@ -257,13 +259,13 @@ openvdb::GridBase::Ptr readGrid(const DenseSource& source, std::optional<double>
                                 const Listener& listener) {
     using Value = typename Grid::ValueType;
     auto grid = Grid::create();
-    LayerAdder<typename Grid::TreeType> adder(source, grid->tree());
+    SliceAdder<typename Grid::TreeType> adder(source, grid->tree());
     std::optional<Value> nanValue;
     if (nonFinite) nanValue = valueAs<Value>(*nonFinite);
     source.forEachLayer(
-        [&](int first, int, const std::byte* bytes) {
+        [&](int first, int slices, const std::byte* bytes) {
             adder.add(
-                first, bytes,
+                first, slices, bytes,
                 [&](const RawBlock& block, Value* values) {
                     readValues(block, source.type, source.bigEndian, nanValue, values);
                 },

@@ -89,8 +89,7 @@ DenseSource rescaled(DenseSource source, const Rescale& rescale) {
     result.forEachLayer = [source = std::move(source), rescale, type = result.type](
                               const DenseSource::LayerUse& use, const Listener& listener) {
         const auto pixels = std::size_t(source.dims.x) * std::size_t(source.dims.y);
-        const auto most =
-            std::size_t(std::min<std::int64_t>(source.dims.z, DenseSource::kLayerSlices));
+        const auto most = std::size_t(source.stepSlices());
         const std::size_t bytes = pixels * most * std::size_t(rawTypeBytes(type));
         requireMemory(source.where, double(bytes));
         const auto values = std::make_unique_for_overwrite<std::byte[]>(bytes);

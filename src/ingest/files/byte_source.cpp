@@ -18,7 +18,7 @@ ByteSource::~ByteSource() = default;
 
 std::size_t ByteSource::read(void* to, std::size_t bytes) {
     if (unpacker_) return unpacker_->read(to, bytes);
-    const std::size_t got = file_.read(place_, to, bytes);
+    const std::size_t got = file_.readInParts(place_, to, bytes);
     place_ += got;
     return got;
 }

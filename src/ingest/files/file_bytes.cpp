@@ -4,12 +4,15 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "deltasplat/error.h"
 #include "ingest/files/file_name.h"
+#include "parallel.h"
 
 namespace deltasplat {
 
@@ -41,6 +44,24 @@ std::size_t FileBytes::read(std::uint64_t place, void* to, std::size_t bytes) co
         }
         if (got == 0) break;
         done += std::size_t(got);
+    }
+    return done;
+}
+
+std::size_t FileBytes::readInParts(std::uint64_t place, void* to, std::size_t bytes) const {
+    constexpr std::size_t kPart = std::size_t{1} << 20;
+    if (bytes <= kPart) return read(place, to, bytes);
+    std::vector<std::size_t> got((bytes + kPart - 1) / kPart);
+    parallelFor(got.size(), [&](std::size_t i) {
+        const std::size_t begin = i * kPart;
+        got[i] =
+            read(place + begin, static_cast<char*>(to) + begin, std::min(kPart, bytes - begin));
+    });
+    // Up to the first part that is short.
+    std::size_t done = 0;
+    for (const std::size_t part : got) {
+        done += part;
+        if (part < kPart) break;
     }
     return done;
 }

@@ -21,6 +21,8 @@ class FileBytes {
     /// Reads `bytes` bytes from `place` on; returns how many there were.
     /// @throw Error(kInput) if they cannot be read
     std::size_t read(std::uint64_t place, void* to, std::size_t bytes) const;
+    /// Does the same on all threads.
+    std::size_t readInParts(std::uint64_t place, void* to, std::size_t bytes) const;
 
   private:
     std::filesystem::path path_;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "heap_growth.h"
 #include "ingest/codes/book_encoder.h"
 #include "ingest/codes/code_counts.h"
 #include "ingest/codes/code_tree.h"
@@ -20,6 +21,7 @@
 #include "ingest/grids/file_leaves.h"
 #include "ingest/grids/grid_errors.h"
 #include "ingest/grids/grid_values.h"
+#include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/scalar_grids.h"
 #include "ingest/readers.h"
 #include "ingest/values/float_kernels.h"
@@ -84,31 +86,49 @@ void spread(const Code* codes, CodeTree::Leaf& leaf) {
     }
 }
 
-// Fills the leaves of a tree, and counts their codes: codesOf(worker, i, room, out) writes those of
-// the active voxels of leaf i, in the order of their places; where it returns false, no more are
+// Makes a tree of codes of leaves and tiles, and counts these: encode(worker, values, codes) turns
+// the values of a leaf's active voxels into codes. Where values are damaged, no more leaves are
 // filled.
-template <typename Room, typename CodesOf>
-void fillLeaves(CodeTree::Tree& codes, CodeCounts& counts, const CodesOf& codesOf) {
-    std::vector<CodeTree::Leaf*> leaves;
-    codes.getNodes(leaves);
+template <typename Leaves, typename Encode>
+std::shared_ptr<CodeTree> fillCodes(const Leaves& leaves, const std::vector<Code>& tileCodes,
+                                    CodeCounts& counts, const Encode& encode) {
+    std::vector<CodeTree::Leaf*> filled;
+    std::shared_ptr<CodeTree> codes = leaves.makeCodes(tileCodes, filled);
+    for (std::size_t i = 0; i < tileCodes.size(); ++i)
+        counts.add(0, tileCodes[i], leaves.tilePlaces()[i].voxels());
+    std::vector<CodeLeaf> described(filled.size());
     std::atomic<bool> areSound = true;
-    std::vector<std::unique_ptr<Room>> rooms(counts.workers());
-    forLeafRuns(leaves.size(), counts.workers(),
+    std::vector<std::unique_ptr<typename Leaves::Room>> rooms(counts.workers());
+    const auto fill = [&](std::size_t worker, std::size_t i) {
+        LeafRoom<CodeTree::Leaf> activeCodes;
+        CodeTree::Leaf& leaf = *filled[i];
+        const auto values = leaves.values(i, *rooms[worker]);
+        // What Blosc takes for a moment leaves gaps.
+        expectPieces(std::size_t(1.5 * leafBytes<CodeTree::Leaf>()));
+        leaves.makeRoom(*rooms[worker], leaf);
+        if (values.size() != leaf.onVoxelCount()) return false;
+        if (values.empty()) return true;
+        const bool isDense = leaf.isDense();
+        Code* const out = isDense ? leaf.buffer().data() : activeCodes.data();
+        encode(worker, values, out);
+        const std::span<const Code> written(out, values.size());
+        counts.add(worker, written);
+        described[i] = describeLeaf(leaf, written);
+        if (!isDense) spread(out, leaf);
+        return true;
+    };
+    forLeafRuns(filled.size(), counts.workers(),
                 [&](std::size_t worker, std::size_t begin, std::size_t end) {
-                    LeafRoom<CodeTree::Leaf> activeCodes;
-                    if (!rooms[worker]) rooms[worker] = std::make_unique_for_overwrite<Room>();
+                    auto& room = rooms[worker];
+                    if (!room) room = std::make_unique_for_overwrite<typename Leaves::Room>();
                     for (std::size_t i = begin; i < end && areSound; ++i) {
-                        CodeTree::Leaf& leaf = *leaves[i];
-                        const bool isDense = leaf.isDense();
-                        Code* const out = isDense ? leaf.buffer().data() : activeCodes.data();
-                        if (!codesOf(worker, i, *rooms[worker], out)) {
-                            areSound = false;
-                            break;
-                        }
-                        counts.add(worker, {out, std::size_t(leaf.onVoxelCount())});
-                        if (!isDense) spread(out, leaf);
+                        if (!fill(worker, i)) areSound = false;
                     }
                 });
+    // Leaves without active voxels may lie outside of the box of those.
+    std::erase_if(described, [](const CodeLeaf& leaf) { return !leaf.leaf; });
+    codes->noteLeaves(std::move(described));
+    return codes;
 }
 
 // Turns values into the codes of a book.
@@ -128,28 +148,16 @@ template <typename Leaves>
 std::shared_ptr<CodeTree> codesOfLeaves(const Leaves& leaves, const CodeBook& book,
                                         ErrorMeter& meter, CodeCounts& counts) {
     const BookEncoder encode(book);
-    const bool exact = book.isExact();
-    const auto& tree = leaves.tree();
-    // OpenVDB's trees cannot be assigned, only made in place.
-    std::shared_ptr<CodeTree> codes(
-        new CodeTree(std::in_place, tree, Code{0}, openvdb::TopologyCopy()));
     std::vector<ErrorMeter::Part> parts(counts.workers(), ErrorMeter::Part(meter));
-    using Room = typename Leaves::Room;
-    fillLeaves<Room>(codes->tree(), counts,
-                     [&](std::size_t worker, std::size_t i, Room& room, Code* out) {
-                         const auto values = leaves.values(i, room);
-                         if (values.size() != leaves[i].onVoxelCount()) return false;
-                         encodeAll(book, encode, values, out);
-                         for (std::size_t n = 0; !exact && n < values.size(); ++n)
-                             parts[worker].add(double(values[n]), out[n]);
-                         return true;
-                     });
-    forActiveTiles(codes->tree(), [&](const auto& tile) {
-        const auto value = double(tree.getValue(tile.getCoord()));
-        tile.setValue(encode(value));
-        counts.add(0, *tile, tile.getVoxelCount());
-        if (!exact) parts[0].add(value, *tile);
-    });
+    const auto encodeIn = [&](std::size_t worker, const auto& values, Code* out) {
+        encodeAll(book, encode, values, out);
+        if (book.isExact()) return;
+        for (std::size_t n = 0; n < values.size(); ++n)
+            parts[worker].add(double(values[n]), out[n]);
+    };
+    std::vector<Code> tileCodes(leaves.tilePlaces().size());
+    encodeIn(0, leaves.tileValues(), tileCodes.data());
+    auto codes = fillCodes(leaves, tileCodes, counts, encodeIn);
     for (const ErrorMeter::Part& part : parts) meter.add(part);
     return codes;
 }
@@ -195,12 +203,12 @@ void describeGrid(const Grid& grid, const GridCodesOptions& options, Volume& vol
 template <typename Leaves>
 void fillFromLeaves(const Leaves& leaves, GridScan scan, const GridCodesOptions& options,
                     Volume& volume) {
-    using T = std::decay_t<decltype(leaves.tree().background())>;
+    using T = typename Leaves::Value;
     constexpr bool kReal = std::is_floating_point_v<T>;
     const bool isLinear = kReal && options.reading.bits;
     if (isLinear || !plainBook(scan.census, kReal))
         scan = scanLeaves(leaves, {.distinct = !isLinear, .survey = sizeof(T) > 1});
-    const T background = leaves.tree().background();
+    const T background = leaves.background();
     // Active voxels may be as empty as inactive ones: then they have that very value.
     if (isFinite(background)) scan.census.frequent = {{double(background), 0}};
     // Masks have nothing but true, which stays 1.
@@ -231,36 +239,31 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
     describeGrid(grid, options, volume);
 }
 
-// Writes the codes of active tiles; returns whether all are halves.
-template <typename Tree>
-bool codeHalfTiles(const Tree& tree, CodeTree::Tree& codes, CodeCounts& counts) {
-    const CodeBook book = CodeBook::half();
-    bool areHalves = true;
-    forActiveTiles(codes, [&](const auto& tile) {
-        const auto value = double(tree.getValue(tile.getCoord()));
-        areHalves = areHalves && std::isfinite(value) && book.valueOf(book.codeOf(value)) == value;
-        tile.setValue(areHalves ? book.codeOf(value) : Code{0});
-        counts.add(0, *tile, tile.getVoxelCount());
-    });
-    return areHalves;
+// Returns the codes of tiles, nothing if one is no half.
+template <typename T>
+std::optional<std::vector<Code>> codesOfHalfTiles(std::span<const T> tiles) {
+    std::vector<Code> codes(tiles.size());
+    if (tiles.empty()) return codes;
+    const std::vector<float> values(tiles.begin(), tiles.end());
+    if (!std::equal(values.begin(), values.end(), tiles.begin())) return std::nullopt;
+    const FloatFacts facts = factsOf(values);
+    if (!facts.isFinite || !facts.isHalf) return std::nullopt;
+    codesOfHalves(values, codes.data());
+    return codes;
 }
 
-template <typename Tree>
-bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCodesOptions& options,
+template <typename T>
+bool fillFromHalves(const VdbValues& values, T background, const GridCodesOptions& options,
                     Volume& volume) {
+    const FileLeaves<T, std::uint16_t> leaves(values, background, 1, options.listener);
+    const auto tileCodes = codesOfHalfTiles(leaves.tileValues());
+    if (!tileCodes) return false;
     CodeCounts counts;
-    auto codes =
-        std::make_shared<CodeTree>(std::in_place, topology, Code{0}, openvdb::TopologyCopy());
-    if (!codeHalfTiles(topology, codes->tree(), counts)) return false;
-    const FileLeaves<Tree, std::uint16_t> leaves(topology, packed, 1, options.listener);
-    using Room = typename decltype(leaves)::Room;
     std::atomic<bool> areFinite = true;
-    // All leaves are looked at, so that what is damaged is said however many threads there are.
-    fillLeaves<Room>(codes->tree(), counts, [&](std::size_t, std::size_t i, Room& room, Code* out) {
-        const auto bits = leaves.values(i, room);
-        if (!codesOfHalfBits(bits, out)) areFinite = false;
-        return !leaves.areDamaged();
-    });
+    auto codes =
+        fillCodes(leaves, *tileCodes, counts, [&](std::size_t, const auto& bits, Code* out) {
+            if (!codesOfHalfBits(bits, out)) areFinite = false;
+        });
     if (leaves.areDamaged()) throw DamagedLeaves(options.where);
     if (!areFinite) return false;
     volume.codeBook = CodeBook::half();
@@ -268,11 +271,11 @@ bool fillFromHalves(const Tree& topology, const VdbLeaves& packed, const GridCod
     return true;
 }
 
-template <typename Tree>
-bool fillFromNumbers(const Tree& topology, const VdbLeaves& packed, const GridCodesOptions& options,
+template <typename T>
+bool fillFromNumbers(const VdbValues& values, T background, const GridCodesOptions& options,
                      Volume& volume) {
     // One to see what there is and one for codes; rarely one more.
-    const FileLeaves<Tree> leaves(topology, packed, 2, options.listener);
+    const FileLeaves<T> leaves(values, background, 2, options.listener);
     GridScan scan = scanLeaves(leaves, kNumbersAlone);
     if (leaves.areDamaged()) throw DamagedLeaves(options.where);
     if (scan.nonFinite > 0) return false;
@@ -286,12 +289,12 @@ bool fillFromNumbers(const Tree& topology, const VdbLeaves& packed, const GridCo
 
 bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Volume& volume) {
     bool isFilled = false;
-    values.topology->apply<ScalarGrids>([&](const auto& grid) {
+    values.grid->apply<ScalarGrids>([&](const auto& grid) {
         using T = typename std::decay_t<decltype(grid)>::ValueType;
         if constexpr (!std::is_same_v<T, bool>) {
             isFilled = values.areHalves
-                           ? fillFromHalves(grid.tree(), values.leaves, options, volume)
-                           : fillFromNumbers(grid.tree(), values.leaves, options, volume);
+                           ? fillFromHalves(values, grid.background(), options, volume)
+                           : fillFromNumbers(values, grid.background(), options, volume);
             if (isFilled) describeGrid(grid, options, volume);
         }
     });

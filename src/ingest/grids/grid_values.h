@@ -10,11 +10,14 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "deltasplat/threads.h"
+#include "ingest/codes/code_nodes.h"
 #include "ingest/values/value_census.h"
 #include "parallel.h"
 
@@ -24,6 +27,17 @@ template <typename T>
 bool isFinite(T value) {
     if constexpr (std::is_floating_point_v<T>) return std::isfinite(value);
     return true;
+}
+
+/// Which voxels of a leaf are active. [x]: bit 8 y + z
+using LeafMask = std::array<std::uint64_t, 8>;
+
+template <typename Leaf>
+LeafMask maskOf(const Leaf& leaf) {
+    LeafMask mask;
+    for (openvdb::Index x = 0; x < mask.size(); ++x)
+        mask[x] = leaf.valueMask().template getWord<std::uint64_t>(x);
+    return mask;
 }
 
 /// What the active values of a grid hold.
@@ -36,15 +50,20 @@ struct GridScan {
         if (nonFinite == 0 || isBefore(place, first)) first = place;
         nonFinite += voxels;
     }
-    /// @param values  of the leaf's active voxels, some of them not finite
-    template <typename Leaf, typename T>
-    void addOneByOne(const Leaf& leaf, std::span<const T> values) {
+    /// @param origin  of a leaf
+    /// @param values  of its active voxels, some of them not finite
+    template <typename T>
+    void addOneByOne(const openvdb::Coord& origin, const LeafMask& mask,
+                     std::span<const T> values) {
         auto value = values.begin();
-        for (auto voxel = leaf.cbeginValueOn(); voxel && value != values.end(); ++voxel, ++value) {
-            if (isFinite(*value)) {
-                census.add(*value);
-            } else {
-                addNonFinite(leaf.offsetToGlobalCoord(voxel.pos()), 1);
+        for (int x = 0; x < int(mask.size()); ++x) {
+            for (std::uint64_t rest = mask[std::size_t(x)]; rest != 0; rest &= rest - 1, ++value) {
+                const int bit = std::countr_zero(rest);
+                if (isFinite(*value)) {
+                    census.add(*value);
+                } else {
+                    addNonFinite(origin.offsetBy(x, bit / 8, bit % 8), 1);
+                }
             }
         }
     }
@@ -114,29 +133,6 @@ std::span<const typename Leaf::ValueType> activeValues(const Leaf& leaf, LeafRoo
     return {room.data(), count};
 }
 
-/// The leaves of a tree, and what their active voxels hold.
-template <typename Tree>
-class TreeLeaves {
-  public:
-    using Room = LeafRoom<typename Tree::LeafNodeType>;
-
-    explicit TreeLeaves(const Tree& tree) : tree_(tree) { tree.getNodes(leaves_); }
-
-    const Tree& tree() const { return tree_; }
-    std::size_t count() const { return leaves_.size(); }
-    /// Returns a leaf, for its place and its mask.
-    const typename Tree::LeafNodeType& operator[](std::size_t i) const { return *leaves_[i]; }
-    /// Returns the values of a leaf's active voxels, in the order of their places. Thread-safe.
-    /// @param room  may be written to
-    std::span<const typename Tree::ValueType> values(std::size_t i, Room& room) const {
-        return activeValues(*leaves_[i], room);
-    }
-
-  private:
-    const Tree& tree_;
-    std::vector<const typename Tree::LeafNodeType*> leaves_;
-};
-
 /// Calls use(iterator) for every active tile of `tree`, of any level.
 template <typename Tree, typename Use>
 void forActiveTiles(Tree& tree, const Use& use) {
@@ -144,6 +140,57 @@ void forActiveTiles(Tree& tree, const Use& use) {
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
     for (; tile; ++tile) use(tile);
 }
+
+/// The active nodes of a tree: its leaves with what their active voxels hold, and active tiles.
+template <typename Tree>
+class TreeLeaves {
+  public:
+    using Value = typename Tree::ValueType;
+    using Room = LeafRoom<typename Tree::LeafNodeType>;
+
+    explicit TreeLeaves(const Tree& tree) : tree_(tree) {
+        tree.getNodes(leaves_);
+        forActiveTiles(tree, [&](const auto& tile) {
+            tilePlaces_.push_back({tile.getCoord(), tile.getLevel()});
+        });
+        tileValues_ = std::make_unique<Value[]>(tilePlaces_.size());
+        Value* next = tileValues_.get();
+        forActiveTiles(tree, [&](const auto& tile) { *next++ = *tile; });
+    }
+
+    Value background() const { return tree_.background(); }
+    const std::vector<TilePlace>& tilePlaces() const { return tilePlaces_; }
+    std::span<const Value> tileValues() const { return {tileValues_.get(), tilePlaces_.size()}; }
+    std::size_t count() const { return leaves_.size(); }
+    /// Returns where a leaf's first voxel lies.
+    openvdb::Coord place(std::size_t i) const { return leaves_[i]->origin(); }
+    /// @param room  of values(), which were asked for before
+    LeafMask mask(std::size_t i, const Room&) const { return maskOf(*leaves_[i]); }
+    /// Returns the values of a leaf's active voxels, in the order of their places. Thread-safe.
+    /// @param room  may be written to
+    std::span<const typename Tree::ValueType> values(std::size_t i, Room& room) const {
+        return activeValues(*leaves_[i], room);
+    }
+    /// Returns a tree for codes of these leaves, with those of tiles.
+    /// @param filled  becomes its leaves
+    std::shared_ptr<CodeTree> makeCodes(const std::vector<Code>& tileCodes,
+                                        std::vector<CodeTree::Leaf*>& filled) const {
+        auto codes =
+            std::make_shared<CodeTree>(std::in_place, tree_, Code{0}, openvdb::TopologyCopy());
+        auto code = tileCodes.begin();
+        forActiveTiles(codes->tree(), [&](const auto& tile) { tile.setValue(*code++); });
+        codes->tree().getNodes(filled);
+        return codes;
+    }
+    /// Makes room for codes in a leaf of that tree, those whose values were asked for last.
+    void makeRoom(const Room&, CodeTree::Leaf&) const {}
+
+  private:
+    const Tree& tree_;
+    std::vector<const typename Tree::LeafNodeType*> leaves_;
+    std::vector<TilePlace> tilePlaces_;
+    std::unique_ptr<Value[]> tileValues_;
+};
 
 /// What a scan is to find out besides the census' numbers.
 struct ScanWishes {
@@ -178,18 +225,22 @@ GridScan scanLeaves(const Leaves& leaves, const ScanWishes& wishes) {
             typename Leaves::Room room;
             for (std::size_t i = start + begin; i < start + end; ++i) {
                 const auto values = leaves.values(i, room);
-                if (!census.addAll(values)) scans[run].addOneByOne(leaves[i], values);
+                if (!census.addAll(values)) {
+                    scans[run].addOneByOne(leaves.place(i), leaves.mask(i, room), values);
+                }
             }
         });
         for (const GridScan& scan : scans) whole.append(scan);
     }
-    forActiveTiles(leaves.tree(), [&](const auto& tile) {
-        if (isFinite(*tile)) {
-            whole.census.add(*tile);
+    const auto tiles = leaves.tileValues();
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        if (isFinite(tiles[i])) {
+            whole.census.add(tiles[i]);
         } else {
-            whole.addNonFinite(tile.getCoord(), tile.getVoxelCount());
+            const TilePlace& place = leaves.tilePlaces()[i];
+            whole.addNonFinite(place.origin, place.voxels());
         }
-    });
+    }
     return whole;
 }
 

@@ -83,7 +83,7 @@ Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& 
 }
 
 std::optional<Volume> volumeOfLeaves(const VdbValues& values, const GridCodesOptions& options) {
-    Volume volume = placedVolume(*values.topology, options);
+    Volume volume = placedVolume(*values.grid, options);
     if (!fillFromLeaves(values, options, volume)) return std::nullopt;
     settleEmpty(volume, options);
     return volume;

@@ -46,7 +46,8 @@ void requireEnd(const RawFile& file, ByteSource& source, std::uint64_t done,
     if (more != 0 && !file.mayGoOn) throwSize(file, done + later + more);
 }
 
-void readLayers(const RawFile& file, PackedEnd end, const DenseSource::LayerUse& use,
+// @param step  slices at a time
+void readLayers(const RawFile& file, int step, PackedEnd end, const DenseSource::LayerUse& use,
                 const Listener& listener) {
     // What lies before the volume is passed over, where it is not packed without being read.
     ByteSource source(file.path, file.gzip ? Packing::kGzip : Packing::kNone,
@@ -57,11 +58,10 @@ void readLayers(const RawFile& file, PackedEnd end, const DenseSource::LayerUse&
     const std::size_t sliceBytes = std::size_t(file.layout.dims.x) *
                                    std::size_t(file.layout.dims.y) *
                                    std::size_t(rawTypeBytes(file.layout.type));
-    const int most = std::min(slices, DenseSource::kLayerSlices);
-    requireMemory(file.path.string(), double(sliceBytes) * most);
-    const auto bytes = std::make_unique_for_overwrite<std::byte[]>(sliceBytes * std::size_t(most));
-    for (int first = 0; first < slices; first += DenseSource::kLayerSlices) {
-        const int count = std::min(DenseSource::kLayerSlices, slices - first);
+    requireMemory(file.path.string(), double(sliceBytes) * step);
+    const auto bytes = std::make_unique_for_overwrite<std::byte[]>(sliceBytes * std::size_t(step));
+    for (int first = 0; first < slices; first += step) {
+        const int count = std::min(step, slices - first);
         const std::size_t wanted = sliceBytes * std::size_t(count);
         const std::size_t got = source.read(bytes.get(), wanted);
         done += got;
@@ -98,9 +98,11 @@ DenseSource denseSourceOf(const RawFile& file) {
     source.type = file.layout.type;
     source.bigEndian = file.layout.bigEndian;
     source.volumes = file.volumes;
-    source.forEachLayer = [file, checked = std::make_shared<bool>(false)](
+    source.forEachLayer = [file, step = source.stepSlices(),
+                           checked = std::make_shared<bool>(false)](
                               const DenseSource::LayerUse& use, const Listener& listener) {
-        readLayers(file, *checked ? PackedEnd::kIsKnown : PackedEnd::kIsChecked, use, listener);
+        readLayers(file, step, *checked ? PackedEnd::kIsKnown : PackedEnd::kIsChecked, use,
+                   listener);
         *checked = true;
     };
     return source;

@@ -38,8 +38,7 @@ DenseSource fromHalves(DenseSource source) {
     result.forEachLayer = [source = std::move(source)](const DenseSource::LayerUse& use,
                                                        const Listener& listener) {
         const std::size_t pixels = std::size_t(source.dims.x) * std::size_t(source.dims.y);
-        const auto most =
-            std::size_t(std::min<std::int64_t>(source.dims.z, DenseSource::kLayerSlices));
+        const auto most = std::size_t(source.stepSlices());
         requireMemory(source.where, double(pixels) * double(most) * sizeof(float));
         const auto values = std::make_unique<float[]>(pixels * most);
         source.forEachLayer(

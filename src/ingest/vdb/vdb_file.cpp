@@ -169,22 +169,6 @@ std::string treeType(const std::string& type) {
     return kTreeFront + type + kTreeBack;
 }
 
-// Whether leaves of a file are those of a tree, in its order.
-bool areInOrder(const std::vector<VdbLeaf>& leaves, const openvdb::GridBase& grid) {
-    bool areSame = false;
-    grid.apply<ScalarGrids>([&](const auto& typed) {
-        std::size_t next = 0;
-        areSame = true;
-        for (auto leaf = typed.tree().cbeginLeaf(); leaf && areSame; ++leaf, ++next) {
-            const openvdb::Coord& origin = leaf->origin();
-            areSame = next < leaves.size() &&
-                      leaves[next].origin == std::array{origin.x(), origin.y(), origin.z()};
-        }
-        areSame = areSame && next == leaves.size();
-    });
-    return areSame;
-}
-
 openvdb::MetaMap::ConstPtr parseMetadata(const std::string& bytes,
                                          const std::filesystem::path& file) {
     std::istringstream stream(bytes);
@@ -198,23 +182,25 @@ openvdb::MetaMap::ConstPtr parseMetadata(const std::string& bytes,
     return metadata;
 }
 
-// Reads all but the values of leaves.
-openvdb::GridBase::Ptr readTopology(const std::filesystem::path& file, const VdbGrid& grid,
-                                    const GridHead& head, const VdbRange& tree,
-                                    const std::string& where) {
-    openvdb::GridBase::Ptr topology = openvdb::GridBase::createGrid(treeType(grid.type));
+// Makes a grid of all but its tree.
+openvdb::GridBase::Ptr emptyGrid(const std::filesystem::path& file, const VdbGrid& grid,
+                                 const GridHead& head) {
+    openvdb::GridBase::Ptr made = openvdb::GridBase::createGrid(treeType(grid.type));
     const openvdb::MetaMap::ConstPtr metadata = parseMetadata(head.metadata, file);
-    static_cast<openvdb::MetaMap&>(*topology) = *metadata;
-    topology->setSaveFloatAsHalf(grid.half);
-    VdbStreamBuf buffer(file);
-    buffer.addRange(tree.begin, tree.begin + tree.size);
-    guarded(buffer, where, [&](std::istream& stream) {
-        openvdb::io::setDataCompression(stream, head.format.compression);
-        topology->readTopology(stream);
-        return 0;
+    static_cast<openvdb::MetaMap&>(*made) = *metadata;
+    made->setSaveFloatAsHalf(grid.half);
+    made->setTransform(std::make_shared<openvdb::math::Transform>(*head.map));
+    return made;
+}
+
+// Reads the background of a grid of numbers; `bytes` moves there.
+void readBackground(VdbBytes& bytes, std::uint64_t place, openvdb::GridBase& grid) {
+    grid.apply<ScalarGrids>([&](auto& typed) {
+        typename std::decay_t<decltype(typed)>::ValueType background{};
+        bytes.seek(place);
+        bytes.read(&background, sizeof background);
+        typed.tree().root().setBackground(background, /*updateChildNodes=*/false);
     });
-    topology->setTransform(std::make_shared<openvdb::math::Transform>(*head.map));
-    return topology;
 }
 
 }  // namespace
@@ -346,7 +332,7 @@ std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid,
         requireEnd(bytes, grid);
     }
     bytes.seek(places.background);
-    if (places.hasActiveTiles || bytes.u32() != 0) return std::nullopt;
+    if (!places.tiles.empty() || bytes.u32() != 0) return std::nullopt;
     if (slices) {
         std::erase_if(places.leaves, [&](const VdbLeaf& leaf) {
             return leaf.origin[0] > slices->y || leaf.origin[0] + 7 < slices->x;
@@ -373,22 +359,23 @@ std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
     });
     VdbTreePlaces places;
     const VdbTreeSize size = walkTopology(bytes, head.format, places);
-    const std::uint64_t topologyEnd = bytes.position();
-    requireMemory(where, size.topologyBytes(head.format));
+    requireMemory(where, size.codeBytes());
+    const auto file = std::make_shared<const FileBytes>(file_);
+    std::optional<VdbTiles> tiles = VdbTiles::read(*file, head.format, places.tiles);
+    if (!tiles) return std::nullopt;
     const bool byNotes =
         how == Find::kByNotes && placeBySizes(bytes, head, grid.end, places.leaves, where);
     if (!byNotes) {
         walkLeaves(bytes, head.format, places.leaves);
         requireEnd(bytes, grid);
     }
-    openvdb::GridBase::Ptr topology =
-        readTopology(file_, grid, head, {begin, topologyEnd - begin}, where);
-    if (!areInOrder(places.leaves, *topology)) return std::nullopt;
-    return VdbValues{
-        std::move(topology),
-        {std::make_shared<const FileBytes>(file_), std::move(places.leaves), head.format, head.map},
-        head.format.stored != head.format.bytes,
-        byNotes};
+    openvdb::GridBase::Ptr empty = emptyGrid(file_, grid, head);
+    readBackground(bytes, places.background, *empty);
+    return VdbValues{std::move(empty),
+                     std::move(*tiles),
+                     {file, std::move(places.leaves), head.format, head.map},
+                     head.format.stored != head.format.bytes,
+                     byNotes};
 }
 
 }  // namespace deltasplat

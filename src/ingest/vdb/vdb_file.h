@@ -13,6 +13,7 @@
 #include "deltasplat/progress.h"
 #include "ingest/vdb/vdb_bytes.h"
 #include "ingest/vdb/vdb_leaves.h"
+#include "ingest/vdb/vdb_tiles.h"
 
 namespace deltasplat {
 
@@ -40,10 +41,11 @@ struct VdbGrid {
 
 /// A grid of numbers whose leaves are still packed.
 struct VdbValues {
-    openvdb::GridBase::Ptr topology;  ///< all but the values of leaves
-    VdbLeaves leaves;                 ///< in the tree's order
-    bool areHalves;                   ///< whether floats are stored as binary16
-    bool byNotes;                     ///< how they were found, as VdbFile::Find
+    openvdb::GridBase::Ptr grid;  ///< all but its tree, which has the background alone
+    VdbTiles tiles;
+    VdbLeaves leaves;  ///< in the tree's order
+    bool areHalves;    ///< whether floats are stored as binary16
+    bool byNotes;      ///< how leaves were found, as VdbFile::Find
 };
 
 /// A .vdb file that is checked before OpenVDB sees any of it, since OpenVDB 10 crashes on damaged

@@ -1,55 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: the OpenVDB file format, as OpenVDB 10's headers read it (LeafNode.h,
-// io/Compression.h).
 #include "ingest/vdb/vdb_leaves.h"
-
-#include <openvdb/io/Compression.h>
-#include <openvdb/points/StreamCompression.h>
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cstring>
-#include <exception>
 #include <iterator>
 #include <utility>
 
-#include "ingest/vdb/zip_chunk.h"
+#include "ingest/vdb/packed_values.h"
 #include "parallel.h"
 
 namespace deltasplat {
 
 namespace {
-
-// The values of a leaf, as its bytes have them.
-struct PackedValues {
-    std::uint32_t count;  // of all voxels, or of the active ones
-    std::span<const char> data;
-    bool isPacked;
-};
-
-// Takes what is stored from the front of some bytes.
-class Front {
-  public:
-    explicit Front(std::span<const char> bytes) : rest_(bytes) {}
-
-    template <typename T>
-    bool take(T& value) {
-        if (rest_.size() < sizeof value) return false;
-        std::memcpy(&value, rest_.data(), sizeof value);
-        rest_ = rest_.subspan(sizeof value);
-        return true;
-    }
-    bool skip(std::size_t bytes) {
-        if (rest_.size() < bytes) return false;
-        rest_ = rest_.subspan(bytes);
-        return true;
-    }
-    std::span<const char> rest() const { return rest_; }
-
-  private:
-    std::span<const char> rest_;
-};
 
 std::uint32_t countOf(const VdbLeaves::Mask& mask) {
     std::uint32_t active = 0;
@@ -60,81 +24,22 @@ std::uint32_t countOf(const VdbLeaves::Mask& mask) {
 // Returns nothing if the bytes are not those of the leaf, from the first to the last.
 std::optional<PackedValues> valuesOf(const VdbLeaf& leaf, std::span<const char> bytes,
                                      const VdbValueFormat& format, VdbLeaf::Mask& mask) {
-    using namespace openvdb::io;
-    Front front(bytes);
-    std::uint8_t kind = 0;
-    if (!front.take(mask) || !front.take(kind)) return std::nullopt;
+    if (bytes.size() < sizeof mask) return std::nullopt;
+    std::memcpy(mask.data(), bytes.data(), sizeof mask);
     if (VdbLeaf::sumOf(mask) != leaf.maskSum) return std::nullopt;
-    const bool one = kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL;
-    const bool two = kind == MASK_AND_TWO_INACTIVE_VALS;
-    const bool hasMask = kind >= MASK_AND_NO_INACTIVE_VALS && kind <= MASK_AND_TWO_INACTIVE_VALS;
-    const std::size_t inactive = format.bytes * (two ? 2 : one ? 1 : 0);
-    if (!front.skip(inactive + (hasMask ? sizeof mask : 0))) return std::nullopt;
-    const bool activeAlone =
-        (format.compression & COMPRESS_ACTIVE_MASK) != 0 && kind != NO_MASK_AND_ALL_VALS;
-    const std::uint32_t count = activeAlone ? countOf(mask) : std::uint32_t(VdbLeaves::kVoxels);
-    const std::size_t size = std::size_t{format.stored} * count;
-    const bool isHalf = format.stored != format.bytes;
-    if ((format.compression & (COMPRESS_BLOSC | COMPRESS_ZIP)) == 0 || (isHalf && count == 0)) {
-        if (front.rest().size() != size) return std::nullopt;
-        return PackedValues{count, front.rest(), false};
-    }
-    std::int64_t packed = 0;
-    if (!front.take(packed)) return std::nullopt;
-    // Stored as they are, with the size's sign turned.
-    const std::uint64_t stored = packed > 0 ? std::uint64_t(packed) : size;
-    if (front.rest().size() != stored || (packed <= 0 && packed != -std::int64_t(size)))
-        return std::nullopt;
-    return PackedValues{count, front.rest(), packed > 0};
-}
-
-// The decoder believes what a chunk says of its sizes, in the second and fourth of its words.
-bool unpackBlosc(std::span<const char> chunk, std::span<char> values, std::size_t size) {
-    std::array<std::uint32_t, 4> words;
-    if (chunk.size() < sizeof words) return false;
-    std::memcpy(words.data(), chunk.data(), sizeof words);
-    if (words[1] != size || words[3] != chunk.size()) return false;
-    try {
-        openvdb::compression::bloscDecompress(values.data(), size, values.size(), chunk.data());
-    } catch (const std::exception&) {
-        return false;
-    }
-    return true;
-}
-
-bool unpack(const PackedValues& packed, const VdbValueFormat& format, std::span<char> values) {
-    const std::size_t size = std::size_t{format.stored} * packed.count;
-    if (packed.isPacked) {
-        const bool isBlosc = (format.compression & openvdb::io::COMPRESS_BLOSC) != 0;
-        return isBlosc ? unpackBlosc(packed.data, values, size)
-                       : unpackZip(packed.data, values, size);
-    }
-    std::memcpy(values.data(), packed.data.data(), size);
-    return true;
+    return packedValues(bytes.subspan(sizeof mask), mask, format);
 }
 
 }  // namespace
 
 bool VdbRun::read(const FileBytes& file, std::uint64_t begin, std::uint64_t end) {
-    constexpr std::uint64_t kPart = std::uint64_t{1} << 20;
     const std::uint64_t size = end - begin;
     begin_ = end_ = 0;
     if (size > capacity_) {
         bytes_ = std::make_unique_for_overwrite<char[]>(size);
         capacity_ = size;
     }
-    std::atomic<bool> isThere = true;
-    const auto readPart = [&](std::size_t part) {
-        const std::uint64_t first = part * kPart;
-        const std::uint64_t wanted = std::min(kPart, size - first);
-        if (file.read(begin + first, bytes_.get() + first, wanted) != wanted) isThere = false;
-    };
-    if (size <= kPart) {
-        readPart(0);
-    } else {
-        parallelFor((size + kPart - 1) / kPart, readPart);
-    }
-    if (!isThere) return false;
+    if (file.readInParts(begin, bytes_.get(), size) != size) return false;
     begin_ = begin;
     end_ = end;
     return true;

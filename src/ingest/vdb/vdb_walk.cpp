@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <map>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -75,11 +76,13 @@ class Walk {
         const std::uint32_t tiles = bytes_.u32();
         const std::uint32_t children = bytes_.u32();
         for (std::uint32_t i = 0; i < tiles; ++i) {
-            addRoot(place());
+            const Place origin = place();
+            addRoot(origin);
+            const std::uint64_t begin = bytes_.position();
             bytes_.skip(format_.bytes);
             const int state = bytes_.u8();
             if (state > 1) fail("a tile that is neither active nor inactive");
-            if (state == 1) noteActiveTile();
+            if (state == 1) noteTiles({origin, 3, begin, format_.bytes});
         }
         for (std::uint32_t i = 0; i < children; ++i) {
             const Place origin = place();
@@ -116,25 +119,37 @@ class Walk {
 
     template <int kLog2>
     void node(const Place& origin) {
+        const std::uint64_t begin = bytes_.position();
         const auto children = mask<kLog2>();
         const auto values = mask<kLog2>();
         for (std::size_t i = 0; i < children.size(); ++i) {
             if ((children[i] & values[i]) != 0) fail("a node that is both tile and child");
         }
         ++(kLog2 == kUpperLog2 ? size_.upper : size_.lower);
-        if (std::any_of(values.begin(), values.end(), [](std::uint64_t word) { return word != 0; }))
-            noteActiveTile();
         nodeValues<kLog2>(values);
+        if (std::any_of(values.begin(), values.end(), [](std::uint64_t word) { return word != 0; }))
+            noteTiles({origin, kLog2 == kUpperLog2 ? 2 : 1, begin, bytes_.position() - begin});
+        if constexpr (kLog2 == kLowerLog2) readLeafMasks(children);
+        std::size_t number = 0;
         for (std::size_t i = 0; i < children.size(); ++i) {
-            for (std::uint64_t rest = children[i]; rest != 0; rest &= rest - 1) {
-                child<kLog2>(origin, int(i * 64) + std::countr_zero(rest));
-            }
+            for (std::uint64_t rest = children[i]; rest != 0; rest &= rest - 1)
+                child<kLog2>(origin, int(i * 64) + std::countr_zero(rest), number++);
         }
     }
 
+    // The masks of a node's leaves follow each other.
+    void readLeafMasks(const Mask<kLowerLog2>& leaves) {
+        std::size_t count = 0;
+        for (const std::uint64_t word : leaves) count += std::size_t(std::popcount(word));
+        leafMasks_.resize(count);
+        bytes_.read(leafMasks_.data(), count * sizeof leafMasks_[0]);
+    }
+
     // Children are numbered x slowest, z fastest.
+    // @param number  of the child's place
+    // @param count   of the children before it
     template <int kLog2>
-    void child(const Place& origin, int number) {
+    void child(const Place& origin, int number, std::size_t count) {
         constexpr int kChildLog2 = kLog2 == kUpperLog2 ? kLowerLog2 + kLeafLog2 : kLeafLog2;
         constexpr int kMask = (1 << kLog2) - 1;
         const std::array<int, 3> step{number >> (2 * kLog2), number >> kLog2 & kMask,
@@ -147,25 +162,20 @@ class Walk {
         if constexpr (kLog2 == kUpperLog2) {
             node<kLowerLog2>(place);
         } else {
-            leaves_->push_back({place, 0, 0, VdbLeaf::sumOf(mask<kLeafLog2>())});
+            leaves_->push_back({place, 0, 0, VdbLeaf::sumOf(leafMasks_[count])});
             ++size_.leaves;
         }
     }
 
-    void noteActiveTile() {
-        if (places_) places_->hasActiveTiles = true;
+    void noteTiles(const VdbTileNode& node) {
+        if (places_) places_->tiles.push_back(node);
     }
 
     template <int kLog2>
     void nodeValues(const Mask<kLog2>& active) {
         using namespace openvdb::io;
         const int kind = bytes_.u8();
-        const bool one = kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL;
-        const bool two = kind == MASK_AND_TWO_INACTIVE_VALS;
-        bytes_.skip(std::uint64_t(format_.bytes) * (two ? 2 : one ? 1 : 0));
-        if (kind >= MASK_AND_NO_INACTIVE_VALS && kind <= MASK_AND_TWO_INACTIVE_VALS) {
-            bytes_.skip(sizeof active);
-        }
+        bytes_.skip(format_.inactiveBytes(kind, sizeof active));
         std::uint64_t count = active.size() * 64;
         if ((format_.compression & COMPRESS_ACTIVE_MASK) != 0 && kind != NO_MASK_AND_ALL_VALS) {
             count = 0;
@@ -226,17 +236,30 @@ class Walk {
     VdbTreeSize size_;
     std::map<Place, std::vector<VdbLeaf>> root_;  // leaves of each root node, in file order
     std::vector<VdbLeaf>* leaves_ = nullptr;
+    std::vector<VdbLeaf::Mask> leafMasks_;  // of the node that is walked
 };
 
 }  // namespace
 
 std::uint64_t VdbLeaf::sumOf(const Mask& mask) {
-    std::uint64_t sum = 0;
+    static const std::uint64_t secret = [] {
+        std::random_device random;
+        return std::uint64_t{random()} << 32 | random();
+    }();
+    std::uint64_t sum = secret;
     for (const std::uint64_t word : mask) {
         sum = (sum ^ word) * 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio (D. Knuth)
         sum ^= sum >> 32;
     }
     return sum;
+}
+
+std::uint64_t VdbValueFormat::inactiveBytes(int kind, std::uint64_t mask) const {
+    using namespace openvdb::io;
+    const bool one = kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL;
+    const bool two = kind == MASK_AND_TWO_INACTIVE_VALS;
+    const bool hasMask = kind >= MASK_AND_NO_INACTIVE_VALS && kind <= MASK_AND_TWO_INACTIVE_VALS;
+    return std::uint64_t{bytes} * (two ? 2 : one ? 1 : 0) + (hasMask ? mask : 0);
 }
 
 bool VdbValueFormat::setType(const std::string& type, bool half) {
@@ -262,8 +285,8 @@ double VdbTreeSize::memoryBytes(const VdbValueFormat& format) const {
     return double(leaves) * leafBytes + double(lower) * 4096 * slot + double(upper) * 32768 * slot;
 }
 
-double VdbTreeSize::topologyBytes(const VdbValueFormat& format) const {
-    return memoryBytes(format) - double(leaves) * 512 * format.bytes;
+double VdbTreeSize::codeBytes() const {
+    return double(leaves) * (512.0 * 2 + 128) + (double(lower) * 4096 + double(upper) * 32768) * 8;
 }
 
 VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format) {

@@ -18,6 +18,11 @@ struct VdbValueFormat {
     enum class Leaf { kValues, kBools, kMask } leaf = Leaf::kValues;
     std::uint32_t compression = 0;  ///< the grid's own flags, openvdb::io::COMPRESS_...
 
+    /// Returns how many bytes a node has of its inactive values, before its data: how many there
+    /// are and which place has which.
+    /// @param kind  of the node: openvdb::io's NO_MASK_... or MASK_...
+    /// @param mask  bytes of a mask of the node's places
+    std::uint64_t inactiveBytes(int kind, std::uint64_t mask) const;
     /// Sets all but the compression; returns false if `type` ("float", "vec3s", ...) is not known.
     bool setType(const std::string& type, bool half);
 };
@@ -29,8 +34,8 @@ struct VdbTreeSize {
     std::uint64_t upper = 0;   ///< nodes of 32^3 lower nodes
     /// Returns about how much memory the tree and a tree of codes beside it take.
     double memoryBytes(const VdbValueFormat& format) const;
-    /// Returns the same where the first tree's leaves have no values.
-    double topologyBytes(const VdbValueFormat& format) const;
+    /// Returns the same of the tree of codes alone.
+    double codeBytes() const;
 };
 
 /// Where a leaf of values lies in a file.
@@ -43,16 +48,26 @@ struct VdbLeaf {
     /// Of the mask that lies before all values: the leaf has it once more.
     std::uint64_t maskSum = 0;
 
+    /// Masks of the same sum are the same: which others would have it is another in each process.
     static std::uint64_t sumOf(const Mask& mask);
 
     std::uint64_t end() const { return begin + size; }
 };
 
+/// Where a node that has active tiles lies in a file: its two masks, of children and of tiles, and
+/// its values. Or a tile of the root: its value.
+struct VdbTileNode {
+    std::array<std::int32_t, 3> origin;
+    int level = 1;  ///< of its tiles. 1: of 8^3 voxels, 2: of 128^3, 3: of 4096^3, of the root
+    std::uint64_t begin = 0;
+    std::uint64_t size = 0;
+};
+
 /// What of a tree has values, and where these lie in a file.
 struct VdbTreePlaces {
-    std::uint64_t background = 0;  ///< where the background is
-    bool hasActiveTiles = false;
-    std::vector<VdbLeaf> leaves;  ///< in file order
+    std::uint64_t background = 0;    ///< where the background is
+    std::vector<VdbTileNode> tiles;  ///< in file order
+    std::vector<VdbLeaf> leaves;     ///< in file order
 };
 
 /// Walks a grid's tree from its first byte to its last without unpacking it; `bytes` moves along.

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "ingest/vdb/vdb_walk.h"
+
+namespace deltasplat {
+
+/// What unpacking takes behind what is unpacked: OpenVDB 10 asks for 16.
+inline constexpr std::size_t kUnpackBytes = 64;
+
+/// The values of a node of a .vdb file, as its bytes have them.
+struct PackedValues {
+    std::uint32_t count;  ///< of all places of the node, or of the active ones
+    std::span<const char> data;
+    bool isPacked;
+};
+
+/// @param bytes  from what follows the node's masks to its end
+/// @param mask   which of its places are active
+/// @return nothing if there are more bytes or fewer
+std::optional<PackedValues> packedValues(std::span<const char> bytes,
+                                         std::span<const std::uint64_t> mask,
+                                         const VdbValueFormat& format);
+
+/// Writes the values as they are stored; returns whether they are whole.
+/// @param values  takes them and kUnpackBytes
+bool unpack(const PackedValues& packed, const VdbValueFormat& format, std::span<char> values);
+
+/// Unpacks a chunk of Blosc's; returns whether it is whole, and of `size` bytes.
+/// @param values  takes them and kUnpackBytes
+bool unpackBlosc(std::span<const char> chunk, std::span<char> values, std::size_t size);
+
+}  // namespace deltasplat

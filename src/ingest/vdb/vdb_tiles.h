@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ingest/codes/code_nodes.h"
+#include "ingest/files/file_bytes.h"
+#include "ingest/vdb/vdb_walk.h"
+
+namespace deltasplat {
+
+/// The active tiles of a grid of numbers.
+class VdbTiles {
+  public:
+    const std::vector<TilePlace>& places() const { return places_; }
+    /// @tparam T  the grid's value type
+    template <typename T>
+    std::span<const T> values() const {
+        return {reinterpret_cast<const T*>(values_.data()), places_.size()};
+    }
+
+    /// Reads and unpacks them, on all threads.
+    /// @return nothing if they are damaged
+    static std::optional<VdbTiles> read(const FileBytes& file, const VdbValueFormat& format,
+                                        const std::vector<VdbTileNode>& nodes);
+
+  private:
+    std::vector<TilePlace> places_;
+    std::vector<char> values_;  // halves as floats or doubles
+};
+
+}  // namespace deltasplat
