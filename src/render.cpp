@@ -7,6 +7,7 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "dims_text.h"
+#include "image/clear_image.h"
 #include "memory.h"
 #include "prepared_axis.h"
 #include "ray_render.h"
@@ -78,7 +79,7 @@ RenderResult renderFrame(const Volume& volume, const RenderOptions& options,
     const auto makePicture = [&](const Volume& seen) {
         result.camera = makeCamera(options.camera, seen.box, seen.worldFromIndex, seen.space);
         requireImageMemory(result.camera.sizePixels);
-        result.image = Image(result.camera.sizePixels);
+        result.image = clearImage(result.camera.sizePixels);
     };
     RenderStats& stats = result.stats;
     stats.voxels = std::uint64_t(volume.box.voxels());

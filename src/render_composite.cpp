@@ -127,7 +127,11 @@ class CompositeRender {
                                                           std::move(axis), memory_);
             const SlabInput& input = picture->slabs();
             std::vector<SeenSlab> seen = seenSlabs(input);
-            if (!merged) merged.emplace(reachOfAll(input, seen), input.layout.channels, memory_);
+            if (!merged) {
+                merged.emplace(PlaneBox{}, input.layout.channels, memory_);
+                merged->setBox(reachOfAll(input, seen));
+                merged->clear();
+            }
             std::erase_if(seen, [&](const SeenSlab& one) {
                 const auto number = one.slab - input.splat.deltas.slabs.data();
                 return number < parts[i].first || number >= parts[i].last;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "parallel.h"
+
 namespace deltasplat {
 
 void Layer::reset(const PlaneBox& planeBox) {
@@ -11,9 +13,28 @@ void Layer::reset(const PlaneBox& planeBox) {
         float* first = &values[channels * (row * box.size().x + spans[row].x)];
         std::fill_n(first, channels * (spans[row].y - spans[row].x), 0.0f);
     }
+    const std::size_t known = values.size();
+    setBox(planeBox);
+    if (values.size() > known)
+        std::fill(values.begin() + std::ptrdiff_t(known), values.end(), 0.0f);
+}
+
+void Layer::setBox(const PlaneBox& planeBox) {
     box = planeBox;
     values.resize(std::size_t(channels) * box.size().x * box.size().y);
     spans.assign(std::size_t(box.size().y), kNothing);
+}
+
+void Layer::clearRows(int first, int last) {
+    const std::size_t width = std::size_t(channels) * std::size_t(box.size().x);
+    std::fill_n(values.data() + width * std::size_t(first - box.min.y),
+                width * std::size_t(last - first), 0.0f);
+}
+
+void Layer::clear() {
+    parallelForChunks(std::size_t(box.size().y), [&](std::size_t begin, std::size_t end) {
+        clearRows(box.min.y + int(begin), box.min.y + int(end));
+    });
 }
 
 void Layer::takeRows(const Layer& other, int first, int last) {

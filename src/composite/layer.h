@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "composite/over_kernels.h"
+#include "uncleared_vector.h"
 #include "view/base_plane.h"
 
 namespace deltasplat {
@@ -19,7 +20,7 @@ namespace deltasplat {
 struct Layer {
     PlaneBox box;
     int channels;
-    std::pmr::vector<float> values;
+    pmr::UnclearedVector<float> values;
 
     /// [rows]: columns [x, y) of the box, outside of which a row is zero.
     std::vector<glm::ivec2> spans;
@@ -27,13 +28,19 @@ struct Layer {
     /// @param memory  for the values
     explicit Layer(const PlaneBox& planeBox, int channelCount = 4,
                    std::pmr::memory_resource& memory = *std::pmr::get_default_resource())
-        : box(planeBox),
-          channels(channelCount),
-          values(std::size_t(channels) * box.size().x * box.size().y, &memory),
-          spans(std::size_t(box.size().y), kNothing) {}
+        : box(planeBox), channels(channelCount), values(&memory) {
+        setBox(planeBox);
+        clearRows(box.min.y, box.max.y);
+    }
 
     /// Makes an empty layer of the same number of channels, in the memory that this one has.
     void reset(const PlaneBox& planeBox);
+    /// Becomes a layer of a box, whose rows have no values before clearRows().
+    void setBox(const PlaneBox& planeBox);
+    /// Makes rows [first, last) zero.
+    void clearRows(int first, int last);
+    /// Makes all zero, on all threads.
+    void clear();
     /// Takes rows [first, last), all zero here, from a layer of the same box and channels.
     void takeRows(const Layer& other, int first, int last);
     /// Says that columns [first, last) of a row of the base plane may not be zero.

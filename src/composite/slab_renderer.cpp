@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -62,6 +64,8 @@ SlabRenderer::SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, g
     cutIntoStrips();
     findLargest();
     requireSlabMemory();
+    // Strips clear their rows.
+    if (!hasFront_) merged_.setBox(reach_);
     if (!input.plane.isParallel() && channels_ == 4)
         steps_.emplace(input.plane, reach_, input.memory);
 }
@@ -97,8 +101,11 @@ std::optional<SlabRenderer::Piece> SlabRenderer::takePiece(Strip*& own) {
 }
 
 Layer SlabRenderer::merge() {
-    // With nothing to render nobody has made it.
-    if (strips_.empty() && !reach_.empty() && !hasFront_) merged_.reset(reach_);
+    if (!hasFront_ && !reach_.empty()) {
+        // What lies outside of all strips nobody has cleared.
+        merged_.clearRows(reach_.min.y, strips_.empty() ? reach_.max.y : rows_.x);
+        if (!strips_.empty()) merged_.clearRows(rows_.y, reach_.max.y);
+    }
     parallelForChunks(std::size_t(merged_.box.size().y), [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
             const int y = merged_.box.min.y + int(row);
@@ -146,13 +153,73 @@ int SlabRenderer::travel() const {
     return rows;
 }
 
-void SlabRenderer::cutIntoStrips() {
-    const int rows = rows_.y - rows_.x;
-    if (rows <= 0) return;
+// How much there is to do in each row, in places of equal chance among all words: those of the
+// slices that are seen, where the base plane reads them.
+std::vector<double> SlabRenderer::workOfRows() const {
+    constexpr std::size_t kSamples = 1024;
+    // Of what a row with a fair share of the words costs, one without any.
+    constexpr double kEmptyRow = 0.1;
+    const std::size_t step = std::max<std::size_t>(1, input_.splat.deltas.words.size() / kSamples);
+    const PlaneBox part{{reach_.min.x, rows_.x}, {reach_.max.x, rows_.y}};
+    std::vector<double> work(std::size_t(rows_.y - rows_.x) + 1);  // by how much each has more
+    double all = 0;
+    std::size_t next = 0;
+    for (const SeenSlab& seen : seen_) {
+        for (int slice = seen.firstSlice; slice <= seen.lastSlice; ++slice) {
+            const std::span<const DeltaWord> words = input_.splat.deltas.slice(slice);
+            if (next < words.size()) {
+                const SheetReading reading = readingOf(input_.plane, input_.layout, slice);
+                for (; next < words.size(); next += step) {
+                    const glm::ivec2 reached = pixelsReached(
+                        input_.layout, words[next].block.x - (input_.layout.firstVoxel.y >> 3));
+                    const glm::ivec2 rows = readersOf(reading, 1, reached.x, reached.y, part);
+                    if (rows.x >= rows.y) continue;
+                    work[std::size_t(rows.x - rows_.x)] += 1;
+                    work[std::size_t(rows.y - rows_.x)] -= 1;
+                    all += rows.y - rows.x;
+                }
+            }
+            next -= words.size();
+        }
+    }
+    std::partial_sum(work.begin(), work.end(), work.begin());
+    work.pop_back();
+    for (double& ofRow : work) ofRow += kEmptyRow * std::max(all, 1.0) / double(work.size());
+    return work;
+}
+
+// The rows that strips begin at, and the last one's end. Several threads get strips of the same
+// work, as far as strips do not get so low that most of their rows lie at edges.
+std::vector<int> SlabRenderer::edgesOfStrips() const {
+    constexpr int kLeastRows = 32;
     const int count = stripCount();
-    for (int i = 0; i < count; ++i) {
-        const auto edge = [&](int n) { return rows_.x + int(std::int64_t{rows} * n / count); };
-        const PlaneBox part{{reach_.min.x, edge(i)}, {reach_.max.x, edge(i + 1)}};
+    const int rows = rows_.y - rows_.x;
+    std::vector<int> edges(std::size_t(count) + 1, rows_.y);
+    for (int i = 0; i < count; ++i)
+        edges[std::size_t(i)] = rows_.x + int(std::int64_t{rows} * i / count);
+    if (count == 1 || threadCount() == 1) return edges;
+    const std::vector<double> work = workOfRows();
+    double left = std::accumulate(work.begin(), work.end(), 0.0);
+    int row = rows_.x;
+    for (int i = 0; i + 1 < count; ++i) {
+        // Those behind need their rows as well.
+        const int last = rows_.y - kLeastRows * (count - 1 - i);
+        const int least = std::min(row + kLeastRows, last);
+        const double wanted = left / (count - i);
+        double ofStrip = 0;
+        while (row < least || (row < last && ofStrip < wanted))
+            ofStrip += work[std::size_t(row++ - rows_.x)];
+        left -= ofStrip;
+        edges[std::size_t(i) + 1] = row;
+    }
+    return edges;
+}
+
+void SlabRenderer::cutIntoStrips() {
+    if (rows_.y <= rows_.x) return;
+    const std::vector<int> edges = edgesOfStrips();
+    for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+        const PlaneBox part{{reach_.min.x, edges[i]}, {reach_.max.x, edges[i + 1]}};
         // The front slab's is the merged one, unless something lies before it.
         const std::size_t layers = seen_.size() - (hasFront_ ? 0 : 1);
         strips_.push_back(
@@ -225,8 +292,7 @@ void SlabRenderer::renderPiece(const Piece& piece, Splatter& splatter) {
         compositeSeconds += secondsSince(before);
     };
     if (number == 0 && !hasFront_) {
-        // Not made before there are threads, so that others may begin meanwhile.
-        timed([&] { std::call_once(mergedOnce_, [&] { merged_.reset(reach_); }); });
+        timed([&] { merged_.clearRows(strip.first, strip.last); });
         compositeSeconds += renderSlab(seen, strip, box, splatter, merged_);
         timed([&] { strip.layers->addFront(); });
     } else {

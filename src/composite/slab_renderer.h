@@ -80,6 +80,8 @@ class SlabRenderer {
     };
     void cutIntoStrips();
     int stripCount() const;
+    std::vector<int> edgesOfStrips() const;
+    std::vector<double> workOfRows() const;
     int travel() const;
     SheetLayout layoutOf(const Strip& strip, const SeenSlab& seen) const;
     PlaneBox boxOf(const Strip& strip, const SeenSlab& seen) const;
@@ -106,7 +108,6 @@ class SlabRenderer {
     std::vector<Strip> strips_;
     SheetLayout largest_;  // holds the part of any piece
     Layer merged_;
-    std::once_flag mergedOnce_;
     std::mutex mutex_;           // guards all below
     std::size_t nextStrip_ = 0;  // that nobody has for its own
     double compositeSeconds_ = 0;

@@ -31,7 +31,6 @@ struct DeltaWord {
 /// The delta grid of a volume as a picture needs it: of classes instead of codes, ordered as it is
 /// walked, and without what nothing is stamped for.
 struct PackedDeltas {
-    // Words point into the storage.
     PackedDeltas() = default;
     PackedDeltas(const PackedDeltas&) = delete;
     PackedDeltas& operator=(const PackedDeltas&) = delete;
@@ -49,9 +48,10 @@ struct PackedDeltas {
     /// ordered by u, then v.
     std::span<const DeltaWord> slice(int index) const;
 
-    std::vector<DeltaWord> words;     ///< by slice, u and v
-    std::vector<std::size_t> begins;  ///< [slices + 1]: the first of each slice's words
-    std::vector<std::vector<ClassIndex>> storage;  ///< what the words point into
+    std::span<DeltaWord> words;                ///< by slice, u and v
+    std::vector<std::size_t> begins;           ///< [slices + 1]: the first of each slice's words
+    std::unique_ptr<DeltaWord[]> wordStorage;  ///< where the words are
+    std::vector<std::vector<ClassIndex>> storage;  ///< what they point into
     /// [word]: where voxels have looks of their own, those of its voxels, [64]; else empty.
     std::vector<const OwnLook*> looks;
     std::vector<std::vector<OwnLook>> lookStorage;  ///< what those point into

@@ -30,7 +30,10 @@ class WordCollector {
             forWords(run, [&](std::size_t, const PendingWord& word) { ++placeOf(run, word); });
         });
         beginSlices();
-        packed_.words.resize(packed_.begins.back());
+        // Not cleared here: who writes words first has their memory near.
+        const std::size_t words = packed_.begins.back();
+        packed_.wordStorage = std::make_unique_for_overwrite<DeltaWord[]>(words);
+        packed_.words = {packed_.wordStorage.get(), words};
         if (hasLooks_) packed_.looks.resize(packed_.words.size());
         packed_.storage.resize(columns_.size());
         packed_.lookStorage.resize(columns_.size());

@@ -39,7 +39,7 @@ void addDescription(const std::string& text, OIIO::ImageSpec& spec) {
 // @param values  of all, `[height][width][spec.nchannels]`
 template <typename Value>
 std::string encode(const std::filesystem::path& file, const char* formatName,
-                   const OIIO::ImageSpec& spec, const std::vector<Value>& values, int width,
+                   const OIIO::ImageSpec& spec, const UnclearedVector<Value>& values, int width,
                    glm::ivec2 first) {
     const auto channels = std::size_t(spec.nchannels);
     const std::size_t pixel = std::size_t(first.y) * std::size_t(width) + std::size_t(first.x);

@@ -125,8 +125,8 @@ void forThresholds(const Image& image, bool dither, const Use& use) {
 }
 
 template <typename Sample>
-std::vector<Sample> straightSrgb(const Image& image, bool dither) {
-    std::vector<Sample> samples(image.rgba.size());
+UnclearedVector<Sample> straightSrgb(const Image& image, bool dither) {
+    UnclearedVector<Sample> samples(image.rgba.size());
     const SrgbCurve& curve = srgbCurve();
     forThresholds(image, dither, [&](std::size_t pixel, double threshold) {
         straightSrgbPixel(curve, &image.rgba[4 * pixel], threshold, &samples[4 * pixel]);
@@ -134,8 +134,8 @@ std::vector<Sample> straightSrgb(const Image& image, bool dither) {
     return samples;
 }
 
-std::vector<std::uint8_t> opaqueSrgb(const Image& image, bool dither) {
-    std::vector<std::uint8_t> samples(image.rgba.size() / 4 * 3);
+UnclearedVector<std::uint8_t> opaqueSrgb(const Image& image, bool dither) {
+    UnclearedVector<std::uint8_t> samples(image.rgba.size() / 4 * 3);
     const SrgbCurve& curve = srgbCurve();
     forThresholds(image, dither, [&](std::size_t pixel, double threshold) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -146,7 +146,7 @@ std::vector<std::uint8_t> opaqueSrgb(const Image& image, bool dither) {
     return samples;
 }
 
-template std::vector<std::uint8_t> straightSrgb(const Image& image, bool dither);
-template std::vector<std::uint16_t> straightSrgb(const Image& image, bool dither);
+template UnclearedVector<std::uint8_t> straightSrgb(const Image& image, bool dither);
+template UnclearedVector<std::uint16_t> straightSrgb(const Image& image, bool dither);
 
 }  // namespace deltasplat

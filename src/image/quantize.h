@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "deltasplat/image/image.h"
+#include "uncleared_vector.h"
 
 namespace deltasplat {
 
@@ -20,9 +20,9 @@ float finiteValue(float value, float largest = std::numeric_limits<float>::max()
 /// @param dither  round up or down instead, by a fixed pattern of places in the picture, so that
 ///                the mean of neighbouring pixels is right; what is a whole number stays so
 template <typename Sample>
-std::vector<Sample> straightSrgb(const Image& image, bool dither = false);
+UnclearedVector<Sample> straightSrgb(const Image& image, bool dither = false);
 
 /// The same of the picture over black, without alpha: `[height][width][3]`.
-std::vector<std::uint8_t> opaqueSrgb(const Image& image, bool dither);
+UnclearedVector<std::uint8_t> opaqueSrgb(const Image& image, bool dither);
 
 }  // namespace deltasplat

@@ -126,7 +126,7 @@ std::string image_module::encodeThumbnail(const Image& image) {
     OIIO::ImageSpec spec(image.size.x, image.size.y, 3, OIIO::TypeUInt8);
     spec.attribute("compression", kCompression);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    const std::vector<std::uint8_t> samples = opaqueSrgb(image, false);
+    const UnclearedVector<std::uint8_t> samples = opaqueSrgb(image, false);
     return encodeInMemory("thumbnail.jpg", "jpeg", spec, [&](OIIO::ImageOutput& output) {
         return output.write_image(OIIO::TypeUInt8, samples.data());
     });

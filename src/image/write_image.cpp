@@ -70,7 +70,7 @@ void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
 
 template <typename Sample>
 std::string encodePng(const Image& image, const ImageFileOptions& options) {
-    const std::vector<Sample> samples =
+    const UnclearedVector<Sample> samples =
         straightSrgb<Sample>(image, options.dither && sizeof(Sample) == 1);
     const PixelBox part = options.region.value_or(PixelBox{{0, 0}, image.size});
     const auto width = std::size_t(image.size.x);

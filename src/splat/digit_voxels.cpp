@@ -64,7 +64,7 @@ ClassTable::Digit rangeOf(const ClassTable::Plane& plane, bool low) {
 }  // namespace
 
 DigitVoxels::DigitVoxels(const PackedDeltas& deltas, const ClassTable& classes, bool withLow) {
-    const std::vector<DeltaWord>& words = deltas.words;
+    const std::span<const DeltaWord> words = deltas.words;
     for (std::size_t p = 0; p < classes.planes.size(); ++p) {
         const ClassTable::Plane& plane = classes.planes[p];
         for (const bool low : {false, true}) {

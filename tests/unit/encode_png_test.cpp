@@ -120,7 +120,7 @@ void expectOfTheCurve() {
         rgba[2] = 0.0031308f + (float(i) / kCount - 0.5f) * 2e-5f;
         rgba[3] = 1;
     }
-    const std::vector<Sample> samples = straightSrgb<Sample>(image);
+    const UnclearedVector<Sample> samples = straightSrgb<Sample>(image);
     constexpr double kMost = std::numeric_limits<Sample>::max();
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double level = srgbFromLinear(double(image.rgba[i]));

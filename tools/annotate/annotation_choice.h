@@ -12,6 +12,8 @@ struct AnnotationChoice {
     bool scaleBar = false;
     bool axes = false;
     std::vector<std::string> lines;  ///< of text
+
+    bool any() const { return legend || scaleBar || axes || !lines.empty(); }
 };
 
 }  // namespace deltasplat

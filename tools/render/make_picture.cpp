@@ -65,6 +65,7 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
     } else if (command.annotations.legend) {
         legend = pictureLegend(command, volume, optics, window);
     }
+    if (!command.annotations.any()) return;
     annotate(layOut(command.annotations, result.camera, volume.space, legend, inkFor(result.image),
                     listener),
              result.image);

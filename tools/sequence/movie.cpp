@@ -164,10 +164,13 @@ void Movie::start(glm::ivec2 size, double framesPerSecond) {
 }
 
 Movie::Bytes Movie::bytesOf(const Image& image) const {
-    if (!isProRes_) return opaqueSrgb(image, dither_);
+    if (!isProRes_) {
+        const auto samples = opaqueSrgb(image, dither_);
+        return {samples.begin(), samples.end()};
+    }
     Image opaque = image;
     compositeOver(opaque, glm::vec4(0, 0, 0, 1));
-    const std::vector<std::uint16_t> samples = straightSrgb<std::uint16_t>(opaque);
+    const UnclearedVector<std::uint16_t> samples = straightSrgb<std::uint16_t>(opaque);
     Bytes bytes(2 * samples.size());
     std::memcpy(bytes.data(), samples.data(), bytes.size());
     return bytes;

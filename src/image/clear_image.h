@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include "deltasplat/image/image.h"
+
+namespace deltasplat {
+
+/// Returns a picture of zeros, as Image's constructor makes it. All threads ask the system for its
+/// memory, which takes longer than writing zeros.
+Image clearImage(glm::ivec2 size);
+
+}  // namespace deltasplat
