@@ -16,7 +16,9 @@ void expectPieces(std::size_t bytes) {
         return;
     }
     left = kStep > bytes ? kStep - bytes : 0;
-    // What was free already is not asked for. No compiler may leave this out.
+    // What is given back stays the heap's, for it is less than what goes back to the system. (Where
+    // the piece was mapped by itself, glibc maps none of its size any more once it is back.) No
+    // compiler may leave this out.
     void* volatile step = std::malloc(kStep);
     std::free(step);
 }

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <memory_resource>
+#include <new>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -11,19 +12,19 @@ namespace deltasplat {
 
 /// Gives a vector elements that have no value until one is written, so that several threads can do
 /// that: clearing a large one takes longer than filling it.
-template <typename T, typename Base>
+template <typename Base>
 class UnclearedAllocator : public Base {
   public:
     template <typename U>
     struct rebind {
         using other =
-            UnclearedAllocator<U, typename std::allocator_traits<Base>::template rebind_alloc<U>>;
+            UnclearedAllocator<typename std::allocator_traits<Base>::template rebind_alloc<U>>;
     };
     using Base::Base;
     UnclearedAllocator() = default;
     UnclearedAllocator(const Base& base) : Base(base) {}
-    template <typename U, typename Other>
-    UnclearedAllocator(const UnclearedAllocator<U, Other>& other)
+    template <typename Other>
+    UnclearedAllocator(const UnclearedAllocator<Other>& other)
         : Base(static_cast<const Other&>(other)) {}
 
     template <typename U, typename... Args>
@@ -39,12 +40,12 @@ class UnclearedAllocator : public Base {
 };
 
 template <typename T>
-using UnclearedVector = std::vector<T, UnclearedAllocator<T, std::allocator<T>>>;
+using UnclearedVector = std::vector<T, UnclearedAllocator<std::allocator<T>>>;
 
 namespace pmr {
 
 template <typename T>
-using UnclearedVector = std::vector<T, UnclearedAllocator<T, std::pmr::polymorphic_allocator<T>>>;
+using UnclearedVector = std::vector<T, UnclearedAllocator<std::pmr::polymorphic_allocator<T>>>;
 
 }  // namespace pmr
 

@@ -191,7 +191,7 @@ std::vector<double> SlabRenderer::workOfRows() const {
 // The rows that strips begin at, and the last one's end. Several threads get strips of the same
 // work, as far as strips do not get so low that most of their rows lie at edges.
 std::vector<int> SlabRenderer::edgesOfStrips() const {
-    constexpr int kLeastRows = 32;
+    const int leastRows = std::max(32, travel());
     const int count = stripCount();
     const int rows = rows_.y - rows_.x;
     std::vector<int> edges(std::size_t(count) + 1, rows_.y);
@@ -203,8 +203,8 @@ std::vector<int> SlabRenderer::edgesOfStrips() const {
     int row = rows_.x;
     for (int i = 0; i + 1 < count; ++i) {
         // Those behind need their rows as well.
-        const int last = rows_.y - kLeastRows * (count - 1 - i);
-        const int least = std::min(row + kLeastRows, last);
+        const int last = rows_.y - leastRows * (count - 1 - i);
+        const int least = std::min(row + leastRows, last);
         const double wanted = left / (count - i);
         double ofStrip = 0;
         while (row < least || (row < last && ofStrip < wanted))

@@ -8,7 +8,7 @@
 namespace deltasplat {
 
 /// Returns a picture of zeros, as Image's constructor makes it. All threads ask the system for its
-/// memory, which takes longer than writing zeros.
+/// memory, which takes longer than the zeros that one of them writes then.
 Image clearImage(glm::ivec2 size);
 
 }  // namespace deltasplat

@@ -153,7 +153,7 @@ class RegionWarper {
         double room = std::numeric_limits<double>::infinity();
         if (goesOnBefore_[axis]) room = std::min(room, position[axis]);
         if (goesOnBehind_[axis]) room = std::min(room, raster_.size[axis] - 1 - position[axis]);
-        return room / kReach;
+        return std::max(room, 0.0) / kReach;
     }
 
     // Whether a glance at a tile's corners shows that there is nothing: rays between those of a

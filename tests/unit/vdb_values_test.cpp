@@ -297,18 +297,26 @@ TEST(VdbValues, MasksThatAreMadeToDifferUnseen) {
         const std::size_t at = bytes.size() - 512 * (half ? 2 : 4) - 1 - sizeof(VdbLeaf::Mask);
         VdbLeaf::Mask mask;
         std::memcpy(mask.data(), &bytes[at], sizeof mask);
-        // What one word changes in the sum, the next can take back.
+        // What one word changes in sums by multiplication, the next takes back.
         const auto after = [](std::uint64_t word) {
             const std::uint64_t sum = word * 0x9E3779B97F4A7C15;
             return sum ^ sum >> 32;
         };
-        VdbLeaf::Mask other = mask;
-        other[0] ^= 7;
-        other[1] ^= after(mask[0]) ^ after(other[0]);
-        std::memcpy(&bytes[at], other.data(), sizeof other);
-        writeBytes("a.vdb", bytes);
-        expectErrorBothWays(
-            "a.vdb: got a leaf of two different masks; expected a sound OpenVDB tree");
+        VdbLeaf::Mask products = mask;
+        products[0] ^= 7;
+        products[1] ^= after(mask[0]) ^ after(products[0]);
+        VdbLeaf::Mask highBits = mask;
+        highBits[0] ^= std::uint64_t{1} << 63;
+        highBits[1] ^= std::uint64_t{1} << 63 | std::uint64_t{1} << 31;
+        VdbLeaf::Mask swapped = mask;
+        swapped[0] = mask[0] << 32 | (mask[0] >> 32 ^ 1);
+        for (const VdbLeaf::Mask& other : {products, highBits, swapped}) {
+            ASSERT_NE(other, mask);
+            std::memcpy(&bytes[at], other.data(), sizeof other);
+            writeBytes("a.vdb", bytes);
+            expectErrorBothWays(
+                "a.vdb: got a leaf of two different masks; expected a sound OpenVDB tree");
+        }
     }
 }
 

@@ -164,10 +164,7 @@ void Movie::start(glm::ivec2 size, double framesPerSecond) {
 }
 
 Movie::Bytes Movie::bytesOf(const Image& image) const {
-    if (!isProRes_) {
-        const auto samples = opaqueSrgb(image, dither_);
-        return {samples.begin(), samples.end()};
-    }
+    if (!isProRes_) return opaqueSrgb(image, dither_);
     Image opaque = image;
     compositeOver(opaque, glm::vec4(0, 0, 0, 1));
     const UnclearedVector<std::uint16_t> samples = straightSrgb<std::uint16_t>(opaque);

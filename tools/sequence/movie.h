@@ -11,6 +11,7 @@
 
 #include "deltasplat/atomic_file.h"
 #include "sequence/frame_sink.h"
+#include "uncleared_vector.h"
 
 namespace deltasplat {
 
@@ -42,7 +43,7 @@ class Movie : public FrameSink {
     void finish() override;
 
   private:
-    using Bytes = std::vector<unsigned char>;
+    using Bytes = UnclearedVector<unsigned char>;
 
     Bytes bytesOf(const Image& image) const;
     void start(glm::ivec2 size, double framesPerSecond);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "heap_growth.h"
 #include "parallel.h"
@@ -34,14 +35,25 @@ openvdb::Coord lowerOrigin(const openvdb::Coord& place) {
     return place & ~(Lower::DIM - 1);
 }
 
-// Notes which parts of a list go into which nodes.
+// Notes which parts of a list go into which nodes: originOf(i) is where an item lies, nothing if it
+// goes into none.
 template <typename OriginOf>
 void addParts(std::size_t count, const OriginOf& originOf, Part LowerParts::*which,
               LowerMap& nodes) {
-    for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
-        const openvdb::Coord origin = lowerOrigin(originOf(begin));
-        for (end = begin + 1; end < count && lowerOrigin(originOf(end)) == origin;) ++end;
-        nodes[origin].*which = {begin, end};
+    Part* part = nullptr;
+    openvdb::Coord node;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::optional<openvdb::Coord> origin = originOf(i);
+        if (!origin) {
+            part = nullptr;
+            continue;
+        }
+        if (!part || lowerOrigin(*origin) != node) {
+            node = lowerOrigin(*origin);
+            part = &(nodes[node].*which);
+            part->begin = i;
+        }
+        part->end = i + 1;
     }
 }
 
@@ -50,16 +62,16 @@ void addParts(std::size_t count, const OriginOf& originOf, Part LowerParts::*whi
 std::vector<CodeTree::Leaf*> addNodes(const std::vector<openvdb::Coord>& leaves,
                                       const std::vector<TilePlace>& tiles,
                                       const std::vector<Code>& codes, CodeTree::Tree& tree) {
-    std::vector<std::size_t> small;
-    for (std::size_t i = 0; i < tiles.size(); ++i) {
-        if (tiles[i].level == 1) small.push_back(i);
-    }
     LowerMap parts;
     addParts(
-        leaves.size(), [&](std::size_t i) { return leaves[i]; }, &LowerParts::leaves, parts);
-    addParts(
-        small.size(), [&](std::size_t i) { return tiles[small[i]].origin; }, &LowerParts::tiles,
+        leaves.size(), [&](std::size_t i) { return std::optional(leaves[i]); }, &LowerParts::leaves,
         parts);
+    addParts(
+        tiles.size(),
+        [&](std::size_t i) {
+            return tiles[i].level == 1 ? std::optional(tiles[i].origin) : std::nullopt;
+        },
+        &LowerParts::tiles, parts);
     std::vector<LowerMap::value_type*> nodes;
     for (auto& entry : parts) nodes.push_back(&entry);
     std::vector<CodeTree::Leaf*> added(leaves.size());
@@ -74,8 +86,7 @@ std::vector<CodeTree::Leaf*> addNodes(const std::vector<openvdb::Coord>& leaves,
             made.node->addChild(added[i]);
         }
         for (std::size_t i = made.tiles.begin; i < made.tiles.end; ++i) {
-            const std::size_t tile = small[i];
-            made.node->addTile(Lower::coordToOffset(tiles[tile].origin), codes[tile], true);
+            made.node->addTile(Lower::coordToOffset(tiles[i].origin), codes[i], true);
         }
     });
     std::map<openvdb::Coord, Upper*> uppers;

@@ -47,7 +47,7 @@ struct CodeTree {
     /// call, after which the tree must not change. Thread-safe.
     std::shared_ptr<const std::vector<CodeLeaf>> leaves() const;
     /// Tells leaves() what it would find out, for who has filled the tree: it must not change then.
-    /// @param leaves  all that have active voxels, in the tree's order
+    /// @param leaves  all that have active voxels, in any order
     void noteLeaves(std::vector<CodeLeaf> leaves);
 
   private:

@@ -37,14 +37,15 @@ struct DenseSource {
     std::function<void(const LayerUse& use, const Listener& listener)> forEachLayer;
 
     static constexpr int kLayerSlices = 8;
-    /// Returns how many slices make enough work for all threads; the fewest where memory is
-    /// limited.
-    int stepSlices() const {
+    int step = kLayerSlices;  ///< the most slices that forEachLayer gives at a time
+    int stepSlices() const { return int(std::min<std::int64_t>(dims.z, step)); }
+    /// Returns the step that makes enough work for all threads; the least where memory is limited.
+    int enoughSlices() const {
         const std::int64_t mostLayers = memoryLimit() > 0 ? 1 : 16;
         constexpr std::int64_t kBytes = std::int64_t{8} << 20;
-        const auto layer = std::int64_t(sliceBytes()) * kLayerSlices;
+        const auto layer = std::max<std::int64_t>(1, std::int64_t(sliceBytes()) * kLayerSlices);
         const std::int64_t layers = std::clamp(kBytes / layer, std::int64_t{1}, mostLayers);
-        return int(std::min<std::int64_t>(dims.z, layers * kLayerSlices));
+        return int(layers * kLayerSlices);
     }
     std::size_t rowBytes() const { return std::size_t(dims.x) * std::size_t(rawTypeBytes(type)); }
     std::size_t sliceBytes() const { return rowBytes() * std::size_t(dims.y); }

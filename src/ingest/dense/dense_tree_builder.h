@@ -39,7 +39,9 @@ class DenseTreeBuilder {
         : dims_(dims),
           blocks_((dims + (kBlock - 1)) / kBlock),
           workers_(std::size_t(std::max(1, threadCount()))),
-          tree_(tree) {}
+          tree_(tree),
+          made_(std::size_t(blocks_.x) * std::size_t(blocks_.y) *
+                std::size_t(std::min(blocks_.z, kNode))) {}
 
     /// How many parts of the work go on at the same time.
     std::size_t workers() const { return workers_; }
@@ -68,10 +70,14 @@ class DenseTreeBuilder {
 
     /// Returns the most bytes that slices can add to the tree.
     double worstBytes(int slices) const {
-        const double row = double(blocks_.x) * blocks_.y;
-        const double added = row * ((slices + kBlock - 1) / kBlock);
-        return added * (sizeof(Leaf) + kBlockVoxels * sizeof(Value)) +
-               row * layersKept() * sizeof(Block);
+        constexpr std::size_t kBlockBytes =
+            sizeof(Leaf) + kBlockVoxels * sizeof(Value) + (kHasCodes ? sizeof(CodeLeaf) : 0);
+        return double(blocks_.x) * blocks_.y * ((slices + kBlock - 1) / kBlock) * kBlockBytes;
+    }
+    /// Returns what the builder for a volume takes itself.
+    static double bytes(const glm::ivec3& dims) {
+        const glm::dvec3 blocks = (dims + (kBlock - 1)) / kBlock;
+        return blocks.x * blocks.y * std::min(blocks.z, double(kNode)) * sizeof(Block);
     }
 
   private:
@@ -106,7 +112,6 @@ class DenseTreeBuilder {
     template <typename Fill, typename Tally>
     void makeBlocks(int firstLayer, int layers, int firstSlice, const Fill& fill,
                     const Tally& tally) {
-        made_.resize(std::size_t(blocks_.x) * std::size_t(blocks_.y) * std::size_t(layersKept()));
         std::atomic<int> next = 0;
         parallelFor(workers_, [&](std::size_t worker) {
             for (int row = next++; row < layers * blocks_.y; row = next++) {
@@ -142,11 +147,10 @@ class DenseTreeBuilder {
         if constexpr (kHasCodes) {
             const CodeLeaf described = describeLeaf(*leaf);
             return {std::move(leaf), described.lowest, described.highest};
+        } else {
+            return {std::move(leaf), Value{}, Value{}};
         }
-        return {std::move(leaf), Value{}, Value{}};
     }
-
-    int layersKept() const { return std::min(blocks_.z, kNode); }
 
     Block& madeAt(int x, int y, int z) {
         return made_[(std::size_t(z % kNode) * std::size_t(blocks_.y) + std::size_t(y)) *

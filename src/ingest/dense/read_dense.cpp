@@ -155,7 +155,7 @@ class SliceAdder {
     using Value = typename Tree::ValueType;
 
     SliceAdder(const DenseSource& source, Tree& tree)
-        : source_(source), builder_(tree, glm::ivec3(source.dims)) {
+        : source_(source), builder_(tree, checked(source)) {
         const int slices = source.stepSlices();
         requireMemory(source.where,
                       double(source.sliceBytes()) * slices + builder_.worstBytes(slices));
@@ -181,6 +181,13 @@ class SliceAdder {
     }
 
   private:
+    // Returns the voxels, if the builder's own memory is there.
+    static glm::ivec3 checked(const DenseSource& source) {
+        const glm::ivec3 dims(source.dims);
+        requireMemory(source.where, DenseTreeBuilder<Tree>::bytes(dims));
+        return dims;
+    }
+
     const DenseSource& source_;
     DenseTreeBuilder<Tree> builder_;
 };

@@ -36,8 +36,11 @@ class FileLeaves {
           progress_(listener) {}
 
     T background() const { return background_; }
-    const std::vector<TilePlace>& tilePlaces() const { return tiles_.places(); }
     std::span<const T> tileValues() const { return tiles_.template values<T>(); }
+    template <typename Use>
+    void forTileRuns(const Use& use) const {
+        use(std::span(tiles_.places()), tileValues());
+    }
     std::size_t count() const { return packed_.leaves().size(); }
     openvdb::Coord place(std::size_t i) const {
         return openvdb::Coord(packed_.leaves()[i].origin.data());
@@ -53,6 +56,7 @@ class FileLeaves {
         const auto values = packed_.activeValues(packed_.leaves()[i], room.mask, room);
         if (values) return *values;
         areDamaged_ = true;
+        room.mask = {};
         return {};
     }
     /// Whether any that were asked for were.
@@ -65,7 +69,7 @@ class FileLeaves {
         std::vector<openvdb::Coord> places(count());
         for (std::size_t i = 0; i < places.size(); ++i) places[i] = place(i);
         auto codes = std::make_shared<CodeTree>();
-        filled = addNodes(places, tilePlaces(), tileCodes, codes->tree());
+        filled = addNodes(places, tiles_.places(), tileCodes, codes->tree());
         return codes;
     }
     /// Makes room for codes in a leaf of that tree, those whose values were asked for last.

@@ -94,8 +94,10 @@ std::shared_ptr<CodeTree> fillCodes(const Leaves& leaves, const std::vector<Code
                                     CodeCounts& counts, const Encode& encode) {
     std::vector<CodeTree::Leaf*> filled;
     std::shared_ptr<CodeTree> codes = leaves.makeCodes(tileCodes, filled);
-    for (std::size_t i = 0; i < tileCodes.size(); ++i)
-        counts.add(0, tileCodes[i], leaves.tilePlaces()[i].voxels());
+    auto code = tileCodes.begin();
+    leaves.forTileRuns([&](const auto& places, const auto&) {
+        for (const TilePlace& place : places) counts.add(0, *code++, place.voxels());
+    });
     std::vector<CodeLeaf> described(filled.size());
     std::atomic<bool> areSound = true;
     std::vector<std::unique_ptr<typename Leaves::Room>> rooms(counts.workers());
@@ -155,8 +157,11 @@ std::shared_ptr<CodeTree> codesOfLeaves(const Leaves& leaves, const CodeBook& bo
         for (std::size_t n = 0; n < values.size(); ++n)
             parts[worker].add(double(values[n]), out[n]);
     };
-    std::vector<Code> tileCodes(leaves.tilePlaces().size());
-    encodeIn(0, leaves.tileValues(), tileCodes.data());
+    std::vector<Code> tileCodes;
+    leaves.forTileRuns([&](const auto&, const auto& values) {
+        tileCodes.resize(tileCodes.size() + values.size());
+        encodeIn(0, values, tileCodes.data() + tileCodes.size() - values.size());
+    });
     auto codes = fillCodes(leaves, tileCodes, counts, encodeIn);
     for (const ErrorMeter::Part& part : parts) meter.add(part);
     return codes;

@@ -148,19 +148,27 @@ class TreeLeaves {
     using Value = typename Tree::ValueType;
     using Room = LeafRoom<typename Tree::LeafNodeType>;
 
-    explicit TreeLeaves(const Tree& tree) : tree_(tree) {
-        tree.getNodes(leaves_);
-        forActiveTiles(tree, [&](const auto& tile) {
-            tilePlaces_.push_back({tile.getCoord(), tile.getLevel()});
-        });
-        tileValues_ = std::make_unique<Value[]>(tilePlaces_.size());
-        Value* next = tileValues_.get();
-        forActiveTiles(tree, [&](const auto& tile) { *next++ = *tile; });
-    }
+    explicit TreeLeaves(const Tree& tree) : tree_(tree) { tree.getNodes(leaves_); }
 
     Value background() const { return tree_.background(); }
-    const std::vector<TilePlace>& tilePlaces() const { return tilePlaces_; }
-    std::span<const Value> tileValues() const { return {tileValues_.get(), tilePlaces_.size()}; }
+    /// Calls use(places, values) for the active tiles, some at a time.
+    template <typename Use>
+    void forTileRuns(const Use& use) const {
+        constexpr std::size_t kMost = 4096;
+        std::vector<TilePlace> places;
+        const auto values = std::make_unique<Value[]>(kMost);
+        const auto flush = [&] {
+            use(std::span<const TilePlace>(places),
+                std::span<const Value>(values.get(), places.size()));
+            places.clear();
+        };
+        forActiveTiles(tree_, [&](const auto& tile) {
+            values[places.size()] = *tile;
+            places.push_back({tile.getCoord(), tile.getLevel()});
+            if (places.size() == kMost) flush();
+        });
+        if (!places.empty()) flush();
+    }
     std::size_t count() const { return leaves_.size(); }
     /// Returns where a leaf's first voxel lies.
     openvdb::Coord place(std::size_t i) const { return leaves_[i]->origin(); }
@@ -188,8 +196,6 @@ class TreeLeaves {
   private:
     const Tree& tree_;
     std::vector<const typename Tree::LeafNodeType*> leaves_;
-    std::vector<TilePlace> tilePlaces_;
-    std::unique_ptr<Value[]> tileValues_;
 };
 
 /// What a scan is to find out besides the census' numbers.
@@ -232,15 +238,16 @@ GridScan scanLeaves(const Leaves& leaves, const ScanWishes& wishes) {
         });
         for (const GridScan& scan : scans) whole.append(scan);
     }
-    const auto tiles = leaves.tileValues();
-    for (std::size_t i = 0; i < tiles.size(); ++i) {
-        if (isFinite(tiles[i])) {
-            whole.census.add(tiles[i]);
-        } else {
-            const TilePlace& place = leaves.tilePlaces()[i];
-            whole.addNonFinite(place.origin, place.voxels());
+    leaves.forTileRuns([&](const auto& places, const auto& values) {
+        if (whole.census.addAll(values)) return;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (isFinite(values[i])) {
+                whole.census.add(values[i]);
+            } else {
+                whole.addNonFinite(places[i].origin, places[i].voxels());
+            }
         }
-    }
+    });
     return whole;
 }
 

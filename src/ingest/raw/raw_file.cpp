@@ -98,6 +98,7 @@ DenseSource denseSourceOf(const RawFile& file) {
     source.type = file.layout.type;
     source.bigEndian = file.layout.bigEndian;
     source.volumes = file.volumes;
+    source.step = source.enoughSlices();
     source.forEachLayer = [file, step = source.stepSlices(),
                            checked = std::make_shared<bool>(false)](
                               const DenseSource::LayerUse& use, const Listener& listener) {

@@ -359,7 +359,7 @@ std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
     });
     VdbTreePlaces places;
     const VdbTreeSize size = walkTopology(bytes, head.format, places);
-    requireMemory(where, size.codeBytes());
+    requireMemory(where, size.codeBytes(head.format));
     const auto file = std::make_shared<const FileBytes>(file_);
     std::optional<VdbTiles> tiles = VdbTiles::read(*file, head.format, places.tiles);
     if (!tiles) return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <openvdb/Types.h>
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cstring>
@@ -23,11 +24,6 @@ constexpr NodeShape shapeOf(int level) {
     return level == 1 ? NodeShape{4, 3} : NodeShape{5, 7};
 }
 
-struct NodeTiles {
-    std::vector<TilePlace> places;
-    std::vector<char> values;
-};
-
 openvdb::Coord placeOf(const VdbTileNode& node, int child) {
     const auto [log2, childLog2] = shapeOf(node.level);
     const int mask = (1 << log2) - 1;
@@ -36,11 +32,8 @@ openvdb::Coord placeOf(const VdbTileNode& node, int child) {
                   (child & mask) << childLog2);
 }
 
-// Appends a stored value as the grid has it.
-void append(const char* stored, const VdbValueFormat& format, std::vector<char>& values) {
-    const std::size_t place = values.size();
-    values.resize(place + format.bytes);
-    char* const to = values.data() + place;
+// Writes a stored value as the grid has it.
+void writeValue(const char* stored, const VdbValueFormat& format, char* to) {
     if (format.stored == format.bytes) {
         std::memcpy(to, stored, format.bytes);
         return;
@@ -53,55 +46,61 @@ void append(const char* stored, const VdbValueFormat& format, std::vector<char>&
                 format.bytes);
 }
 
-// Returns whether the node is sound.
+// Writes the places and values of a node's tiles; returns whether it is sound.
 bool readNode(const FileBytes& file, const VdbValueFormat& format, const VdbTileNode& node,
-              NodeTiles& tiles) {
+              TilePlace* places, char* values) {
     std::vector<char> bytes(node.size);
     if (file.read(node.begin, bytes.data(), node.size) != node.size) return false;
     if (node.level == 3) {
-        tiles.places.push_back({openvdb::Coord(node.origin.data()), 3});
-        tiles.values = std::move(bytes);
-        return tiles.values.size() == format.bytes;
+        *places = {openvdb::Coord(node.origin.data()), 3};
+        std::copy(bytes.begin(), bytes.end(), values);
+        return true;
     }
-    const std::size_t places = std::size_t{1} << (3 * shapeOf(node.level).log2);
-    std::vector<std::uint64_t> mask(places / 64);
+    const std::size_t children = std::size_t{1} << (3 * shapeOf(node.level).log2);
+    std::vector<std::uint64_t> mask(children / 64);
     const std::span<const std::uint64_t> active(mask);
     if (bytes.size() < 2 * active.size_bytes()) return false;
     std::memcpy(mask.data(), bytes.data() + active.size_bytes(), active.size_bytes());
-    const std::span<const char> rest =
-        std::span<const char>(bytes).subspan(2 * active.size_bytes());
-    const auto packed = packedValues(rest, active, format);
+    const auto packed =
+        packedValues(std::span<const char>(bytes).subspan(2 * active.size_bytes()), active, format);
     if (!packed) return false;
-    std::vector<char> stored(places * format.stored + kUnpackBytes);
+    std::vector<char> stored(children * format.stored + kUnpackBytes);
     if (!unpack(*packed, format, stored)) return false;
-    const bool haveAll = packed->count == places;
+    const bool haveAll = packed->count == children;
     std::size_t next = 0;
     for (std::size_t word = 0; word < mask.size(); ++word) {
-        for (std::uint64_t left = mask[word]; left != 0; left &= left - 1) {
+        for (std::uint64_t left = mask[word]; left != 0; left &= left - 1, ++next) {
+            // The file is another one than it was.
+            if (next == node.tiles) return false;
             const std::size_t child = 64 * word + std::size_t(std::countr_zero(left));
-            tiles.places.push_back({placeOf(node, int(child)), openvdb::Index(node.level)});
-            append(stored.data() + format.stored * (haveAll ? child : next), format, tiles.values);
-            ++next;
+            places[next] = {placeOf(node, int(child)), openvdb::Index(node.level)};
+            writeValue(stored.data() + format.stored * (haveAll ? child : next), format,
+                       values + format.bytes * next);
         }
     }
-    return true;
+    return next == node.tiles;
 }
 
 }  // namespace
 
 std::optional<VdbTiles> VdbTiles::read(const FileBytes& file, const VdbValueFormat& format,
                                        const std::vector<VdbTileNode>& nodes) {
-    std::vector<NodeTiles> parts(nodes.size());
+    std::vector<std::size_t> begins;
+    std::size_t count = 0;
+    for (const VdbTileNode& node : nodes) {
+        begins.push_back(count);
+        count += node.tiles;
+    }
+    VdbTiles tiles;
+    tiles.places_.resize(count);
+    tiles.values_.resize(count * format.bytes);
     std::atomic<bool> areSound = true;
     parallelFor(nodes.size(), [&](std::size_t i) {
-        if (!readNode(file, format, nodes[i], parts[i])) areSound = false;
+        if (!readNode(file, format, nodes[i], &tiles.places_[begins[i]],
+                      &tiles.values_[begins[i] * format.bytes]))
+            areSound = false;
     });
     if (!areSound) return std::nullopt;
-    VdbTiles tiles;
-    for (const NodeTiles& part : parts) {
-        tiles.places_.insert(tiles.places_.end(), part.places.begin(), part.places.end());
-        tiles.values_.insert(tiles.values_.end(), part.values.begin(), part.values.end());
-    }
     return tiles;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cassert>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,7 @@ class VdbTiles {
     /// @tparam T  the grid's value type
     template <typename T>
     std::span<const T> values() const {
+        assert(values_.size() == places_.size() * sizeof(T));
         return {reinterpret_cast<const T*>(values_.data()), places_.size()};
     }
 

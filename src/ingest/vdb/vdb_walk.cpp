@@ -82,7 +82,7 @@ class Walk {
             bytes_.skip(format_.bytes);
             const int state = bytes_.u8();
             if (state > 1) fail("a tile that is neither active nor inactive");
-            if (state == 1) noteTiles({origin, 3, begin, format_.bytes});
+            if (state == 1) noteTiles({origin, 3, begin, format_.bytes, 1});
         }
         for (std::uint32_t i = 0; i < children; ++i) {
             const Place origin = place();
@@ -127,13 +127,15 @@ class Walk {
         }
         ++(kLog2 == kUpperLog2 ? size_.upper : size_.lower);
         nodeValues<kLog2>(values);
-        if (std::any_of(values.begin(), values.end(), [](std::uint64_t word) { return word != 0; }))
-            noteTiles({origin, kLog2 == kUpperLog2 ? 2 : 1, begin, bytes_.position() - begin});
+        std::uint64_t tiles = 0;
+        for (const std::uint64_t word : values) tiles += std::uint64_t(std::popcount(word));
+        const int level = kLog2 == kUpperLog2 ? 2 : 1;
+        if (tiles > 0) noteTiles({origin, level, begin, bytes_.position() - begin, tiles});
         if constexpr (kLog2 == kLowerLog2) readLeafMasks(children);
-        std::size_t number = 0;
+        std::size_t before = 0;
         for (std::size_t i = 0; i < children.size(); ++i) {
             for (std::uint64_t rest = children[i]; rest != 0; rest &= rest - 1)
-                child<kLog2>(origin, int(i * 64) + std::countr_zero(rest), number++);
+                child<kLog2>(origin, int(i * 64) + std::countr_zero(rest), before++);
         }
     }
 
@@ -147,9 +149,9 @@ class Walk {
 
     // Children are numbered x slowest, z fastest.
     // @param number  of the child's place
-    // @param count   of the children before it
+    // @param before  how many children lie before it
     template <int kLog2>
-    void child(const Place& origin, int number, std::size_t count) {
+    void child(const Place& origin, int number, std::size_t before) {
         constexpr int kChildLog2 = kLog2 == kUpperLog2 ? kLowerLog2 + kLeafLog2 : kLeafLog2;
         constexpr int kMask = (1 << kLog2) - 1;
         const std::array<int, 3> step{number >> (2 * kLog2), number >> kLog2 & kMask,
@@ -162,12 +164,13 @@ class Walk {
         if constexpr (kLog2 == kUpperLog2) {
             node<kLowerLog2>(place);
         } else {
-            leaves_->push_back({place, 0, 0, VdbLeaf::sumOf(leafMasks_[count])});
+            leaves_->push_back({place, 0, 0, VdbLeaf::sumOf(leafMasks_[before])});
             ++size_.leaves;
         }
     }
 
     void noteTiles(const VdbTileNode& node) {
+        size_.tiles += node.tiles;
         if (places_) places_->tiles.push_back(node);
     }
 
@@ -241,17 +244,27 @@ class Walk {
 
 }  // namespace
 
+// Halves of words, each times a number of its own below the prime 2^61 - 1, modulo that: numbers
+// that are drawn by chance give two masks that differ the same sum with a probability of 2^-61,
+// whatever these are (L. Carter and M. Wegman, "Universal Classes of Hash Functions", 1979).
 std::uint64_t VdbLeaf::sumOf(const Mask& mask) {
-    static const std::uint64_t secret = [] {
+    __extension__ using Wide = unsigned __int128;
+    constexpr std::uint64_t kPrime = (std::uint64_t{1} << 61) - 1;
+    static const std::array<std::uint64_t, 16> numbers = [] {
         std::random_device random;
-        return std::uint64_t{random()} << 32 | random();
+        std::array<std::uint64_t, 16> drawn;
+        for (std::uint64_t& number : drawn)
+            number = (std::uint64_t{random()} << 32 | random()) % kPrime;
+        return drawn;
     }();
-    std::uint64_t sum = secret;
-    for (const std::uint64_t word : mask) {
-        sum = (sum ^ word) * 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio (D. Knuth)
-        sum ^= sum >> 32;
+    Wide sum = 0;
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+        sum += Wide{numbers[2 * i]} * std::uint32_t(mask[i]);
+        sum += Wide{numbers[2 * i + 1]} * (mask[i] >> 32);
     }
-    return sum;
+    // Below 2^98.
+    sum = (sum & kPrime) + (sum >> 61);
+    return std::uint64_t(sum % kPrime);
 }
 
 std::uint64_t VdbValueFormat::inactiveBytes(int kind, std::uint64_t mask) const {
@@ -285,8 +298,11 @@ double VdbTreeSize::memoryBytes(const VdbValueFormat& format) const {
     return double(leaves) * leafBytes + double(lower) * 4096 * slot + double(upper) * 32768 * slot;
 }
 
-double VdbTreeSize::codeBytes() const {
-    return double(leaves) * (512.0 * 2 + 128) + (double(lower) * 4096 + double(upper) * 32768) * 8;
+double VdbTreeSize::codeBytes(const VdbValueFormat& format) const {
+    // A tile's place, value and code, and its part of a node's bytes, unpacked.
+    const double tileBytes = 16 + 2.0 * format.bytes + 2;
+    return double(leaves) * (512.0 * 2 + 128) + double(tiles) * tileBytes +
+           (double(lower) * 4096 + double(upper) * 32768) * 8;
 }
 
 VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format) {

@@ -32,10 +32,11 @@ struct VdbTreeSize {
     std::uint64_t leaves = 0;  ///< nodes of 8^3 voxels
     std::uint64_t lower = 0;   ///< nodes of 16^3 leaves
     std::uint64_t upper = 0;   ///< nodes of 32^3 lower nodes
+    std::uint64_t tiles = 0;   ///< active ones, of all levels
     /// Returns about how much memory the tree and a tree of codes beside it take.
     double memoryBytes(const VdbValueFormat& format) const;
     /// Returns the same of the tree of codes alone.
-    double codeBytes() const;
+    double codeBytes(const VdbValueFormat& format) const;
 };
 
 /// Where a leaf of values lies in a file.
@@ -48,7 +49,8 @@ struct VdbLeaf {
     /// Of the mask that lies before all values: the leaf has it once more.
     std::uint64_t maskSum = 0;
 
-    /// Masks of the same sum are the same: which others would have it is another in each process.
+    /// Masks of the same sum are the same: which others would have it is drawn anew in each
+    /// process.
     static std::uint64_t sumOf(const Mask& mask);
 
     std::uint64_t end() const { return begin + size; }
@@ -61,6 +63,7 @@ struct VdbTileNode {
     int level = 1;  ///< of its tiles. 1: of 8^3 voxels, 2: of 128^3, 3: of 4096^3, of the root
     std::uint64_t begin = 0;
     std::uint64_t size = 0;
+    std::uint64_t tiles = 0;  ///< active ones
 };
 
 /// What of a tree has values, and where these lie in a file.
