@@ -2,7 +2,6 @@
 #include "image/clear_image.h"
 
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -17,13 +16,14 @@ namespace {
 void askForMemory([[maybe_unused]] void* first, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_POPULATE_WRITE
     constexpr std::size_t kPart = std::size_t{2} << 20;
-    const auto page = std::uintptr_t(::sysconf(_SC_PAGESIZE));
-    const std::uintptr_t begin = (std::uintptr_t(first) + page - 1) / page * page;
-    const std::uintptr_t end = (std::uintptr_t(first) + bytes) / page * page;
-    if (end < begin + 2 * kPart) return;
-    parallelFor((end - begin + kPart - 1) / kPart, [&](std::size_t part) {
-        const std::uintptr_t from = begin + part * kPart;
-        ::madvise(reinterpret_cast<void*>(from), std::min(kPart, end - from), MADV_POPULATE_WRITE);
+    constexpr std::size_t kMostPage = std::size_t{64} << 10;
+    if (bytes < 4 * kPart) return;
+    // From the first whole page on.
+    char* begin = static_cast<char*>(first) + kMostPage - std::uintptr_t(first) % kMostPage;
+    const std::size_t whole = (bytes - 2 * kMostPage) / kMostPage * kMostPage;
+    parallelFor((whole + kPart - 1) / kPart, [&](std::size_t part) {
+        const std::size_t from = part * kPart;
+        ::madvise(begin + from, std::min(kPart, whole - from), MADV_POPULATE_WRITE);
     });
 #endif
 }

@@ -76,8 +76,8 @@ class DenseTreeBuilder {
     }
     /// Returns what the builder for a volume takes itself.
     static double bytes(const glm::ivec3& dims) {
-        const glm::dvec3 blocks = (dims + (kBlock - 1)) / kBlock;
-        return blocks.x * blocks.y * std::min(blocks.z, double(kNode)) * sizeof(Block);
+        const glm::ivec3 blocks = (dims + (kBlock - 1)) / kBlock;
+        return double(blocks.x) * blocks.y * std::min(blocks.z, kNode) * sizeof(Block);
     }
 
   private:
