@@ -72,7 +72,8 @@ class DenseTreeBuilder {
     double worstBytes(int slices) const {
         constexpr std::size_t kBlockBytes =
             sizeof(Leaf) + kBlockVoxels * sizeof(Value) + (kHasCodes ? sizeof(CodeLeaf) : 0);
-        return double(blocks_.x) * blocks_.y * ((slices + kBlock - 1) / kBlock) * kBlockBytes;
+        const int layers = (slices + kBlock - 1) / kBlock;
+        return double(blocks_.x) * blocks_.y * layers * kBlockBytes;
     }
     /// Returns what the builder for a volume takes itself.
     static double bytes(const glm::ivec3& dims) {
