@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/codes/code_nodes.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "heap_growth.h"
 #include "parallel.h"
@@ -13,8 +13,7 @@
 namespace deltasplat {
 namespace {
 
-using Upper = CodeTree::Tree::RootNodeType::ChildNodeType;
-using Lower = Upper::ChildNodeType;
+using Lower = CodeTree::Tree::RootNodeType::ChildNodeType::ChildNodeType;
 
 // The part [begin, end) of a list.
 struct Part {
@@ -89,15 +88,7 @@ std::vector<CodeTree::Leaf*> addNodes(const std::vector<openvdb::Coord>& leaves,
             made.node->addTile(Lower::coordToOffset(tiles[i].origin), codes[i], true);
         }
     });
-    std::map<openvdb::Coord, Upper*> uppers;
-    for (auto& [origin, made] : parts) {
-        Upper*& upper = uppers[origin & ~(Upper::DIM - 1)];
-        if (!upper) {
-            upper = new Upper(origin & ~(Upper::DIM - 1), Code{0}, /*active=*/false);
-            tree.root().addChild(upper);
-        }
-        upper->addChild(made.node.release());
-    }
+    for (auto& [origin, made] : parts) hangIn(std::move(made.node), tree);
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         if (tiles[i].level > 1) tree.addTile(tiles[i].level, tiles[i].origin, codes[i], true);
     }

@@ -4,6 +4,7 @@
 #include <openvdb/math/Coord.h>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "ingest/codes/code_tree.h"
@@ -17,6 +18,19 @@ struct TilePlace {
 
     std::uint64_t voxels() const { return level == 1 ? 512 : level == 2 ? 1u << 21 : 1ull << 36; }
 };
+
+/// Hangs a node of 128^3 voxels into a tree that has none there.
+template <typename Tree>
+void hangIn(std::unique_ptr<typename Tree::RootNodeType::ChildNodeType::ChildNodeType> node,
+            Tree& tree) {
+    using Upper = typename Tree::RootNodeType::ChildNodeType;
+    Upper* upper = tree.template probeNode<Upper>(node->origin());
+    if (!upper) {
+        upper = new Upper(node->origin(), tree.background(), /*active=*/false);
+        tree.root().addChild(upper);
+    }
+    upper->addChild(node.release());
+}
 
 /// Adds leaves without room for codes, whose voxels are inactive, and active tiles, on all threads.
 /// @param leaves  where each leaf's first voxel lies; those of one node of 128^3 voxels follow each

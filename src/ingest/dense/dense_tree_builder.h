@@ -9,7 +9,6 @@
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <map>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -17,7 +16,7 @@
 
 #include "deltasplat/threads.h"
 #include "heap_growth.h"
-#include "ingest/codes/code_tree.h"
+#include "ingest/codes/code_nodes.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -61,7 +60,8 @@ class DenseTreeBuilder {
             // Those that hang in one row of nodes.
             count = std::min(firstLayer + layers, (layer / kNode + 1) * kNode) - layer;
             makeBlocks(layer, count, firstSlice, fill, tally);
-            if ((layer + count) % kNode == 0 || layer + count == blocks_.z) hangIn(layer / kNode);
+            if ((layer + count) % kNode == 0 || layer + count == blocks_.z)
+                hangInRow(layer / kNode);
         }
     }
 
@@ -82,8 +82,7 @@ class DenseTreeBuilder {
     }
 
   private:
-    using Upper = typename Tree::RootNodeType::ChildNodeType;
-    using Lower = typename Upper::ChildNodeType;
+    using Lower = typename Tree::RootNodeType::ChildNodeType::ChildNodeType;
     static constexpr bool kHasCodes = std::is_same_v<Tree, CodeTree::Tree>;
     static constexpr int kNode = Lower::DIM / kBlock;  // blocks of a node along an axis
 
@@ -160,7 +159,7 @@ class DenseTreeBuilder {
     }
 
     // Hangs the blocks of a row of nodes into the tree.
-    void hangIn(int nodeZ) {
+    void hangInRow(int nodeZ) {
         const glm::ivec2 nodes = (glm::ivec2(blocks_) + (kNode - 1)) / kNode;
         std::vector<std::unique_ptr<Lower>> made(std::size_t(nodes.x) * std::size_t(nodes.y));
         std::vector<std::vector<CodeLeaf>> leaves(made.size());
@@ -171,13 +170,7 @@ class DenseTreeBuilder {
         });
         for (std::size_t n = 0; n < made.size(); ++n) {
             leaves_.insert(leaves_.end(), leaves[n].begin(), leaves[n].end());
-            const openvdb::Coord origin = made[n]->origin() & ~(Upper::DIM - 1);
-            Upper*& upper = uppers_[origin];
-            if (!upper) {
-                upper = new Upper(origin, tree_.background(), /*active=*/false);
-                tree_.root().addChild(upper);
-            }
-            upper->addChild(made[n].release());
+            hangIn(std::move(made[n]), tree_);
         }
     }
 
@@ -209,7 +202,6 @@ class DenseTreeBuilder {
     std::size_t workers_;
     Tree& tree_;
     std::vector<Block> made_;  // [z % kNode][y][x]
-    std::map<openvdb::Coord, Upper*> uppers_;
     std::vector<CodeLeaf> leaves_;
 };
 

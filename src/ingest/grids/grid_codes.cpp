@@ -99,7 +99,6 @@ std::shared_ptr<CodeTree> fillCodes(const Leaves& leaves, const std::vector<Code
         for (const TilePlace& place : places) counts.add(0, *code++, place.voxels());
     });
     std::vector<CodeLeaf> described(filled.size());
-    std::atomic<bool> areSound = true;
     std::vector<std::unique_ptr<typename Leaves::Room>> rooms(counts.workers());
     const auto fill = [&](std::size_t worker, std::size_t i) {
         LeafRoom<CodeTree::Leaf> activeCodes;
@@ -108,8 +107,7 @@ std::shared_ptr<CodeTree> fillCodes(const Leaves& leaves, const std::vector<Code
         // What Blosc takes for a moment leaves gaps.
         expectPieces(std::size_t(1.5 * leafBytes<CodeTree::Leaf>()));
         leaves.makeRoom(*rooms[worker], leaf);
-        if (values.size() != leaf.onVoxelCount()) return false;
-        if (values.empty()) return true;
+        if (values.empty() || values.size() != leaf.onVoxelCount()) return;
         const bool isDense = leaf.isDense();
         Code* const out = isDense ? leaf.buffer().data() : activeCodes.data();
         encode(worker, values, out);
@@ -117,15 +115,13 @@ std::shared_ptr<CodeTree> fillCodes(const Leaves& leaves, const std::vector<Code
         counts.add(worker, written);
         described[i] = describeLeaf(leaf, written);
         if (!isDense) spread(out, leaf);
-        return true;
     };
     forLeafRuns(filled.size(), counts.workers(),
                 [&](std::size_t worker, std::size_t begin, std::size_t end) {
                     auto& room = rooms[worker];
                     if (!room) room = std::make_unique_for_overwrite<typename Leaves::Room>();
-                    for (std::size_t i = begin; i < end && areSound; ++i) {
-                        if (!fill(worker, i)) areSound = false;
-                    }
+                    for (std::size_t i = begin; i < end && !leaves.areDamaged(); ++i)
+                        fill(worker, i);
                 });
     // Leaves without active voxels may lie outside of the box of those.
     std::erase_if(described, [](const CodeLeaf& leaf) { return !leaf.leaf; });

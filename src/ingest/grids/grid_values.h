@@ -179,6 +179,8 @@ class TreeLeaves {
     std::span<const typename Tree::ValueType> values(std::size_t i, Room& room) const {
         return activeValues(*leaves_[i], room);
     }
+    /// Whether values of any leaf cannot be told.
+    bool areDamaged() const { return false; }
     /// Returns a tree for codes of these leaves, with those of tiles.
     /// @param filled  becomes its leaves
     std::shared_ptr<CodeTree> makeCodes(const std::vector<Code>& tileCodes,
