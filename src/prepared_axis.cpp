@@ -95,7 +95,7 @@ std::shared_ptr<const PackedDeltas> sharedWords(const PreparedAxis* before,
 
 // @param before  the same axis as other optics have it; null: none
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, int sliceAxis,
-                                            const Subdivision& parts, double steps,
+                                            bool descending, const Subdivision& parts, double steps,
                                             Encoding encoding, const PreparedAxis* before,
                                             bool inParts, const Listener& listener) {
     const Volume& volume = *scene.scene.volume;
@@ -123,6 +123,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     }
     PackOptions pack{sliceAxis, encoding, classes.classOfSlot, holdRule(seen, classes, tolerance),
                      mixer ? &*mixer : nullptr};
+    pack.descending = descending;
     pack.opacities = opacities;
     const bool isLit = painter && painter->dependsOnCamera();
     std::unique_ptr<const LookLight> light;
@@ -209,6 +210,12 @@ PreparedScene::Impl::Axes PreparedScene::Impl::axes() const {
     return axes;
 }
 
+std::shared_ptr<const PreparedAxis> PreparedScene::Impl::wholeAxis(Place& place) {
+    // Who is making it may be waiting for the other one.
+    const std::unique_lock lock(place.mutex, std::try_to_lock);
+    return lock && place.axis && place.axis->deltas().areWhole() ? place.axis : nullptr;
+}
+
 std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorization& view,
                                                               const SheetPlan& plan,
                                                               const Listener& listener,
@@ -220,21 +227,34 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
     const bool hasPixels = plan.footprintWidth(view) == 1;
     const Encoding encoding =
         isWhole ? Encoding::kWhole : encodingOf(options.method, painter != nullptr, hasPixels);
-    const Key key{sliceAxis, parts.slices, parts.within, int(encoding)};
+    // Slices are walked from the front on. Whole ones do not depend on it.
+    const bool descending = !view.frontToBack && encoding != Encoding::kWhole;
+    const Key key{sliceAxis, parts.slices, parts.within, int(encoding), int(descending)};
+    Key otherKey = key;
+    otherKey.back() = int(!descending);
+    std::shared_ptr<Place> otherWay;
     std::shared_ptr<Place> place;
     {
         const std::lock_guard lock(mutex_);
+        const auto other = places_.find(otherKey);
+        if (other != places_.end()) otherWay = other->second;
         std::shared_ptr<Place>& known = places_[key];
         if (!known) known = std::make_shared<Place>();
         place = known;
     }
     const std::lock_guard lock(place->mutex);
     // Work of another picture, taken on while waiting here, might want the same axis.
+    if (!place->axis && otherWay) place->axis = wholeAxis(*otherWay);
     if (!place->axis)
         isolated([&] {
-            const auto before = before_.find(key);
+            auto before = before_.find(key);
+            if (before == before_.end()) {
+                before = before_.find(otherKey);
+                if (before != before_.end() && !before->second->deltas().areWhole())
+                    before = before_.end();
+            }
             const double steps = isForOne ? stepsOf(view, *scene.volume) : 1;
-            place->axis = prepare(*this, sliceAxis, parts, steps, encoding,
+            place->axis = prepare(*this, sliceAxis, descending, parts, steps, encoding,
                                   before == before_.end() ? nullptr : before->second.get(),
                                   isForOne && inParts, listener);
         });

@@ -17,7 +17,8 @@ namespace deltasplat {
 
 class SheetPlan;
 
-/// A volume as slices along one axis: what slabs are rendered from, whatever the camera.
+/// A volume as slices along one axis: what slabs are rendered from, by whatever camera that sees
+/// them from the same end, or from either if all are whole.
 struct PreparedAxis {
     int sliceAxis;
     Subdivision parts;
@@ -64,7 +65,7 @@ struct PreparedScene::Impl {
     std::size_t blocksSeen(int sliceAxis) const;
 
   private:
-    using Key = std::array<int, 4>;  // axis, parts and encoding
+    using Key = std::array<int, 5>;  // axis, parts, encoding, and which way slices are walked
     using Axes = std::map<Key, std::shared_ptr<const PreparedAxis>>;
     struct Place {
         std::mutex mutex;
@@ -73,6 +74,9 @@ struct PreparedScene::Impl {
 
     Impl(Scene ofScene, SplatOptions withOptions, bool forOne, Axes before);
 
+    // Returns an axis whose slices are walked the other way if that makes no difference; null:
+    // there is none yet.
+    static std::shared_ptr<const PreparedAxis> wholeAxis(Place& place);
     // Returns those that are there of classes alone, and those of optics before for which there are
     // none.
     Axes axes() const;

@@ -16,9 +16,10 @@ struct Scene {
     Optics optics;
 };
 
-/// A scene made ready to be rendered from anywhere: for each slice axis that a camera needs, the
-/// words that slabs are rendered from, made when they are first needed and kept. Copies share them.
-/// Thread-safe: any number of threads may render one.
+/// A scene made ready to be rendered from anywhere: for each slice axis that a camera needs (and,
+/// of method `delta` and where `auto` takes changes, for each way along it), the words that slabs
+/// are rendered from, made when they are first needed and kept. Copies share them. Thread-safe: any
+/// number of threads may render one.
 class PreparedScene {
   public:
     /// @throw Error(kUsage) without a volume, or for optics out of range

@@ -15,7 +15,7 @@ namespace deltasplat {
 
 std::size_t Compositor::composite(Sheets sheets, const SheetReading& shift, int firstRow,
                                   int lastRow, const SheetCover* cover, Layer& layer) {
-    const OverWeights weights(glm::vec2(shift.fraction), scales_, layer.channels, frontToBack_);
+    const OverWeights weights(glm::vec2(shift.fraction), scales_, layer.channels);
     findSpans(sheets, shift, firstRow, lastRow, weights.straight, cover, layer);
     OverSheets pixels{{}, sheets.front()->pitch()};
     for (std::size_t p = 0; p < sheets.size(); ++p) pixels.pixels[p] = sheets[p]->row(0);

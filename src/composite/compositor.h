@@ -22,13 +22,11 @@ class Compositor {
     using Sheets = std::span<const Sheet* const>;
 
     /// @param scales  what one unit of each sheet is worth in each channel
-    Compositor(std::vector<glm::vec4> scales, bool frontToBack)
-        : scales_(std::move(scales)), frontToBack_(frontToBack) {}
+    explicit Compositor(std::vector<glm::vec4> scales) : scales_(std::move(scales)) {}
 
     /// Composites one slice: the sum of its sheets, read bilinearly at the layer's pixels, goes
-    /// behind what the layer holds (front to back) or in front of it. Only what the sheets' full
-    /// rows reach is touched; of that, rows [firstRow, lastRow) of the base plane, which the layer
-    /// has.
+    /// behind what the layer holds. Only what the sheets' full rows reach is touched; of that, rows
+    /// [firstRow, lastRow) of the base plane, which the layer has.
     /// @param cover  of the slice: what it hides is left out; null: nothing is hidden
     /// @return       how many pixels of the layer it went over
     std::size_t composite(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
@@ -46,7 +44,6 @@ class Compositor {
     std::uint32_t planesAt(int tile) const;
 
     std::vector<glm::vec4> scales_;
-    bool frontToBack_;
     std::size_t words_ = 0;  // a row
     /// [plane][9][words_]: which tiles are full in the last row of the tile row before, and in the
     /// eight rows of the one in hand.

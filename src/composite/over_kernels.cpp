@@ -50,14 +50,16 @@ HWY_INLINE V opacityOf(V color) {
     }
 }
 
-// Composites as many values as the tag has lanes for.
-template <int kChannels, bool kFrontToBack, class Tag, class V>
+// Puts as many values as the tag has lanes for behind a layer.
+template <int kChannels, class Tag, class V>
 HWY_INLINE void over(Tag tag, V color, float* layer) {
-    const auto below = hn::LoadU(tag, layer);
-    const auto front = kFrontToBack ? below : color;
-    const auto back = kFrontToBack ? color : below;
+    auto front = hn::LoadU(tag, layer);
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_EMU128
+    // GCC would load it twice, as an operand of what it goes into.
+    asm("" : "+v"(front.raw));
+#endif
     const auto clear = hn::Sub(hn::Set(tag, 1.0f), opacityOf<kChannels>(front));
-    hn::StoreU(hn::Add(front, hn::Mul(clear, back)), tag, layer);
+    hn::StoreU(hn::Add(front, hn::Mul(clear, color)), tag, layer);
 }
 
 // Calls use(tag, i) for whole vectors of `count` values, then for what is left.
@@ -95,40 +97,40 @@ HWY_INLINE hn::Vec<Tag> readColumn(Tag tag, const PlaneRun& run, std::size_t i) 
 }
 
 // Sheet pixels fall on the layer's.
-template <int kChannels, bool kFrontToBack>
+template <int kChannels>
 HWY_INLINE void overStraight(const PlaneRun& run, float* layer, std::size_t pixels) {
     forVectors<kChannels>(kChannels * pixels, [&](auto tag, std::size_t i) {
         const auto color =
             hn::Mul(readSheet(tag, run.row + i), loadScale<kChannels>(tag, run.thisWeight));
-        over<kChannels, kFrontToBack>(tag, color, layer + i);
+        over<kChannels>(tag, color, layer + i);
     });
 }
 
 // Reads columns that are ready along the rows.
-template <int kChannels, bool kFrontToBack>
+template <int kChannels>
 HWY_INLINE void overColumns(const float* columns, const OverWeights& weights, float* layer,
                             std::size_t pixels) {
     forVectors<kChannels>(kChannels * pixels, [&](auto tag, std::size_t i) {
         const auto here = hn::Mul(hn::LoadU(tag, columns + i), hn::Set(tag, weights.thisColumn));
         const auto next =
             hn::Mul(hn::LoadU(tag, columns + i + kChannels), hn::Set(tag, weights.nextColumn));
-        over<kChannels, kFrontToBack>(tag, hn::Add(here, next), layer + i);
+        over<kChannels>(tag, hn::Add(here, next), layer + i);
     });
 }
 
 // Reads along the columns first, then along the rows.
-template <int kChannels, bool kFrontToBack>
+template <int kChannels>
 HWY_INLINE void overStretch(const PlaneRun& run, const OverWeights& weights, float* layer,
                             std::size_t pixels) {
     HWY_ALIGN float columns[(kStretch + 1) * kChannels];
     forVectors<kChannels>(kChannels * (pixels + 1), [&](auto tag, std::size_t i) {
         hn::StoreU(readColumn<kChannels>(tag, run, i), tag, columns + i);
     });
-    overColumns<kChannels, kFrontToBack>(columns, weights, layer, pixels);
+    overColumns<kChannels>(columns, weights, layer, pixels);
 }
 
 // The same arithmetic, each column read twice and nothing stored on the way.
-template <int kChannels, bool kFrontToBack>
+template <int kChannels>
 HWY_INLINE void overShort(const PlaneRun& run, const OverWeights& weights, float* layer,
                           std::size_t pixels) {
     forVectors<kChannels>(kChannels * pixels, [&](auto tag, std::size_t i) {
@@ -136,12 +138,12 @@ HWY_INLINE void overShort(const PlaneRun& run, const OverWeights& weights, float
             hn::Mul(readColumn<kChannels>(tag, run, i), hn::Set(tag, weights.thisColumn));
         const auto next = hn::Mul(readColumn<kChannels>(tag, run, i + kChannels),
                                   hn::Set(tag, weights.nextColumn));
-        over<kChannels, kFrontToBack>(tag, hn::Add(here, next), layer + i);
+        over<kChannels>(tag, hn::Add(here, next), layer + i);
     });
 }
 
 // Adds up the columns of several planes first.
-template <int kChannels, bool kFrontToBack>
+template <int kChannels>
 void overPlanes(const OverSpan& span, const OverSheets& sheets, const OverWeights& weights) {
     HWY_ALIGN float columns[(kStretch + 1) * kChannels];
     const std::size_t behind = weights.straight ? 0 : 1;
@@ -158,41 +160,38 @@ void overPlanes(const OverSpan& span, const OverSheets& sheets, const OverWeight
             hn::StoreU(sum, tag, columns + i);
         });
     }
-    if (!weights.straight)
-        return overColumns<kChannels, kFrontToBack>(columns, weights, span.layer, span.pixels);
+    if (!weights.straight) return overColumns<kChannels>(columns, weights, span.layer, span.pixels);
     forVectors<kChannels>(kChannels * span.pixels, [&](auto tag, std::size_t i) {
-        over<kChannels, kFrontToBack>(tag, hn::LoadU(tag, columns + i), span.layer + i);
+        over<kChannels>(tag, hn::LoadU(tag, columns + i), span.layer + i);
     });
 }
 
-template <int kChannels, bool kFrontToBack>
+template <int kChannels>
 HWY_INLINE void overPlane(const OverSpan& span, PlaneRun run, const OverWeights& weights) {
-    if (weights.straight)
-        return overStraight<kChannels, kFrontToBack>(run, span.layer, span.pixels);
-    if (span.pixels <= kShort)
-        return overShort<kChannels, kFrontToBack>(run, weights, span.layer, span.pixels);
+    if (weights.straight) return overStraight<kChannels>(run, span.layer, span.pixels);
+    if (span.pixels <= kShort) return overShort<kChannels>(run, weights, span.layer, span.pixels);
     float* layer = span.layer;
     std::size_t pixels;
     for (std::size_t rest = span.pixels; rest > 0; rest -= pixels) {
         pixels = rest < kStretch ? rest : kStretch;
-        overStretch<kChannels, kFrontToBack>(run, weights, layer, pixels);
+        overStretch<kChannels>(run, weights, layer, pixels);
         run.row += kChannels * pixels;
         run.nextRow += kChannels * pixels;
         layer += kChannels * pixels;
     }
 }
 
-template <int kChannels, bool kFrontToBack>
+template <int kChannels>
 void overSpansOf(const std::vector<OverSpan>& spans, const OverSheets& sheets,
                  const OverWeights& weights) {
     for (OverSpan span : spans) {
         if (span.planes == 1) {
-            overPlane<kChannels, kFrontToBack>(span, {span, sheets, weights, 0}, weights);
+            overPlane<kChannels>(span, {span, sheets, weights, 0}, weights);
             continue;
         }
         for (std::uint32_t rest = span.pixels; rest > 0; rest -= span.pixels) {
             span.pixels = rest < kStretch ? rest : kStretch;
-            overPlanes<kChannels, kFrontToBack>(span, sheets, weights);
+            overPlanes<kChannels>(span, sheets, weights);
             span.place += kChannels * span.pixels;
             span.layer += kChannels * span.pixels;
         }
@@ -201,18 +200,14 @@ void overSpansOf(const std::vector<OverSpan>& spans, const OverSheets& sheets,
 
 void overSpansKernel(const std::vector<OverSpan>& spans, const OverSheets& sheets,
                      const OverWeights& weights) {
-    if (weights.channels == 4) {
-        return weights.frontToBack ? overSpansOf<4, true>(spans, sheets, weights)
-                                   : overSpansOf<4, false>(spans, sheets, weights);
-    }
-    return weights.frontToBack ? overSpansOf<1, true>(spans, sheets, weights)
-                               : overSpansOf<1, false>(spans, sheets, weights);
+    return weights.channels == 4 ? overSpansOf<4>(spans, sheets, weights)
+                                 : overSpansOf<1>(spans, sheets, weights);
 }
 
 template <int kChannels>
 void mergeBehindOf(float* front, const float* layer, std::size_t pixels) {
     forVectors<kChannels>(kChannels * pixels, [&](auto tag, std::size_t i) {
-        over<kChannels, true>(tag, hn::LoadU(tag, layer + i), front + i);
+        over<kChannels>(tag, hn::LoadU(tag, layer + i), front + i);
     });
 }
 

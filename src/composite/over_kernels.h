@@ -17,12 +17,11 @@ namespace deltasplat {
 struct OverWeights {
     /// @param fraction  how far base plane pixels lie behind sheet pixels, 0..1 along each axis
     /// @param scales    sheet units to RGBA, of each plane; of one channel only the last is used
-    OverWeights(glm::vec2 fraction, std::span<const glm::vec4> scales, int channelCount, bool order)
+    OverWeights(glm::vec2 fraction, std::span<const glm::vec4> scales, int channelCount)
         : straight(fraction == glm::vec2(0)),
           thisColumn(1 - fraction.x),
           nextColumn(fraction.x),
-          channels(channelCount),
-          frontToBack(order) {
+          channels(channelCount) {
         for (std::size_t p = 0; p < scales.size(); ++p) {
             thisRow[p] = (1 - fraction.y) * scales[p];
             nextRow[p] = fraction.y * scales[p];
@@ -35,7 +34,6 @@ struct OverWeights {
     float thisColumn;
     float nextColumn;
     int channels;  ///< of sheets and layer: 4 (RGBA) or 1 (opacity)
-    bool frontToBack;
 };
 
 /// The sheets of a slice, one for each plane of colours.
@@ -52,7 +50,7 @@ struct OverSpan {
     std::uint32_t planes;  ///< bit p: plane p may be other than zero; not 0
 };
 
-/// Reads the sum of the sheets bilinearly and composites it with the layer, for every span.
+/// Reads the sum of the sheets bilinearly and puts it behind the layer, for every span.
 /// Multiplications and additions are separate and per pixel, and planes are added from the first to
 /// the last, so that every SIMD level gives the same bits, whether planes of zeros are read or not.
 void overSpans(const std::vector<OverSpan>& spans, const OverSheets& sheets,

@@ -31,13 +31,7 @@ std::size_t PerspectiveCompositor::composite(Sheets sheets, int slice, const She
     columns_.set(start.x, reading.scale, box_.min.x, size.x,
                  {reading.origin.x, layout.sizePixels.x});
     rows_.set(start.y, reading.scale, box_.min.y, size.y, {reading.origin.y, layout.sizePixels.y});
-    slice_ = {{},
-              sheets.front()->pitch(),
-              scales_,
-              rows_.taps,
-              columns_.taps,
-              layer.channels,
-              plane_.frontToBack()};
+    slice_ = {{}, sheets.front()->pitch(), scales_, rows_.taps, columns_.taps, layer.channels};
     for (std::size_t p = 0; p < sheets.size(); ++p) slice_.sheets[p] = sheets[p]->row(0);
     findTiles(reading, layout.tiles().x);
     for (int y = box_.min.y; y < box_.max.y; ++y) addRow(slice, y, layer);

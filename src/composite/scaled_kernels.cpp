@@ -154,16 +154,13 @@ HWY_INLINE void findGrowth(const float* colors, const float* steps, std::size_t 
 }
 
 // As many values as the tag has lanes.
-template <bool kFrontToBack, class Tag, class V>
+template <class Tag, class V>
 HWY_INLINE void overColors(Tag tag, V color, float* layer) {
-    const auto below = hn::LoadU(tag, layer);
-    const auto front = kFrontToBack ? below : color;
-    const auto back = kFrontToBack ? color : below;
+    const auto front = hn::LoadU(tag, layer);
     const auto clear = hn::Sub(hn::Set(tag, 1.0f), hn::Broadcast<3>(front));
-    hn::StoreU(hn::Add(front, hn::Mul(clear, back)), tag, layer);
+    hn::StoreU(hn::Add(front, hn::Mul(clear, color)), tag, layer);
 }
 
-template <bool kFrontToBack>
 HWY_INLINE void overGrown(const float* colors, const float* growth, std::size_t pixels,
                           float* layer) {
     const FullTag tag;
@@ -175,17 +172,15 @@ HWY_INLINE void overGrown(const float* colors, const float* growth, std::size_t 
     std::size_t i = 0;
     for (; i + perVector <= pixels; i += perVector) {
         const auto times = hn::TableLookupLanes(hn::LoadU(tag, growth + i), indices);
-        overColors<kFrontToBack>(tag, hn::Mul(hn::LoadU(tag, colors + 4 * i), times),
-                                 layer + 4 * i);
+        overColors(tag, hn::Mul(hn::LoadU(tag, colors + 4 * i), times), layer + 4 * i);
     }
     const PixelTag one;
     for (; i < pixels; ++i) {
         const auto color = hn::Mul(hn::LoadU(one, colors + 4 * i), hn::Set(one, growth[i]));
-        overColors<kFrontToBack>(one, color, layer + 4 * i);
+        overColors(one, color, layer + 4 * i);
     }
 }
 
-template <bool kFrontToBack>
 HWY_INLINE void overOpacities(const float* opacities, const float* steps, std::size_t pixels,
                               float* layer) {
     const FullTag tag;
@@ -196,10 +191,8 @@ HWY_INLINE void overOpacities(const float* opacities, const float* steps, std::s
         const std::size_t count = std::min(hn::Lanes(tag), pixels - i);
         const bool isWhole = count == hn::Lanes(tag);
         if (!isWhole) std::copy_n(layer + i, count, rest);
-        const auto below = hn::LoadU(tag, isWhole ? layer + i : rest);
-        const auto front = kFrontToBack ? below : color;
-        const auto back = kFrontToBack ? color : below;
-        const auto sum = mulAdd(hn::Sub(constant(1), front), back, front);
+        const auto front = hn::LoadU(tag, isWhole ? layer + i : rest);
+        const auto sum = mulAdd(hn::Sub(constant(1), front), color, front);
         hn::StoreU(sum, tag, isWhole ? layer + i : rest);
         if (!isWhole) std::copy_n(rest, count, layer + i);
     }
@@ -217,7 +210,6 @@ HWY_INLINE void readRun(const ScaledSlice& slice, const ScaledRun& run, float* c
     sumColumns<kChannels>(run, slice.columnTaps, columns, colors);
 }
 
-template <bool kFrontToBack>
 void overScaledColors(const ScaledSlice& slice, const ScaledRun& run) {
     HWY_ALIGN float colors[4 * (kMostScaled + kSpare)];
     HWY_ALIGN float growth[kMostScaled + kSpare];
@@ -226,22 +218,18 @@ void overScaledColors(const ScaledSlice& slice, const ScaledRun& run) {
     // Vectors reach over the last pixel.
     std::fill_n(colors + 4 * pixels, 4 * kSpare, 0.0f);
     findGrowth(colors, run.steps, pixels, growth);
-    overGrown<kFrontToBack>(colors, growth, pixels, run.layer);
+    overGrown(colors, growth, pixels, run.layer);
 }
 
-template <bool kFrontToBack>
 void overScaledOpacities(const ScaledSlice& slice, const ScaledRun& run) {
     HWY_ALIGN float opacities[kMostScaled + kSpare];
     readRun<1>(slice, run, opacities);
     std::fill_n(opacities + run.pixels, kSpare, 0.0f);
-    overOpacities<kFrontToBack>(opacities, run.steps, std::size_t(run.pixels), run.layer);
+    overOpacities(opacities, run.steps, std::size_t(run.pixels), run.layer);
 }
 
 void overScaledKernel(const ScaledSlice& slice, std::span<const ScaledRun> runs) {
-    const auto over = slice.channels == 4
-                          ? slice.frontToBack ? overScaledColors<true> : overScaledColors<false>
-                      : slice.frontToBack ? overScaledOpacities<true>
-                                          : overScaledOpacities<false>;
+    const auto over = slice.channels == 4 ? overScaledColors : overScaledOpacities;
     for (const ScaledRun& run : runs) over(slice, run);
 }
 

@@ -51,7 +51,6 @@ struct ScaledSlice {
     int rowTaps;                        ///< sheet rows that a pixel reads
     int columnTaps;                     ///< and columns
     int channels;                       ///< of sheets and layer: 4 (RGBA) or 1 (opacity)
-    bool frontToBack;
 };
 
 /// A run of base plane pixels along one row.
@@ -75,7 +74,7 @@ struct ScaledRun {
 inline constexpr int kMostScaled = 256;
 inline constexpr int kMostScaledColumns = 512;
 
-/// Reads the sum of the sheets through the runs' weights and composites it with the layer. Each
+/// Reads the sum of the sheets through the runs' weights and puts it behind the layer. Each
 /// pixel's light and opacity are those of so many steps: opacity a becomes 1 - (1 - a)^steps, and
 /// colours grow with it. Multiplications and additions are separate and in a fixed order, so that
 /// every SIMD level gives the same bits.

@@ -9,8 +9,8 @@ namespace deltasplat {
 namespace {
 
 // A look at a cell takes about as long as compositing two pixels: so often, it takes less than a
-// hundredth of that.
-constexpr std::size_t kPixelsBetween = 256;  // a cell
+// fiftieth of that.
+constexpr std::size_t kPixelsBetween = 128;  // a cell
 // What is covered from now on grows slowly.
 constexpr int kSlicesBetween = 8;
 
@@ -20,7 +20,7 @@ NeededPixels SlabCover::next(const SheetReading& reading, const SheetBox& read,
                              const SheetLayout& layout) {
     const glm::ivec2 size = cells_->size();
     const auto cells = std::size_t(size.x) * std::size_t(size.y);
-    if (layer_ && pixels_ >= kPixelsBetween * cells) look();
+    if (pixels_ >= kPixelsBetween * cells) look();
     NeededPixels needed{read.min.y, read.max.y};
     if (!cells_->any()) return needed;
     if (slices_-- == 0) {
@@ -37,7 +37,7 @@ void SlabCover::look() {
     pixels_ = 0;
     slices_ = 0;
     auto cells = std::make_shared<CoveredCells>(*cells_);
-    addCovered(*layer_, *cells);
+    addCovered(layer_, *cells);
     cells_ = std::move(cells);
 }
 

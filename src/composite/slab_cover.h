@@ -10,8 +10,8 @@
 namespace deltasplat {
 
 /// What of the slices of a slab is covered and need not be made: by the slabs before it, and by the
-/// slab's own slices where these are composited from the front on. What is covered changes no bit
-/// of the picture (addCovered). To be asked for one slice after the other.
+/// slab's own slices, from the front on. What is covered changes no bit of the picture
+/// (addCovered). To be asked for one slice after the other.
 class SlabCover {
   public:
     /// @param before  what the slabs before cover
@@ -19,10 +19,7 @@ class SlabCover {
     ///                this
     SlabCover(const BasePlane& plane, int lastSlice, std::shared_ptr<const CoveredCells> before,
               const Layer& layer)
-        : plane_(plane),
-          lastSlice_(lastSlice),
-          layer_(plane.frontToBack() ? &layer : nullptr),
-          cells_(std::move(before)) {}
+        : plane_(plane), lastSlice_(lastSlice), layer_(layer), cells_(std::move(before)) {}
 
     /// Whether nothing has to be made.
     bool all() const { return cells_->all(); }
@@ -37,7 +34,7 @@ class SlabCover {
 
     const BasePlane& plane_;
     int lastSlice_;
-    const Layer* layer_;  // null: it may not cover anything
+    const Layer& layer_;
     std::shared_ptr<const CoveredCells> cells_;
     std::size_t pixels_ = 0;  // composited since the last look
     int slices_ = 0;          // since fromNowOn_ was found

@@ -308,10 +308,10 @@ double SlabRenderer::renderSlab(const SeenSlab& seen, const Strip& strip, const 
                                 Splatter& splatter, Layer& layer) {
     const SheetLayout layout = layoutOf(strip, seen);
     if (box.empty() || layout.blocks.x == 0 || layout.blocks.y == 0) return 0;
-    SlabCover cover(input_.plane, seen.lastSlice, strip.layers->covered(), layer);
+    SlabCover cover(input_.plane, walkOf(seen).last, strip.layers->covered(), layer);
     if (cover.all()) return 0;
     if (input_.plane.isParallel()) {
-        Compositor compositor(scales_, input_.plane.frontToBack());
+        Compositor compositor(scales_);
         return walkSlices(
             seen, layout, box, cover, splatter,
             [&](const auto& sheets, int, const SheetReading& reading, const SheetCover* hidden) {
@@ -326,6 +326,13 @@ double SlabRenderer::renderSlab(const SeenSlab& seen, const Strip& strip, const 
         });
 }
 
+// Slices are walked from the front on.
+SlabRenderer::SliceWalk SlabRenderer::walkOf(const SeenSlab& seen) const {
+    const Slab& slab = *seen.slab;
+    if (input_.plane.frontToBack()) return {slab.firstSlice, seen.firstSlice, seen.lastSlice, 1};
+    return {slab.firstSlice + slab.sliceCount - 1, seen.lastSlice, seen.firstSlice, -1};
+}
+
 // Calls composite(sheets, slice, reading, hidden), which returns how many pixels it went over, for
 // all slices that are seen.
 template <typename Composite>
@@ -334,13 +341,14 @@ double SlabRenderer::walkSlices(const SeenSlab& seen, const SheetLayout& layout,
                                 const Composite& composite) {
     double compositeSeconds = 0;
     splatter.begin(*seen.slab, layout);
-    const SheetBox last = readBox(readingOf(input_.plane, layout, seen.lastSlice), box, layout);
-    for (int slice = seen.slab->firstSlice; slice <= seen.lastSlice; ++slice) {
-        if (slice < seen.firstSlice) {
-            // What changes before the first that is seen is needed; nothing of it is read.
-            if (!seen.slab->whole) splatter.splat(slice, {0, 0});
-            continue;
-        }
+    const SliceWalk walk = walkOf(seen);
+    const SheetBox last = readBox(readingOf(input_.plane, layout, walk.last), box, layout);
+    // What changes before the first that is seen is needed; nothing of it is read.
+    if (!seen.slab->whole) {
+        for (int slice = walk.begin; slice != walk.first; slice += walk.step)
+            splatter.splat(slice, {0, 0});
+    }
+    for (int slice = walk.first; slice != walk.last + walk.step; slice += walk.step) {
         const SheetReading reading = readingOf(input_.plane, layout, slice);
         const SheetBox read = readBox(reading, box, layout);
         NeededPixels needed = cover.next(reading, read, layout);

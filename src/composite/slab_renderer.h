@@ -78,6 +78,14 @@ class SlabRenderer {
         Strip& strip;
         std::size_t slab;
     };
+    // How the slices of a slab are walked.
+    struct SliceWalk {
+        int begin;  // of the slab
+        int first;  // that is seen
+        int last;
+        int step;
+    };
+    SliceWalk walkOf(const SeenSlab& seen) const;
     void cutIntoStrips();
     int stripCount() const;
     std::vector<int> edgesOfStrips() const;

@@ -50,6 +50,7 @@ void ColumnPacker::run(const Columns& columns) {
         own_ = std::make_unique<BlockLooks>(*options_.painter, *tools_.uncut, options_.sliceAxis,
                                             parts_, box_);
     }
+    std::array<std::size_t, 2> firstWord{};  // [half]: of the column
     for (const CodeBlock* block = columns.begin; block != columns.end; ++block) {
         if (!isIn(*block)) continue;
         if (own_) own_->beginBlock(*block);
@@ -60,6 +61,8 @@ void ColumnPacker::run(const Columns& columns) {
             before_ = {};
             held_ = {};
             if (own_) own_->beginColumn();
+            for (std::size_t half = 0; half < halves_.size(); ++half)
+                firstWord[half] = halves_[half].words.size();
         }
         if (tools_.mixer) {
             addMixed(*block);
@@ -70,12 +73,44 @@ void ColumnPacker::run(const Columns& columns) {
         // What a block showed must be taken away behind it.
         const int next = firstPart(*block).x + parts_.slices;
         const int last = tools_.mixer ? range_.layout.lastBlock : range_.lastBlock;
-        if (next > last || !isLast) continue;
-        classes_.fill(kEmptySlot);
-        forParts([&](const glm::ivec2& part) { add(partOf(*block, next, part), part, 1); });
+        if (!isLast) continue;
+        if (next <= last) {
+            classes_.fill(kEmptySlot);
+            forParts([&](const glm::ivec2& part) { add(partOf(*block, next, part), part, 1); });
+        }
+        if (parts_.within == 1) continue;
+        for (std::size_t half = 0; half < halves_.size(); ++half)
+            sortParts(halves_[half].words, firstWord[half]);
     }
     own_.reset();
     painted_ = {};
+    for (PackedColumns& packed : halves_) {
+        if (options_.descending) dropUnneeded(packed.words);
+        sortClasses(box_, packed);
+    }
+}
+
+// Puts words of a column's parts along v one part behind the other.
+void ColumnPacker::sortParts(std::vector<PendingWord>& words, std::size_t first) {
+    std::stable_partition(words.begin() + std::ptrdiff_t(first), words.end(),
+                          [](const PendingWord& word) { return word.block.y % 2 == 0; });
+}
+
+// Of slabs of changes that are walked from the last slice on, a word says what a block becomes
+// where the slice behind is other, or all where a slab ends.
+void ColumnPacker::dropUnneeded(std::vector<PendingWord>& words) const {
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const int slice = words[i].slice;
+        const bool isNeeded =
+            mayBeWhole(slice) || range_.layout.endsSlab(slice) || changedBehind(words, i) != 0;
+        if (!isNeeded) words[i].classes = kNoClasses;
+    }
+}
+
+// Whether the slab of a slice is whole, or may become so.
+bool ColumnPacker::mayBeWhole(int slice) const {
+    if (range_.planned.empty()) return options_.encoding != Encoding::kChanges;
+    return range_.planned[std::size_t(range_.layout.slabOf(slice >> 3))].whole;
 }
 
 // What is mixed is needed around any slab: it is never taken in parts.
@@ -283,14 +318,18 @@ void ColumnPacker::add(const glm::ivec3& position, const glm::ivec2& part, int s
     if (own_) own_->endBlock(numberOf(part));
 }
 
-// Whether a word is needed of what a slice shows.
+// Whether a word is needed of what a slice shows. Of slabs that are walked from the last slice on,
+// also what the slice before a change shows.
 bool ColumnPacker::isNeeded(int slice, std::uint64_t visible, std::uint64_t changed) const {
     if (!range_.storesWords) return false;
     const bool isKey = range_.layout.startsLaterSlab(slice);
     if (!range_.planned.empty()) {
-        const auto slab = std::size_t(range_.layout.slabOf(slice >> 3));
-        return range_.planned[slab].needs(isKey, visible, changed);
+        const PlannedSlab& slab = range_.planned[std::size_t(range_.layout.slabOf(slice >> 3))];
+        if (options_.descending && !slab.whole) return (isKey ? visible : visible | changed) != 0;
+        return slab.needs(isKey, visible, changed);
     }
+    if (options_.descending && options_.encoding != Encoding::kWhole)
+        return (visible | changed) != 0;
     return (options_.encoding != Encoding::kWhole && changed != 0) ||
            ((options_.encoding != Encoding::kChanges || isKey) && visible != 0);
 }

@@ -44,8 +44,8 @@ struct PackRange {
     int firstBlock;
     int lastBlock;
     bool storesWords = true;
-    /// Of the layout, which slabs are whole: words that these do not need are left out. Empty: that
-    /// is not known yet.
+    /// Of the layout, which slabs are whole: words that these do not need are left out, but for
+    /// those by which others are told from the slice behind. Empty: that is not known yet.
     std::span<const PlannedSlab> planned = {};
 };
 
@@ -81,6 +81,9 @@ class ColumnPacker {
     };
     using SliceClasses = std::array<ClassIndex, 64>;
 
+    void dropUnneeded(std::vector<PendingWord>& words) const;
+    bool mayBeWhole(int slice) const;
+    static void sortParts(std::vector<PendingWord>& words, std::size_t first);
     bool isIn(const CodeBlock& block) const;
     void reserve(const Columns& columns);
     glm::ivec3 firstPart(const CodeBlock& block) const;

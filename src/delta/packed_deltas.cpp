@@ -110,6 +110,11 @@ std::uint64_t PackedDeltas::deltas() const {
     return sumOf(slabs, &Slab::deltas);
 }
 
+bool PackedDeltas::areWhole() const {
+    return std::all_of(slabs.begin(), slabs.end(),
+                       [](const PlannedSlab& slab) { return slab.whole; });
+}
+
 std::span<const DeltaWord> PackedDeltas::slice(int index) const {
     const auto i = std::size_t(index - box.min.x);
     return std::span(words).subspan(begins[i], begins[i + 1] - begins[i]);
@@ -148,6 +153,7 @@ struct DeltaPacker::Impl {
     PackedDeltas noWords() const {
         PackedDeltas packed;
         packed.sliceAxis = options.sliceAxis;
+        packed.descending = options.descending;
         packed.box = box;
         return packed;
     }
@@ -179,6 +185,12 @@ struct DeltaPacker::Impl {
             divided.divides() ? "delta grid of divided voxels (`between` 0: undivided)"
                               : "delta grid",
             count * divided.voxels() * kMostWordsOfBlock * wordBytes + 16.0 * box.dims().x);
+    }
+
+    // The most words of a slab that are in memory while it is packed (ColumnPacker::isNeeded).
+    double storedWords(const PlannedSlab& slab) const {
+        const bool storesAll = options.descending && !slab.whole;
+        return double(storesAll ? slab.words + slab.seenWords : slab.stampedWords());
     }
 
     const Volume& volume;
@@ -235,7 +247,7 @@ PackedDeltas DeltaPacker::plan(double mostBytes) {
     packed.begins.assign(std::size_t(packed.box.dims().x) + 1, 0);
     double bytes = 0;
     for (int i = 0; i < int(packed.slabs.size()); ++i) {
-        const double ofSlab = double(packed.slabs[std::size_t(i)].stampedWords()) * kBytesPerWord;
+        const double ofSlab = impl_->storedWords(packed.slabs[std::size_t(i)]) * kBytesPerWord;
         if (impl_->parts.empty() || bytes + ofSlab > mostBytes) {
             impl_->parts.push_back({i, i});
             bytes = 0;
@@ -259,7 +271,7 @@ PackedDeltas DeltaPacker::pack(const SlabRange& part) const {
         std::min(layout.firstBlock + part.last * layout.blocksPerSlab - 1, layout.lastBlock);
     double words = 0;
     for (int i = part.first; i < part.last; ++i)
-        words += double(packed.slabs[std::size_t(i)].stampedWords());
+        words += impl_->storedWords(packed.slabs[std::size_t(i)]);
     requireMemory("part of a delta grid", words * kBytesPerWord);
     std::vector<ColumnPacker> packers =
         impl_->run({layout, firstBlock, lastBlock, true, impl_->planned.slabs});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <glm/vec2.hpp>
@@ -10,6 +11,7 @@
 
 #include "delta/slab_plan.h"
 #include "optics/voxel_painter.h"
+#include "uncleared_vector.h"
 
 namespace deltasplat {
 
@@ -18,11 +20,15 @@ class ValueMixer;
 /// What a voxel looks like: an index into the colours of a class table; 0 = empty.
 using ClassIndex = std::uint16_t;
 
+/// Classes of 64 empty voxels.
+inline constexpr std::array<ClassIndex, 64> kEmptyClasses{};
+
 /// One slice of an 8x8x8 block: its 64 voxels, bit 8 * u + v of the masks, as OpenVDB's leaves have
 /// them.
 struct DeltaWord {
     std::uint64_t visible;  ///< whose class is not empty
-    /// Whose class or own look differs from the slice before; in a key slice, visible.
+    /// Whose class or own look differs from the slice that is walked before; in a key slice,
+    /// visible.
     std::uint64_t changed;
     const ClassIndex* classes;  ///< [64]: of all voxels in this slice
     glm::ivec2 block;           ///< (u, v) of the first voxel divided by 8
@@ -38,20 +44,24 @@ struct PackedDeltas {
     PackedDeltas& operator=(PackedDeltas&&) = default;
 
     int sliceAxis = 2;
+    /// Slices are walked from the last to the first: what changes is told from the one behind.
+    /// Where all slabs are whole, that makes no difference, and they may be walked either way.
+    bool descending = false;
     IndexBox box;  ///< of all slices, in (slice, u, v) order
     std::vector<PlannedSlab>
         slabs;  ///< in increasing order, covering `box`; none for an empty volume
 
     std::uint64_t visible() const;  ///< visible voxels, all slabs together
     std::uint64_t deltas() const;   ///< deltas, all slabs together
+    /// Whether all slices are splatted anew.
+    bool areWhole() const;
     /// The words of a slice with changed voxels, or with visible ones in a slab that is whole,
     /// ordered by u, then v.
     std::span<const DeltaWord> slice(int index) const;
 
-    std::span<DeltaWord> words;                ///< by slice, u and v
-    std::vector<std::size_t> begins;           ///< [slices + 1]: the first of each slice's words
-    std::unique_ptr<DeltaWord[]> wordStorage;  ///< where the words are
-    std::vector<std::vector<ClassIndex>> storage;  ///< what they point into
+    UnclearedVector<DeltaWord> words;  ///< by slice, u and v
+    std::vector<std::size_t> begins;   ///< [slices + 1]: the first of each slice's words
+    std::vector<UnclearedVector<ClassIndex>> storage;  ///< what they point into
     /// [word]: where voxels have looks of their own, those of its voxels, [64]; else empty.
     std::vector<const OwnLook*> looks;
     std::vector<std::vector<OwnLook>> lookStorage;  ///< what those point into
@@ -76,6 +86,7 @@ struct PackOptions {
     /// With a painter, may a voxel go on as the first, for which `holds` has to allow it as well?
     /// Empty: never.
     std::function<bool(const VoxelLook& held, const VoxelLook& look)> looksHold = {};
+    bool descending = false;  ///< as PackedDeltas has it
 };
 
 /// Takes the differences of consecutive slices, in one pass over the leaves that can be seen, and

@@ -22,6 +22,8 @@ struct SlabLayout {
     bool startsLaterSlab(int slice) const {
         return slice % 8 == 0 && slice > 8 * firstBlock && startsSlab(slice / 8);
     }
+    /// Whether a slice is the last of a slab.
+    bool endsSlab(int slice) const { return slice >= lastSlice || startsLaterSlab(slice + 1); }
     int count() const { return slabOf(lastBlock) + 1; }
     int blocks() const { return lastBlock - firstBlock + 1; }
     /// Slices of a block that exist: behind the last one nothing needs to be taken away.

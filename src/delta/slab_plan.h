@@ -20,7 +20,8 @@ enum class Encoding {
     kFewerWords
 };
 
-/// A slab as a picture is rendered from it.
+/// A slab as a picture is rendered from it. Deltas are counted from each slice to the next, with
+/// the first one as the key slice, whichever way a picture walks them.
 struct PlannedSlab : Slab {
     bool whole = false;  ///< every slice is splatted anew
 
@@ -28,7 +29,8 @@ struct PlannedSlab : Slab {
     std::uint64_t seenWords = 0;  ///< mask words with visible voxels
 
     /// Whether a word of a slice of it has anything to splat.
-    /// @param isKey  whether that slice begins a slab behind another
+    /// @param isKey  whether that slice is told from none: in the order in which slices are walked,
+    ///               the first of a slab
     bool needs(bool isKey, std::uint64_t visible, std::uint64_t changed) const {
         return (whole || isKey ? visible : changed) != 0;
     }

@@ -114,7 +114,9 @@ class SlabComparison {
 }  // namespace
 
 bool haveSameSlabs(const PackedDeltas& before, const PackedDeltas& now) {
-    return before.sliceAxis == now.sliceAxis && before.box == now.box &&
+    const bool areToldAlike =
+        before.descending == now.descending || (before.areWhole() && now.areWhole());
+    return areToldAlike && before.sliceAxis == now.sliceAxis && before.box == now.box &&
            std::equal(before.slabs.begin(), before.slabs.end(), now.slabs.begin(), now.slabs.end(),
                       [](const PlannedSlab& a, const PlannedSlab& b) {
                           return a.firstSlice == b.firstSlice && a.sliceCount == b.sliceCount;

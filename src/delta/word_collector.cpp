@@ -2,12 +2,23 @@
 #include "delta/word_collector.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 #include "parallel.h"
 
 namespace deltasplat {
 namespace {
+
+// Of 64 voxels.
+constexpr std::array<OwnLook, 64> kNoLooks{};
+
+// Whether a word is of the next slice of the same block.
+bool follows(const PendingWord& before, const PendingWord& word) {
+    return before.block == word.block && before.slice + 1 == word.slice;
+}
 
 // Puts the packers' words in the order of slices. Runs of columns do so at once: each knows where
 // its words of a slice begin, behind those of the runs before.
@@ -27,13 +38,11 @@ class WordCollector {
 
     void run() {
         parallelFor(places_.size(), [&](std::size_t run) {
-            forWords(run, [&](std::size_t, const PendingWord& word) { ++placeOf(run, word); });
+            forWords(run, [&](std::size_t, const NeededWord& word) { ++placeOf(run, word.slice); });
         });
         beginSlices();
         // Not cleared here: who writes words first has their memory near.
-        const std::size_t words = packed_.begins.back();
-        packed_.wordStorage = std::make_unique_for_overwrite<DeltaWord[]>(words);
-        packed_.words = {packed_.wordStorage.get(), words};
+        packed_.words.resize(packed_.begins.back());
         if (hasLooks_) packed_.looks.resize(packed_.words.size());
         packed_.storage.resize(columns_.size());
         packed_.lookStorage.resize(columns_.size());
@@ -42,38 +51,65 @@ class WordCollector {
             packed_.lookStorage[i] = std::move(columns_[i]->looks);
         }
         parallelFor(places_.size(), [&](std::size_t run) {
-            forWords(run, [&](std::size_t column, const PendingWord& word) {
-                const std::size_t place = placeOf(run, word)++;
-                packed_.words[place] = {word.visible, changed(word),
-                                        &packed_.storage[column][word.classes], word.block};
-                if (hasLooks_) packed_.looks[place] = &packed_.lookStorage[column][word.classes];
+            forWords(run, [&](std::size_t column, const NeededWord& word) {
+                add(placeOf(run, word.slice)++, column, word);
             });
         });
     }
 
   private:
-    std::uint64_t changed(const PendingWord& word) const {
-        return layout_.startsLaterSlab(word.slice) ? word.visible : word.changed;
-    }
-    bool isNeeded(const PendingWord& word) const {
-        const auto slab = std::size_t(layout_.slabOf(word.slice >> 3));
-        return packed_.slabs[slab].needs(layout_.startsLaterSlab(word.slice), word.visible,
-                                         word.changed);
-    }
-
+    // A word as it will be: what has changed is told from the slice that is walked before.
+    using NeededWord = PendingWord;
     // Calls use(column, word) for the words of a run that are needed.
     template <typename Use>
     void forWords(std::size_t run, const Use& use) {
         const auto begin = [&](std::size_t i) { return i * columns_.size() / places_.size(); };
         for (std::size_t i = begin(run); i < begin(run + 1); ++i) {
-            for (const PendingWord& word : columns_[i]->words)
-                if (isNeeded(word)) use(i, word);
+            const auto useNeeded = [&](NeededWord word, bool isKey) {
+                const auto slab = std::size_t(layout_.slabOf(word.slice >> 3));
+                const PlannedSlab& planned = packed_.slabs[slab];
+                if (!planned.needs(isKey, word.visible, word.changed)) return;
+                if (isKey || planned.whole) word.changed = word.visible;
+                use(i, word);
+            };
+            const std::vector<PendingWord>& words = columns_[i]->words;
+            for (const PendingWord* word = words.data(); word != words.data() + words.size();
+                 ++word) {
+                if (packed_.descending) {
+                    addDescending(word, words, useNeeded);
+                } else {
+                    useNeeded(*word, layout_.startsLaterSlab(word->slice));
+                }
+            }
         }
     }
 
+    // What changes from a slice to the one behind it changes back on the way from that one.
+    template <typename Use>
+    void addDescending(const PendingWord* word, const std::vector<PendingWord>& words,
+                       const Use& use) const {
+        const int slice = word->slice;
+        const bool hasBefore = word != words.data() && follows(word[-1], *word);
+        if (!hasBefore && slice > packed_.box.min.x && !layout_.startsLaterSlab(slice))
+            use({0, word->changed, kNoClasses, slice - 1, word->block}, false);
+        use({word->visible, changedBehind(words, std::size_t(word - words.data())), word->classes,
+             slice, word->block},
+            layout_.endsSlab(slice));
+    }
+
     // Of a run, how many words of a slice there are; then where the next one goes.
-    std::size_t& placeOf(std::size_t run, const PendingWord& word) {
-        return places_[run][std::size_t(word.slice - packed_.box.min.x)];
+    std::size_t& placeOf(std::size_t run, int slice) {
+        return places_[run][std::size_t(slice - packed_.box.min.x)];
+    }
+
+    void add(std::size_t place, std::size_t column, const NeededWord& word) {
+        const bool isEmpty = word.classes == kNoClasses;
+        packed_.words[place] = {
+            word.visible, word.changed,
+            isEmpty ? kEmptyClasses.data() : &packed_.storage[column][word.classes], word.block};
+        if (!hasLooks_) return;
+        packed_.looks[place] =
+            isEmpty ? kNoLooks.data() : &packed_.lookStorage[column][word.classes];
     }
 
     void beginSlices() {
@@ -93,7 +129,46 @@ class WordCollector {
     std::vector<std::vector<std::size_t>> places_;  // [run][slice]
 };
 
+// Returns pieces of 64, of words that point to any, as many as there are.
+// @param places  [word]: where its piece begins in the result
+template <typename Pieces>
+Pieces sorted(const Pieces& pieces, const std::vector<PendingWord>& words,
+              const std::vector<std::size_t>& places, std::size_t count) {
+    Pieces result(64 * count);
+    for (std::size_t i = 0; i < words.size(); ++i)
+        if (words[i].classes != kNoClasses)
+            std::copy_n(&pieces[words[i].classes], 64, &result[places[i]]);
+    return result;
+}
+
 }  // namespace
+
+std::uint64_t changedBehind(const std::vector<PendingWord>& words, std::size_t word) {
+    const bool isLast = word + 1 == words.size() || !follows(words[word], words[word + 1]);
+    return isLast ? 0 : words[word + 1].changed;
+}
+
+void sortClasses(const IndexBox& box, PackedColumns& columns) {
+    // [slice]: how many words it has; then where its next one goes.
+    std::vector<std::size_t> next(std::size_t(box.dims().x));
+    const auto ofSlice = [&](const PendingWord& word) -> std::size_t& {
+        return next[std::size_t(word.slice - box.min.x)];
+    };
+    std::size_t count = 0;
+    for (const PendingWord& word : columns.words) {
+        if (word.classes == kNoClasses) continue;
+        ++ofSlice(word);
+        ++count;
+    }
+    std::exclusive_scan(next.begin(), next.end(), next.begin(), std::size_t{0});
+    std::vector<std::size_t> places;
+    places.reserve(columns.words.size());
+    for (const PendingWord& word : columns.words)
+        places.push_back(word.classes == kNoClasses ? kNoClasses : 64 * ofSlice(word)++);
+    columns.storage = sorted(columns.storage, columns.words, places, count);
+    if (!columns.looks.empty()) columns.looks = sorted(columns.looks, columns.words, places, count);
+    for (std::size_t i = 0; i < places.size(); ++i) columns.words[i].classes = places[i];
+}
 
 void collectWords(std::vector<PackedColumns*> columns, const SlabLayout& layout, bool hasLooks,
                   PackedDeltas& packed) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <limits>
 #include <vector>
 
 #include "delta/packed_deltas.h"
@@ -19,12 +20,24 @@ struct PendingWord {
     glm::ivec2 block;
 };
 
-/// Words of columns of blocks, and the classes that they point to.
+/// Where a word points to classes of which nothing is seen, or nobody needs them.
+inline constexpr std::size_t kNoClasses = std::numeric_limits<std::size_t>::max();
+
+/// Words of columns of blocks, those of a block together and in the order of its slices, and the
+/// classes that they point to.
 struct PackedColumns {
     std::vector<PendingWord> words;
-    std::vector<ClassIndex> storage;
+    UnclearedVector<ClassIndex> storage;
     std::vector<OwnLook> looks;  ///< likewise, if voxels have their own
 };
+
+/// Returns what changes from a word's slice to the next, of all slices in which anything is seen or
+/// changes.
+std::uint64_t changedBehind(const std::vector<PendingWord>& words, std::size_t word);
+
+/// Lays what words point to in the order of slices, as it is walked, and in no more memory than it
+/// takes; the words stay where they are.
+void sortClasses(const IndexBox& box, PackedColumns& columns);
 
 /// Puts the words of columns in the order of slices, those that slabs need, and takes over their
 /// storage. Multi-threaded.

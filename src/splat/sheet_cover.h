@@ -24,6 +24,15 @@ class SheetCover {
     bool hidesBlock(glm::ivec2 block) const {
         return cells_->cover(blocks_[0][std::size_t(block.x)], blocks_[1][std::size_t(block.y)]);
     }
+    /// The same of all blocks of a row from column `first` to `last`; false where that takes more
+    /// than a look.
+    bool hidesBlocks(int first, int last, int row) const {
+        const glm::ivec2 begin = blocks_[0][std::size_t(first)];
+        const glm::ivec2 end = blocks_[0][std::size_t(last)];
+        // What nobody reads has no place among the others.
+        if (begin.x >= begin.y || end.x >= end.y) return false;
+        return cells_->cover({begin.x, end.y}, blocks_[1][std::size_t(row)]);
+    }
     /// The same of a tile's pixels.
     bool hidesTile(glm::ivec2 tile) const {
         return cells_->cover(tiles_[0][std::size_t(tile.x)], tiles_[1][std::size_t(tile.y)]);

@@ -100,16 +100,17 @@ std::uint64_t SliceBlocks::voxelsInBox(glm::ivec2 block) const {
     return word;
 }
 
-// The words of a slice lie in order, but not what they point to.
-// @param rows  of blocks, that are needed now
-void SliceBlocks::prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words,
-                                  glm::ivec2 rows) const {
-    constexpr std::ptrdiff_t kAhead = 8;
-    if (words.data() + words.size() - word <= kAhead) return;
-    const int row = blockOf(word[kAhead]).y;
-    if (row < rows.x || row >= rows.y) return;
-    hwy::Prefetch(word[kAhead].classes);
-    hwy::Prefetch(word[kAhead].classes + 32);
+// Whether words of a row are all covered, or lie between such.
+bool SliceBlocks::hidesAll(const SheetCover& cover, std::span<const DeltaWord> words) const {
+    const glm::ivec2 first = blockOf(words.front());
+    const glm::ivec2 last = blockOf(words.back());
+    return first.y == last.y && hasColumn(first) && hasColumn(last) &&
+           cover.hidesBlocks(first.x, last.x, first.y);
+}
+
+void SliceBlocks::fetchClasses(const DeltaWord& word) {
+    hwy::Prefetch(word.classes);
+    hwy::Prefetch(word.classes + 32);
 }
 
 }  // namespace deltasplat

@@ -38,9 +38,6 @@ struct SplatInput {
     LitSlice* lit = nullptr;
 };
 
-/// Classes of 64 empty voxels.
-inline constexpr std::array<ClassIndex, 64> kEmptyClasses{};
-
 /// Of a slice of a block, what is stamped of a digit of colours.
 struct SeenWord {
     std::uint64_t visible;      ///< mask word of voxels that are seen
@@ -100,6 +97,11 @@ class SliceBlocks {
         const ClassIndex* classes = nullptr;  // that they have become
     };
 
+    // Words that may be passed over at a time, where all are covered.
+    static constexpr std::size_t kLookedAt = 16;
+    // Words that are on their way from memory at a time.
+    static constexpr std::size_t kFetched = 8;
+
     template <typename Use>
     void forWords(int slice, bool whole, const NeededPixels& needed, const Use& use);
     std::span<const DeltaWord> wordsOf(int slice, glm::ivec2 rows) const;
@@ -114,8 +116,8 @@ class SliceBlocks {
         return std::size_t(&word - input_.deltas.words.data());
     }
     std::uint64_t voxelsInBox(glm::ivec2 block) const;
-    void prefetchClasses(const DeltaWord* word, std::span<const DeltaWord> words,
-                         glm::ivec2 rows) const;
+    bool hidesAll(const SheetCover& cover, std::span<const DeltaWord> words) const;
+    static void fetchClasses(const DeltaWord& word);
 
     const SplatInput& input_;
     SheetLayout layout_;
@@ -144,15 +146,34 @@ void SliceBlocks::forWords(int slice, bool whole, const NeededPixels& needed, co
     const std::span<const DeltaWord> words = wordsOf(slice, rows);
     if (input_.lit) input_.lit->begin(slice);
     if (!stampEmptyVoxels_) {
-        for (const DeltaWord& word : words) {
-            if (!input_.lit) prefetchClasses(&word, words, now);
-            const glm::ivec2 block = blockOf(word);
-            if (!hasColumn(block) || (cover && cover->hidesBlock(block))) continue;
+        const auto useWord = [&](const DeltaWord& word) {
             SeenWord seen = seenOf(word);
             if (takesDigit_) takeDigit(word, whole, seen);
             const std::uint64_t voxels = whole ? seen.visible : seen.changed;
-            if (voxels != 0) use(block, voxels, seen);
+            if (voxels != 0) use(blockOf(word), voxels, seen);
+        };
+        // Words that come next: what they point to is on its way meanwhile.
+        std::array<const DeltaWord*, kFetched> next;
+        std::size_t count = 0;
+        std::size_t looked = 0;
+        for (std::size_t i = 0; i < words.size(); ++i) {
+            if (cover && i == looked) {
+                looked = std::min(i + kLookedAt, words.size());
+                if (hidesAll(*cover, words.subspan(i, looked - i))) {
+                    i = looked - 1;
+                    continue;
+                }
+            }
+            const DeltaWord& word = words[i];
+            const glm::ivec2 block = blockOf(word);
+            if (!hasColumn(block) || (cover && cover->hidesBlock(block))) continue;
+            if (!input_.lit && block.y >= now.x && block.y < now.y) fetchClasses(word);
+            const DeltaWord*& place = next[count++ % next.size()];
+            if (count > next.size()) useWord(*place);
+            place = &word;
         }
+        for (std::size_t i = count - std::min(count, next.size()); i < count; ++i)
+            useWord(*next[i % next.size()]);
         return;
     }
     const SeenWord nothing = nothingSeen();

@@ -118,7 +118,7 @@ void over(benchmark::State& state) {
     }
     const OverSheets sheets{{sheet.data()}, pitch};
     const std::vector<glm::vec4> scales{glm::vec4(1e-12f)};
-    const OverWeights weights({fraction, fraction}, scales, channels, true);
+    const OverWeights weights({fraction, fraction}, scales, channels);
     for (auto _ : state) {
         overSpans(spans, sheets, weights);
         benchmark::ClobberMemory();

@@ -280,6 +280,27 @@ TEST(Identity, AlsoWhereLittleChanges) {
     }
 }
 
+// Rows are long, so that words are passed over many at a time; the cover has holes and an edge.
+TEST(Identity, AlsoWhereMuchIsCovered) {
+    const Volume volume = test::makeVolume({{-30, 2, -3}, {370, 41, 28}}, [](int x, int y, int z) {
+        const bool isHole = x % 97 < 5 && y % 19 < 6;
+        const bool isEdge = x > 340 && z < 20;
+        if (isHole || isEdge) return z % 5 == 0 ? 90 + x % 7 : test::kInactive;
+        return z < 2 || z > 24 ? 255 : 100 + (x * 7 + y * 13 + z * 29) % 90;
+    });
+    for (const glm::dvec3& direction : {glm::dvec3(0.1, 0, -1), glm::dvec3(-0.1, 0.2, 1)}) {
+        RenderOptions options = optionsFor(direction);
+        options.optics.extinctionScale = 4;
+        options.between = 0;
+        for (const double resolution : {1.0, 2.0}) {
+            options.resolution = resolution;
+            expectSamePixels(volume, options);
+        }
+        options.optics.shading.emplace();
+        expectSamePixels(volume, options);
+    }
+}
+
 // Opacity times a colour is what the four channels give, but for rounding.
 TEST(Identity, OneColorIsTheSameAsFourChannels) {
     const Volume volume = test::randomVolume(kBoxes[0], 19, 0.5);

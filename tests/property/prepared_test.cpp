@@ -83,13 +83,14 @@ TEST(Prepared, picturesInPartsAreThoseOfAllAtOnce) {
 }
 
 // What a view along an axis is rendered from.
+// @param away  which way it looks: -1 or 1
 std::shared_ptr<const PreparedAxis> axisOf(const PreparedScene& scene, int axis,
-                                           const Listener& listener = {}) {
+                                           const Listener& listener = {}, int away = -1) {
     const Volume& volume = *scene.scene().volume;
     CameraOptions options;
     options.sizePixels = {24, 20};
     options.direction = glm::dvec3(0);
-    (*options.direction)[axis] = -1;
+    (*options.direction)[axis] = away;
     const Camera camera = cameraOf(volume, options);
     const Factorization view = viewsOf(camera, volume, scene.options()).front();
     EXPECT_EQ(view.sliceAxis, axis);
@@ -170,6 +171,31 @@ TEST(Prepared, wordsAreSharedWhereTheSameIsToldApart) {
     optics = scene.scene().optics;
     optics.extinctionScale = 2.5;
     EXPECT_NE(wordsOf(holding.withOptics(optics)), wordsOf(holding));
+}
+
+// Whole slices are the same from both ends of an axis; changes are told from the slice in front.
+TEST(Prepared, whatIsWholeIsSharedByViewsFromBothEnds) {
+    SplatOptions options;
+    for (const Method method : {Method::kAuto, Method::kSparse, Method::kDelta}) {
+        options.method = method;
+        const PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, options);
+        const auto front = axisOf(scene, 1);
+        const auto back = axisOf(scene, 1, {}, 1);
+        EXPECT_EQ(front == back, front->deltas().areWhole());
+        EXPECT_EQ(front->deltas().areWhole(), method != Method::kDelta);
+        EXPECT_EQ(axisOf(scene, 1), front);
+        EXPECT_EQ(axisOf(scene, 1, {}, 1), back);
+        Optics optics = scene.scene().optics;
+        optics.extinctionScale = 2.5;
+        const PreparedScene other = scene.withOptics(optics);
+        EXPECT_EQ(axisOf(other, 1, {}, 1)->words, back->words);
+    }
+    // Also where other optics saw the one end alone.
+    const PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, SplatOptions());
+    const auto front = axisOf(scene, 1);
+    Optics optics = scene.scene().optics;
+    optics.extinctionScale = 2.5;
+    EXPECT_EQ(axisOf(scene.withOptics(optics), 1, {}, 1)->words, front->words);
 }
 
 // What voxels are divided into depends on how opaque they are, though the same are told apart.

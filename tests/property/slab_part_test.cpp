@@ -92,6 +92,24 @@ TEST(SlabPart, foldsToThePixelsOfThePictureAtOnce) {
     }
 }
 
+// Also parts of scenes that have shown the volume from elsewhere, its other end above all.
+TEST(SlabPart, foldsPartsOfScenesThatShowedMore) {
+    const test::TempFolder folder;
+    const std::vector<CameraOptions> cameras = someCameras();
+    for (const CameraOptions& options : cameras) {
+        Paths parts;
+        for (int i = 1; i <= 2; ++i) {
+            const PreparedScene scene = sceneOf(Colors::kSeveral);
+            for (std::size_t other = 0; i == 2 && other < cameras.size(); ++other)
+                test::pictureOf(scene, cameras[cameras.size() - 1 - other]);
+            parts.push_back(folder / ("seen" + std::to_string(i)));
+            writeSlabPart(LayeredPicture(scene, cameraIn(scene, options)), {i, i, 2}, {},
+                          parts.back());
+        }
+        EXPECT_EQ(messageOf(parts), "no error");
+    }
+}
+
 TEST(SlabPart, knowsHowFarAPictureMayBeOff) {
     const test::TempFolder folder;
     const CameraOptions options = someCameras()[1];
@@ -209,7 +227,7 @@ TEST(SlabPart, refusesWhatIsNotWhole) {
     const std::string end = "; expected a whole part of a picture's slabs";
     EXPECT_EQ(messageFor(whole), "no error");
     EXPECT_EQ(messageFor(""), begin + "another kind of file" + end);
-    EXPECT_EQ(messageFor("deltasplat slabs 2\n"),
+    EXPECT_EQ(messageFor("deltasplat slabs 1\n"),
               begin + "a part that another version has written; expected one of this version");
     EXPECT_EQ(messageFor(whole + "x"), begin + "more than its layers" + end);
     EXPECT_EQ(messageFor(whole.substr(0, whole.size() - 1)), begin + "a file cut short" + end);

@@ -120,6 +120,19 @@ bool isHidden(const CoveredCells& cells, const SheetReading& reading, glm::ivec2
     return true;
 }
 
+// A run of blocks in a row is hidden where each of them is, unless nobody reads its ends.
+void expectRunsHideTheirBlocks(const SheetCover& cover, const SheetLayout& layout) {
+    for (int v = 0; v < layout.blocks.y; ++v) {
+        for (int first = 0; first < layout.blocks.x; ++first) {
+            bool hidesEach = true;
+            for (int last = first; last < layout.blocks.x; ++last) {
+                hidesEach = hidesEach && cover.hidesBlock({last, v});
+                ASSERT_TRUE(hidesEach || !cover.hidesBlocks(first, last, v));
+            }
+        }
+    }
+}
+
 TEST(SheetCover, HidesWhatCoveredPixelsAloneRead) {
     for (const int resolution : {1, 2, 3}) {
         SheetLayout layout;
@@ -147,6 +160,7 @@ TEST(SheetCover, HidesWhatCoveredPixelsAloneRead) {
                     ASSERT_TRUE(hides || !isHidden(cells, reading, first, last, 10));
                 }
             }
+            expectRunsHideTheirBlocks(cover, layout);
             for (int v = 0; v < layout.tiles().y; ++v) {
                 for (int u = 0; u < layout.tiles().x; ++u) {
                     const glm::ivec2 first = kTilePixels * glm::ivec2(u, v);
@@ -174,12 +188,15 @@ TEST(SheetCover, HidesFromNowOnWhatEachSliceHides) {
     };
     SheetCover all;
     all.set(cells, readingOfSlice(0), readingOfSlice(11), layout);
+    expectRunsHideTheirBlocks(all, layout);
     int hidden = 0;
+    int runs = 0;
     for (int slice = 0; slice < 12; ++slice) {
         SheetCover one;
         one.set(cells, readingOfSlice(slice), readingOfSlice(slice), layout);
         for (int v = 0; v < layout.blocks.y; ++v) {
             for (int u = 0; u < layout.blocks.x; ++u) {
+                runs += u > 0 && all.hidesBlocks(u - 1, u, v);
                 if (!all.hidesBlock({u, v})) continue;
                 ++hidden;
                 ASSERT_TRUE(one.hidesBlock({u, v})) << slice;
@@ -187,6 +204,7 @@ TEST(SheetCover, HidesFromNowOnWhatEachSliceHides) {
         }
     }
     EXPECT_GT(hidden, 0);
+    EXPECT_GT(runs, 0);
 }
 
 TEST(SheetCover, ClearsBitsOfHiddenTiles) {

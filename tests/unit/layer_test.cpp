@@ -71,11 +71,11 @@ double bilinearAt(const Sheet& sheet, glm::dvec2 d, int slice, glm::ivec2 b, int
            (1 - fx) * fy * sheetAt(sheet, x, y + 1, c) + fx * fy * sheetAt(sheet, x + 1, y + 1, c);
 }
 
-Layer compositeSlices(glm::dvec2 d, bool frontToBack, int channels, int first = 0, int count = 4,
+Layer compositeSlices(glm::dvec2 d, int channels, int first = 0, int count = 4,
                       float scale = kScale) {
     Layer layer(reachOf(planeOf(randomSheet(0).layout(), d), randomSheet(0).layout(), 0, 6),
                 channels);
-    Compositor compositor({glm::vec4(scale)}, frontToBack);
+    Compositor compositor({glm::vec4(scale)});
     for (int slice = first; slice < first + count; ++slice) {
         const Sheet sheet = randomSheet(std::uint32_t(slice), channels);
         const Sheet* const sheets[] = {&sheet};
@@ -93,25 +93,22 @@ INSTANTIATE_TEST_SUITE_P(Channels, LayerOfChannels, testing::Values(1, 4));
 TEST_P(LayerOfChannels, CompositesBilinearReadingsInOrder) {
     const int channels = GetParam();
     for (const glm::dvec2 d : kShifts) {
-        for (const bool frontToBack : {true, false}) {
-            const Layer layer = compositeSlices(d, frontToBack, channels);
-            std::vector<Sheet> sheets;
-            for (std::uint32_t slice = 0; slice < 4; ++slice)
-                sheets.push_back(randomSheet(slice, channels));
-            for (int y = layer.box.min.y; y < layer.box.max.y; ++y) {
-                for (int x = layer.box.min.x; x < layer.box.max.x; ++x) {
-                    double expected[4] = {};
-                    for (int k = 0; k < 4; ++k) {
-                        const int slice = frontToBack ? k : 3 - k;
-                        const double clear = 1 - expected[channels - 1];
-                        for (int c = 0; c < channels; ++c) {
-                            expected[c] += clear * bilinearAt(sheets[slice], d, slice, {x, y}, c);
-                        }
-                    }
+        const Layer layer = compositeSlices(d, channels);
+        std::vector<Sheet> sheets;
+        for (std::uint32_t slice = 0; slice < 4; ++slice)
+            sheets.push_back(randomSheet(slice, channels));
+        for (int y = layer.box.min.y; y < layer.box.max.y; ++y) {
+            for (int x = layer.box.min.x; x < layer.box.max.x; ++x) {
+                double expected[4] = {};
+                for (int slice = 0; slice < 4; ++slice) {
+                    const double clear = 1 - expected[channels - 1];
                     for (int c = 0; c < channels; ++c) {
-                        ASSERT_NEAR(layer.pixel({x, y})[c], expected[c], 1e-5)
-                            << x << ' ' << y << ' ' << c;
+                        expected[c] += clear * bilinearAt(sheets[slice], d, slice, {x, y}, c);
                     }
+                }
+                for (int c = 0; c < channels; ++c) {
+                    ASSERT_NEAR(layer.pixel({x, y})[c], expected[c], 1e-5)
+                        << x << ' ' << y << ' ' << c;
                 }
             }
         }
@@ -119,10 +116,10 @@ TEST_P(LayerOfChannels, CompositesBilinearReadingsInOrder) {
 }
 
 // Two planes, the second of which is worth less and covers other tiles.
-Layer compositePlanes(glm::dvec2 d, bool frontToBack, int channels) {
+Layer compositePlanes(glm::dvec2 d, int channels) {
     Layer layer(reachOf(planeOf(randomSheet(0).layout(), d), randomSheet(0).layout(), 0, 6),
                 channels);
-    Compositor compositor({glm::vec4(kScale), glm::vec4(kScale / 64)}, frontToBack);
+    Compositor compositor({glm::vec4(kScale), glm::vec4(kScale / 64)});
     for (int slice = 0; slice < 3; ++slice) {
         const Sheet first = randomSheet(std::uint32_t(slice), channels);
         const Sheet second = randomSheet(std::uint32_t(slice + 50), channels);
@@ -136,37 +133,33 @@ Layer compositePlanes(glm::dvec2 d, bool frontToBack, int channels) {
 TEST_P(LayerOfChannels, CompositesSumsOfPlanes) {
     const int channels = GetParam();
     for (const glm::dvec2 d : kShifts) {
-        for (const bool frontToBack : {true, false}) {
-            const Layer layer = compositePlanes(d, frontToBack, channels);
-            std::vector<Sheet> sheets;
-            for (std::uint32_t i : {0, 50, 1, 51, 2, 52})
-                sheets.push_back(randomSheet(i, channels));
-            for (int y = layer.box.min.y; y < layer.box.max.y; ++y) {
-                for (int x = layer.box.min.x; x < layer.box.max.x; ++x) {
-                    double expected[4] = {};
-                    for (int k = 0; k < 3; ++k) {
-                        const int slice = frontToBack ? k : 2 - k;
-                        const double clear = 1 - expected[channels - 1];
-                        for (int c = 0; c < channels; ++c) {
-                            const auto at = [&](int plane) {
-                                return bilinearAt(sheets[std::size_t(2 * slice + plane)], d, slice,
-                                                  {x, y}, c);
-                            };
-                            expected[c] += clear * (at(0) + at(1) / 64);
-                        }
-                    }
+        const Layer layer = compositePlanes(d, channels);
+        std::vector<Sheet> sheets;
+        for (std::uint32_t i : {0, 50, 1, 51, 2, 52}) sheets.push_back(randomSheet(i, channels));
+        for (int y = layer.box.min.y; y < layer.box.max.y; ++y) {
+            for (int x = layer.box.min.x; x < layer.box.max.x; ++x) {
+                double expected[4] = {};
+                for (int slice = 0; slice < 3; ++slice) {
+                    const double clear = 1 - expected[channels - 1];
                     for (int c = 0; c < channels; ++c) {
-                        ASSERT_NEAR(layer.pixel({x, y})[c], expected[c], 1e-5)
-                            << x << ' ' << y << ' ' << c;
+                        const auto at = [&](int plane) {
+                            return bilinearAt(sheets[std::size_t(2 * slice + plane)], d, slice,
+                                              {x, y}, c);
+                        };
+                        expected[c] += clear * (at(0) + at(1) / 64);
                     }
                 }
+                for (int c = 0; c < channels; ++c) {
+                    ASSERT_NEAR(layer.pixel({x, y})[c], expected[c], 1e-5)
+                        << x << ' ' << y << ' ' << c;
+                }
             }
-            for (const std::string& level : test::testedSimdLevels()) {
-                setSimdLevel(level);
-                EXPECT_EQ(compositePlanes(d, frontToBack, channels).values, layer.values) << level;
-            }
-            setSimdLevel("auto");
         }
+        for (const std::string& level : test::testedSimdLevels()) {
+            setSimdLevel(level);
+            EXPECT_EQ(compositePlanes(d, channels).values, layer.values) << level;
+        }
+        setSimdLevel("auto");
     }
 }
 
@@ -176,7 +169,7 @@ TEST_P(LayerOfChannels, PlanesOfZerosChangeNothing) {
     for (const glm::dvec2 d : kShifts) {
         Layer layer(reachOf(planeOf(randomSheet(0).layout(), d), randomSheet(0).layout(), 0, 6),
                     channels);
-        Compositor compositor({glm::vec4(kScale), glm::vec4(kScale)}, true);
+        Compositor compositor({glm::vec4(kScale), glm::vec4(kScale)});
         for (int slice = 0; slice < 4; ++slice) {
             const Sheet sheet = randomSheet(std::uint32_t(slice), channels);
             Sheet zeros(sheet.layout());
@@ -188,12 +181,12 @@ TEST_P(LayerOfChannels, PlanesOfZerosChangeNothing) {
                                  readingOf(planeOf(sheet.layout(), d), sheet.layout(), slice),
                                  layer.box.min.y, layer.box.max.y, nullptr, layer);
         }
-        EXPECT_EQ(layer.values, compositeSlices(d, true, channels).values);
+        EXPECT_EQ(layer.values, compositeSlices(d, channels).values);
     }
 }
 
 TEST_P(LayerOfChannels, RowsAreZeroOutsideOfTheirSpans) {
-    const Layer layer = compositeSlices({0.37, -0.81}, true, GetParam());
+    const Layer layer = compositeSlices({0.37, -0.81}, GetParam());
     for (int y = 0; y < layer.box.size().y; ++y) {
         const glm::ivec2 span = layer.spans[std::size_t(y)];
         for (int x = 0; x < layer.box.size().x; ++x) {
@@ -207,19 +200,17 @@ TEST_P(LayerOfChannels, RowsAreZeroOutsideOfTheirSpans) {
 
 TEST_P(LayerOfChannels, SameBitsAtEverySimdLevel) {
     for (const glm::dvec2 d : kShifts) {
-        for (const bool frontToBack : {true, false}) {
-            const auto best = compositeSlices(d, frontToBack, GetParam()).values;
-            for (const std::string& level : test::testedSimdLevels()) {
-                setSimdLevel(level);
-                EXPECT_EQ(compositeSlices(d, frontToBack, GetParam()).values, best) << level;
-            }
-            setSimdLevel("auto");
+        const auto best = compositeSlices(d, GetParam()).values;
+        for (const std::string& level : test::testedSimdLevels()) {
+            setSimdLevel(level);
+            EXPECT_EQ(compositeSlices(d, GetParam()).values, best) << level;
         }
+        setSimdLevel("auto");
     }
 }
 
 TEST(Layer, ResetLeavesAnEmptyLayerOfAnotherBox) {
-    Layer layer = compositeSlices({0.37, -0.81}, true, 4);
+    Layer layer = compositeSlices({0.37, -0.81}, 4);
     const PlaneBox box{{-3, 8}, {40, 19}};
     layer.reset(box);
     EXPECT_EQ(layer.box.min, box.min);
@@ -307,12 +298,12 @@ TEST(LayerFold, IsOverFromTheFront) {
 // Merging layers is the same as compositing on, but for rounding.
 TEST(Layer, OverIsAssociativeWithinRounding) {
     const glm::dvec2 d(0.25, 0.5);
-    Layer merged = compositeSlices(d, true, 4, 0, 3, kScale / 8);
+    Layer merged = compositeSlices(d, 4, 0, 3, kScale / 8);
     LayerFold halves(1, merged, merged.box);
     halves.addFront();
-    halves.add(0, compositeSlices(d, true, 4, 3, 3, kScale / 8));
+    halves.add(0, compositeSlices(d, 4, 3, 3, kScale / 8));
     for (int y = merged.box.min.y; y < merged.box.max.y; ++y) halves.finishRow(y);
-    const Layer whole = compositeSlices(d, true, 4, 0, 6, kScale / 8);
+    const Layer whole = compositeSlices(d, 4, 0, 6, kScale / 8);
     for (std::size_t i = 0; i < whole.values.size(); ++i) {
         // Six slices, each rounded a handful of times to 2^-24 of values below 1.
         ASSERT_NEAR(merged.values[i], whole.values[i], 6 * 6 * std::ldexp(1.0, -24));

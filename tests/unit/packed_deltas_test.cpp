@@ -10,6 +10,8 @@
 #include <map>
 #include <span>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "deltasplat/threads.h"
 #include "support/make_volume.h"
@@ -41,13 +43,32 @@ Classes classesOf(const Volume& volume, int axis, const std::vector<Slot>& class
     return classes;
 }
 
+constexpr Encoding kEncodings[] = {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller,
+                                   Encoding::kFewerWords};
+
+// Encodings, and whether slices are walked from the last one on.
+const std::vector<std::pair<Encoding, bool>> kWays = [] {
+    std::vector<std::pair<Encoding, bool>> ways;
+    for (const Encoding encoding : kEncodings)
+        for (const bool descending : {false, true}) ways.emplace_back(encoding, descending);
+    return ways;
+}();
+
+PackOptions optionsOf(int axis, Encoding encoding, std::span<const Slot> classes, bool descending) {
+    PackOptions options{axis, encoding, classes, {}};
+    options.descending = descending;
+    return options;
+}
+
 // Walks the words as a renderer does.
 Classes walk(const PackedDeltas& packed) {
     Classes all;
     std::map<std::tuple<int, int>, ClassIndex> plane;
     for (const PlannedSlab& slab : packed.slabs) {
         plane.clear();
-        for (int s = slab.firstSlice; s < slab.firstSlice + slab.sliceCount; ++s) {
+        const int last = slab.firstSlice + slab.sliceCount - 1;
+        for (int i = 0; i < slab.sliceCount; ++i) {
+            const int s = packed.descending ? last - i : slab.firstSlice + i;
             if (slab.whole) plane.clear();
             for (const DeltaWord& word : packed.slice(s)) {
                 std::uint64_t rest = slab.whole ? word.visible : word.changed;
@@ -73,11 +94,11 @@ TEST(PackedDeltas, AddUpToTheClassesOfTheVolume) {
     const std::vector<Slot> classes = plainClasses();
     for (int axis = 0; axis < 3; ++axis) {
         const Classes expected = classesOf(volume, axis, classes);
-        for (const Encoding encoding :
-             {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller, Encoding::kFewerWords}) {
+        for (const auto& [encoding, descending] : kWays) {
             for (const int threads : {1, 2}) {
                 const ThreadLimit limit(threads);
-                const PackedDeltas packed = packDeltas(volume, {axis, encoding, classes, {}});
+                const PackedDeltas packed =
+                    packDeltas(volume, optionsOf(axis, encoding, classes, descending));
                 EXPECT_EQ(walk(packed), expected) << axis;
                 EXPECT_EQ(packed.visible(), expected.size());
             }
@@ -97,8 +118,7 @@ TEST(PackedDeltas, CountWhatTheDeltaGridCounts) {
     const Volume volume = test::randomVolume(kBox, 4);
     const std::vector<Slot> classes = plainClasses();
     for (int axis = 0; axis < 3; ++axis) {
-        for (const Encoding encoding :
-             {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller, Encoding::kFewerWords}) {
+        for (const Encoding encoding : kEncodings) {
             const PackedDeltas packed = packDeltas(volume, {axis, encoding, classes, {}});
             const DeltaGrid grid = makeDeltaGrid(volume, {axis, keyIntervalOf(packed), classes});
             EXPECT_EQ(packed.visible(), grid.visible());
@@ -128,12 +148,12 @@ TEST(PackedDeltas, PartsHaveTheWordsOfTheWhole) {
     const Volume volume = test::randomVolume(kBox, 6);
     const std::vector<Slot> classes = plainClasses();
     for (int axis = 0; axis < 3; ++axis) {
-        for (const Encoding encoding :
-             {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller, Encoding::kFewerWords}) {
-            const PackedDeltas whole = packDeltas(volume, {axis, encoding, classes, {}});
+        for (const auto& [encoding, descending] : kWays) {
+            const PackOptions options = optionsOf(axis, encoding, classes, descending);
+            const PackedDeltas whole = packDeltas(volume, options);
             // Slab by slab, some at a time, and all.
             for (const double bytes : {0.0, 3e5, 1e9}) {
-                DeltaPacker packer(volume, {axis, encoding, classes, {}});
+                DeltaPacker packer(volume, options);
                 EXPECT_TRUE(packer.canBeParted());
                 const PackedDeltas planned = packer.plan(bytes);
                 EXPECT_TRUE(planned.words.empty());
@@ -160,6 +180,41 @@ TEST(PackedDeltas, PartsHaveTheWordsOfTheWhole) {
                 EXPECT_GE(parts, bytes == 0 ? slabs : 1);
                 EXPECT_LE(parts, bytes == 1e9 ? 1 : slabs);
             }
+        }
+    }
+}
+
+// Either way the same slabs, and in them as many changes within as there are the other way.
+TEST(PackedDeltas, ChangeBackOnTheOtherWay) {
+    const Volume volume = test::randomVolume(kBox, 7);
+    const std::vector<Slot> classes = plainClasses();
+    const auto withinSlabs = [](const PackedDeltas& packed) {
+        std::uint64_t changes = 0;
+        for (const PlannedSlab& slab : packed.slabs) {
+            const int last = slab.firstSlice + slab.sliceCount - 1;
+            const int key = packed.descending ? last : slab.firstSlice;
+            for (int s = slab.firstSlice; s <= last; ++s) {
+                for (const DeltaWord& word : packed.slice(s)) {
+                    if (s == key) {
+                        EXPECT_EQ(word.changed, word.visible);
+                    } else {
+                        changes += std::uint64_t(std::popcount(word.changed));
+                    }
+                }
+            }
+        }
+        return changes;
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+        const PackedDeltas up =
+            packDeltas(volume, optionsOf(axis, Encoding::kChanges, classes, false));
+        const PackedDeltas down =
+            packDeltas(volume, optionsOf(axis, Encoding::kChanges, classes, true));
+        EXPECT_EQ(withinSlabs(up), withinSlabs(down));
+        ASSERT_EQ(up.slabs.size(), down.slabs.size());
+        for (std::size_t i = 0; i < up.slabs.size(); ++i) {
+            EXPECT_EQ(up.slabs[i].firstSlice, down.slabs[i].firstSlice);
+            EXPECT_EQ(up.slabs[i].deltas, down.slabs[i].deltas);
         }
     }
 }
