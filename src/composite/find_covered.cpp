@@ -30,7 +30,7 @@ bool isOpaque(const Layer& layer, const PlaneBox& pixels) {
 
 }  // namespace
 
-void addCovered(const Layer& layer, CoveredCells& cells) {
+bool addCovered(const Layer& layer, CoveredCells& cells) {
     bool isNew = false;
     for (int y = 0; y < cells.size().y; ++y) {
         const PlaneBox row = cells.pixelsOf({0, y});
@@ -46,6 +46,7 @@ void addCovered(const Layer& layer, CoveredCells& cells) {
         }
     }
     if (isNew) cells.settle();
+    return isNew;
 }
 
 }  // namespace deltasplat

@@ -8,6 +8,7 @@ namespace deltasplat {
 
 /// Adds the cells in which a layer is opaque everywhere, its opacity 1 to the last bit: whatever is
 /// put behind it there changes no bit, for it is multiplied by 0.
-void addCovered(const Layer& layer, CoveredCells& cells);
+/// @return whether there are any that were not covered
+bool addCovered(const Layer& layer, CoveredCells& cells);
 
 }  // namespace deltasplat

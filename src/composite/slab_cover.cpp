@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/slab_cover.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "composite/find_covered.h"
@@ -8,9 +9,10 @@
 namespace deltasplat {
 namespace {
 
-// A look at a cell takes about as long as compositing two pixels: so often, it takes less than a
-// fiftieth of that.
-constexpr std::size_t kPixelsBetween = 128;  // a cell
+// A look at a cell takes about as long as compositing two pixels. Looks that find something are
+// worth a thirtieth of that time, and those that find nothing get rarer and rarer.
+constexpr std::size_t kLeastBetween = 64;  // pixels a cell
+constexpr std::size_t kMostBetween = 1024;
 // What is covered from now on grows slowly.
 constexpr int kSlicesBetween = 8;
 
@@ -20,7 +22,7 @@ NeededPixels SlabCover::next(const SheetReading& reading, const SheetBox& read,
                              const SheetLayout& layout) {
     const glm::ivec2 size = cells_->size();
     const auto cells = std::size_t(size.x) * std::size_t(size.y);
-    if (pixels_ >= kPixelsBetween * cells) look();
+    if (pixels_ >= between_ * cells) look();
     NeededPixels needed{read.min.y, read.max.y};
     if (!cells_->any()) return needed;
     if (slices_-- == 0) {
@@ -37,7 +39,8 @@ void SlabCover::look() {
     pixels_ = 0;
     slices_ = 0;
     auto cells = std::make_shared<CoveredCells>(*cells_);
-    addCovered(layer_, *cells);
+    const bool isNew = addCovered(layer_, *cells);
+    between_ = isNew ? kLeastBetween : std::min(2 * between_, kMostBetween);
     cells_ = std::move(cells);
 }
 

@@ -36,8 +36,9 @@ class SlabCover {
     int lastSlice_;
     const Layer& layer_;
     std::shared_ptr<const CoveredCells> cells_;
-    std::size_t pixels_ = 0;  // composited since the last look
-    int slices_ = 0;          // since fromNowOn_ was found
+    std::size_t pixels_ = 0;     // composited since the last look
+    std::size_t between_ = 128;  // pixels a cell, from a look to the next
+    int slices_ = 0;             // since fromNowOn_ was found
     SheetCover ofSlice_;
     SheetCover fromNowOn_;
 };
