@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -73,12 +72,11 @@ class WordCollector {
                 use(i, word);
             };
             const std::vector<PendingWord>& words = columns_[i]->words;
-            for (const PendingWord* word = words.data(); word != words.data() + words.size();
-                 ++word) {
+            for (std::size_t word = 0; word < words.size(); ++word) {
                 if (packed_.descending) {
-                    addDescending(word, words, useNeeded);
+                    addDescending(words, word, useNeeded);
                 } else {
-                    useNeeded(*word, layout_.startsLaterSlab(word->slice));
+                    useNeeded(words[word], layout_.startsLaterSlab(words[word].slice));
                 }
             }
         }
@@ -86,15 +84,15 @@ class WordCollector {
 
     // What changes from a slice to the one behind it changes back on the way from that one.
     template <typename Use>
-    void addDescending(const PendingWord* word, const std::vector<PendingWord>& words,
+    void addDescending(const std::vector<PendingWord>& words, std::size_t number,
                        const Use& use) const {
-        const int slice = word->slice;
-        const bool hasBefore = word != words.data() && follows(word[-1], *word);
-        if (!hasBefore && slice > packed_.box.min.x && !layout_.startsLaterSlab(slice))
-            use({0, word->changed, kNoClasses, slice - 1, word->block}, false);
-        use({word->visible, changedBehind(words, std::size_t(word - words.data())), word->classes,
-             slice, word->block},
-            layout_.endsSlab(slice));
+        const PendingWord& word = words[number];
+        const bool hasBefore = number > 0 && follows(words[number - 1], word);
+        if (!hasBefore && word.slice > packed_.box.min.x && !layout_.startsLaterSlab(word.slice))
+            use({0, word.changed, kNoClasses, word.slice - 1, word.block}, false);
+        NeededWord turned = word;
+        turned.changed = changedBehind(words, number);
+        use(turned, layout_.endsSlab(word.slice));
     }
 
     // Of a run, how many words of a slice there are; then where the next one goes.
