@@ -71,7 +71,7 @@ LayeredPicture::Impl::Impl(const PreparedScene& ofScene, const Camera& ofCamera,
     const PreparedScene::Impl& prepared = scene.impl();
     const Volume& volume = *prepared.scene.volume;
     const std::vector<Factorization> all = viewsOf(camera, volume, prepared.options);
-    const SheetPlan plan(prepared, all.front(), listener);
+    const SheetPlan plan(prepared, all.front(), false, listener);
     if (volume.empty()) return;
     for (const Factorization& view : all) {
         views.push_back(std::make_unique<PictureView>(prepared, camera, view, plan,

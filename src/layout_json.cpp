@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <glm/common.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -137,6 +139,8 @@ void visitView(Visitor& visit, ViewT& layout) {
     visit("pixels_per_slope", view.pixelsPerSlope);
     visit("thin_slices", place.parts.slices);
     visit("thin_within", place.parts.within);
+    visit("joined_slices", place.parts.joined);
+    visit("joined_slant", place.parts.slant);
     visit("thin_origin", place.parts.origin);
     visit("first_slice", place.firstSlice);
     visit("first_voxel", place.firstVoxel);
@@ -206,6 +210,12 @@ void check(const ViewLayout& layout) {
     require(layout.channels == (place.color ? 1 : 4), "channels that no layer has");
     require(place.parts.slices >= 1 && place.parts.within >= 1 && place.parts.within <= 2,
             "voxels in parts that there are not");
+    const int joined = place.parts.joined;
+    const glm::ivec2 slant = glm::abs(place.parts.slant);
+    require(joined == 1 ? slant == glm::ivec2(0)
+                        : joined == 2 && !place.parts.divides() && !view.eye &&
+                              std::max(slant.x, slant.y) <= 1,
+            "slices joined that cannot be");
     require(isResolution(place.resolution) && place.spacing > 0 && std::isfinite(place.spacing),
             "a base plane of no pixels");
     require(isFinite(view.baseFromPixel) && isFinite(view.worldFromStep) &&

@@ -47,6 +47,8 @@ glm::ivec2 blocksOf(const Picture& picture, const Picture::Place& place) {
     const Subdivision& parts = picture.views[place.view]->axis().parts;
     const PlannedSlab& slab = *picture.seenOf(place).slab;
     const glm::ivec2 slices(slab.firstSlice, slab.firstSlice + slab.sliceCount - 1);
+    if (parts.joined > 1)
+        return glm::ivec2(parts.joined * slices.x, parts.joined * (slices.y + 1) - 1) >> 3;
     if (!parts.divides()) return slices >> 3;
     const glm::ivec2 blocks = (slices / parts.slices + parts.origin.x) >> 3;
     return {blocks.x - 1, blocks.y + 1};

@@ -12,6 +12,7 @@
 #include "medium/room.h"
 #include "optics/class_numbers.h"
 #include "optics/hold_rule.h"
+#include "optics/joined_classes.h"
 #include "optics/largest_alpha.h"
 #include "parallel.h"
 #include "picture_view.h"
@@ -89,13 +90,15 @@ std::shared_ptr<const PackedDeltas> sharedWords(const PreparedAxis* before,
                                                 const PreparedScene::Impl& scene,
                                                 ClassTable& classes) {
     const bool areOfClasses = !scene.painter && scene.options.tolerance.isExact();
-    if (!before || !areOfClasses) return {};
+    if (!before || !areOfClasses || before->packer) return {};
     return takeNumbers(before->classes().classOfSlot, classes) ? before->words : nullptr;
 }
 
+// @param seenThrough  of joined slices, which of two is behind
 // @param before  the same axis as other optics have it; null: none
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, int sliceAxis,
-                                            bool descending, const Subdivision& parts, double steps,
+                                            bool descending, const Subdivision& parts,
+                                            SeenThrough seenThrough, double steps,
                                             Encoding encoding, const PreparedAxis* before,
                                             bool inParts, const Listener& listener) {
     const Volume& volume = *scene.scene.volume;
@@ -116,6 +119,11 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     // Small footprints of two digits are never stamped.
     if (encoding == Encoding::kSmaller && !classes.oneDigit()) encoding = Encoding::kSmallerOfSums;
     std::shared_ptr<const PackedDeltas> words = sharedWords(before, scene, classes);
+    std::optional<SliceJoiner> joiner;
+    if (parts.joined > 1) {
+        joiner.emplace(joinerOf(classes));
+        if (words && joiner != before->joiner) words = nullptr;
+    }
     std::vector<float> opacities;
     if (parts.divides()) {
         opacities = opacitiesOf(volume, classes);
@@ -124,6 +132,8 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     PackOptions pack{sliceAxis, encoding, classes.classOfSlot, holdRule(seen, classes, tolerance),
                      mixer ? &*mixer : nullptr};
     pack.descending = descending;
+    if (joiner) pack.joiner = &*joiner;
+    pack.slant = parts.slant;
     pack.opacities = opacities;
     const bool isLit = painter && painter->dependsOnCamera();
     std::unique_ptr<const LookLight> light;
@@ -145,14 +155,17 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
                                                              : packer->packAll());
         if (!inParts) packer = nullptr;
     }
-    if (steps != first) {
+    if (joiner) {
+        classes = joinedClasses(classes, *joiner, seenThrough, steps / first);
+    } else if (steps != first) {
         classes = classes.atSteps(steps);
         if (light) light = painter->lightOf(classes, nullptr);
     }
     StepColors colors = isLit ? StepColors(std::move(classes))
                               : StepColors(*words, std::move(classes), std::move(light));
-    return std::make_shared<const PreparedAxis>(PreparedAxis{
-        sliceAxis, parts, std::move(words), steps, std::move(colors), std::move(packer)});
+    return std::make_shared<const PreparedAxis>(PreparedAxis{sliceAxis, parts, std::move(words),
+                                                             steps, std::move(colors),
+                                                             std::move(packer), std::move(joiner)});
 }
 
 std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
@@ -216,6 +229,27 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::wholeAxis(Place& place)
     return lock && place.axis && place.axis->deltas().areWhole() ? place.axis : nullptr;
 }
 
+const PreparedAxis* PreparedScene::Impl::axisBefore(const Key& key, const Key& otherKey) const {
+    const auto same = before_.find(key);
+    if (same != before_.end()) return same->second.get();
+    const auto other = before_.find(otherKey);
+    const bool serves = other != before_.end() && other->second->deltas().areWhole();
+    return serves ? other->second.get() : nullptr;
+}
+
+void PreparedScene::Impl::forgetSlants(const Key& key) const {
+    const auto isOther = [&](const Places::value_type& one) {
+        const bool isSame = std::equal(key.begin(), key.end() - 2, one.first.begin());
+        return isSame && one.first != key;
+    };
+    std::uint64_t last = 0;
+    for (const auto& one : places_)
+        if (isOther(one)) last = std::max(last, one.second->lastUse);
+    // Who uses one holds it.
+    std::erase_if(places_,
+                  [&](const auto& one) { return isOther(one) && one.second->lastUse != last; });
+}
+
 std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorization& view,
                                                               const SheetPlan& plan,
                                                               const Listener& listener,
@@ -229,9 +263,13 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
         isWhole ? Encoding::kWhole : encodingOf(options.method, painter != nullptr, hasPixels);
     // Slices are walked from the front on. Whole ones do not depend on it.
     const bool descending = !view.frontToBack && encoding != Encoding::kWhole;
-    const Key key{sliceAxis, parts.slices, parts.within, int(encoding), int(descending)};
+    // Of joined ones, what they look like does.
+    const bool isJoined = parts.joined > 1;
+    const bool fromEnd = descending || (isJoined && !view.frontToBack);
+    const Key key{sliceAxis,    int(encoding), int(fromEnd),  parts.slices,
+                  parts.within, parts.joined,  parts.slant.x, parts.slant.y};
     Key otherKey = key;
-    otherKey.back() = int(!descending);
+    otherKey[2] = int(!fromEnd);
     std::shared_ptr<Place> otherWay;
     std::shared_ptr<Place> place;
     {
@@ -240,25 +278,41 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
         if (other != places_.end()) otherWay = other->second;
         std::shared_ptr<Place>& known = places_[key];
         if (!known) known = std::make_shared<Place>();
+        known->lastUse = ++uses_;
         place = known;
+        if (isJoined) forgetSlants(key);
     }
     const std::lock_guard lock(place->mutex);
     // Work of another picture, taken on while waiting here, might want the same axis.
-    if (!place->axis && otherWay) place->axis = wholeAxis(*otherWay);
+    std::shared_ptr<const PreparedAxis> other;
+    if (!place->axis && otherWay) other = wholeAxis(*otherWay);
+    if (other && !isJoined) place->axis = other;
     if (!place->axis)
         isolated([&] {
-            auto before = before_.find(key);
-            if (before == before_.end()) {
-                before = before_.find(otherKey);
-                if (before != before_.end() && !before->second->deltas().areWhole())
-                    before = before_.end();
-            }
+            const PreparedAxis* before = other.get();
+            if (!before) before = axisBefore(key, otherKey);
             const double steps = isForOne ? stepsOf(view, *scene.volume) : 1;
-            place->axis = prepare(*this, sliceAxis, descending, parts, steps, encoding,
-                                  before == before_.end() ? nullptr : before->second.get(),
-                                  isForOne && inParts, listener);
+            place->axis = prepare(*this, sliceAxis, descending, parts,
+                                  view.frontToBack ? SeenThrough::kSecond : SeenThrough::kFirst,
+                                  steps, encoding, before, isForOne && inParts, listener);
         });
     return place->axis;
+}
+
+bool PreparedScene::Impl::canJoinSlices() const {
+    if (painter || !options.tolerance.isExact() || scene.volume->empty()) return false;
+    // Of one colour for sure.
+    if (optics.transferFunction.colors.size() == 1) return true;
+    const std::lock_guard lock(blocksMutex_);
+    if (!canJoinSlices_) {
+        double farthest = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            farthest = std::max(farthest, planeDistance(scene.volume->worldFromIndex, axis));
+        // In shorter steps there are no more classes.
+        isolated(
+            [&] { canJoinSlices_ = canBeJoined(classify(*scene.volume, scene.optics, farthest)); });
+    }
+    return *canJoinSlices_;
 }
 
 std::size_t PreparedScene::Impl::blocksSeen(int sliceAxis) const {

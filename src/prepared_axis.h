@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "delta/packed_deltas.h"
+#include "delta/slice_joiner.h"
 #include "deltasplat/prepared_scene.h"
 #include "kept_memory.h"
 #include "splat/step_colors.h"
@@ -28,6 +29,7 @@ struct PreparedAxis {
     /// Packs the words of a few slabs at a time, where all would take much memory: then there are
     /// none yet. Else null.
     std::shared_ptr<const DeltaPacker> packer = nullptr;
+    std::optional<SliceJoiner> joiner = {};  ///< where slices are joined
 
     const PackedDeltas& deltas() const { return *words; }
     const ClassTable& classes() const { return colors.classes(); }
@@ -61,31 +63,43 @@ struct PreparedScene::Impl {
     /// @param inParts  whether a few slabs at a time will do, of a scene for one picture
     std::shared_ptr<const PreparedAxis> axis(const Factorization& view, const SheetPlan& plan,
                                              const Listener& listener, bool inParts = false) const;
+    /// Returns whether slices can be joined (optics/joined_classes.h), along whatever axis.
+    bool canJoinSlices() const;
     /// Returns how many blocks of 8x8x8 voxels can be seen; counted once for each axis.
     std::size_t blocksSeen(int sliceAxis) const;
 
   private:
-    using Key = std::array<int, 5>;  // axis, parts, encoding, and which way slices are walked
+    // Axis, encoding, and from which end slices are walked, parts, whether they are joined, by
+    // which slant.
+    using Key = std::array<int, 8>;
     using Axes = std::map<Key, std::shared_ptr<const PreparedAxis>>;
     struct Place {
         std::mutex mutex;
         std::shared_ptr<const PreparedAxis> axis;
+        std::uint64_t lastUse = 0;  // guarded as places_ are
     };
+    using Places = std::map<Key, std::shared_ptr<Place>>;
 
     Impl(Scene ofScene, SplatOptions withOptions, bool forOne, Axes before);
 
     // Returns an axis whose slices are walked the other way if that makes no difference; null:
     // there is none yet.
     static std::shared_ptr<const PreparedAxis> wholeAxis(Place& place);
+    // Returns an axis of other optics whose words may serve, or null.
+    const PreparedAxis* axisBefore(const Key& key, const Key& otherKey) const;
+    // Forgets axes of other slants than a key's, but for the one that was used last.
+    void forgetSlants(const Key& key) const;
     // Returns those that are there of classes alone, and those of optics before for which there are
     // none.
     Axes axes() const;
 
     const Axes before_;  // of other optics
     mutable std::mutex mutex_;
-    mutable std::map<Key, std::shared_ptr<Place>> places_;
+    mutable Places places_;
+    mutable std::uint64_t uses_ = 0;
     mutable std::mutex blocksMutex_;
     mutable std::array<std::optional<std::size_t>, 3> blocksSeen_;  // [slice axis]
+    mutable std::optional<bool> canJoinSlices_;
 };
 
 class DeepStages;

@@ -17,7 +17,9 @@
 #include "listener_part.h"
 #include "memory.h"
 #include "number_text.h"
+#include "picture_view.h"
 #include "prepared_axis.h"
+#include "sheet_plan.h"
 
 namespace deltasplat {
 namespace {
@@ -246,6 +248,8 @@ class AovRender {
     }
 
     void addMattes(const Listener& listener) {
+        // Of white alone slices could be joined where the picture's are not.
+        options_.joinsSlices = joinsSlicesOfPicture();
         const auto layers = 1 + int(withoutGlow(options_.optics).parts.size());
         for (int first = 0; first < layers; first += 3) {
             const Image image = picture(mattes(options_.optics, first),
@@ -254,6 +258,15 @@ class AovRender {
             for (int i = first; i < std::min(first + 3, layers); ++i)
                 addChannel("matte_" + std::to_string(i + 1), image, i - first);
         }
+    }
+
+    // Whether slices are joined in the picture that channels are beside.
+    bool joinsSlicesOfPicture() const {
+        const Optics& optics = options_.optics;
+        if (optics.scattering || optics.shading || !optics.parts.empty()) return false;
+        const PreparedScene scene({volume_, optics}, options_);
+        const std::vector<Factorization> views = viewsOf(camera_, *volume_, options_);
+        return SheetPlan(scene.impl(), views.front(), false, {}).joined() > 1;
     }
 
     // Made for the first channel that needs it, as those below.

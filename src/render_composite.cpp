@@ -56,7 +56,7 @@ class CompositeRender {
     // @param views  of the volume's own voxels
     void run(const std::vector<Factorization>& views, const Listener& listener) {
         // All of a picture is drawn alike.
-        plan_.emplace(scene_, views.front(), listener);
+        plan_.emplace(scene_, views.front(), wanted_.deep != nullptr, listener);
         for (std::size_t i = 0; i < views.size(); ++i) {
             const auto share = [&](double part) { return (double(i) + part) / views.size(); };
             runView(i, views[i], partOf(listener, share(0), share(1)));
@@ -266,8 +266,10 @@ class CompositeRender {
     void countIn(const PreparedAxis& axis) {
         stats_.between = axis.parts.slices - 1;
         stats_.parts = axis.parts.voxels();
-        stats_.slices = volume_.box.dims()[axis.sliceAxis] * axis.parts.slices;
-        stats_.voxels = std::uint64_t(volume_.box.voxels()) * std::uint64_t(stats_.parts);
+        stats_.joined = axis.parts.joined;
+        const IndexBox& box = axis.deltas().box;
+        stats_.slices = box.dims().x;
+        stats_.voxels = std::uint64_t(box.voxels());
         stats_.visible = axis.deltas().visible();
         stats_.deltas = axis.deltas().deltas();
         stats_.slabs = int(axis.deltas().slabs.size());

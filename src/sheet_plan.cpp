@@ -77,9 +77,32 @@ bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
     return false;
 }
 
+// Whether slices are joined where nobody says otherwise. Moved by less than a fifth of a pixel, in
+// a picture that averages two voxels each way at least, nothing of one voxel's width is seen to
+// move.
+bool joinsUnasked(const PreparedScene::Impl& scene, const Factorization& view) {
+    constexpr double kMostPixelsPerVoxel = 0.5;
+    constexpr double kSnap = 1e-9;
+    const SplatOptions& options = scene.options;
+    if (!options.joinsSlices || options.resolution || options.between || options.sigma ||
+        options.footprintWidth)
+        return false;
+    // From an eye lines of sight have other slopes everywhere.
+    if (view.eye || view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsPerVoxel) return false;
+    return scene.scene.volume->activeCount >= leastVoxelsJoined && scene.canJoinSlices();
+}
+
+// How far a line of sight goes from a slice to the next, in whole voxels, along u and v.
+glm::ivec2 slantOf(const Factorization& view) {
+    // What a turning camera rounds must not decide.
+    constexpr double kSnap = 1e-9;
+    const glm::dvec2 shift = view.shiftPerSlice * (1 - kSnap);
+    return {int(std::lround(shift.x)), int(std::lround(shift.y))};
+}
+
 }  // namespace
 
-SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view,
+SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view, bool keepsSlices,
                      const Listener& listener)
     : asksForSigma_(scene.options.sigma.has_value()),
       footprintWidth_(scene.options.footprintWidth),
@@ -108,7 +131,12 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view
         between = 1;
     }
     if (between > 0 && !options.resolution) resolution_ = 2;
-    parts_ = {between + 1, between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1, {}};
+    parts_.slices = between + 1;
+    parts_.within = between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1;
+    if (!keepsSlices && joinsUnasked(scene, view)) {
+        parts_.joined = 2;
+        parts_.slant = slantOf(view);
+    }
 }
 
 std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {

@@ -1,20 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <optional>
 
 #include "prepared_axis.h"
 
 namespace deltasplat {
 
-/// How finely voxels are drawn: what they are divided into, and how many sheet pixels they have.
+/// Volumes of fewer active voxels are drawn slice by slice: a few milliseconds are all that could
+/// be saved. Tests make it less.
+inline std::atomic<std::uint64_t> leastVoxelsJoined{std::uint64_t{1} << 23};
+
+/// How finely voxels are drawn: what they are divided into, or whether slices are joined, and
+/// how many sheet pixels they have.
 class SheetPlan {
   public:
-    /// @param view  of the volume's own voxels
+    /// @param view         of the volume's own voxels; the first of the picture's
+    /// @param keepsSlices  whether each has to be drawn by itself
     /// @throw Error for a division that is asked for and cannot be made
-    SheetPlan(const PreparedScene::Impl& scene, const Factorization& view,
+    SheetPlan(const PreparedScene::Impl& scene, const Factorization& view, bool keepsSlices,
               const Listener& listener);
 
+    /// Slices that are drawn as one.
+    int joined() const { return parts_.joined; }
     /// The same along another slice axis.
     Subdivision partsAlong(int sliceAxis) const;
     /// Sheet pixels of what voxels are divided into.

@@ -60,8 +60,51 @@ bool isSameLight(const StepColors& before, const StepColors& now) {
                      : haveSameUnits(before.classes(), now.classes());
 }
 
-// Matches classes that look alike. Slots that stand for other values than before match less.
-ClassMatch matchClasses(const StepColors& before, const StepColors& now) {
+// Matches those of one slice. Slots that stand for other values than before match less.
+std::vector<ClassIndex> matchLooks(const ClassTable& a, const ClassTable& b) {
+    std::vector<ClassIndex> nowOfBefore(a.looks.size());
+    const std::size_t slots = std::min(a.classOfSlot.size(), b.classOfSlot.size());
+    for (std::size_t slot = 0; slot < slots; ++slot) {
+        const Slot classBefore = a.classOfSlot[slot];
+        const Slot classNow = b.classOfSlot[slot];
+        if (classBefore == 0 || classNow == 0) continue;
+        ClassIndex& matching = nowOfBefore[std::size_t(classBefore)];
+        if (matching == 0 && a.looks[std::size_t(classBefore)] == b.looks[std::size_t(classNow)])
+            matching = ClassIndex(classNow);
+    }
+    return nowOfBefore;
+}
+
+// Of levels that sums are rounded to, which are in order.
+std::vector<ClassIndex> matchLevels(const ClassTable& a, const ClassTable& b) {
+    std::vector<ClassIndex> nowOfBefore(a.looks.size());
+    std::size_t now = 1;
+    for (std::size_t before = 1; before < a.looks.size(); ++before) {
+        const double extinction = a.looks[before].extinction;
+        while (now < b.looks.size() && b.looks[now].extinction < extinction) ++now;
+        if (now < b.looks.size() && a.looks[before] == b.looks[now])
+            nowOfBefore[before] = ClassIndex(now);
+    }
+    return nowOfBefore;
+}
+
+// Of pairs of classes that match.
+std::vector<ClassIndex> matchPairs(const ClassTable& a, const ClassTable& b) {
+    const std::vector<ClassIndex> single = matchLooks(a, b);
+    std::vector<ClassIndex> nowOfBefore;
+    nowOfBefore.reserve(a.size());
+    const auto matches = [&](std::size_t i) { return i == 0 || single[i] != 0; };
+    for (std::size_t first = 0; first < single.size(); ++first) {
+        for (std::size_t second = 0; second < single.size(); ++second) {
+            const std::size_t pair = single[first] * b.looks.size() + single[second];
+            nowOfBefore.push_back(matches(first) && matches(second) ? ClassIndex(pair) : 0);
+        }
+    }
+    return nowOfBefore;
+}
+
+// Matches classes that look alike.
+ClassMatch matchClasses(const StepColors& before, const StepColors& now, bool areJoined) {
     const ClassTable& a = before.classes();
     const ClassTable& b = now.classes();
     ClassMatch match{std::vector<ClassIndex>(a.size()), isSameLight(before, now)};
@@ -70,16 +113,13 @@ ClassMatch matchClasses(const StepColors& before, const StepColors& now) {
         std::iota(match.nowOfBefore.begin(), match.nowOfBefore.end(), ClassIndex{0});
         return match;
     }
-    const std::size_t slots = std::min(a.classOfSlot.size(), b.classOfSlot.size());
-    for (std::size_t slot = 0; slot < slots; ++slot) {
-        const Slot classBefore = a.classOfSlot[slot];
-        const Slot classNow = b.classOfSlot[slot];
-        if (classBefore == 0 || classNow == 0) continue;
-        ClassIndex& matching = match.nowOfBefore[std::size_t(classBefore)];
-        if (matching != 0 || a.looks[std::size_t(classBefore)] != b.looks[std::size_t(classNow)])
-            continue;
-        if (!match.isSameLight || haveSameColor(a, classBefore, b, classNow))
-            matching = ClassIndex(classNow);
+    match.nowOfBefore = b.pairs     ? matchPairs(a, b)
+                        : areJoined ? matchLevels(a, b)
+                                    : matchLooks(a, b);
+    if (!match.isSameLight) return match;
+    for (std::size_t i = 0; i < match.nowOfBefore.size(); ++i) {
+        ClassIndex& matching = match.nowOfBefore[i];
+        if (matching != 0 && !haveSameColor(a, Slot(i), b, Slot(matching))) matching = 0;
     }
     return match;
 }
@@ -123,6 +163,9 @@ std::optional<ViewChanges> compareViews(const PictureView& before, const Picture
     if (a.layout != b.layout || a.plane != b.plane || a.splat.footprint != b.splat.footprint ||
         !haveSameSlabs(a.splat.deltas, b.splat.deltas) ||
         (colorsBefore.own() == nullptr) != (colorsNow.own() == nullptr) ||
+        before.axis().parts.joined != now.axis().parts.joined ||
+        before.axis().parts.slant != now.axis().parts.slant ||
+        colorsBefore.classes().pairs != colorsNow.classes().pairs ||
         !haveSameSteps(colorsBefore.classes(), colorsNow.classes())) {
         return {};
     }
@@ -131,7 +174,7 @@ std::optional<ViewChanges> compareViews(const PictureView& before, const Picture
     const glm::ivec2 all(reach.min.y, reach.max.y);
     // Of what is out of sight nothing is kept, either.
     if (reach.empty()) return ViewChanges{all, all, 0, 0};
-    const ClassMatch match = matchClasses(colorsBefore, colorsNow);
+    const ClassMatch match = matchClasses(colorsBefore, colorsNow, now.axis().parts.joined > 1);
     const std::vector<SlabChanges> slabs =
         compareWords(a.splat.deltas, b.splat.deltas, match.nowOfBefore);
     const glm::ivec2 none(all.y, all.x);

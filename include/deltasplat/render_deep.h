@@ -22,8 +22,8 @@ inline constexpr int kMostSlicesPerSample = 1 << 20;
 /// line of sight; kLatlong, which sees all sides, has distances from the eye. What lies behind
 /// where less than 2^-10 gets through belongs to the last sample before.
 /// @param deep  is replaced
-/// @return the flat picture, which samples put over each other give (as `render`, to a few units
-///         of the last place of floats); stats as those of `render`
+/// @return the flat picture, which samples put over each other give (as `render`, where slices are
+///         not joined, to a few units of the last place of floats); stats as those of `render`
 /// @throw Error(kUsage) for options out of range, another mode, or a camera that is not before all
 ///        of the volume; Error(kFailed) for a picture that does not fit this machine's memory;
 ///        whatever `listener.progress` throws

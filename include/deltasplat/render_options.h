@@ -50,11 +50,14 @@ struct SplatOptions {
     /// (and neither resolution nor footprintWidth says another thing), but 0 where what is shown is
     /// thin (no opacity of the transfer function above 0.25 a voxel, extinction scale included),
     /// where colours jump or values are labels (TransferFunction::colorsJump), or, with a warning,
-    /// where more than kMostDivided blocks of 8x8x8 voxels can be seen.
+    /// where more than kMostDivided blocks of 8x8x8 voxels can be seen. Where the screen is so
+    /// coarse that it cannot be seen, empty lets two slices be drawn as one (joinsSlices,
+    /// RenderStats::joined), unless sigma, resolution or footprintWidth is given.
     std::optional<int> between;
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: 1 (hasOwnPixel) or by sigma
     PictureFilter filter = PictureFilter::kCatmullRom;
+    bool joinsSlices = true;  ///< whether two slices may be drawn as one
 };
 
 /// How x-rays get through a CT scan of values in Hounsfield units: mu = muWater * (1 + HU / 1000),
@@ -88,14 +91,16 @@ inline constexpr std::size_t kMostDivided = std::size_t{1} << 16;
 struct RenderStats {
     Method method = Method::kAuto;
     Mode mode = Mode::kComposite;
-    std::uint64_t voxels = 0;   ///< of the bounding box, those that they are divided into
+    std::uint64_t voxels = 0;   ///< of the bounding box, those that they are divided into or joined
+                                ///< to: what is counted below, too
     std::uint64_t visible = 0;  ///< whose classified colour is not zero; kXray, kDrr: active ones
                                 ///< whose value, or mu, is not 0; kMip, kMin, kAverage: active ones
     std::uint64_t deltas =
         0;  ///< whose classified colour differs from the slice before, key slices included
     std::uint64_t stamps = 0;  ///< footprints added
-    int slices = 0;            ///< those put between others among them
+    int slices = 0;            ///< those put between others among them; joined ones
     int between = 0;           ///< slices put between two neighbouring ones
+    int joined = 1;            ///< slices that are drawn as one
     int parts = 1;             ///< voxels that each was divided into: those are what is counted
     int slabs = 0;
     int sliceAxis = 2;

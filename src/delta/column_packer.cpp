@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
+#include <optional>
 
 #include "delta/block_kernels.h"
 #include "delta/mixed_sight.h"
+#include "delta/slice_joiner.h"
 #include "delta/slot_holder.h"
 #include "ingest/codes/leaf_slices.h"
 
@@ -27,6 +30,7 @@ bool choosesClasses(const PackOptions& options) {
 ColumnPacker::ColumnPacker(const IndexBox& box, const PackOptions& options, const PackTools& tools,
                            std::span<const Slot> slotMap, const PackRange& range)
     : options_(options), tools_(tools), slotMap_(slotMap), box_(box), planner_(box), range_(range) {
+    stride_ = toSliceOrder(kLeafStride, options.sliceAxis);
     if (!tools.mixer) return;
     parts_ = tools.mixer->parts();
     window_.emplace(*tools.codes, options.sliceAxis,
@@ -84,10 +88,121 @@ void ColumnPacker::run(const Columns& columns) {
     }
     own_.reset();
     painted_ = {};
+    finish();
+}
+
+void ColumnPacker::runJoined(std::span<const JoinedColumn> columns) {
+    std::size_t blocks = 0;
+    for (const JoinedColumn& column : columns)
+        blocks += column.mostBlocks(range_.firstBlock, range_.lastBlock);
+    reserveWords(kMostWordsOfBlock * blocks);
+    for (const JoinedColumn& column : columns) addJoined(column);
+    finish();
+}
+
+void ColumnPacker::finish() {
     for (PackedColumns& packed : halves_) {
         if (options_.descending) dropUnneeded(packed.words);
         sortClasses(box_, packed);
     }
+}
+
+// Adds the words of a column of joined slices, block after block.
+void ColumnPacker::addJoined(const JoinedColumn& column) {
+    std::array<std::span<const CodeBlock>, 4> rest = column.sources;
+    constexpr int kNone = std::numeric_limits<int>::max();
+    std::optional<int> before;
+    const auto endRun = [&](int next) {
+        // What a block showed must be taken away behind it.
+        if (before && *before + 1 < next && *before + 1 <= range_.lastBlock) {
+            classes_.fill(kEmptySlot);
+            add({*before + 1, column.place}, {0, 0}, 1);
+        }
+        if (!before || *before + 1 < next) before_ = {};
+    };
+    while (true) {
+        int place = kNone;
+        for (const auto& source : rest)
+            if (!source.empty()) place = std::min(place, source.front().position.x >> 1);
+        if (place > range_.lastBlock) break;
+        JoinedSources sources{};
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            while (!rest[i].empty() && rest[i].front().position.x >> 1 == place) {
+                sources[std::size_t(rest[i].front().position.x & 1)][i] = &rest[i].front();
+                rest[i] = rest[i].subspan(1);
+            }
+        }
+        if (place < range_.firstBlock) continue;
+        endRun(place);
+        readJoined(sources);
+        add({place, column.place}, {0, 0}, range_.layout.slicesOf(place));
+        before = place;
+    }
+    endRun(kNone);
+}
+
+// Reads a block of joined slices.
+void ColumnPacker::readJoined(const JoinedSources& sources) {
+    constexpr std::size_t kSlice = 64;
+    constexpr std::size_t kJoined = 4;  // of each half
+    // Rows are copied from one voxel before or behind them on.
+    constexpr std::size_t kSpare = 8;
+    std::array<ClassIndex, 512 + kSpare> padded{};
+    const std::span<ClassIndex, 512> own = std::span(padded).first<512>();
+    std::array<ClassIndex, kSlice> slanted;
+    const bool isSlanted = options_.slant != glm::ivec2(0);
+    ClassIndex* out = classes_.data();
+    for (const auto& half : sources) {
+        if (half[0]) {
+            readSlots(*half[0], own);
+        } else {
+            std::fill(own.begin(), own.end(), ClassIndex{0});
+        }
+        std::array<OpenBlock, 4> beside;
+        for (std::size_t i = 1; isSlanted && i < beside.size(); ++i)
+            if (half[i]) beside[i] = open(*half[i]);
+        for (std::size_t i = 0; i < kJoined; ++i, out += kSlice) {
+            const ClassIndex* first = &own[2 * i * kSlice];
+            const ClassIndex* second = first + kSlice;
+            if (isSlanted) {
+                slantSlice(beside, second, int(2 * i + 1), slanted.data());
+                second = slanted.data();
+            }
+            options_.joiner->join(first, second, out);
+        }
+    }
+}
+
+// Writes a slice moved by the slant.
+// @param beside  the blocks that the others than its own come from
+// @param own     of the block that it is moved in; there is a voxel before and behind it
+void ColumnPacker::slantSlice(const std::array<OpenBlock, 4>& beside, const ClassIndex* own,
+                              int slice, ClassIndex* out) const {
+    const glm::ivec2 slant = options_.slant;
+    std::array<ClassIndex, 24> padded{};
+    ClassIndex* const row = &padded[8];
+    const int edge = slant.y > 0 ? 0 : 7;
+    for (int u = 0; u < 8; ++u, out += 8) {
+        const int fromU = u - slant.x;
+        const bool isIn = fromU >= 0 && fromU < 8;
+        for (int v = 0; !isIn && v < 8; ++v) row[v] = classAt(beside[1], slice, fromU & 7, v);
+        std::copy_n((isIn ? own + 8 * fromU : row) - slant.y, 8, out);
+        if (slant.y == 0) continue;
+        out[edge] = classAt(beside[isIn ? 2 : 3], slice, fromU & 7, (edge - slant.y) & 7);
+    }
+}
+
+ColumnPacker::OpenBlock ColumnPacker::open(const CodeBlock& block) {
+    const Code* const codes = block.leaf ? block.leaf->buffer().data() : nullptr;
+    return {block.slots, block.leaf, codes, ClassIndex(block.tileSlot)};
+}
+
+// Returns the class of a voxel of a block, (slice, u, v) of 0..7 each.
+ClassIndex ColumnPacker::classAt(const OpenBlock& block, int slice, int u, int v) const {
+    if (block.slots) return ClassIndex(slotMap_[block.slots[64 * slice + 8 * u + v]]);
+    if (!block.leaf) return block.tile;
+    const auto n = openvdb::Index(slice * stride_.x + u * stride_.y + v * stride_.z);
+    return block.leaf->isValueOn(n) ? ClassIndex(slotMap_[block.codes[n] + 1]) : ClassIndex{0};
 }
 
 // Puts words of a column's parts along v one part behind the other.
@@ -126,6 +241,11 @@ void ColumnPacker::reserve(const Columns& columns) {
         std::count_if(columns.begin, columns.end, [&](const CodeBlock& b) { return isIn(b); }));
     const std::size_t most =
         kMostWordsOfBlock * std::size_t(parts_.slices) * std::size_t(parts_.within) * blocks;
+    reserveWords(most);
+}
+
+void ColumnPacker::reserveWords(std::size_t most) {
+    if (!range_.storesWords) return;
     for (int half = 0; half < parts_.within; ++half) {
         PackedColumns& packed = halves_[std::size_t(half)];
         packed.words.reserve(most);
@@ -148,7 +268,7 @@ glm::ivec3 ColumnPacker::partOf(const CodeBlock& block, int slices, const glm::i
 
 // Writes what the slots of a block are under the map.
 template <typename T>
-void ColumnPacker::readSlots(const CodeBlock& block, std::array<T, 512>& out) const {
+void ColumnPacker::readSlots(const CodeBlock& block, std::span<T, 512> out) const {
     const Slot* const map = slotMap_.data();
     if (block.slots) {
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = T(map[block.slots[i]]);
@@ -156,16 +276,16 @@ void ColumnPacker::readSlots(const CodeBlock& block, std::array<T, 512>& out) co
         const auto slotOf = [map](Code code) { return map[code + 1]; };
         readLeafSlices(*block.leaf, options_.sliceAxis, slotOf, out.data());
     } else {
-        out.fill(T(block.tileSlot));
+        std::fill(out.begin(), out.end(), T(block.tileSlot));
     }
 }
 
 void ColumnPacker::read(const CodeBlock& block) {
     if (tools_.holder) {
-        readSlots(block, slots_);
+        readSlots(block, std::span(slots_));
         hold(slots_, block.position, {0, 0}, 0);
     } else {
-        readSlots(block, classes_);
+        readSlots(block, std::span(classes_));
         if (own_) own_->paint(block.position, 0, classes_);
     }
 }

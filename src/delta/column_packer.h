@@ -12,6 +12,7 @@
 #include "delta/block_looks.h"
 #include "delta/code_blocks.h"
 #include "delta/hold_slots.h"
+#include "delta/joined_columns.h"
 #include "delta/mix_window.h"
 #include "delta/packed_deltas.h"
 #include "delta/value_mixer.h"
@@ -67,6 +68,8 @@ class ColumnPacker {
                  std::span<const Slot> slotMap, const PackRange& range);
 
     void run(const Columns& columns);
+    /// The same of columns whose slices are joined.
+    void runJoined(std::span<const JoinedColumn> columns);
 
     /// Of the parts of columns along u, one.
     PackedColumns& half(int i) { return halves_[std::size_t(i)]; }
@@ -81,17 +84,38 @@ class ColumnPacker {
     };
     using SliceClasses = std::array<ClassIndex, 64>;
 
+    using BlockClasses = std::array<ClassIndex, 512>;
+    // Of a joined block, its slices' first halves' blocks and their second ones', as
+    // JoinedColumn::sources has them; null where there are none.
+    using JoinedSources = std::array<std::array<const CodeBlock*, 4>, 2>;
+
+    // A block of which single voxels are read; empty: there is none.
+    struct OpenBlock {
+        const ShortSlot* slots = nullptr;  // as CodeBlock has them
+        const CodeTree::Leaf* leaf = nullptr;
+        const Code* codes = nullptr;  // of the leaf
+        ClassIndex tile = 0;
+    };
+
+    void addJoined(const JoinedColumn& column);
+    void readJoined(const JoinedSources& sources);
+    void slantSlice(const std::array<OpenBlock, 4>& beside, const ClassIndex* own, int slice,
+                    ClassIndex* out) const;
+    static OpenBlock open(const CodeBlock& block);
+    ClassIndex classAt(const OpenBlock& block, int slice, int u, int v) const;
+    void finish();
     void dropUnneeded(std::vector<PendingWord>& words) const;
     bool mayBeWhole(int slice) const;
     static void sortParts(std::vector<PendingWord>& words, std::size_t first);
     bool isIn(const CodeBlock& block) const;
     void reserve(const Columns& columns);
+    void reserveWords(std::size_t most);
     glm::ivec3 firstPart(const CodeBlock& block) const;
     glm::ivec3 partOf(const CodeBlock& block, int slices, const glm::ivec2& part) const;
     template <typename Use>
     void forParts(const Use& use) const;
     template <typename T>
-    void readSlots(const CodeBlock& block, std::array<T, 512>& out) const;
+    void readSlots(const CodeBlock& block, std::span<T, 512> out) const;
     void read(const CodeBlock& block);
     void hold(const BlockSlots& slots, const glm::ivec3& position, const glm::ivec2& part,
               int number);
@@ -113,9 +137,10 @@ class ColumnPacker {
     SlabPlanner planner_;
     PackRange range_;
     Subdivision parts_;
-    std::array<ClassIndex, 512> classes_{};  // of the block in hand, [slice][u][v]
-    std::array<SliceClasses, 4> before_{};   // [part]: of the slice before it
-    std::array<HeldSlots, 4> held_{};        // [part]
+    glm::ivec3 stride_{0};                  // of a leaf's voxels, in (slice, u, v) order
+    BlockClasses classes_{};                // of the block in hand, [slice][u][v]
+    std::array<SliceClasses, 4> before_{};  // [part]: of the slice before it
+    std::array<HeldSlots, 4> held_{};       // [part]
     BlockSlots slots_{};
     std::optional<Window> window_;
     std::optional<Window> uncut_;    // what was there before, if surfaces are cut

@@ -5,14 +5,17 @@
 #include "delta/packed_deltas.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <iterator>
 #include <optional>
 #include <tuple>
 #include <utility>
 
 #include "delta/column_packer.h"
+#include "delta/joined_columns.h"
 #include "delta/mixed_sight.h"
 #include "delta/slab_facts.h"
+#include "delta/slice_joiner.h"
 #include "delta/slot_holder.h"
 #include "deltasplat/error.h"
 #include "memory.h"
@@ -57,15 +60,42 @@ std::vector<Columns> cutAtColumns(const std::vector<CodeBlock>& blocks, bool atR
     return runs;
 }
 
+// The same of columns of joined slices.
+std::vector<std::span<const JoinedColumn>> cutAtColumns(const std::vector<JoinedColumn>& columns) {
+    const auto sizeOf = [](const JoinedColumn& column) {
+        std::size_t blocks = 0;
+        for (const auto& source : column.sources) blocks += source.size();
+        return blocks;
+    };
+    std::size_t blocks = 0;
+    for (const JoinedColumn& column : columns) blocks += sizeOf(column);
+    const std::size_t least = std::max<std::size_t>(256, blocks / 256);
+    std::vector<std::span<const JoinedColumn>> runs;
+    std::size_t first = 0;
+    std::size_t inRun = 0;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        inRun += sizeOf(columns[i]);
+        if (inRun < least && i + 1 < columns.size()) continue;
+        runs.push_back(std::span(columns).subspan(first, i + 1 - first));
+        first = i + 1;
+        inRun = 0;
+    }
+    return runs;
+}
+
 // Returns the packed columns ordered by u, then v: of a row of blocks that is halved along u, first
 // all that lies before the middle.
 std::vector<PackedColumns*> inOrder(const std::vector<Columns>& runs,
                                     std::vector<ColumnPacker>& packers, int halves) {
     std::vector<PackedColumns*> columns;
+    if (halves == 1) {
+        for (ColumnPacker& packer : packers) columns.push_back(&packer.half(0));
+        return columns;
+    }
     for (std::size_t first = 0; first < runs.size();) {
         std::size_t last = first + 1;
         const auto row = [&](std::size_t i) { return runs[i].begin->position.y; };
-        while (last < runs.size() && halves > 1 && row(last) == row(first)) ++last;
+        while (last < runs.size() && row(last) == row(first)) ++last;
         for (int half = 0; half < halves; ++half)
             for (std::size_t i = first; i < last; ++i) columns.push_back(&packers[i].half(half));
         first = last;
@@ -73,9 +103,15 @@ std::vector<PackedColumns*> inOrder(const std::vector<Columns>& runs,
     return columns;
 }
 
-// Returns a volume's box in (slice, u, v) order, of the voxels that its own are divided into.
+// Returns a volume's box in (slice, u, v) order, of what its voxels are divided into, or joined to.
 IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& parts) {
     const IndexBox own = permutedBox(box, sliceAxis);
+    if (parts.joined > 1) {
+        const glm::ivec3 slant(0, parts.slant);
+        // Shifts round down.
+        return {glm::min(own.min, own.min + slant) >> glm::ivec3(1, 0, 0),
+                glm::max(own.max, own.max + slant) >> glm::ivec3(1, 0, 0)};
+    }
     const glm::ivec3 per(parts.slices, parts.within, parts.within);
     return {(own.min - parts.origin) * per, (own.max - parts.origin) * per + per - 1};
 }
@@ -127,6 +163,12 @@ struct DeltaPacker::Impl {
           classOfSlot(withOptions.classOfSlot.begin(), withOptions.classOfSlot.end()) {
         const ValueMixer* mixer = options.mixer;
         if (mixer) divided = mixer->parts();
+        if (options.joiner) {
+            joiner = *options.joiner;
+            options.joiner = &*joiner;
+            divided.joined = 2;
+            divided.slant = options.slant;
+        }
         box = boxOfSlices(volume.box, options.sliceAxis, divided);
         if (volume.empty()) return;
         options.classOfSlot = classOfSlot;
@@ -138,7 +180,12 @@ struct DeltaPacker::Impl {
                        : listBlocks(*volume.codes, options.sliceAxis, slotMap);
         if (options.painter && options.painter->more())
             addBlocks(*options.painter->more(), options.sliceAxis, blocks);
-        runs = cutAtColumns(blocks, divided.within > 1);
+        if (joiner) {
+            joinedColumns = joinColumns(blocks, options.slant);
+            joinedRuns = cutAtColumns(joinedColumns);
+        } else {
+            runs = cutAtColumns(blocks, divided.within > 1);
+        }
     }
 
     void noteOpacities() {
@@ -172,19 +219,30 @@ struct DeltaPacker::Impl {
                               volume.uncut ? volume.uncut.get() : volume.codes.get(),
                               opacities};
         std::vector<ColumnPacker> packers;
-        packers.reserve(runs.size());
-        for (std::size_t i = 0; i < runs.size(); ++i)
+        const std::size_t count = joiner ? joinedRuns.size() : runs.size();
+        packers.reserve(count);
+        for (std::size_t i = 0; i < count; ++i)
             packers.emplace_back(box, options, tools, slotMap, range);
-        parallelFor(packers.size(), [&](std::size_t i) { packers[i].run(runs[i]); });
+        parallelFor(count, [&](std::size_t i) {
+            joiner ? packers[i].runJoined(joinedRuns[i]) : packers[i].run(runs[i]);
+        });
         return packers;
     }
 
-    void requireBlocks(double count) const {
+    // The most blocks that there are words of.
+    double mostBlocks() const {
+        if (!joiner) return double(blocks.size()) * divided.voxels();
+        std::size_t most = 0;
+        for (const JoinedColumn& column : joinedColumns)
+            most += column.mostBlocks(box.min.x >> 3, box.max.x >> 3);
+        return double(most);
+    }
+
+    void requireBlocks() const {
         const double wordBytes = kBytesPerWord + (options.painter ? kLookBytesPerWord : 0);
-        requireMemory(
-            divided.divides() ? "delta grid of divided voxels (`between` 0: undivided)"
-                              : "delta grid",
-            count * divided.voxels() * kMostWordsOfBlock * wordBytes + 16.0 * box.dims().x);
+        requireMemory(divided.divides() ? "delta grid of divided voxels (`between` 0: undivided)"
+                                        : "delta grid",
+                      mostBlocks() * kMostWordsOfBlock * wordBytes + 16.0 * box.dims().x);
     }
 
     // The most words of a slab that are in memory while it is packed (ColumnPacker::isNeeded).
@@ -196,6 +254,7 @@ struct DeltaPacker::Impl {
     const Volume& volume;
     PackOptions options;
     std::vector<Slot> classOfSlot;
+    std::optional<SliceJoiner> joiner;
     Subdivision divided;
     IndexBox box;
     std::optional<SlotHolder> holder;
@@ -204,6 +263,9 @@ struct DeltaPacker::Impl {
     std::optional<MixedSight> sight;
     std::vector<CodeBlock> blocks;
     std::vector<Columns> runs;
+    // In their place, where slices are joined.
+    std::vector<JoinedColumn> joinedColumns;
+    std::vector<std::span<const JoinedColumn>> joinedRuns;
     SlabPlan planned;
     std::vector<SlabRange> parts;
 };
@@ -218,13 +280,13 @@ bool DeltaPacker::canBeParted() const {
 }
 
 double DeltaPacker::mostBytes() const {
-    return double(impl_->blocks.size()) * kMostWordsOfBlock * kBytesPerWord;
+    return impl_->mostBlocks() * kMostWordsOfBlock * kBytesPerWord;
 }
 
 PackedDeltas DeltaPacker::packAll() {
     PackedDeltas packed = impl_->noWords();
     if (impl_->volume.empty()) return packed;
-    impl_->requireBlocks(double(impl_->blocks.size()));
+    impl_->requireBlocks();
     SlabPlanner planner(packed.box);
     std::vector<ColumnPacker> packers = impl_->run(impl_->wholeRange(planner));
     for (const ColumnPacker& packer : packers) planner.add(packer.planner());

@@ -9,16 +9,15 @@
 #include <span>
 #include <vector>
 
+#include "delta/class_index.h"
 #include "delta/slab_plan.h"
 #include "optics/voxel_painter.h"
 #include "uncleared_vector.h"
 
 namespace deltasplat {
 
+class SliceJoiner;
 class ValueMixer;
-
-/// What a voxel looks like: an index into the colours of a class table; 0 = empty.
-using ClassIndex = std::uint16_t;
 
 /// Classes of 64 empty voxels.
 inline constexpr std::array<ClassIndex, 64> kEmptyClasses{};
@@ -87,6 +86,10 @@ struct PackOptions {
     /// Empty: never.
     std::function<bool(const VoxelLook& held, const VoxelLook& look)> looksHold = {};
     bool descending = false;  ///< as PackedDeltas has it
+    /// Joins slices two and two, whose voxels then have its classes. Null: none are. Not with a
+    /// mixer or a painter, or where voxels are held.
+    const SliceJoiner* joiner = nullptr;
+    glm::ivec2 slant{0};  ///< with a joiner, as Subdivision::slant
 };
 
 /// Takes the differences of consecutive slices, in one pass over the leaves that can be seen, and

@@ -108,6 +108,27 @@ std::vector<StepLight> lightOf(std::size_t count, const LookOf& lookOf, double u
     return lights;
 }
 
+// What is seen of one voxel behind another.
+StepLight behind(const StepLight& front, const StepLight& back) {
+    const double rest = (1 - front.alpha) * back.alpha;
+    const double alpha = front.alpha + rest;
+    // Of one colour it stays what it is.
+    if (!(rest > 0) || front.color == back.color) return {alpha, front.color};
+    if (!(front.alpha > 0)) return {alpha, back.color};
+    return {alpha, (front.alpha * front.color + rest * back.color) / alpha};
+}
+
+// Of all pairs, as ClassTable::pairs says.
+std::vector<StepLight> lightOfPairs(const std::vector<StepLight>& lights, SeenThrough seenThrough) {
+    std::vector<StepLight> pairs;
+    pairs.reserve(lights.size() * lights.size());
+    for (const StepLight& first : lights)
+        for (const StepLight& second : lights)
+            pairs.push_back(seenThrough == SeenThrough::kSecond ? behind(first, second)
+                                                                : behind(second, first));
+    return pairs;
+}
+
 // Rounds the colours of all visible codes with one scale a channel.
 class ColorRounder {
   public:
@@ -348,13 +369,15 @@ ClassTable ClassTable::atSteps(double steps) const {
     ClassTable table;
     table.classOfSlot = classOfSlot;
     table.looks = looks;
+    table.pairs = pairs;
     table.unitDistanceWorld = unitDistanceWorld;
     table.extinctionScale = extinctionScale;
     table.stepWorld = stepWorld * steps;
     table.oneColor = oneColor;
-    const std::vector<StepLight> lights = lightOf(
+    std::vector<StepLight> lights = lightOf(
         looks.size(), [&](std::size_t i) { return looks[i]; },
         extinctionScale * (table.stepWorld / unitDistanceWorld));
+    if (pairs) lights = lightOfPairs(lights, *pairs);
     const ColorRounder rounded(lights);
     const std::vector<ColorDigits> digits = roundColors(lights, rounded);
     table.scale = rounded.scale();

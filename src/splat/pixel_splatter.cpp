@@ -17,7 +17,7 @@ double PixelSplatter::bytes(const SplatInput& input, const SheetLayout& layout) 
     const double ofBlock = sizeof(int) + 4 * sizeof(glm::ivec2) + SliceBlocks::kBytesOfBlock;
     const double ofClass = sizeof(std::int32_t) * layout.channels;
     return ofBlock * double(layout.blocks.x) * layout.blocks.y +
-           ofClass * double(input.colors.table().looks.size());
+           ofClass * double(input.colors.table().size());
 }
 
 PixelSplatter::PixelSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,

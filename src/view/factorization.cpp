@@ -290,7 +290,7 @@ namespace {
 // The same from an eye: slopes have other units where slices and voxels are not divided alike.
 Factorization subdividedFromEye(const Factorization& view, const Subdivision& parts) {
     Factorization result = view;
-    const glm::dvec3 per(parts.slices, parts.within, parts.within);
+    const glm::dvec3 per = parts.per();
     result.eye = (*view.eye - glm::dvec3(parts.origin)) * per + 0.5 * (per - 1.0);
     for (int axis = 0; axis < 3; ++axis) result.worldFromStep[axis] /= per[axis];
     const double slopes = per.y / per.x;
@@ -309,12 +309,14 @@ Factorization subdivided(const Factorization& view, const Subdivision& parts) {
     if (view.eye) return subdividedFromEye(view, parts);
     Factorization result = view;
     const double within = parts.within;
-    result.shiftPerSlice *= within / parts.slices;
-    result.sliceStepWorld /= parts.slices;
+    const double slices = parts.per().x;
+    result.shiftPerSlice *= within / slices;
+    result.sliceStepWorld /= slices;
     result.pixelsPerVoxel /= within;
     // The first thin voxel lies before the middle of the one that it is a part of, on each axis.
     const glm::dvec2 first =
-        0.5 * (within - 1) + within * (0.5 - 0.5 / parts.slices) * view.shiftPerSlice;
+        0.5 * (within - 1) + within * (0.5 - 0.5 / slices) * view.shiftPerSlice +
+        0.5 * glm::dvec2(parts.slant);
     const glm::dvec2 origin =
         glm::dvec2(parts.origin.y, parts.origin.z) + double(parts.origin.x) * view.shiftPerSlice;
     result.baseFromPixel[2] -= glm::dvec3(origin, 0);

@@ -8,7 +8,7 @@
 namespace deltasplat {
 
 /// Returns where voxels lie as slices count them, in the index space of a volume's own: from
-/// (slice, u, v), of what is divided its parts, to (x, y, z).
+/// (slice, u, v), of what is divided its parts, to (x, y, z). Not of joined slices.
 inline glm::dmat4 indexFromThinVoxel(int sliceAxis, const Subdivision& parts) {
     const glm::ivec3 order = sliceOrder(sliceAxis);
     const glm::dvec3 per(parts.slices, parts.within, parts.within);

@@ -16,6 +16,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "support/error_of.h"
+#include "support/small_joined.h"
 #include "support/some_scene.h"
 
 namespace deltasplat {
@@ -102,10 +103,11 @@ bool scatters(Colors colors) {
 }
 
 TEST(FrameChain, givesThePixelsOfFramesByThemselves) {
+    const test::SmallJoined joined;
     const std::vector<Volume> frames = volumesOf(someChanges());
     for (const Colors colors : {Colors::kOne, Colors::kSeveral, Colors::kOwn, Colors::kLit,
                                 Colors::kFog, Colors::kFire}) {
-        for (const CameraOptions& camera : someCameras()) {
+        for (const CameraOptions& camera : test::smallCamerasToo()) {
             const std::vector<RenderStats> stats = statsOfChain(frames, optionsFor(colors, camera));
             EXPECT_FALSE(stats[0].changed);
             EXPECT_EQ(stats[0].kept, 0);

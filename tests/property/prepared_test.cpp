@@ -19,6 +19,7 @@
 #include "sheet_plan.h"
 #include "support/error_of.h"
 #include "support/make_volume.h"
+#include "support/small_joined.h"
 #include "support/some_scene.h"
 
 namespace deltasplat {
@@ -28,11 +29,13 @@ using test::cameraOf;
 using test::Colors;
 using test::errorOf;
 using test::pictureOf;
+using test::smallCamerasToo;
 using test::someCameras;
 using test::someOptics;
 using test::someVolume;
 
 TEST(Prepared, givesThePixelsOfRender) {
+    const test::SmallJoined joined;
     for (const Colors colors : {Colors::kOne, Colors::kSeveral, Colors::kOwn, Colors::kLit,
                                 Colors::kFog, Colors::kFire}) {
         for (const double tolerance : {0.0, 0.1}) {
@@ -41,7 +44,7 @@ TEST(Prepared, givesThePixelsOfRender) {
             options.tolerance.relative = tolerance;
             const PreparedScene scene({someVolume(), options.optics}, options);
             for (int round = 0; round < 2; ++round) {
-                for (const CameraOptions& camera : someCameras()) {
+                for (const CameraOptions& camera : smallCamerasToo()) {
                     options.camera = camera;
                     EXPECT_EQ(pictureOf(scene, camera).rgba,
                               render(*scene.scene().volume, options).image.rgba)
@@ -54,6 +57,7 @@ TEST(Prepared, givesThePixelsOfRender) {
 
 // Where words would take much memory, slabs get theirs a few at a time.
 TEST(Prepared, picturesInPartsAreThoseOfAllAtOnce) {
+    const test::SmallJoined joined;
     for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
         for (const double least : {0.0, 1e-6}) {
             RenderOptions options;
@@ -62,8 +66,8 @@ TEST(Prepared, picturesInPartsAreThoseOfAllAtOnce) {
             for (const Method method :
                  {Method::kAuto, Method::kDelta, Method::kSparse, Method::kTraditional}) {
                 options.method = method;
-                for (std::size_t i = 0; i < someCameras().size(); ++i) {
-                    options.camera = someCameras()[i];
+                for (std::size_t i = 0; i < smallCamerasToo().size(); ++i) {
+                    options.camera = smallCamerasToo()[i];
                     const ThreadLimit limit(1 + int(i % 3));
                     const RenderResult whole = render(*someVolume(), options);
                     PreparedScene::Impl scene({someVolume(), options.optics}, options, true);
@@ -94,7 +98,7 @@ std::shared_ptr<const PreparedAxis> axisOf(const PreparedScene& scene, int axis,
     const Camera camera = cameraOf(volume, options);
     const Factorization view = viewsOf(camera, volume, scene.options()).front();
     EXPECT_EQ(view.sliceAxis, axis);
-    return scene.impl().axis(view, SheetPlan(scene.impl(), view, listener), listener);
+    return scene.impl().axis(view, SheetPlan(scene.impl(), view, false, listener), listener);
 }
 
 // A camera that turns needs each axis once, whatever the angle.
@@ -138,7 +142,7 @@ TEST(Prepared, otherOpticsGiveThePixelsOfRender) {
         RenderOptions options;
         options.tolerance.relative = tolerance;
         PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, options);
-        for (const CameraOptions& camera : {someCameras()[1], someCameras()[6]}) {
+        for (const CameraOptions& camera : {smallCamerasToo()[1], smallCamerasToo()[6]}) {
             options.camera = camera;
             for (const Optics& optics : otherOptics()) {
                 scene = scene.withOptics(optics);
@@ -227,7 +231,7 @@ TEST(Prepared, dividedVoxelsAreThoseOfTheirOptics) {
 TEST(Prepared, wordsThatWerePaintedAreNotShared) {
     RenderOptions options;
     options.optics = someOptics(Colors::kSeveral);
-    options.camera = someCameras()[1];
+    options.camera = smallCamerasToo()[1];
     Optics faded = options.optics;
     faded.gradientOpacity = {{0, 0}};
     const PreparedScene scene({someVolume(), faded}, options);
@@ -239,10 +243,11 @@ TEST(Prepared, wordsThatWerePaintedAreNotShared) {
 
 // Also while none of the axes is there yet.
 TEST(Prepared, anyNumberOfThreadsMayRenderOneScene) {
+    const test::SmallJoined joined;
     for (const Colors colors :
          {Colors::kOne, Colors::kOwn, Colors::kLit, Colors::kFog, Colors::kFire}) {
         const PreparedScene scene({someVolume(), someOptics(colors)}, SplatOptions());
-        const std::vector<CameraOptions> cameras = someCameras();
+        const std::vector<CameraOptions> cameras = smallCamerasToo();
         std::vector<Image> pictures(2 * cameras.size());
         std::vector<std::thread> threads;
         for (std::size_t i = 0; i < pictures.size(); ++i) {
@@ -277,12 +282,13 @@ TEST(Prepared, showsAsMuchAsRenderOfWhatIsHardlyThere) {
 
 // Nor does what memory held before, and who else uses it.
 TEST(Prepared, renderersKeepMemoryAndNothingElse) {
+    const test::SmallJoined joined;
     Renderer renderer;
     for (int round = 0; round < 2; ++round) {
         for (const Colors colors : {Colors::kSeveral, Colors::kOwn, Colors::kFog, Colors::kFire,
                                     Colors::kLit, Colors::kOne}) {
             const PreparedScene scene({someVolume(), someOptics(colors)}, SplatOptions());
-            const std::vector<CameraOptions> cameras = someCameras();
+            const std::vector<CameraOptions> cameras = smallCamerasToo();
             std::vector<Image> pictures(cameras.size());
             std::vector<std::thread> threads;
             for (std::size_t i = 0; i < cameras.size(); ++i) {

@@ -22,6 +22,7 @@
 #include "file_mark.h"
 #include "ingest/vdb/leaf_sizes.h"
 #include "ingest/vdb/vdb_bytes.h"
+#include "support/small_joined.h"
 #include "support/some_scene.h"
 #include "unit/ingest_helpers.h"
 
@@ -128,6 +129,33 @@ TEST(SlabFacts, PartsMakeThePicture) {
                 writeFacts(options, camera);
                 for (const int count : {1, 3, 11})
                     EXPECT_TRUE(foldedPicture(options, camera, count).rgba == expected.rgba);
+            }
+        }
+    }
+}
+
+// Of slices that are joined, which have half as many blocks, straight and slanted.
+TEST(SlabFacts, PartsOfJoinedSlicesMakeThePicture) {
+    const test::SmallJoined joined;
+    for (const int keyInterval : {8, 24}) {
+        const TempFolder folder;
+        writeDeltas(2, keyInterval);
+        for (const char* view : {"front", "back"}) {
+            for (const double degrees : {0, 36, -36}) {
+                CameraOptions camera = cameraOf(view, degrees);
+                camera.elevationDegrees = 0.8 * degrees;
+                camera.sizePixels = {20, 17};
+                const PreparedScene scene = sceneOf(readVolume(kDeltas), {});
+                const Camera placed = test::cameraOf(*scene.scene().volume, camera);
+                const Factorization seen = factorize(placed, scene.scene().volume->worldFromIndex);
+                EXPECT_EQ(seen.sliceAxis, 2);
+                EXPECT_EQ(std::abs(seen.shiftPerSlice.x) > 0.5, degrees != 0);
+                EXPECT_EQ(std::abs(seen.shiftPerSlice.y) > 0.5, degrees != 0);
+                Image expected(camera.sizePixels);
+                EXPECT_EQ(renderComposite(scene, placed, expected).joined, 2);
+                writeFacts({}, camera);
+                for (const int count : {1, 3, 11})
+                    EXPECT_TRUE(foldedPicture({}, camera, count).rgba == expected.rgba);
             }
         }
     }

@@ -66,6 +66,19 @@ inline std::vector<CameraOptions> someCameras() {
     return cameras;
 }
 
+/// Those, and some of pictures so small that slices are joined.
+inline std::vector<CameraOptions> smallCamerasToo() {
+    std::vector<CameraOptions> cameras = someCameras();
+    for (int i = 0; i < 4; ++i) {
+        CameraOptions camera;
+        camera.sizePixels = i % 2 == 0 ? glm::ivec2(13, 11) : glm::ivec2(5, 4);
+        camera.azimuthDegrees = 170.0 * i - 15 * (i % 2);
+        camera.elevationDegrees = 14 + 10 * i;
+        cameras.push_back(camera);
+    }
+    return cameras;
+}
+
 inline Camera cameraOf(const Volume& volume, const CameraOptions& options) {
     return makeCamera(options, volume.box, volume.worldFromIndex, volume.space);
 }

@@ -191,7 +191,8 @@ TEST(DeepCut, goesFromTheFrontOn) {
 }
 
 TEST(DeepCut, countsSlicesOfWholeVoxels) {
-    const Subdivision parts{3, 2, {8, 0, 0}};
+    Subdivision parts{3, 2};
+    parts.origin.x = 8;
     // Thin slices from voxel 8 on: of voxels 10 to 15.
     EXPECT_EQ(rangesOf(cutsOf({{6, 23}}, true, parts, 4)), (Ranges{{6, 11}, {12, 23}}));
 }

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <map>
@@ -13,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "delta/slice_joiner.h"
 #include "deltasplat/threads.h"
 #include "support/make_volume.h"
 
@@ -181,6 +184,92 @@ TEST(PackedDeltas, PartsHaveTheWordsOfTheWhole) {
                 EXPECT_LE(parts, bytes == 1e9 ? 1 : slabs);
             }
         }
+    }
+}
+
+// Classes of joined slices, voxel by voxel.
+Classes joinedClassesOf(const Classes& classes, const SliceJoiner& joiner,
+                        const glm::ivec2& slant) {
+    const auto classAt = [&](int s, int u, int v) {
+        const auto voxel = classes.find({s, u, v});
+        return voxel == classes.end() ? ClassIndex{0} : voxel->second;
+    };
+    Classes joined;
+    const auto join = [&](int slice, int u, int v) {
+        std::array<ClassIndex, 64> first{};
+        std::array<ClassIndex, 64> second{};
+        std::array<ClassIndex, 64> out;
+        first[0] = classAt(2 * slice, u, v);
+        second[0] = classAt(2 * slice + 1, u - slant.x, v - slant.y);
+        joiner.join(first.data(), second.data(), out.data());
+        joined[{slice, u, v}] = out[0];
+    };
+    for (const auto& [place, found] : classes) {
+        const auto [s, u, v] = place;
+        const int slice = int(std::floor(s / 2.0));
+        s == 2 * slice ? join(slice, u, v) : join(slice, u + slant.x, v + slant.y);
+    }
+    return joined;
+}
+
+// In parts as well.
+TEST(PackedDeltas, JoinSlices) {
+    // Odd beginnings and ends, blocks that are alone, and others of which only edges are there.
+    const IndexBox box{{-19, 5, -121}, {30, 40, 62}};
+    const Volume volume = test::makeVolume(box, [](int x, int y, int z) {
+        const bool isGap = (x >> 4) % 3 == 0 || (z >> 3) % 4 == 1 || (y >> 3) == 2;
+        return isGap || (x + y * y + z) % 3 == 0 ? test::kInactive : (x * 7 + y * 3 + z * 5) & 255;
+    });
+    const std::vector<Slot> classes = plainClasses();
+    std::vector<double> extinctions(40);
+    for (std::size_t i = 0; i < extinctions.size(); ++i) extinctions[i] = 0.01 * double(i * i);
+    const SliceJoiner joiners[] = {SliceJoiner::ofPairs(40), SliceJoiner::ofSums(extinctions)};
+    for (int i = 0; i < 18; ++i) {
+        const SliceJoiner& joiner = joiners[i / 9];
+        const glm::ivec2 slant(i / 3 % 3 - 1, i % 3 - 1);
+        for (int axis = 0; axis < 3; ++axis) {
+            const Classes expected =
+                joinedClassesOf(classesOf(volume, axis, classes), joiner, slant);
+            for (const auto& [encoding, descending] : kWays) {
+                PackOptions options = optionsOf(axis, encoding, classes, descending);
+                options.joiner = &joiner;
+                options.slant = slant;
+                const PackedDeltas whole = packDeltas(volume, options);
+                EXPECT_EQ(walk(whole), expected) << i << ", axis " << axis;
+                EXPECT_EQ(whole.visible(), expected.size());
+                if (axis != 2) continue;
+                DeltaPacker packer(volume, options);
+                packer.plan(0);
+                EXPECT_GT(packer.parts().size(), 2u);
+                for (const SlabRange& range : packer.parts()) {
+                    const PackedDeltas part = packer.pack(range);
+                    const PlannedSlab& slab = whole.slabs[std::size_t(range.first)];
+                    for (int s = slab.firstSlice; s < slab.firstSlice + slab.sliceCount; ++s)
+                        expectSameWords(part.slice(s), whole.slice(s));
+                }
+            }
+        }
+    }
+}
+
+// Of a tree's tiles, too.
+TEST(PackedDeltas, JoinSlicesOfTiles) {
+    Volume volume = test::makeVolume({{0, 0, 0}, {63, 63, 63}}, [](int x, int y, int z) {
+        return x < 32 ? 200 : (x + y + z) % 3 == 0 ? 90 : test::kInactive;
+    });
+    const auto pruned = std::make_shared<CodeTree>(std::in_place, volume.codes->tree());
+    pruned->tree().prune();
+    Volume tiled = volume;
+    tiled.codes = pruned;
+    const std::vector<Slot> classes = plainClasses();
+    const SliceJoiner joiner = SliceJoiner::ofPairs(40);
+    for (int axis = 0; axis < 3; ++axis) {
+        PackOptions options = optionsOf(axis, Encoding::kChanges, classes, false);
+        options.joiner = &joiner;
+        options.slant = {1, -1};
+        const Classes expected =
+            joinedClassesOf(classesOf(volume, axis, classes), joiner, options.slant);
+        EXPECT_EQ(walk(packDeltas(tiled, options)), expected);
     }
 }
 

@@ -78,6 +78,7 @@ Json runJson(const BenchEntry& entry) {
                  {"comparability", run.comparability()},
                  {"slices", stats.slices},
                  {"between", stats.between},
+                 {"joined", stats.joined},
                  {"parts", stats.parts},
                  {"slabs", stats.slabs},
                  {"slice_axis", axisName(stats.sliceAxis)},

@@ -85,6 +85,8 @@ ToleranceRuns measureTolerance(const Volume& volume, RenderOptions options, cons
     runs.bound = {run.stats.errorBoundColor, run.stats.errorBoundAlpha};
     options.method = Method::kDelta;
     options.tolerance = {};
+    // Nor are slices joined with a tolerance.
+    options.joinsSlices = false;
     RenderResult exact = render(volume, options, listener);
     runs.measured = differenceOf(run.picture, exact.image);
     runs.exact = std::move(exact.image);

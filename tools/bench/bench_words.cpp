@@ -73,8 +73,10 @@ std::string softwareText(const Machine& machine) {
 
 std::string volumeText(const BenchRun& run) {
     const RenderStats& stats = run.stats;
-    const std::string divided =
-        stats.parts > 1 ? " divided into " + std::to_string(stats.parts) : "";
+    const std::string divided = stats.parts > 1 ? " divided into " + std::to_string(stats.parts)
+                                : stats.joined > 1
+                                    ? ", " + std::to_string(stats.joined) + " slices joined to one"
+                                    : "";
     return by(run.dims.x, run.dims.y) + " x " + std::to_string(run.dims.z) + " voxels" + divided +
            ", " + percent(stats.visible, stats.voxels) + " visible, " +
            percent(stats.deltas, stats.voxels) + " deltas (comparability " +

@@ -359,7 +359,9 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
             "slice\n(default: 1 where a voxel covers 1.5 pixels or more and no\n"
             "--resolution is given, but not for thin fog (opacities up to\n0.25 a voxel), "
             "labels and colours that jump, nor more\nthan " +
-            std::to_string(kMostDivided) + " blocks of voxels; else 0)");
+            std::to_string(kMostDivided) +
+            " blocks of voxels; else 0, and where a voxel\ncovers half a pixel or less two "
+            "slices are drawn as one)");
     group.addValue("--resolution", "R", options.resolution, resolution(),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        ", or 1/2, 1/4 or 1/8:\nvoxels share a pixel, which is softer, not faster, "

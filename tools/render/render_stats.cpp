@@ -23,8 +23,9 @@ nlohmann::ordered_json boundJson(double bound) {
     return std::isinf(bound) ? nlohmann::ordered_json() : nlohmann::ordered_json(bound);
 }
 
-std::string partsText(int parts) {
-    return parts > 1 ? "; of voxels divided into " + std::to_string(parts) : "";
+std::string partsText(const RenderStats& stats) {
+    if (stats.joined > 1) return "; " + std::to_string(stats.joined) + " slices joined to one";
+    return stats.parts > 1 ? "; of voxels divided into " + std::to_string(stats.parts) : "";
 }
 
 std::string deepSummary(const DeepStats& deep) {
@@ -41,7 +42,7 @@ std::string workSummary(const RenderStats& stats) {
         std::snprintf(text, sizeof text,
                       "method %s: %llu stamps (%llu of %llu voxels visible, %llu deltas%s)\n",
                       methodName(stats.method).c_str(), (unsigned long long)stats.stamps, visible,
-                      voxels, (unsigned long long)stats.deltas, partsText(stats.parts).c_str());
+                      voxels, (unsigned long long)stats.deltas, partsText(stats).c_str());
     } else {
         std::snprintf(text, sizeof text, "mode %s: %llu of %llu voxels\n",
                       modeName(stats.mode).c_str(), visible, voxels);
@@ -81,6 +82,7 @@ std::string statsJson(const RenderResult& result, const Volume& volume, const Re
         {"stamps", stats.stamps},
         {"slices", stats.slices},
         {"between", stats.between},
+        {"joined", stats.joined},
         {"parts", stats.parts},
         {"slabs", stats.slabs},
         {"slice_axis", axisName(stats.sliceAxis)},

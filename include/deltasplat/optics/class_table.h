@@ -27,6 +27,9 @@ struct Look {
     bool operator==(const Look&) const = default;
 };
 
+/// Of two slices, which is behind the other.
+enum class SeenThrough { kFirst, kSecond };
+
 /// Classified colours: premultiplied RGBA in integers. Codes that look alike share a class, so that
 /// they make no deltas; class 0 is what cannot be seen.
 ///
@@ -64,8 +67,13 @@ struct ClassTable {
     /// slot 0, for codes that do not occur and for clear ones.
     std::vector<Slot> classOfSlot;
     /// [classes]: what each looks like exactly. No two are alike, but where all 65536 codes are
-    /// not.
+    /// not. Of pairs, [classes of one slice].
     std::vector<Look> looks;
+    /// Of pairs of slices that are drawn as one (Subdivision::joined), which is seen through the
+    /// other. Colours, and `size` and `unitsOf`, are then those of pairs of classes, `first *
+    /// looks.size() + second`; `classOfSlot` and `looks` stay those of one slice, of which
+    /// `lightOfCode` and `alphas` are not to be asked. Empty: of voxels.
+    std::optional<SeenThrough> pairs;
     double unitDistanceWorld = 1;  ///< over which `looks` have their extinction
     double extinctionScale = 1;    ///< by which their extinction is still to be multiplied
     double stepWorld = 1;          ///< that colours are those of

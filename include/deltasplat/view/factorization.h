@@ -85,17 +85,24 @@ inline bool belongs(const glm::dvec3& steps, const glm::ivec3& order) {
            (order[2] > order[0] ? steps.x > v : steps.x >= v);
 }
 
-/// Into how many thin voxels a voxel is divided, evenly spaced and as far from its faces as from
-/// each other by half.
+/// What voxels are drawn as: into how many thin ones each is divided, evenly spaced and as far from
+/// its faces as from each other by half; or whether slices are joined two and two.
 struct Subdivision {
     int slices = 1;  ///< along the slice axis
     int within = 1;  ///< along u and along v: 1 or 2
+    /// Undivided slices that are drawn as one, in their middle: 1, or 2, the first of an even index.
+    int joined = 1;
+    /// -1 to 1 each: of joined slices, voxel (u, v) of the second is drawn with (u, v) + slant of
+    /// the first, which nearly the same line of sight meets.
+    glm::ivec2 slant{0};
     /// (slice, u, v) of the voxel that thin voxels are counted from: numbers stay small wherever in
     /// index space a volume lies.
     glm::ivec3 origin{0};
 
     /// Whether there is more than one.
     bool divides() const { return slices > 1 || within > 1; }
+    /// Slices and voxels that are drawn for one along each axis.
+    glm::dvec3 per() const { return {double(slices) / joined, within, within}; }
     /// What a voxel becomes.
     int voxels() const { return slices * within * within; }
     /// The smallest share of a voxel in a value mixed from several, as 1 / n.

@@ -23,7 +23,7 @@ run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --method delta 
 file(READ ${SCRATCH}/stats.json stats)
 expect_value("${stats}" 1 parts)
 expect_keys("${stats}" "" "method;mode;voxels;visible;deltas;stamps;slices;slabs;slice_axis;\
-between;parts;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
+between;joined;parts;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
 world_box;origin;directions;space;target;frame_width;camera")
 expect_keys("${stats}" seconds "read;prepare;splat;composite;warp;write;render;total")
 expect_keys("${stats}" error_bound "color;alpha")
@@ -54,7 +54,7 @@ foreach(mode xray mip)
     run(render slab_12x10x8_uint8.raw -o slab.exr --stats stats.json --mode ${mode} -q)
     file(READ ${SCRATCH}/stats.json stats)
     expect_keys("${stats}" "" "method;mode;voxels;visible;deltas;stamps;slices;slabs;slice_axis;\
-between;parts;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
+between;joined;parts;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
 world_box;origin;directions;space;target;frame_width;camera")
     expect_keys("${stats}" seconds "read;prepare;splat;composite;warp;write;render;total")
     expect_keys("${stats}" error_bound "color;alpha")
@@ -162,7 +162,7 @@ if(NOT runs EQUAL 1)
     message(FATAL_ERROR "bench: got ${runs} runs; expected 1")
 endif()
 expect_keys("${bench}" "runs;0" "input;dims;mode;size;threads;repeats;voxels;visible;deltas;\
-comparability;slices;between;parts;slabs;slice_axis;resolution;footprint;methods;prepare;speedup;identical;\
+comparability;slices;between;joined;parts;slabs;slice_axis;resolution;footprint;methods;prepare;speedup;identical;\
 max_difference;tolerance")
 expect_keys("${bench}" "runs;0;methods" "traditional;sparse;delta;auto")
 expect_keys("${bench}" "runs;0;prepare" "min;median")

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "delta/class_index.h"
+
+namespace deltasplat {
+
+/// Joins two slices of which one lies behind the other to one: what the classes of two voxels
+/// become.
+class SliceJoiner {
+  public:
+    /// Of classes 0..classCount - 1, at most 256: the pair's number, `first * classCount + second`.
+    static SliceJoiner ofPairs(std::size_t classCount);
+    /// Of classes that differ in nothing but how much light they absorb: the level (levels()) that
+    /// is nearest to what both absorb.
+    /// @param extinctions  of each class, infinite if opaque; the first, of what is empty, is 0
+    static SliceJoiner ofSums(const std::vector<double>& extinctions);
+
+    /// Of sums, the extinctions that classes have once they are joined, the first of them 0. Each
+    /// is within 2^-11 of what it stands for, down to 2^-58 of the largest.
+    std::vector<double> levels() const;
+    /// Joins 64 voxels of a slice and of the one after it.
+    void join(const ClassIndex* first, const ClassIndex* second, ClassIndex* out) const;
+
+    bool operator==(const SliceJoiner&) const = default;
+
+  private:
+    SliceJoiner() = default;
+
+    std::size_t classCount_ = 0;  // of pairs
+    // Of sums: extinctions, in units that the largest, if not infinite, is 1/2 to 1 of.
+    std::vector<float> shares_;
+    double unit_ = 1;
+    std::int32_t first_ = 0;  // as SumLevels has it
+    std::int32_t count_ = 0;
+    bool hasOpaque_ = false;
+};
+
+}  // namespace deltasplat

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slices that are drawn as one, where the screen is too coarse for it to be seen.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "deltasplat/render.h"
+#include "deltasplat/render_deep.h"
+#include "support/make_volume.h"
+#include "support/same_picture.h"
+#include "support/small_joined.h"
+#include "support/some_scene.h"
+
+namespace deltasplat {
+namespace {
+
+using test::Colors;
+using test::someOptics;
+
+class Joined : public testing::Test {
+    test::SmallJoined joined_;
+};
+
+constexpr IndexBox kBox{{-19, 5, -41}, {28, 50, 2}};
+
+// Of voxels of side 1.
+RenderOptions optionsFor(Colors colors, double pixelsPerVoxel, const glm::dvec3& direction) {
+    RenderOptions options;
+    options.optics = someOptics(colors);
+    options.camera.direction = direction;
+    options.camera.up = glm::dvec3(0.1, 1, 0.2);
+    options.camera.sizePixels = glm::max(glm::ivec2(80 * pixelsPerVoxel), 1);
+    options.camera.frameWidthWorld = options.camera.sizePixels.x / pixelsPerVoxel;
+    return options;
+}
+
+RenderResult unjoined(const Volume& volume, RenderOptions options) {
+    options.between = 0;
+    RenderResult result = render(volume, options);
+    EXPECT_EQ(result.stats.joined, 1);
+    return result;
+}
+
+double largestDifference(const Image& a, const Image& b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i)
+        largest = std::max(largest, std::abs(double(a.rgba[i]) - double(b.rgba[i])));
+    return largest;
+}
+
+const glm::dvec3 kOblique(1, 0.7, -0.9);
+
+TEST_F(Joined, chosenWhereVoxelsCoverHalfAPixel) {
+    const Volume volume = test::randomVolume(kBox, 5, 0.5);
+    const auto joinedOf = [&](Colors colors, double pixels) {
+        return render(volume, optionsFor(colors, pixels, kOblique)).stats.joined;
+    };
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+        EXPECT_EQ(joinedOf(colors, 0.51), 1);
+        EXPECT_EQ(joinedOf(colors, 0.5), 2);
+        EXPECT_EQ(joinedOf(colors, 0.01), 2);
+    }
+    EXPECT_EQ(joinedOf(Colors::kOwn, 0.1), 1);
+    EXPECT_EQ(joinedOf(Colors::kLit, 0.1), 1);
+}
+
+TEST_F(Joined, notWhereLittleIsSaved) {
+    const Volume volume = test::randomVolume(kBox, 5, 0.5);
+    leastVoxelsJoined = volume.activeCount + 1;
+    const RenderOptions options = optionsFor(Colors::kSeveral, 0.3, kOblique);
+    EXPECT_EQ(render(volume, options).stats.joined, 1);
+    leastVoxelsJoined = volume.activeCount;
+    EXPECT_EQ(render(volume, options).stats.joined, 2);
+}
+
+TEST_F(Joined, notWhereVoxelsAreAskedFor) {
+    const Volume volume = test::randomVolume(kBox, 5, 0.5);
+    const RenderOptions plain = optionsFor(Colors::kSeveral, 0.3, kOblique);
+    std::vector<RenderOptions> all(8, plain);
+    all[0].between = 0;
+    all[1].resolution = 1;
+    all[2].sigma = 0.5;
+    all[3].tolerance.relative = 0.01;
+    all[4].tolerance.value = 1;
+    all[5].footprintWidth = 1;
+    all[6].joinsSlices = false;
+    all[7].camera.frameWidthWorld.reset();
+    all[7].camera.projection = Projection::kPerspective;
+    EXPECT_EQ(render(volume, plain).stats.joined, 2);
+    for (const RenderOptions& options : all) EXPECT_EQ(render(volume, options).stats.joined, 1);
+    DeepImage deep;
+    EXPECT_EQ(renderDeep(volume, plain, {}, deep).stats.joined, 1);
+}
+
+// Of several colours, pairs of classes have 16-bit numbers.
+TEST_F(Joined, takesAsManyClassesAsHaveNumbers) {
+    for (const int classes : {255, 256}) {
+        const Volume volume = test::makeVolume(
+            kBox, [&](int x, int y, int z) { return (x * 7 + y * 31 + z * 3 + 4000) % classes; });
+        RenderOptions options = optionsFor(Colors::kSeveral, 0.3, kOblique);
+        options.optics.transferFunction.opacities = {{-1, 0, 0.5, 0}, {300, 0.5, 0.5, 0}};
+        EXPECT_EQ(render(volume, options).stats.joined, classes == 255 ? 2 : 1);
+        options.optics = someOptics(Colors::kOne);
+        options.optics.transferFunction.opacities = {{-1, 0, 0.5, 0}, {300, 0.5, 0.5, 0}};
+        EXPECT_EQ(render(volume, options).stats.joined, 2);
+    }
+}
+
+// Seen straight, nothing moves at all.
+TEST_F(Joined, straightViewsShowTheSame) {
+    const Volume volume = test::randomVolume(kBox, 6, 0.7);
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+        for (const double pixels : {0.4, 0.1}) {
+            for (int axis = 0; axis < 3; ++axis) {
+                for (const double sign : {1.0, -1.0}) {
+                    glm::dvec3 direction(0);
+                    direction[axis] = sign;
+                    RenderOptions options = optionsFor(colors, pixels, direction);
+                    options.optics.extinctionScale = 0.1;
+                    const RenderResult joined = render(volume, options);
+                    EXPECT_EQ(joined.stats.joined, 2);
+                    const RenderResult expected = unjoined(volume, options);
+                    EXPECT_LT(joined.stats.visible, expected.stats.visible);
+                    EXPECT_LT(largestDifference(joined.image, expected.image), 4e-4)
+                        << axis << ", " << sign;
+                }
+            }
+        }
+    }
+}
+
+struct Middle {
+    double sum = 0;
+    glm::dvec2 place{0.0};
+};
+
+Middle middleOf(const Image& image) {
+    Middle middle;
+    for (int y = 0; y < image.size.y; ++y) {
+        for (int x = 0; x < image.size.x; ++x) {
+            const double alpha = double(image.pixel(x, y)[3]);
+            middle.sum += alpha;
+            middle.place += alpha * glm::dvec2(x, y);
+        }
+    }
+    middle.place /= middle.sum;
+    return middle;
+}
+
+const glm::dvec3 kDirections[] = {{1, 1, -1},      {1, -0.3, 0.2}, {0.5, 0.5, 1},  {-0.2, 1, 0.9},
+                                  {0.1, 0.05, -1}, {1, 0.7, 0.5},  {-1, 0.8, -0.6}};
+
+// A voxel on its own stays where it is, and as opaque.
+TEST_F(Joined, movesNothingByMoreThanAFifthOfAPixel) {
+    double farthest = 0;
+    const glm::ivec3 places[] = {{0, 30, -20}, {-7, 21, -19}, {5, 33, -26}, {-2, 28, -15}};
+    for (int i = 0; i < 8; ++i) {
+        const Volume volume = test::makeVolume(
+            kBox,
+            [&](int x, int y, int z) {
+                return glm::ivec3(x, y, z) == places[i / 2] ? 180 : test::kInactive;
+            },
+            i % 2 == 0 ? glm::dvec3(1) : glm::dvec3(0.5, 0.9, 5));
+        for (const glm::dvec3& direction : kDirections) {
+            // Voxels of both kinds are no wider than one world unit in most slices.
+            RenderOptions options = optionsFor(Colors::kOne, 0.5, direction);
+            options.filter = PictureFilter::kGauss;
+            options.camera.sizePixels = {120, 120};
+            options.camera.frameWidthWorld = 240;
+            const RenderResult joined = render(volume, options);
+            if (joined.stats.joined == 1) continue;
+            const Middle now = middleOf(joined.image);
+            const Middle expected = middleOf(unjoined(volume, options).image);
+            EXPECT_NEAR(now.sum / expected.sum, 1, 0.03);
+            const double moved = glm::length(now.place - expected.place);
+            EXPECT_LE(moved, 0.2);
+            farthest = std::max(farthest, moved);
+        }
+    }
+    EXPECT_GT(farthest, 0.08);
+}
+
+double sumOf(const Image& image) {
+    double sum = 0;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) sum += double(image.rgba[i]);
+    return sum;
+}
+
+// What the picture of plates of one voxel adds up to, voxel by voxel and with slices joined.
+struct PlateSums {
+    double single;
+    double joined;
+};
+
+constexpr int kPlate = 64;
+constexpr double kPlatePixels = 0.4;
+
+PlateSums sumsOfPlates(int axis, bool isOne, double opacity, const glm::dvec3& direction,
+                       Colors colors) {
+    const IndexBox box{glm::ivec3(0), glm::ivec3(kPlate - 1)};
+    const Volume plates = test::makeVolume(box, [&](int x, int y, int z) {
+        const int at = glm::ivec3(x, y, z)[axis];
+        return (isOne ? at == 30 : at % 8 == 3) ? 255 : test::kInactive;
+    });
+    RenderOptions options = optionsFor(colors, kPlatePixels, direction);
+    options.camera.sizePixels = {60, 60};
+    options.camera.frameWidthWorld = 60 / kPlatePixels;
+    options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, opacity, 0.5, 0}};
+    const RenderResult joined = render(plates, options);
+    EXPECT_EQ(joined.stats.joined, 2);
+    return {sumOf(unjoined(plates, options).image), sumOf(joined.image)};
+}
+
+// Many plates hide what is behind them as before.
+TEST_F(Joined, keepsPlatesAsDense) {
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const double opacity : {0.9, 0.05}) {
+            for (const glm::dvec3& direction : kDirections) {
+                for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+                    const PlateSums sums = sumsOfPlates(axis, false, opacity, direction, colors);
+                    EXPECT_NEAR(sums.joined / sums.single, 1, 0.05)
+                        << axis << ' ' << opacity << ' ' << direction.x << ' ' << direction.y;
+                }
+            }
+        }
+    }
+}
+
+// One plate that is seen at a slant is denser than voxel by voxel, where reading sheets between
+// their pixels has it lose more: no farther from the truth.
+TEST_F(Joined, keepsOnePlateAsNearToTheTruth) {
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const double opacity : {0.9, 0.05}) {
+            for (const glm::dvec3& direction : kDirections) {
+                const PlateSums sums = sumsOfPlates(axis, true, opacity, direction, Colors::kOne);
+                const double across = std::abs(glm::normalize(direction)[axis]);
+                if (across < 0.2) continue;  // its rim is most of what is seen
+                const double alpha = 1 - std::pow(1 - opacity, 1 / across);
+                const double truth = alpha * across * std::pow(kPlate * kPlatePixels, 2);
+                EXPECT_LE(std::abs(sums.joined / truth - 1),
+                          std::abs(sums.single / truth - 1) + 0.03)
+                    << axis << ' ' << opacity << ' ' << direction.x << ' ' << direction.y;
+                EXPECT_NEAR(sums.joined / sums.single, 1, 0.12);
+            }
+        }
+    }
+}
+
+TEST_F(Joined, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
+    const Volume volume = test::randomVolume(kBox, 8, 0.5, {1, 1.2, 0.8});
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+        for (const double pixels : {0.3, 0.05}) {
+            for (const glm::dvec3& direction : kDirections) {
+                const RenderOptions options = optionsFor(colors, pixels, direction);
+                EXPECT_EQ(render(volume, options).stats.joined, 2);
+                test::expectTheSameHoweverItIsMade(volume, options);
+            }
+        }
+    }
+}
+
+// From both ends of an axis, which share words where they may, and with other optics, which do so
+// as well.
+TEST_F(Joined, preparedScenesShowTheSame) {
+    const auto volume =
+        std::make_shared<const Volume>(test::randomVolume(kBox, 9, 0.5, {1, 1.2, 0.8}));
+    for (const Method method : {Method::kAuto, Method::kSparse, Method::kDelta}) {
+        for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+            for (const double pixels : {0.3, 0.05}) {
+                RenderOptions options = optionsFor(colors, pixels, kOblique);
+                options.method = method;
+                Optics recolored = options.optics;
+                recolored.transferFunction.colors[0].rgb = {0.3, 0.6, 0};
+                Optics thinner = recolored;
+                thinner.extinctionScale = 0.3;
+                Optics other = thinner;
+                other.transferFunction.opacities[1].opacity = 0.1;
+                Optics fewer = other;
+                fewer.transferFunction.opacities[0].x = 100;
+                PreparedScene scene({volume, options.optics}, options);
+                for (const Optics& optics :
+                     {options.optics, recolored, thinner, other, fewer, options.optics}) {
+                    scene = scene.withOptics(optics);
+                    for (const double sign : {1.0, -1.0}) {
+                        RenderOptions one = options;
+                        one.optics = optics;
+                        one.camera.direction = sign * kOblique;
+                        const RenderResult expected = render(*volume, one);
+                        EXPECT_EQ(expected.stats.joined, 2);
+                        Image image(expected.camera.sizePixels);
+                        renderComposite(scene, expected.camera, image);
+                        EXPECT_EQ(image.rgba, expected.image.rgba) << sign;
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace deltasplat
