@@ -314,9 +314,9 @@ Factorization subdivided(const Factorization& view, const Subdivision& parts) {
     result.sliceStepWorld /= slices;
     result.pixelsPerVoxel /= within;
     // The first thin voxel lies before the middle of the one that it is a part of, on each axis.
-    const glm::dvec2 first =
-        0.5 * (within - 1) + within * (0.5 - 0.5 / slices) * view.shiftPerSlice +
-        0.5 * glm::dvec2(parts.slant);
+    const glm::dvec2 first = 0.5 * (within - 1) +
+                             within * (0.5 - 0.5 / slices) * view.shiftPerSlice +
+                             0.5 * glm::dvec2(parts.slant);
     const glm::dvec2 origin =
         glm::dvec2(parts.origin.y, parts.origin.z) + double(parts.origin.x) * view.shiftPerSlice;
     result.baseFromPixel[2] -= glm::dvec3(origin, 0);

@@ -18,6 +18,7 @@
 #include "delta/slice_joiner.h"
 #include "deltasplat/threads.h"
 #include "support/make_volume.h"
+#include "support/simd_levels.h"
 
 namespace deltasplat {
 namespace {
@@ -227,6 +228,8 @@ TEST(PackedDeltas, JoinSlices) {
     for (int i = 0; i < 18; ++i) {
         const SliceJoiner& joiner = joiners[i / 9];
         const glm::ivec2 slant(i / 3 % 3 - 1, i % 3 - 1);
+        // Some of the slants.
+        if (test::kIsSanitized && i % 4 != 0) continue;
         for (int axis = 0; axis < 3; ++axis) {
             const Classes expected =
                 joinedClassesOf(classesOf(volume, axis, classes), joiner, slant);

@@ -90,7 +90,8 @@ inline bool belongs(const glm::dvec3& steps, const glm::ivec3& order) {
 struct Subdivision {
     int slices = 1;  ///< along the slice axis
     int within = 1;  ///< along u and along v: 1 or 2
-    /// Undivided slices that are drawn as one, in their middle: 1, or 2, the first of an even index.
+    /// Undivided slices that are drawn as one, in their middle: 1, or 2, the first of an even
+    /// index.
     int joined = 1;
     /// -1 to 1 each: of joined slices, voxel (u, v) of the second is drawn with (u, v) + slant of
     /// the first, which nearly the same line of sight meets.
