@@ -29,17 +29,12 @@ SliceJoiner joinerOf(const ClassTable& classes) {
 
 ClassTable joinedClasses(const ClassTable& classes, const SliceJoiner& joiner,
                          SeenThrough seenThrough, double steps) {
-    ClassTable joined;
-    joined.classOfSlot = classes.classOfSlot;
-    joined.unitDistanceWorld = classes.unitDistanceWorld;
-    joined.extinctionScale = classes.extinctionScale;
-    joined.stepWorld = classes.stepWorld;
-    joined.oneColor = classes.oneColor;
+    ClassTable joined = classes;
     if (areSummed(classes)) {
+        joined.looks.clear();
         for (const double extinction : joiner.levels())
             joined.looks.push_back({extinction, classes.looks.back().color});
     } else {
-        joined.looks = classes.looks;
         joined.pairs = seenThrough;
     }
     return joined.atSteps(steps);
