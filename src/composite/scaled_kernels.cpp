@@ -144,12 +144,7 @@ HWY_INLINE void findGrowth(const float* colors, const float* steps, std::size_t 
     for (std::size_t i = 0; i < pixels; i += hn::Lanes(tag)) {
         Vector r, g, b, opacity;
         hn::LoadInterleaved4(tag, colors + 4 * i, r, g, b, opacity);
-        const auto times = hn::LoadU(tag, steps + i);
-        // What is next to clear grows with its steps.
-        const auto isClear = hn::Lt(opacity, constant(1e-30));
-        const auto whole = hn::Div(constant(1), opacity);
-        const auto longer = opacityOfSteps(opacity, times);
-        hn::StoreU(hn::IfThenElse(isClear, times, hn::Mul(longer, whole)), tag, growth + i);
+        hn::StoreU(growthOfSteps(opacity, hn::LoadU(tag, steps + i)), tag, growth + i);
     }
 }
 

@@ -148,5 +148,34 @@ TEST(ScaledKernels, everySimdLevelGivesTheSameBits) {
     setSimdLevel("auto");
 }
 
+// Light and opacity of a slice that looks the same everywhere, for many lengths of the way through.
+TEST(ScaledKernels, lightAndOpacityGrowWithSteps) {
+    std::vector<float> steps = {0, 1e-6f, 0.3f, 0.999f, 1, 1.0001f, 1.2f, 1.5f};
+    for (const float step : {1.732f, 1.9999f, 2.0f, 2.0001f, 3.0f, 50.0f}) steps.push_back(step);
+    const auto pixels = int(steps.size());
+    steps.resize(steps.size() + kStepsSpare, 1);
+    constexpr std::size_t kSize = 64;
+    const std::vector<std::int32_t> sheet(4 * 3 * kSize, 1);
+    ScaledTaps taps;
+    taps.set(0, 1, 3, pixels, {0, kSize});
+    const float rows[] = {0.25f, 0.75f};
+    // Both sides of where the growth of opacity is a series.
+    for (const double opacity : {0.0, 1e-31, 1e-12, 1e-4, 0.03, 0.1874, 0.1876, 0.5, 0.999}) {
+        const glm::vec4 scale(glm::dvec4(opacity / 2, opacity / 4, 0, opacity));
+        const ScaledSlice slice{{sheet.data()}, 4 * kSize, {&scale, 1}, 2, taps.taps, 4};
+        std::vector<float> layer(std::size_t(4 * pixels));
+        const ScaledRun run{0,      rows,         taps.first.data(), taps.of(0), taps.pairs.data(),
+                            pixels, steps.data(), layer.data()};
+        overScaled(slice, {&run, 1});
+        for (int i = 0; i < pixels; ++i) {
+            const double grown = -std::expm1(steps[std::size_t(i)] * std::log1p(-opacity));
+            const float* color = &layer[std::size_t(4 * i)];
+            EXPECT_NEAR(color[3], grown, 3e-6 * grown) << opacity << ' ' << steps[std::size_t(i)];
+            EXPECT_NEAR(color[0], grown / 2, 3e-6 * grown) << opacity;
+            EXPECT_NEAR(color[1], grown / 4, 3e-6 * grown) << opacity;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace deltasplat
