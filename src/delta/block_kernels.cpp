@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The differencing's inner loop, compiled once for each SIMD level.
+// The inner loops of packing deltas, compiled once for each SIMD level.
 #include "delta/block_kernels.h"
 
+#include <bit>
 #include <cstring>
 
 #include "simd_targets.h"
@@ -11,6 +12,7 @@
 #include "hwy/foreach_target.h"
 // After foreach_target.h, as Highway asks.
 #include "hwy/highway.h"
+#include "transpose-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
@@ -45,6 +47,55 @@ void compareClassesKernel(const std::uint16_t* before, const std::uint16_t* clas
     }
 }
 
+std::uint64_t countBitsKernel(std::span<const std::uint64_t> masks) {
+    std::uint64_t count = 0;
+    for (const std::uint64_t mask : masks) count += std::uint64_t(std::popcount(mask));
+    return count;
+}
+
+// Writes the classes of 512 codes in their order.
+HWY_INLINE void writeClasses(const ClassRamp& ramp, const Code* HWY_RESTRICT codes,
+                             ClassIndex* HWY_RESTRICT classes) {
+    const hn::CappedTag<std::uint16_t, 64> tag;
+    const auto isFrom = [&](auto code, Code least) {
+        return hn::Eq(hn::Max(code, hn::Set(tag, least)), code);
+    };
+    for (std::size_t i = 0; i < 512; i += hn::Lanes(tag)) {
+        const auto code = hn::LoadU(tag, codes + i);
+        auto shift = hn::Set(tag, ramp.pieces[0].shift);
+        for (std::size_t n = 1; n < ramp.pieces.size(); ++n) {
+            const RampPiece& piece = ramp.pieces[n];
+            shift = hn::IfThenElse(isFrom(code, piece.begin), hn::Set(tag, piece.shift), shift);
+        }
+        const auto sum = hn::Add(hn::Min(code, hn::Set(tag, ramp.last)), shift);
+        hn::StoreU(hn::IfThenElseZero(isFrom(code, ramp.first), sum), tag, classes + i);
+    }
+}
+
+// Reads 8x8 values, rows `kRow` apart, and writes their columns, `kColumn` apart.
+template <std::size_t kRow, std::size_t kColumn>
+HWY_INLINE void transpose(const ClassIndex* HWY_RESTRICT from, ClassIndex* HWY_RESTRICT to) {
+    const EightShorts tag;
+    transposeEight([&](std::size_t row) { return hn::LoadU(tag, from + kRow * row); },
+                   [&](std::size_t column, hn::Vec<EightShorts> values) {
+                       hn::StoreU(values, tag, to + kColumn * column);
+                   });
+}
+
+void classesOfLeafKernel(const ClassRamp& ramp, const Code* codes, int sliceAxis,
+                         ClassIndex* classes) {
+    if (sliceAxis == 0) return writeClasses(ramp, codes, classes);
+    HWY_ALIGN ClassIndex asStored[512];
+    writeClasses(ramp, codes, asStored);
+    for (std::size_t i = 0; i < 8; ++i) {
+        if (sliceAxis == 1) {
+            transpose<64, 8>(asStored + 8 * i, classes + 64 * i);
+        } else {
+            transpose<8, 64>(asStored + 64 * i, classes + 8 * i);
+        }
+    }
+}
+
 }  // namespace deltasplat::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -53,6 +104,8 @@ namespace deltasplat {
 
 HWY_EXPORT(differingSlotsKernel);
 HWY_EXPORT(compareClassesKernel);
+HWY_EXPORT(countBitsKernel);
+HWY_EXPORT(classesOfLeafKernel);
 
 std::uint64_t differingSlots(const Slot* a, const Slot* b) {
     return HWY_DYNAMIC_DISPATCH(differingSlotsKernel)(a, b);
@@ -61,6 +114,14 @@ std::uint64_t differingSlots(const Slot* a, const Slot* b) {
 void compareClasses(const std::uint16_t* before, const std::uint16_t* classes,
                     std::uint64_t* visible, std::uint64_t* changed) {
     HWY_DYNAMIC_DISPATCH(compareClassesKernel)(before, classes, visible, changed);
+}
+
+std::uint64_t countBits(std::span<const std::uint64_t> masks) {
+    return HWY_DYNAMIC_DISPATCH(countBitsKernel)(masks);
+}
+
+void classesOfLeaf(const ClassRamp& ramp, const Code* codes, int sliceAxis, ClassIndex* classes) {
+    HWY_DYNAMIC_DISPATCH(classesOfLeafKernel)(ramp, codes, sliceAxis, classes);
 }
 
 }  // namespace deltasplat

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
+#include "delta/class_ramps.h"
 #include "deltasplat/delta/delta_grid.h"
 
 namespace deltasplat {
@@ -15,5 +17,12 @@ std::uint64_t differingSlots(const Slot* a, const Slot* b);
 /// where it differs.
 void compareClasses(const std::uint16_t* before, const std::uint16_t* classes,
                     std::uint64_t* visible, std::uint64_t* changed);
+
+/// Returns how many bits are set in all masks together.
+std::uint64_t countBits(std::span<const std::uint64_t> masks);
+
+/// Writes the classes of the 512 codes of a leaf, `[x][y][z]`, as they lie along a slice axis,
+/// `[slice][u][v]`.
+void classesOfLeaf(const ClassRamp& ramp, const Code* codes, int sliceAxis, ClassIndex* classes);
 
 }  // namespace deltasplat

@@ -5,11 +5,13 @@
 #include <bit>
 #include <limits>
 #include <optional>
+#include <type_traits>
 
 #include "delta/block_kernels.h"
 #include "delta/mixed_sight.h"
 #include "delta/slice_joiner.h"
 #include "delta/slot_holder.h"
+#include "hwy/cache_control.h"
 #include "ingest/codes/leaf_slices.h"
 
 namespace deltasplat {
@@ -19,6 +21,17 @@ namespace {
 std::size_t numberOf(const glm::ivec2& part) {
     const int number = 2 * part.x + part.y;
     return std::size_t(number);
+}
+
+// Brings the codes of a block's leaf nearer, which will be read next, and the leaf behind it:
+// leaves lie anywhere, and nobody else can tell where.
+void fetchAhead(const CodeBlock* next, const CodeBlock* end) {
+    constexpr std::size_t kLineBytes = 64;
+    if (next == end) return;
+    if (next + 1 < end) hwy::Prefetch(next[1].leaf);
+    if (!next->leaf) return;
+    const Code* const codes = next->leaf->buffer().data();
+    for (std::size_t i = 0; i < 512; i += kLineBytes / sizeof(Code)) hwy::Prefetch(codes + i);
 }
 
 }  // namespace
@@ -71,6 +84,7 @@ void ColumnPacker::run(const Columns& columns) {
         if (tools_.mixer) {
             addMixed(*block);
         } else {
+            fetchAhead(block + 1, columns.end);
             read(*block);
             add(block->position, {0, 0}, range_.layout.slicesOf(block->position.x));
         }
@@ -133,6 +147,9 @@ void ColumnPacker::addJoined(const JoinedColumn& column) {
             }
         }
         if (place < range_.firstBlock) continue;
+        const std::span<const CodeBlock> behind = rest[0];
+        for (std::size_t i = 0; i < std::min<std::size_t>(behind.size(), 2); ++i)
+            fetchAhead(&behind[i], behind.data() + behind.size());
         endRun(place);
         readJoined(sources);
         add({place, column.place}, {0, 0}, range_.layout.slicesOf(place));
@@ -273,6 +290,15 @@ void ColumnPacker::readSlots(const CodeBlock& block, std::span<T, 512> out) cons
     if (block.slots) {
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = T(map[block.slots[i]]);
     } else if (block.leaf) {
+        if constexpr (std::is_same_v<T, ClassIndex>) {
+            const auto ramp = tools_.ramps ? tools_.ramps->of(block.lowest, block.highest)
+                                           : std::optional<ClassRamp>();
+            if (ramp) {
+                const Code* const codes = block.leaf->buffer().data();
+                classesOfLeaf(*ramp, codes, options_.sliceAxis, out.data());
+                return clearInactiveSlices(*block.leaf, options_.sliceAxis, out.data());
+            }
+        }
         const auto slotOf = [map](Code code) { return map[code + 1]; };
         readLeafSlices(*block.leaf, options_.sliceAxis, slotOf, out.data());
     } else {
@@ -421,11 +447,12 @@ void ColumnPacker::add(const glm::ivec3& position, const glm::ivec2& part, int s
     BlockChanges changes;
     compareClasses(before.data(), classes_.data(), changes.visible.data(), changes.changed.data());
     if (own_) own_->compare(numberOf(part), changes);
+    planner_.add(8 * position.x, std::span(changes.visible).first(std::size_t(slices)),
+                 std::span(changes.changed).first(std::size_t(slices)));
     for (int s = 0; s < slices; ++s) {
         const std::uint64_t visible = changes.visible[s];
         const std::uint64_t changed = changes.changed[s];
         const int slice = 8 * position.x + s;
-        planner_.add(slice, visible, changed);
         if (!isNeeded(slice, visible, changed)) continue;
         packed.words.push_back(
             {visible, changed, packed.storage.size(), slice, {position.y, position.z}});

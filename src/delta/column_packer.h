@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "delta/block_looks.h"
+#include "delta/class_ramps.h"
 #include "delta/code_blocks.h"
 #include "delta/hold_slots.h"
 #include "delta/joined_columns.h"
@@ -25,6 +26,7 @@ class SlotHolder;
 
 /// How voxels become classes. Null: as they are.
 struct PackTools {
+    const ClassRamps* ramps = nullptr;  ///< of the map
     const SlotHolder* holder = nullptr;
     const ValueMixer* mixer = nullptr;
     const MixedSight* sight = nullptr;

@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 
+#include "delta/block_kernels.h"
 #include "delta/block_windows.h"
 #include "delta/delta_tree.h"
 #include "deltasplat/error.h"
@@ -22,12 +23,6 @@ namespace deltasplat {
 namespace {
 
 using Leaf = DeltaTree::Leaf;
-
-std::uint64_t countBits(const std::array<std::uint64_t, 8>& words) {
-    std::uint64_t count = 0;
-    for (const std::uint64_t word : words) count += std::popcount(word);
-    return count;
-}
 
 // What changes in a volume along one axis, block by block.
 struct Differences {

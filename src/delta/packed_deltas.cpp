@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <glm/common.hpp>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -186,6 +187,18 @@ struct DeltaPacker::Impl {
         } else {
             runs = cutAtColumns(blocks, divided.within > 1);
         }
+        if (!holder && !mixer) findRamps();
+    }
+
+    void findRamps() {
+        Code lowest = std::numeric_limits<Code>::max();
+        Code highest = 0;
+        for (const CodeBlock& block : blocks) {
+            if (!block.leaf) continue;
+            lowest = std::min(lowest, block.lowest);
+            highest = std::max(highest, block.highest);
+        }
+        if (lowest <= highest) ramps.emplace(slotMap, lowest, highest);
     }
 
     void noteOpacities() {
@@ -212,7 +225,8 @@ struct DeltaPacker::Impl {
     }
 
     std::vector<ColumnPacker> run(const PackRange& range) const {
-        const PackTools tools{holder ? &*holder : nullptr,
+        const PackTools tools{ramps ? &*ramps : nullptr,
+                              holder ? &*holder : nullptr,
                               options.mixer,
                               sight ? &*sight : nullptr,
                               volume.codes.get(),
@@ -259,6 +273,7 @@ struct DeltaPacker::Impl {
     IndexBox box;
     std::optional<SlotHolder> holder;
     std::span<const Slot> slotMap;
+    std::optional<ClassRamps> ramps;
     std::vector<float> opacities;  // [what slotMap makes of slots]
     std::optional<MixedSight> sight;
     std::vector<CodeBlock> blocks;

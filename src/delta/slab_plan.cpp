@@ -2,7 +2,8 @@
 #include "delta/slab_plan.h"
 
 #include <algorithm>
-#include <bit>
+
+#include "delta/block_kernels.h"
 
 namespace deltasplat {
 namespace {
@@ -48,13 +49,19 @@ SlabPlanner::SlabPlanner(const IndexBox& box) : box_(box), shortest_(layoutOf(bo
     counts_.resize(shortest_.count());
 }
 
-void SlabPlanner::add(int slice, std::uint64_t visible, std::uint64_t changed) {
-    const Counts found{
-        {std::uint64_t(std::popcount(visible)), std::uint64_t(std::popcount(changed))},
-        {std::uint64_t(visible != 0), std::uint64_t(changed != 0)}};
+void SlabPlanner::add(int slice, std::span<const std::uint64_t> visible,
+                      std::span<const std::uint64_t> changed) {
+    const auto wordsOf = [](std::span<const std::uint64_t> masks) {
+        return masks.size() - std::size_t(std::count(masks.begin(), masks.end(), 0));
+    };
+    const auto count = [&](std::size_t slices) {
+        const auto seen = visible.first(slices);
+        const auto differing = changed.first(slices);
+        return Counts{{countBits(seen), countBits(differing)}, {wordsOf(seen), wordsOf(differing)}};
+    };
     SlabCounts& counts = counts_[shortest_.slabOf(slice >> 3)];
-    counts.all += found;
-    if (shortest_.startsLaterSlab(slice)) counts.firstSlice += found;
+    counts.all += count(visible.size());
+    if (shortest_.startsLaterSlab(slice)) counts.firstSlice += count(1);
 }
 
 void SlabPlanner::add(const SlabPlanner& other) {

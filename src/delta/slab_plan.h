@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "delta/slab_layout.h"
@@ -58,9 +59,11 @@ class SlabPlanner {
 
     /// Of the shortest slabs that there may be.
     const SlabLayout& shortest() const { return shortest_; }
-    /// Adds voxels of a slice: mask words of visible ones, and of those that differ from the slice
-    /// before.
-    void add(int slice, std::uint64_t visible, std::uint64_t changed);
+    /// Adds voxels of slices of a block of 8, one or more: of each, mask words of visible ones, and
+    /// of those that differ from the slice before.
+    /// @param slice  the first of them
+    void add(int slice, std::span<const std::uint64_t> visible,
+             std::span<const std::uint64_t> changed);
     /// Adds what another planner of the same box has counted.
     void add(const SlabPlanner& other);
     SlabPlan plan(Encoding encoding) const;

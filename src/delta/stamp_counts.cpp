@@ -18,8 +18,9 @@ StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const S
     SlabPlanner planner(box);
     for (std::size_t i = 0; i < changes.size(); ++i) {
         const int block = windows.position(i).x;
-        for (int s = 0; s < layout.slicesOf(block); ++s)
-            planner.add(8 * block + s, changes[i].visible[s], changes[i].changed[s]);
+        const auto slices = std::size_t(layout.slicesOf(block));
+        planner.add(8 * block, std::span(changes[i].visible).first(slices),
+                    std::span(changes[i].changed).first(slices));
     }
     for (const PlannedSlab& slab : planner.plan(Encoding::kFewerWords).slabs) {
         stamps.sparse += slab.visible;

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <random>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -91,6 +92,31 @@ Classes walk(const PackedDeltas& packed) {
     return all;
 }
 
+// Classes of joined slices, voxel by voxel.
+Classes joinedClassesOf(const Classes& classes, const SliceJoiner& joiner,
+                        const glm::ivec2& slant) {
+    const auto classAt = [&](int s, int u, int v) {
+        const auto voxel = classes.find({s, u, v});
+        return voxel == classes.end() ? ClassIndex{0} : voxel->second;
+    };
+    Classes joined;
+    const auto join = [&](int slice, int u, int v) {
+        std::array<ClassIndex, 64> first{};
+        std::array<ClassIndex, 64> second{};
+        std::array<ClassIndex, 64> out;
+        first[0] = classAt(2 * slice, u, v);
+        second[0] = classAt(2 * slice + 1, u - slant.x, v - slant.y);
+        joiner.join(first.data(), second.data(), out.data());
+        joined[{slice, u, v}] = out[0];
+    };
+    for (const auto& [place, found] : classes) {
+        const auto [s, u, v] = place;
+        const int slice = int(std::floor(s / 2.0));
+        s == 2 * slice ? join(slice, u, v) : join(slice, u + slant.x, v + slant.y);
+    }
+    return joined;
+}
+
 const IndexBox kBox{{-19, 5, -60}, {30, 40, 2}};
 
 TEST(PackedDeltas, AddUpToTheClassesOfTheVolume) {
@@ -106,6 +132,39 @@ TEST(PackedDeltas, AddUpToTheClassesOfTheVolume) {
                 EXPECT_EQ(walk(packed), expected) << axis;
                 EXPECT_EQ(packed.visible(), expected.size());
             }
+        }
+    }
+}
+
+// Classes that follow each other, in one piece and in some, of leaves whose inactive voxels hold
+// any codes.
+TEST(PackedDeltas, TakeClassesThatFollowEachOther) {
+    std::vector<Slot> rising(kSlotCount, 0);
+    std::vector<Slot> pieces(kSlotCount, 0);
+    for (Slot slot = 61; slot <= 256; ++slot) {
+        rising[slot] = slot - 60;
+        pieces[slot] = slot < 70 ? slot + 130 : slot < 250 ? slot - 69 : 180;
+    }
+    CodeTree::Tree tree = test::randomVolume(kBox, 5).codes->tree();
+    std::mt19937 random(6);
+    for (auto leaf = tree.beginLeaf(); leaf; ++leaf)
+        for (auto off = leaf->beginValueOff(); off; ++off)
+            leaf->setValueOnly(off.pos(), Code(random() % 2 == 0 ? random() % 256 : random()));
+    Volume volume = test::randomVolume(kBox, 5);
+    volume.codes = std::make_shared<CodeTree>(std::in_place, tree);
+    std::vector<double> extinctions(257, 0.01);
+    extinctions[0] = 0;
+    const SliceJoiner joiner = SliceJoiner::ofSums(extinctions);
+    for (const std::vector<Slot>& classes : {rising, pieces}) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const Classes expected = classesOf(volume, axis, classes);
+            PackOptions options = optionsOf(axis, Encoding::kChanges, classes, false);
+            EXPECT_EQ(walk(packDeltas(volume, options)), expected) << axis;
+            options.joiner = &joiner;
+            options.slant = {-1, 1};
+            EXPECT_EQ(walk(packDeltas(volume, options)),
+                      joinedClassesOf(expected, joiner, options.slant))
+                << axis;
         }
     }
 }
@@ -186,31 +245,6 @@ TEST(PackedDeltas, PartsHaveTheWordsOfTheWhole) {
             }
         }
     }
-}
-
-// Classes of joined slices, voxel by voxel.
-Classes joinedClassesOf(const Classes& classes, const SliceJoiner& joiner,
-                        const glm::ivec2& slant) {
-    const auto classAt = [&](int s, int u, int v) {
-        const auto voxel = classes.find({s, u, v});
-        return voxel == classes.end() ? ClassIndex{0} : voxel->second;
-    };
-    Classes joined;
-    const auto join = [&](int slice, int u, int v) {
-        std::array<ClassIndex, 64> first{};
-        std::array<ClassIndex, 64> second{};
-        std::array<ClassIndex, 64> out;
-        first[0] = classAt(2 * slice, u, v);
-        second[0] = classAt(2 * slice + 1, u - slant.x, v - slant.y);
-        joiner.join(first.data(), second.data(), out.data());
-        joined[{slice, u, v}] = out[0];
-    };
-    for (const auto& [place, found] : classes) {
-        const auto [s, u, v] = place;
-        const int slice = int(std::floor(s / 2.0));
-        s == 2 * slice ? join(slice, u, v) : join(slice, u + slant.x, v + slant.y);
-    }
-    return joined;
 }
 
 // In parts as well.

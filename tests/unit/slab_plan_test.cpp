@@ -6,6 +6,10 @@
 namespace deltasplat {
 namespace {
 
+void add(SlabPlanner& planner, int slice, std::uint64_t visible, std::uint64_t changed) {
+    planner.add(slice, {&visible, 1}, {&changed, 1});
+}
+
 // A planner that has counted `visible` voxels a slice, of which `changed` differ from the slice
 // before; in the first slice all do.
 SlabPlanner planned(int firstSlice, int slices, int visible, int changed) {
@@ -14,7 +18,7 @@ SlabPlanner planned(int firstSlice, int slices, int visible, int changed) {
     };
     SlabPlanner planner({{firstSlice, 0, 0}, {firstSlice + slices - 1, 7, 7}});
     for (int i = 0; i < slices; ++i)
-        planner.add(firstSlice + i, mask(visible), mask(i == 0 ? visible : changed));
+        add(planner, firstSlice + i, mask(visible), mask(i == 0 ? visible : changed));
     return planner;
 }
 
@@ -84,7 +88,7 @@ TEST(SlabPlan, TakesTheEncodingWithFewerStamps) {
                                       : slice < 8  ? 0
                                       : slice == 8 ? ~kQuarter
                                                    : visible | kQuarter << (slice - 1) % 4;
-        planner.add(slice, visible, changed);
+        add(planner, slice, visible, changed);
     }
     const SlabPlan plan = planner.plan(Encoding::kSmaller);
     ASSERT_EQ(plan.slabs.size(), 2u);
@@ -116,8 +120,8 @@ TEST(SlabPlan, TakesWholeSlicesWhereTheyHaveNoMoreWords) {
     // word of each slice but those after the first of the former.
     SlabPlanner planner({{0, 0, 0}, {15, 7, 15}});
     for (int slice = 0; slice < 16; ++slice) {
-        planner.add(slice, ~std::uint64_t{0}, slice == 0 ? ~std::uint64_t{0} : 0);
-        planner.add(slice, slice % 2, 1);
+        add(planner, slice, ~std::uint64_t{0}, slice == 0 ? ~std::uint64_t{0} : 0);
+        add(planner, slice, slice % 2, 1);
     }
     const SlabPlan plan = planner.plan(Encoding::kFewerWords);
     for (const PlannedSlab& slab : plan.slabs) {

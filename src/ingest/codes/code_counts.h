@@ -2,9 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "deltasplat/ingest/code_book.h"
@@ -24,27 +27,32 @@ class CodeCounts {
     std::size_t workers() const { return counts_.size(); }
     /// One call at a time for each worker.
     void add(std::size_t worker, std::span<const Code> codes) {
-        std::vector<Count>& counts = countsOf(worker);
+        Counts& counts = countsOf(worker, codes.size());
         std::size_t i = 0;
-        for (; i + 2 <= codes.size(); i += 2) {
-            ++counts[codes[i]].even;
-            ++counts[codes[i + 1]].odd;
-        }
-        if (i < codes.size()) ++counts[codes[i]].even;
+        for (; i + kLanes <= codes.size(); i += kLanes)
+            for (std::size_t lane = 0; lane < kLanes; ++lane) ++counts.few[codes[i + lane]][lane];
+        for (; i < codes.size(); ++i) ++counts.few[codes[i]][0];
     }
     void add(std::size_t worker, Code code, std::uint64_t times) {
-        countsOf(worker)[code].even += times;
+        constexpr std::uint64_t kFew = 1 << 20;
+        Counts& counts = countsOf(worker, times <= kFew ? times : 0);
+        if (times <= kFew) {
+            counts.few[code][0] += std::uint32_t(times);
+        } else {
+            if (counts.many.empty()) counts.many.resize(kCodeCount);
+            counts.many[code] += times;
+        }
     }
     /// Returns the sums, [kCodeCount], and leaves none.
     std::vector<std::uint64_t> take() {
         std::vector<std::uint64_t> sum(kCodeCount);
-        std::erase_if(counts_, [](const std::vector<Count>& counts) { return counts.empty(); });
+        std::erase_if(counts_, [](const Counts& counts) { return counts.few.empty(); });
         constexpr std::size_t kPart = 4096;
         static_assert(kCodeCount % kPart == 0);
         parallelFor(kCodeCount / kPart, [&](std::size_t part) {
-            for (const std::vector<Count>& counts : counts_) {
+            for (const Counts& counts : counts_) {
                 for (std::size_t code = part * kPart; code < (part + 1) * kPart; ++code)
-                    sum[code] += counts[code].even + counts[code].odd;
+                    sum[code] += counts.of(code);
             }
         });
         counts_.clear();
@@ -53,18 +61,40 @@ class CodeCounts {
 
   private:
     // Neighbours are often alike, and who adds to what was just written waits for it.
-    struct Count {
-        std::uint64_t even = 0;
-        std::uint64_t odd = 0;
+    static constexpr std::size_t kLanes = 4;
+    struct Counts {
+        std::vector<std::array<std::uint32_t, kLanes>> few;  // [kCodeCount]
+        std::uint64_t inFew = 0;                             // of all codes together
+        std::vector<std::uint64_t> many;                     // likewise, or empty
+
+        std::uint64_t of(std::size_t code) const {
+            std::uint64_t sum = many.empty() ? 0 : many[code];
+            for (const std::uint32_t lane : few[code]) sum += lane;
+            return sum;
+        }
+        // Lest a lane overflows.
+        void takeOver() {
+            std::vector<std::uint64_t> all(kCodeCount);
+            for (std::size_t code = 0; code < all.size(); ++code) all[code] = of(code);
+            many = std::move(all);
+            few.assign(kCodeCount, {});
+            inFew = 0;
+        }
     };
 
     // Made by who fills it, where it is wanted.
-    std::vector<Count>& countsOf(std::size_t worker) {
-        if (counts_[worker].empty()) counts_[worker].resize(kCodeCount);
-        return counts_[worker];
+    Counts& countsOf(std::size_t worker, std::size_t codes) {
+        Counts& counts = counts_[worker];
+        if (counts.few.empty()) counts.few.resize(kCodeCount);
+        counts.inFew += codes;
+        if (counts.inFew > std::numeric_limits<std::uint32_t>::max()) {
+            counts.takeOver();
+            counts.inFew = codes;
+        }
+        return counts;
     }
 
-    std::vector<std::vector<Count>> counts_;
+    std::vector<Counts> counts_;
 };
 
 }  // namespace deltasplat

@@ -8,6 +8,7 @@
 
 #include "deltasplat/error.h"
 #include "heap_growth.h"
+#include "ingest/codes/code_kernels.h"
 #include "ingest/codes/code_nodes.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/codes/slot_blocks.h"
@@ -18,12 +19,8 @@
 namespace deltasplat {
 
 CodeLeaf describeLeaf(const CodeTree::Leaf& leaf, std::span<const Code> codes) {
-    CodeLeaf described{&leaf, codes.front(), codes.front()};
-    for (const Code code : codes) {
-        described.lowest = std::min(described.lowest, code);
-        described.highest = std::max(described.highest, code);
-    }
-    return described;
+    const auto [lowest, highest] = rangeOfCodes(codes);
+    return {&leaf, lowest, highest};
 }
 
 CodeLeaf describeLeaf(const CodeTree::Leaf& leaf) {

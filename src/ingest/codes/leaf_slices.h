@@ -42,6 +42,19 @@ void forLeafVoxels(int sliceAxis, const Use& use) {
     forLeafVoxels(sliceAxis, glm::ivec3(0), glm::ivec3(7), use);
 }
 
+/// Writes the empty slot where a leaf's voxels are inactive. kStep: as below.
+template <int kStepX, int kStepY, int kStepZ, typename Out>
+void clearInactive(const CodeTree::Leaf& leaf, Out* out) {
+    if (leaf.isDense()) return;
+    for (int x = 0; x < 8; ++x) {
+        std::uint64_t inactive = ~leaf.getValueMask().getWord<std::uint64_t>(openvdb::Index(x));
+        for (; inactive != 0; inactive &= inactive - 1) {
+            const int n = std::countr_zero(inactive);
+            out[x * kStepX + (n >> 3) * kStepY + (n & 7) * kStepZ] = kEmptySlot;
+        }
+    }
+}
+
 /// Reads a leaf as readLeafSlices does. kStep: how far neighbours along x, y and z lie in `out`; it
 /// is several times as fast if the compiler knows.
 template <int kStepX, int kStepY, int kStepZ, typename SlotOf, typename Out>
@@ -54,23 +67,33 @@ void readLeafWithSteps(const CodeTree::Leaf& leaf, const SlotOf& slotOf, Out* ou
             }
         }
     }
-    if (leaf.isDense()) return;
-    for (int x = 0; x < 8; ++x) {
-        std::uint64_t inactive = ~leaf.getValueMask().getWord<std::uint64_t>(openvdb::Index(x));
-        for (; inactive != 0; inactive &= inactive - 1) {
-            const int n = std::countr_zero(inactive);
-            out[x * kStepX + (n >> 3) * kStepY + (n & 7) * kStepZ] = kEmptySlot;
-        }
-    }
+    clearInactive<kStepX, kStepY, kStepZ>(leaf, out);
+}
+
+/// Calls use.template operator()<kStepX, kStepY, kStepZ>() with the steps of slices along an axis.
+template <typename Use>
+void withLeafSteps(int sliceAxis, const Use& use) {
+    if (sliceAxis == 0) return use.template operator()<64, 8, 1>();
+    if (sliceAxis == 1) return use.template operator()<1, 64, 8>();
+    use.template operator()<8, 1, 64>();
 }
 
 /// Reads a leaf of codes: slotOf(code) where a voxel is active, otherwise empty.
 /// @param out  [slice][u][v]
 template <typename SlotOf, typename Out>
 void readLeafSlices(const CodeTree::Leaf& leaf, int sliceAxis, const SlotOf& slotOf, Out* out) {
-    if (sliceAxis == 0) return readLeafWithSteps<64, 8, 1>(leaf, slotOf, out);
-    if (sliceAxis == 1) return readLeafWithSteps<1, 64, 8>(leaf, slotOf, out);
-    readLeafWithSteps<8, 1, 64>(leaf, slotOf, out);
+    withLeafSteps(sliceAxis, [&]<int kStepX, int kStepY, int kStepZ>() {
+        readLeafWithSteps<kStepX, kStepY, kStepZ>(leaf, slotOf, out);
+    });
+}
+
+/// Writes the empty slot where a leaf's voxels are inactive.
+/// @param out  [slice][u][v]
+template <typename Out>
+void clearInactiveSlices(const CodeTree::Leaf& leaf, int sliceAxis, Out* out) {
+    withLeafSteps(sliceAxis, [&]<int kStepX, int kStepY, int kStepZ>() {
+        clearInactive<kStepX, kStepY, kStepZ>(leaf, out);
+    });
 }
 
 }  // namespace deltasplat

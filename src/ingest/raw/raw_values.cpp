@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ingest/codes/code_math.h"
+#include "ingest/raw/raw_kernels.h"
 #include "ingest/raw/raw_load.h"
 #include "ingest/values/same_bits.h"
 #include "parallel.h"
@@ -124,9 +125,14 @@ void measure(const RawBlock& block, const RawCoding& coding, const Code* codes) 
 template <typename T, bool kSwap, template <typename> typename Coder>
 void encode(const RawBlock& block, const RawCoding& coding, Code* codes) {
     const Coder<T> coder(coding);
-    // Loops of known length let the compiler unroll; nearly all blocks are whole.
+    // Nearly all blocks are whole.
     if (block.size == glm::ivec3(8)) {
-        encodeBox<T, kSwap>(block, {8, 8, 8}, coder, codes);
+        if constexpr (std::is_same_v<Coder<T>, IntegerCoder<T>> && sizeof(T) <= 2 && !kSwap) {
+            encodeWholeBlock<T>(block, coder.offset, codes);
+        } else {
+            // Loops of known length let the compiler unroll.
+            encodeBox<T, kSwap>(block, {8, 8, 8}, coder, codes);
+        }
     } else {
         encodeBox<T, kSwap>(block, block.size, coder, codes);
     }
