@@ -53,22 +53,26 @@ std::uint64_t countBitsKernel(std::span<const std::uint64_t> masks) {
     return count;
 }
 
-// Writes the classes of 512 codes in their order.
-HWY_INLINE void writeClasses(const ClassRamp& ramp, const Code* HWY_RESTRICT codes,
+// Writes the classes of 512 codes in their order, of numbers that are so much more than their
+// codes.
+template <Code kMore>
+HWY_INLINE void writeClasses(const ClassRamp& ramp, const std::uint16_t* HWY_RESTRICT numbers,
                              ClassIndex* HWY_RESTRICT classes) {
     const hn::CappedTag<std::uint16_t, 64> tag;
-    const auto isFrom = [&](auto code, Code least) {
-        return hn::Eq(hn::Max(code, hn::Set(tag, least)), code);
+    const auto numberOf = [&](Code code) { return hn::Set(tag, Code(code + kMore)); };
+    const auto isFrom = [&](auto number, Code least) {
+        return hn::Eq(hn::Max(number, numberOf(least)), number);
     };
     for (std::size_t i = 0; i < 512; i += hn::Lanes(tag)) {
-        const auto code = hn::LoadU(tag, codes + i);
+        const auto number = hn::LoadU(tag, numbers + i);
         auto shift = hn::Set(tag, ramp.pieces[0].shift);
         for (std::size_t n = 1; n < ramp.pieces.size(); ++n) {
             const RampPiece& piece = ramp.pieces[n];
-            shift = hn::IfThenElse(isFrom(code, piece.begin), hn::Set(tag, piece.shift), shift);
+            shift = hn::IfThenElse(isFrom(number, piece.begin), hn::Set(tag, piece.shift), shift);
         }
-        const auto sum = hn::Add(hn::Min(code, hn::Set(tag, ramp.last)), shift);
-        hn::StoreU(hn::IfThenElseZero(isFrom(code, ramp.first), sum), tag, classes + i);
+        const auto code = hn::Sub(hn::Min(number, numberOf(ramp.last)), hn::Set(tag, kMore));
+        hn::StoreU(hn::IfThenElseZero(isFrom(number, ramp.first), hn::Add(code, shift)), tag,
+                   classes + i);
     }
 }
 
@@ -84,9 +88,9 @@ HWY_INLINE void transpose(const ClassIndex* HWY_RESTRICT from, ClassIndex* HWY_R
 
 void classesOfLeafKernel(const ClassRamp& ramp, const Code* codes, int sliceAxis,
                          ClassIndex* classes) {
-    if (sliceAxis == 0) return writeClasses(ramp, codes, classes);
+    if (sliceAxis == 0) return writeClasses<0>(ramp, codes, classes);
     HWY_ALIGN ClassIndex asStored[512];
-    writeClasses(ramp, codes, asStored);
+    writeClasses<0>(ramp, codes, asStored);
     for (std::size_t i = 0; i < 8; ++i) {
         if (sliceAxis == 1) {
             transpose<64, 8>(asStored + 8 * i, classes + 64 * i);
@@ -94,6 +98,10 @@ void classesOfLeafKernel(const ClassRamp& ramp, const Code* codes, int sliceAxis
             transpose<8, 64>(asStored + 64 * i, classes + 8 * i);
         }
     }
+}
+
+void classesOfSlotsKernel(const ClassRamp& ramp, const ShortSlot* slots, ClassIndex* classes) {
+    writeClasses<1>(ramp, slots, classes);
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -106,6 +114,7 @@ HWY_EXPORT(differingSlotsKernel);
 HWY_EXPORT(compareClassesKernel);
 HWY_EXPORT(countBitsKernel);
 HWY_EXPORT(classesOfLeafKernel);
+HWY_EXPORT(classesOfSlotsKernel);
 
 std::uint64_t differingSlots(const Slot* a, const Slot* b) {
     return HWY_DYNAMIC_DISPATCH(differingSlotsKernel)(a, b);
@@ -122,6 +131,10 @@ std::uint64_t countBits(std::span<const std::uint64_t> masks) {
 
 void classesOfLeaf(const ClassRamp& ramp, const Code* codes, int sliceAxis, ClassIndex* classes) {
     HWY_DYNAMIC_DISPATCH(classesOfLeafKernel)(ramp, codes, sliceAxis, classes);
+}
+
+void classesOfSlots(const ClassRamp& ramp, const ShortSlot* slots, ClassIndex* classes) {
+    HWY_DYNAMIC_DISPATCH(classesOfSlotsKernel)(ramp, slots, classes);
 }
 
 }  // namespace deltasplat

@@ -6,6 +6,7 @@
 
 #include "delta/class_ramps.h"
 #include "deltasplat/delta/delta_grid.h"
+#include "ingest/codes/slot_blocks.h"
 
 namespace deltasplat {
 
@@ -24,5 +25,8 @@ std::uint64_t countBits(std::span<const std::uint64_t> masks);
 /// Writes the classes of the 512 codes of a leaf, `[x][y][z]`, as they lie along a slice axis,
 /// `[slice][u][v]`.
 void classesOfLeaf(const ClassRamp& ramp, const Code* codes, int sliceAxis, ClassIndex* classes);
+
+/// Writes the classes of the 512 slots of a block in their order: 0, or a code and one.
+void classesOfSlots(const ClassRamp& ramp, const ShortSlot* slots, ClassIndex* classes);
 
 }  // namespace deltasplat

@@ -286,24 +286,32 @@ glm::ivec3 ColumnPacker::partOf(const CodeBlock& block, int slices, const glm::i
 // Writes what the slots of a block are under the map.
 template <typename T>
 void ColumnPacker::readSlots(const CodeBlock& block, std::span<T, 512> out) const {
+    if constexpr (std::is_same_v<T, ClassIndex>) {
+        if (readRamp(block, out)) return;
+    }
     const Slot* const map = slotMap_.data();
     if (block.slots) {
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = T(map[block.slots[i]]);
     } else if (block.leaf) {
-        if constexpr (std::is_same_v<T, ClassIndex>) {
-            const auto ramp = tools_.ramps ? tools_.ramps->of(block.lowest, block.highest)
-                                           : std::optional<ClassRamp>();
-            if (ramp) {
-                const Code* const codes = block.leaf->buffer().data();
-                classesOfLeaf(*ramp, codes, options_.sliceAxis, out.data());
-                return clearInactiveSlices(*block.leaf, options_.sliceAxis, out.data());
-            }
-        }
         const auto slotOf = [map](Code code) { return map[code + 1]; };
         readLeafSlices(*block.leaf, options_.sliceAxis, slotOf, out.data());
     } else {
         std::fill(out.begin(), out.end(), T(block.tileSlot));
     }
+}
+
+// Does so by vectors if the map is a ramp over the codes of the block. Returns whether it is.
+bool ColumnPacker::readRamp(const CodeBlock& block, std::span<ClassIndex, 512> out) const {
+    if (!tools_.ramps || (!block.slots && !block.leaf)) return false;
+    const std::optional<ClassRamp> ramp = tools_.ramps->of(block.lowest, block.highest);
+    if (!ramp) return false;
+    if (block.slots) {
+        classesOfSlots(*ramp, block.slots, out.data());
+    } else {
+        classesOfLeaf(*ramp, block.leaf->buffer().data(), options_.sliceAxis, out.data());
+        clearInactiveSlices(*block.leaf, options_.sliceAxis, out.data());
+    }
+    return true;
 }
 
 void ColumnPacker::read(const CodeBlock& block) {

@@ -118,6 +118,7 @@ class ColumnPacker {
     void forParts(const Use& use) const;
     template <typename T>
     void readSlots(const CodeBlock& block, std::span<T, 512> out) const;
+    bool readRamp(const CodeBlock& block, std::span<ClassIndex, 512> out) const;
     void read(const CodeBlock& block);
     void hold(const BlockSlots& slots, const glm::ivec3& position, const glm::ivec2& part,
               int number);

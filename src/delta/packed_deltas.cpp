@@ -194,7 +194,7 @@ struct DeltaPacker::Impl {
         Code lowest = std::numeric_limits<Code>::max();
         Code highest = 0;
         for (const CodeBlock& block : blocks) {
-            if (!block.leaf) continue;
+            if (!block.leaf && !block.slots) continue;
             lowest = std::min(lowest, block.lowest);
             highest = std::max(highest, block.highest);
         }

@@ -93,16 +93,25 @@ TEST(ClassRamps, EveryCodeHasItsClass) {
     EXPECT_GT(found, 50000);
 }
 
-TEST(ClassRamps, LeavesAreReadAlongEveryAxisAtEverySimdLevel) {
+TEST(ClassRamps, BlocksAreReadAtEverySimdLevel) {
     std::mt19937 random(8);
-    for (const int first : {0, 40000, kCodeCount - 12}) {
+    for (const int first : {0, 40000, kCodeCount - 13, kCodeCount - 12}) {
         const std::vector<Slot> map = mapOf(first, {0, 0, 196, 197, 1, 2, 198, 3, 4, 5, 5, 5});
         const ClassRamps ramps(map, Code(first), Code(first + 11));
         const auto ramp = ramps.of(Code(first), Code(first + 11));
         ASSERT_TRUE(ramp);
         std::array<Code, 512> codes;
         for (Code& code : codes) code = Code(first + int(random() % 12));
+        std::array<ShortSlot, 512> slots;
+        for (std::size_t n = 0; n < 512; ++n)
+            slots[n] = n % 5 == 0 ? ShortSlot{0} : ShortSlot(codes[n] % 65535 + 1);
         test::atEveryLevel([&] {
+            // No block of slots has the last code.
+            if (first + 11 < 65535) {
+                std::array<ClassIndex, 512> classes;
+                classesOfSlots(*ramp, slots.data(), classes.data());
+                for (std::size_t n = 0; n < 512; ++n) EXPECT_EQ(classes[n], map[slots[n]]) << n;
+            }
             for (int axis = 0; axis < 3; ++axis) {
                 std::array<ClassIndex, 512> classes;
                 classesOfLeaf(*ramp, codes.data(), axis, classes.data());
