@@ -99,6 +99,17 @@ TEST(RawFormat, MissingDimsAndType) {
         "vol.raw", format);
 }
 
+// A name may say no more than the dims.
+TEST(RawFormat, NameWithoutType) {
+    expectUsage(
+        "a_4x5x6.raw: got no value type; expected `type` TYPE, or a name such as "
+        "volume_256x256x128_uint8.raw",
+        "a_4x5x6.raw", {});
+    RawFormat format;
+    format.type = "int16";
+    EXPECT_EQ(resolveRawLayout("a_4x5x6.raw.gz", format).dims, glm::i64vec3(4, 5, 6));
+}
+
 TEST(RawFormat, DimsOutOfRange) {
     RawFormat format;
     format.dims = {0, 4, 4};

@@ -88,6 +88,10 @@ NameParts parseName(const std::filesystem::path& file) {
     const std::string stem = nameWithoutExtensions(file);
     const std::size_t second = stem.rfind('_');
     if (second == std::string::npos || second == 0) return parts;
+    if (const auto dims = dimsIn(stem.substr(second + 1))) {
+        parts.dims = *dims;
+        return parts;
+    }
     const std::size_t first = stem.rfind('_', second - 1);
     if (first == std::string::npos) return parts;
     const std::string type = stem.substr(second + 1);
