@@ -3,6 +3,7 @@
 #include "ingest/raw/raw_kernels.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 #include "simd_targets.h"
@@ -52,15 +53,16 @@ HWY_INLINE void encode(const RawBlock& block, Code offset, Code* HWY_RESTRICT co
     }
 }
 
-void encodeUint8(const RawBlock& block, Code offset, Code* codes) {
-    encode<std::uint8_t>(block, offset, codes);
-}
-void encodeInt8(const RawBlock& block, Code offset, Code* codes) {
-    encode<std::int8_t>(block, offset, codes);
-}
-// Signed ones have the same bits.
-void encode16(const RawBlock& block, Code offset, Code* codes) {
-    encode<std::uint16_t>(block, offset, codes);
+void encodeWholeBlockKernel(const RawBlock& block, RawType type, Code offset, Code* codes) {
+    switch (type) {
+        case RawType::kUint8:
+            return encode<std::uint8_t>(block, offset, codes);
+        case RawType::kInt8:
+            return encode<std::int8_t>(block, offset, codes);
+        default:
+            // Signed ones have the same bits.
+            return encode<std::uint16_t>(block, offset, codes);
+    }
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -69,25 +71,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace deltasplat {
 
-HWY_EXPORT(encodeUint8);
-HWY_EXPORT(encodeInt8);
-HWY_EXPORT(encode16);
+HWY_EXPORT(encodeWholeBlockKernel);
 
-template <>
-void encodeWholeBlock<std::uint8_t>(const RawBlock& block, Code offset, Code* codes) {
-    HWY_DYNAMIC_DISPATCH(encodeUint8)(block, offset, codes);
-}
-template <>
-void encodeWholeBlock<std::int8_t>(const RawBlock& block, Code offset, Code* codes) {
-    HWY_DYNAMIC_DISPATCH(encodeInt8)(block, offset, codes);
-}
-template <>
-void encodeWholeBlock<std::uint16_t>(const RawBlock& block, Code offset, Code* codes) {
-    HWY_DYNAMIC_DISPATCH(encode16)(block, offset, codes);
-}
-template <>
-void encodeWholeBlock<std::int16_t>(const RawBlock& block, Code offset, Code* codes) {
-    HWY_DYNAMIC_DISPATCH(encode16)(block, offset, codes);
+void encodeWholeBlock(const RawBlock& block, RawType type, Code offset, Code* codes) {
+    HWY_DYNAMIC_DISPATCH(encodeWholeBlockKernel)(block, type, offset, codes);
 }
 
 }  // namespace deltasplat

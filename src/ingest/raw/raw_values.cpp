@@ -128,7 +128,7 @@ void encode(const RawBlock& block, const RawCoding& coding, Code* codes) {
     // Nearly all blocks are whole.
     if (block.size == glm::ivec3(8)) {
         if constexpr (std::is_same_v<Coder<T>, IntegerCoder<T>> && sizeof(T) <= 2 && !kSwap) {
-            encodeWholeBlock<T>(block, coder.offset, codes);
+            encodeWholeBlock(block, coding.type, coder.offset, codes);
         } else {
             // Loops of known length let the compiler unroll.
             encodeBox<T, kSwap>(block, {8, 8, 8}, coder, codes);
