@@ -70,12 +70,14 @@ LayeredPicture::Impl::Impl(const PreparedScene& ofScene, const Camera& ofCamera,
     : scene(ofScene), camera(ofCamera) {
     const PreparedScene::Impl& prepared = scene.impl();
     const Volume& volume = *prepared.scene.volume;
-    const std::vector<Factorization> all = viewsOf(camera, volume, prepared.options);
-    const SheetPlan plan(prepared, all.front(), false, listener);
+    const ViewPlan plan(prepared, camera, false, listener);
     if (volume.empty()) return;
-    for (const Factorization& view : all) {
-        views.push_back(std::make_unique<PictureView>(prepared, camera, view, plan,
-                                                      prepared.axis(view, plan, listener), memory));
+    for (const Factorization& view : plan.views) {
+        std::optional<SeenCone> cone;
+        if (view.eye) cone = seenCone(prepared, camera, view, plan.sheets);
+        auto axis = prepared.axis(view, plan.sheets, listener, cone ? &*cone : nullptr);
+        views.push_back(std::make_unique<PictureView>(prepared, camera, view, plan.sheets,
+                                                      std::move(axis), memory));
         seen.push_back(seenSlabs(views.back()->slabs()));
         for (int slab = 0; slab < int(seen.back().size()); ++slab)
             slabs.push_back({views.size() - 1, slab});

@@ -133,10 +133,12 @@ void visitView(Visitor& visit, ViewT& layout) {
     visit("base_from_pixel", view.baseFromPixel);
     visit("eye", view.eye);
     visit("world_from_step", view.worldFromStep);
+    visit("slope_step", view.slopeStep);
     visit("slope_limit", view.slopeLimit);
     visit("slope_min", view.slopeMin);
     visit("slope_max", view.slopeMax);
     visit("pixels_per_slope", view.pixelsPerSlope);
+    visit("steps", view.steps);
     visit("thin_slices", place.parts.slices);
     visit("thin_within", place.parts.within);
     visit("joined_slices", place.parts.joined);
@@ -213,14 +215,14 @@ void check(const ViewLayout& layout) {
     const int joined = place.parts.joined;
     const glm::ivec2 slant = glm::abs(place.parts.slant);
     require(joined == 1 ? slant == glm::ivec2(0)
-                        : joined == 2 && !place.parts.divides() && !view.eye &&
-                              std::max(slant.x, slant.y) <= 1,
+                        : joined == 2 && !place.parts.divides() && std::max(slant.x, slant.y) <= 1,
             "slices joined that cannot be");
     require(isResolution(place.resolution) && place.spacing > 0 && std::isfinite(place.spacing),
             "a base plane of no pixels");
     require(isFinite(view.baseFromPixel) && isFinite(view.worldFromStep) &&
                 view.slopeMin.x <= view.slopeMax.x && view.slopeMin.y <= view.slopeMax.y,
             "a view of nothing");
+    require(view.steps > 0 && std::isfinite(view.steps), "slices that no line of sight crosses");
     require(view.sliceStepWorld > 0 && std::isfinite(view.sliceStepWorld), "slices of no depth");
     require(isSane(layout.reach), "slabs that are out of reach");
     for (const PlaneBox& slab : layout.slabs)

@@ -29,25 +29,92 @@ glm::dvec2 middleSlope(const Camera& camera, const Factorization& view) {
     return glm::clamp(glm::dvec2(ahead.y, ahead.z) / ahead.x, view.slopeMin, view.slopeMax);
 }
 
-}  // namespace
+Footprint makeViewFootprint(const PreparedScene::Impl& scene, const Camera& camera,
+                            const Factorization& view, const SheetPlan& plan) {
+    const SplatOptions& options = scene.options;
+    if (plan.resolution() < 1) return makeCoarseFootprint(int(1 / plan.resolution()));
+    const int within = plan.partsIn(view).within;
+    const double pixels = view.pixelsPerVoxel / within;
+    const double sigma = options.sigma.value_or(defaultSigma(pixels, plan.resolution()) / within);
+    // The kernel is round in voxels, however many slices there are; seen along the middle line of
+    // sight.
+    const glm::dvec2 shift = view.eye ? middleSlope(camera, view) : view.shiftPerSlice;
+    return makeFootprint(sigma, {shift.y, shift.x}, int(plan.resolution()),
+                         plan.footprintWidth(view), within);
+}
 
-std::vector<Factorization> viewsOf(const Camera& camera, const Volume& volume,
-                                   const SplatOptions& options) {
+std::vector<Factorization> factorizeAll(const PreparedScene::Impl& scene, const Camera& camera,
+                                        bool atSlopeSteps) {
+    const Volume& volume = *scene.scene.volume;
+    const std::optional<double> resolution = scene.options.resolution;
     if (camera.projection == Projection::kOrtho)
-        return {factorize(camera, volume.worldFromIndex, options.resolution)};
+        return {factorize(camera, volume.worldFromIndex, resolution)};
     std::vector<Factorization> views =
-        factorizeRegions(camera, volume.box, volume.worldFromIndex, options.resolution);
+        factorizeRegions(camera, volume.box, volume.worldFromIndex, resolution, atSlopeSteps);
     if (!views.empty()) return views;
     throw Error(ErrorCode::kUsage,
                 gotExpected("camera", "no lines of sight", "what makeCamera returns"));
 }
 
+// Base plane pixels that a slope of 1 takes: as many as the farthest slice has sheet pixels, which
+// is the most that there is to show, or fewer: as many as the picture needs, but at least as many
+// as there are voxels in the slice in the middle, or sheet pixels if those are fewer. What is
+// averaged before it is composited is not what is seen of it.
+// @param view         of thin voxels
+// @param box          of all slices
+// @param sheetPixels  of a thin voxel
+double planeDensity(const Factorization& view, const IndexBox& box, double sheetPixels,
+                    int within) {
+    const double farthest = view.frontToBack ? box.max.x - view.eye->x : view.eye->x - box.min.x;
+    const double nearest =
+        std::max(0.0, view.frontToBack ? box.min.x - view.eye->x : view.eye->x - box.max.x);
+    const double middle = 0.5 * (nearest + farthest);
+    const double needed = std::max(kPixelsOfScreen * view.pixelsPerSlope,
+                                   middle * std::min(sheetPixels, 1.0) / within);
+    const double most = sheetPixels * std::max(farthest, 1.0);
+    // Reading sheets that are not averaged takes so much less time.
+    constexpr double kWorthMore = 1.3;
+    return most < kWorthMore * needed ? most : needed;
+}
+
+}  // namespace
+
+ViewPlan::ViewPlan(const PreparedScene::Impl& scene, const Camera& camera, bool keepsSlices,
+                   const Listener& listener)
+    : views(factorizeAll(scene, camera, false)),
+      sheets(scene, camera, views.front(), keepsSlices, listener) {
+    // Slices are joined along lines of sight, as far as whole voxels are.
+    if (sheets.joined() > 1 && views.front().eye) views = factorizeAll(scene, camera, true);
+}
+
 double stepsOf(const Factorization& view, const Volume& volume) {
-    if (view.eye) return 1;
+    if (view.eye) return view.steps;
     // Rounding makes no straight view an oblique one.
     constexpr double kSame = 1e-12;
     const double steps = view.sliceStepWorld / planeDistance(volume.worldFromIndex, view.sliceAxis);
     return std::abs(steps - 1) < kSame ? 1 : steps;
+}
+
+SeenCone seenCone(const PreparedScene::Impl& scene, const Camera& camera, const Factorization& view,
+                  const SheetPlan& plan) {
+    const Subdivision parts = plan.partsIn(view);
+    const Factorization thin = subdivided(view, parts);
+    const Footprint footprint = makeViewFootprint(scene, camera, view, plan);
+    const double sheetPixels = footprint.pixelsPerVoxel();
+    const IndexBox box = boxOfSlices(scene.scene.volume->box, view.sliceAxis, parts);
+    const double spacing = 1 / planeDensity(thin, box, sheetPixels, parts.within);
+    SeenCone cone;
+    cone.eye = *view.eye;
+    cone.frontToBack = view.frontToBack;
+    // In slopes of the volume's own slices and voxels.
+    cone.reachPerSlice = spacing * view.slopeLimit / thin.slopeLimit;
+    const double border = (kPlaneBorder + 3) * cone.reachPerSlice;
+    cone.slopeMin = view.slopeMin - border;
+    cone.slopeMax = view.slopeMax + border;
+    // What is joined lies up to a voxel beside what it is made of, and what is mixed next to it.
+    constexpr double kBeside = 2;
+    cone.reach = (footprint.reach() + 2) / sheetPixels / parts.within + kBeside;
+    return cone;
 }
 
 void requireSize(const Camera& camera, const Image& image) {
@@ -74,7 +141,7 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
       axis_(std::move(axis)),
       steps_(stepsOf(view, *scene.scene.volume)),
       thinView_(subdivided(view, axis_->parts)),
-      footprint_(makeViewFootprint(plan)),
+      footprint_(makeViewFootprint(scene, camera, view, plan)),
       layout_(layoutSheet(axis_->deltas().box, footprint_, axis_->classes().oneColor ? 1 : 4)) {
     const VoxelPainter* painter = scene.painter.get();
     const bool isLit = painter && painter->dependsOnCamera();
@@ -108,39 +175,6 @@ glm::dmat4 PictureView::worldFromSlices() const {
     return scene_.scene.volume->worldFromIndex * indexFromThinVoxel(axis_->sliceAxis, {});
 }
 
-Footprint PictureView::makeViewFootprint(const SheetPlan& plan) const {
-    const SplatOptions& options = scene_.options;
-    if (plan.resolution() < 1) return makeCoarseFootprint(int(1 / plan.resolution()));
-    const int within = axis_->parts.within;
-    const double pixels = view_.pixelsPerVoxel / within;
-    const double sigma = options.sigma.value_or(defaultSigma(pixels, plan.resolution()) / within);
-    // The kernel is round in voxels, however many slices there are; seen along the middle line of
-    // sight.
-    const glm::dvec2 shift = view_.eye ? middleSlope(camera_, view_) : view_.shiftPerSlice;
-    return makeFootprint(sigma, {shift.y, shift.x}, int(plan.resolution()),
-                         plan.footprintWidth(view_), within);
-}
-
-// Base plane pixels that a slope of 1 takes: as many as the farthest slice has sheet pixels, which
-// is the most that there is to show, or fewer: as many as the picture needs, but at least as many
-// as there are voxels in the slice in the middle, or sheet pixels if those are fewer. What is
-// averaged before it is composited is not what is seen of it.
-double PictureView::densityOf() const {
-    const IndexBox& box = axis_->deltas().box;
-    const Factorization& view = thinView_;
-    const double farthest = view.frontToBack ? box.max.x - view.eye->x : view.eye->x - box.min.x;
-    const double nearest =
-        std::max(0.0, view.frontToBack ? box.min.x - view.eye->x : view.eye->x - box.max.x);
-    const double middle = 0.5 * (nearest + farthest);
-    const double needed =
-        std::max(kPixelsOfScreen * view.pixelsPerSlope,
-                 middle * std::min(layout_.pixelsPerVoxel(), 1.0) / axis_->parts.within);
-    const double most = layout_.pixelsPerVoxel() * std::max(farthest, 1.0);
-    // Reading sheets that are not averaged takes so much less time.
-    constexpr double kWorthMore = 1.3;
-    return most < kWorthMore * needed ? most : needed;
-}
-
 PlanePlace PictureView::placePlane() const {
     PlanePlace place;
     place.view = view_;
@@ -148,7 +182,8 @@ PlanePlace PictureView::placePlane() const {
     place.firstSlice = layout_.firstSlice;
     place.firstVoxel = layout_.firstVoxel;
     if (view_.eye) {
-        place.spacing = 1 / densityOf();
+        place.spacing = 1 / planeDensity(thinView_, axis_->deltas().box, layout_.pixelsPerVoxel(),
+                                         axis_->parts.within);
     } else {
         place.resolution = layout_.pixelsPerVoxel();
         place.offsetPixels = layout_.offsetPixels;

@@ -11,16 +11,28 @@
 #include "prepared_axis.h"
 #include "sheet_plan.h"
 #include "splat/digit_voxels.h"
+#include "view/seen_cone.h"
 
 namespace deltasplat {
 
-/// Returns how a camera sees a volume: one view, or one for each region of what an eye sees.
-std::vector<Factorization> viewsOf(const Camera& camera, const Volume& volume,
-                                   const SplatOptions& options);
+/// How a camera sees a scene.
+struct ViewPlan {
+    /// @param keepsSlices  whether each has to be drawn by itself
+    ViewPlan(const PreparedScene::Impl& scene, const Camera& camera, bool keepsSlices,
+             const Listener& listener);
 
-/// Of a view, how long the way from one slice to the next is, as a multiple of the straight one;
-/// from an eye, where each pixel has its own, 1.
+    /// One, or one for each region of what an eye sees, of the volume's own voxels.
+    std::vector<Factorization> views;
+    SheetPlan sheets;  ///< all of a picture is drawn alike
+};
+
+/// Of a view, how long the way from one slice to the next is that colours are for, as a multiple of
+/// the straight one; from an eye, each pixel has its own.
 double stepsOf(const Factorization& view, const Volume& volume);
+
+/// Returns what of the volume a view from an eye may show.
+SeenCone seenCone(const PreparedScene::Impl& scene, const Camera& camera, const Factorization& view,
+                  const SheetPlan& plan);
 
 /// @throw Error(kUsage) if the image has not the camera's size
 void requireSize(const Camera& camera, const Image& image);
@@ -61,8 +73,6 @@ class PictureView {
     ErrorBound errorBound() const;
 
   private:
-    Footprint makeViewFootprint(const SheetPlan& plan) const;
-    double densityOf() const;
     PlanePlace placePlane() const;
 
     const PreparedScene::Impl& scene_;

@@ -19,6 +19,7 @@
 #include "portable_math.h"
 #include "sheet_plan.h"
 #include "view/affine.h"
+#include "view/seen_cone.h"
 
 namespace deltasplat {
 namespace {
@@ -82,43 +83,56 @@ std::vector<float> opacitiesOf(const Volume& volume, const ClassTable& classes) 
     return opacities;
 }
 
+// What an axis is to be.
+struct AxisRequest {
+    int sliceAxis;
+    bool descending;
+    Subdivision parts;
+    SeenThrough seenThrough;  // of joined slices, which of two is behind
+    double steps;
+    Encoding encoding = Encoding::kChanges;
+    SlabLength slabLength = SlabLength::kByCounts;
+    std::optional<SeenCone> seen = {};     // empty: all is
+    const PreparedAxis* before = nullptr;  // the same axis as other optics have it; null: none
+    bool mayBeParted = false;
+};
+
 // Returns the words that other optics have, if these tell the same codes apart, or null; classes
 // then get the others' numbers. Where nothing is held and nothing has looks of its own, all that
 // words know of optics is the classes of codes; and of divided voxels how opaque these are, which
 // is left to the caller.
-std::shared_ptr<const PackedDeltas> sharedWords(const PreparedAxis* before,
+std::shared_ptr<const PackedDeltas> sharedWords(const AxisRequest& request,
                                                 const PreparedScene::Impl& scene,
                                                 ClassTable& classes) {
+    const PreparedAxis* before = request.before;
     const bool areOfClasses = !scene.painter && scene.options.tolerance.isExact();
-    if (!before || !areOfClasses || before->packer) return {};
+    if (!before || !areOfClasses || before->packer || before->seen != request.seen) return {};
     return takeNumbers(before->classes().classOfSlot, classes) ? before->words : nullptr;
 }
 
-// @param seenThrough  of joined slices, which of two is behind
-// @param before  the same axis as other optics have it; null: none
-std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, int sliceAxis,
-                                            bool descending, const Subdivision& parts,
-                                            SeenThrough seenThrough, double steps,
-                                            Encoding encoding, const PreparedAxis* before,
-                                            bool inParts, const Listener& listener) {
+std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
+                                            const AxisRequest& request, const Listener& listener) {
+    const auto& [sliceAxis, descending, parts, seenThrough, steps, encodingAsked, slabLength, seen,
+                 before, mayBeParted] = request;
     const Volume& volume = *scene.scene.volume;
     const Tolerance& tolerance = scene.options.tolerance;
     std::optional<ValueMixer> mixer;
     const VoxelPainter* painter = scene.painter.get();
     if (parts.divides() || (painter && painter->choosesClasses())) mixer.emplace(volume, parts);
-    const Volume& seen = mixer ? mixer->levels() : volume;
+    const Volume& levels = mixer ? mixer->levels() : volume;
     // What is held does not depend on the camera: straight ways decide.
     const double straight = planeDistance(volume.worldFromIndex, sliceAxis) / parts.slices;
     double first = tolerance.isExact() ? steps : 1;
-    ClassTable classes = classify(seen, scene.optics, straight * first);
+    ClassTable classes = classify(levels, scene.optics, straight * first);
     if (first != 1 && shorterMayShowLess(classes, first)) {
         first = 1;
-        classes = classify(seen, scene.optics, straight);
+        classes = classify(levels, scene.optics, straight);
     }
     listener.report(0.05);
     // Small footprints of two digits are never stamped.
+    Encoding encoding = encodingAsked;
     if (encoding == Encoding::kSmaller && !classes.oneDigit()) encoding = Encoding::kSmallerOfSums;
-    std::shared_ptr<const PackedDeltas> words = sharedWords(before, scene, classes);
+    std::shared_ptr<const PackedDeltas> words = sharedWords(request, scene, classes);
     std::optional<SliceJoiner> joiner;
     if (parts.joined > 1) {
         joiner.emplace(joinerOf(classes));
@@ -129,11 +143,13 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
         opacities = opacitiesOf(volume, classes);
         if (words && opacities != opacitiesOf(volume, before->classes())) words = nullptr;
     }
-    PackOptions pack{sliceAxis, encoding, classes.classOfSlot, holdRule(seen, classes, tolerance),
+    PackOptions pack{sliceAxis, encoding, classes.classOfSlot, holdRule(levels, classes, tolerance),
                      mixer ? &*mixer : nullptr};
     pack.descending = descending;
     if (joiner) pack.joiner = &*joiner;
     pack.slant = parts.slant;
+    pack.seen = seen;
+    pack.slabLength = slabLength;
     pack.opacities = opacities;
     const bool isLit = painter && painter->dependsOnCamera();
     std::unique_ptr<const LookLight> light;
@@ -150,7 +166,8 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     std::shared_ptr<DeltaPacker> packer;
     if (!words) {
         packer = std::make_shared<DeltaPacker>(volume, pack);
-        inParts = inParts && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
+        const bool inParts =
+            mayBeParted && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
         words = std::make_shared<const PackedDeltas>(inParts ? packer->plan(scene.wordBytes)
                                                              : packer->packAll());
         if (!inParts) packer = nullptr;
@@ -163,9 +180,9 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, in
     }
     StepColors colors = isLit ? StepColors(std::move(classes))
                               : StepColors(*words, std::move(classes), std::move(light));
-    return std::make_shared<const PreparedAxis>(PreparedAxis{sliceAxis, parts, std::move(words),
-                                                             steps, std::move(colors),
-                                                             std::move(packer), std::move(joiner)});
+    return std::make_shared<const PreparedAxis>(
+        PreparedAxis{sliceAxis, parts, std::move(words), steps, std::move(colors),
+                     std::move(packer), std::move(joiner), seen});
 }
 
 std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
@@ -253,9 +270,10 @@ void PreparedScene::Impl::forgetSlants(const Key& key) const {
 std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorization& view,
                                                               const SheetPlan& plan,
                                                               const Listener& listener,
+                                                              const SeenCone* seen,
                                                               bool inParts) const {
     const int sliceAxis = view.sliceAxis;
-    const Subdivision parts = plan.partsAlong(sliceAxis);
+    const Subdivision parts = plan.partsIn(view);
     const bool isWhole =
         painter && (painter->isEverywhereOther() || (view.eye && painter->dependsOnCamera()));
     const bool hasPixels = plan.footprintWidth(view) == 1;
@@ -266,8 +284,21 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
     // Of joined ones, what they look like does.
     const bool isJoined = parts.joined > 1;
     const bool fromEnd = descending || (isJoined && !view.frontToBack);
-    const Key key{sliceAxis,    int(encoding), int(fromEnd),  parts.slices,
-                  parts.within, parts.joined,  parts.slant.x, parts.slant.y};
+    AxisRequest request{sliceAxis, descending, parts,
+                        view.frontToBack ? SeenThrough::kSecond : SeenThrough::kFirst,
+                        isForOne ? stepsOf(view, *scene.volume) : 1};
+    request.encoding = encoding;
+    // From an eye slabs are as long as they are, whatever is in them: what is seen is all that may
+    // be packed. What is held depends on all that lies before it.
+    request.slabLength = view.eye ? SlabLength::kShortest : SlabLength::kByCounts;
+    request.mayBeParted = isForOne && inParts;
+    const bool packsSeen = seen && options.tolerance.isExact() && (isForOne || isJoined);
+    if (packsSeen) request.seen = *seen;
+    // No other region sees the same.
+    if (packsSeen && isForOne) return prepare(*this, request, listener);
+    const Key key{sliceAxis,    int(encoding), int(fromEnd), int(request.slabLength),
+                  parts.slices, parts.within,  parts.joined, parts.slant.x,
+                  parts.slant.y};
     Key otherKey = key;
     otherKey[2] = int(!fromEnd);
     std::shared_ptr<Place> otherWay;
@@ -280,21 +311,19 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
         if (!known) known = std::make_shared<Place>();
         known->lastUse = ++uses_;
         place = known;
-        if (isJoined) forgetSlants(key);
+        if (isJoined && !view.eye) forgetSlants(key);
     }
     const std::lock_guard lock(place->mutex);
+    // Seen from elsewhere, it has other words.
+    if (place->axis && place->axis->seen != request.seen) place->axis = nullptr;
     // Work of another picture, taken on while waiting here, might want the same axis.
     std::shared_ptr<const PreparedAxis> other;
     if (!place->axis && otherWay) other = wholeAxis(*otherWay);
     if (other && !isJoined) place->axis = other;
     if (!place->axis)
         isolated([&] {
-            const PreparedAxis* before = other.get();
-            if (!before) before = axisBefore(key, otherKey);
-            const double steps = isForOne ? stepsOf(view, *scene.volume) : 1;
-            place->axis = prepare(*this, sliceAxis, descending, parts,
-                                  view.frontToBack ? SeenThrough::kSecond : SeenThrough::kFirst,
-                                  steps, encoding, before, isForOne && inParts, listener);
+            request.before = other ? other.get() : axisBefore(key, otherKey);
+            place->axis = prepare(*this, request, listener);
         });
     return place->axis;
 }
@@ -313,6 +342,16 @@ bool PreparedScene::Impl::canJoinSlices() const {
             [&] { canJoinSlices_ = canBeJoined(classify(*scene.volume, scene.optics, farthest)); });
     }
     return *canJoinSlices_;
+}
+
+bool PreparedScene::Impl::showsAny() const {
+    if (painter && painter->more() && !painter->more()->positions.empty()) return true;
+    const Volume& volume = *scene.volume;
+    const ClassTable classes =
+        classify(volume, scene.optics, planeDistance(volume.worldFromIndex, 0));
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code)
+        if (volume.histogram[code] > 0 && classes.classOfSlot[code + 1] != 0) return true;
+    return false;
 }
 
 std::size_t PreparedScene::Impl::blocksSeen(int sliceAxis) const {

@@ -13,6 +13,7 @@
 #include "deltasplat/prepared_scene.h"
 #include "kept_memory.h"
 #include "splat/step_colors.h"
+#include "view/seen_cone.h"
 
 namespace deltasplat {
 
@@ -30,6 +31,7 @@ struct PreparedAxis {
     /// none yet. Else null.
     std::shared_ptr<const DeltaPacker> packer = nullptr;
     std::optional<SliceJoiner> joiner = {};  ///< where slices are joined
+    std::optional<SeenCone> seen = {};       ///< of which there are words; empty: of all
 
     const PackedDeltas& deltas() const { return *words; }
     const ClassTable& classes() const { return colors.classes(); }
@@ -60,18 +62,22 @@ struct PreparedScene::Impl {
     /// Returns the axis of a view, made if it is not there. Classes are coloured for the view's
     /// steps if there will be no other picture. From an eye, what is lit looks different in each
     /// slice, and slabs are whole.
+    /// @param seen     from an eye, all that is to be seen
     /// @param inParts  whether a few slabs at a time will do, of a scene for one picture
     std::shared_ptr<const PreparedAxis> axis(const Factorization& view, const SheetPlan& plan,
-                                             const Listener& listener, bool inParts = false) const;
+                                             const Listener& listener, const SeenCone* seen,
+                                             bool inParts = false) const;
     /// Returns whether slices can be joined (optics/joined_classes.h), along whatever axis.
     bool canJoinSlices() const;
+    /// Returns whether any voxel can be seen, wherever it lies.
+    bool showsAny() const;
     /// Returns how many blocks of 8x8x8 voxels can be seen; counted once for each axis.
     std::size_t blocksSeen(int sliceAxis) const;
 
   private:
-    // Axis, encoding, and from which end slices are walked, parts, whether they are joined, by
-    // which slant.
-    using Key = std::array<int, 8>;
+    // Axis, encoding, from which end slices are walked, how long slabs are, parts, whether they are
+    // joined, by which slant.
+    using Key = std::array<int, 9>;
     using Axes = std::map<Key, std::shared_ptr<const PreparedAxis>>;
     struct Place {
         std::mutex mutex;

@@ -265,8 +265,7 @@ class AovRender {
         const Optics& optics = options_.optics;
         if (optics.scattering || optics.shading || !optics.parts.empty()) return false;
         const PreparedScene scene({volume_, optics}, options_);
-        const std::vector<Factorization> views = viewsOf(camera_, *volume_, options_);
-        return SheetPlan(scene.impl(), views.front(), false, {}).joined() > 1;
+        return ViewPlan(scene.impl(), camera_, false, {}).sheets.joined() > 1;
     }
 
     // Made for the first channel that needs it, as those below.

@@ -53,10 +53,9 @@ class CompositeRender {
           wanted_(wanted),
           stats_(stats) {}
 
-    // @param views  of the volume's own voxels
-    void run(const std::vector<Factorization>& views, const Listener& listener) {
-        // All of a picture is drawn alike.
-        plan_.emplace(scene_, views.front(), wanted_.deep != nullptr, listener);
+    void run(const Listener& listener) {
+        plan_.emplace(scene_, camera_, wanted_.deep != nullptr, listener);
+        const std::vector<Factorization>& views = plan_->views;
         for (std::size_t i = 0; i < views.size(); ++i) {
             const auto share = [&](double part) { return (double(i) + part) / views.size(); };
             runView(i, views[i], partOf(listener, share(0), share(1)));
@@ -70,14 +69,17 @@ class CompositeRender {
     void runView(std::size_t number, const Factorization& view, const Listener& listener) {
         const Clock::time_point start = Clock::now();
         const bool isFlat = !wanted_.views && !wanted_.step && !wanted_.deep;
-        std::shared_ptr<const PreparedAxis> axis = scene_.axis(view, *plan_, listener, isFlat);
+        std::optional<SeenCone> seen;
+        if (view.eye && !volume_.empty()) seen = seenCone(scene_, camera_, view, plan_->sheets);
+        std::shared_ptr<const PreparedAxis> axis =
+            scene_.axis(view, plan_->sheets, listener, seen ? &*seen : nullptr, isFlat);
         stats_.prepareSeconds += secondsSince(start);
         countIn(*axis);
         listener.report(0.2);
         if (volume_.empty()) return;
         if (axis->packer) return showInParts(view, *axis, listener);
         const Clock::time_point renderStart = Clock::now();
-        auto picture = std::make_unique<const PictureView>(scene_, camera_, view, *plan_,
+        auto picture = std::make_unique<const PictureView>(scene_, camera_, view, plan_->sheets,
                                                            std::move(axis), memory_);
         countIn(*picture);
         if (wanted_.views) {
@@ -123,7 +125,7 @@ class CompositeRender {
             std::shared_ptr<const PreparedAxis> axis = planned.withWords(parts[i]);
             stats_.prepareSeconds += secondsSince(start);
             const Clock::time_point renderStart = Clock::now();
-            picture = std::make_unique<const PictureView>(scene_, camera_, view, *plan_,
+            picture = std::make_unique<const PictureView>(scene_, camera_, view, plan_->sheets,
                                                           std::move(axis), memory_);
             const SlabInput& input = picture->slabs();
             std::vector<SeenSlab> seen = seenSlabs(input);
@@ -251,7 +253,7 @@ class CompositeRender {
     // Who reads an empty volume has been told so.
     void warnOfEmptyPicture(const Listener& listener) const {
         if (volume_.empty() || isAnythingSeen()) return;
-        if (stats_.visible == 0) {
+        if (stats_.visible == 0 && !scene_.showsAny()) {
             const bool isSurface = scene_.scene.optics.surface.has_value();
             listener.warn(
                 std::string("picture: empty, for ") +
@@ -267,13 +269,17 @@ class CompositeRender {
         stats_.between = axis.parts.slices - 1;
         stats_.parts = axis.parts.voxels();
         stats_.joined = axis.parts.joined;
+        stats_.stamps += axis.stamps(options_.method);
+        // Of regions, that which sees most stands for all.
+        if (isCounted_ && axis.deltas().visible() <= stats_.visible) return;
+        isCounted_ = true;
+        stats_.sliceAxis = axis.sliceAxis;
         const IndexBox& box = axis.deltas().box;
         stats_.slices = box.dims().x;
         stats_.voxels = std::uint64_t(box.voxels());
         stats_.visible = axis.deltas().visible();
         stats_.deltas = axis.deltas().deltas();
         stats_.slabs = int(axis.deltas().slabs.size());
-        stats_.stamps += axis.stamps(options_.method);
     }
 
     void countIn(const PictureView& picture) {
@@ -314,7 +320,8 @@ class CompositeRender {
     KeptMemory& memory_;
     const Wanted& wanted_;
     RenderStats& stats_;
-    std::optional<SheetPlan> plan_;
+    std::optional<ViewPlan> plan_;
+    bool isCounted_ = false;
     // Of rows of blocks compared with the frame before.
     bool isCompared_ = true;
     std::uint64_t differing_ = 0;
@@ -328,13 +335,11 @@ class CompositeRender {
 RenderStats renderAs(const Wanted& wanted, const PreparedScene::Impl& scene, const Camera& camera,
                      KeptMemory& memory, const Listener& listener) {
     const DefaultFloats floats;
-    const std::vector<Factorization> views = viewsOf(camera, *scene.scene.volume, scene.options);
     RenderStats stats;
     stats.mode = Mode::kComposite;
     stats.method = scene.options.method;
     stats.tolerance = scene.options.tolerance;
-    stats.sliceAxis = views.front().sliceAxis;
-    CompositeRender(scene, camera, memory, wanted, stats).run(views, listener);
+    CompositeRender(scene, camera, memory, wanted, stats).run(listener);
     return stats;
 }
 

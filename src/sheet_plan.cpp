@@ -80,20 +80,27 @@ bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
 // Whether slices are joined where nobody says otherwise. Moved by less than a fifth of a pixel, in
 // a picture that averages two voxels each way at least, nothing of one voxel's width is seen to
 // move.
-bool joinsUnasked(const PreparedScene::Impl& scene, const Factorization& view) {
+bool joinsUnasked(const PreparedScene::Impl& scene, const Camera& camera,
+                  const Factorization& view) {
     constexpr double kMostPixelsPerVoxel = 0.5;
+    // From an eye the nearest voxel covers more than others.
+    constexpr double kMostOfNearest = 0.75;
     constexpr double kSnap = 1e-9;
     const SplatOptions& options = scene.options;
     if (!options.joinsSlices || options.resolution || options.between || options.sigma ||
         options.footprintWidth)
         return false;
-    // From an eye lines of sight have other slopes everywhere.
-    if (view.eye || view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsPerVoxel) return false;
-    return scene.scene.volume->activeCount >= leastVoxelsJoined && scene.canJoinSlices();
+    const Volume& volume = *scene.scene.volume;
+    if (view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsPerVoxel) return false;
+    if (view.eye && nearestPixelsPerVoxel(camera, volume.box, volume.worldFromIndex,
+                                          view.pixelsPerVoxel) > kMostOfNearest)
+        return false;
+    return volume.activeCount >= leastVoxelsJoined && scene.canJoinSlices();
 }
 
 // How far a line of sight goes from a slice to the next, in whole voxels, along u and v.
 glm::ivec2 slantOf(const Factorization& view) {
+    if (view.eye) return view.frontToBack ? -*view.slopeStep : *view.slopeStep;
     // What a turning camera rounds must not decide.
     constexpr double kSnap = 1e-9;
     const glm::dvec2 shift = view.shiftPerSlice * (1 - kSnap);
@@ -102,8 +109,8 @@ glm::ivec2 slantOf(const Factorization& view) {
 
 }  // namespace
 
-SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view, bool keepsSlices,
-                     const Listener& listener)
+SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
+                     const Factorization& view, bool keepsSlices, const Listener& listener)
     : asksForSigma_(scene.options.sigma.has_value()),
       footprintWidth_(scene.options.footprintWidth),
       firstVoxel_(scene.scene.volume->box.min),
@@ -133,10 +140,7 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Factorization& view
     if (between > 0 && !options.resolution) resolution_ = 2;
     parts_.slices = between + 1;
     parts_.within = between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1;
-    if (!keepsSlices && joinsUnasked(scene, view)) {
-        parts_.joined = 2;
-        parts_.slant = slantOf(view);
-    }
+    if (!keepsSlices && joinsUnasked(scene, camera, view)) parts_.joined = 2;
 }
 
 std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
@@ -145,10 +149,11 @@ std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
     return 1;
 }
 
-Subdivision SheetPlan::partsAlong(int sliceAxis) const {
+Subdivision SheetPlan::partsIn(const Factorization& view) const {
     Subdivision parts = parts_;
+    if (parts.joined > 1) parts.slant = slantOf(view);
     // Whole blocks are divided.
-    if (parts.divides()) parts.origin = toSliceOrder(firstVoxel_, sliceAxis) & ~7;
+    if (parts.divides()) parts.origin = toSliceOrder(firstVoxel_, view.sliceAxis) & ~7;
     return parts;
 }
 

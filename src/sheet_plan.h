@@ -20,13 +20,13 @@ class SheetPlan {
     /// @param view         of the volume's own voxels; the first of the picture's
     /// @param keepsSlices  whether each has to be drawn by itself
     /// @throw Error for a division that is asked for and cannot be made
-    SheetPlan(const PreparedScene::Impl& scene, const Factorization& view, bool keepsSlices,
-              const Listener& listener);
+    SheetPlan(const PreparedScene::Impl& scene, const Camera& camera, const Factorization& view,
+              bool keepsSlices, const Listener& listener);
 
     /// Slices that are drawn as one.
     int joined() const { return parts_.joined; }
-    /// The same along another slice axis.
-    Subdivision partsAlong(int sliceAxis) const;
+    /// What voxels are drawn as in a view of the picture.
+    Subdivision partsIn(const Factorization& view) const;
     /// Sheet pixels of what voxels are divided into.
     double resolution() const { return resolution_ / parts_.within; }
     /// How wide the footprint of one is in a view: 1 where it has a sheet pixel of its own and is

@@ -103,7 +103,7 @@ struct RenderStats {
     int joined = 1;            ///< slices that are drawn as one
     int parts = 1;             ///< voxels that each was divided into: those are what is counted
     int slabs = 0;
-    int sliceAxis = 2;
+    int sliceAxis = 2;  ///< from an eye, of the region that sees most, which the counts are of
     double resolution = 1;
     int footprint = 0;            ///< width and height of the footprint in sheet pixels
     double prepareSeconds = 0;    ///< classification and taking differences

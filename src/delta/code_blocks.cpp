@@ -2,8 +2,12 @@
 #include "delta/code_blocks.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <glm/common.hpp>
+#include <glm/gtc/type_precision.hpp>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "ingest/codes/leaf_slices.h"
 #include "memory.h"
@@ -55,8 +59,10 @@ class SeenCodes {
 };
 
 // Returns, in parts, the leaves with active voxels whose slots may be other than empty.
+// @param cone  null, or what else is left out
 std::vector<std::vector<CodeBlock>> visibleLeaves(const CodeTree& codes, int sliceAxis,
-                                                  std::span<const Slot> slotMap) {
+                                                  std::span<const Slot> slotMap,
+                                                  const SeenCone* cone) {
     constexpr std::size_t kPart = 4096;
     const auto all = codes.leaves();
     std::optional<SeenCodes> seen;
@@ -68,8 +74,10 @@ std::vector<std::vector<CodeBlock>> visibleLeaves(const CodeTree& codes, int sli
             const CodeLeaf& one = (*all)[i];
             if (seen && !seen->hasAny(one.lowest, one.highest)) continue;
             // Shifting keeps the floor of negative positions.
-            parts[part].push_back({toSliceOrder(one.leaf->origin() >> 3, sliceAxis), one.leaf,
-                                   kEmptySlot, nullptr, one.lowest, one.highest});
+            const glm::ivec3 position = toSliceOrder(one.origin >> 3, sliceAxis);
+            if (cone && !cone->sees(position)) continue;
+            parts[part].push_back(
+                {position, one.leaf, kEmptySlot, nullptr, one.lowest, one.highest});
         }
     });
     return parts;
@@ -79,21 +87,60 @@ Slot inactiveSlot(Code number) {
     return kSlotCount + number;
 }
 
+bool isBefore(const CodeBlock& a, const CodeBlock& b) {
+    return std::tie(a.position.y, a.position.z, a.position.x) <
+           std::tie(b.position.y, b.position.z, b.position.x);
+}
+
+// Orders blocks by u, then v, then slice. Those of each column are counted and put into place, in
+// which they mostly are in order: trees list leaves so, whatever the axis.
+void sortByColumn(std::vector<CodeBlock>& blocks) {
+    if (blocks.empty()) return;
+    glm::i64vec2 first(blocks.front().position.y, blocks.front().position.z);
+    glm::i64vec2 last = first;
+    for (const CodeBlock& block : blocks) {
+        const glm::i64vec2 column(block.position.y, block.position.z);
+        first = glm::min(first, column);
+        last = glm::max(last, column);
+    }
+    const glm::i64vec2 size = last - first + std::int64_t{1};
+    // Where blocks lie far apart there are too many columns.
+    constexpr double kMostColumnsPerBlock = 4;
+    if (double(size.x) * double(size.y) > kMostColumnsPerBlock * double(blocks.size()))
+        return parallelSort(blocks, isBefore);
+    const auto columnOf = [&](const CodeBlock& block) {
+        return std::size_t((block.position.y - first.x) * size.y + (block.position.z - first.y));
+    };
+    std::vector<std::size_t> ends(std::size_t(size.x * size.y));  // of columns
+    for (const CodeBlock& block : blocks) ++ends[columnOf(block)];
+    std::size_t before = 0;
+    for (std::size_t& end : ends) before += std::exchange(end, before);
+    std::vector<CodeBlock> sorted(blocks.size());
+    for (const CodeBlock& block : blocks) sorted[ends[columnOf(block)]++] = block;
+    std::size_t begin = 0;
+    for (const std::size_t end : ends) {
+        const std::span column = std::span(sorted).subspan(begin, end - begin);
+        if (!std::is_sorted(column.begin(), column.end(), isBefore))
+            std::sort(column.begin(), column.end(), isBefore);
+        begin = end;
+    }
+    blocks = std::move(sorted);
+}
+
 }  // namespace
 
 BlockReader::BlockReader(const CodeTree& codes, const CodeTree* inactive, int sliceAxis,
-                         std::span<const Slot> slotMap)
+                         std::span<const Slot> slotMap, const SeenCone* seen)
     : slotMap_(slotMap), sliceAxis_(sliceAxis) {
-    listBlocks(codes, inactive);
-    parallelSort(blocks_, [](const CodeBlock& a, const CodeBlock& b) {
-        return std::tie(a.position.y, a.position.z, a.position.x) <
-               std::tie(b.position.y, b.position.z, b.position.x);
-    });
+    listBlocks(codes, inactive, seen);
+    sortByColumn(blocks_);
     if (inactive) mergeDoubles();
 }
 
-void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
-    const std::vector<std::vector<CodeBlock>> leaves = visibleLeaves(codes, sliceAxis_, slotMap_);
+void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive,
+                             const SeenCone* seen) {
+    const std::vector<std::vector<CodeBlock>> leaves =
+        visibleLeaves(codes, sliceAxis_, slotMap_, seen);
     // A tile may stand for any number of blocks: know how many before they are listed.
     double blocks = 0;
     for (const std::vector<CodeBlock>& part : leaves) blocks += double(part.size());
@@ -107,7 +154,7 @@ void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive) {
     blocks_.reserve(std::size_t(blocks));
     for (const std::vector<CodeBlock>& part : leaves)
         blocks_.insert(blocks_.end(), part.begin(), part.end());
-    const auto add = [&](const openvdb::CoordBBox& box, Slot slot) { addTile(box, slot); };
+    const auto add = [&](const openvdb::CoordBBox& box, Slot slot) { addTile(box, slot, seen); };
     forVisibleTiles(codes, slotOfCode, add);
     if (!inactive) return;
     for (auto leaf = inactive->tree().cbeginLeaf(); leaf; ++leaf) {
@@ -133,13 +180,15 @@ void BlockReader::mergeDoubles() {
     blocks_.resize(kept);
 }
 
-void BlockReader::addTile(const openvdb::CoordBBox& box, Slot slot) {
+void BlockReader::addTile(const openvdb::CoordBBox& box, Slot slot, const SeenCone* seen) {
     const glm::ivec3 first = toSliceOrder(box.min() >> 3, sliceAxis_);
     const glm::ivec3 last = toSliceOrder(box.max() >> 3, sliceAxis_);
     for (int u = first.y; u <= last.y; ++u) {
         for (int v = first.z; v <= last.z; ++v) {
-            for (int s = first.x; s <= last.x; ++s)
-                blocks_.push_back({{s, u, v}, nullptr, slot, nullptr});
+            for (int s = first.x; s <= last.x; ++s) {
+                if (!seen || seen->sees({s, u, v}))
+                    blocks_.push_back({{s, u, v}, nullptr, slot, nullptr});
+            }
         }
     }
 }
@@ -180,12 +229,13 @@ void BlockReader::readInactive(const CodeBlock& block, int firstSlice, Slot* slo
 }
 
 std::vector<CodeBlock> listBlocks(const CodeTree& codes, int sliceAxis,
-                                  std::span<const Slot> slotMap) {
+                                  std::span<const Slot> slotMap, const SeenCone* seen) {
     const SlotBlocks* const along = codes.blocksAlong(sliceAxis);
-    if (!along) return BlockReader(codes, nullptr, sliceAxis, slotMap).takeBlocks();
-    const SeenCodes seen(slotMap);
+    if (!along) return BlockReader(codes, nullptr, sliceAxis, slotMap, seen).takeBlocks();
+    const SeenCodes seenCodes(slotMap);
     const auto isSeen = [&](const SlotBlock& block) {
-        return seen.hasAny(block.lowest, block.highest);
+        return seenCodes.hasAny(block.lowest, block.highest) &&
+               (!seen || seen->sees(block.position));
     };
     const auto count = std::count_if(along->blocks().begin(), along->blocks().end(), isSeen);
     requireMemory("list of voxel blocks", double(count) * kBytesPerBlock);

@@ -9,6 +9,7 @@
 #include "deltasplat/delta/delta_grid.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/slot_blocks.h"
+#include "view/seen_cone.h"
 
 namespace deltasplat {
 
@@ -45,8 +46,9 @@ class BlockReader {
     /// @param inactive  null, or a tree that is active where `codes` is not: voxels whose slot is
     ///                  kSlotCount + its value
     /// @param slotMap   as DeltaOptions::slotMap; must outlive the reader
+    /// @param seen      null, or leaves out blocks that it does not see
     BlockReader(const CodeTree& codes, const CodeTree* inactive, int sliceAxis,
-                std::span<const Slot> slotMap);
+                std::span<const Slot> slotMap, const SeenCone* seen = nullptr);
 
     /// The blocks that may have slots other than empty, ordered by u, then v, then slice.
     const std::vector<CodeBlock>& blocks() const { return blocks_; }
@@ -57,8 +59,8 @@ class BlockReader {
     void readLastSlice(const CodeBlock& block, std::span<Slot, 64> slots) const;
 
   private:
-    void listBlocks(const CodeTree& codes, const CodeTree* inactive);
-    void addTile(const openvdb::CoordBBox& box, Slot slot);
+    void listBlocks(const CodeTree& codes, const CodeTree* inactive, const SeenCone* seen);
+    void addTile(const openvdb::CoordBBox& box, Slot slot, const SeenCone* seen);
     void mergeDoubles();
     void readInactive(const CodeBlock& block, int firstSlice, Slot* slots) const;
     Slot slotOf(Code code) const { return slotMap_.empty() ? code + 1 : slotMap_[code + 1]; }
@@ -71,6 +73,6 @@ class BlockReader {
 /// Lists the blocks of a volume's codes that may have slots other than empty, as BlockReader does.
 /// Where codes are SlotBlocks along this axis, these are what is listed, and no tree is made.
 std::vector<CodeBlock> listBlocks(const CodeTree& codes, int sliceAxis,
-                                  std::span<const Slot> slotMap);
+                                  std::span<const Slot> slotMap, const SeenCone* seen = nullptr);
 
 }  // namespace deltasplat

@@ -104,26 +104,13 @@ std::vector<PackedColumns*> inOrder(const std::vector<Columns>& runs,
     return columns;
 }
 
-// Returns a volume's box in (slice, u, v) order, of what its voxels are divided into, or joined to.
-IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& parts) {
-    const IndexBox own = permutedBox(box, sliceAxis);
-    if (parts.joined > 1) {
-        const glm::ivec3 slant(0, parts.slant);
-        // Shifts round down.
-        return {glm::min(own.min, own.min + slant) >> glm::ivec3(1, 0, 0),
-                glm::max(own.max, own.max + slant) >> glm::ivec3(1, 0, 0)};
-    }
-    const glm::ivec3 per(parts.slices, parts.within, parts.within);
-    return {(own.min - parts.origin) * per, (own.max - parts.origin) * per + per - 1};
-}
-
 // Returns the plan of all of a volume, also where only some of its slices are there.
 // @param box  of the slices
 SlabPlan planOf(const Volume& volume, const PackOptions& options, const IndexBox& box,
                 const SlabPlanner& planner) {
     const SlotBlocks* const blocks = volume.codes->blocksAlong(options.sliceAxis);
     const SlabFacts* const facts = blocks ? blocks->facts() : nullptr;
-    if (!facts) return planner.plan(options.encoding);
+    if (!facts) return planner.plan(options.encoding, options.slabLength);
     SlabPlan plan{planner.shortest(), facts->slabs};
     const bool fits = facts->blocksPerSlab % plan.layout.blocksPerSlab == 0;
     plan.layout.blocksPerSlab = facts->blocksPerSlab;
@@ -138,6 +125,18 @@ SlabPlan planOf(const Volume& volume, const PackOptions& options, const IndexBox
 }
 
 }  // namespace
+
+IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& parts) {
+    const IndexBox own = permutedBox(box, sliceAxis);
+    if (parts.joined > 1) {
+        const glm::ivec3 slant(0, parts.slant);
+        // Shifts round down.
+        return {glm::min(own.min, own.min + slant) >> glm::ivec3(1, 0, 0),
+                glm::max(own.max, own.max + slant) >> glm::ivec3(1, 0, 0)};
+    }
+    const glm::ivec3 per(parts.slices, parts.within, parts.within);
+    return {(own.min - parts.origin) * per, (own.max - parts.origin) * per + per - 1};
+}
 
 std::uint64_t PackedDeltas::visible() const {
     return sumOf(slabs, &Slab::visible);
@@ -177,10 +176,16 @@ struct DeltaPacker::Impl {
         slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
         if (mixer && !options.opacities.empty()) noteOpacities();
         if (mixer) sight.emplace(*mixer, slotMap, choosesClasses(options));
+        const SeenCone* const seen = options.seen ? &*options.seen : nullptr;
+        // What is mixed is listed with what lies beside it.
         blocks = sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
-                       : listBlocks(*volume.codes, options.sliceAxis, slotMap);
+                       : listBlocks(*volume.codes, options.sliceAxis, slotMap, seen);
         if (options.painter && options.painter->more())
             addBlocks(*options.painter->more(), options.sliceAxis, blocks);
+        if (seen && (sight || options.painter)) {
+            std::erase_if(blocks,
+                          [&](const CodeBlock& block) { return !seen->sees(block.position); });
+        }
         if (joiner) {
             joinedColumns = joinColumns(blocks, options.slant);
             joinedRuns = cutAtColumns(joinedColumns);

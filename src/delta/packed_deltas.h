@@ -6,13 +6,16 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "delta/class_index.h"
 #include "delta/slab_plan.h"
+#include "deltasplat/view/factorization.h"
 #include "optics/voxel_painter.h"
 #include "uncleared_vector.h"
+#include "view/seen_cone.h"
 
 namespace deltasplat {
 
@@ -90,7 +93,14 @@ struct PackOptions {
     /// mixer or a painter, or where voxels are held.
     const SliceJoiner* joiner = nullptr;
     glm::ivec2 slant{0};  ///< with a joiner, as Subdivision::slant
+    /// Leaves out blocks of voxels that it does not see. Not where voxels are held.
+    std::optional<SeenCone> seen = {};
+    SlabLength slabLength = SlabLength::kByCounts;
 };
+
+/// Returns a volume's box in (slice, u, v) order, of what its voxels are divided into, or joined
+/// to.
+IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& parts);
 
 /// Takes the differences of consecutive slices, in one pass over the leaves that can be seen, and
 /// cuts them into slabs (SlabPlanner). With `holds`, a voxel keeps its class along the slice axis

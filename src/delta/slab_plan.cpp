@@ -71,8 +71,8 @@ void SlabPlanner::add(const SlabPlanner& other) {
     }
 }
 
-SlabPlan SlabPlanner::plan(Encoding encoding) const {
-    const int length = chooseLength();
+SlabPlan SlabPlanner::plan(Encoding encoding, SlabLength slabLength) const {
+    const int length = slabLength == SlabLength::kShortest ? 1 : chooseLength();
     SlabPlan plan{shortest_, {}};
     plan.layout.blocksPerSlab *= length;
     for (std::size_t i = 0; i < counts_.size(); ++i) {

@@ -21,6 +21,12 @@ enum class Encoding {
     kFewerWords
 };
 
+/// How long slabs are.
+enum class SlabLength {
+    kShortest,  ///< there are 8 at most
+    kByCounts   ///< or fewer, by what is in them
+};
+
 /// A slab as a picture is rendered from it. Deltas are counted from each slice to the next, with
 /// the first one as the key slice, whichever way a picture walks them.
 struct PlannedSlab : Slab {
@@ -50,8 +56,9 @@ struct SlabPlan {
 
 /// Counts what is in the slices of a volume, and cuts it into slabs by it. There are 8 at most.
 /// Where key slices would add more than 3 % to the deltas, they are joined two and two as long as
-/// that is so; but slabs of more than 32 slices never become fewer than 4. A function of the volume
-/// and the classes it shows, whatever the encoding, so that all methods merge the same layers.
+/// that is so, unless they are to be as short as they may be; but slabs of more than 32 slices
+/// never become fewer than 4. A function of the volume and the classes it shows, whatever the
+/// encoding, so that all methods merge the same layers.
 class SlabPlanner {
   public:
     /// @param box  in (slice, u, v) order, not empty
@@ -66,7 +73,7 @@ class SlabPlanner {
              std::span<const std::uint64_t> changed);
     /// Adds what another planner of the same box has counted.
     void add(const SlabPlanner& other);
-    SlabPlan plan(Encoding encoding) const;
+    SlabPlan plan(Encoding encoding, SlabLength length = SlabLength::kByCounts) const;
 
   private:
     // What is in slices: voxels, and mask words with any.

@@ -16,6 +16,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 
 #include "deltasplat/delta/delta_grid.h"
@@ -78,6 +79,7 @@ class RegionWarper {
         : raster_(raster),
           tiles_(raster),
           order_(sliceOrder(view.sliceAxis)),
+          slopeStep_(view.slopeStep),
           rays_(camera, glm::inverse(view.worldFromStep)),
           slopeScale_(thin.slopeLimit / view.slopeLimit),
           flat_(camera.projection == Projection::kPerspective),
@@ -122,11 +124,17 @@ class RegionWarper {
         return plane_.pixelOf(slope) - glm::dvec2(raster_.min);
     }
 
+    // Whether a line of sight is one of those that the region is made of.
+    bool hasSlope(const glm::dvec3& steps) const {
+        return !slopeStep_ || (isNearSlope(slopeStep_->x, steps.y, steps.x) &&
+                               isNearSlope(slopeStep_->y, steps.z, steps.x));
+    }
+
     // @param alongX,alongY  by how much steps change from one pixel to the next
     Place placeOf(const glm::dvec3& steps, const glm::dvec3& alongX,
                   const glm::dvec3& alongY) const {
         Place place;
-        place.belongs = belongs(steps, order_);
+        place.belongs = belongs(steps, order_) && hasSlope(steps);
         if (!place.belongs) return place;
         place.position = positionOf(steps);
         const double rasterPerStep = slopeScale_ / plane_.spacing() / steps.x;
@@ -235,6 +243,7 @@ class RegionWarper {
     const Raster& raster_;
     RasterTiles tiles_;
     glm::ivec3 order_;
+    std::optional<glm::ivec2> slopeStep_;
     PictureRays rays_;
     double slopeScale_;
     bool flat_;

@@ -22,9 +22,6 @@ glm::dvec2 swapped(glm::dvec2 v) {
     return {v.y, v.x};
 }
 
-// Pixels around what the picture shows, for the warp's filters to read.
-constexpr int kBorder = 8;
-
 }  // namespace
 
 BasePlane::BasePlane(const Factorization& view, int firstSlice, glm::ivec2 firstVoxel,
@@ -46,16 +43,17 @@ BasePlane::BasePlane(const Factorization& view, const Camera& camera, int firstS
     : frontToBack_(view.frontToBack),
       firstSlice_(firstSlice),
       spacing_(spacing),
-      origin_(spacing * (glm::floor(swapped(view.slopeMin) / spacing) - double(kBorder))),
+      origin_(spacing * (glm::floor(swapped(view.slopeMin) / spacing) - double(kPlaneBorder))),
       eye_(glm::dvec3(view.eye->x - firstSlice, view.eye->z - firstVoxel.x,
                       view.eye->y - firstVoxel.y)),
       worldFromStep_(view.worldFromStep[0], view.worldFromStep[2], view.worldFromStep[1]),
       stepWorld_(view.sliceStepWorld),
+      steps_(view.steps),
       nearWorld_(camera.nearWorld) {
     const glm::dvec2 wide = (swapped(view.slopeMax) - origin_) / spacing;
     // Whoever needs memory for it finds out that there are too many.
     constexpr double kMost = 1 << 30;
-    limits_.max = glm::ivec2(glm::min(glm::ceil(wide), kMost)) + kBorder + 1;
+    limits_.max = glm::ivec2(glm::min(glm::ceil(wide), kMost)) + kPlaneBorder + 1;
     if (camera.projection == Projection::kPerspective) depthAlong_ = camera.direction;
     // Depth grows evenly with slopes, and lengths are largest and smallest at ends.
     nearest_ = {std::numeric_limits<double>::infinity(), 0};
@@ -118,7 +116,7 @@ double BasePlane::shareOf(int slice, glm::ivec2 pixel) const {
 }
 
 double BasePlane::stepsAt(glm::ivec2 pixel) const {
-    return glm::length(rayOf(positionOf(pixel))) / stepWorld_;
+    return glm::length(rayOf(positionOf(pixel))) / stepWorld_ / steps_;
 }
 
 StepLengths::StepLengths(const BasePlane& plane, const PlaneBox& planeBox,

@@ -31,6 +31,9 @@ struct SlicePlace {
     glm::dvec2 offset{0.0};
 };
 
+/// From an eye, pixels around what the picture shows, for the warp's filters to read.
+inline constexpr int kPlaneBorder = 8;
+
 /// Where base plane pixels lie: what slices have in common. Runs along v, as sheets do.
 ///
 /// Numbers stay small however far from the index origin a volume is: voxels and slices are counted
@@ -92,6 +95,7 @@ class BasePlane {
     std::optional<glm::dvec3> eye_;  // (slice, v, u), from the first slice and voxel
     glm::dmat3 worldFromStep_{1.0};  // away, along v, along u
     double stepWorld_ = 1;
+    double steps_ = 1;  // that colours are classified for
     PlaneBox limits_;
     double nearWorld_ = 0;
     std::optional<glm::dvec3> depthAlong_;  // unit vector; empty: along each line of sight

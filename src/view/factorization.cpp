@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -99,17 +100,31 @@ Cone clipped(const Cone& cone, const glm::dvec3& inward) {
     return inside;
 }
 
-// What a picture shows of the lines of sight that belong to an axis.
-Cone coneOf(const Camera& camera, const glm::dmat3& stepFromWorld) {
-    const Cone whole = {{1, -1, -1}, {1, 1, -1}, {1, 1, 1}, {1, -1, 1}};
+// Slopes along u and v, from the least to the most.
+struct SlopeBox {
+    glm::dvec2 least{-1.0};
+    glm::dvec2 most{1.0};
+};
+
+// Those that are nearest to a whole number each.
+SlopeBox slopesNear(const glm::ivec2& slopeStep) {
+    const glm::dvec2 middle(slopeStep);
+    return {glm::max(middle - 0.5, -1.0), glm::min(middle + 0.5, 1.0)};
+}
+
+// What a picture shows of the lines of sight that have certain slopes along an axis.
+Cone coneOf(const Camera& camera, const glm::dmat3& stepFromWorld, const SlopeBox& slopes) {
+    const auto& [least, most] = slopes;
+    const Cone whole = {
+        {1, least.x, least.y}, {1, most.x, least.y}, {1, most.x, most.y}, {1, least.x, most.y}};
     if (camera.projection == Projection::kLatlong) return whole;
     Cone cone;
     const glm::dvec2 size(camera.sizePixels);
     for (const glm::dvec2& corner :
          {glm::dvec2(0), glm::dvec2(size.x, 0), size, glm::dvec2(0, size.y)})
         cone.push_back(stepFromWorld * camera.rayThrough(corner));
-    for (const glm::dvec3& inward :
-         {glm::dvec3(1, 1, 0), glm::dvec3(1, -1, 0), glm::dvec3(1, 0, 1), glm::dvec3(1, 0, -1)})
+    for (const glm::dvec3& inward : {glm::dvec3(-least.x, 1, 0), glm::dvec3(most.x, -1, 0),
+                                     glm::dvec3(-least.y, 0, 1), glm::dvec3(most.y, 0, -1)})
         cone = clipped(cone, inward);
     // Along one axis only points away count, and what touches a border shows nothing.
     std::erase_if(cone, [](const glm::dvec3& ray) { return !(ray.x > 0); });
@@ -149,14 +164,34 @@ glm::dvec2 slopeOf(const glm::dvec3& ray) {
     return glm::clamp(glm::dvec2(ray.y, ray.z) / ray.x, -1.0, 1.0);
 }
 
-// Slopes that a picture shows.
-void boundSlopes(const Cone& cone, Factorization& region) {
-    region.slopeMin = slopeOf(cone.front());
-    region.slopeMax = region.slopeMin;
+// Slopes that a cone has.
+SlopeBox slopesOf(const Cone& cone) {
+    SlopeBox slopes{slopeOf(cone.front()), slopeOf(cone.front())};
     for (const glm::dvec3& ray : cone) {
-        region.slopeMin = glm::min(region.slopeMin, slopeOf(ray));
-        region.slopeMax = glm::max(region.slopeMax, slopeOf(ray));
+        slopes.least = glm::min(slopes.least, slopeOf(ray));
+        slopes.most = glm::max(slopes.most, slopeOf(ray));
     }
+    return slopes;
+}
+
+// The least length of a step along a slope of a box.
+double shortestStep(const glm::dmat3& worldFromStep, const SlopeBox& slopes) {
+    const glm::dvec3 &ahead = worldFromStep[0], &u = worldFromStep[1], &v = worldFromStep[2];
+    // Its square grows evenly away from where it is least: there, or next to it on an edge.
+    const auto best = [](const glm::dvec3& base, const glm::dvec3& along, double least,
+                         double most) {
+        const double slope = -glm::dot(base, along) / glm::dot(along, along);
+        return glm::length(base + std::clamp(slope, least, most) * along);
+    };
+    const glm::dmat2 squares(glm::dot(u, u), glm::dot(u, v), glm::dot(u, v), glm::dot(v, v));
+    const glm::dvec2 inside =
+        -(glm::inverse(squares) * glm::dvec2(glm::dot(ahead, u), glm::dot(ahead, v)));
+    if (inside == glm::clamp(inside, slopes.least, slopes.most))
+        return glm::length(ahead + inside.x * u + inside.y * v);
+    return std::min({best(ahead + slopes.least.x * u, v, slopes.least.y, slopes.most.y),
+                     best(ahead + slopes.most.x * u, v, slopes.least.y, slopes.most.y),
+                     best(ahead + slopes.least.y * v, u, slopes.least.x, slopes.most.x),
+                     best(ahead + slopes.most.y * v, u, slopes.least.x, slopes.most.x)});
 }
 
 // How fine a picture shows slopes, on average over its corners and its middle.
@@ -249,7 +284,7 @@ double planeDistance(const glm::dmat4& worldFromIndex, int sliceAxis) {
 
 std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox& box,
                                             const glm::dmat4& worldFromIndex,
-                                            std::optional<double> resolution) {
+                                            std::optional<double> resolution, bool atSlopeSteps) {
     const DefaultFloats floats;
     if (resolution) checkResolution(*resolution);
     requireInvertible(worldFromIndex);
@@ -260,6 +295,25 @@ std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox
     const double pixels = pixelsAtMiddle(camera, box, linear, eye);
     const Camera frame = camera.withoutOverscan();
     std::vector<Factorization> regions;
+    // Adds what the picture shows of a region.
+    const auto add = [&](Factorization region) {
+        const SlopeBox all = region.slopeStep ? slopesNear(*region.slopeStep) : SlopeBox();
+        const glm::dmat3 stepFromWorld = glm::inverse(region.worldFromStep);
+        const Cone cone = coneOf(camera, stepFromWorld, all);
+        if (cone.size() < 3) return;
+        const SlopeBox slopes = slopesOf(cone);
+        region.slopeMin = glm::clamp(slopes.least, all.least, all.most);
+        region.slopeMax = glm::clamp(slopes.most, all.least, all.most);
+        // What is around the frame changes nothing within it.
+        const Cone ofFrame = coneOf(frame, stepFromWorld, all);
+        const Cone& shown = ofFrame.size() < 3 ? cone : ofFrame;
+        region.pixelsPerSlope = densityOf(camera, shown, region.worldFromStep);
+        if (region.slopeStep) {
+            region.steps =
+                shortestStep(region.worldFromStep, slopesOf(shown)) / region.sliceStepWorld;
+        }
+        regions.push_back(region);
+    };
     for (int axis = 2; axis >= 0; --axis) {
         const glm::ivec3 order = sliceOrder(axis);
         for (const bool frontToBack : {true, false}) {
@@ -267,22 +321,46 @@ std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox
             region.sliceAxis = axis;
             region.frontToBack = frontToBack;
             region.worldFromStep = stepsOf(linear, order, frontToBack);
-            const glm::dmat3 stepFromWorld = glm::inverse(region.worldFromStep);
-            const Cone cone = coneOf(camera, stepFromWorld);
-            if (cone.size() < 3) continue;
             region.sliceStepWorld = planeDistance(worldFromIndex, axis);
             region.eye = glm::dvec3(eye[order[0]], eye[order[1]], eye[order[2]]);
-            boundSlopes(cone, region);
-            // What is around the frame changes nothing within it.
-            const Cone ofFrame = coneOf(frame, stepFromWorld);
-            region.pixelsPerSlope =
-                densityOf(camera, ofFrame.size() < 3 ? cone : ofFrame, region.worldFromStep);
             region.pixelsPerVoxel = pixels;
             region.resolution = resolution ? *resolution : screenResolution(pixels);
-            regions.push_back(region);
+            if (!atSlopeSteps) {
+                add(region);
+                continue;
+            }
+            for (region.slopeStep.emplace().x = -1; region.slopeStep->x <= 1; ++region.slopeStep->x)
+                for (region.slopeStep->y = -1; region.slopeStep->y <= 1; ++region.slopeStep->y)
+                    add(region);
         }
     }
     return regions;
+}
+
+double nearestPixelsPerVoxel(const Camera& camera, const IndexBox& box,
+                             const glm::dmat4& worldFromIndex, double pixelsPerVoxel) {
+    const auto fromEye = [&](const glm::dvec3& index) {
+        return glm::dvec3(worldFromIndex * glm::dvec4(index, 1)) - camera.eyeWorld();
+    };
+    const glm::dvec3 first = glm::dvec3(box.min) - 0.5;
+    const glm::dvec3 last = glm::dvec3(box.max) + 0.5;
+    const glm::dvec3 middle = 0.5 * (first + last);
+    double nearest = std::numeric_limits<double>::infinity();
+    double ofMiddle = 0;
+    if (camera.projection == Projection::kLatlong) {
+        const glm::dvec3 eye(glm::inverse(worldFromIndex) * glm::dvec4(camera.eyeWorld(), 1));
+        nearest = glm::length(fromEye(glm::clamp(eye, first, last)));
+        ofMiddle = glm::length(fromEye(middle));
+    } else {
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 index(corner & 1 ? last.x : first.x, corner & 2 ? last.y : first.y,
+                                   corner & 4 ? last.z : first.z);
+            nearest = std::min(nearest, glm::dot(fromEye(index), camera.direction));
+        }
+        ofMiddle = glm::dot(fromEye(middle), camera.direction);
+    }
+    if (!(nearest > camera.nearWorld)) return std::numeric_limits<double>::infinity();
+    return pixelsPerVoxel * ofMiddle / nearest;
 }
 
 namespace {
@@ -291,7 +369,9 @@ namespace {
 Factorization subdividedFromEye(const Factorization& view, const Subdivision& parts) {
     Factorization result = view;
     const glm::dvec3 per = parts.per();
-    result.eye = (*view.eye - glm::dvec3(parts.origin)) * per + 0.5 * (per - 1.0);
+    // What is joined is counted as its first voxel, and lies between both.
+    result.eye = (*view.eye - glm::dvec3(parts.origin)) * per + 0.5 * (per - 1.0) +
+                 0.5 * glm::dvec3(0, parts.slant);
     for (int axis = 0; axis < 3; ++axis) result.worldFromStep[axis] /= per[axis];
     const double slopes = per.y / per.x;
     result.slopeLimit *= slopes;

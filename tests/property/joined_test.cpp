@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "deltasplat/render.h"
@@ -24,6 +25,8 @@ class Joined : public testing::Test {
     test::SmallJoined joined_;
 };
 
+const double kPi = std::acos(-1.0);
+
 constexpr IndexBox kBox{{-19, 5, -41}, {28, 50, 2}};
 
 // Of voxels of side 1.
@@ -35,6 +38,21 @@ RenderOptions optionsFor(Colors colors, double pixelsPerVoxel, const glm::dvec3&
     options.camera.sizePixels = glm::max(glm::ivec2(80 * pixelsPerVoxel), 1);
     options.camera.frameWidthWorld = options.camera.sizePixels.x / pixelsPerVoxel;
     return options;
+}
+
+// The same from an eye that sees the middle of the box so.
+RenderOptions fromEye(RenderOptions options, double fovDegrees) {
+    const double tangent = std::tan(0.5 * fovDegrees * kPi / 180);
+    options.camera.projection = Projection::kPerspective;
+    options.camera.fovDegrees = fovDegrees;
+    options.camera.distanceWorld = 0.5 * *options.camera.frameWidthWorld / tangent;
+    options.camera.frameWidthWorld.reset();
+    return options;
+}
+
+RenderOptions fromEye(Colors colors, double pixelsPerVoxel, const glm::dvec3& direction,
+                      double fovDegrees) {
+    return fromEye(optionsFor(colors, pixelsPerVoxel, direction), fovDegrees);
 }
 
 RenderResult unjoined(const Volume& volume, RenderOptions options) {
@@ -79,7 +97,7 @@ TEST_F(Joined, notWhereLittleIsSaved) {
 TEST_F(Joined, notWhereVoxelsAreAskedFor) {
     const Volume volume = test::randomVolume(kBox, 5, 0.5);
     const RenderOptions plain = optionsFor(Colors::kSeveral, 0.3, kOblique);
-    std::vector<RenderOptions> all(8, plain);
+    std::vector<RenderOptions> all(7, plain);
     all[0].between = 0;
     all[1].resolution = 1;
     all[2].sigma = 0.5;
@@ -87,12 +105,36 @@ TEST_F(Joined, notWhereVoxelsAreAskedFor) {
     all[4].tolerance.value = 1;
     all[5].footprintWidth = 1;
     all[6].joinsSlices = false;
-    all[7].camera.frameWidthWorld.reset();
-    all[7].camera.projection = Projection::kPerspective;
     EXPECT_EQ(render(volume, plain).stats.joined, 2);
     for (const RenderOptions& options : all) EXPECT_EQ(render(volume, options).stats.joined, 1);
     DeepImage deep;
     EXPECT_EQ(renderDeep(volume, plain, {}, deep).stats.joined, 1);
+}
+
+// From an eye, as far as its nearest voxel covers no more than three quarters of a pixel, and none
+// lies beside or behind the eye, or before the near plane.
+TEST_F(Joined, chosenFromAnEyeWhereAllVoxelsAreSmall) {
+    const Volume volume = test::randomVolume(kBox, 5, 0.5);
+    const auto joinedOf = [&](const RenderOptions& options) {
+        return render(volume, options).stats.joined;
+    };
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+        EXPECT_EQ(joinedOf(fromEye(colors, 0.55, kOblique, 10)), 1);
+        EXPECT_EQ(joinedOf(fromEye(colors, 0.45, kOblique, 10)), 2);
+        EXPECT_EQ(joinedOf(fromEye(colors, 0.45, kOblique, 50)), 1);
+        EXPECT_EQ(joinedOf(fromEye(colors, 0.2, kOblique, 50)), 2);
+    }
+    RenderOptions cut = fromEye(Colors::kOne, 0.2, kOblique, 30);
+    EXPECT_EQ(joinedOf(cut), 2);
+    cut.camera.nearWorld = *cut.camera.distanceWorld;
+    EXPECT_EQ(joinedOf(cut), 1);
+    RenderOptions around;
+    around.optics = someOptics(Colors::kOne);
+    around.camera.projection = Projection::kLatlong;
+    around.camera.sizePixels = {64, 32};
+    EXPECT_EQ(joinedOf(around), 1);
+    around.camera.eyeWorld = {20, 30, 140};
+    EXPECT_EQ(joinedOf(around), 2);
 }
 
 // Of several colours, pairs of classes have 16-bit numbers.
@@ -156,6 +198,8 @@ const glm::dvec3 kDirections[] = {{1, 1, -1},      {1, -0.3, 0.2}, {0.5, 0.5, 1}
 // A voxel on its own stays where it is, and as opaque.
 TEST_F(Joined, movesNothingByMoreThanAFifthOfAPixel) {
     double farthest = 0;
+    double farthestFromEye = 0;
+    std::vector<double> ratios;
     const glm::ivec3 places[] = {{0, 30, -20}, {-7, 21, -19}, {5, 33, -26}, {-2, 28, -15}};
     for (int i = 0; i < 8; ++i) {
         const Volume volume = test::makeVolume(
@@ -170,17 +214,27 @@ TEST_F(Joined, movesNothingByMoreThanAFifthOfAPixel) {
             options.filter = PictureFilter::kGauss;
             options.camera.sizePixels = {120, 120};
             options.camera.frameWidthWorld = 240;
-            const RenderResult joined = render(volume, options);
-            if (joined.stats.joined == 1) continue;
-            const Middle now = middleOf(joined.image);
-            const Middle expected = middleOf(unjoined(volume, options).image);
-            EXPECT_NEAR(now.sum / expected.sum, 1, 0.03);
-            const double moved = glm::length(now.place - expected.place);
-            EXPECT_LE(moved, 0.2);
-            farthest = std::max(farthest, moved);
+            for (const RenderOptions& one : {options, fromEye(options, 40)}) {
+                const RenderResult joined = render(volume, one);
+                if (joined.stats.joined == 1) continue;
+                const Middle now = middleOf(joined.image);
+                const Middle expected = middleOf(unjoined(volume, one).image);
+                // From an eye a voxel on its own is read by more or fewer pixels, as it lies
+                // between them.
+                const double ratio = now.sum / expected.sum;
+                EXPECT_NEAR(ratio, 1, one.camera.fovDegrees ? 0.1 : 0.03);
+                if (one.camera.fovDegrees) ratios.push_back(ratio);
+                const double moved = glm::length(now.place - expected.place);
+                EXPECT_LE(moved, 0.2);
+                double& most = one.camera.fovDegrees ? farthestFromEye : farthest;
+                most = std::max(most, moved);
+            }
         }
     }
     EXPECT_GT(farthest, 0.08);
+    EXPECT_GT(farthestFromEye, 0.08);
+    EXPECT_NEAR(std::accumulate(ratios.begin(), ratios.end(), 0.0) / double(ratios.size()), 1,
+                0.01);
 }
 
 double sumOf(const Image& image) {
@@ -199,15 +253,16 @@ constexpr int kPlate = 64;
 constexpr double kPlatePixels = 0.4;
 
 PlateSums sumsOfPlates(int axis, bool isOne, double opacity, const glm::dvec3& direction,
-                       Colors colors) {
+                       Colors colors, bool isFromEye = false) {
     const IndexBox box{glm::ivec3(0), glm::ivec3(kPlate - 1)};
     const Volume plates = test::makeVolume(box, [&](int x, int y, int z) {
         const int at = glm::ivec3(x, y, z)[axis];
         return (isOne ? at == 30 : at % 8 == 3) ? 255 : test::kInactive;
     });
     RenderOptions options = optionsFor(colors, kPlatePixels, direction);
-    options.camera.sizePixels = {60, 60};
     options.camera.frameWidthWorld = 60 / kPlatePixels;
+    options.camera.sizePixels = {60, 60};
+    if (isFromEye) options = fromEye(options, 25);
     options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, opacity, 0.5, 0}};
     const RenderResult joined = render(plates, options);
     EXPECT_EQ(joined.stats.joined, 2);
@@ -220,9 +275,13 @@ TEST_F(Joined, keepsPlatesAsDense) {
         for (const double opacity : {0.9, 0.05}) {
             for (const glm::dvec3& direction : kDirections) {
                 for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
-                    const PlateSums sums = sumsOfPlates(axis, false, opacity, direction, colors);
-                    EXPECT_NEAR(sums.joined / sums.single, 1, 0.05)
-                        << axis << ' ' << opacity << ' ' << direction.x << ' ' << direction.y;
+                    for (const bool isFromEye : {false, true}) {
+                        const PlateSums sums =
+                            sumsOfPlates(axis, false, opacity, direction, colors, isFromEye);
+                        EXPECT_NEAR(sums.joined / sums.single, 1, 0.05)
+                            << axis << ' ' << opacity << ' ' << direction.x << ' ' << direction.y
+                            << ' ' << isFromEye;
+                    }
                 }
             }
         }
@@ -255,6 +314,11 @@ TEST_F(Joined, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
         for (const double pixels : {0.3, 0.05}) {
             for (const glm::dvec3& direction : kDirections) {
                 const RenderOptions options = optionsFor(colors, pixels, direction);
+                EXPECT_EQ(render(volume, options).stats.joined, 2);
+                test::expectTheSameHoweverItIsMade(volume, options);
+            }
+            for (const double fov : {20.0, 60.0}) {
+                const RenderOptions options = fromEye(colors, 0.5 * pixels, kOblique, fov);
                 EXPECT_EQ(render(volume, options).stats.joined, 2);
                 test::expectTheSameHoweverItIsMade(volume, options);
             }
@@ -296,6 +360,65 @@ TEST_F(Joined, preparedScenesShowTheSame) {
                     }
                 }
             }
+        }
+    }
+}
+
+// An eye that moves, and turns, sees other regions, whose words are made anew.
+TEST_F(Joined, preparedScenesShowTheSameFromWhereverTheyAreSeen) {
+    const auto volume =
+        std::make_shared<const Volume>(test::randomVolume(kBox, 9, 0.5, {1, 1.2, 0.8}));
+    RenderOptions options = fromEye(Colors::kSeveral, 0.2, kOblique, 40);
+    const PreparedScene scene({volume, options.optics}, options);
+    Optics thinner = options.optics;
+    thinner.extinctionScale = 0.3;
+    const PreparedScene other = scene.withOptics(thinner);
+    for (int i = 0; i < 12; ++i) {
+        options.camera.azimuthDegrees = 11 * (i / 2);
+        *options.camera.distanceWorld += i % 3;
+        options.camera.frameOffset = {0.1 * (i % 2), 0};
+        const RenderResult expected = render(*volume, options);
+        EXPECT_EQ(expected.stats.joined, 2);
+        Image image(expected.camera.sizePixels);
+        renderComposite(scene, expected.camera, image);
+        EXPECT_EQ(image.rgba, expected.image.rgba) << i;
+        RenderOptions thin = options;
+        thin.optics = thinner;
+        renderComposite(other, expected.camera, image);
+        EXPECT_EQ(image.rgba, render(*volume, thin).image.rgba) << i;
+    }
+}
+
+// Regions of slopes that are near to other whole numbers join others: nothing is lost or doubled
+// where they meet. A wall of fog is as even as voxel by voxel, and pixels around the picture change
+// none within.
+TEST_F(Joined, regionsMeetWithoutASeam) {
+    const IndexBox box{{-120, -120, 0}, {120, 120, 40}};
+    const Volume fog = test::makeVolume(box, [](int, int, int) { return 120; });
+    RenderOptions options = optionsFor(Colors::kSeveral, 0.3, {0.3, 0.2, -1});
+    options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, 0.02, 0.5, 0}};
+    options.camera.sizePixels = {60, 60};
+    options.camera.frameWidthWorld = 60 / 0.3;
+    options = fromEye(options, 60);
+    const RenderResult joined = render(fog, options);
+    EXPECT_EQ(joined.stats.joined, 2);
+    const Image& expected = unjoined(fog, options).image;
+    for (int y = 10; y < 50; ++y) {
+        for (int x = 10; x < 50; ++x) {
+            for (int channel = 0; channel < 4; ++channel) {
+                EXPECT_NEAR(joined.image.pixel(x, y)[channel], expected.pixel(x, y)[channel], 2e-3)
+                    << x << ' ' << y;
+            }
+        }
+    }
+    RenderOptions wider = options;
+    wider.camera.overscanPixels = {9, 7};
+    const Image around = render(fog, wider).image;
+    for (int y = 0; y < 60; ++y) {
+        for (int x = 0; x < 60; ++x) {
+            for (int channel = 0; channel < 4; ++channel)
+                EXPECT_NEAR(around.pixel(x + 9, y + 7)[channel], joined.image.pixel(x, y)[channel],
+                            1e-5);
         }
     }
 }

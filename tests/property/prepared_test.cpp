@@ -55,6 +55,42 @@ TEST(Prepared, givesThePixelsOfRender) {
     }
 }
 
+// From an eye, of a scene for one picture only what its regions see is packed.
+TEST(Prepared, picturesOfWhatIsSeenAreThoseOfAll) {
+    const auto volume = std::make_shared<const Volume>(
+        test::randomVolume({{-70, 3, -40}, {80, 90, 60}}, 17, 0.03, {1, 1.2, 0.8}));
+    std::uint64_t seen = 0;
+    std::uint64_t all = 0;
+    for (int i = 0; i < 48; ++i) {
+        RenderOptions options;
+        options.optics = someOptics(i % 3 == 0 ? Colors::kOne : Colors::kSeveral);
+        if (i % 8 == 7) options.optics = someOptics(i % 16 == 7 ? Colors::kOwn : Colors::kLit);
+        CameraOptions& camera = options.camera;
+        camera.projection = i % 12 == 11 ? Projection::kLatlong : Projection::kPerspective;
+        camera.sizePixels = i % 12 == 11 ? glm::ivec2(96, 48) : glm::ivec2(60, 44);
+        camera.azimuthDegrees = 31 * i;
+        camera.elevationDegrees = 23 * i % 80;
+        if (i % 12 != 11) camera.fovDegrees = i % 4 == 0 ? 3 : 15.0 * (i % 4) + i;
+        // Inside, beside, and in front of the near plane.
+        if (i % 3 == 1) camera.eyeWorld = {7.0 * (i % 5), 50 + i, 3.0 * (i % 7)};
+        if (i % 5 == 2) camera.nearWorld = 20;
+        if (i % 6 == 1) options.resolution = 0.5;
+        if (i % 6 == 2) options.resolution = 2;
+        if (i % 6 == 3) options.between = 1;
+        if (i % 6 == 4) options.sigma = 1.5;
+        if (i % 6 == 5) options.footprintWidth = 9;
+        const PreparedScene scene({volume, options.optics}, options);
+        const RenderResult one = render(*volume, options);
+        Image image(one.camera.sizePixels);
+        const RenderStats stats = renderComposite(scene, one.camera, image);
+        EXPECT_EQ(image.rgba, one.image.rgba) << i;
+        EXPECT_LE(one.stats.visible, stats.visible);
+        seen += one.stats.visible;
+        all += stats.visible;
+    }
+    EXPECT_LT(double(seen), 0.7 * double(all));
+}
+
 // Where words would take much memory, slabs get theirs a few at a time.
 TEST(Prepared, picturesInPartsAreThoseOfAllAtOnce) {
     const test::SmallJoined joined;
@@ -96,9 +132,10 @@ std::shared_ptr<const PreparedAxis> axisOf(const PreparedScene& scene, int axis,
     options.direction = glm::dvec3(0);
     (*options.direction)[axis] = away;
     const Camera camera = cameraOf(volume, options);
-    const Factorization view = viewsOf(camera, volume, scene.options()).front();
+    const ViewPlan plan(scene.impl(), camera, false, listener);
+    const Factorization& view = plan.views.front();
     EXPECT_EQ(view.sliceAxis, axis);
-    return scene.impl().axis(view, SheetPlan(scene.impl(), view, false, listener), listener);
+    return scene.impl().axis(view, plan.sheets, listener, nullptr);
 }
 
 // A camera that turns needs each axis once, whatever the angle.

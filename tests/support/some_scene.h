@@ -69,11 +69,15 @@ inline std::vector<CameraOptions> someCameras() {
 /// Those, and some of pictures so small that slices are joined.
 inline std::vector<CameraOptions> smallCamerasToo() {
     std::vector<CameraOptions> cameras = someCameras();
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 8; ++i) {
         CameraOptions camera;
         camera.sizePixels = i % 2 == 0 ? glm::ivec2(13, 11) : glm::ivec2(5, 4);
         camera.azimuthDegrees = 170.0 * i - 15 * (i % 2);
-        camera.elevationDegrees = 14 + 10 * i;
+        camera.elevationDegrees = 14 + 10 * (i % 4);
+        if (i >= 4) {
+            camera.projection = Projection::kPerspective;
+            camera.fovDegrees = 15.0 * (i - 3);
+        }
         cameras.push_back(camera);
     }
     return cameras;

@@ -37,10 +37,15 @@ struct Factorization {
     glm::dmat3 worldFromStep{1.0};
     /// Slopes that belong to this slice axis, along u and v, and of these the box that the picture
     /// shows.
+    /// In voxels a slice, the whole numbers, -1 to 1 each, that these are nearest to; empty: all.
+    std::optional<glm::ivec2> slopeStep;
     double slopeLimit = 1;
     glm::dvec2 slopeMin{0.0};
     glm::dvec2 slopeMax{0.0};
     double pixelsPerSlope = 1;  ///< of the screen, on average over this box
+    /// World length of the way through a slice that colours are for, as a multiple of
+    /// `sliceStepWorld`: with a `slopeStep`, the shortest in the picture's frame.
+    double steps = 1;
 };
 
 inline constexpr int kMaxResolution = 16;
@@ -66,11 +71,20 @@ Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
 /// Factors the projection of a camera that looks from an eye: for each of the up to six ways along
 /// an axis that lines of sight may be most parallel to, in index space, if the picture shows such
 /// lines.
-/// @param box  of the volume: what is to be seen
+/// @param box           of the volume: what is to be seen
+/// @param atSlopeSteps  cuts these further, up to nine for each: by the whole numbers of voxels
+///                      that slopes are nearest to
 /// @throw as `factorize`
 std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox& box,
                                             const glm::dmat4& worldFromIndex,
-                                            std::optional<double> resolution = {});
+                                            std::optional<double> resolution = {},
+                                            bool atSlopeSteps = false);
+
+/// Returns how many pixels of the screen the nearest voxel of a box covers, or would, of the same
+/// camera; infinite if the eye or the near plane lies beyond it.
+/// @param pixelsPerVoxel  as Factorization::pixelsPerVoxel, from an eye
+double nearestPixelsPerVoxel(const Camera& camera, const IndexBox& box,
+                             const glm::dmat4& worldFromIndex, double pixelsPerVoxel);
 
 /// Returns the world distance between the planes of slices, the least that a line of sight goes
 /// from one to the next.
@@ -83,6 +97,13 @@ inline bool belongs(const glm::dvec3& steps, const glm::ivec3& order) {
     const double v = steps.z < 0 ? -steps.z : steps.z;
     return (order[1] > order[0] ? steps.x > u : steps.x >= u) &&
            (order[2] > order[0] ? steps.x > v : steps.x >= v);
+}
+
+/// Whether a slope is nearest to a whole number of voxels, -1 to 1; ties go to 0.
+/// @param along  of a line of sight, along u or v for so many slices
+inline bool isNearSlope(int slopeStep, double along, double slices) {
+    if (slopeStep == 0) return 2 * (along < 0 ? -along : along) <= slices;
+    return 2 * slopeStep * along > slices;
 }
 
 /// What voxels are drawn as: into how many thin ones each is divided, evenly spaced and as far from

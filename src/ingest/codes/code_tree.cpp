@@ -20,7 +20,7 @@ namespace deltasplat {
 
 CodeLeaf describeLeaf(const CodeTree::Leaf& leaf, std::span<const Code> codes) {
     const auto [lowest, highest] = rangeOfCodes(codes);
-    return {&leaf, lowest, highest};
+    return {&leaf, leaf.origin(), lowest, highest};
 }
 
 CodeLeaf describeLeaf(const CodeTree::Leaf& leaf) {
@@ -108,7 +108,8 @@ std::vector<CodeLeaf> fillTree(const SlotBlocks& blocks, CodeTree::Tree& tree) {
     parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             fillLeaf(*ofLeaves[i], blocks.sliceAxis(), *leaves[i]);
-            described[i] = {leaves[i], ofLeaves[i]->lowest, ofLeaves[i]->highest};
+            described[i] = {leaves[i], leaves[i]->origin(), ofLeaves[i]->lowest,
+                            ofLeaves[i]->highest};
         }
     });
     return described;

@@ -62,6 +62,7 @@ struct CodeTree {
 /// transfer function makes clear are passed over without being read.
 struct CodeLeaf {
     const CodeTree::Leaf* leaf;
+    openvdb::Coord origin;  // of the leaf, which is then not looked at
     Code lowest;
     Code highest;
 };

@@ -183,13 +183,13 @@ class DenseTreeBuilder {
             for (int y = first.y; y < last.y; ++y) {
                 for (int z = first.z; z < last.z; ++z) {
                     Block& block = madeAt(x, y, z);
+                    const openvdb::Coord corner(x * kBlock, y * kBlock, z * kBlock);
                     if (!block.leaf) {
-                        const openvdb::Coord corner(x * kBlock, y * kBlock, z * kBlock);
                         node->addTile(Lower::coordToOffset(corner), block.low, true);
                         continue;
                     }
                     if constexpr (kHasCodes)
-                        leaves.push_back({block.leaf.get(), block.low, block.high});
+                        leaves.push_back({block.leaf.get(), corner, block.low, block.high});
                     node->addChild(block.leaf.release());
                 }
             }
