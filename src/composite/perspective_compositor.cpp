@@ -25,6 +25,8 @@ std::size_t PerspectiveCompositor::composite(Sheets sheets, int slice, const She
     box_ = seenBox(sheets, reading, box, cover);
     if (box_.empty()) return 0;
     pixels_ = 0;
+    number_ = slice;
+    isCut_ = plane_.isCut(slice);
     const SheetLayout& layout = sheets.front()->layout();
     const glm::dvec2 start = reading.startOfWhole();
     const glm::ivec2 size = box_.size();
@@ -34,7 +36,7 @@ std::size_t PerspectiveCompositor::composite(Sheets sheets, int slice, const She
     slice_ = {{}, sheets.front()->pitch(), scales_, rows_.taps, columns_.taps, layer.channels};
     for (std::size_t p = 0; p < sheets.size(); ++p) slice_.sheets[p] = sheets[p]->row(0);
     findTiles(reading, layout.tiles().x);
-    for (int y = box_.min.y; y < box_.max.y; ++y) addRow(slice, y, layer);
+    for (int y = box_.min.y; y < box_.max.y; ++y) addRow(y, layer);
     flush();
     return pixels_;
 }
@@ -86,7 +88,7 @@ void PerspectiveCompositor::findFull(Sheets sheets, int firstRow, int lastRow,
     for (std::size_t i = 0; i < full_.size(); ++i) seen_[i % words_] |= full_[i];
 }
 
-void PerspectiveCompositor::addRow(int slice, int y, Layer& layer) {
+void PerspectiveCompositor::addRow(int y, Layer& layer) {
     const int firstRow = rows_.first[std::size_t(y - box_.min.y)];
     std::fill(seen_.begin(), seen_.end(), 0);
     std::uint64_t any = 0;
@@ -105,12 +107,12 @@ void PerspectiveCompositor::addRow(int slice, int y, Layer& layer) {
         if (to <= from) return;
         // What is nearly together is done together.
         if (from > last + kShortGap) {
-            addRun(slice, {first, y}, last, layer);
+            addRun({first, y}, last, layer);
             first = from;
         }
         last = std::max(last, to);
     });
-    addRun(slice, {first, y}, last, layer);
+    addRun({first, y}, last, layer);
 }
 
 // Finds the columns of the box that read each tile.
@@ -121,7 +123,7 @@ void PerspectiveCompositor::findTiles(const SheetReading& reading, int tiles) {
 }
 
 // Takes on pixels [first.x, last) of a row.
-void PerspectiveCompositor::addRun(int slice, glm::ivec2 first, int last, Layer& layer) {
+void PerspectiveCompositor::addRun(glm::ivec2 first, int last, Layer& layer) {
     if (first.x >= last) return;
     layer.extend(first.y, first.x, last);
     pixels_ += std::size_t(last - first.x);
@@ -129,21 +131,21 @@ void PerspectiveCompositor::addRun(int slice, glm::ivec2 first, int last, Layer&
     const std::size_t firstOfRow = slice_.pitch * std::size_t(rows_.first[row]);
     for (int x = first.x; x < last;) {
         const auto column = std::size_t(x - box_.min.x);
-        ScaledRun run{firstOfRow + std::size_t(layer.channels * columns_.first[column]),
-                      rows_.of(row),
-                      &columns_.first[column],
-                      columns_.of(column),
-                      columns_.pairs.empty() ? nullptr : &columns_.pairs[column],
-                      std::min(last - x, kMostScaled),
-                      nullptr,
-                      layer.pixel({x, first.y})};
+        // Written where it stays: a copy would wait for what has just been written.
+        ScaledRun& run = runs_.emplace_back();
+        run.place = firstOfRow + std::size_t(layer.channels * columns_.first[column]);
+        run.rowWeights = rows_.of(row);
+        run.first = &columns_.first[column];
+        run.columnWeights = columns_.of(column);
+        run.pairWeights = columns_.pairs.empty() ? nullptr : &columns_.pairs[column];
+        run.pixels = std::min(last - x, kMostScaled);
+        run.layer = layer.pixel({x, first.y});
         // The base plane is never so coarse that one pixel reads as many.
         while (run.pixels > 1 && run.columns(columns_.taps) > kMostScaledColumns) run.pixels /= 2;
-        run.steps = stepsOf(slice, {x, first.y}, run.pixels);
-        runs_.push_back(run);
+        run.steps = stepsOf({x, first.y}, run.pixels);
         x += run.pixels;
         // The next one's shares take their place.
-        if (plane_.isCut(slice)) flush();
+        if (isCut_) flush();
     }
 }
 
@@ -153,12 +155,12 @@ void PerspectiveCompositor::flush() {
 }
 
 // Returns for how many steps each pixel's opacity counts; null: for one.
-const float* PerspectiveCompositor::stepsOf(int slice, glm::ivec2 first, int pixels) {
+const float* PerspectiveCompositor::stepsOf(glm::ivec2 first, int pixels) {
     const float* steps = steps_ ? steps_->at(first) : nullptr;
-    if (!plane_.isCut(slice)) return steps;
+    if (!isCut_) return steps;
     shares_.resize(std::size_t(pixels) + kStepsSpare);
     for (int i = 0; i < pixels; ++i) {
-        const auto share = float(plane_.shareOf(slice, first + glm::ivec2(i, 0)));
+        const auto share = float(plane_.shareOf(number_, first + glm::ivec2(i, 0)));
         shares_[std::size_t(i)] = steps ? share * steps[i] : share;
     }
     return shares_.data();

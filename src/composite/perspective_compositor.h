@@ -39,15 +39,17 @@ class PerspectiveCompositor {
     PlaneBox seenBox(Sheets sheets, const SheetReading& reading, const PlaneBox& box,
                      const SheetCover* cover);
     void findTiles(const SheetReading& reading, int tiles);
-    void addRow(int slice, int y, Layer& layer);
-    void addRun(int slice, glm::ivec2 first, int last, Layer& layer);
+    void addRow(int y, Layer& layer);
+    void addRun(glm::ivec2 first, int last, Layer& layer);
     void flush();
-    const float* stepsOf(int slice, glm::ivec2 first, int pixels);
+    const float* stepsOf(glm::ivec2 first, int pixels);
 
     const BasePlane& plane_;
     std::vector<glm::vec4> scales_;
     const StepLengths* steps_;
-    PlaneBox box_;                     // of the slice in hand
+    int number_ = 0;                   // of the slice in hand
+    bool isCut_ = false;               // it is, by the eye or the near plane
+    PlaneBox box_;                     // of it
     ScaledTaps columns_;               // of the box
     ScaledTaps rows_;                  // likewise
     std::vector<glm::ivec2> tiles_;    // [tiles]: columns [x, y) of the box that read each

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "simd_targets.h"
 
@@ -35,7 +34,7 @@ HWY_INLINE auto loadScale(Tag tag, const glm::vec4& scale) {
 
 // Weighs the rows of every column; kRows is 0 where it is not known.
 template <int kChannels, int kRows>
-HWY_INLINE void sumRows(const ScaledSlice& slice, const ScaledRun& run, float* columns) {
+HWY_INLINE void sumSomeRows(const ScaledSlice& slice, const ScaledRun& run, float* columns) {
     // No more than a sheet's rows have spare pixels for.
     const hn::CappedTag<float, kChannels == 4 ? 16 : 8> tag;
     const hn::RebindToSigned<decltype(tag)> whole;
@@ -62,57 +61,89 @@ HWY_INLINE void sumRows(const ScaledSlice& slice, const ScaledRun& run, float* c
             hn::StoreU(sum, tag, columns + i);
         }
     }
+    // What vectors of pixels read over the last column.
+    const std::size_t end = (count + hn::Lanes(tag) - 1) / hn::Lanes(tag) * hn::Lanes(tag);
+    std::fill_n(columns + end, 2 * kSpare, 0.0f);
 }
 
-// Which lanes hold what pixels and channels have, in a vector of kChannels a pixel.
-template <int kChannels>
-struct PixelLanes {
-    static constexpr std::size_t kMost = hn::MaxLanes(FullTag());
-    HWY_ALIGN std::int32_t pixel[kMost];
-    HWY_ALIGN std::int32_t channel[kMost];
+// Weighs two neighbouring columns for every pixel, of one channel. As columns lie no closer than
+// pixels do, those of a vector of pixels lie within a vector.
+HWY_INLINE void sumColumnPairs(const ScaledRun& run, const float* columns, float* opacities) {
+    const FullTag tag;
+    const hn::RebindToSigned<FullTag> whole;
+    for (std::size_t x = 0; x < std::size_t(run.pixels); x += hn::Lanes(tag)) {
+        const std::int32_t first = run.first[x];
+        const float* column = columns + (first - run.first[0]);
+        const auto away = hn::Sub(hn::LoadU(whole, run.first + x), hn::Set(whole, first));
+        const auto from = hn::IndicesFromVec(tag, away);
+        const auto weight = hn::LoadU(tag, run.pairWeights + x);
+        const auto here = hn::TableLookupLanes(hn::LoadU(tag, column), from);
+        const auto next = hn::TableLookupLanes(hn::LoadU(tag, column + 1), from);
+        const auto rest = hn::Sub(constant(1), weight);
+        hn::StoreU(hn::Add(hn::Mul(here, weight), hn::Mul(next, rest)), tag, opacities + x);
+    }
+}
 
-    PixelLanes() {
-        for (std::size_t i = 0; i < hn::Lanes(FullTag()); ++i) {
-            pixel[i] = std::int32_t(i) / kChannels;
-            channel[i] = std::int32_t(i) % kChannels;
+// How what a vector holds of as many pixels as it has lanes goes to vectors of their colours: made
+// once for many runs.
+struct ColorLanes {
+    static constexpr std::size_t kMost = hn::MaxLanes(FullTag());
+    using Indices = decltype(hn::SetTableIndices(FullTag(), static_cast<std::int32_t*>(nullptr)));
+
+    static std::size_t perVector() { return hn::Lanes(FullTag()) / 4; }
+
+    ColorLanes() {
+        HWY_ALIGN std::int32_t lane[kMost];
+        for (std::size_t n = 0; n < 4; ++n) {
+            for (std::size_t i = 0; i < hn::Lanes(FullTag()); ++i)
+                lane[i] = std::int32_t(n * perVector() + i / 4);
+            pixelOf[n] = hn::SetTableIndices(FullTag(), lane);
         }
+        for (std::size_t i = 0; i < hn::Lanes(FullTag()); ++i) lane[i] = std::int32_t(i % 4);
+        channel = hn::Load(hn::RebindToSigned<FullTag>(), lane);
+    }
+
+    Indices pixelOf[4];  // [vector]: whose colour each lane has
+    hn::Vec<hn::RebindToSigned<FullTag>> channel;
+};
+
+// Colours of as many pixels as a vector has lanes.
+struct FourColors {
+    Vector of[4];
+
+    Vector opacities() const {
+        const FullTag tag;
+        // Every second of every second.
+        return hn::ConcatOdd(tag, hn::ConcatOdd(tag, of[3], of[2]),
+                             hn::ConcatOdd(tag, of[1], of[0]));
     }
 };
 
-// Weighs two neighbouring columns for every pixel. As columns lie no closer than pixels do, those
-// of a vector of pixels lie within a vector.
-template <int kChannels>
-HWY_INLINE void sumColumnPairs(const ScaledRun& run, const float* columns, float* colors) {
+// Weighs two neighbouring columns for the pixels from x on, as many as so many vectors have. As
+// columns lie no closer than pixels do, those of a vector lie within a vector.
+HWY_INLINE FourColors pairColors(const ScaledRun& run, const float* columns,
+                                 const ColorLanes& lanes, std::size_t x, std::size_t vectors) {
     const FullTag tag;
     const hn::RebindToSigned<FullTag> whole;
-    const PixelLanes<kChannels> lanes;
-    const auto pixelOf = hn::SetTableIndices(tag, lanes.pixel);
-    const auto wholePixelOf = hn::SetTableIndices(whole, lanes.pixel);
-    const auto channel = hn::Load(whole, lanes.channel);
-    const std::size_t perVector = hn::Lanes(tag) / kChannels;
-    const auto ofPixels = [&](auto values) {
-        if constexpr (kChannels == 1) {
-            return values;
-        } else if constexpr (std::is_same_v<decltype(values), Vector>) {
-            return hn::TableLookupLanes(values, pixelOf);
-        } else {
-            return hn::TableLookupLanes(values, wholePixelOf);
-        }
-    };
-    for (std::size_t x = 0; x < std::size_t(run.pixels); x += perVector) {
-        const std::int32_t first = run.first[x];
-        const float* column = columns + kChannels * (first - run.first[0]);
-        const auto away = hn::Sub(hn::LoadU(whole, run.first + x), hn::Set(whole, first));
-        auto lane = ofPixels(away);
-        if constexpr (kChannels == 4) lane = hn::Add(hn::ShiftLeft<2>(lane), channel);
-        const auto from = hn::IndicesFromVec(tag, lane);
-        const auto weight = ofPixels(hn::LoadU(tag, run.pairWeights + x));
+    const auto firsts = hn::LoadU(whole, run.first + x);
+    const auto weights = hn::LoadU(tag, run.pairWeights + x);
+    FourColors colors;
+    for (std::size_t n = 0; n < 4; ++n) {
+        colors.of[n] = hn::Zero(tag);
+        if (n >= vectors) continue;
+        const std::int32_t first = run.first[x + n * ColorLanes::perVector()];
+        const float* column = columns + 4 * (first - run.first[0]);
+        const auto away = hn::BitCast(
+            whole, hn::TableLookupLanes(hn::BitCast(tag, hn::Sub(firsts, hn::Set(whole, first))),
+                                        lanes.pixelOf[n]));
+        const auto from = hn::IndicesFromVec(tag, hn::Add(hn::ShiftLeft<2>(away), lanes.channel));
+        const auto weight = hn::TableLookupLanes(weights, lanes.pixelOf[n]);
         const auto here = hn::TableLookupLanes(hn::LoadU(tag, column), from);
-        const auto next = hn::TableLookupLanes(hn::LoadU(tag, column + kChannels), from);
+        const auto next = hn::TableLookupLanes(hn::LoadU(tag, column + 4), from);
         const auto rest = hn::Sub(constant(1), weight);
-        hn::StoreU(hn::Add(hn::Mul(here, weight), hn::Mul(next, rest)), tag,
-                   colors + kChannels * x);
+        colors.of[n] = hn::Add(hn::Mul(here, weight), hn::Mul(next, rest));
     }
+    return colors;
 }
 
 // Weighs the columns of every pixel.
@@ -137,43 +168,53 @@ HWY_INLINE void sumColumns(const ScaledRun& run, int taps, const float* columns,
     }
 }
 
-// By how much light and opacity of each pixel grow with its steps.
-HWY_INLINE void findGrowth(const float* colors, const float* steps, std::size_t pixels,
-                           float* growth) {
-    const FullTag tag;
-    for (std::size_t i = 0; i < pixels; i += hn::Lanes(tag)) {
-        Vector r, g, b, opacity;
-        hn::LoadInterleaved4(tag, colors + 4 * i, r, g, b, opacity);
-        hn::StoreU(growthOfSteps(opacity, hn::LoadU(tag, steps + i)), tag, growth + i);
-    }
-}
-
 // As many values as the tag has lanes.
-template <class Tag, class V>
-HWY_INLINE void overColors(Tag tag, V color, float* layer) {
+template <class Tag>
+HWY_INLINE void overColors(Tag tag, hn::Vec<Tag> color, float* layer) {
     const auto front = hn::LoadU(tag, layer);
     const auto clear = hn::Sub(hn::Set(tag, 1.0f), hn::Broadcast<3>(front));
     hn::StoreU(hn::Add(front, hn::Mul(clear, color)), tag, layer);
 }
 
-HWY_INLINE void overGrown(const float* colors, const float* growth, std::size_t pixels,
-                          float* layer) {
+// Light and opacity grow with steps.
+// @param steps  of the first pixel
+HWY_INLINE void grow(const ColorLanes& lanes, const float* steps, FourColors& colors) {
+    const auto growth = growthOfSteps(colors.opacities(), hn::LoadU(FullTag(), steps));
+    for (std::size_t n = 0; n < 4; ++n)
+        colors.of[n] = hn::Mul(colors.of[n], hn::TableLookupLanes(growth, lanes.pixelOf[n]));
+}
+
+// Puts colours behind the layer for all pixels of a run.
+// @param colorsAt  colorsAt(x, vectors): of the pixels from x on, so many vectors, others zero
+template <class ColorsAt>
+HWY_INLINE void overAll(const ScaledRun& run, const ColorLanes& lanes, const ColorsAt& colorsAt) {
     const FullTag tag;
-    // Every growth four times, once for each channel.
-    HWY_ALIGN std::int32_t four[hn::MaxLanes(FullTag())];
-    for (std::size_t i = 0; i < hn::Lanes(tag); ++i) four[i] = std::int32_t(i / 4);
-    const auto indices = hn::SetTableIndices(tag, four);
-    const std::size_t perVector = hn::Lanes(tag) / 4;
-    std::size_t i = 0;
-    for (; i + perVector <= pixels; i += perVector) {
-        const auto times = hn::TableLookupLanes(hn::LoadU(tag, growth + i), indices);
-        overColors(tag, hn::Mul(hn::LoadU(tag, colors + 4 * i), times), layer + 4 * i);
+    const std::size_t lanesOf = hn::Lanes(tag);
+    const auto pixels = std::size_t(run.pixels);
+    float* layer = run.layer;
+    std::size_t x = 0;
+    for (; x + lanesOf <= pixels; x += lanesOf) {
+        FourColors colors = colorsAt(x, std::size_t{4});
+        grow(lanes, run.steps + x, colors);
+        for (const Vector& color : colors.of) {
+            overColors(tag, color, layer);
+            layer += lanesOf;
+        }
     }
+    if (x == pixels) return;
+    FourColors colors = colorsAt(x, (pixels - x - 1) / ColorLanes::perVector() + 1);
+    grow(lanes, run.steps + x, colors);
+    std::size_t n = 0;
+    for (; x + ColorLanes::perVector() <= pixels; x += ColorLanes::perVector()) {
+        overColors(tag, colors.of[n++], layer);
+        layer += lanesOf;
+    }
+    if (x == pixels) return;
+    HWY_ALIGN float rest[ColorLanes::kMost];
+    hn::Store(colors.of[n], tag, rest);
     const PixelTag one;
-    for (; i < pixels; ++i) {
-        const auto color = hn::Mul(hn::LoadU(one, colors + 4 * i), hn::Set(one, growth[i]));
-        overColors(one, color, layer + 4 * i);
-    }
+    for (std::size_t i = 0; x < pixels; ++x, i += 4)
+        overColors(one, hn::Load(one, rest + i), layer + i);
 }
 
 HWY_INLINE void overOpacities(const float* opacities, const float* steps, std::size_t pixels,
@@ -194,38 +235,55 @@ HWY_INLINE void overOpacities(const float* opacities, const float* steps, std::s
 }
 
 template <int kChannels>
-HWY_INLINE void readRun(const ScaledSlice& slice, const ScaledRun& run, float* colors) {
-    HWY_ALIGN float columns[kChannels * kMostScaledColumns + 2 * kSpare];
+HWY_INLINE void sumRows(const ScaledSlice& slice, const ScaledRun& run, float* columns) {
     if (slice.rowTaps == 2) {
-        sumRows<kChannels, 2>(slice, run, columns);
+        sumSomeRows<kChannels, 2>(slice, run, columns);
     } else {
-        sumRows<kChannels, 0>(slice, run, columns);
+        sumSomeRows<kChannels, 0>(slice, run, columns);
     }
-    if (run.pairWeights) return sumColumnPairs<kChannels>(run, columns, colors);
-    sumColumns<kChannels>(run, slice.columnTaps, columns, colors);
 }
 
-void overScaledColors(const ScaledSlice& slice, const ScaledRun& run) {
-    HWY_ALIGN float colors[4 * (kMostScaled + kSpare)];
-    HWY_ALIGN float growth[kMostScaled + kSpare];
-    const auto pixels = std::size_t(run.pixels);
-    readRun<4>(slice, run, colors);
+void overScaledColors(const ScaledSlice& slice, const ScaledRun& run, const ColorLanes& lanes) {
+    HWY_ALIGN float columns[4 * kMostScaledColumns + 3 * kSpare];
+    sumRows<4>(slice, run, columns);
+    if (run.pairWeights) {
+        overAll(run, lanes, [&](std::size_t x, std::size_t vectors) {
+            return pairColors(run, columns, lanes, x, vectors);
+        });
+        return;
+    }
+    HWY_ALIGN float values[4 * (kMostScaled + kSpare)];
+    sumColumns<4>(run, slice.columnTaps, columns, values);
     // Vectors reach over the last pixel.
-    std::fill_n(colors + 4 * pixels, 4 * kSpare, 0.0f);
-    findGrowth(colors, run.steps, pixels, growth);
-    overGrown(colors, growth, pixels, run.layer);
+    std::fill_n(values + 4 * run.pixels, 4 * kSpare, 0.0f);
+    overAll(run, lanes, [&](std::size_t x, std::size_t) {
+        FourColors colors;
+        for (std::size_t n = 0; n < 4; ++n)
+            colors.of[n] = hn::LoadU(FullTag(), values + 4 * x + n * hn::Lanes(FullTag()));
+        return colors;
+    });
 }
 
 void overScaledOpacities(const ScaledSlice& slice, const ScaledRun& run) {
+    HWY_ALIGN float columns[kMostScaledColumns + 3 * kSpare];
     HWY_ALIGN float opacities[kMostScaled + kSpare];
-    readRun<1>(slice, run, opacities);
+    sumRows<1>(slice, run, columns);
+    if (run.pairWeights) {
+        sumColumnPairs(run, columns, opacities);
+    } else {
+        sumColumns<1>(run, slice.columnTaps, columns, opacities);
+    }
     std::fill_n(opacities + run.pixels, kSpare, 0.0f);
     overOpacities(opacities, run.steps, std::size_t(run.pixels), run.layer);
 }
 
 void overScaledKernel(const ScaledSlice& slice, std::span<const ScaledRun> runs) {
-    const auto over = slice.channels == 4 ? overScaledColors : overScaledOpacities;
-    for (const ScaledRun& run : runs) over(slice, run);
+    if (slice.channels == 1) {
+        for (const ScaledRun& run : runs) overScaledOpacities(slice, run);
+        return;
+    }
+    const ColorLanes lanes;
+    for (const ScaledRun& run : runs) overScaledColors(slice, run, lanes);
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
