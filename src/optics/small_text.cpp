@@ -15,9 +15,10 @@ std::string readSmallText(const std::filesystem::path& file, const std::string& 
     };
     std::error_code ignored;
     // Looked at first, because opening a pipe waits for who writes to it.
-    const bool regular = std::filesystem::is_regular_file(file, ignored);
+    const auto status = std::filesystem::status(file, ignored);
+    if (!std::filesystem::exists(status)) fail("no such file");
     std::ifstream in;
-    if (regular) in.open(file, std::ios::binary);
+    if (std::filesystem::is_regular_file(status)) in.open(file, std::ios::binary);
     if (!in.is_open()) fail("no file that can be read");
     // As much at a time as most have in all: room for the largest takes longer than reading them.
     constexpr std::size_t kPart = std::size_t{64} << 10;

@@ -53,7 +53,7 @@ endfunction()
 deltasplat_bench_refusal(missing 3 "nowhere.vdb: got no such file; expected a readable file"
     nowhere.vdb --report out)
 deltasplat_bench_refusal(tf_missing 3
-    "tf_missing.json: got no file that can be read; expected a transfer function (ParaView's JSON)"
+    "tf_missing.json: got no such file; expected a transfer function (ParaView's JSON)"
     ${cube} --tf tf_missing.json)
 deltasplat_bench_refusal(no_input 2
     "INPUT: got nothing; expected FILE (see 'deltasplat bench --help')" --json)

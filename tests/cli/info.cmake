@@ -26,7 +26,7 @@ deltasplat_cli_test(info.vdb ARGS info ball.vdb
 deltasplat_cli_test(info.tf ARGS info ball.vdb --tf tf_good.json
     STDOUT_MATCHES "visible: not clear under tf_good.json")
 deltasplat_cli_test(info.tf_missing EXIT 3 ARGS info ball.vdb --tf tf_missing.json
-    STDERR "deltasplat: tf_missing.json: got no file that can be read; expected a transfer function (ParaView's JSON)")
+    STDERR "deltasplat: tf_missing.json: got no such file; expected a transfer function (ParaView's JSON)")
 
 # What a delta grid would take. Of an empty grid, and of delta grids, nothing is said.
 deltasplat_cli_test(info.as_deltas ARGS info ball.vdb

@@ -92,7 +92,7 @@ function(deltasplat_bad_transfer_function name message)
     deltasplat_cli_test(input.tf.${name} EXIT 3 STDERR "deltasplat: ${message}"
                         ARGS render cube_8x8x8_uint8.raw -o out.exr --tf tf_${name}.json)
 endfunction()
-deltasplat_bad_transfer_function(missing "tf_missing.json: got no file that can be read; expected a transfer function (ParaView's JSON)")
+deltasplat_bad_transfer_function(missing "tf_missing.json: got no such file; expected a transfer function (ParaView's JSON)")
 deltasplat_cli_test(input.tf.device EXIT 3 ARGS render cube_8x8x8_uint8.raw -o out.exr --tf /dev/zero
     STDERR "deltasplat: /dev/zero: got no file that can be read; expected a transfer function (ParaView's JSON)")
 deltasplat_cli_test(input.tf.no_json EXIT 3
@@ -153,6 +153,21 @@ deltasplat_cli_test(empty_picture.extinction
     ARGS render cube_8x8x8_uint8.raw -o out.png --extinction 0
     STDERR "deltasplat: warning: picture: empty, for transfer function and extinction show none of the values 0 to 96"
     CREATES out.png)
+deltasplat_cli_test(empty_picture.gradient
+    ARGS render cube_8x8x8_uint8.raw -o out.png --gradient-opacity 0:0,10000:0
+    STDERR "deltasplat: warning: picture: empty, for transfer function and extinction show none of the values 0 to 96"
+    CREATES out.png)
+# From an eye, also where nothing of what is there is before it.
+foreach(between 0 1)
+    deltasplat_cli_test(empty_picture.eye_${between}
+        ARGS render cube_8x8x8_uint8.raw -o out.png --projection perspective --eye 100,0,0 --direction 1,0,0
+             --between ${between}
+        STDERR "deltasplat: warning: ${outside}" CREATES out.png)
+    deltasplat_cli_test(empty_picture.eye_extinction_${between}
+        ARGS render cube_8x8x8_uint8.raw -o out.png --projection perspective --extinction 0 --between ${between}
+        STDERR "deltasplat: warning: picture: empty, for transfer function and extinction show none of the values 0 to 96"
+        CREATES out.png)
+endforeach()
 
 deltasplat_cli_test(empty_picture.surface
     ARGS render cube_8x8x8_uint8.raw -o out.png --isovalue 97

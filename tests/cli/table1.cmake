@@ -94,7 +94,7 @@ deltasplat_table1_refusal(no_folder 3
 deltasplat_table1_refusal(a_file 3 "ball.vdb: got a file; expected a folder that holds data sets"
     bench table1 ball.vdb)
 deltasplat_table1_refusal(tf 3
-    "tf_missing.json: got no file that can be read; expected a transfer function (ParaView's JSON)"
+    "tf_missing.json: got no such file; expected a transfer function (ParaView's JSON)"
     bench table1 table1_all --tf tf_missing.json)
 # What is called table1 can still be measured.
 deltasplat_table1_refusal(not_meant 3 "./table1: got no such file; expected a readable file"

@@ -57,9 +57,9 @@ function(deltasplat_camera_refusal file said)
         ARGS render ${cube} -o out.exr --camera ${file})
 endfunction()
 deltasplat_camera_refusal(none.json
-    "none.json: got no file that can be read; expected a camera (JSON)")
+    "none.json: got no such file; expected a camera (JSON)")
 deltasplat_camera_refusal(none.usda
-    "none.usda: got no file that can be read; expected USD's text format (.usda)")
+    "none.usda: got no such file; expected USD's text format (.usda)")
 deltasplat_camera_refusal(none.exr "none.exr: got no such file; expected a readable file")
 deltasplat_camera_refusal(camera.txt
     "camera.txt: got an unknown ending; expected .json, .usda or .exr")

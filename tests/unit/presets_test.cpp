@@ -360,9 +360,10 @@ TEST_F(TransferFunctionFile, ofLabelsSaysWhichLineIsNone) {
             << error;
     }
     std::filesystem::create_directory(folder_.path() / "folder.ctbl");
-    for (const std::string name : {"none.ctbl", "folder.ctbl"})
-        EXPECT_EQ(errorFor(folder_.path() / name),
-                  "input: " + name + ": got no file that can be read; expected a table of labels");
+    EXPECT_EQ(errorFor(folder_.path() / "none.ctbl"),
+              "input: none.ctbl: got no such file; expected a table of labels");
+    EXPECT_EQ(errorFor(folder_.path() / "folder.ctbl"),
+              "input: folder.ctbl: got no file that can be read; expected a table of labels");
 }
 
 }  // namespace

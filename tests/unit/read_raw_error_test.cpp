@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
@@ -37,6 +38,11 @@ TEST(ReadRawError, NoRegularFile) {
     expectInput(
         "f_1x1x1_uint8.raw: got a folder without DICOM files and images; expected a DICOM folder, "
         "a folder of images, or a file",
+        "f_1x1x1_uint8.raw");
+    std::ofstream("f_1x1x1_uint8.raw/v_1x1x1_uint8.raw.gz") << "x";
+    expectInput(
+        "f_1x1x1_uint8.raw: got a folder without DICOM files and images; expected a DICOM folder, "
+        "a folder of images, or a file such as f_1x1x1_uint8.raw/v_1x1x1_uint8.raw.gz",
         "f_1x1x1_uint8.raw");
     expectInput("/dev/null: got no regular file; expected a readable file", "/dev/null");
 }

@@ -276,15 +276,16 @@ TEST_F(ReadTransferFunction, survivesNestingAndForeignBytes) {
 }
 
 TEST_F(ReadTransferFunction, refusesMissingFilesAndFolders) {
-    for (const fs::path& path : {folder_ / "missing.json", folder_}) {
+    for (const bool isThere : {false, true}) {
+        const fs::path path = isThere ? folder_ : folder_ / "missing.json";
+        const std::string got = isThere ? "no file that can be read" : "no such file";
         try {
             readTransferFunction(path);
             ADD_FAILURE() << path;
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::kInput);
-            EXPECT_EQ(error.what(), path.string() +
-                                        ": got no file that can be read; expected a "
-                                        "transfer function (ParaView's JSON)");
+            EXPECT_EQ(error.what(), path.string() + ": got " + got +
+                                        "; expected a transfer function (ParaView's JSON)");
         }
     }
 }

@@ -2,6 +2,7 @@
 #include "render/render_stats.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -131,8 +132,19 @@ std::string codeErrorText(const CodeError& error) {
 
 std::string errorBoundText(const RenderStats& stats) {
     if (std::isinf(stats.errorBoundColor)) return "unknown";
-    return "color " + numberText(stats.errorBoundColor) + ", alpha " +
-           numberText(stats.errorBoundAlpha);
+    // Three digits, rounded up.
+    const auto text = [](double bound) {
+        if (!(bound > 0)) return numberText(bound);
+        const double last = std::pow(10, std::floor(std::log10(bound)) - 2);
+        double rounded = std::ceil(bound / last);
+        // What rounding of the quotient has taken away.
+        if (rounded * last < bound) rounded += 1;
+        char digits[32];
+        const auto end = std::to_chars(digits, digits + sizeof digits, rounded * last,
+                                       std::chars_format::general, 3);
+        return std::string(digits, end.ptr);
+    };
+    return "color " + text(stats.errorBoundColor) + ", alpha " + text(stats.errorBoundAlpha);
 }
 
 std::string statsSummary(const RenderResult& result, const RenderTimes& times,

@@ -126,11 +126,17 @@ InputKind findInFolder(const std::filesystem::path& folder, const Listener& list
     if (images.empty()) {
         const Files grids =
             filesThat(all, [](const auto& file) { return lowerExtension(file) == ".vdb"; });
+        const Files others = filesThat(
+            all, [](const auto& file) { return formats().contains(lowerExtension(file)); });
+        std::string such;
+        if (!grids.empty()) {
+            such = " such as " + grids.front().string() + " (render takes '" +
+                   (folder / "*.vdb").string() + "')";
+        } else if (!others.empty()) {
+            such = " such as " + others.front().string();
+        }
         refuseFile(folder, "a folder without DICOM files and images",
-                   "a DICOM folder, a folder of images, or a file" +
-                       (grids.empty() ? ""
-                                      : " such as " + grids.front().string() + " (render takes '" +
-                                            (folder / "*.vdb").string() + "')"));
+                   "a DICOM folder, a folder of images, or a file" + such);
     }
     const std::string extension = lowerExtension(images.front());
     for (const std::filesystem::path& image : images) {

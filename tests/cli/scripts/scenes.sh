@@ -82,7 +82,7 @@ expect_code 2 "$program" render in.#.vdb -o gone.#.exr --camera gone.#.exr --fra
 expect_said "deltasplat: frame 3: --output: got gone.3.exr; expected another file than the scene or the camera"
 
 expect_code 3 "$program" render none.usda -o a.exr
-expect_said "deltasplat: none.usda: got no file that can be read; expected USD's text format (.usda)"
+expect_said "deltasplat: none.usda: got no such file; expected USD's text format (.usda)"
 expect_code 3 "$program" render scene.usdc -o a.exr
 expect_said "deltasplat: scene.usdc: got USD that is no text; expected .usda, as usdcat -o x.usda writes it"
 mkdir elsewhere
