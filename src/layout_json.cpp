@@ -217,6 +217,11 @@ void check(const ViewLayout& layout) {
     require(joined == 1 ? slant == glm::ivec2(0)
                         : joined == 2 && !place.parts.divides() && std::max(slant.x, slant.y) <= 1,
             "slices joined that cannot be");
+    // From an eye, regions of joined slices are those of one slant.
+    require(view.slopeStep.has_value() == (joined == 2 && view.eye) &&
+                (!view.slopeStep ||
+                 *view.slopeStep == (view.frontToBack ? -place.parts.slant : place.parts.slant)),
+            "slopes that are not those of joined slices");
     require(isResolution(place.resolution) && place.spacing > 0 && std::isfinite(place.spacing),
             "a base plane of no pixels");
     require(isFinite(view.baseFromPixel) && isFinite(view.worldFromStep) &&

@@ -83,8 +83,20 @@ ViewPlan::ViewPlan(const PreparedScene::Impl& scene, const Camera& camera, bool 
                    const Listener& listener)
     : views(factorizeAll(scene, camera, false)),
       sheets(scene, camera, views.front(), keepsSlices, listener) {
-    // Slices are joined along lines of sight, as far as whole voxels are.
-    if (sheets.joined() > 1 && views.front().eye) views = factorizeAll(scene, camera, true);
+    if (sheets.joined() == 1 || !views.front().eye) return;
+    // Slices are joined along lines of sight, as far as whole voxels are; of several colours, where
+    // steps are nearly as long as those that pairs are mixed for.
+    std::vector<Factorization> atSlopes = factorizeAll(scene, camera, true);
+    constexpr double kMostRange = 1.3;
+    const bool isOneColor = scene.optics.transferFunction.colors.size() == 1;
+    const bool areAlike =
+        std::all_of(atSlopes.begin(), atSlopes.end(),
+                    [](const Factorization& view) { return view.stepRange < kMostRange; });
+    if (isOneColor || areAlike) {
+        views = std::move(atSlopes);
+    } else {
+        sheets = SheetPlan(scene, camera, views.front(), true, listener);
+    }
 }
 
 double stepsOf(const Factorization& view, const Volume& volume) {
@@ -108,7 +120,7 @@ SeenCone seenCone(const PreparedScene::Impl& scene, const Camera& camera, const 
     cone.frontToBack = view.frontToBack;
     // In slopes of the volume's own slices and voxels.
     cone.reachPerSlice = spacing * view.slopeLimit / thin.slopeLimit;
-    const double border = (kPlaneBorder + 3) * cone.reachPerSlice;
+    const double border = (planeBorder(thin, spacing) + 3) * cone.reachPerSlice;
     cone.slopeMin = view.slopeMin - border;
     cone.slopeMax = view.slopeMax + border;
     // What is joined lies up to a voxel beside what it is made of, and what is mixed next to it.

@@ -185,6 +185,14 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
                      std::move(packer), std::move(joiner), seen});
 }
 
+// Index position (x, y, z) that lines of sight begin at.
+glm::dvec3 eyeOf(const Factorization& view) {
+    const glm::ivec3 order = sliceOrder(view.sliceAxis);
+    glm::dvec3 eye;
+    for (int i = 0; i < 3; ++i) eye[order[i]] = (*view.eye)[i];
+    return eye;
+}
+
 std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
     const Volume& volume = *scene.scene.volume;
     const SlotBlocks* const blocks = volume.codes->blocksAlong(sliceAxis);
@@ -267,6 +275,11 @@ void PreparedScene::Impl::forgetSlants(const Key& key) const {
                   [&](const auto& one) { return isOther(one) && one.second->lastUse != last; });
 }
 
+void PreparedScene::Impl::forgetOtherEyes(const glm::dvec3& eye) const {
+    std::erase_if(places_,
+                  [&](const auto& one) { return one.second->eye && *one.second->eye != eye; });
+}
+
 std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorization& view,
                                                               const SheetPlan& plan,
                                                               const Listener& listener,
@@ -305,11 +318,13 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
     std::shared_ptr<Place> place;
     {
         const std::lock_guard lock(mutex_);
+        if (packsSeen) forgetOtherEyes(eyeOf(view));
         const auto other = places_.find(otherKey);
         if (other != places_.end()) otherWay = other->second;
         std::shared_ptr<Place>& known = places_[key];
         if (!known) known = std::make_shared<Place>();
         known->lastUse = ++uses_;
+        if (packsSeen) known->eye = eyeOf(view);
         place = known;
         if (isJoined && !view.eye) forgetSlants(key);
     }
@@ -322,7 +337,8 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
     if (other && !isJoined) place->axis = other;
     if (!place->axis)
         isolated([&] {
-            request.before = other ? other.get() : axisBefore(key, otherKey);
+            const bool isOther = other && other->seen == request.seen;
+            request.before = isOther ? other.get() : axisBefore(key, otherKey);
             place->axis = prepare(*this, request, listener);
         });
     return place->axis;
@@ -342,16 +358,6 @@ bool PreparedScene::Impl::canJoinSlices() const {
             [&] { canJoinSlices_ = canBeJoined(classify(*scene.volume, scene.optics, farthest)); });
     }
     return *canJoinSlices_;
-}
-
-bool PreparedScene::Impl::showsAny() const {
-    if (painter && painter->more() && !painter->more()->positions.empty()) return true;
-    const Volume& volume = *scene.volume;
-    const ClassTable classes =
-        classify(volume, scene.optics, planeDistance(volume.worldFromIndex, 0));
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code)
-        if (volume.histogram[code] > 0 && classes.classOfSlot[code + 1] != 0) return true;
-    return false;
 }
 
 std::size_t PreparedScene::Impl::blocksSeen(int sliceAxis) const {

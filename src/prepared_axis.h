@@ -69,8 +69,6 @@ struct PreparedScene::Impl {
                                              bool inParts = false) const;
     /// Returns whether slices can be joined (optics/joined_classes.h), along whatever axis.
     bool canJoinSlices() const;
-    /// Returns whether any voxel can be seen, wherever it lies.
-    bool showsAny() const;
     /// Returns how many blocks of 8x8x8 voxels can be seen; counted once for each axis.
     std::size_t blocksSeen(int sliceAxis) const;
 
@@ -83,6 +81,8 @@ struct PreparedScene::Impl {
         std::mutex mutex;
         std::shared_ptr<const PreparedAxis> axis;
         std::uint64_t lastUse = 0;  // guarded as places_ are
+        std::optional<glm::dvec3>
+            eye;  // likewise: that the axis is seen from, if only what is seen is there
     };
     using Places = std::map<Key, std::shared_ptr<Place>>;
 
@@ -95,6 +95,8 @@ struct PreparedScene::Impl {
     const PreparedAxis* axisBefore(const Key& key, const Key& otherKey) const;
     // Forgets axes of other slants than a key's, but for the one that was used last.
     void forgetSlants(const Key& key) const;
+    // Forgets axes of which only is there what another eye sees.
+    void forgetOtherEyes(const glm::dvec3& eye) const;
     // Returns those that are there of classes alone, and those of optics before for which there are
     // none.
     Axes axes() const;

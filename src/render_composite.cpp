@@ -250,10 +250,17 @@ class CompositeRender {
                            [&](const KeptView& view) { return isAnyOf(view.layer.values); });
     }
 
+    // Whether any voxel can be seen from elsewhere, of a picture whose regions see none.
+    bool isAnythingVisible(const Listener& listener) const {
+        if (!isPartlyPacked_) return false;
+        const Factorization& view = plan_->views.front();
+        return scene_.axis(view, plan_->sheets, listener, nullptr, true)->deltas().visible() > 0;
+    }
+
     // Who reads an empty volume has been told so.
     void warnOfEmptyPicture(const Listener& listener) const {
         if (volume_.empty() || isAnythingSeen()) return;
-        if (stats_.visible == 0 && !scene_.showsAny()) {
+        if (stats_.visible == 0 && !isAnythingVisible(listener)) {
             const bool isSurface = scene_.scene.optics.surface.has_value();
             listener.warn(
                 std::string("picture: empty, for ") +
@@ -269,6 +276,7 @@ class CompositeRender {
         stats_.between = axis.parts.slices - 1;
         stats_.parts = axis.parts.voxels();
         stats_.joined = axis.parts.joined;
+        isPartlyPacked_ = isPartlyPacked_ || axis.seen;
         stats_.stamps += axis.stamps(options_.method);
         // Of regions, that which sees most stands for all.
         if (isCounted_ && axis.deltas().visible() <= stats_.visible) return;
@@ -322,6 +330,7 @@ class CompositeRender {
     RenderStats& stats_;
     std::optional<ViewPlan> plan_;
     bool isCounted_ = false;
+    bool isPartlyPacked_ = false;  // what no region sees is left out
     // Of rows of blocks compared with the frame before.
     bool isCompared_ = true;
     std::uint64_t differing_ = 0;

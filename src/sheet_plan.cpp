@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <string>
 
 #include "deltasplat/error.h"
@@ -77,25 +78,32 @@ bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
     return false;
 }
 
-// Whether slices are joined where nobody says otherwise. Moved by less than a fifth of a pixel, in
-// a picture that averages two voxels each way at least, nothing of one voxel's width is seen to
-// move.
-bool joinsUnasked(const PreparedScene::Impl& scene, const Camera& camera,
-                  const Factorization& view) {
+// Whether voxels are so small on the screen that slices may be joined: moved by a quarter of a
+// voxel along u and along v, which is less than a fifth of a pixel, in a picture that averages two
+// voxels each way at least, nothing of one voxel's width is seen to move.
+bool areSmall(const Camera& camera, const Volume& volume, const Factorization& view) {
     constexpr double kMostPixelsPerVoxel = 0.5;
     // From an eye the nearest voxel covers more than others.
     constexpr double kMostOfNearest = 0.75;
     constexpr double kSnap = 1e-9;
+    if (!(view.pixelsPerVoxel * (1 - kSnap) <= kMostPixelsPerVoxel)) return false;
+    if (!view.eye) return true;
+    double longest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        longest = std::max(longest, glm::length(glm::dvec3(volume.worldFromIndex[axis])));
+    return mostPixelsOf(longest, camera, volume.box, volume.worldFromIndex) <= kMostOfNearest;
+}
+
+// Whether slices are joined where nobody says otherwise.
+bool joinsUnasked(const PreparedScene::Impl& scene, const Camera& camera,
+                  const Factorization& view) {
     const SplatOptions& options = scene.options;
     if (!options.joinsSlices || options.resolution || options.between || options.sigma ||
         options.footprintWidth)
         return false;
     const Volume& volume = *scene.scene.volume;
-    if (view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsPerVoxel) return false;
-    if (view.eye && nearestPixelsPerVoxel(camera, volume.box, volume.worldFromIndex,
-                                          view.pixelsPerVoxel) > kMostOfNearest)
-        return false;
-    return volume.activeCount >= leastVoxelsJoined && scene.canJoinSlices();
+    return areSmall(camera, volume, view) && volume.activeCount >= leastVoxelsJoined &&
+           scene.canJoinSlices();
 }
 
 // How far a line of sight goes from a slice to the next, in whole voxels, along u and v.

@@ -18,9 +18,9 @@ struct Scene {
 
 /// A scene made ready to be rendered from anywhere: for each slice axis that a camera needs (and,
 /// of method `delta` and where `auto` takes changes, for each way along it; where slices are
-/// joined, for the two ways that lines of sight last went through them), the words that slabs are
-/// rendered from, made when they are first needed and kept. Copies share them. Thread-safe: any
-/// number of threads may render one.
+/// joined, for the two ways that lines of sight last went through them, or of what the eye sees
+/// that they were last seen from), the words that slabs are rendered from, made when they are first
+/// needed and kept. Copies share them. Thread-safe: any number of threads may render one.
 class PreparedScene {
   public:
     /// @throw Error(kUsage) without a volume, or for optics out of range

@@ -94,7 +94,8 @@ struct RenderStats {
     std::uint64_t voxels = 0;   ///< of the bounding box, those that they are divided into or joined
                                 ///< to: what is counted below, too
     std::uint64_t visible = 0;  ///< whose classified colour is not zero; kXray, kDrr: active ones
-                                ///< whose value, or mu, is not 0; kMip, kMin, kAverage: active ones
+                                ///< whose value, or mu, is not 0; kMip, kMin, kAverage: active
+                                ///< ones; from an eye, of what may be seen
     std::uint64_t deltas =
         0;  ///< whose classified colour differs from the slice before, key slices included
     std::uint64_t stamps = 0;  ///< footprints added

@@ -76,7 +76,7 @@ HWY_INLINE Vector opacityOfSteps(Vector a, Vector steps) {
 // Returns by how much opacity `a` grows in so many steps: (1 - (1 - a)^steps) / a, right to 2e-6.
 HWY_INLINE Vector growthOfSteps(Vector a, Vector steps) {
     const FullTag tag;
-    // The binomial series, to its fifth term: right where opacity is low and steps are one to two.
+    // The binomial series, to its fifth term: right where opacity is low and steps are 0.84 to 2.
     auto sum = mulAdd(a, mulAdd(steps, constant(-0.2), constant(0.8)), constant(1));
     sum = mulAdd(hn::Mul(a, mulAdd(steps, constant(-0.25), constant(0.75))), sum, constant(1));
     sum =
@@ -84,7 +84,7 @@ HWY_INLINE Vector growthOfSteps(Vector a, Vector steps) {
     const auto beyond = hn::Mul(hn::Mul(steps, a), mulAdd(steps, constant(-0.5), constant(0.5)));
     const auto series = mulAdd(beyond, sum, steps);
     const auto isLow = hn::And(hn::Le(a, constant(0.1875)),
-                               hn::And(hn::Ge(steps, constant(1)), hn::Le(steps, constant(2))));
+                               hn::And(hn::Ge(steps, constant(0.84)), hn::Le(steps, constant(2))));
     if (hn::AllTrue(tag, isLow)) return series;
     // What is next to clear grows with its steps.
     const auto isClear = hn::Lt(a, constant(1e-30));

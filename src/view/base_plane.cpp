@@ -24,6 +24,14 @@ glm::dvec2 swapped(glm::dvec2 v) {
 
 }  // namespace
 
+int planeBorder(const Factorization& view, double spacing) {
+    constexpr double kLeast = 8;
+    constexpr double kMost = 512;
+    // Half as far again where pixels show more slopes than on average.
+    constexpr double kReach = 3.2;
+    return int(std::clamp(std::ceil(kReach / (spacing * view.pixelsPerSlope)), kLeast, kMost));
+}
+
 BasePlane::BasePlane(const Factorization& view, int firstSlice, glm::ivec2 firstVoxel,
                      double resolution, double offsetPixels)
     : frontToBack_(view.frontToBack),
@@ -43,7 +51,8 @@ BasePlane::BasePlane(const Factorization& view, const Camera& camera, int firstS
     : frontToBack_(view.frontToBack),
       firstSlice_(firstSlice),
       spacing_(spacing),
-      origin_(spacing * (glm::floor(swapped(view.slopeMin) / spacing) - double(kPlaneBorder))),
+      origin_(spacing *
+              (glm::floor(swapped(view.slopeMin) / spacing) - double(planeBorder(view, spacing)))),
       eye_(glm::dvec3(view.eye->x - firstSlice, view.eye->z - firstVoxel.x,
                       view.eye->y - firstVoxel.y)),
       worldFromStep_(view.worldFromStep[0], view.worldFromStep[2], view.worldFromStep[1]),
@@ -53,7 +62,7 @@ BasePlane::BasePlane(const Factorization& view, const Camera& camera, int firstS
     const glm::dvec2 wide = (swapped(view.slopeMax) - origin_) / spacing;
     // Whoever needs memory for it finds out that there are too many.
     constexpr double kMost = 1 << 30;
-    limits_.max = glm::ivec2(glm::min(glm::ceil(wide), kMost)) + kPlaneBorder + 1;
+    limits_.max = glm::ivec2(glm::min(glm::ceil(wide), kMost)) + planeBorder(view, spacing) + 1;
     if (camera.projection == Projection::kPerspective) depthAlong_ = camera.direction;
     // Depth grows evenly with slopes, and lengths are largest and smallest at ends.
     nearest_ = {std::numeric_limits<double>::infinity(), 0};

@@ -31,8 +31,11 @@ struct SlicePlace {
     glm::dvec2 offset{0.0};
 };
 
-/// From an eye, pixels around what the picture shows, for the warp's filters to read.
-inline constexpr int kPlaneBorder = 8;
+/// From an eye, pixels around what the picture shows of a region, for the warp's filters to read,
+/// which reach two pixels of the picture.
+/// @param view     as BasePlane has it
+/// @param spacing  from one pixel to the next, in slopes
+int planeBorder(const Factorization& view, double spacing);
 
 /// Where base plane pixels lie: what slices have in common. Runs along v, as sheets do.
 ///

@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -194,6 +195,17 @@ double shortestStep(const glm::dmat3& worldFromStep, const SlopeBox& slopes) {
                      best(ahead + slopes.most.y * v, u, slopes.least.x, slopes.most.x)});
 }
 
+// The greatest length of a step along a slope of a box: at a corner.
+double longestStep(const glm::dmat3& worldFromStep, const SlopeBox& slopes) {
+    double longest = 0;
+    for (int corner = 0; corner < 4; ++corner) {
+        const glm::dvec3 step(1, corner & 1 ? slopes.most.x : slopes.least.x,
+                              corner & 2 ? slopes.most.y : slopes.least.y);
+        longest = std::max(longest, glm::length(worldFromStep * step));
+    }
+    return longest;
+}
+
 // How fine a picture shows slopes, on average over its corners and its middle.
 double densityOf(const Camera& camera, const Cone& cone, const glm::dmat3& worldFromStep) {
     glm::dvec2 sum(0);
@@ -216,8 +228,10 @@ double pixelsAtMiddle(const Camera& camera, const IndexBox& box, const glm::dmat
     const glm::dvec3 away = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max)) - eye;
     const int axis = mostParallelAxis(away);
     const glm::ivec3 order = sliceOrder(axis);
-    const double least = 0.5 * std::max(box.dims()[axis], 1);
-    const double slices = std::max(std::abs(away[axis]), least);
+    const glm::dvec3 half = 0.5 * glm::dvec3(glm::max(box.dims(), 1));
+    const bool isInside = all(glm::lessThan(glm::abs(away), half));
+    const double slices =
+        isInside ? std::max(std::abs(away[axis]), half[axis]) : std::abs(away[axis]);
     const glm::dmat3 steps = stepsOf(linear, order, away[axis] > 0);
     const glm::dvec2 slope = glm::dvec2(away[order[1]], away[order[2]]) / slices;
     // Along the picture's own middle line of sight where the volume lies behind it.
@@ -309,8 +323,10 @@ std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox
         const Cone& shown = ofFrame.size() < 3 ? cone : ofFrame;
         region.pixelsPerSlope = densityOf(camera, shown, region.worldFromStep);
         if (region.slopeStep) {
-            region.steps =
-                shortestStep(region.worldFromStep, slopesOf(shown)) / region.sliceStepWorld;
+            const double least = shortestStep(region.worldFromStep, slopesOf(shown));
+            const double most = longestStep(region.worldFromStep, slopesOf(shown));
+            region.steps = std::sqrt(least * most) / region.sliceStepWorld;
+            if (ofFrame.size() >= 3) region.stepRange = std::sqrt(most / least);
         }
         regions.push_back(region);
     };
@@ -337,30 +353,43 @@ std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox
     return regions;
 }
 
-double nearestPixelsPerVoxel(const Camera& camera, const IndexBox& box,
-                             const glm::dmat4& worldFromIndex, double pixelsPerVoxel) {
-    const auto fromEye = [&](const glm::dvec3& index) {
-        return glm::dvec3(worldFromIndex * glm::dvec4(index, 1)) - camera.eyeWorld();
-    };
+double mostPixelsOf(double lengthWorld, const Camera& camera, const IndexBox& box,
+                    const glm::dmat4& worldFromIndex) {
     const glm::dvec3 first = glm::dvec3(box.min) - 0.5;
     const glm::dvec3 last = glm::dvec3(box.max) + 0.5;
-    const glm::dvec3 middle = 0.5 * (first + last);
-    double nearest = std::numeric_limits<double>::infinity();
-    double ofMiddle = 0;
-    if (camera.projection == Projection::kLatlong) {
-        const glm::dvec3 eye(glm::inverse(worldFromIndex) * glm::dvec4(camera.eyeWorld(), 1));
-        nearest = glm::length(fromEye(glm::clamp(eye, first, last)));
-        ofMiddle = glm::length(fromEye(middle));
-    } else {
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 index(corner & 1 ? last.x : first.x, corner & 2 ? last.y : first.y,
-                                   corner & 4 ? last.z : first.z);
-            nearest = std::min(nearest, glm::dot(fromEye(index), camera.direction));
-        }
-        ofMiddle = glm::dot(fromEye(middle), camera.direction);
+    const auto world = [&](const glm::dvec3& index) {
+        return glm::dvec3(worldFromIndex * glm::dvec4(index, 1));
+    };
+    const glm::dvec3 middle = world(0.5 * (first + last));
+    const bool isPanorama = camera.projection == Projection::kLatlong;
+    double nearest = std::numeric_limits<double>::infinity();  // along the middle line of sight
+    double radius = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 at = world({corner & 1 ? last.x : first.x, corner & 2 ? last.y : first.y,
+                                     corner & 4 ? last.z : first.z});
+        nearest = std::min(nearest, glm::dot(at - camera.eyeWorld(), camera.direction));
+        radius = std::max(radius, glm::length(at - middle));
     }
-    if (!(nearest > camera.nearWorld)) return std::numeric_limits<double>::infinity();
-    return pixelsPerVoxel * ofMiddle / nearest;
+    double pixels = 0;  // of a length of 1 at distance 1
+    if (isPanorama) {
+        // The box lies in a ball.
+        nearest = glm::length(middle - camera.eyeWorld()) - radius;
+        pixels = camera.sizePixels.x / (2 * std::numbers::pi);
+    } else {
+        // What lies along a line of sight beside the middle one covers pixels as well. What is
+        // around the frame changes nothing within it.
+        const Camera frame = camera.withoutOverscan();
+        double aside = 1;
+        for (int corner = 0; corner < 4; ++corner) {
+            const glm::dvec2 share(corner & 1, corner >> 1);
+            const glm::dvec3 ray = frame.rayThrough(share * glm::dvec2(frame.sizePixels));
+            aside = std::max(aside, glm::length(ray) / glm::dot(ray, camera.direction));
+        }
+        const double finest = std::min(camera.pixelWorld(), camera.pixelHeightWorld());
+        pixels = aside * camera.targetDistanceWorld / finest;
+    }
+    return nearest > camera.nearWorld ? lengthWorld * pixels / nearest
+                                      : std::numeric_limits<double>::infinity();
 }
 
 namespace {

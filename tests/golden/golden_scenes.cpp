@@ -82,6 +82,11 @@ class Scenes {
         scenes_.back().options.optics.parts.resize(1);
         return scenes_.back().options;
     }
+    void addJoined(const std::string& name, const std::string& volume, const CameraOptions& camera,
+                   const TransferFunction& function) {
+        add(name, volume, camera, function);
+        scenes_.back().joinsSlices = true;
+    }
     std::vector<GoldenScene> take() { return std::move(scenes_); }
 
   private:
@@ -202,6 +207,18 @@ void addEyes(Scenes& scenes) {
     scenes.add("panorama-decades", "decades", panorama, colored());
 }
 
+// Of slices that are drawn as one: pictures are so small that voxels cover half a pixel or less.
+void addJoined(Scenes& scenes) {
+    CameraOptions camera = turned(33, 21);
+    camera.sizePixels = {11, 9};
+    scenes.addJoined("joined", "engine", camera, colored());
+    scenes.addJoined("joined-one-color", "cloud", camera, oneColor(0.3));
+    camera.projection = Projection::kPerspective;
+    camera.fovDegrees = 30;
+    scenes.addJoined("joined-perspective", "engine", camera, colored());
+    scenes.addJoined("joined-perspective-one-color", "cloud", camera, oneColor(0.3));
+}
+
 // Of voxels that have looks of their own.
 void addLooks(Scenes& scenes) {
     scenes.add("color-by-index", "engine", turned(33, 21), colored()).optics.colorBy =
@@ -258,6 +275,7 @@ std::vector<GoldenScene> goldenScenes() {
     addOptions(scenes);
     addRays(scenes);
     addEyes(scenes);
+    addJoined(scenes);
     addLooks(scenes);
     return scenes.take();
 }

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include "deltasplat/simd.h"
@@ -17,6 +18,7 @@
 #include "golden/golden_volumes.h"
 #include "support/odd_floats.h"
 #include "support/simd_levels.h"
+#include "support/small_joined.h"
 #include "synth/hash.h"
 
 namespace deltasplat::test {
@@ -48,7 +50,10 @@ Hashes ofScenes() {
         RenderOptions options = scene.options;
         for (MediumPart& part : options.optics.parts)
             part.volume = std::make_shared<const Volume>(volumes.at(scene.part));
+        std::optional<SmallJoined> joined;
+        if (scene.joinsSlices) joined.emplace();
         const RenderResult result = render(volumes.at(scene.volume), options);
+        EXPECT_EQ(result.stats.joined, scene.joinsSlices ? 2 : 1) << scene.name;
         Hash hash;
         for (const glm::dvec3& axis : {result.camera.right, result.camera.up}) {
             for (int i = 0; i < 3; ++i) hash.add(axis[i]);

@@ -65,6 +65,7 @@ TEST(Prepared, picturesOfWhatIsSeenAreThoseOfAll) {
         RenderOptions options;
         options.optics = someOptics(i % 3 == 0 ? Colors::kOne : Colors::kSeveral);
         if (i % 8 == 7) options.optics = someOptics(i % 16 == 7 ? Colors::kOwn : Colors::kLit);
+        if (i % 8 == 3) options.optics = someOptics(i % 16 == 3 ? Colors::kFog : Colors::kFire);
         CameraOptions& camera = options.camera;
         camera.projection = i % 12 == 11 ? Projection::kLatlong : Projection::kPerspective;
         camera.sizePixels = i % 12 == 11 ? glm::ivec2(96, 48) : glm::ivec2(60, 44);
@@ -76,7 +77,7 @@ TEST(Prepared, picturesOfWhatIsSeenAreThoseOfAll) {
         if (i % 5 == 2) camera.nearWorld = 20;
         if (i % 6 == 1) options.resolution = 0.5;
         if (i % 6 == 2) options.resolution = 2;
-        if (i % 6 == 3) options.between = 1;
+        if (i % 6 == 3 && i % 8 != 3) options.between = 1;
         if (i % 6 == 4) options.sigma = 1.5;
         if (i % 6 == 5) options.footprintWidth = 9;
         const PreparedScene scene({volume, options.optics}, options);

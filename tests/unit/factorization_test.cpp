@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <random>
 
@@ -190,6 +193,98 @@ TEST(Factorization, resolutionIsTheLargestStretchOfARotatedScreen) {
     options.frameWidthWorld = 512 / 1.7;
     options.rollDegrees = 33;
     EXPECT_EQ(factorizationOf(options, glm::dmat4(1)).resolution, 2);
+}
+
+// From an eye each line of sight belongs to one region, whose slopes and steps hold its own.
+TEST(Factorization, regionsAtSlopeStepsShareOutAllLinesOfSight) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> share(0, 1);
+    for (int i = 0; i < 40; ++i) {
+        CameraOptions options = turned("front", 29 * i, 17 * i % 60);
+        const bool isPanorama = i % 5 == 4;
+        options.projection = isPanorama ? Projection::kLatlong : Projection::kPerspective;
+        options.sizePixels = isPanorama ? glm::ivec2(64, 32) : glm::ivec2(60, 40);
+        if (!isPanorama) options.fovDegrees = 10 + 3 * i;
+        const glm::dmat4 worldFromIndex = spaced(1, 0.7, i % 3 == 0 ? 4 : 1.3);
+        const Camera camera = makeCamera(options, kBox, worldFromIndex);
+        const auto regions = factorizeRegions(camera, kBox, worldFromIndex, {}, true);
+        for (const Factorization& region : regions) {
+            EXPECT_GE(region.steps, 1);
+            EXPECT_GE(region.stepRange, 1);
+        }
+        for (int j = 0; j < 200; ++j) {
+            const glm::dvec2 pixel =
+                glm::dvec2(share(random), share(random)) * glm::dvec2(options.sizePixels);
+            const glm::dvec3 ray = camera.rayThrough(pixel);
+            int found = 0;
+            for (const Factorization& region : regions) {
+                const glm::dvec3 steps = glm::inverse(region.worldFromStep) * ray;
+                ASSERT_TRUE(region.slopeStep);
+                if (!belongs(steps, sliceOrder(region.sliceAxis)) ||
+                    !isNearSlope(region.slopeStep->x, steps.y, steps.x) ||
+                    !isNearSlope(region.slopeStep->y, steps.z, steps.x))
+                    continue;
+                ++found;
+                const glm::dvec2 slope = glm::dvec2(steps.y, steps.z) / steps.x;
+                for (int axis = 0; axis < 2; ++axis) {
+                    EXPECT_GE(slope[axis], region.slopeMin[axis] - 1e-9);
+                    EXPECT_LE(slope[axis], region.slopeMax[axis] + 1e-9);
+                }
+                const double length = glm::length(region.worldFromStep * glm::dvec3(1, slope));
+                const double times = length / (region.steps * region.sliceStepWorld);
+                EXPECT_LE(std::max(times, 1 / times), region.stepRange + 1e-9);
+            }
+            EXPECT_EQ(found, 1) << i << ": " << pixel.x << ", " << pixel.y;
+        }
+    }
+    EXPECT_TRUE(isNearSlope(0, 0.5, 1) && isNearSlope(0, -0.5, 1));
+    EXPECT_FALSE(isNearSlope(1, 0.5, 1) || isNearSlope(-1, -0.5, 1));
+    EXPECT_TRUE(isNearSlope(1, 0.51, 1) && isNearSlope(-1, -1, 1));
+}
+
+// Nothing of a volume covers more pixels than is said: against where cameras see it.
+TEST(Factorization, lengthsCoverNoMorePixelsThanIsSaid) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> share(-1, 1);
+    for (int i = 0; i < 30; ++i) {
+        CameraOptions options = turned("front", 37 * i, 13 * i % 70);
+        options.projection = Projection::kPerspective;
+        options.fovDegrees = 10 + 2 * i;
+        options.frameOffset = {0.1 * (i % 4), 0};
+        options.pixelAspect = i % 2 == 0 ? 1 : 1.5;
+        const glm::dmat4 worldFromIndex = spaced(1, 0.7, 1.3);
+        const Camera camera = makeCamera(options, kBox, worldFromIndex);
+        constexpr double kLength = 0.01;
+        const double most = mostPixelsOf(kLength, camera, kBox, worldFromIndex);
+        if (std::isinf(most)) continue;
+        double covered = 0;
+        for (int j = 0; j < 500; ++j) {
+            const glm::dvec3 index =
+                10.0 + 10.4 * glm::dvec3(share(random), share(random), share(random));
+            const glm::dvec3 at = worldOf(worldFromIndex, index);
+            const glm::dvec2 pixel = camera.pixelFromWorld(at);
+            if (pixel != glm::clamp(pixel, glm::dvec2(0), glm::dvec2(camera.sizePixels))) continue;
+            const glm::dvec3 way =
+                glm::normalize(glm::dvec3(share(random), share(random), share(random)));
+            covered =
+                std::max(covered, glm::length(camera.pixelFromWorld(at + kLength * way) - pixel));
+        }
+        EXPECT_LE(covered, most * 1.01);
+        EXPECT_GT(covered, most * 0.2);
+    }
+    // Within, and behind the near plane.
+    CameraOptions near = turned("front", 0);
+    near.projection = Projection::kPerspective;
+    near.distanceWorld = 12;
+    const auto pixelsOf = [&] {
+        return mostPixelsOf(1, makeCamera(near, kBox, spaced(1, 1, 1)), kBox, spaced(1, 1, 1));
+    };
+    EXPECT_TRUE(std::isfinite(pixelsOf()));
+    near.nearWorld = 3;
+    EXPECT_TRUE(std::isinf(pixelsOf()));
+    near.nearWorld = 0;
+    near.distanceWorld = 8;
+    EXPECT_TRUE(std::isinf(pixelsOf()));
 }
 
 TEST(Factorization, refusesResolutionsOutOfRangeAndFlatWorlds) {

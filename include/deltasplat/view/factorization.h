@@ -35,17 +35,19 @@ struct Factorization {
     std::optional<glm::dvec3> eye;
     /// World vectors of one step away from the eye along the slice axis, and along u and v.
     glm::dmat3 worldFromStep{1.0};
+    /// Of slopes that belong to this slice axis, in voxels a slice, only those that are nearest to
+    /// whole numbers, -1 to 1 each, along u and v; empty: all.
+    std::optional<glm::ivec2> slopeStep;
     /// Slopes that belong to this slice axis, along u and v, and of these the box that the picture
     /// shows.
-    /// In voxels a slice, the whole numbers, -1 to 1 each, that these are nearest to; empty: all.
-    std::optional<glm::ivec2> slopeStep;
     double slopeLimit = 1;
     glm::dvec2 slopeMin{0.0};
     glm::dvec2 slopeMax{0.0};
     double pixelsPerSlope = 1;  ///< of the screen, on average over this box
     /// World length of the way through a slice that colours are for, as a multiple of
-    /// `sliceStepWorld`: with a `slopeStep`, the shortest in the picture's frame.
+    /// `sliceStepWorld`: with a `slopeStep`, in the middle of those in the picture's frame.
     double steps = 1;
+    double stepRange = 1;  ///< how many times as long, or as short, others are there at most
 };
 
 inline constexpr int kMaxResolution = 16;
@@ -80,11 +82,11 @@ std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox
                                             std::optional<double> resolution = {},
                                             bool atSlopeSteps = false);
 
-/// Returns how many pixels of the screen the nearest voxel of a box covers, or would, of the same
-/// camera; infinite if the eye or the near plane lies beyond it.
-/// @param pixelsPerVoxel  as Factorization::pixelsPerVoxel, from an eye
-double nearestPixelsPerVoxel(const Camera& camera, const IndexBox& box,
-                             const glm::dmat4& worldFromIndex, double pixelsPerVoxel);
+/// Returns how many pixels of the screen a length in the world covers at most, as near to the eye
+/// of a camera as any voxel of a box is and whichever way it lies; infinite if the eye or the near
+/// plane lies beyond any. (Of a panorama, at the equator.)
+double mostPixelsOf(double lengthWorld, const Camera& camera, const IndexBox& box,
+                    const glm::dmat4& worldFromIndex);
 
 /// Returns the world distance between the planes of slices, the least that a line of sight goes
 /// from one to the next.
@@ -103,7 +105,7 @@ inline bool belongs(const glm::dvec3& steps, const glm::ivec3& order) {
 /// @param along  of a line of sight, along u or v for so many slices
 inline bool isNearSlope(int slopeStep, double along, double slices) {
     if (slopeStep == 0) return 2 * (along < 0 ? -along : along) <= slices;
-    return 2 * slopeStep * along > slices;
+    return 2.0 * slopeStep * along > slices;
 }
 
 /// What voxels are drawn as: into how many thin ones each is divided, evenly spaced and as far from
