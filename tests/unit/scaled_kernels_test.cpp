@@ -150,7 +150,8 @@ TEST(ScaledKernels, everySimdLevelGivesTheSameBits) {
 
 // Light and opacity of a slice that looks the same everywhere, for many lengths of the way through.
 TEST(ScaledKernels, lightAndOpacityGrowWithSteps) {
-    std::vector<float> steps = {0, 1e-6f, 0.3f, 0.999f, 1, 1.0001f, 1.2f, 1.5f};
+    std::vector<float> steps = {0,      1e-6f, 0.3f,    0.8399f, 0.84f, 0.9f,
+                                0.999f, 1,     1.0001f, 1.2f,    1.5f};
     for (const float step : {1.732f, 1.9999f, 2.0f, 2.0001f, 3.0f, 50.0f}) steps.push_back(step);
     const auto pixels = int(steps.size());
     steps.resize(steps.size() + kStepsSpare, 1);
