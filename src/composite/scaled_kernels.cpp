@@ -109,6 +109,9 @@ struct ColorLanes {
 
 // Colours of as many pixels as a vector has lanes.
 struct FourColors {
+    // One of the compiler's own would be for another target.
+    HWY_INLINE FourColors() {}
+
     Vector of[4];
 
     Vector opacities() const {
