@@ -4,6 +4,8 @@
 #include <OpenEXR/ImfChannelList.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "image/quantize.h"
@@ -15,6 +17,13 @@ namespace {
 constexpr std::size_t kChannels = 4;
 constexpr const char* kNames[kChannels]{"R", "G", "B", "A"};
 
+// Whether all channels of a pixel are 0, without a sign.
+bool isClear(const float* pixel) {
+    std::uint64_t bits[2];
+    std::memcpy(bits, pixel, sizeof bits);
+    return (bits[0] | bits[1]) == 0;
+}
+
 template <typename Value>
 std::vector<Value> finite(const Image& image, const PixelBox& box, float largest) {
     const std::size_t rowValues = kChannels * std::size_t(box.size().x);
@@ -22,7 +31,12 @@ std::vector<Value> finite(const Image& image, const PixelBox& box, float largest
     parallelFor(std::size_t(box.size().y), [&](std::size_t y) {
         const float* const from = image.pixel(box.min.x, box.min.y + int(y));
         Value* const to = &values[rowValues * y];
-        for (std::size_t i = 0; i < rowValues; ++i) to[i] = Value(finiteValue(from[i], largest));
+        for (std::size_t i = 0; i < rowValues; i += kChannels) {
+            // Most pictures are clear for the most part, as values are already.
+            if (isClear(from + i)) continue;
+            for (std::size_t c = i; c < i + kChannels; ++c)
+                to[c] = Value(finiteValue(from[c], largest));
+        }
     });
     return values;
 }

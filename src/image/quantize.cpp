@@ -110,10 +110,6 @@ void straightSrgbPixel(const SrgbCurve& curve, const float* rgba, double thresho
 
 }  // namespace
 
-float finiteValue(float value, float largest) {
-    return std::isnan(value) ? 0.0f : std::clamp(value, -largest, largest);
-}
-
 // Calls use(pixel, threshold) for each pixel's number.
 template <typename Use>
 void forThresholds(const Image& image, bool dither, const Use& use) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -13,7 +15,9 @@ namespace deltasplat {
 inline constexpr float kLargestHalf = 65504;
 
 /// Returns a number that files hold: NaN as 0, and what is larger than they know as the largest.
-float finiteValue(float value, float largest = std::numeric_limits<float>::max());
+inline float finiteValue(float value, float largest = std::numeric_limits<float>::max()) {
+    return std::isnan(value) ? 0.0f : std::clamp(value, -largest, largest);
+}
 
 /// Returns the picture as `[height][width][4]` samples with straight alpha and sRGB colour, rounded
 /// to nearest: 0 is 0 and 1 is the largest number of `Sample` (uint8_t or uint16_t).
