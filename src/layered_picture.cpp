@@ -73,9 +73,7 @@ LayeredPicture::Impl::Impl(const PreparedScene& ofScene, const Camera& ofCamera,
     const ViewPlan plan(prepared, camera, false, listener);
     if (volume.empty()) return;
     for (const Factorization& view : plan.views) {
-        std::optional<SeenCone> cone;
-        if (view.eye) cone = seenCone(prepared, camera, view, plan.sheets);
-        auto axis = prepared.axis(view, plan.sheets, listener, cone ? &*cone : nullptr);
+        auto axis = prepared.axis(view, plan.sheets, listener, &camera);
         views.push_back(std::make_unique<PictureView>(prepared, camera, view, plan.sheets,
                                                       std::move(axis), memory));
         seen.push_back(seenSlabs(views.back()->slabs()));

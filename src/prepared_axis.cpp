@@ -112,8 +112,8 @@ std::shared_ptr<const PackedDeltas> sharedWords(const AxisRequest& request,
 
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
                                             const AxisRequest& request, const Listener& listener) {
-    const auto& [sliceAxis, descending, parts, seenThrough, steps, encodingAsked, slabLength, seen,
-                 before, mayBeParted] = request;
+    const Subdivision& parts = request.parts;
+    const PreparedAxis* const before = request.before;
     const Volume& volume = *scene.scene.volume;
     const Tolerance& tolerance = scene.options.tolerance;
     std::optional<ValueMixer> mixer;
@@ -121,8 +121,8 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     if (parts.divides() || (painter && painter->choosesClasses())) mixer.emplace(volume, parts);
     const Volume& levels = mixer ? mixer->levels() : volume;
     // What is held does not depend on the camera: straight ways decide.
-    const double straight = planeDistance(volume.worldFromIndex, sliceAxis) / parts.slices;
-    double first = tolerance.isExact() ? steps : 1;
+    const double straight = planeDistance(volume.worldFromIndex, request.sliceAxis) / parts.slices;
+    double first = tolerance.isExact() ? request.steps : 1;
     ClassTable classes = classify(levels, scene.optics, straight * first);
     if (first != 1 && shorterMayShowLess(classes, first)) {
         first = 1;
@@ -130,7 +130,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     }
     listener.report(0.05);
     // Small footprints of two digits are never stamped.
-    Encoding encoding = encodingAsked;
+    Encoding encoding = request.encoding;
     if (encoding == Encoding::kSmaller && !classes.oneDigit()) encoding = Encoding::kSmallerOfSums;
     std::shared_ptr<const PackedDeltas> words = sharedWords(request, scene, classes);
     std::optional<SliceJoiner> joiner;
@@ -143,13 +143,13 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
         opacities = opacitiesOf(volume, classes);
         if (words && opacities != opacitiesOf(volume, before->classes())) words = nullptr;
     }
-    PackOptions pack{sliceAxis, encoding, classes.classOfSlot, holdRule(levels, classes, tolerance),
-                     mixer ? &*mixer : nullptr};
-    pack.descending = descending;
+    PackOptions pack{request.sliceAxis, encoding, classes.classOfSlot,
+                     holdRule(levels, classes, tolerance), mixer ? &*mixer : nullptr};
+    pack.descending = request.descending;
     if (joiner) pack.joiner = &*joiner;
     pack.slant = parts.slant;
-    pack.seen = seen;
-    pack.slabLength = slabLength;
+    pack.seen = request.seen;
+    pack.slabLength = request.slabLength;
     pack.opacities = opacities;
     const bool isLit = painter && painter->dependsOnCamera();
     std::unique_ptr<const LookLight> light;
@@ -167,22 +167,22 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     if (!words) {
         packer = std::make_shared<DeltaPacker>(volume, pack);
         const bool inParts =
-            mayBeParted && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
+            request.mayBeParted && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
         words = std::make_shared<const PackedDeltas>(inParts ? packer->plan(scene.wordBytes)
                                                              : packer->packAll());
         if (!inParts) packer = nullptr;
     }
     if (joiner) {
-        classes = joinedClasses(classes, *joiner, seenThrough, steps / first);
-    } else if (steps != first) {
-        classes = classes.atSteps(steps);
+        classes = joinedClasses(classes, *joiner, request.seenThrough, request.steps / first);
+    } else if (request.steps != first) {
+        classes = classes.atSteps(request.steps);
         if (light) light = painter->lightOf(classes, nullptr);
     }
     StepColors colors = isLit ? StepColors(std::move(classes))
                               : StepColors(*words, std::move(classes), std::move(light));
     return std::make_shared<const PreparedAxis>(
-        PreparedAxis{sliceAxis, parts, std::move(words), steps, std::move(colors),
-                     std::move(packer), std::move(joiner), seen});
+        PreparedAxis{request.sliceAxis, parts, std::move(words), request.steps, std::move(colors),
+                     std::move(packer), std::move(joiner), request.seen});
 }
 
 // Index position (x, y, z) that lines of sight begin at.
@@ -283,7 +283,7 @@ void PreparedScene::Impl::forgetOtherEyes(const glm::dvec3& eye) const {
 std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorization& view,
                                                               const SheetPlan& plan,
                                                               const Listener& listener,
-                                                              const SeenCone* seen,
+                                                              const Camera* camera,
                                                               bool inParts) const {
     const int sliceAxis = view.sliceAxis;
     const Subdivision parts = plan.partsIn(view);
@@ -305,8 +305,9 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
     // be packed. What is held depends on all that lies before it.
     request.slabLength = view.eye ? SlabLength::kShortest : SlabLength::kByCounts;
     request.mayBeParted = isForOne && inParts;
-    const bool packsSeen = seen && options.tolerance.isExact() && (isForOne || isJoined);
-    if (packsSeen) request.seen = *seen;
+    const bool packsSeen = view.eye && camera && !scene.volume->empty() &&
+                           options.tolerance.isExact() && (isForOne || isJoined);
+    if (packsSeen) request.seen = seenCone(*this, *camera, view, plan);
     // No other region sees the same.
     if (packsSeen && isForOne) return prepare(*this, request, listener);
     const Key key{sliceAxis,    int(encoding), int(fromEnd), int(request.slabLength),

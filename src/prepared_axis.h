@@ -62,10 +62,11 @@ struct PreparedScene::Impl {
     /// Returns the axis of a view, made if it is not there. Classes are coloured for the view's
     /// steps if there will be no other picture. From an eye, what is lit looks different in each
     /// slice, and slabs are whole.
-    /// @param seen     from an eye, all that is to be seen
+    /// @param camera   whose picture it is for: from an eye, what that does not see may be left
+    ///                 out; null: there is all
     /// @param inParts  whether a few slabs at a time will do, of a scene for one picture
     std::shared_ptr<const PreparedAxis> axis(const Factorization& view, const SheetPlan& plan,
-                                             const Listener& listener, const SeenCone* seen,
+                                             const Listener& listener, const Camera* camera,
                                              bool inParts = false) const;
     /// Returns whether slices can be joined (optics/joined_classes.h), along whatever axis.
     bool canJoinSlices() const;
@@ -80,9 +81,9 @@ struct PreparedScene::Impl {
     struct Place {
         std::mutex mutex;
         std::shared_ptr<const PreparedAxis> axis;
-        std::uint64_t lastUse = 0;  // guarded as places_ are
-        std::optional<glm::dvec3>
-            eye;  // likewise: that the axis is seen from, if only what is seen is there
+        // Guarded as places_ are:
+        std::uint64_t lastUse = 0;
+        std::optional<glm::dvec3> eye;  // that sees all that is there; empty: there is all
     };
     using Places = std::map<Key, std::shared_ptr<Place>>;
 

@@ -69,10 +69,8 @@ class CompositeRender {
     void runView(std::size_t number, const Factorization& view, const Listener& listener) {
         const Clock::time_point start = Clock::now();
         const bool isFlat = !wanted_.views && !wanted_.step && !wanted_.deep;
-        std::optional<SeenCone> seen;
-        if (view.eye && !volume_.empty()) seen = seenCone(scene_, camera_, view, plan_->sheets);
         std::shared_ptr<const PreparedAxis> axis =
-            scene_.axis(view, plan_->sheets, listener, seen ? &*seen : nullptr, isFlat);
+            scene_.axis(view, plan_->sheets, listener, &camera_, isFlat);
         stats_.prepareSeconds += secondsSince(start);
         countIn(*axis);
         listener.report(0.2);
@@ -252,9 +250,9 @@ class CompositeRender {
 
     // Whether any voxel can be seen from elsewhere, of a picture whose regions see none.
     bool isAnythingVisible(const Listener& listener) const {
-        if (!isPartlyPacked_) return false;
         const Factorization& view = plan_->views.front();
-        return scene_.axis(view, plan_->sheets, listener, nullptr, true)->deltas().visible() > 0;
+        return view.eye &&
+               scene_.axis(view, plan_->sheets, listener, nullptr, true)->deltas().visible() > 0;
     }
 
     // Who reads an empty volume has been told so.
@@ -276,11 +274,9 @@ class CompositeRender {
         stats_.between = axis.parts.slices - 1;
         stats_.parts = axis.parts.voxels();
         stats_.joined = axis.parts.joined;
-        isPartlyPacked_ = isPartlyPacked_ || axis.seen;
         stats_.stamps += axis.stamps(options_.method);
         // Of regions, that which sees most stands for all.
-        if (isCounted_ && axis.deltas().visible() <= stats_.visible) return;
-        isCounted_ = true;
+        if (stats_.slices > 0 && axis.deltas().visible() <= stats_.visible) return;
         stats_.sliceAxis = axis.sliceAxis;
         const IndexBox& box = axis.deltas().box;
         stats_.slices = box.dims().x;
@@ -329,8 +325,6 @@ class CompositeRender {
     const Wanted& wanted_;
     RenderStats& stats_;
     std::optional<ViewPlan> plan_;
-    bool isCounted_ = false;
-    bool isPartlyPacked_ = false;  // what no region sees is left out
     // Of rows of blocks compared with the frame before.
     bool isCompared_ = true;
     std::uint64_t differing_ = 0;

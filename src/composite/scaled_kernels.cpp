@@ -66,6 +66,17 @@ HWY_INLINE void sumSomeRows(const ScaledSlice& slice, const ScaledRun& run, floa
     std::fill_n(columns + end, 2 * kSpare, 0.0f);
 }
 
+// Weighs what lanes have of two neighbouring columns.
+// @param from  the lane of the first column that each takes its values from
+template <class Indices>
+HWY_INLINE Vector weighPair(const float* column, std::size_t channels, Indices from,
+                            Vector weight) {
+    const FullTag tag;
+    const auto here = hn::TableLookupLanes(hn::LoadU(tag, column), from);
+    const auto next = hn::TableLookupLanes(hn::LoadU(tag, column + channels), from);
+    return hn::Add(hn::Mul(here, weight), hn::Mul(next, hn::Sub(constant(1), weight)));
+}
+
 // Weighs two neighbouring columns for every pixel, of one channel. As columns lie no closer than
 // pixels do, those of a vector of pixels lie within a vector.
 HWY_INLINE void sumColumnPairs(const ScaledRun& run, const float* columns, float* opacities) {
@@ -77,10 +88,7 @@ HWY_INLINE void sumColumnPairs(const ScaledRun& run, const float* columns, float
         const auto away = hn::Sub(hn::LoadU(whole, run.first + x), hn::Set(whole, first));
         const auto from = hn::IndicesFromVec(tag, away);
         const auto weight = hn::LoadU(tag, run.pairWeights + x);
-        const auto here = hn::TableLookupLanes(hn::LoadU(tag, column), from);
-        const auto next = hn::TableLookupLanes(hn::LoadU(tag, column + 1), from);
-        const auto rest = hn::Sub(constant(1), weight);
-        hn::StoreU(hn::Add(hn::Mul(here, weight), hn::Mul(next, rest)), tag, opacities + x);
+        hn::StoreU(weighPair(column, 1, from, weight), tag, opacities + x);
     }
 }
 
@@ -141,10 +149,7 @@ HWY_INLINE FourColors pairColors(const ScaledRun& run, const float* columns,
                                         lanes.pixelOf[n]));
         const auto from = hn::IndicesFromVec(tag, hn::Add(hn::ShiftLeft<2>(away), lanes.channel));
         const auto weight = hn::TableLookupLanes(weights, lanes.pixelOf[n]);
-        const auto here = hn::TableLookupLanes(hn::LoadU(tag, column), from);
-        const auto next = hn::TableLookupLanes(hn::LoadU(tag, column + 4), from);
-        const auto rest = hn::Sub(constant(1), weight);
-        colors.of[n] = hn::Add(hn::Mul(here, weight), hn::Mul(next, rest));
+        colors.of[n] = weighPair(column, 4, from, weight);
     }
     return colors;
 }

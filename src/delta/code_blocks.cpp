@@ -6,7 +6,6 @@
 #include <glm/common.hpp>
 #include <glm/gtc/type_precision.hpp>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "ingest/codes/leaf_slices.h"
@@ -87,11 +86,6 @@ Slot inactiveSlot(Code number) {
     return kSlotCount + number;
 }
 
-bool isBefore(const CodeBlock& a, const CodeBlock& b) {
-    return std::tie(a.position.y, a.position.z, a.position.x) <
-           std::tie(b.position.y, b.position.z, b.position.x);
-}
-
 // Orders blocks by u, then v, then slice. Those of each column are counted and put into place, in
 // which they mostly are in order: trees list leaves so, whatever the axis.
 void sortByColumn(std::vector<CodeBlock>& blocks) {
@@ -107,7 +101,7 @@ void sortByColumn(std::vector<CodeBlock>& blocks) {
     // Where blocks lie far apart there are too many columns.
     constexpr double kMostColumnsPerBlock = 4;
     if (double(size.x) * double(size.y) > kMostColumnsPerBlock * double(blocks.size()))
-        return parallelSort(blocks, isBefore);
+        return parallelSort(blocks, comesBefore);
     const auto columnOf = [&](const CodeBlock& block) {
         return std::size_t((block.position.y - first.x) * size.y + (block.position.z - first.y));
     };
@@ -120,8 +114,8 @@ void sortByColumn(std::vector<CodeBlock>& blocks) {
     std::size_t begin = 0;
     for (const std::size_t end : ends) {
         const std::span column = std::span(sorted).subspan(begin, end - begin);
-        if (!std::is_sorted(column.begin(), column.end(), isBefore))
-            std::sort(column.begin(), column.end(), isBefore);
+        if (!std::is_sorted(column.begin(), column.end(), comesBefore))
+            std::sort(column.begin(), column.end(), comesBefore);
         begin = end;
     }
     blocks = std::move(sorted);

@@ -4,6 +4,7 @@
 #include <array>
 #include <glm/vec3.hpp>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "deltasplat/delta/delta_grid.h"
@@ -26,6 +27,12 @@ struct CodeBlock {
     Code highest = 0;
     const ShortSlot* slots = nullptr;  ///< as SlotBlock::slots; null unless listBlocks found them
 };
+
+/// Whether a block comes before another: ordered by u, then v, then slice.
+inline bool comesBefore(const CodeBlock& a, const CodeBlock& b) {
+    return std::tie(a.position.y, a.position.z, a.position.x) <
+           std::tie(b.position.y, b.position.z, b.position.x);
+}
 
 /// Whether two blocks lie one behind the other along the slice axis, however far.
 inline bool shareColumn(const CodeBlock& a, const CodeBlock& b) {

@@ -28,17 +28,13 @@ namespace {
 
 // Adds blocks in which nothing is seen but what the painter adds, in the order in which they are.
 void addBlocks(const BlockSet& more, int sliceAxis, std::vector<CodeBlock>& blocks) {
-    const auto isBefore = [](const CodeBlock& a, const CodeBlock& b) {
-        const auto key = [](const glm::ivec3& p) { return std::tuple(p.y, p.z, p.x); };
-        return key(a.position) < key(b.position);
-    };
     std::vector<CodeBlock> added;
     for (const glm::ivec3& position : more.positions)
         added.push_back({toSliceOrder(position, sliceAxis)});
-    std::sort(added.begin(), added.end(), isBefore);
+    std::sort(added.begin(), added.end(), comesBefore);
     std::vector<CodeBlock> all;
     std::set_union(blocks.begin(), blocks.end(), added.begin(), added.end(),
-                   std::back_inserter(all), isBefore);
+                   std::back_inserter(all), comesBefore);
     blocks = std::move(all);
 }
 

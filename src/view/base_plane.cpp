@@ -56,8 +56,7 @@ BasePlane::BasePlane(const Factorization& view, const Camera& camera, int firstS
       eye_(glm::dvec3(view.eye->x - firstSlice, view.eye->z - firstVoxel.x,
                       view.eye->y - firstVoxel.y)),
       worldFromStep_(view.worldFromStep[0], view.worldFromStep[2], view.worldFromStep[1]),
-      stepWorld_(view.sliceStepWorld),
-      steps_(view.steps),
+      stepWorld_(view.sliceStepWorld * view.steps),
       nearWorld_(camera.nearWorld) {
     const glm::dvec2 wide = (swapped(view.slopeMax) - origin_) / spacing;
     // Whoever needs memory for it finds out that there are too many.
@@ -72,7 +71,7 @@ BasePlane::BasePlane(const Factorization& view, const Camera& camera, int firstS
         nearest_ = {std::min(nearest_.x, nearest), std::max(nearest_.y, nearest)};
     }
     // Along each line of sight, that straight ahead is the longest way in slices.
-    if (!depthAlong_) nearest_.y = nearWorld_ / stepWorld_;
+    if (!depthAlong_) nearest_.y = nearWorld_ / view.sliceStepWorld;
 }
 
 SlicePlace BasePlane::placeOf(int slice) const {
@@ -125,7 +124,7 @@ double BasePlane::shareOf(int slice, glm::ivec2 pixel) const {
 }
 
 double BasePlane::stepsAt(glm::ivec2 pixel) const {
-    return glm::length(rayOf(positionOf(pixel))) / stepWorld_ / steps_;
+    return glm::length(rayOf(positionOf(pixel))) / stepWorld_;
 }
 
 StepLengths::StepLengths(const BasePlane& plane, const PlaneBox& planeBox,

@@ -97,8 +97,7 @@ class BasePlane {
 
     std::optional<glm::dvec3> eye_;  // (slice, v, u), from the first slice and voxel
     glm::dmat3 worldFromStep_{1.0};  // away, along v, along u
-    double stepWorld_ = 1;
-    double steps_ = 1;  // that colours are classified for
+    double stepWorld_ = 1;           // that colours are classified for
     PlaneBox limits_;
     double nearWorld_ = 0;
     std::optional<glm::dvec3> depthAlong_;  // unit vector; empty: along each line of sight
