@@ -115,10 +115,12 @@ struct ColorLanes {
     hn::Vec<hn::RebindToSigned<FullTag>> channel;
 };
 
-// Colours of as many pixels as a vector has lanes.
+// Colours of as many pixels as a vector has lanes, clear at first.
 struct FourColors {
-    // One of the compiler's own would be for another target.
-    HWY_INLINE FourColors() {}
+    // Written out, as the compiler's own would be for another target.
+    HWY_INLINE FourColors() {
+        for (Vector& color : of) color = hn::Zero(FullTag());
+    }
 
     Vector of[4];
 
@@ -140,7 +142,6 @@ HWY_INLINE FourColors pairColors(const ScaledRun& run, const float* columns,
     const auto weights = hn::LoadU(tag, run.pairWeights + x);
     FourColors colors;
     for (std::size_t n = 0; n < 4; ++n) {
-        colors.of[n] = hn::Zero(tag);
         if (n >= vectors) continue;
         const std::int32_t first = run.first[x + n * ColorLanes::perVector()];
         const float* column = columns + 4 * (first - run.first[0]);
