@@ -81,14 +81,16 @@ std::unique_ptr<Leaf> keptLeaf(const Block& block, const CutRegion& region) {
 std::vector<Block> listBlocks(const CodeTree& codes, const CutRegion& region,
                               CodeTree::Tree& tree) {
     std::vector<Block> blocks;
+    std::vector<const Leaf*> leaves;
     for (const CodeLeaf& one : *codes.leaves()) {
-        const openvdb::Coord origin = one.leaf->origin();
-        if (region.keptOf(boxAt(origin, Leaf::DIM)) != Kept::kNone)
-            blocks.push_back({origin, one.leaf, 0});
+        if (region.keptOf(boxAt(one.origin, Leaf::DIM)) == Kept::kNone) continue;
+        blocks.push_back({one.origin, one.leaf, 0});
+        leaves.push_back(one.leaf);
     }
     requireMemory("cut", double(blocks.size()) * kBlockBytes);
+    codes.readLeaves(leaves);
     TileSplitter splitter(region, tree, blocks);
-    forActiveTiles(codes.tree(), [&](const auto& tile) {
+    forActiveTiles(codes.nodes(), [&](const auto& tile) {
         splitter.add(tile.getCoord(), int(tile.getLevel()), *tile);
     });
     return blocks;

@@ -35,12 +35,12 @@ template <typename SlotOf, typename Use>
 void forVisibleTiles(const CodeTree& codes, const SlotOf& slotOf, const Use& use) {
     using Upper = CodeTree::Tree::RootNodeType::ChildNodeType;
     using Lower = Upper::ChildNodeType;
-    forVisibleTilesOf(codes.tree().root(), slotOf, use);
+    forVisibleTilesOf(codes.nodes().root(), slotOf, use);
     std::vector<const Upper*> uppers;
-    codes.tree().getNodes(uppers);
+    codes.nodes().getNodes(uppers);
     for (const Upper* node : uppers) forVisibleTilesOf(*node, slotOf, use);
     std::vector<const Lower*> lowers;
-    codes.tree().getNodes(lowers);
+    codes.nodes().getNodes(lowers);
     for (const Lower* node : lowers) forVisibleTilesOf(*node, slotOf, use);
 }
 
@@ -66,12 +66,16 @@ std::vector<std::vector<CodeBlock>> visibleLeaves(const CodeTree& codes, int sli
     const auto all = codes.leaves();
     std::optional<SeenCodes> seen;
     if (!slotMap.empty()) seen.emplace(slotMap);
-    std::vector<std::vector<CodeBlock>> parts((all->size() + kPart - 1) / kPart);
+    const std::size_t count = (all->size() + kPart - 1) / kPart;
+    std::vector<std::vector<CodeBlock>> parts(count);
+    // Those that other cones see as well: all are mostly wanted in the end.
+    std::vector<std::vector<const CodeTree::Leaf*>> toRead(codes.lacksLeaves() ? count : 0);
     parallelFor(parts.size(), [&](std::size_t part) {
         const std::size_t end = std::min((part + 1) * kPart, all->size());
         for (std::size_t i = part * kPart; i < end; ++i) {
             const CodeLeaf& one = (*all)[i];
             if (seen && !seen->hasAny(one.lowest, one.highest)) continue;
+            if (!toRead.empty()) toRead[part].push_back(one.leaf);
             // Shifting keeps the floor of negative positions.
             const glm::ivec3 position = toSliceOrder(one.origin >> 3, sliceAxis);
             if (cone && !cone->sees(position)) continue;
@@ -79,6 +83,9 @@ std::vector<std::vector<CodeBlock>> visibleLeaves(const CodeTree& codes, int sli
                 {position, one.leaf, kEmptySlot, nullptr, one.lowest, one.highest});
         }
     });
+    std::vector<const CodeTree::Leaf*> leaves;
+    for (const auto& part : toRead) leaves.insert(leaves.end(), part.begin(), part.end());
+    codes.readLeaves(leaves);
     return parts;
 }
 

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "delta/block_kernels.h"
@@ -60,6 +63,38 @@ void encodesAsOneByOne(RawType type) {
             ASSERT_EQ(codes[n], Code(Code(value) - offset)) << x << ' ' << y << ' ' << z;
         }
     }
+}
+
+// A block with one number other than the rest, wherever it lies.
+template <typename T>
+void rangesAsTheyAre(RawType type) {
+    constexpr std::size_t kRow = 9 * sizeof(T) + 1;
+    constexpr std::size_t kSlice = 8 * kRow + 3;
+    const auto offset = Code(std::numeric_limits<T>::min());
+    for (const T other : {std::numeric_limits<T>::min(), std::numeric_limits<T>::max(), T(5)}) {
+        for (std::size_t n = 0; n < 512; n += 7) {
+            std::vector<std::byte> bytes(1 + 7 * kSlice + 7 * kRow + 8 * sizeof(T));
+            const RawBlock block{bytes.data() + 1, kRow, kSlice};
+            for (std::size_t i = 0; i < 512; ++i) {
+                const T value = i == n ? other : T(5);
+                std::memcpy(&bytes[1 + i / 64 * kSlice + i / 8 % 8 * kRow + i % 8 * sizeof(T)],
+                            &value, sizeof value);
+            }
+            const auto codeOf = [&](T value) { return Code(Code(value) - offset); };
+            ASSERT_EQ(rangeOfWholeBlock(block, type, offset),
+                      std::pair(codeOf(std::min(other, T(5))), codeOf(std::max(other, T(5)))))
+                << n;
+        }
+    }
+}
+
+TEST(CodeKernels, rangeOfWholeBlock) {
+    test::atEveryLevel([] {
+        rangesAsTheyAre<std::uint8_t>(RawType::kUint8);
+        rangesAsTheyAre<std::int8_t>(RawType::kInt8);
+        rangesAsTheyAre<std::uint16_t>(RawType::kUint16);
+        rangesAsTheyAre<std::int16_t>(RawType::kInt16);
+    });
 }
 
 TEST(CodeKernels, encodeWholeBlock) {

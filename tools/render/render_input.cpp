@@ -328,6 +328,7 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
                     const VolumeReader& reader) {
     ReadOptions read = picture.read;
     read.keepInexact = picture.render.mode != Mode::kComposite;
+    read.readLater = !read.keepInexact;
     Volume volume = placed(look     ? look->sequence.read(input, read, listener)
                            : reader ? reader(input, read, listener)
                                     : readVolume(input, read, listener),

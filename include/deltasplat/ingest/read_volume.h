@@ -55,6 +55,11 @@ struct ReadOptions {
     bool keepSource = false;  ///< fill Volume::source
     /// Fill Volume::source where the code book is not exact: what X-rays and largest values read.
     bool keepInexact = false;
+    /// Read voxels of a plain raw file (.raw, .npy, .nii of whole numbers of 8 and 16 bits) when
+    /// they are first asked for: a picture of some of them takes less time and memory. The file
+    /// stays open and must stay as it is: else what asks throws Error(kInput). Of no use where all
+    /// voxels are asked for, and without effect with keepSource.
+    bool readLater = false;
     /// What the caller will take besides for each 8x8x8 block that is not uniform: counts where
     /// setMemoryLimit() is in force, so that too large a volume is refused before it is read.
     double bytesPerBlock = 0;

@@ -27,11 +27,16 @@ class CodeCounts {
     std::size_t workers() const { return counts_.size(); }
     /// One call at a time for each worker.
     void add(std::size_t worker, std::span<const Code> codes) {
-        Counts& counts = countsOf(worker, codes.size());
+        addEach(worker, codes.size(), [&](std::size_t i) { return codes[i]; });
+    }
+    /// Adds codeOf(0) to codeOf(count - 1).
+    template <typename CodeOf>
+    void addEach(std::size_t worker, std::size_t count, const CodeOf& codeOf) {
+        Counts& counts = countsOf(worker, count);
         std::size_t i = 0;
-        for (; i + kLanes <= codes.size(); i += kLanes)
-            for (std::size_t lane = 0; lane < kLanes; ++lane) ++counts.few[codes[i + lane]][lane];
-        for (; i < codes.size(); ++i) ++counts.few[codes[i]][0];
+        for (; i + kLanes <= count; i += kLanes)
+            for (std::size_t lane = 0; lane < kLanes; ++lane) ++counts.few[codeOf(i + lane)][lane];
+        for (; i < count; ++i) ++counts.few[codeOf(i)][0];
     }
     void add(std::size_t worker, Code code, std::uint64_t times) {
         constexpr std::uint64_t kFew = 1 << 20;
@@ -62,7 +67,8 @@ class CodeCounts {
   private:
     // Neighbours are often alike, and who adds to what was just written waits for it.
     static constexpr std::size_t kLanes = 4;
-    struct Counts {
+    // Apart from those of others, who write at the same time.
+    struct alignas(64) Counts {
         std::vector<std::array<std::uint32_t, kLanes>> few;  // [kCodeCount]
         std::uint64_t inFew = 0;                             // of all codes together
         std::vector<std::uint64_t> many;                     // likewise, or empty

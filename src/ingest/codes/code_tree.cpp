@@ -115,11 +115,23 @@ std::vector<CodeLeaf> fillTree(const SlotBlocks& blocks, CodeTree::Tree& tree) {
     return described;
 }
 
+// Whether a leaf has no codes yet.
+bool lacks(const CodeTree::Leaf& leaf) {
+    return leaf.buffer().empty();
+}
+
 }  // namespace
 
 CodeTree::CodeTree(std::shared_ptr<const SlotBlocks> blocks) : blocks_(std::move(blocks)) {}
 
+CodeTree::~CodeTree() = default;
+
 const CodeTree::Tree& CodeTree::tree() const {
+    if (lacksLeaves()) readAll();
+    return nodes();
+}
+
+const CodeTree::Tree& CodeTree::nodes() const {
     if (!blocks_ || hasTree_.load(std::memory_order_acquire)) return tree_;
     if (blocks_->facts()) {
         throw Error(ErrorCode::kFailed, gotExpected("volume", "some slices of a delta grid alone",
@@ -154,8 +166,38 @@ std::shared_ptr<const std::vector<CodeLeaf>> CodeTree::leaves() const {
     return known;
 }
 
-void CodeTree::noteLeaves(std::vector<CodeLeaf> leaves) {
+void CodeTree::noteLeaves(std::vector<CodeLeaf> leaves, std::unique_ptr<const LeafReader> reader) {
+    if (reader) {
+        leftToRead_ = std::size_t(std::count_if(
+            leaves.begin(), leaves.end(), [](const CodeLeaf& one) { return lacks(*one.leaf); }));
+        if (leftToRead_ > 0) reader_ = std::move(reader);
+        lacksLeaves_.store(leftToRead_ > 0, std::memory_order_release);
+    }
     leaves_.store(std::make_shared<const std::vector<CodeLeaf>>(std::move(leaves)));
+}
+
+void CodeTree::readLeaves(std::span<const Leaf* const> leaves) const {
+    if (!lacksLeaves()) return;
+    const std::lock_guard lock(mutex_);
+    if (!reader_) return;
+    std::vector<Leaf*> lacking;
+    for (const Leaf* leaf : leaves) {
+        // The tree, whose it is, is no constant.
+        if (lacks(*leaf)) lacking.push_back(const_cast<Leaf*>(leaf));
+    }
+    if (lacking.empty()) return;
+    requireMemory("codes of a volume", double(Leaf::SIZE * sizeof(Code)) * double(lacking.size()));
+    isolated([&] { reader_->read(lacking); });
+    leftToRead_ -= lacking.size();
+    if (leftToRead_ > 0) return;
+    reader_.reset();
+    lacksLeaves_.store(false, std::memory_order_release);
+}
+
+void CodeTree::readAll() const {
+    std::vector<const Leaf*> leaves;
+    for (const CodeLeaf& one : *leaves_.load()) leaves.push_back(one.leaf);
+    readLeaves(leaves);
 }
 
 }  // namespace deltasplat

@@ -15,12 +15,13 @@
 namespace deltasplat {
 
 struct CodeLeaf;
+class LeafReader;
 class SlotBlocks;
 
 /// The codes of a volume: in OpenVDB's standard layout (leaves of 8x8x8 voxels, x slowest, z
 /// fastest), where a uniform active 8x8x8 block may be an active tile at any level, so that a large
 /// constant region costs no memory; or as blocks that lie along a slice axis, of which the tree is
-/// made when it is first asked for.
+/// made when it is first asked for. Leaves may be read when they are first asked for, too.
 struct CodeTree {
     using Tree = openvdb::tree::Tree4<Code, 5, 4, 3>::Type;
     using Leaf = Tree::LeafNodeType;
@@ -32,30 +33,46 @@ struct CodeTree {
     template <typename... Args>
     explicit CodeTree(std::in_place_t, Args&&... args) : tree_(std::forward<Args>(args)...) {}
     explicit CodeTree(std::shared_ptr<const SlotBlocks> blocks);
+    ~CodeTree();
 
     /// To be filled, before anybody asks for leaves(); not of one made of blocks.
     Tree& tree() { return tree_; }
-    /// Thread-safe. Of one made of blocks the first call makes the tree.
-    /// @throw Error(kFailed) if these are some slices of a volume only
+    /// Thread-safe. Of one made of blocks the first call makes the tree; leaves that are left to be
+    /// read are read.
+    /// @throw Error(kFailed) if these are some slices of a volume only; what readLeaves throws
     const Tree& tree() const;
+    /// Does the same for who looks at nodes, tiles and masks alone: no leaf is read.
+    const Tree& nodes() const;
     /// The blocks that this is made of, if they lie along an axis; else null.
     const SlotBlocks* blocksAlong(int sliceAxis) const;
     /// Returns how much memory codes take, without making anything.
     std::uint64_t memoryBytes() const;
 
     /// Lists the leaves that have active voxels, with the ranges of their codes: made on the first
-    /// call, after which the tree must not change. Thread-safe.
+    /// call, after which the tree must not change. Thread-safe. Codes are there once readLeaves was
+    /// called for them.
     std::shared_ptr<const std::vector<CodeLeaf>> leaves() const;
+    /// Reads those of this tree's leaves that nobody has asked for yet. Thread-safe.
+    /// @throw Error(kInput) if their file cannot be read any more
+    void readLeaves(std::span<const Leaf* const> leaves) const;
+    /// Whether there may be leaves that are not read yet.
+    bool lacksLeaves() const { return lacksLeaves_.load(std::memory_order_acquire); }
     /// Tells leaves() what it would find out, for who has filled the tree: it must not change then.
     /// @param leaves  all that have active voxels, in any order
-    void noteLeaves(std::vector<CodeLeaf> leaves);
+    /// @param reader  null, or reads those that have no room for codes yet when they are asked for
+    void noteLeaves(std::vector<CodeLeaf> leaves,
+                    std::unique_ptr<const LeafReader> reader = nullptr);
 
   private:
+    void readAll() const;
     mutable Tree tree_{Code{0}};
     std::shared_ptr<const SlotBlocks> blocks_;  // null: the tree is all that there is
     mutable std::mutex mutex_;
     mutable std::atomic<bool> hasTree_ = false;  // if there are blocks
     mutable std::atomic<std::shared_ptr<const std::vector<CodeLeaf>>> leaves_;
+    mutable std::atomic<bool> lacksLeaves_ = false;
+    mutable std::unique_ptr<const LeafReader> reader_;  // null once all is read
+    mutable std::size_t leftToRead_ = 0;
 };
 
 /// A leaf of a code tree that has active voxels, and the range of their codes: those which a
@@ -65,6 +82,20 @@ struct CodeLeaf {
     openvdb::Coord origin;  // of the leaf, which is then not looked at
     Code lowest;
     Code highest;
+};
+
+/// Reads leaves of codes from where these lie.
+class LeafReader {
+  public:
+    LeafReader() = default;
+    LeafReader(const LeafReader&) = delete;
+    LeafReader& operator=(const LeafReader&) = delete;
+    virtual ~LeafReader() = default;
+
+    /// Gives leaves their codes, on all threads.
+    /// @param leaves  without room for codes
+    /// @throw Error(kInput) if their file cannot be read, or is not what it was
+    virtual void read(std::span<CodeTree::Leaf* const> leaves) const = 0;
 };
 
 /// @param leaf  one that has active voxels

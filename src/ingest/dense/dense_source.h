@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <functional>
 #include <glm/mat4x4.hpp>
+#include <memory>
 #include <string>
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
+#include "ingest/files/stored_rows.h"
 #include "ingest/raw/raw_format.h"
 
 namespace deltasplat {
@@ -35,6 +37,10 @@ struct DenseSource {
     /// starts again.
     /// @throw Error(kInput) if the file turns out not to be what it claimed
     std::function<void(const LayerUse& use, const Listener& listener)> forEachLayer;
+
+    /// The same values, in any order; null where they do not lie in a file as forEachLayer gives
+    /// them.
+    std::shared_ptr<const StoredRows> rows;
 
     static constexpr int kLayerSlices = 8;
     int step = kLayerSlices;  ///< the most slices that forEachLayer gives at a time

@@ -10,6 +10,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -54,15 +56,28 @@ class DenseTreeBuilder {
     ///                `uniform`: it is whole and has one value
     template <typename Fill, typename Tally>
     void add(int firstSlice, int slices, const Fill& fill, const Tally& tally) {
-        const int firstLayer = firstSlice / kBlock;
-        const int layers = (slices + kBlock - 1) / kBlock;
-        for (int layer = firstLayer, count = 0; layer < firstLayer + layers; layer += count) {
-            // Those that hang in one row of nodes.
-            count = std::min(firstLayer + layers, (layer / kNode + 1) * kNode) - layer;
-            makeBlocks(layer, count, firstSlice, fill, tally);
-            if ((layer + count) % kNode == 0 || layer + count == blocks_.z)
-                hangInRow(layer / kNode);
-        }
+        addBlocks(firstSlice, slices,
+                  [&](std::size_t worker, const glm::ivec3& corner, std::span<Block> row) {
+                      glm::ivec3 place = corner;
+                      for (Block& block : row) {
+                          block = makeBlock(worker, place, firstSlice, fill, tally);
+                          place.x += kBlock;
+                      }
+                  });
+    }
+
+    /// Adds slices as add() does, but leaves most leaves without values, to be read later: all but
+    /// those of rows in which there are few.
+    /// @param rowOf  rowOf(worker, y, z) is called for each row of blocks, by their first voxel,
+    /// from
+    ///               all threads, and returns what has rangeOf(x), the smallest and the largest
+    ///               value of the block from x on, and read(leaf), which reads one
+    template <typename RowOf>
+    void addRanges(int firstSlice, int slices, const RowOf& rowOf) {
+        addBlocks(firstSlice, slices,
+                  [&](std::size_t worker, const glm::ivec3& corner, std::span<Block> row) {
+                      makeRanges(corner, rowOf(worker, corner.y, corner.z), row);
+                  });
     }
 
     /// Returns the leaves with the ranges of their codes, once all slices are there.
@@ -92,58 +107,96 @@ class DenseTreeBuilder {
         Value high{};
     };
 
+    // @param makeRow  makeRow(worker, corner, row) makes the blocks of a row along x
+    template <typename MakeRow>
+    void addBlocks(int firstSlice, int slices, const MakeRow& makeRow) {
+        const int firstLayer = firstSlice / kBlock;
+        const int layers = (slices + kBlock - 1) / kBlock;
+        for (int layer = firstLayer, count = 0; layer < firstLayer + layers; layer += count) {
+            // Those that hang in one row of nodes.
+            count = std::min(firstLayer + layers, (layer / kNode + 1) * kNode) - layer;
+            makeBlocks(layer, count, makeRow);
+            if ((layer + count) % kNode == 0 || layer + count == blocks_.z)
+                hangInRow(layer / kNode);
+        }
+    }
+
+    glm::ivec3 sizeOf(const glm::ivec3& corner) const {
+        return glm::min(dims_ - corner, glm::ivec3(kBlock));
+    }
+    static bool isWhole(const glm::ivec3& size) { return size == glm::ivec3(kBlock); }
+
     static bool isUniform(const Value* values) {
         // All neighbours equal: a comparison that libraries do with whole vectors.
         const auto* bytes = reinterpret_cast<const std::byte*>(values);
         return std::memcmp(bytes, bytes + sizeof(Value), (kBlockVoxels - 1) * sizeof(Value)) == 0;
     }
 
-    static void deactivateOutside(Leaf& leaf, const glm::ivec3& size) {
+    // Returns a leaf without room for values, active where the volume is.
+    static std::unique_ptr<Leaf> leafAt(const glm::ivec3& corner, const glm::ivec3& size) {
+        expectPieces(sizeof(Leaf));
+        auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(),
+                                           openvdb::Coord(corner.x, corner.y, corner.z), Value{},
+                                           /*active=*/true);
+        if (isWhole(size)) return leaf;
         for (int x = 0; x < kBlock; ++x) {
             for (int y = 0; y < kBlock; ++y) {
                 for (int z = 0; z < kBlock; ++z) {
                     const bool inside = x < size.x && y < size.y && z < size.z;
-                    if (!inside) leaf.setValueOff(openvdb::Index(x * 64 + y * 8 + z), Value{});
+                    if (!inside) leaf->setValueOff(openvdb::Index(x * 64 + y * 8 + z));
                 }
             }
         }
+        return leaf;
     }
 
-    template <typename Fill, typename Tally>
-    void makeBlocks(int firstLayer, int layers, int firstSlice, const Fill& fill,
-                    const Tally& tally) {
+    template <typename MakeRow>
+    void makeBlocks(int firstLayer, int layers, const MakeRow& makeRow) {
         std::atomic<int> next = 0;
         parallelFor(workers_, [&](std::size_t worker) {
             for (int row = next++; row < layers * blocks_.y; row = next++) {
                 const int y = row % blocks_.y;
                 const int z = firstLayer + row / blocks_.y;
-                for (int x = 0; x < blocks_.x; ++x) {
-                    madeAt(x, y, z) = makeBlock(worker, {x * kBlock, y * kBlock, z * kBlock},
-                                                firstSlice, fill, tally);
-                }
+                makeRow(worker, glm::ivec3(0, y, z) * kBlock,
+                        std::span(&madeAt(0, y, z), std::size_t(blocks_.x)));
             }
         });
+    }
+
+    template <typename Row>
+    void makeRanges(glm::ivec3 corner, const Row& row, std::span<Block> blocks) const {
+        std::size_t leaves = 0;
+        for (Block& block : blocks) {
+            const glm::ivec3 size = sizeOf(corner);
+            std::tie(block.low, block.high) = row.rangeOf(corner.x);
+            const bool isUniform = block.low == block.high && isWhole(size);
+            block.leaf = isUniform ? nullptr : leafAt(corner, size);
+            if (block.leaf) ++leaves;
+            corner.x += kBlock;
+        }
+        // To find one of a row in a file takes as long as to read this share of it.
+        constexpr std::size_t kFew = 8;
+        if (leaves * kFew > blocks.size()) return;
+        for (const Block& block : blocks)
+            if (block.leaf) row.read(*block.leaf);
     }
 
     template <typename Fill, typename Tally>
     Block makeBlock(std::size_t worker, const glm::ivec3& corner, int firstSlice, const Fill& fill,
                     const Tally& tally) const {
         alignas(64) std::array<Value, kBlockVoxels> values;
-        const glm::ivec3 size = glm::min(dims_ - corner, glm::ivec3(kBlock));
-        const bool whole = size == glm::ivec3(kBlock);
+        const glm::ivec3 size = sizeOf(corner);
+        const bool whole = isWhole(size);
         if (!whole) values.fill(Value{});
         fill(corner - glm::ivec3(0, 0, firstSlice), size, values.data());
         const bool uniform = whole && isUniform(values.data());
         tally(worker, size, values.data(), uniform);
         if (uniform) return {nullptr, values[0], values[0]};
 
-        expectPieces(sizeof(Leaf) + sizeof values);
-        auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(),
-                                           openvdb::Coord(corner.x, corner.y, corner.z), Value{},
-                                           /*active=*/true);
+        std::unique_ptr<Leaf> leaf = leafAt(corner, size);
+        expectPieces(sizeof values);
         leaf->allocate();
         std::copy(values.begin(), values.end(), leaf->buffer().data());
-        if (!whole) deactivateOutside(*leaf, size);
         if constexpr (kHasCodes) {
             const CodeLeaf described = describeLeaf(*leaf);
             return {std::move(leaf), described.lowest, described.highest};

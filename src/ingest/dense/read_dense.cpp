@@ -15,6 +15,7 @@
 #include "deltasplat/memory_limit.h"
 #include "ingest/codes/code_counts.h"
 #include "ingest/codes/code_tree.h"
+#include "ingest/dense/codes_on_demand.h"
 #include "ingest/dense/dense_source.h"
 #include "ingest/dense/dense_tree_builder.h"
 #include "ingest/dense/mixed_blocks.h"
@@ -204,6 +205,11 @@ void countCodes(std::size_t worker, const glm::ivec3& size, const Code* codes, b
     }
 }
 
+// Whether leaves are read when they are asked for: only where numbers become codes at once.
+bool readsLater(const DenseSource& source, const ReadOptions& options) {
+    return options.readLater && !options.keepSource && source.rows && !needsScan(source.type);
+}
+
 // Keeps the most frequent of some values.
 void keepMostFrequent(const std::vector<double>& values, const std::vector<std::uint64_t>& counts,
                       Volume& volume) {
@@ -361,7 +367,14 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
     const bool keep = (options.keepSource || options.keepInexact) && !volume.codeBook.isExact();
     requireLimit(source, options, keep, listener);
     const double coded = keep ? 0.75 : 1;
-    readCodes(source, options, survey, partOf(listener, scanned, coded), volume);
+    if (readsLater(source, options)) {
+        CodesOnDemand codes = codesOnDemand(source, volume.codeBook, listener);
+        volume.codes = std::move(codes.tree);
+        volume.histogram = std::move(codes.histogram);
+        summarize(volume);
+    } else {
+        readCodes(source, options, survey, partOf(listener, scanned, coded), volume);
+    }
     if (keep) {
         auto grid =
             readSourceGrid(source, options.nanValue.value_or(0), partOf(listener, coded, 1));

@@ -86,6 +86,7 @@ DenseSource rescaled(DenseSource source, const Rescale& rescale) {
     DenseSource result = source;
     result.type = rescaledType(source.type);
     result.bigEndian = std::endian::native == std::endian::big;
+    result.rows = nullptr;
     result.forEachLayer = [source = std::move(source), rescale, type = result.type](
                               const DenseSource::LayerUse& use, const Listener& listener) {
         const auto pixels = std::size_t(source.dims.x) * std::size_t(source.dims.y);

@@ -2,6 +2,7 @@
 #include "ingest/files/byte_source.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "ingest/files/unpacker.h"
@@ -9,16 +10,19 @@
 namespace deltasplat {
 
 ByteSource::ByteSource(const std::filesystem::path& file, Packing packing, std::uint64_t start)
-    : file_(file), place_(start) {
+    : ByteSource(std::make_shared<const FileBytes>(file), start) {
     if (packing == Packing::kNone) return;
-    unpacker_ = std::make_unique<Unpacker>(file_, packing == Packing::kZlib, start);
+    unpacker_ = std::make_unique<Unpacker>(*file_, packing == Packing::kZlib, start);
 }
+
+ByteSource::ByteSource(std::shared_ptr<const FileBytes> file, std::uint64_t start)
+    : file_(std::move(file)), place_(start) {}
 
 ByteSource::~ByteSource() = default;
 
 std::size_t ByteSource::read(void* to, std::size_t bytes) {
     if (unpacker_) return unpacker_->read(to, bytes);
-    const std::size_t got = file_.readInParts(place_, to, bytes);
+    const std::size_t got = file_->readInParts(place_, to, bytes);
     place_ += got;
     return got;
 }

@@ -26,6 +26,8 @@ class ByteSource {
     /// @param start  place in the file of the first byte, plain or packed
     /// @throw Error(kInput) if the file is missing, not regular or cannot be opened
     ByteSource(const std::filesystem::path& file, Packing packing, std::uint64_t start = 0);
+    /// @param start  place in the file of the first byte, which is plain
+    explicit ByteSource(std::shared_ptr<const FileBytes> file, std::uint64_t start = 0);
     ~ByteSource();
     ByteSource(const ByteSource&) = delete;
     ByteSource& operator=(const ByteSource&) = delete;
@@ -40,7 +42,7 @@ class ByteSource {
     std::uint64_t skip(std::uint64_t bytes, const std::function<void()>& step);
 
   private:
-    FileBytes file_;
+    std::shared_ptr<const FileBytes> file_;
     std::uint64_t place_;
     std::unique_ptr<Unpacker> unpacker_;  // if packed
 };

@@ -2,6 +2,7 @@
 #include "ingest/files/file_bytes.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,10 +27,27 @@ FileBytes::FileBytes(const std::filesystem::path& file) : path_(file) {
                                 "a readable file"));
     }
     size_ = std::filesystem::file_size(file);
+    written_ = lastWrite();
 }
 
 FileBytes::~FileBytes() {
     ::close(handle_);
+}
+
+std::int64_t FileBytes::lastWrite() const {
+    struct stat status {};
+    if (::fstat(handle_, &status) != 0) return 0;
+    return std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+}
+
+void FileBytes::requireUnchanged() const {
+    if (lastWrite() != written_) throwChanged();
+}
+
+void FileBytes::throwChanged() const {
+    throw Error(ErrorCode::kInput,
+                gotExpected(path_.string(), "a file that was written to while it was read",
+                            "one that stays as it is"));
 }
 
 std::size_t FileBytes::read(std::uint64_t place, void* to, std::size_t bytes) const {

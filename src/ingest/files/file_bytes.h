@@ -23,11 +23,19 @@ class FileBytes {
     std::size_t read(std::uint64_t place, void* to, std::size_t bytes) const;
     /// Does the same on all threads.
     std::size_t readInParts(std::uint64_t place, void* to, std::size_t bytes) const;
+    /// @throw Error(kInput) if the file was written to after it was opened
+    void requireUnchanged() const;
+    /// Says so.
+    [[noreturn]] void throwChanged() const;
 
   private:
+    // When the file was last written to, in nanoseconds.
+    std::int64_t lastWrite() const;
+
     std::filesystem::path path_;
     int handle_ = -1;
     std::uint64_t size_ = 0;
+    std::int64_t written_ = 0;  // lastWrite() when it was opened
 };
 
 }  // namespace deltasplat

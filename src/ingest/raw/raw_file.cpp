@@ -46,12 +46,13 @@ void requireEnd(const RawFile& file, ByteSource& source, std::uint64_t done,
     if (more != 0 && !file.mayGoOn) throwSize(file, done + later + more);
 }
 
-// @param step  slices at a time
-void readLayers(const RawFile& file, int step, PackedEnd end, const DenseSource::LayerUse& use,
-                const Listener& listener) {
+// @param bytes  of a plain file; else null
+// @param step   slices at a time
+void readLayers(const RawFile& file, const std::shared_ptr<const FileBytes>& bytes, int step,
+                PackedEnd end, const DenseSource::LayerUse& use, const Listener& listener) {
     // What lies before the volume is passed over, where it is not packed without being read.
-    ByteSource source(file.path, file.gzip ? Packing::kGzip : Packing::kNone,
-                      file.gzip ? 0 : file.start());
+    ByteSource source =
+        bytes ? ByteSource(bytes, file.start()) : ByteSource(file.path, Packing::kGzip);
     const auto beat = [&](double share) { return [&listener, share] { listener.report(share); }; };
     std::uint64_t done = file.gzip ? source.skip(file.start(), beat(0)) : file.start();
     const int slices = int(file.layout.dims.z);
@@ -59,14 +60,14 @@ void readLayers(const RawFile& file, int step, PackedEnd end, const DenseSource:
                                    std::size_t(file.layout.dims.y) *
                                    std::size_t(rawTypeBytes(file.layout.type));
     requireMemory(file.path.string(), double(sliceBytes) * step);
-    const auto bytes = std::make_unique_for_overwrite<std::byte[]>(sliceBytes * std::size_t(step));
+    const auto layer = std::make_unique_for_overwrite<std::byte[]>(sliceBytes * std::size_t(step));
     for (int first = 0; first < slices; first += step) {
         const int count = std::min(step, slices - first);
         const std::size_t wanted = sliceBytes * std::size_t(count);
-        const std::size_t got = source.read(bytes.get(), wanted);
+        const std::size_t got = source.read(layer.get(), wanted);
         done += got;
         if (got != wanted) throwSize(file, done);
-        use(first, count, bytes.get());
+        use(first, count, layer.get());
         listener.report(double(first + count) / slices);
     }
     // The size of a plain file has been looked at.
@@ -99,13 +100,17 @@ DenseSource denseSourceOf(const RawFile& file) {
     source.bigEndian = file.layout.bigEndian;
     source.volumes = file.volumes;
     source.step = source.enoughSlices();
-    source.forEachLayer = [file, step = source.stepSlices(),
+    const auto bytes = file.gzip ? nullptr : std::make_shared<const FileBytes>(file.path);
+    source.forEachLayer = [file, bytes, step = source.stepSlices(),
                            checked = std::make_shared<bool>(false)](
                               const DenseSource::LayerUse& use, const Listener& listener) {
-        readLayers(file, step, *checked ? PackedEnd::kIsKnown : PackedEnd::kIsChecked, use,
+        readLayers(file, bytes, step, *checked ? PackedEnd::kIsKnown : PackedEnd::kIsChecked, use,
                    listener);
         *checked = true;
     };
+    if (bytes)
+        source.rows = std::make_shared<const StoredRows>(bytes, file.start(), source.rowBytes(),
+                                                         source.dims.y);
     return source;
 }
 

@@ -35,6 +35,7 @@ DenseSource fromHalves(DenseSource source) {
     DenseSource result = source;
     result.type = RawType::kFloat32;
     result.bigEndian = std::endian::native == std::endian::big;
+    result.rows = nullptr;
     result.forEachLayer = [source = std::move(source)](const DenseSource::LayerUse& use,
                                                        const Listener& listener) {
         const std::size_t pixels = std::size_t(source.dims.x) * std::size_t(source.dims.y);

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/dense/codes_on_demand.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "heap_growth.h"
+#include "ingest/codes/book_encoder.h"
+#include "ingest/codes/code_counts.h"
+#include "ingest/codes/code_kernels.h"
+#include "ingest/dense/dense_tree_builder.h"
+#include "ingest/raw/raw_kernels.h"
+#include "ingest/raw/raw_load.h"
+#include "ingest/raw/raw_values.h"
+#include "memory.h"
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr int kBlock = CodeTree::Leaf::DIM;
+constexpr std::size_t kBlockVoxels = CodeTree::Leaf::SIZE;
+
+// The bytes of a row of blocks, those with the same y and z: few enough to stay in the cache.
+class BlockRow {
+  public:
+    BlockRow(const DenseSource& source, int y, int z)
+        : dims_(source.dims),
+          valueBytes_(std::size_t(rawTypeBytes(source.type))),
+          rowBytes_(source.rowBytes()),
+          size_(glm::min(glm::ivec2(dims_.y - y, dims_.z - z), glm::ivec2(kBlock))),
+          bytes_(std::make_unique_for_overwrite<std::byte[]>(sliceBytes() * std::size_t(size_.y))) {
+        for (int slice = 0; slice < size_.y; ++slice) {
+            source.rows->read(z + slice, y, size_.x, &bytes_[std::size_t(slice) * sliceBytes()]);
+        }
+    }
+
+    RawBlock at(int x) const {
+        return {&bytes_[std::size_t(x) * valueBytes_],
+                rowBytes_,
+                sliceBytes(),
+                {std::min(dims_.x - x, kBlock), size_.x, size_.y}};
+    }
+
+  private:
+    std::size_t sliceBytes() const { return std::size_t(size_.x) * rowBytes_; }
+
+    glm::ivec3 dims_;
+    std::size_t valueBytes_;
+    std::size_t rowBytes_;
+    glm::ivec2 size_;  // rows, slices
+    std::unique_ptr<std::byte[]> bytes_;
+};
+
+// Makes codes of what is stored.
+class BlockCoder {
+  public:
+    BlockCoder(const DenseSource& source, const CodeBook& book)
+        : book_(book),
+          encoder_(book),
+          coding_{source.type, source.bigEndian, book_, encoder_},
+          encode_(blockEncoder(coding_)) {}
+
+    void encode(const RawBlock& block, Code* codes) const { encode_(block, coding_, codes); }
+    const RawCoding& coding() const { return coding_; }
+
+  private:
+    CodeBook book_;
+    BookEncoder encoder_;
+    RawCoding coding_;
+    EncodeBlock encode_;
+};
+
+void readLeaf(const BlockRow& row, const BlockCoder& coder, CodeTree::Leaf& leaf) {
+    expectPieces(kBlockVoxels * sizeof(Code));
+    leaf.allocate();
+    Code* const codes = leaf.buffer().data();
+    if (!leaf.isDense()) std::fill_n(codes, kBlockVoxels, Code{0});
+    coder.encode(row.at(leaf.origin().x()), codes);
+}
+
+class DenseLeaves : public LeafReader {
+  public:
+    DenseLeaves(const DenseSource& source, const CodeBook& book)
+        : source_(source), coder_(source, book) {}
+
+    void read(std::span<CodeTree::Leaf* const> leaves) const override {
+        const Rows rows = byRows(leaves);
+        parallelFor(rows.begins.size() - 1, [&](std::size_t i) {
+            const std::size_t begin = rows.begins[i];
+            readRow(std::span(rows.leaves).subspan(begin, rows.begins[i + 1] - begin));
+        });
+        source_.rows->requireUnchanged();
+    }
+
+  private:
+    struct Rows {
+        std::vector<CodeTree::Leaf*> leaves;  // those of each row of blocks together
+        std::vector<std::size_t> begins;      // of rows among them, and one more
+    };
+
+    Rows byRows(std::span<CodeTree::Leaf* const> leaves) const {
+        const auto blocks = (source_.dims + std::int64_t{kBlock - 1}) / std::int64_t{kBlock};
+        const auto rowOf = [&](const CodeTree::Leaf* leaf) {
+            return std::size_t(leaf->origin().z() / kBlock * blocks.y +
+                               leaf->origin().y() / kBlock);
+        };
+        Rows rows{std::vector<CodeTree::Leaf*>(leaves.size()),
+                  std::vector<std::size_t>(std::size_t(blocks.z * blocks.y) + 1)};
+        for (const CodeTree::Leaf* leaf : leaves) ++rows.begins[rowOf(leaf) + 1];
+        std::partial_sum(rows.begins.begin(), rows.begins.end(), rows.begins.begin());
+        std::vector<std::size_t> next = rows.begins;
+        for (CodeTree::Leaf* leaf : leaves) rows.leaves[next[rowOf(leaf)]++] = leaf;
+        return rows;
+    }
+
+    void readRow(std::span<CodeTree::Leaf* const> leaves) const {
+        if (leaves.empty()) return;
+        const openvdb::Coord first = leaves.front()->origin();
+        const BlockRow row(source_, first.y(), first.z());
+        for (CodeTree::Leaf* const leaf : leaves) readLeaf(row, coder_, *leaf);
+    }
+
+    DenseSource source_;
+    BlockCoder coder_;
+};
+
+// Finds the range of codes in blocks, and counts them.
+class BlockLooker {
+  public:
+    BlockLooker(const DenseSource& source, const CodeBook& book, std::size_t workers)
+        : coder_(source, book),
+          isPlain_(rawTypeBytes(source.type) == 1 || !mustSwap(source.bigEndian)),
+          counts_(workers) {}
+
+    /// One call at a time for each worker.
+    std::pair<Code, Code> lookAt(std::size_t worker, const RawBlock& block) {
+        const bool isWhole = block.size == glm::ivec3(kBlock);
+        return isWhole && isPlain_ ? lookAtPlain(worker, block) : lookAtAny(worker, block);
+    }
+    const BlockCoder& coder() const { return coder_; }
+    std::vector<std::uint64_t> takeHistogram() { return counts_.take(); }
+
+  private:
+    // Codes are not written down.
+    std::pair<Code, Code> lookAtPlain(std::size_t worker, const RawBlock& block) {
+        const RawCoding& coding = coder_.coding();
+        const auto offset = Code(std::int64_t(coding.book.offset));
+        const auto range = rangeOfWholeBlock(block, coding.type, offset);
+        if (range.first == range.second) {
+            counts_.add(worker, range.first, kBlockVoxels);
+        } else if (rawTypeBytes(coding.type) == 1) {
+            count<std::uint8_t>(worker, block, offset);
+        } else {
+            count<std::uint16_t>(worker, block, offset);
+        }
+        return range;
+    }
+
+    // @param T  of the bits: those of negative numbers make the same codes, modulo 2^8 or 2^16
+    template <typename T>
+    void count(std::size_t worker, const RawBlock& block, Code offset) {
+        std::array<T, kBlockVoxels> numbers;
+        T* row = numbers.data();
+        for (int z = 0; z < kBlock; ++z) {
+            for (int y = 0; y < kBlock; ++y, row += kBlock) {
+                const std::byte* stored = block.first + std::size_t(z) * block.sliceBytes +
+                                          std::size_t(y) * block.rowBytes;
+                std::memcpy(row, stored, kBlock * sizeof(T));
+            }
+        }
+        counts_.addEach(worker, kBlockVoxels,
+                        [&](std::size_t i) { return Code(T(numbers[i] - T(offset))); });
+    }
+
+    std::pair<Code, Code> lookAtAny(std::size_t worker, const RawBlock& block) {
+        alignas(64) std::array<Code, kBlockVoxels> codes;
+        coder_.encode(block, codes.data());
+        std::pair<Code, Code> range{codes[0], codes[0]};
+        for (int x = 0; x < block.size.x; ++x) {
+            for (int y = 0; y < block.size.y; ++y) {
+                const std::span column(&codes[std::size_t(64 * x + 8 * y)],
+                                       std::size_t(block.size.z));
+                const auto [low, high] = rangeOfCodes(column);
+                range = {std::min(range.first, low), std::max(range.second, high)};
+                counts_.add(worker, column);
+            }
+        }
+        return range;
+    }
+
+    BlockCoder coder_;
+    bool isPlain_;
+    CodeCounts counts_;
+};
+
+// A row of blocks that one worker looks at.
+struct SeenRow {
+    std::size_t worker;
+    BlockLooker& looker;
+    BlockRow row;
+
+    std::pair<Code, Code> rangeOf(int x) const { return looker.lookAt(worker, row.at(x)); }
+    void read(CodeTree::Leaf& leaf) const { readLeaf(row, looker.coder(), leaf); }
+};
+
+}  // namespace
+
+CodesOnDemand codesOnDemand(const DenseSource& source, const CodeBook& book,
+                            const Listener& listener) {
+    using Builder = DenseTreeBuilder<CodeTree::Tree>;
+    const glm::ivec3 dims(source.dims);
+    auto codes = std::make_shared<CodeTree>();
+    requireMemory(source.where, Builder::bytes(dims));
+    Builder builder(codes->tree(), dims);
+    BlockLooker looker(source, book, builder.workers());
+    const double rowBytes = double(source.rowBytes()) * std::min(dims.y, kBlock) *
+                            std::min(dims.z, kBlock) * double(builder.workers());
+    const int step = source.stepSlices();
+    for (int first = 0; first < dims.z; first += step) {
+        const int slices = std::min(step, dims.z - first);
+        requireMemory(source.where, rowBytes + builder.worstBytes(slices));
+        builder.addRanges(first, slices, [&](std::size_t worker, int y, int z) {
+            return SeenRow{worker, looker, BlockRow(source, y, z)};
+        });
+        listener.report(double(first + slices) / dims.z);
+    }
+    source.rows->requireUnchanged();
+    codes->noteLeaves(builder.takeLeaves(), std::make_unique<const DenseLeaves>(source, book));
+    return {std::move(codes), looker.takeHistogram()};
+}
+
+}  // namespace deltasplat
