@@ -59,14 +59,13 @@ void requireRoom(const Tolerance& tolerance, const Volume& volume) {
                "at least " + numberText(book.relativeError));
 }
 
-// Copies what the source says of itself, under names of its own. Packed grids go without what is
-// noted anew whenever a file is written.
-void putSourceMetadata(const openvdb::GridBase& source, bool isPacked, openvdb::MetaMap& metadata) {
+// Copies what the source says of itself, under names of its own, but for what is noted anew
+// whenever a file is written.
+void putSourceMetadata(const openvdb::GridBase& source, openvdb::MetaMap& metadata) {
     const auto noted = fileMetadata();
     for (auto entry = source.beginMeta(); entry != source.endMeta(); ++entry) {
         const bool isNoted = std::find(noted.begin(), noted.end(), entry->first) != noted.end();
-        if (!isPacked || !isNoted)
-            metadata.insertMeta(kSourcePrefix + entry->first, *entry->second);
+        if (!isNoted) metadata.insertMeta(kSourcePrefix + entry->first, *entry->second);
     }
 }
 
@@ -107,7 +106,7 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     if (source && volume.hasBackground) {
         header.sourceTree = typeOf(*source);
         header.sourceMap = source->transform().mapType();
-        putSourceMetadata(*source, options.pack, *grid);
+        putSourceMetadata(*source, *grid);
         if (impl_->grids.empty() && volume.source->fileMetadata)
             impl_->fileMetadata = *volume.source->fileMetadata;
     }

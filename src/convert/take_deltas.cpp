@@ -187,8 +187,7 @@ openvdb::GridBase::Ptr takeCodes(const Volume& volume, const Rest& rest,
     held.box = header.box;
     holdValues(held, header.sliceAxis, header.keyInterval, tolerance, rest.slotMap);
     header.codeCount = codeCountOf(held);
-    const std::vector<Slot> slotMap =
-        header.isPacked() ? beginLow(held, rest, header) : rest.slotMap;
+    const std::vector<Slot> slotMap = beginLow(held, rest, header);
     DeltaOptions options;
     options.slotMap = slotMap;
     options.inactive = inactive.numbers.get();
@@ -202,7 +201,6 @@ openvdb::GridBase::Ptr takeCodes(const Volume& volume, const Rest& rest,
 
 openvdb::GridBase::Ptr takeValues(const Volume& volume, const StoredValues& values,
                                   const InactiveValues& inactive, DeltaHeader& header) {
-    if (!header.isPacked()) header.version = DeltaHeader::kExactVersion;
     header.exact = values.type;
     std::optional<double> rest;
     if (header.restActive) {

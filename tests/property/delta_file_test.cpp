@@ -19,6 +19,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/codes/code_tree.h"
+#include "ingest/delta/delta_format.h"
 #include "ingest/grids/file_metadata.h"
 #include "ingest/grids/source_grid.h"
 #include "reference/plain_delta_reader.h"
@@ -879,11 +880,13 @@ TEST(DeltaFile, FloatsBesideAnOutlierComeBackAsTheirCodes) {
     }
 }
 
-// Makes a grid one of the older versions, whose deltas have a sign.
-void makeOlder(openvdb::Int32Grid& grid) {
-    ASSERT_EQ(grid.metaValue<std::int32_t>("delta_version"), 3);
-    const bool pieces = grid.metaValue<std::string>("delta_code_book") == "pieces";
-    grid.insertMeta("delta_version", openvdb::Int32Metadata(pieces ? 2 : 1));
+// Makes a grid one of an older version, whose header says all, and up to 2 deltas have a sign.
+void makeOlder(int version, openvdb::Int32Grid& grid) {
+    DeltaHeader header = takeDeltaHeader(grid, "new");
+    ASSERT_EQ(header.version, 6);
+    header.version = version;
+    putDeltaHeader(header, grid);
+    if (version > 2) return;
     std::uint64_t negative = 0;
     for (auto delta = grid.beginValueOn(); delta; ++delta) {
         const std::int32_t number = *delta;
@@ -895,8 +898,10 @@ void makeOlder(openvdb::Int32Grid& grid) {
 }
 
 TEST(DeltaFile, OlderVersionsAreRead) {
-    for (const bool pieces : {false, true}) {
-        SCOPED_TRACE(pieces);
+    for (const int version : {1, 2, 3, 4}) {
+        SCOPED_TRACE(version);
+        const bool isExact = version == 4;
+        const bool pieces = version == 2 || isExact;
         const TempFolder folder;
         std::mt19937 random(6);
         std::vector<float> values = waves(random, 20);
@@ -907,12 +912,12 @@ TEST(DeltaFile, OlderVersionsAreRead) {
         const Volume volume = readKept(kWavesFile);
         ASSERT_EQ(bool(volume.codeBook.pieces), pieces);
         DeltaFile file;
-        file.add(volume, codesOnly());
+        file.add(volume, isExact ? DeltaFileOptions() : codesOnly());
         file.write("delta.vdb");
         openvdb::io::File input("delta.vdb");
         input.open();
         const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid(volume.name));
-        makeOlder(*grid);
+        makeOlder(version, *grid);
         openvdb::io::File("older.vdb").write({grid});
         const Volume restored = readVolume("older.vdb");
         const PlainVolume plain = testing::readPlainDeltas("older.vdb", volume.name);
@@ -920,13 +925,14 @@ TEST(DeltaFile, OlderVersionsAreRead) {
             const Coord at(int(i % 95), int(i / 95 % 41), int(i / 95 / 41));
             const double own = volume.codeBook.valueOf(volume.codes->tree().getValue(at));
             ASSERT_EQ(restored.codeBook.valueOf(restored.codes->tree().getValue(at)), own);
-            ASSERT_EQ(plain.valueAt(at), own);
+            ASSERT_EQ(plain.valueAt(at), isExact ? double(values[i]) : own);
         }
     }
 }
 
 // Whole numbers whose smallest in use is far from the first that their book has.
-TEST(DeltaFile, PackedWholeNumbersBeginWithTheSmallest) {
+void beginWithTheSmallest(bool pack) {
+    SCOPED_TRACE(pack);
     const TempFolder folder;
     std::mt19937 random(14);
     std::vector<std::int16_t> values(std::size_t(60) * 50 * 40);
@@ -936,7 +942,7 @@ TEST(DeltaFile, PackedWholeNumbersBeginWithTheSmallest) {
     testing::writeBytes("a_60x50x40_int16.raw", testing::bytesOf(values));
     const Volume volume = readKept("a_60x50x40_int16.raw");
     DeltaFileOptions options;
-    options.pack = true;
+    options.pack = pack;
     DeltaFile file;
     EXPECT_TRUE(file.add(volume, options).lossless);
     file.write("delta.vdb");
@@ -951,6 +957,11 @@ TEST(DeltaFile, PackedWholeNumbersBeginWithTheSmallest) {
         ASSERT_EQ(plain.valueAt(at), values[i]);
         ASSERT_EQ(restored.codeBook.valueOf(restored.codes->tree().getValue(at)), values[i]);
     }
+}
+
+TEST(DeltaFile, WholeNumbersBeginWithTheSmallest) {
+    beginWithTheSmallest(true);
+    beginWithTheSmallest(false);
 }
 
 TEST(DeltaFile, PackedGridsWithoutVoxelsComeBack) {

@@ -17,7 +17,7 @@ T entry(const openvdb::GridBase& grid, const std::string& name) {
     return found->value();
 }
 
-// Section "Packed deltas": of version 5 what is usual may be missing.
+// Section "Metadata": from version 5 on what is usual may be missing.
 template <typename T>
 T entry(const openvdb::GridBase& grid, const std::string& name, const T& byDefault) {
     const bool isThere = bool(grid[name]) || entry<std::int32_t>(grid, "delta_version") < 5;
@@ -31,7 +31,7 @@ std::vector<double> numbers(const std::string& text) {
     return list;
 }
 
-// The same section: bits of words that are the voxels of a grid.
+// Section "Packed deltas": bits of words that are the voxels of a grid.
 class Bits {
   public:
     explicit Bits(const openvdb::Int64Grid& grid) : words_(grid.getConstAccessor()) {}
@@ -226,7 +226,7 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
     const auto narrow = openvdb::gridPtrCast<openvdb::Int32Grid>(deltas);
     const auto wide = openvdb::gridPtrCast<openvdb::Int64Grid>(deltas);
     const int version = entry<std::int32_t>(*deltas, "delta_version");
-    if (version < 1 || version > 5) throw std::runtime_error("version");
+    if (version < 1 || version > 6) throw std::runtime_error("version");
 
     // Axis of the source that slices, u and v run along.
     const int axis = entry<std::string>(*deltas, "delta_slice_axis", "z")[0] - 'x';

@@ -9,6 +9,7 @@
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
+#include "ingest/delta/delta_format.h"
 #include "number_text.h"
 #include "unit/ingest_helpers.h"
 
@@ -63,13 +64,26 @@ Damage with(const std::string& key, const T& value) {
     };
 }
 
+// Makes a grid one of another version, up to 4 with all entries.
+Damage inVersion(int version) {
+    return [=](openvdb::Int32Grid& grid) {
+        DeltaHeader header = takeDeltaHeader(grid, "whole.vdb");
+        header.version = version;
+        putDeltaHeader(header, grid);
+    };
+}
+
+// From version 5 on what is usual may be missing.
 Damage without(const std::string& key) {
-    return [=](openvdb::Int32Grid& grid) { grid.removeMeta(key); };
+    return [=](openvdb::Int32Grid& grid) {
+        inVersion(4)(grid);
+        grid.removeMeta(key);
+    };
 }
 
 TEST(ReadDeltaError, UnknownVersion) {
-    expectRefused(": metadata \"delta_version\": got 6; expected an int32 within 1..5",
-                  with<std::int32_t>("delta_version", 6));
+    expectRefused(": metadata \"delta_version\": got 7; expected an int32 within 1..6",
+                  with<std::int32_t>("delta_version", 7));
     expectRefused(": got deltas of type int32; expected int64 for packed deltas",
                   with<std::int32_t>("delta_version", 5));
 }
@@ -93,8 +107,8 @@ TEST(ReadDeltaError, MetadataOutOfRange) {
     expectRefused(": metadata \"delta_key_interval\": got 12; expected a multiple of 8",
                   with<std::int32_t>("delta_key_interval", 12));
     expectRefused(
-        ": metadata \"delta_code_book\": got \"octal\"; expected one of \"integer\" "
-        "\"half\" \"linear\" \"table\" \"pieces\"",
+        ": metadata \"delta_code_book\": got \"octal\"; expected one of \"integer\" \"half\" "
+        "\"linear\" \"table\" \"pieces\" \"float32\" \"float64\" \"int32\" \"int64\"",
         with<std::string>("delta_code_book", "octal"));
     expectRefused(": metadata \"delta_offset\": got nan; expected a finite double",
                   with<double>("delta_offset", std::nan("")));
@@ -218,7 +232,7 @@ TEST(ReadDeltaError, ExactBooksOfOtherGrids) {
     expectExactRefused(
         ": metadata \"delta_code_book\": got \"float32\"; expected one of \"integer\" \"half\" "
         "\"linear\" \"table\" \"pieces\"",
-        with<std::int32_t>("delta_version", 3));
+        inVersion(3));
     expectExactRefused(
         ": metadata \"delta_source_tree\": got \"double\"; expected \"float\", for the code book "
         "float32",

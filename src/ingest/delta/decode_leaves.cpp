@@ -395,7 +395,7 @@ int slabStart(const DeltaHeader& header, int block) {
 }
 
 bool mayDecodeLeaves(const DeltaHeader& header) {
-    return !header.exact && header.version == DeltaHeader::kVersion &&
+    return !header.exact && header.hasZigzag() && !header.isPacked() &&
            header.codeCount < kCodeCount && !header.box.empty() &&
            (!header.restActive || header.inactiveValues.empty());
 }

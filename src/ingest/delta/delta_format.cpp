@@ -136,7 +136,7 @@ std::vector<CodeBook::Piece> takePieces(const Entries& entries) {
 void takeBook(const Entries& entries, DeltaHeader& header) {
     std::vector<std::string> names = {"integer", "half", "linear", "table", "pieces"};
     const int books = int(names.size());
-    if (header.version >= DeltaHeader::kExactVersion)
+    if (header.version >= 4)
         names.insert(names.end(), std::begin(kExactNames), std::end(kExactNames));
     const int book = entries.choice("delta_code_book", names);
     if (book >= books) {
@@ -272,7 +272,7 @@ void putEntries(const DeltaHeader& header, openvdb::MetaMap& metadata) {
     metadata.insertMeta("delta_max_error", DoubleMetadata(header.maxError));
 }
 
-// The entries that packed grids leave out: those of an empty grid of floats.
+// The entries that are left out: those of an empty grid of floats.
 openvdb::MetaMap usualEntries() {
     DeltaHeader usual;
     usual.keyInterval = 128;
@@ -286,7 +286,7 @@ openvdb::MetaMap usualEntries() {
     return entries;
 }
 
-// Those of a packed grid with what it leaves out.
+// Those of a grid with what it leaves out.
 openvdb::MetaMap withUsualEntries(const openvdb::MetaMap& metadata) {
     openvdb::MetaMap all = metadata;
     const openvdb::MetaMap usual = usualEntries();
@@ -324,7 +324,7 @@ bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata)
 
 void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
     putEntries(header, metadata);
-    if (!header.isPacked()) return;
+    if (!header.leavesOutUsual()) return;
     const openvdb::MetaMap usual = usualEntries();
     for (auto entry = usual.beginMeta(); entry != usual.endMeta(); ++entry) {
         const openvdb::Metadata::ConstPtr own = metadata[entry->first];
@@ -342,10 +342,10 @@ std::uint64_t DeltaHeader::deltas() const {
 
 DeltaHeader takeDeltaHeader(const openvdb::MetaMap& stored, const std::string& where) {
     DeltaHeader header;
-    header.version = Entries(stored, where).whole(kVersionKey, 1, DeltaHeader::kPackedVersion);
+    header.version = Entries(stored, where).whole(kVersionKey, 1, DeltaHeader::kVersion);
     const openvdb::MetaMap whole =
-        header.isPacked() ? withUsualEntries(stored) : openvdb::MetaMap();
-    const openvdb::MetaMap& metadata = header.isPacked() ? whole : stored;
+        header.leavesOutUsual() ? withUsualEntries(stored) : openvdb::MetaMap();
+    const openvdb::MetaMap& metadata = header.leavesOutUsual() ? whole : stored;
     const Entries entries(metadata, where);
     header.sliceAxis = entries.choice("delta_slice_axis", {"x", "y", "z"});
     header.keyInterval = entries.whole("delta_key_interval", 8, 1 << 30);

@@ -16,12 +16,11 @@ namespace deltasplat {
 
 /// What a delta grid's metadata says; docs/delta-grid.md specifies it.
 struct DeltaHeader {
-    /// The one that is written. Of 1 and 2 (books of pieces) deltas are plain numbers; from 3 on
-    /// they are without sign (ingest/delta/zigzag.h).
-    static constexpr int kVersion = 3;
-    /// The one that is written of exact values.
-    static constexpr int kExactVersion = 4;
-    /// The one that is written of packed deltas, exact values or not, and the largest that is read.
+    /// The one that is written of deltas as voxels, and the largest that is read. Of 1 and 2 (books
+    /// of pieces) deltas are plain numbers; from 3 on they are without sign (ingest/delta/zigzag.h);
+    /// from 4 on there may be exact values, and from 5 on what is usual is left out.
+    static constexpr int kVersion = 6;
+    /// The one that is written of packed deltas.
     static constexpr int kPackedVersion = 5;
 
     int version = kVersion;
@@ -49,7 +48,8 @@ struct DeltaHeader {
     std::uint64_t deltas() const;  ///< of all slabs together
     bool hasZigzag() const { return version >= 3; }
     /// Whether the grid's voxels are words of a stream (delta_stream.h) in place of deltas.
-    bool isPacked() const { return version >= kPackedVersion; }
+    bool isPacked() const { return version == kPackedVersion; }
+    bool leavesOutUsual() const { return version >= 5; }
 };
 
 /// Names of the source grid's own metadata in a delta grid begin with this.
@@ -60,7 +60,7 @@ bool isDeltaGrid(const openvdb::GridBase& grid);
 /// Returns the same by a grid's value type ("int32", "int64") and metadata.
 bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata);
 
-/// Adds the header to a grid's metadata: of packed deltas only what is not usual.
+/// Adds the header to a grid's metadata: where leavesOutUsual(), only what is not usual.
 void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata);
 
 /// Reads a delta grid's header and checks everything in it that can be checked without its voxels.
