@@ -273,23 +273,38 @@ TEST(ReadVdbError, TileAndChildAtOnce) {
     expectInput("a.vdb: got a misplaced root node; expected a sound OpenVDB tree", "a.vdb");
 }
 
-// OpenVDB makes no such transform, but reads one.
-TEST(ReadVdbError, VoxelsOfAlmostNoVolume) {
-    const TempFolder folder;
+// Writes a.vdb with a map, one number of which is another wherever it stands.
+void writeWithMap(openvdb::math::MapBase::Ptr map, double before, double after) {
     const auto grid = noise("g", 20);
-    grid->setTransform(std::make_shared<openvdb::math::Transform>(
-        std::make_shared<openvdb::math::ScaleMap>(openvdb::Vec3d(0.3125, 0.3125, 0.3125))));
+    grid->setTransform(std::make_shared<openvdb::math::Transform>(std::move(map)));
     writeGrids("a.vdb", {grid});
     std::string bytes = readBytes("a.vdb");
-    const double before = 0.3125, after = 1e-7;
     const std::string pattern(reinterpret_cast<const char*>(&before), sizeof before);
     int found = 0;
     for (std::size_t at = 0; (at = bytes.find(pattern, at)) != std::string::npos; ++found)
         std::memcpy(bytes.data() + at, &after, sizeof after);
     ASSERT_GT(found, 0);
     writeBytes("a.vdb", bytes);
+}
+
+// OpenVDB makes no such transforms, but reads them.
+TEST(ReadVdbError, VoxelsOfAlmostNoVolume) {
+    const TempFolder folder;
+    writeWithMap(std::make_shared<openvdb::math::ScaleMap>(openvdb::Vec3d(0.3125)), 0.3125, 1e-7);
     expectInput(
         "a.vdb: grid \"g\": got a transform that cannot be inverted; expected a finite affine map",
+        "a.vdb");
+}
+
+TEST(ReadVdbError, Projections) {
+    const TempFolder folder;
+    openvdb::Mat4d turned = openvdb::Mat4d::identity();
+    turned[0][0] = 0.5;
+    turned[0][1] = turned[2][2] = 0.25;
+    turned[1][1] = 0.75;
+    writeWithMap(std::make_shared<openvdb::math::AffineMap>(turned), 1, 3);
+    expectInput(
+        "a.vdb: grid \"g\": got a transform that is a projection; expected a finite affine map",
         "a.vdb");
 }
 
