@@ -44,7 +44,6 @@ glm::dmat4 worldFromIndexOf(const openvdb::math::Transform& transform, const std
         fail("a " + transform.mapType() + " transform", "a linear one (no frustum)");
     }
     glm::dmat4 matrix(0);
-    matrix[3].w = 1;
     try {
         matrix = matrixOf(transform);
     } catch (const openvdb::ArithmeticError&) {
@@ -54,13 +53,12 @@ glm::dmat4 worldFromIndexOf(const openvdb::math::Transform& transform, const std
     for (int axis = 0; axis < 4; ++axis) {
         finite = finite && std::isfinite(glm::dot(matrix[axis], matrix[axis]));
     }
-    // A damaged file may hold any matrix, and OpenVDB does not look at the last column.
-    if (finite &&
-        glm::dvec4(matrix[0].w, matrix[1].w, matrix[2].w, matrix[3].w) != glm::dvec4(0, 0, 0, 1)) {
-        fail("a transform that is a projection", "a finite affine map");
-    }
     if (!finite || glm::determinant(matrix) == 0) {
         fail("a transform that cannot be inverted", "a finite affine map");
+    }
+    // A damaged file may hold any matrix, and OpenVDB does not look at the last column.
+    if (glm::dvec4(matrix[0].w, matrix[1].w, matrix[2].w, matrix[3].w) != glm::dvec4(0, 0, 0, 1)) {
+        fail("a transform that is a projection", "a finite affine map");
     }
     return matrix;
 }
