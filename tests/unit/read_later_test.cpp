@@ -17,6 +17,7 @@
 #include "delta/code_blocks.h"
 #include "deltasplat/cut/cut_volume.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "deltasplat/memory_limit.h"
 #include "deltasplat/render.h"
 #include "ingest/codes/code_tree.h"
 #include "support/same_volume.h"
@@ -202,10 +203,46 @@ TEST(ReadLater, aFileThatChangesIsRefused) {
         ": got a file that was written to while it was read; expected one that stays as it is";
     std::filesystem::last_write_time(
         file, std::filesystem::last_write_time(file) + std::chrono::seconds(1));
-    expectError(ErrorCode::kInput, message, [&] { volume.codes->tree(); });
+    const std::size_t unread = countUnread(volume);
+    for (int i = 0; i < 2; ++i) {
+        expectError(ErrorCode::kInput, message, [&] { volume.codes->tree(); });
+        EXPECT_EQ(countUnread(volume), unread);
+    }
     const Volume shorter = readVolume(file, later());
     std::filesystem::resize_file(file, 1000);
     expectError(ErrorCode::kInput, message, [&] { listBlocks(*shorter.codes, 2, codesFrom(100)); });
+}
+
+TEST(ReadLater, memoryIsAskedForBeforeItIsTaken) {
+    const TempFolder folder;
+    const std::string file = writeValues<std::uint16_t>("uint16");
+    const Volume volume = readVolume(file, later());
+    setMemoryLimit(1);
+    try {
+        volume.codes->tree();
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::kFailed);
+    }
+    setMemoryLimit(0);
+    expectSameVolume(volume, readVolume(file));
+}
+
+TEST(ReadLater, behindHeaders) {
+    const TempFolder folder;
+    const std::string bytes = bytesOf(makeValues<std::int16_t>());
+    writeBytes("v_203x45x35_int16.raw", std::string(37, 'h') + bytes);
+    ReadOptions options = later();
+    options.raw.skipBytes = 37;
+    const Volume volume = readVolume("v_203x45x35_int16.raw", options);
+    EXPECT_TRUE(volume.codes->lacksLeaves());
+    writeBytes("v_203x45x35_int16.raw", bytes);
+    expectError(ErrorCode::kInput,
+                "v_203x45x35_int16.raw: got a file that was written to while it was read; "
+                "expected one that stays as it is",
+                [&] { volume.codes->tree(); });
+    expectSameVolume(readVolume("v_203x45x35_int16.raw", later()),
+                     readVolume("v_203x45x35_int16.raw"));
 }
 
 TEST(ReadLater, othersAreReadAtOnce) {

@@ -321,6 +321,14 @@ Volume seenIn(Volume volume, const Optics& optics, const FrameLook* look) {
     return volume;
 }
 
+// Whether a picture may do without most voxels of a volume: X-rays count all, and whoever lights
+// what is shown, or looks at how much values change, asks for all.
+bool showsSome(const RenderOptions& options) {
+    const Optics& optics = options.optics;
+    return options.mode == Mode::kComposite && !optics.shading && !optics.scattering &&
+           !optics.surface && optics.gradientOpacity.empty();
+}
+
 }  // namespace
 
 Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
@@ -328,7 +336,8 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
                     const VolumeReader& reader) {
     ReadOptions read = picture.read;
     read.keepInexact = picture.render.mode != Mode::kComposite;
-    read.readLater = !read.keepInexact;
+    // Frames are kept, many at a time, and told by what they take.
+    read.readLater = !look && showsSome(options);
     Volume volume = placed(look     ? look->sequence.read(input, read, listener)
                            : reader ? reader(input, read, listener)
                                     : readVolume(input, read, listener),

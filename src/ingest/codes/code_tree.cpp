@@ -120,6 +120,11 @@ bool lacks(const CodeTree::Leaf& leaf) {
     return leaf.buffer().empty();
 }
 
+void dropCodes(CodeTree::Leaf& leaf) {
+    CodeTree::Leaf::Buffer none(openvdb::PartialCreate(), Code{0});
+    leaf.swap(none);
+}
+
 }  // namespace
 
 CodeTree::CodeTree(std::shared_ptr<const SlotBlocks> blocks) : blocks_(std::move(blocks)) {}
@@ -187,7 +192,15 @@ void CodeTree::readLeaves(std::span<const Leaf* const> leaves) const {
     }
     if (lacking.empty()) return;
     requireMemory("codes of a volume", double(Leaf::SIZE * sizeof(Code)) * double(lacking.size()));
-    isolated([&] { reader_->read(lacking); });
+    isolated([&] {
+        try {
+            reader_->read(lacking);
+        } catch (...) {
+            // What has come may be of another file than the rest.
+            for (Leaf* leaf : lacking) dropCodes(*leaf);
+            throw;
+        }
+    });
     leftToRead_ -= lacking.size();
     if (leftToRead_ > 0) return;
     reader_.reset();

@@ -53,7 +53,8 @@ struct CodeTree {
     /// called for them.
     std::shared_ptr<const std::vector<CodeLeaf>> leaves() const;
     /// Reads those of this tree's leaves that nobody has asked for yet. Thread-safe.
-    /// @throw Error(kInput) if their file cannot be read any more
+    /// @throw Error(kInput) if their file cannot be read, or is not what it was; Error(kFailed) if
+    ///        codes do not fit into memory. No leaf is read then, and the next call tries again.
     void readLeaves(std::span<const Leaf* const> leaves) const;
     /// Whether there may be leaves that are not read yet.
     bool lacksLeaves() const { return lacksLeaves_.load(std::memory_order_acquire); }

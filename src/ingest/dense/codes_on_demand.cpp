@@ -7,7 +7,6 @@
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -21,6 +20,7 @@
 #include "ingest/raw/raw_values.h"
 #include "memory.h"
 #include "parallel.h"
+#include "parallel_sort.h"
 
 namespace deltasplat {
 namespace {
@@ -69,6 +69,8 @@ class BlockCoder {
           encode_(blockEncoder(coding_)) {}
 
     void encode(const RawBlock& block, Code* codes) const { encode_(block, coding_, codes); }
+    BlockCoder(const BlockCoder&) = delete;
+    BlockCoder& operator=(const BlockCoder&) = delete;
     const RawCoding& coding() const { return coding_; }
 
   private:
@@ -89,40 +91,32 @@ void readLeaf(const BlockRow& row, const BlockCoder& coder, CodeTree::Leaf& leaf
 class DenseLeaves : public LeafReader {
   public:
     DenseLeaves(const DenseSource& source, const CodeBook& book)
-        : source_(source), coder_(source, book) {}
+        : source_(source), coder_(source, book) {
+        source_.forEachLayer = nullptr;
+    }
 
     void read(std::span<CodeTree::Leaf* const> leaves) const override {
-        const Rows rows = byRows(leaves);
-        parallelFor(rows.begins.size() - 1, [&](std::size_t i) {
-            const std::size_t begin = rows.begins[i];
-            readRow(std::span(rows.leaves).subspan(begin, rows.begins[i + 1] - begin));
+        std::vector<CodeTree::Leaf*> sorted(leaves.begin(), leaves.end());
+        parallelSort(sorted, [](const CodeTree::Leaf* a, const CodeTree::Leaf* b) {
+            return rowOf(*a) < rowOf(*b);
+        });
+        std::vector<std::size_t> begins;  // of rows, and the end
+        for (std::size_t i = 0; i < sorted.size(); ++i)
+            if (i == 0 || rowOf(*sorted[i]) != rowOf(*sorted[i - 1])) begins.push_back(i);
+        begins.push_back(sorted.size());
+        parallelFor(begins.size() - 1, [&](std::size_t i) {
+            readRow(std::span(sorted).subspan(begins[i], begins[i + 1] - begins[i]));
         });
         source_.rows->requireUnchanged();
     }
 
   private:
-    struct Rows {
-        std::vector<CodeTree::Leaf*> leaves;  // those of each row of blocks together
-        std::vector<std::size_t> begins;      // of rows among them, and one more
-    };
-
-    Rows byRows(std::span<CodeTree::Leaf* const> leaves) const {
-        const auto blocks = (source_.dims + std::int64_t{kBlock - 1}) / std::int64_t{kBlock};
-        const auto rowOf = [&](const CodeTree::Leaf* leaf) {
-            return std::size_t(leaf->origin().z() / kBlock * blocks.y +
-                               leaf->origin().y() / kBlock);
-        };
-        Rows rows{std::vector<CodeTree::Leaf*>(leaves.size()),
-                  std::vector<std::size_t>(std::size_t(blocks.z * blocks.y) + 1)};
-        for (const CodeTree::Leaf* leaf : leaves) ++rows.begins[rowOf(leaf) + 1];
-        std::partial_sum(rows.begins.begin(), rows.begins.end(), rows.begins.begin());
-        std::vector<std::size_t> next = rows.begins;
-        for (CodeTree::Leaf* leaf : leaves) rows.leaves[next[rowOf(leaf)]++] = leaf;
-        return rows;
+    // Leaves with the same row of blocks are read together.
+    static std::pair<int, int> rowOf(const CodeTree::Leaf& leaf) {
+        return {leaf.origin().z(), leaf.origin().y()};
     }
 
     void readRow(std::span<CodeTree::Leaf* const> leaves) const {
-        if (leaves.empty()) return;
         const openvdb::Coord first = leaves.front()->origin();
         const BlockRow row(source_, first.y(), first.z());
         for (CodeTree::Leaf* const leaf : leaves) readLeaf(row, coder_, *leaf);

@@ -68,9 +68,8 @@ class DenseTreeBuilder {
 
     /// Adds slices as add() does, but leaves most leaves without values, to be read later: all but
     /// those of rows in which there are few.
-    /// @param rowOf  rowOf(worker, y, z) is called for each row of blocks, by their first voxel,
-    /// from
-    ///               all threads, and returns what has rangeOf(x), the smallest and the largest
+    /// @param rowOf  rowOf(worker, y, z) is called from all threads for each row of blocks, by their
+    ///               first voxel, and returns what has rangeOf(x), the smallest and the largest
     ///               value of the block from x on, and read(leaf), which reads one
     template <typename RowOf>
     void addRanges(int firstSlice, int slices, const RowOf& rowOf) {

@@ -365,9 +365,11 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
         survey = chooseBook(source, options, partOf(listener, 0, scanned), volume);
     warnOfChanges(source, options, volume, listener);
     const bool keep = (options.keepSource || options.keepInexact) && !volume.codeBook.isExact();
-    requireLimit(source, options, keep, listener);
+    const bool later = readsLater(source, options);
+    // How much is asked for later, nobody knows.
+    if (!later) requireLimit(source, options, keep, listener);
     const double coded = keep ? 0.75 : 1;
-    if (readsLater(source, options)) {
+    if (later) {
         CodesOnDemand codes = codesOnDemand(source, volume.codeBook, listener);
         volume.codes = std::move(codes.tree);
         volume.histogram = std::move(codes.histogram);

@@ -27,21 +27,22 @@ FileBytes::FileBytes(const std::filesystem::path& file) : path_(file) {
                                 "a readable file"));
     }
     size_ = std::filesystem::file_size(file);
-    written_ = lastWrite();
+    opened_ = state();
 }
 
 FileBytes::~FileBytes() {
     ::close(handle_);
 }
 
-std::int64_t FileBytes::lastWrite() const {
+std::optional<FileBytes::State> FileBytes::state() const {
     struct stat status {};
-    if (::fstat(handle_, &status) != 0) return 0;
-    return std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+    if (::fstat(handle_, &status) != 0) return std::nullopt;
+    return State{std::int64_t{status.st_size}, std::int64_t{status.st_mtim.tv_sec},
+                 std::int64_t{status.st_mtim.tv_nsec}};
 }
 
 void FileBytes::requireUnchanged() const {
-    if (lastWrite() != written_) throwChanged();
+    if (!opened_ || state() != opened_) throwChanged();
 }
 
 void FileBytes::throwChanged() const {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 namespace deltasplat {
 
@@ -29,13 +31,14 @@ class FileBytes {
     [[noreturn]] void throwChanged() const;
 
   private:
-    // When the file was last written to, in nanoseconds.
-    std::int64_t lastWrite() const;
+    // Its size, and when it was last written to, in seconds and nanoseconds.
+    using State = std::array<std::int64_t, 3>;
+    std::optional<State> state() const;
 
     std::filesystem::path path_;
     int handle_ = -1;
     std::uint64_t size_ = 0;
-    std::int64_t written_ = 0;  // lastWrite() when it was opened
+    std::optional<State> opened_;  // state() when it was opened
 };
 
 }  // namespace deltasplat
