@@ -321,12 +321,12 @@ Volume seenIn(Volume volume, const Optics& optics, const FrameLook* look) {
     return volume;
 }
 
-// Whether a picture may do without most voxels of a volume: X-rays count all, and whoever lights
-// what is shown, or looks at how much values change, asks for all.
-bool showsSome(const RenderOptions& options) {
-    const Optics& optics = options.optics;
-    return options.mode == Mode::kComposite && !optics.shading && !optics.scattering &&
-           !optics.surface && optics.gradientOpacity.empty();
+// Whether a picture may do without most voxels, for all that is known before they are read: X-rays
+// count all, and whoever lights what is shown, or looks at how much values change, asks for all.
+bool mayShowSome(const PictureOptions& picture) {
+    return picture.render.mode == Mode::kComposite && !picture.surface.asked &&
+           !picture.shading.asked() && !isFog(picture) &&
+           picture.render.optics.gradientOpacity.empty();
 }
 
 }  // namespace
@@ -337,7 +337,7 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     ReadOptions read = picture.read;
     read.keepInexact = picture.render.mode != Mode::kComposite;
     // Frames are kept, many at a time, and told by what they take.
-    read.readLater = !look && showsSome(options);
+    read.readLater = !look && mayShowSome(picture);
     Volume volume = placed(look     ? look->sequence.read(input, read, listener)
                            : reader ? reader(input, read, listener)
                                     : readVolume(input, read, listener),

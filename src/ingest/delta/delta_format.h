@@ -17,8 +17,9 @@ namespace deltasplat {
 /// What a delta grid's metadata says; docs/delta-grid.md specifies it.
 struct DeltaHeader {
     /// The one that is written of deltas as voxels, and the largest that is read. Of 1 and 2 (books
-    /// of pieces) deltas are plain numbers; from 3 on they are without sign (ingest/delta/zigzag.h);
-    /// from 4 on there may be exact values, and from 5 on what is usual is left out.
+    /// of pieces) deltas are plain numbers; from 3 on they are without sign
+    /// (ingest/delta/zigzag.h); from 4 on there may be exact values, and from 5 on what is usual is
+    /// left out.
     static constexpr int kVersion = 6;
     /// The one that is written of packed deltas.
     static constexpr int kPackedVersion = 5;

@@ -68,9 +68,9 @@ class DenseTreeBuilder {
 
     /// Adds slices as add() does, but leaves most leaves without values, to be read later: all but
     /// those of rows in which there are few.
-    /// @param rowOf  rowOf(worker, y, z) is called from all threads for each row of blocks, by their
-    ///               first voxel, and returns what has rangeOf(x), the smallest and the largest
-    ///               value of the block from x on, and read(leaf), which reads one
+    /// @param rowOf  rowOf(worker, y, z), by the first voxel of a row of blocks, returns what has
+    ///               rangeOf(x), the smallest and the largest value of the block from x on, and
+    ///               read(leaf), which reads one; called from all threads
     template <typename RowOf>
     void addRanges(int firstSlice, int slices, const RowOf& rowOf) {
         addBlocks(firstSlice, slices,
