@@ -180,8 +180,7 @@ class BlockLooker {
         std::pair<Code, Code> range{codes[0], codes[0]};
         for (int x = 0; x < block.size.x; ++x) {
             for (int y = 0; y < block.size.y; ++y) {
-                const std::span column(&codes[std::size_t(64 * x + 8 * y)],
-                                       std::size_t(block.size.z));
+                const std::span column(codes.data() + (64 * x + 8 * y), std::size_t(block.size.z));
                 const auto [low, high] = rangeOfCodes(column);
                 range = {std::min(range.first, low), std::max(range.second, high)};
                 counts_.add(worker, column);

@@ -88,9 +88,10 @@ HWY_INLINE std::pair<Code, Code> rangeOf(const RawBlock& block, Code offset) {
     HWY_ALIGN T highs[8];
     hn::Store(low, tag, lows);
     hn::Store(high, tag, highs);
-    const auto lowest = Code(*std::min_element(lows, lows + 8));
-    const auto highest = Code(*std::max_element(highs, highs + 8));
-    return {Code(lowest - offset), Code(highest - offset)};
+    // Modulo 2^8 or 2^16, which codes are below.
+    using Bits = std::make_unsigned_t<T>;
+    const auto codeOf = [&](T number) { return Code(Bits(Bits(number) - Bits(offset))); };
+    return {codeOf(*std::min_element(lows, lows + 8)), codeOf(*std::max_element(highs, highs + 8))};
 }
 
 std::pair<Code, Code> rangeOfWholeBlockKernel(const RawBlock& block, RawType type, Code offset) {
