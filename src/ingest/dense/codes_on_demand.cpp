@@ -67,10 +67,10 @@ class BlockCoder {
           encoder_(book),
           coding_{source.type, source.bigEndian, book_, encoder_},
           encode_(blockEncoder(coding_)) {}
-
-    void encode(const RawBlock& block, Code* codes) const { encode_(block, coding_, codes); }
     BlockCoder(const BlockCoder&) = delete;
     BlockCoder& operator=(const BlockCoder&) = delete;
+
+    void encode(const RawBlock& block, Code* codes) const { encode_(block, coding_, codes); }
     const RawCoding& coding() const { return coding_; }
 
   private:

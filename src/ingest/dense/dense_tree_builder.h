@@ -173,9 +173,8 @@ class DenseTreeBuilder {
             if (block.leaf) ++leaves;
             corner.x += kBlock;
         }
-        // To find one of a row in a file takes as long as to read this share of it.
-        constexpr std::size_t kFew = 8;
-        if (leaves * kFew > blocks.size()) return;
+        // To read a row once more takes as long as to make leaves of an eighth of it.
+        if (8 * leaves > blocks.size()) return;
         for (const Block& block : blocks)
             if (block.leaf) row.read(*block.leaf);
     }
