@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
+#include <glm/vec3.hpp>
 #include <limits>
 #include <random>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -19,18 +22,64 @@
 namespace deltasplat {
 namespace {
 
-TEST(CodeKernels, rangeOfCodesWhereverItsEndsLie) {
-    test::atEveryLevel([] {
-        for (const std::size_t size : {1, 7, 8, 31, 32, 33, 64, 512}) {
-            for (std::size_t place = 0; place < size; ++place) {
-                std::vector<Code> codes(size, 40000);
-                EXPECT_EQ(rangeOfCodes(codes), std::pair(Code{40000}, Code{40000}));
-                codes[place] = 0;
-                EXPECT_EQ(rangeOfCodes(codes).first, 0) << size << ' ' << place;
-                codes[place] = 65535;
-                EXPECT_EQ(rangeOfCodes(codes).second, 65535) << size << ' ' << place;
-            }
+template <typename T>
+void rangesWhereverEndsLie() {
+    constexpr T kMost = std::numeric_limits<T>::max();
+    constexpr T kUsual = kMost - kMost / 3;
+    for (const std::size_t size : {1, 7, 8, 31, 32, 33, 64, 512}) {
+        for (std::size_t place = 0; place < size; ++place) {
+            std::vector<T> codes(size, kUsual);
+            const std::span<const T> all(codes);
+            EXPECT_EQ(rangeOfCodes(all), std::pair(Code{kUsual}, Code{kUsual}));
+            codes[place] = 0;
+            EXPECT_EQ(rangeOfCodes(all).first, 0) << size << ' ' << place;
+            codes[place] = kMost;
+            EXPECT_EQ(rangeOfCodes(all).second, kMost) << size << ' ' << place;
         }
+    }
+}
+
+TEST(CodeKernels, rangeOfCodes) {
+    test::atEveryLevel([] {
+        rangesWhereverEndsLie<Code>();
+        rangesWhereverEndsLie<std::uint8_t>();
+    });
+}
+
+template <typename T>
+void countsAsOneByOne(Code lowest) {
+    std::mt19937 random(9);
+    for (std::size_t numbers = 1; numbers <= std::min<std::size_t>(70, kCodeCount - lowest);
+         ++numbers) {
+        const auto highest = Code(lowest + numbers - 1);
+        if (highest > std::numeric_limits<T>::max()) return;
+        std::vector<T> codes(512);
+        std::vector<std::uint32_t> expected(numbers);
+        for (T& code : codes) {
+            // The first and the last may be missing.
+            const std::size_t n = random() % numbers;
+            code = T(lowest + n);
+            ++expected[n];
+        }
+        FewCounts counts;
+        const std::size_t few = countFewCodes(std::span<const T>(codes), lowest, highest, counts);
+        // Of the shortest vectors that there are.
+        EXPECT_TRUE(few == numbers || numbers > 16 / sizeof(T));
+        EXPECT_TRUE(few == 0 || numbers <= kMostFewCodes);
+        if (few == 0) continue;
+        ASSERT_EQ(few, numbers);
+        EXPECT_TRUE(std::equal(expected.begin(), expected.end(), counts.begin())) << numbers;
+    }
+}
+
+TEST(CodeKernels, countFewCodes) {
+    test::atEveryLevel([] {
+        for (const int lowest : {0, 100, 250}) countsAsOneByOne<std::uint8_t>(Code(lowest));
+        for (const int lowest : {0, 255, 40000, 65500}) countsAsOneByOne<Code>(Code(lowest));
+        // No whole vectors.
+        FewCounts counts;
+        const std::vector<Code> codes(509, Code{5});
+        EXPECT_EQ(countFewCodes(std::span<const Code>(codes), 5, 6, counts), 0u);
     });
 }
 
@@ -65,38 +114,6 @@ void encodesAsOneByOne(RawType type) {
     }
 }
 
-// A block with one number other than the rest, wherever it lies.
-template <typename T>
-void rangesAsTheyAre(RawType type) {
-    constexpr std::size_t kRow = 9 * sizeof(T) + 1;
-    constexpr std::size_t kSlice = 8 * kRow + 3;
-    const auto offset = Code(std::numeric_limits<T>::min());
-    for (const T other : {std::numeric_limits<T>::min(), std::numeric_limits<T>::max(), T(5)}) {
-        for (std::size_t n = 0; n < 512; n += 7) {
-            std::vector<std::byte> bytes(1 + 7 * kSlice + 7 * kRow + 8 * sizeof(T));
-            const RawBlock block{bytes.data() + 1, kRow, kSlice};
-            for (std::size_t i = 0; i < 512; ++i) {
-                const T value = i == n ? other : T(5);
-                std::memcpy(&bytes[1 + i / 64 * kSlice + i / 8 % 8 * kRow + i % 8 * sizeof(T)],
-                            &value, sizeof value);
-            }
-            const auto codeOf = [&](T value) { return Code(Code(value) - offset); };
-            ASSERT_EQ(rangeOfWholeBlock(block, type, offset),
-                      std::pair(codeOf(std::min(other, T(5))), codeOf(std::max(other, T(5)))))
-                << n;
-        }
-    }
-}
-
-TEST(CodeKernels, rangeOfWholeBlock) {
-    test::atEveryLevel([] {
-        rangesAsTheyAre<std::uint8_t>(RawType::kUint8);
-        rangesAsTheyAre<std::int8_t>(RawType::kInt8);
-        rangesAsTheyAre<std::uint16_t>(RawType::kUint16);
-        rangesAsTheyAre<std::int16_t>(RawType::kInt16);
-    });
-}
-
 TEST(CodeKernels, encodeWholeBlock) {
     test::atEveryLevel([] {
         encodesAsOneByOne<std::uint8_t>(RawType::kUint8);
@@ -104,6 +121,30 @@ TEST(CodeKernels, encodeWholeBlock) {
         encodesAsOneByOne<std::uint16_t>(RawType::kUint16);
         encodesAsOneByOne<std::int16_t>(RawType::kInt16);
     });
+}
+
+// Blocks of few codes and of many, whole and not.
+TEST(CodeCounts, addBlocks) {
+    std::mt19937 random(3);
+    for (const int numbers : {1, 7, 3000}) {
+        for (const glm::ivec3& size : {glm::ivec3(8), glm::ivec3(5, 8, 3), glm::ivec3(1)}) {
+            std::array<Code, 512> codes;
+            for (Code& code : codes) code = Code(40000 + random() % unsigned(numbers));
+            std::vector<std::uint64_t> expected(kCodeCount);
+            Code low = 65535, high = 0;
+            for (int n = 0; n < 512; ++n) {
+                if (n / 64 >= size.x || n / 8 % 8 >= size.y || n % 8 >= size.z) continue;
+                const Code code = codes[std::size_t(n)];
+                expected[code] += 2;
+                low = std::min(low, code);
+                high = std::max(high, code);
+            }
+            CodeCounts counts(2);
+            for (const std::size_t worker : {0, 1})
+                EXPECT_EQ(counts.addBlock(worker, size, codes), std::pair(low, high));
+            EXPECT_EQ(counts.take(), expected);
+        }
+    }
 }
 
 TEST(CodeCounts, addUpBeyond32Bits) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <limits>
 #include <span>
 #include <utility>
@@ -12,6 +13,7 @@
 
 #include "deltasplat/ingest/code_book.h"
 #include "deltasplat/threads.h"
+#include "ingest/codes/code_kernels.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -26,17 +28,36 @@ class CodeCounts {
 
     std::size_t workers() const { return counts_.size(); }
     /// One call at a time for each worker.
-    void add(std::size_t worker, std::span<const Code> codes) {
-        addEach(worker, codes.size(), [&](std::size_t i) { return codes[i]; });
+    void add(std::size_t worker, std::span<const Code> codes) { addEach(worker, codes); }
+    /// Adds codes that lie between two.
+    template <typename T>
+    void add(std::size_t worker, std::span<const T> codes, Code lowest, Code highest) {
+        if (lowest == highest) return add(worker, lowest, codes.size());
+        FewCounts few;
+        const std::size_t numbers = countFewCodes(codes, lowest, highest, few);
+        if (numbers == 0) return addEach(worker, codes);
+        Counts& counts = countsOf(worker, codes.size());
+        for (std::size_t n = 0; n < numbers; ++n) counts.few[lowest + n][0] += few[n];
     }
-    /// Adds codeOf(0) to codeOf(count - 1).
-    template <typename CodeOf>
-    void addEach(std::size_t worker, std::size_t count, const CodeOf& codeOf) {
-        Counts& counts = countsOf(worker, count);
-        std::size_t i = 0;
-        for (; i + kLanes <= count; i += kLanes)
-            for (std::size_t lane = 0; lane < kLanes; ++lane) ++counts.few[codeOf(i + lane)][lane];
-        for (; i < count; ++i) ++counts.few[codeOf(i)][0];
+    /// Adds the voxels that a volume has of a block, and returns the range of their codes.
+    /// @param codes  in leaf order
+    std::pair<Code, Code> addBlock(std::size_t worker, const glm::ivec3& size,
+                                   std::span<const Code, 512> codes) {
+        const auto addSome = [&](std::span<const Code> some) {
+            const auto range = rangeOfCodes(some);
+            add(worker, some, range.first, range.second);
+            return range;
+        };
+        if (size == glm::ivec3(8)) return addSome(codes);
+        std::pair<Code, Code> all{codes[0], codes[0]};
+        for (int x = 0; x < size.x; ++x) {
+            for (int y = 0; y < size.y; ++y) {
+                const auto [low, high] =
+                    addSome(codes.subspan(std::size_t(64 * x + 8 * y), std::size_t(size.z)));
+                all = {std::min(all.first, low), std::max(all.second, high)};
+            }
+        }
+        return all;
     }
     void add(std::size_t worker, Code code, std::uint64_t times) {
         constexpr std::uint64_t kFew = 1 << 20;
@@ -87,6 +108,14 @@ class CodeCounts {
             inFew = 0;
         }
     };
+
+    template <typename T>
+    void addEach(std::size_t worker, std::span<const T> codes) {
+        Counts& counts = countsOf(worker, codes.size());
+        for (; codes.size() >= kLanes; codes = codes.subspan(kLanes))
+            for (std::size_t lane = 0; lane < kLanes; ++lane) ++counts.few[codes[lane]][lane];
+        for (const T code : codes) ++counts.few[code][0];
+    }
 
     // Made by who fills it, where it is wanted.
     Counts& countsOf(std::size_t worker, std::size_t codes) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -15,7 +16,6 @@
 #include "ingest/codes/code_counts.h"
 #include "ingest/codes/code_kernels.h"
 #include "ingest/dense/dense_tree_builder.h"
-#include "ingest/raw/raw_kernels.h"
 #include "ingest/raw/raw_load.h"
 #include "ingest/raw/raw_values.h"
 #include "memory.h"
@@ -143,50 +143,42 @@ class BlockLooker {
     std::vector<std::uint64_t> takeHistogram() { return counts_.take(); }
 
   private:
-    // Codes are not written down.
     std::pair<Code, Code> lookAtPlain(std::size_t worker, const RawBlock& block) {
         const RawCoding& coding = coder_.coding();
-        const auto offset = Code(std::int64_t(coding.book.offset));
-        const auto range = rangeOfWholeBlock(block, coding.type, offset);
-        if (range.first == range.second) {
-            counts_.add(worker, range.first, kBlockVoxels);
-        } else if (rawTypeBytes(coding.type) == 1) {
-            count<std::uint8_t>(worker, block, offset);
-        } else {
-            count<std::uint16_t>(worker, block, offset);
-        }
-        return range;
+        return rawTypeBytes(coding.type) == 1 ? lookAtAll<std::uint8_t>(worker, block)
+                                              : lookAtAll<std::uint16_t>(worker, block);
     }
 
-    // @param T  of the bits: those of negative numbers make the same codes, modulo 2^8 or 2^16
+    // @param T  holds codes
     template <typename T>
-    void count(std::size_t worker, const RawBlock& block, Code offset) {
-        std::array<T, kBlockVoxels> numbers;
-        T* row = numbers.data();
+    std::pair<Code, Code> lookAtAll(std::size_t worker, const RawBlock& block) {
+        std::array<T, kBlockVoxels> codes;
+        // Codes begin with the least number that the type has: 0, or one of its first bit alone.
+        const auto first = std::uint64_t(T(std::int64_t(coder_.coding().book.offset)));
+        constexpr std::uint64_t kEach = ~std::uint64_t{0} / std::numeric_limits<T>::max();
+        T* next = codes.data();
         for (int z = 0; z < kBlock; ++z) {
-            for (int y = 0; y < kBlock; ++y, row += kBlock) {
+            for (int y = 0; y < kBlock; ++y) {
                 const std::byte* stored = block.first + std::size_t(z) * block.sliceBytes +
                                           std::size_t(y) * block.rowBytes;
-                std::memcpy(row, stored, kBlock * sizeof(T));
+                for (std::size_t i = 0; i < sizeof(T); ++i, next += sizeof i / sizeof(T)) {
+                    std::uint64_t word;
+                    std::memcpy(&word, stored + i * sizeof word, sizeof word);
+                    word ^= kEach * first;
+                    std::memcpy(next, &word, sizeof word);
+                }
             }
         }
-        counts_.addEach(worker, kBlockVoxels,
-                        [&](std::size_t i) { return Code(T(numbers[i] - T(offset))); });
+        const std::span<const T> all(codes);
+        const auto range = rangeOfCodes(all);
+        counts_.add(worker, all, range.first, range.second);
+        return range;
     }
 
     std::pair<Code, Code> lookAtAny(std::size_t worker, const RawBlock& block) {
         alignas(64) std::array<Code, kBlockVoxels> codes;
         coder_.encode(block, codes.data());
-        std::pair<Code, Code> range{codes[0], codes[0]};
-        for (int x = 0; x < block.size.x; ++x) {
-            for (int y = 0; y < block.size.y; ++y) {
-                const std::span column(codes.data() + (64 * x + 8 * y), std::size_t(block.size.z));
-                const auto [low, high] = rangeOfCodes(column);
-                range = {std::min(range.first, low), std::max(range.second, high)};
-                counts_.add(worker, column);
-            }
-        }
-        return range;
+        return counts_.addBlock(worker, block.size, codes);
     }
 
     BlockCoder coder_;

@@ -52,8 +52,7 @@ class DenseTreeBuilder {
     /// @param fill    fill(corner, size, values) writes the values of the block at voxel corner
     ///                (x, y, z), counted from firstSlice, into values[512], in leaf order; called
     ///                from all threads
-    /// @param tally   tally(worker, size, values, uniform) hears of every block after it is filled;
-    ///                `uniform`: it is whole and has one value
+    /// @param tally   tally(worker, size, values) hears of every block after it is filled
     template <typename Fill, typename Tally>
     void add(int firstSlice, int slices, const Fill& fill, const Tally& tally) {
         addBlocks(firstSlice, slices,
@@ -188,7 +187,7 @@ class DenseTreeBuilder {
         if (!whole) values.fill(Value{});
         fill(corner - glm::ivec3(0, 0, firstSlice), size, values.data());
         const bool uniform = whole && isUniform(values.data());
-        tally(worker, size, values.data(), uniform);
+        tally(worker, size, values.data());
         if (uniform) return {nullptr, values[0], values[0]};
 
         std::unique_ptr<Leaf> leaf = leafAt(corner, size);

@@ -193,18 +193,6 @@ class SliceAdder {
     DenseTreeBuilder<Tree> builder_;
 };
 
-// Counts the codes of a block of a volume that has `size` voxels of it.
-void countCodes(std::size_t worker, const glm::ivec3& size, const Code* codes, bool uniform,
-                CodeCounts& counts) {
-    constexpr int kVoxels = 512;
-    if (uniform) return counts.add(worker, codes[0], kVoxels);
-    if (size == glm::ivec3(8)) return counts.add(worker, {codes, kVoxels});
-    for (int x = 0; x < size.x; ++x) {
-        for (int y = 0; y < size.y; ++y)
-            counts.add(worker, {codes + 64 * x + 8 * y, std::size_t(size.z)});
-    }
-}
-
 // Whether leaves are read when they are asked for: only where numbers become codes at once.
 bool readsLater(const DenseSource& source, const ReadOptions& options) {
     return options.readLater && !options.keepSource && source.rows && !needsScan(source.type);
@@ -250,7 +238,9 @@ void readCodes(const DenseSource& source, const ReadOptions& options, const Surv
             adder.add(
                 first, slices, bytes,
                 [&](const RawBlock& block, Code* values) { encode(block, coding, values); },
-                [&](auto&&... block) { countCodes(block..., codeCounts); });
+                [&](std::size_t worker, const glm::ivec3& size, const Code* values) {
+                    codeCounts.addBlock(worker, size, std::span<const Code, 512>(values, 512));
+                });
         },
         listener);
     volume.histogram = codeCounts.take();

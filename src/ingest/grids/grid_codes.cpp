@@ -112,8 +112,8 @@ std::shared_ptr<CodeTree> fillCodes(const Leaves& leaves, const std::vector<Code
         Code* const out = isDense ? leaf.buffer().data() : activeCodes.data();
         encode(worker, values, out);
         const std::span<const Code> written(out, values.size());
-        counts.add(worker, written);
         described[i] = describeLeaf(leaf, written);
+        counts.add(worker, written, described[i].lowest, described[i].highest);
         if (!isDense) spread(out, leaf);
     };
     forLeafRuns(filled.size(), counts.workers(),

@@ -2,7 +2,6 @@
 // The inner loop of reading small whole numbers, compiled once for each SIMD level.
 #include "ingest/raw/raw_kernels.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -66,47 +65,6 @@ void encodeWholeBlockKernel(const RawBlock& block, RawType type, Code offset, Co
     }
 }
 
-template <typename T>
-HWY_INLINE std::pair<Code, Code> rangeOf(const RawBlock& block, Code offset) {
-    const hn::CappedTag<T, 8> tag;
-    const hn::Repartition<std::uint8_t, decltype(tag)> bytes;
-    // Numbers may lie anywhere.
-    const auto load = [&](std::size_t y, std::size_t z) {
-        const std::byte* row = block.first + y * block.rowBytes + z * block.sliceBytes;
-        return hn::BitCast(tag, hn::LoadU(bytes, reinterpret_cast<const std::uint8_t*>(row)));
-    };
-    auto low = load(0, 0);
-    auto high = low;
-    for (std::size_t z = 0; z < 8; ++z) {
-        for (std::size_t y = 0; y < 8; ++y) {
-            const auto row = load(y, z);
-            low = hn::Min(low, row);
-            high = hn::Max(high, row);
-        }
-    }
-    HWY_ALIGN T lows[8];
-    HWY_ALIGN T highs[8];
-    hn::Store(low, tag, lows);
-    hn::Store(high, tag, highs);
-    // Modulo 2^8 or 2^16, which codes are below.
-    using Bits = std::make_unsigned_t<T>;
-    const auto codeOf = [&](T number) { return Code(Bits(Bits(number) - Bits(offset))); };
-    return {codeOf(*std::min_element(lows, lows + 8)), codeOf(*std::max_element(highs, highs + 8))};
-}
-
-std::pair<Code, Code> rangeOfWholeBlockKernel(const RawBlock& block, RawType type, Code offset) {
-    switch (type) {
-        case RawType::kUint8:
-            return rangeOf<std::uint8_t>(block, offset);
-        case RawType::kInt8:
-            return rangeOf<std::int8_t>(block, offset);
-        case RawType::kUint16:
-            return rangeOf<std::uint16_t>(block, offset);
-        default:
-            return rangeOf<std::int16_t>(block, offset);
-    }
-}
-
 }  // namespace deltasplat::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -114,14 +72,9 @@ HWY_AFTER_NAMESPACE();
 namespace deltasplat {
 
 HWY_EXPORT(encodeWholeBlockKernel);
-HWY_EXPORT(rangeOfWholeBlockKernel);
 
 void encodeWholeBlock(const RawBlock& block, RawType type, Code offset, Code* codes) {
     HWY_DYNAMIC_DISPATCH(encodeWholeBlockKernel)(block, type, offset, codes);
-}
-
-std::pair<Code, Code> rangeOfWholeBlock(const RawBlock& block, RawType type, Code offset) {
-    return HWY_DYNAMIC_DISPATCH(rangeOfWholeBlockKernel)(block, type, offset);
 }
 
 }  // namespace deltasplat
