@@ -168,9 +168,9 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
         packer = std::make_shared<DeltaPacker>(volume, pack);
         const bool inParts =
             request.mayBeParted && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
-        words = std::make_shared<const PackedDeltas>(inParts ? packer->plan(scene.wordBytes)
+        words = std::make_shared<const PackedDeltas>(inParts ? packer->packOrPlan(scene.wordBytes)
                                                              : packer->packAll());
-        if (!inParts) packer = nullptr;
+        if (packer->parts().empty()) packer = nullptr;
     }
     if (joiner) {
         classes = joinedClasses(classes, *joiner, request.seenThrough, request.steps / first);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "delta/block_kernels.h"
 #include "delta/mixed_sight.h"
@@ -96,6 +97,7 @@ void ColumnPacker::run(const Columns& columns) {
             classes_.fill(kEmptySlot);
             forParts([&](const glm::ivec2& part) { add(partOf(*block, next, part), part, 1); });
         }
+        payForWords();
         if (parts_.within == 1) continue;
         for (std::size_t half = 0; half < halves_.size(); ++half)
             sortParts(halves_[half].words, firstWord[half]);
@@ -110,8 +112,20 @@ void ColumnPacker::runJoined(std::span<const JoinedColumn> columns) {
     for (const JoinedColumn& column : columns)
         blocks += column.mostBlocks(range_.firstBlock, range_.lastBlock);
     reserveWords(kMostWordsOfBlock * blocks);
-    for (const JoinedColumn& column : columns) addJoined(column);
+    for (const JoinedColumn& column : columns) {
+        addJoined(column);
+        payForWords();
+    }
     finish();
+}
+
+// Where all packers have more words than they may, there are to be none.
+void ColumnPacker::payForWords() {
+    if (!range_.budget || !range_.storesWords) return;
+    const std::size_t words = halves_[0].words.size() + halves_[1].words.size();
+    if (range_.budget->take(words - std::exchange(paidWords_, words))) return;
+    range_.storesWords = false;
+    halves_ = {};
 }
 
 void ColumnPacker::finish() {
@@ -196,30 +210,53 @@ void ColumnPacker::readJoined(const JoinedSources& sources) {
 void ColumnPacker::slantSlice(const std::array<OpenBlock, 4>& beside, const ClassIndex* own,
                               int slice, ClassIndex* out) const {
     const glm::ivec2 slant = options_.slant;
+    const int edgeU = slant.x > 0 ? 7 : 0;  // of the blocks beside
+    const int edgeV = slant.y > 0 ? 7 : 0;
     std::array<ClassIndex, 24> padded{};
-    ClassIndex* const row = &padded[8];
-    const int edge = slant.y > 0 ? 0 : 7;
+    const auto row = std::span(padded).subspan<8, 8>();
+    if (slant.x != 0) readLine(beside[1], {slice, edgeU, 0}, {0, 0, 1}, row);
+    Line column{};
+    if (slant.y != 0) readLine(beside[2], {slice, 0, edgeV}, {0, 1, 0}, column);
     for (int u = 0; u < 8; ++u, out += 8) {
         const int fromU = u - slant.x;
         const bool isIn = fromU >= 0 && fromU < 8;
-        for (int v = 0; !isIn && v < 8; ++v) row[v] = classAt(beside[1], slice, fromU & 7, v);
-        std::copy_n((isIn ? own + 8 * fromU : row) - slant.y, 8, out);
+        std::copy_n((isIn ? own + 8 * fromU : row.data()) - slant.y, 8, out);
         if (slant.y == 0) continue;
-        out[edge] = classAt(beside[isIn ? 2 : 3], slice, fromU & 7, (edge - slant.y) & 7);
+        out[7 - edgeV] =
+            isIn ? column[std::size_t(fromU)] : classAt(beside[3], glm::ivec3(slice, edgeU, edgeV));
     }
 }
 
-ColumnPacker::OpenBlock ColumnPacker::open(const CodeBlock& block) {
-    const Code* const codes = block.leaf ? block.leaf->buffer().data() : nullptr;
-    return {block.slots, block.leaf, codes, ClassIndex(block.tileSlot)};
+ColumnPacker::OpenBlock ColumnPacker::open(const CodeBlock& block) const {
+    constexpr glm::ivec3 kSlotStride{64, 8, 1};
+    if (block.slots) return {block.slots, nullptr, nullptr, 0, kSlotStride};
+    if (!block.leaf) return {nullptr, nullptr, nullptr, ClassIndex(block.tileSlot), kSlotStride};
+    return {nullptr, block.leaf->buffer().data(),
+            block.leaf->isDense() ? nullptr : &block.leaf->valueMask(), 0, stride_};
 }
 
-// Returns the class of a voxel of a block, (slice, u, v) of 0..7 each.
-ClassIndex ColumnPacker::classAt(const OpenBlock& block, int slice, int u, int v) const {
-    if (block.slots) return ClassIndex(slotMap_[block.slots[64 * slice + 8 * u + v]]);
-    if (!block.leaf) return block.tile;
-    const auto n = openvdb::Index(slice * stride_.x + u * stride_.y + v * stride_.z);
-    return block.leaf->isValueOn(n) ? ClassIndex(slotMap_[block.codes[n] + 1]) : ClassIndex{0};
+// Returns the class of a voxel of a block, at (slice, u, v) of 0..7 each.
+ClassIndex ColumnPacker::classAt(const OpenBlock& block, const glm::ivec3& at) const {
+    const int n = block.placeOf(at);
+    if (block.slots) return ClassIndex(slotMap_[block.slots[n]]);
+    if (!block.codes || (block.active && !block.active->isOn(openvdb::Index(n)))) return block.tile;
+    return ClassIndex(slotMap_[block.codes[n] + 1]);
+}
+
+// Reads the classes of a line of voxels.
+// @param step  from one to the next
+void ColumnPacker::readLine(const OpenBlock& block, const glm::ivec3& first, const glm::ivec3& step,
+                            std::span<ClassIndex, 8> out) const {
+    const Slot* const map = slotMap_.data();
+    const int begin = block.placeOf(first);
+    const int stride = block.placeOf(step);
+    if (block.slots) {
+        for (int i = 0; i < 8; ++i) out[i] = ClassIndex(map[block.slots[begin + i * stride]]);
+    } else if (block.codes && !block.active) {
+        for (int i = 0; i < 8; ++i) out[i] = ClassIndex(map[block.codes[begin + i * stride] + 1]);
+    } else {
+        for (int i = 0; i < 8; ++i) out[i] = classAt(block, first + i * step);
+    }
 }
 
 // Puts words of a column's parts along v one part behind the other.

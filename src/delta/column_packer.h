@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <memory>
 #include <optional>
@@ -41,6 +43,34 @@ struct Columns {
     const CodeBlock* end;
 };
 
+/// How many words several packers may store together.
+class WordBudget {
+  public:
+    /// Of so many runs one is enough to tell what all will come to.
+    static constexpr std::size_t kSample = 16;
+
+    explicit WordBudget(double words) : most_(words) {}
+
+    /// Takes some. Returns whether they, and all before them, may be stored.
+    bool take(std::size_t words) {
+        if (double(taken_ += words) > most_) isSpent_ = true;
+        return !isSpent_;
+    }
+    /// Says that one of so many runs is packed: once a few are, it shows what all will come to.
+    void endRun(std::size_t runs) {
+        const std::size_t done = ++doneRuns_;
+        if (kSample * done >= runs && double(taken_) * double(runs) > most_ * double(done))
+            isSpent_ = true;
+    }
+    bool isSpent() const { return isSpent_; }
+
+  private:
+    double most_;
+    std::atomic<std::size_t> taken_ = 0;
+    std::atomic<std::size_t> doneRuns_ = 0;
+    std::atomic<bool> isSpent_ = false;
+};
+
 /// What of it: all blocks, of which it counts what is in their slices, or those of some slabs.
 struct PackRange {
     SlabLayout layout;  ///< of slabs that there may be
@@ -50,6 +80,8 @@ struct PackRange {
     /// Of the layout, which slabs are whole: words that these do not need are left out, but for
     /// those by which others are told from the slice behind. Empty: that is not known yet.
     std::span<const PlannedSlab> planned = {};
+    /// Null: for any number of words. When it is spent, packers go on without.
+    WordBudget* budget = nullptr;
 };
 
 /// Words that a block may make: its slices, and one behind it that takes away what it showed.
@@ -93,18 +125,28 @@ class ColumnPacker {
 
     // A block of which single voxels are read; empty: there is none.
     struct OpenBlock {
-        const ShortSlot* slots = nullptr;  // as CodeBlock has them
-        const CodeTree::Leaf* leaf = nullptr;
-        const Code* codes = nullptr;  // of the leaf
-        ClassIndex tile = 0;
+        const ShortSlot* slots = nullptr;                      // as CodeBlock has them
+        const Code* codes = nullptr;                           // of a leaf
+        const CodeTree::Leaf::NodeMaskType* active = nullptr;  // of its voxels; null: all
+        ClassIndex tile = 0;   // of what is neither slot nor active code
+        glm::ivec3 stride{0};  // from voxel to voxel, (slice, u, v)
+
+        int placeOf(const glm::ivec3& at) const {
+            return at.x * stride.x + at.y * stride.y + at.z * stride.z;
+        }
     };
+    using Line = std::array<ClassIndex, 8>;
 
     void addJoined(const JoinedColumn& column);
     void readJoined(const JoinedSources& sources);
     void slantSlice(const std::array<OpenBlock, 4>& beside, const ClassIndex* own, int slice,
                     ClassIndex* out) const;
-    static OpenBlock open(const CodeBlock& block);
-    ClassIndex classAt(const OpenBlock& block, int slice, int u, int v) const;
+    void fetchEdges(const std::array<std::span<const CodeBlock>, 4>& rest) const;
+    OpenBlock open(const CodeBlock& block) const;
+    ClassIndex classAt(const OpenBlock& block, const glm::ivec3& at) const;
+    void readLine(const OpenBlock& block, const glm::ivec3& first, const glm::ivec3& step,
+                  std::span<ClassIndex, 8> out) const;
+    void payForWords();
     void finish();
     void dropUnneeded(std::vector<PendingWord>& words) const;
     bool mayBeWhole(int slice) const;
@@ -155,6 +197,7 @@ class ColumnPacker {
     };
     std::vector<PaintedBlock> painted_;
     std::array<PackedColumns, 2> halves_;
+    std::size_t paidWords_ = 0;        // of them
     std::unique_ptr<BlockLooks> own_;  // null: classes say all
     const CodeBlock* inHand_ = nullptr;
 };

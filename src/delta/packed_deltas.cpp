@@ -80,6 +80,18 @@ std::vector<std::span<const JoinedColumn>> cutAtColumns(const std::vector<Joined
     return runs;
 }
 
+// The order in which runs are packed: neighbours one after the other, for they read some of the
+// same; but where it is to show early how many words there are, some from all over come first.
+std::vector<std::size_t> orderOfRuns(std::size_t count, bool showsEarly) {
+    const std::size_t step = showsEarly ? WordBudget::kSample : 1;
+    std::vector<std::size_t> order;
+    order.reserve(count);
+    for (std::size_t i = 0; i < count; i += step) order.push_back(i);
+    for (std::size_t i = 0; i < count; ++i)
+        if (i % step != 0) order.push_back(i);
+    return order;
+}
+
 // Returns the packed columns ordered by u, then v: of a row of blocks that is halved along u, first
 // all that lies before the middle.
 std::vector<PackedColumns*> inOrder(const std::vector<Columns>& runs,
@@ -238,10 +250,23 @@ struct DeltaPacker::Impl {
         packers.reserve(count);
         for (std::size_t i = 0; i < count; ++i)
             packers.emplace_back(box, options, tools, slotMap, range);
-        parallelFor(count, [&](std::size_t i) {
+        const std::vector<std::size_t> order = orderOfRuns(count, range.budget != nullptr);
+        parallelFor(count, [&](std::size_t n) {
+            const std::size_t i = order[n];
             joiner ? packers[i].runJoined(joinedRuns[i]) : packers[i].run(runs[i]);
+            if (range.budget) range.budget->endRun(count);
         });
         return packers;
+    }
+
+    // Plans slabs by what packers counted, and puts their words in order.
+    void collect(std::vector<ColumnPacker>& packers, SlabPlanner& planner,
+                 PackedDeltas& packed) const {
+        for (const ColumnPacker& packer : packers) planner.add(packer.planner());
+        SlabPlan plan = planOf(volume, options, packed.box, planner);
+        packed.slabs = std::move(plan.slabs);
+        collectWords(inOrder(runs, packers, divided.within), plan.layout,
+                     options.painter != nullptr, packed);
     }
 
     // The most blocks that there are words of.
@@ -305,21 +330,24 @@ PackedDeltas DeltaPacker::packAll() {
     impl_->requireBlocks();
     SlabPlanner planner(packed.box);
     std::vector<ColumnPacker> packers = impl_->run(impl_->wholeRange(planner));
-    for (const ColumnPacker& packer : packers) planner.add(packer.planner());
-    SlabPlan plan = planOf(impl_->volume, impl_->options, packed.box, planner);
-    packed.slabs = std::move(plan.slabs);
-    collectWords(inOrder(impl_->runs, packers, impl_->divided.within), plan.layout,
-                 impl_->options.painter != nullptr, packed);
+    impl_->collect(packers, planner, packed);
     return packed;
 }
 
-PackedDeltas DeltaPacker::plan(double mostBytes) {
+PackedDeltas DeltaPacker::packOrPlan(double mostBytes) {
     PackedDeltas packed = impl_->noWords();
     if (impl_->volume.empty()) return packed;
+    requireMemory("delta grid", std::min(mostBytes, this->mostBytes()));
     SlabPlanner planner(packed.box);
     PackRange range = impl_->wholeRange(planner);
-    range.storesWords = false;
-    for (const ColumnPacker& packer : impl_->run(range)) planner.add(packer.planner());
+    WordBudget budget(mostBytes / kBytesPerWord);
+    range.budget = &budget;
+    std::vector<ColumnPacker> packers = impl_->run(range);
+    if (!budget.isSpent()) {
+        impl_->collect(packers, planner, packed);
+        return packed;
+    }
+    for (const ColumnPacker& packer : packers) planner.add(packer.planner());
     impl_->planned = planOf(impl_->volume, impl_->options, packed.box, planner);
     packed.slabs = impl_->planned.slabs;
     packed.begins.assign(std::size_t(packed.box.dims().x) + 1, 0);

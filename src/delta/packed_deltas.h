@@ -128,10 +128,11 @@ class DeltaPacker {
     /// The most bytes that all words may take, of what is known before they are counted.
     double mostBytes() const;
     PackedDeltas packAll();
-    /// Returns the slabs, without words.
-    /// @param mostBytes  that the words of a part may take, unless it is of one slab
-    PackedDeltas plan(double mostBytes);
-    /// Once there is a plan, the parts that it is packed in, in increasing order.
+    /// Returns what packAll() does where words take no more than so many bytes; else the slabs,
+    /// without words.
+    /// @param mostBytes  also of a part, unless it is of one slab
+    PackedDeltas packOrPlan(double mostBytes);
+    /// The parts that the words are packed in, in increasing order, once there is a plan of some.
     const std::vector<SlabRange>& parts() const;
     /// Returns all slabs, of which those of a part have their words.
     PackedDeltas pack(const SlabRange& part) const;
