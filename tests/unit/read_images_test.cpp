@@ -79,6 +79,71 @@ TEST(ReadImages, TypesOfTiff) {
     EXPECT_EQ(readVolume("d.tiff").type, "float64");
 }
 
+// OpenImageIO would turn those of 8 bits round, and no others.
+TEST(ReadImages, ZeroIsWhite) {
+    const TempFolder folder;
+    const auto readTurned = [](std::string bytes) {
+        // The entry of the photometric interpretation: 262, short, one, 1.
+        const std::string entry("\x06\x01\x03\x00\x01\x00\x00\x00\x01\x00", 10);
+        const std::size_t place = bytes.find(entry);
+        EXPECT_NE(place, std::string::npos);
+        bytes[place + 8] = 0;
+        writeBytes("b.tif", bytes);
+        Warnings warnings;
+        const Volume volume = readVolume("b.tif", {}, warnings.listener());
+        EXPECT_EQ(warnings.lines,
+                  std::vector<std::string>{"b.tif: 0 is white in it; values are read as stored"});
+        return valuesOf(volume);
+    };
+    for (const int tile : {0, 16}) {
+        ImageSpec spec(4, 3, 1, TypeDesc::UINT8);
+        spec.attribute("compression", "none");
+        spec.tile_width = spec.tile_height = tile;
+        writeImage("a.tif", spec, ramp<std::uint8_t>(12));
+        EXPECT_EQ(readTurned(testing::readBytes("a.tif")), ramp<double>(12)) << tile;
+        spec.format = TypeDesc::UINT16;
+        writeImage("a.tif", spec, ramp<std::uint16_t>(12));
+        EXPECT_EQ(readTurned(testing::readBytes("a.tif")), ramp<double>(12)) << tile;
+    }
+}
+
+// OpenImageIO would read zeros.
+TEST(ReadImages, DoublesInTilesOrOneRow) {
+    const TempFolder folder;
+    ImageSpec row(4, 1, 1, TypeDesc::DOUBLE);
+    writeImage("row.tif", row, ramp<double>(4));
+    ImageSpec tiles(16, 16, 1, TypeDesc::DOUBLE);
+    tiles.tile_width = tiles.tile_height = 16;
+    writeImage("tiles.tif", tiles, ramp<double>(256));
+    for (const std::string file : {"row.tif", "tiles.tif"}) {
+        expectError(ErrorCode::kInput,
+                    file +
+                        ": got 64-bit numbers in tiles or one row, which OpenImageIO cannot "
+                        "read; expected float32, or strips of an image of more rows",
+                    [&] { readVolume(file); });
+    }
+    writeImage("strips.tif", ImageSpec(4, 2, 1, TypeDesc::DOUBLE), ramp<double>(8));
+    EXPECT_EQ(valuesOf(readVolume("strips.tif")), ramp<double>(8));
+}
+
+// Tiles that are smaller than the image, go over its edges, or both; of several channels the first.
+TEST(ReadImages, Tiles) {
+    const TempFolder folder;
+    for (const glm::ivec2& size : {glm::ivec2(4, 3), glm::ivec2(16, 32), glm::ivec2(37, 18)}) {
+        for (const int channels : {1, 2}) {
+            ImageSpec spec(size.x, size.y, channels, TypeDesc::UINT16);
+            spec.tile_width = spec.tile_height = 16;
+            const auto pixels = std::size_t(size.x * size.y);
+            std::vector<std::uint16_t> values;
+            for (std::size_t i = 0; i < pixels; ++i)
+                for (int channel = 0; channel < channels; ++channel)
+                    values.push_back(std::uint16_t(channel == 0 ? i : 60000));
+            writeImage("t.tif", spec, values);
+            EXPECT_EQ(valuesOf(readVolume("t.tif")), ramp<double>(pixels)) << size.x;
+        }
+    }
+}
+
 TEST(ReadImages, StackByPattern) {
     const TempFolder folder;
     std::filesystem::create_directory("s");

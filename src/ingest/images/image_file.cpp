@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 #include "deltasplat/error.h"
 #include "exr_threads.h"
@@ -78,6 +79,14 @@ bool hasColors(const ImageSpec& spec) {
 }
 
 void requireSane(const std::filesystem::path& file, const ImageSpec& spec) {
+    // OpenImageIO says that it has read them, and leaves zeros.
+    const bool isOneByOne = spec.tile_width > 0 || spec.height == 1;
+    if (isTiff(file) && isOneByOne && spec.format.size() == 8) {
+        throw Error(ErrorCode::kInput, gotExpected(file.string(),
+                                                   "64-bit numbers in tiles or one row, which "
+                                                   "OpenImageIO cannot read",
+                                                   "float32, or strips of an image of more rows"));
+    }
     const bool flat = spec.depth <= 1 && !spec.deep;
     if (!flat || spec.width < 1 || spec.height < 1 || spec.nchannels < 1) {
         const std::string got = sizeText(spec) + (spec.deep ? ", deep" : "");
@@ -166,6 +175,8 @@ ImageFile::ImageFile(const std::filesystem::path& file, const ImagePages& pages,
     }
     input_ = openInput(file, proxy_.get(), spec_);
     if (page_ > 0) spec_ = input_->spec(page_);
+    // What is stored counts, as it does for wider numbers, which OpenImageIO leaves alone.
+    isInverted_ = pages.isWhiteZero(page) && spec_.format == OIIO::TypeDesc::UINT8;
     isPgm_ = spec_.nchannels == 1 && lowerExtension(file) == ".pgm" && isPgm(file);
 }
 
@@ -174,19 +185,50 @@ ImageFile::~ImageFile() {
     input_.reset();
 }
 
-// OpenImageIO's read_image would take, and here clear, 64 MiB for each image.
 bool ImageFile::readNative(int channels, void* to) {
+    const std::size_t values =
+        std::size_t(spec_.width) * std::size_t(spec_.height) * std::size_t(channels);
     if (isPgm_) {
-        const std::size_t pixels = std::size_t(spec_.width) * std::size_t(spec_.height);
-        readPgm(file_, pixels, {static_cast<std::byte*>(to), pixels * spec_.format.size()});
+        readPgm(file_, values, {static_cast<std::byte*>(to), values * spec_.format.size()});
         return true;
     }
-    if (spec_.tile_width == 0) {
-        return input_->read_native_scanlines(page_, 0, spec_.y, spec_.y + spec_.height, 0, 0,
-                                             channels, to);
+    if (!readStored(channels, to)) return false;
+    if (!isInverted_) return true;
+    const std::span bytes(static_cast<std::byte*>(to), values);
+    for (std::byte& byte : bytes) byte = ~byte;
+    return true;
+}
+
+// OpenImageIO's read_image would take, and here clear, 64 MiB for each image.
+bool ImageFile::readStored(int channels, void* to) {
+    if (spec_.tile_width > 0) return readTiles(channels, static_cast<std::byte*>(to));
+    return input_->read_native_scanlines(page_, 0, spec_.y, spec_.y + spec_.height, 0, 0, channels,
+                                         to);
+}
+
+// One by one, for tiles go over the edges of an image: asked for all of them, OpenImageIO's TIFF
+// reader writes over the edges of what it is given.
+bool ImageFile::readTiles(int channels, std::byte* to) {
+    const std::size_t stored = std::size_t(spec_.nchannels) * spec_.format.size();
+    const std::size_t wanted = std::size_t(channels) * spec_.format.size();
+    const std::size_t tileRow = std::size_t(spec_.tile_width) * stored;
+    const std::size_t imageRow = std::size_t(spec_.width) * wanted;
+    const auto tile = std::make_unique<std::byte[]>(tileRow * std::size_t(spec_.tile_height));
+    for (int y = 0; y < spec_.height; y += spec_.tile_height) {
+        for (int x = 0; x < spec_.width; x += spec_.tile_width) {
+            if (!input_->read_native_tile(page_, 0, spec_.x + x, spec_.y + y, 0, tile.get()))
+                return false;
+            const int rows = std::min(spec_.tile_height, spec_.height - y);
+            const int columns = std::min(spec_.tile_width, spec_.width - x);
+            for (int row = 0; row < rows; ++row) {
+                const std::byte* from = tile.get() + std::size_t(row) * tileRow;
+                std::byte* into = to + std::size_t(y + row) * imageRow + std::size_t(x) * wanted;
+                for (int column = 0; column < columns; ++column, from += stored, into += wanted)
+                    std::memcpy(into, from, wanted);
+            }
+        }
     }
-    return input_->read_native_tiles(page_, 0, spec_.x, spec_.x + spec_.width, spec_.y,
-                                     spec_.y + spec_.height, 0, 1, 0, channels, to);
+    return true;
 }
 
 bool ImageFile::readPixels(int channels, OIIO::TypeDesc type, void* to) {

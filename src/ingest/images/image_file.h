@@ -31,6 +31,10 @@ class ImagePages {
 
     int count() const { return tiff_ ? int(tiff_->pages.size()) : count_; }
     const std::optional<TiffPages>& tiff() const { return tiff_; }
+    /// Whether smaller values are meant to be shown brighter.
+    bool isWhiteZero(int page) const {
+        return tiff_ && tiff_->pages[std::size_t(page)].whiteIsZero;
+    }
 
   private:
     std::optional<TiffPages> tiff_;
@@ -55,6 +59,8 @@ class ImageFile {
 
   private:
     bool readNative(int channels, void* to);
+    bool readStored(int channels, void* to);
+    bool readTiles(int channels, std::byte* to);
     bool readPixels(int channels, OIIO::TypeDesc type, void* to);
 
     std::filesystem::path file_;
@@ -63,6 +69,7 @@ class ImageFile {
     OIIO::ImageSpec spec_;
     int page_ = 0;  // as OpenImageIO counts
     bool isPgm_ = false;
+    bool isInverted_ = false;  // by OpenImageIO
 };
 
 }  // namespace deltasplat

@@ -181,6 +181,7 @@ Stack surveyStack(const std::vector<std::filesystem::path>& files, const Listene
     Stack stack;
     stack.files = files;
     ImageSpec first;
+    bool isWhiteZero = false;
     for (const std::filesystem::path& file : files) {
         ImagePages pages(file);
         if (files.size() > 1 && pages.count() != 1) {
@@ -195,6 +196,10 @@ Stack surveyStack(const std::vector<std::filesystem::path>& files, const Listene
                 stack.height = spec.height;
             }
             requireAlike(stack, file, page, spec, first);
+            if (!isWhiteZero && pages.isWhiteZero(page)) {
+                isWhiteZero = true;
+                listener.warn(file.string() + ": 0 is white in it; values are read as stored");
+            }
             listener.report(0);
         }
         stack.pages = std::move(pages);

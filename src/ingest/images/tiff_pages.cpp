@@ -21,7 +21,8 @@ constexpr int kWidth = 256, kHeight = 257, kBits = 258, kCompression = 259, kPho
               kStripPlaces = 273, kSamples = 277, kStripRows = 278, kStripBytes = 279,
               kPlanar = 284, kTileWidth = 322, kTileHeight = 323, kTilePlaces = 324,
               kTileBytes = 325;
-constexpr std::uint64_t kUnpacked = 1, kSeparate = 2, kYcbcr = 6;
+constexpr std::uint64_t kUnpacked = 1, kSeparate = 2, kWhiteIsZero = 0, kBlackIsZero = 1,
+                        kYcbcr = 6;
 
 // Bytes of one value of each type; 0 for types that there are none of.
 constexpr std::array<std::uint64_t, 19> kTypeBytes{0, 1, 1, 2, 4, 8, 1, 1, 2, 4,
@@ -110,7 +111,8 @@ class Walk {
                           readEntry(bytes, at, place + countBytes + at + 4 + width));
         }
         requirePixels(table);
-        pages_.pages.push_back({place, place + countBytes + last});
+        pages_.pages.push_back({place, place + countBytes + last,
+                                valueOf(table, kPhotometric, kBlackIsZero) == kWhiteIsZero});
         return offset(bytes, last);
     }
 
@@ -181,7 +183,7 @@ class Walk {
 
         // Only what is not packed has a length that is known, subsampled colours aside.
         const bool plain = valueOf(table, kCompression, kUnpacked) == kUnpacked &&
-                           valueOf(table, kPhotometric, 1) != kYcbcr;
+                           valueOf(table, kPhotometric, kBlackIsZero) != kYcbcr;
         const double rowBits =
             double(columns) * double(valueOf(table, kBits, 1)) * (separate ? 1 : double(samples));
         const double rowBytes = plain ? std::ceil(rowBits / 8) : 0;

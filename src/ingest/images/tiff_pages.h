@@ -12,6 +12,7 @@ namespace deltasplat {
 struct TiffPage {
     std::uint64_t table = 0;      ///< place of its table
     std::uint64_t nextField = 0;  ///< place of the number that names the next page's table
+    bool whiteIsZero = false;     ///< smaller values are meant to be shown brighter
 };
 
 /// The pages of a TIFF or BigTIFF.
