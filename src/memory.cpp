@@ -63,27 +63,32 @@ std::uint64_t systemAvailable() {
     return std::min({addressesAvailable(), unusedMemory(), cgroupAvailable("/")});
 }
 
-// Asking the system takes longer than some pictures: it is asked again when so much has been
-// granted since, or each time where less than that is left.
+// Asking the system takes longer than some pictures: it is asked again when a small share of what
+// there was has been granted since, or each time where little was left.
 constexpr std::uint64_t kLittle = 64 << 20;
+constexpr double kShare = 32;
+constexpr std::uint64_t kMost = 512 << 20;
+std::atomic<std::uint64_t> mayBeGranted = kLittle;
 std::atomic<std::uint64_t> grantedUnasked = 0;
 
 bool isLittle(double bytes) {
-    if (bytes > double(kLittle)) return false;
+    if (bytes > double(mayBeGranted)) return false;
     const auto whole = std::uint64_t(bytes);
-    if (grantedUnasked.fetch_add(whole) + whole <= kLittle) return true;
+    return grantedUnasked.fetch_add(whole) + whole <= mayBeGranted;
+}
+
+void noteAvailable(double bytes) {
+    const auto share = std::uint64_t(std::min(bytes / kShare, double(kMost)));
+    mayBeGranted = bytes < double(kLittle) ? 0 : std::max(kLittle, share);
     grantedUnasked = 0;
-    return false;
 }
 
 void require(ErrorCode code, const std::string& what, double bytes) {
     const double left = double(limitAvailable());
     if (bytes <= left && isLittle(bytes)) return;
     const double available = std::min(left, double(systemAvailable()));
-    if (bytes <= available) {
-        if (available - bytes < double(kLittle)) grantedUnasked = kLittle;
-        return;
-    }
+    noteAvailable(std::max(0.0, available - bytes));
+    if (bytes <= available) return;
     throw Error(code, what + ": needs " + humanBytes(bytes) + " of memory; expected at most " +
                           humanBytes(available) + ", which " +
                           (available == left ? "`memoryLimit` leaves" : "is available"));

@@ -2,12 +2,15 @@
 #include "delta/code_blocks.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/gtc/type_precision.hpp>
+#include <limits>
 #include <optional>
 #include <utility>
 
+#include "deltasplat/threads.h"
 #include "ingest/codes/leaf_slices.h"
 #include "memory.h"
 #include "parallel.h"
@@ -93,76 +96,126 @@ Slot inactiveSlot(Code number) {
     return kSlotCount + number;
 }
 
-// Orders blocks by u, then v, then slice. Those of each column are counted and put into place, in
-// which they mostly are in order: trees list leaves so, whatever the axis.
-void sortByColumn(std::vector<CodeBlock>& blocks) {
-    if (blocks.empty()) return;
-    glm::i64vec2 first(blocks.front().position.y, blocks.front().position.z);
-    glm::i64vec2 last = first;
-    for (const CodeBlock& block : blocks) {
-        const glm::i64vec2 column(block.position.y, block.position.z);
-        first = glm::min(first, column);
-        last = glm::max(last, column);
+using BlockParts = std::vector<std::vector<CodeBlock>>;
+
+// The first and the last (u, v) of some blocks.
+struct ColumnBox {
+    glm::i64vec2 first{std::numeric_limits<std::int64_t>::max()};
+    glm::i64vec2 last{std::numeric_limits<std::int64_t>::min()};
+
+    void include(const ColumnBox& other) {
+        first = glm::min(first, other.first);
+        last = glm::max(last, other.last);
     }
-    const glm::i64vec2 size = last - first + std::int64_t{1};
+};
+
+// As comesBefore; of two of the same place, first the one that has no inactive voxels.
+bool comesFirst(const CodeBlock& a, const CodeBlock& b) {
+    if (a.position == b.position) return !a.inactive && b.inactive;
+    return comesBefore(a, b);
+}
+
+// Returns blocks by u, then v, then slice. Those of each column are counted and put into place, in
+// which one thread mostly puts them in order: trees list leaves so, whatever the axis.
+std::vector<CodeBlock> inColumns(const BlockParts& parts) {
+    std::size_t count = 0;
+    for (const auto& part : parts) count += part.size();
+    std::vector<CodeBlock> sorted;
+    if (count == 0) return sorted;
+    // One thread is through with few before others begin.
+    constexpr std::size_t kFew = 8192;
+    const bool isAlone = count < kFew || threadCount() == 1;
+    const auto forPieces = [&](std::size_t pieces, const auto& use) {
+        isAlone ? use(std::size_t{0}, pieces) : parallelForChunks(pieces, use);
+    };
+    const auto forBlocks = [&](const auto& use) {
+        forPieces(parts.size(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                for (const CodeBlock& block : parts[i]) use(i, block);
+        });
+    };
+    std::vector<ColumnBox> boxes(parts.size());
+    forBlocks([&](std::size_t i, const CodeBlock& block) {
+        const glm::i64vec2 column(block.position.y, block.position.z);
+        boxes[i].include({column, column});
+    });
+    ColumnBox box;
+    for (const ColumnBox& one : boxes) box.include(one);
+    const glm::i64vec2 size = box.last - box.first + std::int64_t{1};
     // Where blocks lie far apart there are too many columns.
     constexpr double kMostColumnsPerBlock = 4;
-    if (double(size.x) * double(size.y) > kMostColumnsPerBlock * double(blocks.size()))
-        return parallelSort(blocks, comesBefore);
-    const auto columnOf = [&](const CodeBlock& block) {
-        return std::size_t((block.position.y - first.x) * size.y + (block.position.z - first.y));
-    };
-    std::vector<std::size_t> ends(std::size_t(size.x * size.y));  // of columns
-    for (const CodeBlock& block : blocks) ++ends[columnOf(block)];
-    std::size_t before = 0;
-    for (std::size_t& end : ends) before += std::exchange(end, before);
-    std::vector<CodeBlock> sorted(blocks.size());
-    for (const CodeBlock& block : blocks) sorted[ends[columnOf(block)]++] = block;
-    std::size_t begin = 0;
-    for (const std::size_t end : ends) {
-        const std::span column = std::span(sorted).subspan(begin, end - begin);
-        if (!std::is_sorted(column.begin(), column.end(), comesBefore))
-            std::sort(column.begin(), column.end(), comesBefore);
-        begin = end;
+    if (double(size.x) * double(size.y) > kMostColumnsPerBlock * double(count)) {
+        sorted.reserve(count);
+        for (const auto& part : parts) sorted.insert(sorted.end(), part.begin(), part.end());
+        parallelSort(sorted, comesFirst);
+        return sorted;
     }
-    blocks = std::move(sorted);
+    const auto columnOf = [&](const CodeBlock& block) {
+        const glm::i64vec2 at = glm::i64vec2(block.position.y, block.position.z) - box.first;
+        return std::size_t(at.x * size.y + at.y);
+    };
+    std::vector<std::atomic<std::size_t>> ends(std::size_t(size.x * size.y));  // of columns
+    const auto countUp = [&](std::atomic<std::size_t>& number) {
+        constexpr auto kAnyOrder = std::memory_order_relaxed;
+        if (!isAlone) return number.fetch_add(1, kAnyOrder);
+        const std::size_t before = number.load(kAnyOrder);
+        number.store(before + 1, kAnyOrder);
+        return before;
+    };
+    forBlocks([&](std::size_t, const CodeBlock& block) { countUp(ends[columnOf(block)]); });
+    std::size_t before = 0;
+    for (auto& end : ends) before += end.exchange(before, std::memory_order_relaxed);
+    sorted.resize(count);
+    forBlocks([&](std::size_t, const CodeBlock& block) {
+        sorted[countUp(ends[columnOf(block)])] = block;
+    });
+    forPieces(ends.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const std::size_t begin = i == 0 ? 0 : std::size_t(ends[i - 1]);
+            const std::span column = std::span(sorted).subspan(begin, ends[i] - begin);
+            if (!std::is_sorted(column.begin(), column.end(), comesFirst))
+                std::sort(column.begin(), column.end(), comesFirst);
+        }
+    });
+    return sorted;
 }
 
 }  // namespace
 
 BlockReader::BlockReader(const CodeTree& codes, const CodeTree* inactive, int sliceAxis,
                          std::span<const Slot> slotMap, const SeenCone* seen)
-    : slotMap_(slotMap), sliceAxis_(sliceAxis) {
-    listBlocks(codes, inactive, seen);
-    sortByColumn(blocks_);
+    : slotMap_(slotMap), sliceAxis_(sliceAxis), blocks_(listBlocks(codes, inactive, seen)) {
     if (inactive) mergeDoubles();
 }
 
-void BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive,
-                             const SeenCone* seen) {
-    const std::vector<std::vector<CodeBlock>> leaves =
-        visibleLeaves(codes, sliceAxis_, slotMap_, seen);
+std::vector<CodeBlock> BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive,
+                                               const SeenCone* seen) const {
+    BlockParts parts = visibleLeaves(codes, sliceAxis_, slotMap_, seen);
     // A tile may stand for any number of blocks: know how many before they are listed.
-    double blocks = 0;
-    for (const std::vector<CodeBlock>& part : leaves) blocks += double(part.size());
+    double leaves = 0;
+    for (const auto& part : parts) leaves += double(part.size());
+    double pieces = 0;  // and leaves of inactive voxels
+    if (inactive) pieces += inactive->tree().leafCount();
     const auto slotOfCode = [this](Code code) { return slotOf(code); };
-    const auto count = [&](const openvdb::CoordBBox& box, Slot) { blocks += box.volume() / 512.0; };
+    const auto count = [&](const openvdb::CoordBBox& box, Slot) { pieces += box.volume() / 512.0; };
     forVisibleTiles(codes, slotOfCode, count);
-    if (inactive) blocks += inactive->tree().leafCount();
     if (inactive) forVisibleTiles(*inactive, inactiveSlot, count);
-    requireMemory("list of voxel blocks", blocks * kBytesPerBlock);
+    requireMemory("list of voxel blocks", (leaves + pieces) * kBytesPerBlock);
 
-    blocks_.reserve(std::size_t(blocks));
-    for (const std::vector<CodeBlock>& part : leaves)
-        blocks_.insert(blocks_.end(), part.begin(), part.end());
-    const auto add = [&](const openvdb::CoordBBox& box, Slot slot) { addTile(box, slot, seen); };
+    std::vector<CodeBlock>& more = parts.emplace_back();
+    more.reserve(std::size_t(pieces));
+    const auto add = [&](const openvdb::CoordBBox& box, Slot slot) {
+        addTile(box, slot, seen, more);
+    };
     forVisibleTiles(codes, slotOfCode, add);
-    if (!inactive) return;
-    for (auto leaf = inactive->tree().cbeginLeaf(); leaf; ++leaf) {
-        blocks_.push_back(
-            {toSliceOrder(leaf->origin() >> 3, sliceAxis_), nullptr, kEmptySlot, &*leaf});
+    if (inactive) {
+        for (auto leaf = inactive->tree().cbeginLeaf(); leaf; ++leaf) {
+            more.push_back(
+                {toSliceOrder(leaf->origin() >> 3, sliceAxis_), nullptr, kEmptySlot, &*leaf});
+        }
+        forVisibleTiles(*inactive, inactiveSlot, add);
     }
-    forVisibleTiles(*inactive, inactiveSlot, add);
+    return inColumns(parts);
 }
 
 // A block may have both active voxels and inactive ones with values: two entries become one.
@@ -181,14 +234,15 @@ void BlockReader::mergeDoubles() {
     blocks_.resize(kept);
 }
 
-void BlockReader::addTile(const openvdb::CoordBBox& box, Slot slot, const SeenCone* seen) {
+void BlockReader::addTile(const openvdb::CoordBBox& box, Slot slot, const SeenCone* seen,
+                          std::vector<CodeBlock>& blocks) const {
     const glm::ivec3 first = toSliceOrder(box.min() >> 3, sliceAxis_);
     const glm::ivec3 last = toSliceOrder(box.max() >> 3, sliceAxis_);
     for (int u = first.y; u <= last.y; ++u) {
         for (int v = first.z; v <= last.z; ++v) {
             for (int s = first.x; s <= last.x; ++s) {
                 if (!seen || seen->sees({s, u, v}))
-                    blocks_.push_back({{s, u, v}, nullptr, slot, nullptr});
+                    blocks.push_back({{s, u, v}, nullptr, slot, nullptr});
             }
         }
     }

@@ -66,8 +66,10 @@ class BlockReader {
     void readLastSlice(const CodeBlock& block, std::span<Slot, 64> slots) const;
 
   private:
-    void listBlocks(const CodeTree& codes, const CodeTree* inactive, const SeenCone* seen);
-    void addTile(const openvdb::CoordBBox& box, Slot slot, const SeenCone* seen);
+    std::vector<CodeBlock> listBlocks(const CodeTree& codes, const CodeTree* inactive,
+                                      const SeenCone* seen) const;
+    void addTile(const openvdb::CoordBBox& box, Slot slot, const SeenCone* seen,
+                 std::vector<CodeBlock>& blocks) const;
     void mergeDoubles();
     void readInactive(const CodeBlock& block, int firstSlice, Slot* slots) const;
     Slot slotOf(Code code) const { return slotMap_.empty() ? code + 1 : slotMap_[code + 1]; }

@@ -299,6 +299,7 @@ void ColumnPacker::reserve(const Columns& columns) {
 }
 
 void ColumnPacker::reserveWords(std::size_t most) {
+    payForWords();
     if (!range_.storesWords) return;
     for (int half = 0; half < parts_.within; ++half) {
         PackedColumns& packed = halves_[std::size_t(half)];

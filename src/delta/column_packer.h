@@ -46,29 +46,24 @@ struct Columns {
 /// How many words several packers may store together.
 class WordBudget {
   public:
-    /// Of so many runs one is enough to tell what all will come to.
-    static constexpr std::size_t kSample = 16;
-
-    explicit WordBudget(double words) : most_(words) {}
+    explicit WordBudget(double words) : most_(words), isSpent_(words <= 0) {}
 
     /// Takes some. Returns whether they, and all before them, may be stored.
     bool take(std::size_t words) {
         if (double(taken_ += words) > most_) isSpent_ = true;
         return !isSpent_;
     }
-    /// Says that one of so many runs is packed: once a few are, it shows what all will come to.
-    void endRun(std::size_t runs) {
-        const std::size_t done = ++doneRuns_;
-        if (kSample * done >= runs && double(taken_) * double(runs) > most_ * double(done))
-            isSpent_ = true;
+    /// Says that what was taken is so much of all that there will be: nothing may be stored where
+    /// all is going to be too much.
+    void foresee(double share) {
+        if (double(taken_) > most_ * share) isSpent_ = true;
     }
     bool isSpent() const { return isSpent_; }
 
   private:
     double most_;
     std::atomic<std::size_t> taken_ = 0;
-    std::atomic<std::size_t> doneRuns_ = 0;
-    std::atomic<bool> isSpent_ = false;
+    std::atomic<bool> isSpent_;
 };
 
 /// What of it: all blocks, of which it counts what is in their slices, or those of some slabs.
@@ -141,7 +136,6 @@ class ColumnPacker {
     void readJoined(const JoinedSources& sources);
     void slantSlice(const std::array<OpenBlock, 4>& beside, const ClassIndex* own, int slice,
                     ClassIndex* out) const;
-    void fetchEdges(const std::array<std::span<const CodeBlock>, 4>& rest) const;
     OpenBlock open(const CodeBlock& block) const;
     ClassIndex classAt(const OpenBlock& block, const glm::ivec3& at) const;
     void readLine(const OpenBlock& block, const glm::ivec3& first, const glm::ivec3& step,

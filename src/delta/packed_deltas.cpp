@@ -80,18 +80,6 @@ std::vector<std::span<const JoinedColumn>> cutAtColumns(const std::vector<Joined
     return runs;
 }
 
-// The order in which runs are packed: neighbours one after the other, for they read some of the
-// same; but where it is to show early how many words there are, some from all over come first.
-std::vector<std::size_t> orderOfRuns(std::size_t count, bool showsEarly) {
-    const std::size_t step = showsEarly ? WordBudget::kSample : 1;
-    std::vector<std::size_t> order;
-    order.reserve(count);
-    for (std::size_t i = 0; i < count; i += step) order.push_back(i);
-    for (std::size_t i = 0; i < count; ++i)
-        if (i % step != 0) order.push_back(i);
-    return order;
-}
-
 // Returns the packed columns ordered by u, then v: of a row of blocks that is halved along u, first
 // all that lies before the middle.
 std::vector<PackedColumns*> inOrder(const std::vector<Columns>& runs,
@@ -250,11 +238,21 @@ struct DeltaPacker::Impl {
         packers.reserve(count);
         for (std::size_t i = 0; i < count; ++i)
             packers.emplace_back(box, options, tools, slotMap, range);
-        const std::vector<std::size_t> order = orderOfRuns(count, range.budget != nullptr);
-        parallelFor(count, [&](std::size_t n) {
-            const std::size_t i = order[n];
+        const auto pack = [&](std::size_t i) {
             joiner ? packers[i].runJoined(joinedRuns[i]) : packers[i].run(runs[i]);
-            if (range.budget) range.budget->endRun(count);
+        };
+        if (!range.budget) {
+            parallelFor(count, pack);
+            return packers;
+        }
+        // Some from all over the volume show how many words there will be. The others in order:
+        // neighbours read some of the same leaves.
+        constexpr std::size_t kStep = 16;
+        const std::size_t sample = (count + kStep - 1) / kStep;
+        parallelFor(sample, [&](std::size_t i) { pack(kStep * i); });
+        range.budget->foresee(double(sample) / double(count));
+        parallelFor(count, [&](std::size_t i) {
+            if (i % kStep != 0) pack(i);
         });
         return packers;
     }
@@ -276,6 +274,17 @@ struct DeltaPacker::Impl {
         for (const JoinedColumn& column : joinedColumns)
             most += column.mostBlocks(box.min.x >> 3, box.max.x >> 3);
         return double(most);
+    }
+
+    // The most bytes that words can take.
+    double mostBytes() const { return mostBlocks() * kMostWordsOfBlock * kBytesPerWord; }
+
+    // Returns how many words may be stored before they are counted, to take so many bytes: none
+    // where these are less than an eighth of the most that words can take, as there are seldom
+    // fewer of them.
+    double wordsToTry(double bytes) const {
+        if (mostBytes() > 8 * bytes) return 0;
+        return std::min(bytes, double(availableMemory()) / 2) / kBytesPerWord;
     }
 
     void requireBlocks() const {
@@ -321,7 +330,7 @@ bool DeltaPacker::canBeParted() const {
 }
 
 double DeltaPacker::mostBytes() const {
-    return impl_->mostBlocks() * kMostWordsOfBlock * kBytesPerWord;
+    return impl_->mostBytes();
 }
 
 PackedDeltas DeltaPacker::packAll() {
@@ -337,11 +346,11 @@ PackedDeltas DeltaPacker::packAll() {
 PackedDeltas DeltaPacker::packOrPlan(double mostBytes) {
     PackedDeltas packed = impl_->noWords();
     if (impl_->volume.empty()) return packed;
-    requireMemory("delta grid", std::min(mostBytes, this->mostBytes()));
     SlabPlanner planner(packed.box);
     PackRange range = impl_->wholeRange(planner);
-    WordBudget budget(mostBytes / kBytesPerWord);
-    range.budget = &budget;
+    WordBudget budget(impl_->wordsToTry(mostBytes));
+    range.storesWords = !budget.isSpent();
+    if (range.storesWords) range.budget = &budget;
     std::vector<ColumnPacker> packers = impl_->run(range);
     if (!budget.isSpent()) {
         impl_->collect(packers, planner, packed);

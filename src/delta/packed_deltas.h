@@ -115,7 +115,7 @@ struct SlabRange {
 };
 
 /// Packs deltas as packDeltas does, or those of a few slabs at a time, so that few words are in
-/// memory at once: the volume is gone through once to find the slabs, then once for each part.
+/// memory at once: then the volume is gone through once to find the slabs, and once for each part.
 class DeltaPacker {
   public:
     /// @param volume  must outlive this
@@ -129,7 +129,7 @@ class DeltaPacker {
     double mostBytes() const;
     PackedDeltas packAll();
     /// Returns what packAll() does where words take no more than so many bytes; else the slabs,
-    /// without words.
+    /// without words. Only where parts can be made.
     /// @param mostBytes  also of a part, unless it is of one slab
     PackedDeltas packOrPlan(double mostBytes);
     /// The parts that the words are packed in, in increasing order, once there is a plan of some.

@@ -173,10 +173,12 @@ std::shared_ptr<const std::vector<CodeLeaf>> CodeTree::leaves() const {
 
 void CodeTree::noteLeaves(std::vector<CodeLeaf> leaves, std::unique_ptr<const LeafReader> reader) {
     if (reader) {
-        leftToRead_ = std::size_t(std::count_if(
-            leaves.begin(), leaves.end(), [](const CodeLeaf& one) { return lacks(*one.leaf); }));
-        if (leftToRead_ > 0) reader_ = std::move(reader);
-        lacksLeaves_.store(leftToRead_ > 0, std::memory_order_release);
+        parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
+            const auto of = std::span(leaves).subspan(begin, end - begin);
+            leftToRead_ += std::size_t(std::count_if(
+                of.begin(), of.end(), [](const CodeLeaf& one) { return lacks(*one.leaf); }));
+        });
+        if (lacksLeaves()) reader_ = std::move(reader);
     }
     leaves_.store(std::make_shared<const std::vector<CodeLeaf>>(std::move(leaves)));
 }
@@ -184,7 +186,6 @@ void CodeTree::noteLeaves(std::vector<CodeLeaf> leaves, std::unique_ptr<const Le
 void CodeTree::readLeaves(std::span<const Leaf* const> leaves) const {
     if (!lacksLeaves()) return;
     const std::lock_guard lock(mutex_);
-    if (!reader_) return;
     std::vector<Leaf*> lacking;
     for (const Leaf* leaf : leaves) {
         // The tree, whose it is, is no constant.
@@ -201,10 +202,8 @@ void CodeTree::readLeaves(std::span<const Leaf* const> leaves) const {
             throw;
         }
     });
+    if (lacking.size() == leftToRead_) reader_.reset();
     leftToRead_ -= lacking.size();
-    if (leftToRead_ > 0) return;
-    reader_.reset();
-    lacksLeaves_.store(false, std::memory_order_release);
 }
 
 void CodeTree::readAll() const {

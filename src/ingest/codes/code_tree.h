@@ -57,7 +57,7 @@ struct CodeTree {
     ///        codes do not fit into memory. No leaf is read then, and the next call tries again.
     void readLeaves(std::span<const Leaf* const> leaves) const;
     /// Whether there may be leaves that are not read yet.
-    bool lacksLeaves() const { return lacksLeaves_.load(std::memory_order_acquire); }
+    bool lacksLeaves() const { return leftToRead_.load(std::memory_order_acquire) > 0; }
     /// Tells leaves() what it would find out, for who has filled the tree: it must not change then.
     /// @param leaves  all that have active voxels, in any order
     /// @param reader  null, or reads those that have no room for codes yet when they are asked for
@@ -71,9 +71,8 @@ struct CodeTree {
     mutable std::mutex mutex_;
     mutable std::atomic<bool> hasTree_ = false;  // if there are blocks
     mutable std::atomic<std::shared_ptr<const std::vector<CodeLeaf>>> leaves_;
-    mutable std::atomic<bool> lacksLeaves_ = false;
-    mutable std::unique_ptr<const LeafReader> reader_;  // null once all is read
-    mutable std::size_t leftToRead_ = 0;
+    mutable std::atomic<std::size_t> leftToRead_ = 0;
+    mutable std::unique_ptr<const LeafReader> reader_;  // null once none is left
 };
 
 /// A leaf of a code tree that has active voxels, and the range of their codes: those which a

@@ -161,7 +161,8 @@ class BlockLooker {
             for (int y = 0; y < kBlock; ++y) {
                 const std::byte* stored = block.first + std::size_t(z) * block.sliceBytes +
                                           std::size_t(y) * block.rowBytes;
-                for (std::size_t i = 0; i < sizeof(T); ++i, next += sizeof i / sizeof(T)) {
+                for (std::size_t i = 0; i < sizeof(T);
+                     ++i, next += sizeof(std::uint64_t) / sizeof(T)) {
                     std::uint64_t word;
                     std::memcpy(&word, stored + i * sizeof word, sizeof word);
                     word ^= kEach * first;

@@ -79,7 +79,16 @@ class DenseTreeBuilder {
     }
 
     /// Returns the leaves with the ranges of their codes, once all slices are there.
-    std::vector<CodeLeaf> takeLeaves() { return std::move(leaves_); }
+    std::vector<CodeLeaf> takeLeaves() {
+        std::size_t count = 0;
+        for (const std::vector<CodeLeaf>& ofNode : leaves_) count += ofNode.size();
+        std::vector<CodeLeaf> leaves;
+        leaves.reserve(count);
+        for (const std::vector<CodeLeaf>& ofNode : leaves_)
+            leaves.insert(leaves.end(), ofNode.begin(), ofNode.end());
+        leaves_.clear();
+        return leaves;
+    }
 
     /// Returns the most bytes that slices can add to the tree.
     double worstBytes(int slices) const {
@@ -219,7 +228,7 @@ class DenseTreeBuilder {
             made[n] = makeNode(first, leaves[n]);
         });
         for (std::size_t n = 0; n < made.size(); ++n) {
-            leaves_.insert(leaves_.end(), leaves[n].begin(), leaves[n].end());
+            leaves_.push_back(std::move(leaves[n]));
             hangIn(std::move(made[n]), tree_);
         }
     }
@@ -251,8 +260,8 @@ class DenseTreeBuilder {
     glm::ivec3 blocks_;
     std::size_t workers_;
     Tree& tree_;
-    std::vector<Block> made_;  // [z % kNode][y][x]
-    std::vector<CodeLeaf> leaves_;
+    std::vector<Block> made_;                    // [z % kNode][y][x]
+    std::vector<std::vector<CodeLeaf>> leaves_;  // of each node: kept apart, not to be moved twice
 };
 
 }  // namespace deltasplat
