@@ -52,8 +52,9 @@ class CodeCounts {
         std::pair<Code, Code> all{codes[0], codes[0]};
         for (int x = 0; x < size.x; ++x) {
             for (int y = 0; y < size.y; ++y) {
+                const int place = 64 * x + 8 * y;
                 const auto [low, high] =
-                    addSome(codes.subspan(std::size_t(64 * x + 8 * y), std::size_t(size.z)));
+                    addSome(codes.subspan(std::size_t(place), std::size_t(size.z)));
                 all = {std::min(all.first, low), std::max(all.second, high)};
             }
         }
