@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "optics/hidden_values.h"
 #include "srgb.h"
 
 namespace deltasplat {
@@ -246,6 +247,30 @@ TEST(TransferFunction, srgbColorsAreInterpolatedAsSrgbAndReturnedLinear) {
     EXPECT_EQ(function.colorAt(1).r, 1);
     function.linearColors = true;
     EXPECT_EQ(function.colorAt(0.5), glm::dvec3(0.5, 0.04045, 0.05));
+}
+
+TEST(TransferFunction, hidesStretchesOfValues) {
+    const auto hides = [](std::vector<TransferFunction::OpacityPoint> points, bool normalized,
+                          bool hasRange) {
+        TransferFunction function;
+        function.opacities = std::move(points);
+        function.normalized = normalized;
+        return hidesValues(function, hasRange);
+    };
+    // A ramp is clear at its first value alone, unless there are values before it.
+    EXPECT_FALSE(hides({{0, 0}, {1, 1}}, true, false));
+    EXPECT_TRUE(hides({{0, 0}, {1, 1}}, true, true));
+    EXPECT_TRUE(hides({{0, 0}, {1, 1}}, false, false));
+    EXPECT_TRUE(hides({{0, 0.2}, {1, 0}}, false, false));
+    EXPECT_FALSE(hides({{0, 0.2}, {1, 0.1}}, false, true));
+    // Constant before the first point, and behind the last.
+    EXPECT_TRUE(hides({{0.2, 0}, {1, 1}}, true, false));
+    EXPECT_TRUE(hides({{0, 0.2}, {0.9, 0}}, true, false));
+    EXPECT_FALSE(hides({{0.2, 0.1}, {0.9, 0.3}}, true, false));
+    // Between two points; two at one value are a step.
+    EXPECT_TRUE(hides({{0, 0.1}, {0.3, 0}, {0.4, 0}, {1, 1}}, true, false));
+    EXPECT_FALSE(hides({{0, 0.1}, {0.3, 0}, {0.3, 0}, {1, 1}}, true, false));
+    EXPECT_FALSE(hides({}, true, false));
 }
 
 TEST(DefaultRamp, spansThePercentilesOfWhatIsNotBackground) {

@@ -10,6 +10,7 @@
 #include "deltasplat/optics/default_ramp.h"
 #include "ingest/label_claim.h"
 #include "number_text.h"
+#include "optics/hidden_values.h"
 #include "optics/label_changes.h"
 #include "optics/scaled_values.h"
 #include "optics/value_colors.h"
@@ -321,12 +322,21 @@ Volume seenIn(Volume volume, const Optics& optics, const FrameLook* look) {
     return volume;
 }
 
+// Whether it is asked for to make some values clear. Without a transfer function all but the least
+// are shown.
+bool hidesSome(const PictureOptions& picture, const Optics& optics) {
+    if (picture.transferFunction.empty()) return optics.range.has_value();
+    const Preset* const preset = parseTransferFunction(picture.transferFunction).preset;
+    const bool isShaded = preset && preset->values == Preset::Values::kHounsfield;
+    return !isShaded && hidesValues(optics.transferFunction, optics.range.has_value());
+}
+
 // Whether a picture may do without most voxels, for all that is known before they are read: X-rays
 // count all, and whoever lights what is shown, or looks at how much values change, asks for all.
-bool mayShowSome(const PictureOptions& picture) {
+bool mayShowSome(const PictureOptions& picture, const Optics& optics) {
     return picture.render.mode == Mode::kComposite && !picture.surface.asked &&
-           !picture.shading.asked() && !isFog(picture) &&
-           picture.render.optics.gradientOpacity.empty();
+           !picture.shading.asked() && !isFog(picture) && optics.gradientOpacity.empty() &&
+           hidesSome(picture, optics);
 }
 
 }  // namespace
@@ -337,7 +347,7 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     ReadOptions read = picture.read;
     read.keepInexact = picture.render.mode != Mode::kComposite;
     // Frames are kept, many at a time, and told by what they take.
-    read.readLater = !look && mayShowSome(picture);
+    read.readLater = !look && mayShowSome(picture, options.optics);
     Volume volume = placed(look     ? look->sequence.read(input, read, listener)
                            : reader ? reader(input, read, listener)
                                     : readVolume(input, read, listener),

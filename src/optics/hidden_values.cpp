@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optics/hidden_values.h"
+
+#include <algorithm>
+
+namespace deltasplat {
+
+bool hidesValues(const TransferFunction& function, bool hasRange) {
+    using Point = TransferFunction::OpacityPoint;
+    const std::vector<Point>& points = function.opacities;
+    if (points.empty()) return false;
+    // Opacity is constant beyond the first and the last point.
+    const bool goesOn = hasRange || !function.normalized;
+    const auto isClear = [](const Point& point) { return point.opacity == 0; };
+    const Point& first = points.front();
+    const Point& last = points.back();
+    if (isClear(first) && (goesOn || first.x > 0)) return true;
+    if (isClear(last) && (goesOn || last.x < 1)) return true;
+    const auto clearBetween = [&](const Point& a, const Point& b) {
+        return isClear(a) && isClear(b) && a.x < b.x;
+    };
+    return std::adjacent_find(points.begin(), points.end(), clearBetween) != points.end();
+}
+
+}  // namespace deltasplat
