@@ -12,6 +12,7 @@
 
 #include "deltasplat/threads.h"
 #include "ingest/codes/leaf_slices.h"
+#include "ingest/codes/seen_codes.h"
 #include "memory.h"
 #include "parallel.h"
 #include "parallel_sort.h"
@@ -47,18 +48,10 @@ void forVisibleTiles(const CodeTree& codes, const SlotOf& slotOf, const Use& use
     for (const Lower* node : lowers) forVisibleTilesOf(*node, slotOf, use);
 }
 
-// Tells which blocks may have slots other than empty, by the range of their codes.
-class SeenCodes {
-  public:
-    explicit SeenCodes(std::span<const Slot> slotMap) : before_(kSlotCount, 0) {
-        for (int code = 0; code < kCodeCount; ++code)
-            before_[code + 1] = before_[code] + (slotMap[code + 1] != kEmptySlot);
-    }
-    bool hasAny(Code lowest, Code highest) const { return before_[highest + 1] != before_[lowest]; }
-
-  private:
-    std::vector<int> before_;  // how many codes before each have a slot
-};
+// Which codes have slots other than empty.
+SeenCodes seenCodes(std::span<const Slot> slotMap) {
+    return SeenCodes([&](int code) { return slotMap[std::size_t(code) + 1] != kEmptySlot; });
+}
 
 // Returns, in parts, the leaves with active voxels whose slots may be other than empty.
 // @param cone  null, or what else is left out
@@ -68,7 +61,7 @@ std::vector<std::vector<CodeBlock>> visibleLeaves(const CodeTree& codes, int sli
     constexpr std::size_t kPart = 4096;
     const auto all = codes.leaves();
     std::optional<SeenCodes> seen;
-    if (!slotMap.empty()) seen.emplace(slotMap);
+    if (!slotMap.empty()) seen = seenCodes(slotMap);
     const std::size_t count = (all->size() + kPart - 1) / kPart;
     std::vector<std::vector<CodeBlock>> parts(count);
     // Those that other cones see as well: all are mostly wanted in the end.
@@ -287,9 +280,9 @@ std::vector<CodeBlock> listBlocks(const CodeTree& codes, int sliceAxis,
                                   std::span<const Slot> slotMap, const SeenCone* seen) {
     const SlotBlocks* const along = codes.blocksAlong(sliceAxis);
     if (!along) return BlockReader(codes, nullptr, sliceAxis, slotMap, seen).takeBlocks();
-    const SeenCodes seenCodes(slotMap);
+    const SeenCodes codesSeen = seenCodes(slotMap);
     const auto isSeen = [&](const SlotBlock& block) {
-        return seenCodes.hasAny(block.lowest, block.highest) &&
+        return codesSeen.hasAny(block.lowest, block.highest) &&
                (!seen || seen->sees(block.position));
     };
     const auto count = std::count_if(along->blocks().begin(), along->blocks().end(), isSeen);

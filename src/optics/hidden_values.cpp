@@ -22,4 +22,13 @@ bool hidesValues(const TransferFunction& function, bool hasRange) {
     return std::adjacent_find(points.begin(), points.end(), clearBetween) != points.end();
 }
 
+bool showsValue(const TransferFunction& function, const std::optional<glm::dvec2>& range,
+                const std::string& type, double value) {
+    if (!function.normalized) return function.opacityAt(value) > 0;
+    // As defaultRange().
+    if (!range && type != "uint8") return false;
+    const glm::dvec2 ends = range.value_or(glm::dvec2(0, 255));
+    return function.opacityAt((value - ends.x) / (ends.y - ends.x)) > 0;
+}
+
 }  // namespace deltasplat

@@ -134,6 +134,39 @@ TEST(ReadLater, onlyWhatIsAskedForIsRead) {
     expectSameVolume(volume, whole);
 }
 
+// What is known to be asked for is read at once, of all types by their values.
+template <typename T>
+void readsWhatIsWanted(const std::string& type) {
+    SCOPED_TRACE(type);
+    const std::string file = writeValues<T>(type);
+    const Volume none = readVolume(file, later());
+    ReadOptions options = later();
+    options.isWanted = [&](const std::string& ofType, double value) {
+        EXPECT_EQ(ofType, type);
+        return value >= 85;
+    };
+    const Volume volume = readVolume(file, options);
+    const Code least = volume.codeBook.codeOf(85);
+    std::size_t wanted = 0;
+    for (const CodeLeaf& one : *volume.codes->leaves()) {
+        if (one.highest < least) continue;
+        ++wanted;
+        EXPECT_FALSE(one.leaf->buffer().empty()) << one.leaf->origin();
+    }
+    EXPECT_GT(wanted, 10u);
+    EXPECT_LT(countUnread(volume), countUnread(none));
+    EXPECT_GT(countUnread(volume), 0u);
+    expectSameVolume(volume, readVolume(file));
+}
+
+TEST(ReadLater, whatIsWantedIsReadAtOnce) {
+    const TempFolder folder;
+    readsWhatIsWanted<std::uint8_t>("uint8");
+    readsWhatIsWanted<std::int8_t>("int8");
+    readsWhatIsWanted<std::uint16_t>("uint16");
+    readsWhatIsWanted<std::int16_t>("int16");
+}
+
 TEST(ReadLater, cutsReadWhatIsLeft) {
     const TempFolder folder;
     const std::string file = writeValues<std::uint16_t>("uint16");

@@ -273,6 +273,22 @@ TEST(TransferFunction, hidesStretchesOfValues) {
     EXPECT_FALSE(hides({}, true, false));
 }
 
+TEST(TransferFunction, showsValuesAsFarAsIsKnown) {
+    TransferFunction function;
+    function.opacities = {{0, 0}, {0.5, 0}, {1, 1}};
+    EXPECT_TRUE(showsValue(function, {}, "uint8", 0.75));
+    EXPECT_FALSE(showsValue(function, {}, "int16", 0.5));
+    function.normalized = true;
+    EXPECT_FALSE(showsValue(function, {}, "uint8", 127));
+    EXPECT_TRUE(showsValue(function, {}, "uint8", 128));
+    // Of other types, the range is that of values which nobody knows.
+    EXPECT_FALSE(showsValue(function, {}, "uint16", 60000));
+    const glm::dvec2 range(-100, 300);
+    EXPECT_FALSE(showsValue(function, range, "int16", 99));
+    EXPECT_TRUE(showsValue(function, range, "int16", 101));
+    EXPECT_TRUE(showsValue(function, range, "int16", 5000));
+}
+
 TEST(DefaultRamp, spansThePercentilesOfWhatIsNotBackground) {
     // A thousand voxels without the zeros: 9 of value 3, 981 of 5, 10 of 8. The 10th has value 5,
     // the 990th too.

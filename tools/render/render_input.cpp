@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -339,6 +340,19 @@ bool mayShowSome(const PictureOptions& picture, const Optics& optics) {
            hidesSome(picture, optics);
 }
 
+// Returns which values are shown, as far as that is known.
+std::function<bool(const std::string&, double)> shownFirst(const PictureOptions& picture,
+                                                           const Optics& optics) {
+    const std::optional<glm::dvec2> range = optics.range;
+    if (picture.transferFunction.empty()) {
+        // The default ramp.
+        return [range](const std::string&, double value) { return range && value > range->x; };
+    }
+    return [function = optics.transferFunction, range](const std::string& type, double value) {
+        return showsValue(function, range, type, value);
+    };
+}
+
 }  // namespace
 
 Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
@@ -348,6 +362,7 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     read.keepInexact = picture.render.mode != Mode::kComposite;
     // Frames are kept, many at a time, and told by what they take.
     read.readLater = !look && mayShowSome(picture, options.optics);
+    if (read.readLater) read.isWanted = shownFirst(picture, options.optics);
     Volume volume = placed(look     ? look->sequence.read(input, read, listener)
                            : reader ? reader(input, read, listener)
                                     : readVolume(input, read, listener),

@@ -60,6 +60,10 @@ struct ReadOptions {
     /// stays open and must stay as it is: else what asks throws Error(kInput). Of no use where all
     /// voxels are asked for, and without effect with keepSource.
     bool readLater = false;
+    /// With readLater: whether voxels of a value will probably be asked for, where a volume has
+    /// such a Volume::type. They are then read while the file is gone over anyway. Null: nobody
+    /// knows.
+    std::function<bool(const std::string& type, double value)> isWanted = nullptr;
     /// What the caller will take besides for each 8x8x8 block that is not uniform: counts where
     /// setMemoryLimit() is in force, so that too large a volume is refused before it is read.
     double bytesPerBlock = 0;

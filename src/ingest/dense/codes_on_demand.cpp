@@ -191,16 +191,18 @@ class BlockLooker {
 struct SeenRow {
     std::size_t worker;
     BlockLooker& looker;
+    const SeenCodes* wanted;
     BlockRow row;
 
     std::pair<Code, Code> rangeOf(int x) const { return looker.lookAt(worker, row.at(x)); }
+    bool isWanted(Code low, Code high) const { return wanted && wanted->hasAny(low, high); }
     void read(CodeTree::Leaf& leaf) const { readLeaf(row, looker.coder(), leaf); }
 };
 
 }  // namespace
 
 CodesOnDemand codesOnDemand(const DenseSource& source, const CodeBook& book,
-                            const Listener& listener) {
+                            const SeenCodes* wanted, const Listener& listener) {
     using Builder = DenseTreeBuilder<CodeTree::Tree>;
     const glm::ivec3 dims(source.dims);
     auto codes = std::make_shared<CodeTree>();
@@ -214,7 +216,7 @@ CodesOnDemand codesOnDemand(const DenseSource& source, const CodeBook& book,
         const int slices = std::min(step, dims.z - first);
         requireMemory(source.where, rowBytes + builder.worstBytes(slices));
         builder.addRanges(first, slices, [&](std::size_t worker, int y, int z) {
-            return SeenRow{worker, looker, BlockRow(source, y, z)};
+            return SeenRow{worker, looker, wanted, BlockRow(source, y, z)};
         });
         listener.report(double(first + slices) / dims.z);
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ingest/codes/code_tree.h"
+#include "ingest/codes/seen_codes.h"
 #include "ingest/dense/dense_source.h"
 
 namespace deltasplat {
@@ -20,8 +21,9 @@ struct CodesOnDemand {
 /// Goes over a dense volume once for the ranges of codes in its blocks, and for what is uniform.
 /// @param source  one with rows, of whole numbers of at most 16 bits
 /// @param book    of its codes; it counts whole numbers from the least that the type has
+/// @param wanted  which codes' leaves are read at once; null: none
 /// @throw Error(kInput) if the file is written to meanwhile
 CodesOnDemand codesOnDemand(const DenseSource& source, const CodeBook& book,
-                            const Listener& listener);
+                            const SeenCodes* wanted, const Listener& listener);
 
 }  // namespace deltasplat

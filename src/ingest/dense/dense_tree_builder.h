@@ -66,10 +66,10 @@ class DenseTreeBuilder {
     }
 
     /// Adds slices as add() does, but leaves most leaves without values, to be read later: all but
-    /// those of rows in which there are few.
+    /// those that are wanted, and those of rows in which there are few.
     /// @param rowOf  rowOf(worker, y, z), by the first voxel of a row of blocks, returns what has
-    ///               rangeOf(x), the smallest and the largest value of the block from x on, and
-    ///               read(leaf), which reads one; called from all threads
+    ///               rangeOf(x), the smallest and the largest value of the block from x on,
+    ///               isWanted(low, high), and read(leaf), which reads one; called from all threads
     template <typename RowOf>
     void addRanges(int firstSlice, int slices, const RowOf& rowOf) {
         addBlocks(firstSlice, slices,
@@ -178,13 +178,16 @@ class DenseTreeBuilder {
             std::tie(block.low, block.high) = row.rangeOf(corner.x);
             const bool isUniform = block.low == block.high && isWhole(size);
             block.leaf = isUniform ? nullptr : leafAt(corner, size);
-            if (block.leaf) ++leaves;
+            if (block.leaf) {
+                ++leaves;
+                if (row.isWanted(block.low, block.high)) row.read(*block.leaf);
+            }
             corner.x += kBlock;
         }
         // To read a row once more takes as long as to make leaves of an eighth of it.
         if (8 * leaves > blocks.size()) return;
         for (const Block& block : blocks)
-            if (block.leaf) row.read(*block.leaf);
+            if (block.leaf && block.leaf->buffer().empty()) row.read(*block.leaf);
     }
 
     template <typename Fill, typename Tally>

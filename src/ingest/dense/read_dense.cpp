@@ -198,6 +198,14 @@ bool readsLater(const DenseSource& source, const ReadOptions& options) {
     return options.readLater && !options.keepSource && source.rows && !needsScan(source.type);
 }
 
+// The codes whose voxels will probably be asked for.
+SeenCodes wantedCodes(RawType type, const CodeBook& book, const ReadOptions& options) {
+    const int count = 1 << (8 * rawTypeBytes(type));
+    const std::string name = rawTypeName(type);
+    return SeenCodes(
+        [&](int code) { return code < count && options.isWanted(name, book.valueOf(Code(code))); });
+}
+
 // Keeps the most frequent of some values.
 void keepMostFrequent(const std::vector<double>& values, const std::vector<std::uint64_t>& counts,
                       Volume& volume) {
@@ -360,7 +368,10 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
     if (!later) requireLimit(source, options, keep, listener);
     const double coded = keep ? 0.75 : 1;
     if (later) {
-        CodesOnDemand codes = codesOnDemand(source, volume.codeBook, listener);
+        std::optional<SeenCodes> wanted;
+        if (options.isWanted) wanted.emplace(wantedCodes(source.type, volume.codeBook, options));
+        CodesOnDemand codes =
+            codesOnDemand(source, volume.codeBook, wanted ? &*wanted : nullptr, listener);
         volume.codes = std::move(codes.tree);
         volume.histogram = std::move(codes.histogram);
         summarize(volume);
