@@ -19,7 +19,8 @@ std::string sizeText(const OIIO::ImageSpec& spec);
 /// Whether the first channels are R, G and B.
 bool hasColors(const OIIO::ImageSpec& spec);
 
-/// @throw Error(kInput) unless it is flat, has pixels, and the file can be long enough to hold them
+/// @throw Error(kInput) unless it is flat, has pixels, the file can be long enough to hold them,
+///        and OpenImageIO can read such numbers
 void requireSane(const std::filesystem::path& file, const OIIO::ImageSpec& spec);
 
 /// How many pages an image file has, and where those of a TIFF are.
