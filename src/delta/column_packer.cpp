@@ -5,15 +5,13 @@
 #include <bit>
 #include <limits>
 #include <optional>
-#include <type_traits>
 #include <utility>
 
 #include "delta/block_kernels.h"
+#include "delta/joined_class_reader.h"
 #include "delta/mixed_sight.h"
-#include "delta/slice_joiner.h"
 #include "delta/slot_holder.h"
 #include "hwy/cache_control.h"
-#include "ingest/codes/leaf_slices.h"
 
 namespace deltasplat {
 namespace {
@@ -43,8 +41,13 @@ bool choosesClasses(const PackOptions& options) {
 
 ColumnPacker::ColumnPacker(const IndexBox& box, const PackOptions& options, const PackTools& tools,
                            std::span<const Slot> slotMap, const PackRange& range)
-    : options_(options), tools_(tools), slotMap_(slotMap), box_(box), planner_(box), range_(range) {
-    stride_ = toSliceOrder(kLeafStride, options.sliceAxis);
+    : options_(options),
+      tools_(tools),
+      slotMap_(slotMap),
+      box_(box),
+      planner_(box),
+      range_(range),
+      classReader_(slotMap, tools.ramps, options.sliceAxis) {
     if (!tools.mixer) return;
     parts_ = tools.mixer->parts();
     window_.emplace(*tools.codes, options.sliceAxis,
@@ -137,6 +140,7 @@ void ColumnPacker::finish() {
 
 // Adds the words of a column of joined slices, block after block.
 void ColumnPacker::addJoined(const JoinedColumn& column) {
+    const JoinedClassReader reader(classReader_, *options_.joiner, options_.slant);
     std::array<std::span<const CodeBlock>, 4> rest = column.sources;
     constexpr int kNone = std::numeric_limits<int>::max();
     std::optional<int> before;
@@ -165,98 +169,11 @@ void ColumnPacker::addJoined(const JoinedColumn& column) {
         for (std::size_t i = 0; i < std::min<std::size_t>(behind.size(), 2); ++i)
             fetchAhead(&behind[i], behind.data() + behind.size());
         endRun(place);
-        readJoined(sources);
+        reader.read(sources, classes_);
         add({place, column.place}, {0, 0}, range_.layout.slicesOf(place));
         before = place;
     }
     endRun(kNone);
-}
-
-// Reads a block of joined slices.
-void ColumnPacker::readJoined(const JoinedSources& sources) {
-    constexpr std::size_t kSlice = 64;
-    constexpr std::size_t kJoined = 4;  // of each half
-    // Rows are copied from one voxel before or behind them on.
-    constexpr std::size_t kSpare = 8;
-    std::array<ClassIndex, 512 + kSpare> padded{};
-    const std::span<ClassIndex, 512> own = std::span(padded).first<512>();
-    std::array<ClassIndex, kSlice> slanted;
-    const bool isSlanted = options_.slant != glm::ivec2(0);
-    ClassIndex* out = classes_.data();
-    for (const auto& half : sources) {
-        if (half[0]) {
-            readSlots(*half[0], own);
-        } else {
-            std::fill(own.begin(), own.end(), ClassIndex{0});
-        }
-        std::array<OpenBlock, 4> beside;
-        for (std::size_t i = 1; isSlanted && i < beside.size(); ++i)
-            if (half[i]) beside[i] = open(*half[i]);
-        for (std::size_t i = 0; i < kJoined; ++i, out += kSlice) {
-            const ClassIndex* first = &own[2 * i * kSlice];
-            const ClassIndex* second = first + kSlice;
-            if (isSlanted) {
-                slantSlice(beside, second, int(2 * i + 1), slanted.data());
-                second = slanted.data();
-            }
-            options_.joiner->join(first, second, out);
-        }
-    }
-}
-
-// Writes a slice moved by the slant.
-// @param beside  the blocks that the others than its own come from
-// @param own     of the block that it is moved in; there is a voxel before and behind it
-void ColumnPacker::slantSlice(const std::array<OpenBlock, 4>& beside, const ClassIndex* own,
-                              int slice, ClassIndex* out) const {
-    const glm::ivec2 slant = options_.slant;
-    const int edgeU = slant.x > 0 ? 7 : 0;  // of the blocks beside
-    const int edgeV = slant.y > 0 ? 7 : 0;
-    std::array<ClassIndex, 24> padded{};
-    const auto row = std::span(padded).subspan<8, 8>();
-    if (slant.x != 0) readLine(beside[1], {slice, edgeU, 0}, {0, 0, 1}, row);
-    Line column{};
-    if (slant.y != 0) readLine(beside[2], {slice, 0, edgeV}, {0, 1, 0}, column);
-    for (int u = 0; u < 8; ++u, out += 8) {
-        const int fromU = u - slant.x;
-        const bool isIn = fromU >= 0 && fromU < 8;
-        std::copy_n((isIn ? own + 8 * fromU : row.data()) - slant.y, 8, out);
-        if (slant.y == 0) continue;
-        out[7 - edgeV] =
-            isIn ? column[std::size_t(fromU)] : classAt(beside[3], glm::ivec3(slice, edgeU, edgeV));
-    }
-}
-
-ColumnPacker::OpenBlock ColumnPacker::open(const CodeBlock& block) const {
-    constexpr glm::ivec3 kSlotStride{64, 8, 1};
-    if (block.slots) return {block.slots, nullptr, nullptr, 0, kSlotStride};
-    if (!block.leaf) return {nullptr, nullptr, nullptr, ClassIndex(block.tileSlot), kSlotStride};
-    return {nullptr, block.leaf->buffer().data(),
-            block.leaf->isDense() ? nullptr : &block.leaf->valueMask(), 0, stride_};
-}
-
-// Returns the class of a voxel of a block, at (slice, u, v) of 0..7 each.
-ClassIndex ColumnPacker::classAt(const OpenBlock& block, const glm::ivec3& at) const {
-    const int n = block.placeOf(at);
-    if (block.slots) return ClassIndex(slotMap_[block.slots[n]]);
-    if (!block.codes || (block.active && !block.active->isOn(openvdb::Index(n)))) return block.tile;
-    return ClassIndex(slotMap_[block.codes[n] + 1]);
-}
-
-// Reads the classes of a line of voxels.
-// @param step  from one to the next
-void ColumnPacker::readLine(const OpenBlock& block, const glm::ivec3& first, const glm::ivec3& step,
-                            std::span<ClassIndex, 8> out) const {
-    const Slot* const map = slotMap_.data();
-    const int begin = block.placeOf(first);
-    const int stride = block.placeOf(step);
-    if (block.slots) {
-        for (int i = 0; i < 8; ++i) out[i] = ClassIndex(map[block.slots[begin + i * stride]]);
-    } else if (block.codes && !block.active) {
-        for (int i = 0; i < 8; ++i) out[i] = ClassIndex(map[block.codes[begin + i * stride] + 1]);
-    } else {
-        for (int i = 0; i < 8; ++i) out[i] = classAt(block, first + i * step);
-    }
 }
 
 // Puts words of a column's parts along v one part behind the other.
@@ -321,43 +238,12 @@ glm::ivec3 ColumnPacker::partOf(const CodeBlock& block, int slices, const glm::i
     return {slices, first.y + part.x, first.z + part.y};
 }
 
-// Writes what the slots of a block are under the map.
-template <typename T>
-void ColumnPacker::readSlots(const CodeBlock& block, std::span<T, 512> out) const {
-    if constexpr (std::is_same_v<T, ClassIndex>) {
-        if (readRamp(block, out)) return;
-    }
-    const Slot* const map = slotMap_.data();
-    if (block.slots) {
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = T(map[block.slots[i]]);
-    } else if (block.leaf) {
-        const auto slotOf = [map](Code code) { return map[code + 1]; };
-        readLeafSlices(*block.leaf, options_.sliceAxis, slotOf, out.data());
-    } else {
-        std::fill(out.begin(), out.end(), T(block.tileSlot));
-    }
-}
-
-// Does so by vectors if the map is a ramp over the codes of the block. Returns whether it is.
-bool ColumnPacker::readRamp(const CodeBlock& block, std::span<ClassIndex, 512> out) const {
-    if (!tools_.ramps || (!block.slots && !block.leaf)) return false;
-    const std::optional<ClassRamp> ramp = tools_.ramps->of(block.lowest, block.highest);
-    if (!ramp) return false;
-    if (block.slots) {
-        classesOfSlots(*ramp, block.slots, out.data());
-    } else {
-        classesOfLeaf(*ramp, block.leaf->buffer().data(), options_.sliceAxis, out.data());
-        clearInactiveSlices(*block.leaf, options_.sliceAxis, out.data());
-    }
-    return true;
-}
-
 void ColumnPacker::read(const CodeBlock& block) {
     if (tools_.holder) {
-        readSlots(block, std::span(slots_));
+        classReader_.read(block, std::span(slots_));
         hold(slots_, block.position, {0, 0}, 0);
     } else {
-        readSlots(block, std::span(classes_));
+        classReader_.read(block, std::span(classes_));
         if (own_) own_->paint(block.position, 0, classes_);
     }
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -13,12 +12,14 @@
 
 #include "delta/block_looks.h"
 #include "delta/class_ramps.h"
+#include "delta/class_reader.h"
 #include "delta/code_blocks.h"
 #include "delta/hold_slots.h"
 #include "delta/joined_columns.h"
 #include "delta/mix_window.h"
 #include "delta/packed_deltas.h"
 #include "delta/value_mixer.h"
+#include "delta/word_budget.h"
 #include "delta/word_collector.h"
 
 namespace deltasplat {
@@ -41,29 +42,6 @@ struct PackTools {
 struct Columns {
     const CodeBlock* begin;
     const CodeBlock* end;
-};
-
-/// How many words several packers may store together.
-class WordBudget {
-  public:
-    explicit WordBudget(double words) : most_(words), isSpent_(words <= 0) {}
-
-    /// Takes some. Returns whether they, and all before them, may be stored.
-    bool take(std::size_t words) {
-        if (double(taken_ += words) > most_) isSpent_ = true;
-        return !isSpent_;
-    }
-    /// Says that what was taken is so much of all that there will be: nothing may be stored where
-    /// all is going to be too much.
-    void foresee(double share) {
-        if (double(taken_) > most_ * share) isSpent_ = true;
-    }
-    bool isSpent() const { return isSpent_; }
-
-  private:
-    double most_;
-    std::atomic<std::size_t> taken_ = 0;
-    std::atomic<bool> isSpent_;
 };
 
 /// What of it: all blocks, of which it counts what is in their slices, or those of some slabs.
@@ -112,34 +90,8 @@ class ColumnPacker {
         MixWindow window;
     };
     using SliceClasses = std::array<ClassIndex, 64>;
-
     using BlockClasses = std::array<ClassIndex, 512>;
-    // Of a joined block, its slices' first halves' blocks and their second ones', as
-    // JoinedColumn::sources has them; null where there are none.
-    using JoinedSources = std::array<std::array<const CodeBlock*, 4>, 2>;
-
-    // A block of which single voxels are read; empty: there is none.
-    struct OpenBlock {
-        const ShortSlot* slots = nullptr;                      // as CodeBlock has them
-        const Code* codes = nullptr;                           // of a leaf
-        const CodeTree::Leaf::NodeMaskType* active = nullptr;  // of its voxels; null: all
-        ClassIndex tile = 0;   // of what is neither slot nor active code
-        glm::ivec3 stride{0};  // from voxel to voxel, (slice, u, v)
-
-        int placeOf(const glm::ivec3& at) const {
-            return at.x * stride.x + at.y * stride.y + at.z * stride.z;
-        }
-    };
-    using Line = std::array<ClassIndex, 8>;
-
     void addJoined(const JoinedColumn& column);
-    void readJoined(const JoinedSources& sources);
-    void slantSlice(const std::array<OpenBlock, 4>& beside, const ClassIndex* own, int slice,
-                    ClassIndex* out) const;
-    OpenBlock open(const CodeBlock& block) const;
-    ClassIndex classAt(const OpenBlock& block, const glm::ivec3& at) const;
-    void readLine(const OpenBlock& block, const glm::ivec3& first, const glm::ivec3& step,
-                  std::span<ClassIndex, 8> out) const;
     void payForWords();
     void finish();
     void dropUnneeded(std::vector<PendingWord>& words) const;
@@ -152,9 +104,6 @@ class ColumnPacker {
     glm::ivec3 partOf(const CodeBlock& block, int slices, const glm::ivec2& part) const;
     template <typename Use>
     void forParts(const Use& use) const;
-    template <typename T>
-    void readSlots(const CodeBlock& block, std::span<T, 512> out) const;
-    bool readRamp(const CodeBlock& block, std::span<ClassIndex, 512> out) const;
     void read(const CodeBlock& block);
     void hold(const BlockSlots& slots, const glm::ivec3& position, const glm::ivec2& part,
               int number);
@@ -176,7 +125,7 @@ class ColumnPacker {
     SlabPlanner planner_;
     PackRange range_;
     Subdivision parts_;
-    glm::ivec3 stride_{0};                  // of a leaf's voxels, in (slice, u, v) order
+    ClassReader classReader_;
     BlockClasses classes_{};                // of the block in hand, [slice][u][v]
     std::array<SliceClasses, 4> before_{};  // [part]: of the slice before it
     std::array<HeldSlots, 4> held_{};       // [part]
