@@ -91,6 +91,8 @@ void takeSums(const ErrorSums& sums, VolumeComparison& result) {
     result.maxAt = {sums.maxAt.x(), sums.maxAt.y(), sums.maxAt.z()};
     result.valueA = sums.maxA.rounded();
     result.valueB = sums.maxB.rounded();
+    result.valueTextA = sums.maxA.text();
+    result.valueTextB = sums.maxB.text();
     result.overFail = sums.overFail;
     result.overWarn = sums.overWarn;
     result.activeMismatch = sums.activeMismatch;

@@ -4,12 +4,15 @@
 #include <openvdb/Types.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "deltasplat/ingest/volume.h"
+#include "number_text.h"
 
 namespace deltasplat {
 
@@ -20,6 +23,15 @@ struct WideValue {
     double low = 0;
 
     double rounded() const { return high + low; }
+    /// Returns the value as the shortest decimal number that no other double has; with all digits
+    /// where integers of 64 bits are finer than doubles.
+    std::string text() const {
+        const double size = std::fabs(rounded());
+        const bool isWhole = low == std::trunc(low) && high == std::trunc(high);
+        if (!isWhole || size < 0x1p53 || size >= 0x1p64) return numberText(rounded());
+        const auto digits = std::uint64_t(std::fabs(high)) + std::uint64_t(std::fabs(low));
+        return (rounded() < 0 ? "-" : "") + std::to_string(digits);
+    }
     bool operator==(const WideValue&) const = default;
 };
 

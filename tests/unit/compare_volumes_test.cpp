@@ -320,6 +320,37 @@ TEST(CompareVolumes, LargeIntegersAreExact) {
     EXPECT_EQ(compareVolumes(one(1), realVolume).maxError, 1.75);
 }
 
+// Two values are told apart by what is said of them, however near they are.
+TEST(CompareVolumes, ValuesAreNamedExactly) {
+    const auto one = [](std::int64_t value) {
+        auto grid = openvdb::Int64Grid::create(0);
+        grid->tree().setValueOn(Coord(1, 2, 3), value);
+        return volumeOf<openvdb::Int64Grid>(grid);
+    };
+    const auto expectNamed = [](const Volume& a, const Volume& b, const char* textA,
+                                const char* textB) {
+        const VolumeComparison result = compareVolumes(a, b);
+        EXPECT_EQ(result.valueTextA, textA);
+        EXPECT_EQ(result.valueTextB, textB);
+    };
+    constexpr std::int64_t kMin = std::numeric_limits<std::int64_t>::min();
+    expectNamed(one(9007199254740993), one(9007199254740992), "9007199254740993",
+                "9007199254740992");
+    expectNamed(one(kMin + 1), one(-1), "-9223372036854775807", "-1");
+    // Doubles that are next to each other there are named by all digits as well.
+    expectNamed(one(4611692241834999808), one(4611692241835000000), "4611692241834999808",
+                "4611692241835000000");
+    expectNamed(one(kMin), one(100000), "-9223372036854775808", "1e+05");
+    const auto real = [](double value) {
+        auto grid = openvdb::DoubleGrid::create(0);
+        grid->tree().setValueOn(Coord(1, 2, 3), value);
+        return volumeOf<openvdb::DoubleGrid>(grid);
+    };
+    expectNamed(real(18446744073709555712.0), one(5), "18446744073709555712", "5");
+    expectNamed(real(8589934592.75), one(5), "8589934592.75", "5");
+    expectNamed(real(0.1), real(1e300), "0.1", "1e+300");
+}
+
 TEST(CompareVolumes, ValuesAtTheEndsOfTheRange) {
     const auto one = [](double value, double inactive = 0) {
         auto grid = openvdb::DoubleGrid::create(0);

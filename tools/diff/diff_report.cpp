@@ -135,8 +135,7 @@ std::string maxText(const GridDiff& grid) {
     const glm::dvec3 at(c.maxAt);
     const glm::dvec3 world(grid.a.worldFromIndex * glm::dvec4(at, 1));
     return numberText(c.maxError) + " @ (" + numberText(at) + "), in the world (" +
-           numberText(world) + "); values are " + numberText(c.valueA) + " vs " +
-           numberText(c.valueB);
+           numberText(world) + "); values are " + c.valueTextA + " vs " + c.valueTextB;
 }
 
 std::string plainText(const GridDiff& grid, const CompareOptions& thresholds) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <string>
 
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/progress.h"
@@ -33,6 +34,8 @@ struct VolumeComparison {
                                  ///< (0,0,0) if maxError is 0
     double valueA = 0;           ///< value of A at maxAt, if maxError is not 0
     double valueB = 0;           ///< value of B at maxAt, if maxError is not 0
+    std::string valueTextA;      ///< valueA as a decimal number, exact for 64-bit integers too
+    std::string valueTextB;      ///< likewise valueB
     std::uint64_t overFail = 0;  ///< compared voxels whose error is above CompareOptions::fail
     std::uint64_t overWarn = 0;  ///< compared voxels whose error is above CompareOptions::warn
     std::uint64_t activeMismatch = 0;  ///< voxels that are active in one volume only
