@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "optics/type_range.h"
+
 namespace deltasplat {
 
 bool hidesValues(const TransferFunction& function, bool hasRange) {
@@ -25,10 +27,8 @@ bool hidesValues(const TransferFunction& function, bool hasRange) {
 bool showsValue(const TransferFunction& function, const std::optional<glm::dvec2>& range,
                 const std::string& type, double value) {
     if (!function.normalized) return function.opacityAt(value) > 0;
-    // As defaultRange().
-    if (!range && type != "uint8") return false;
-    const glm::dvec2 ends = range.value_or(glm::dvec2(0, 255));
-    return function.opacityAt((value - ends.x) / (ends.y - ends.x)) > 0;
+    const std::optional<glm::dvec2> ends = range ? range : rangeOfType(type);
+    return ends && function.opacityAt((value - ends->x) / (ends->y - ends->x)) > 0;
 }
 
 }  // namespace deltasplat

@@ -14,6 +14,7 @@
 #include "deltasplat/optics/default_ramp.h"
 #include "ingest/codes/code_statistics.h"
 #include "optics/color_curve.h"
+#include "optics/type_range.h"
 #include "optics/way_between.h"
 #include "portable_math.h"
 
@@ -157,7 +158,7 @@ TransferFunction wholeRamp(const Volume&, const glm::dvec2& range) {
 }
 
 glm::dvec2 defaultRange(const Volume& volume) {
-    if (volume.type == "uint8") return {0, 255};
+    if (const auto all = rangeOfType(volume.type)) return *all;
     glm::dvec2 range(volume.valueMin, volume.valueMax);
     if (volume.hasBackground) {
         range = {std::min(range.x, volume.background), std::max(range.y, volume.background)};
