@@ -19,7 +19,7 @@
 #include "delta/stream_writer.h"
 #include "deltasplat/error.h"
 #include "ingest/codes/code_tree.h"
-#include "ingest/delta/decode_leaves.h"
+#include "ingest/delta/decode_blocks.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/word_grid.h"
 #include "ingest/grids/scalar_grids.h"
@@ -183,7 +183,7 @@ std::optional<DeltaEstimate> estimateFrom(const Volume& volume, int sliceAxis) {
     estimate.deltaBytes = scaledBytes(
         *voxels.deltas, 1 / share, share == 1 ? nodeBytes(voxels.deltas->constBaseTree()) : nodes);
     estimate.readsFromLeaves =
-        mayDecodeLeaves(voxels.header) && volume.gridClass != "level set";  // made fog first
+        mayDecodeBlocks(voxels.header) && volume.gridClass != "level set";  // made fog first
     options.pack = true;
     estimate.packedBytes = packedBytes(takeDeltas(*sample, options), share);
     return estimate;

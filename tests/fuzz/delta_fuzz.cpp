@@ -176,13 +176,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         while (!input.empty()) fuzz::damageVoxels(input, deltas.tree());
     });
     const std::string path = fuzz::fileWith(".vdb", nullptr, 0);
-    try {
-        openvdb::io::File(path).write({grid});
-    } catch (const openvdb::Exception&) {
-        return 0;  // OpenVDB itself writes no such file
+    // As a whole grid, and straight from the file.
+    for (const bool keepSource : {true, false}) {
+        try {
+            openvdb::io::File(path).write({grid});
+        } catch (const openvdb::Exception&) {
+            return 0;  // OpenVDB itself writes no such file
+        }
+        ReadOptions options;
+        options.keepSource = keepSource;
+        fuzz::readAndCheck(path, options);
     }
-    ReadOptions options;
-    options.keepSource = true;
-    fuzz::readAndCheck(path, options);
     return 0;
 }

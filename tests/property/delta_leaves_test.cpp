@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A delta grid that is read straight from its file's leaves is the volume that it is as a whole
-// OpenVDB grid, shows the same pictures, and is refused with the same words.
+// A delta grid that is read straight from its file's leaves, as voxels or packed, is the volume
+// that it is as a whole OpenVDB grid, shows the same pictures, and is refused with the same words.
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -46,11 +47,15 @@ const SlotBlocks* blocksOf(const Volume& volume) {
     return volume.codes->blocksAlong(volume.origin->sliceAxis);
 }
 
+// How deltas lie in a file.
+constexpr std::array kPacked{false, true};
+
 // Writes a volume's deltas, and returns what is read of them.
-Volume throughDeltas(const Volume& volume, int sliceAxis, int keyInterval) {
+Volume throughDeltas(const Volume& volume, int sliceAxis, int keyInterval, bool pack) {
     DeltaFileOptions options;
     options.sliceAxis = sliceAxis;
     options.keyInterval = keyInterval;
+    options.pack = pack;
     DeltaFile file;
     file.add(volume, options);
     file.write(kDeltas);
@@ -165,9 +170,11 @@ void expectSameOfRandom(unsigned seed, const Value& value, const std::string& co
     ReadOptions reading;
     reading.keepSource = true;
     const Volume source = readVolume("source.vdb", reading);
-    const Volume quick = throughDeltas(source, int(seed % 3), int(8 * (1 + seed % 5)));
-    ASSERT_EQ(quick.origin->codeBook, codeBook);
-    expectSameAsWhole(quick);
+    for (const bool pack : kPacked) {
+        const Volume quick = throughDeltas(source, int(seed % 3), int(8 * (1 + seed % 5)), pack);
+        ASSERT_EQ(quick.origin->codeBook, codeBook);
+        expectSameAsWhole(quick);
+    }
 }
 
 TEST(DeltaLeaves, HalfGrids) {
@@ -224,7 +231,8 @@ TEST(DeltaLeaves, VolumesWithoutEmptyPlaces) {
             ReadOptions reading;
             reading.keepSource = true;
             const Volume source = readVolume(writeDense(++seed, dims), reading);
-            expectSameAsWhole(throughDeltas(source, axis, seed % 2 ? 8 : 24));
+            for (const bool pack : kPacked)
+                expectSameAsWhole(throughDeltas(source, axis, seed % 2 ? 8 : 24, pack));
         }
     }
 }
@@ -240,7 +248,7 @@ TEST(DeltaLeaves, PicturesAreTheSame) {
     options.optics.transferFunction.opacities = {{5, 0, 0.5, 0}, {30, 0.3, 0.5, 0}};
     for (int axis = 0; axis < 3; ++axis) {
         SCOPED_TRACE(axis);
-        throughDeltas(source, axis, 16);
+        throughDeltas(source, axis, 16, axis == 1);
         const Volume whole = readWhole(kDeltas);
         for (const char* view : {"front", "left", "top", "iso"}) {
             options.camera.view = view;
@@ -266,7 +274,7 @@ TEST(DeltaLeaves, PicturesThatNeedTheTreeAreTheSame) {
     const TempFolder folder;
     ReadOptions reading;
     reading.keepSource = true;
-    throughDeltas(readVolume(writeDense(6, {43, 29, 50}), reading), 2, 16);
+    throughDeltas(readVolume(writeDense(6, {43, 29, 50}), reading), 2, 16, true);
     const Volume whole = readWhole(kDeltas);
     RenderOptions options;
     options.camera.sizePixels = {60, 50};
@@ -286,16 +294,13 @@ TEST(DeltaLeaves, PicturesThatNeedTheTreeAreTheSame) {
                 render(whole, options).image.rgba);
 }
 
-// What the file is not packed by, or what it holds besides, is read as well or left to OpenVDB.
-TEST(DeltaLeaves, OtherWritersFiles) {
-    const TempFolder folder;
-    ReadOptions reading;
-    reading.keepSource = true;
-    throughDeltas(readVolume(writeDense(8, {43, 29, 50}), reading), 0, 16);
+// Writes the deltas of kDeltas anew, as another program might, and compares what is read of them.
+template <typename Grid>
+void expectSameOfOtherWriters() {
     const Volume whole = readWhole(kDeltas);
     openvdb::io::File input(kDeltas);
     input.open();
-    const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid(whole.name));
+    const auto grid = openvdb::gridPtrCast<Grid>(input.readGrid(whole.name));
     // Inactive deltas mean nothing.
     int changed = 0;
     for (auto leaf = grid->tree().beginLeaf(); leaf; ++leaf) {
@@ -320,6 +325,36 @@ TEST(DeltaLeaves, OtherWritersFiles) {
     }
 }
 
+// What the file is not packed by, or what it holds besides, is read as well or left to OpenVDB.
+TEST(DeltaLeaves, OtherWritersFiles) {
+    const TempFolder folder;
+    ReadOptions reading;
+    reading.keepSource = true;
+    const Volume source = readVolume(writeDense(8, {43, 29, 50}), reading);
+    throughDeltas(source, 0, 16, false);
+    expectSameOfOtherWriters<openvdb::Int32Grid>();
+    throughDeltas(source, 0, 16, true);
+    expectSameOfOtherWriters<openvdb::Int64Grid>();
+}
+
+// Words of several leaves, and of several nodes' worth of leaves read at once.
+TEST(DeltaLeaves, StreamsOfManyLeaves) {
+    const TempFolder folder;
+    std::mt19937 random(12);
+    std::string voxels;
+    for (int i = 0; i < 100 * 90 * 80; ++i) voxels += char(random());
+    testing::writeBytes("noise_100x90x80_uint8.raw", voxels);
+    ReadOptions reading;
+    reading.keepSource = true;
+    const Volume quick =
+        throughDeltas(readVolume("noise_100x90x80_uint8.raw", reading), 1, 16, true);
+    openvdb::io::File input(kDeltas);
+    input.open();
+    const auto words = openvdb::gridPtrCast<openvdb::Int64Grid>(input.readGrid(quick.name));
+    EXPECT_GT(words->tree().leafCount(), 150u);
+    expectSameAsWhole(quick);
+}
+
 TEST(DeltaLeaves, EmptyVolumes) {
     const TempFolder folder;
     openvdb::initialize();
@@ -328,9 +363,11 @@ TEST(DeltaLeaves, EmptyVolumes) {
     openvdb::io::File("source.vdb").write({grid});
     ReadOptions reading;
     reading.keepSource = true;
-    const Volume quick = throughDeltas(readVolume("source.vdb", reading), 1, 8);
-    EXPECT_TRUE(quick.empty());
-    expectSameOfDeltas(quick, readWhole(kDeltas));
+    for (const bool pack : kPacked) {
+        const Volume quick = throughDeltas(readVolume("source.vdb", reading), 1, 8, pack);
+        EXPECT_TRUE(quick.empty());
+        expectSameOfDeltas(quick, readWhole(kDeltas));
+    }
 }
 
 // Returns the message, or what was read in short.
@@ -358,41 +395,46 @@ std::string outcomeOf(const std::function<Volume()>& read) {
     }
 }
 
+void expectSameRefusals(bool isDense, bool pack) {
+    SCOPED_TRACE(std::string(isDense ? "dense" : "sparse") + (pack ? ", packed" : ""));
+    const TempFolder folder;
+    openvdb::initialize();
+    ReadOptions reading;
+    reading.keepSource = true;
+    std::mt19937 random(isDense ? 3 : 4);
+    std::string name = "source.vdb";
+    if (isDense) {
+        name = writeDense(9, {20, 14, 24});
+    } else {
+        const auto grid =
+            randomGrid<openvdb::Int32Grid>(random, [&] { return int(random() % 300); });
+        openvdb::io::File(name).write({grid});
+    }
+    const Volume quick = throughDeltas(readVolume(name, reading), 2, pack ? 24 : 8, pack);
+    ASSERT_NE(blocksOf(quick), nullptr);
+    const std::string bytes = testing::readBytes(kDeltas);
+    int refused = 0;
+    // Of several things that are wrong, one thread finds the same first.
+    const ThreadLimit one(1);
+    for (int i = 0; i < 400; ++i) {
+        std::string damaged = bytes;
+        // Half of them in the masks, which come last but for the values.
+        const std::size_t from = i % 2 ? bytes.size() / 2 : 0;
+        for (int n = 0; n < 1 + i % 3; ++n)
+            damaged[from + random() % (bytes.size() - from)] ^= char(1 << random() % 8);
+        testing::writeBytes("damaged.vdb", damaged);
+        const std::string whole = outcomeOf([] { return readWhole("damaged.vdb"); });
+        EXPECT_EQ(outcomeOf([] { return readVolume("damaged.vdb"); }), whole) << i;
+        refused += whole.find("damaged.vdb") != std::string::npos ? 1 : 0;
+    }
+    EXPECT_GT(refused, 20);
+    EXPECT_LT(refused, 400);
+}
+
 // Bytes of a file changed at random: both ways of reading say the same.
 TEST(DeltaLeaves, DamagedFilesAreRefusedWithTheSameWords) {
     for (const bool isDense : {true, false}) {
-        const TempFolder folder;
-        openvdb::initialize();
-        ReadOptions reading;
-        reading.keepSource = true;
-        std::mt19937 random(isDense ? 3 : 4);
-        std::string name = "source.vdb";
-        if (isDense) {
-            name = writeDense(9, {20, 14, 24});
-        } else {
-            const auto grid =
-                randomGrid<openvdb::Int32Grid>(random, [&] { return int(random() % 300); });
-            openvdb::io::File(name).write({grid});
-        }
-        const Volume quick = throughDeltas(readVolume(name, reading), 2, 8);
-        ASSERT_NE(blocksOf(quick), nullptr);
-        const std::string bytes = testing::readBytes(kDeltas);
-        int refused = 0;
-        // Of several things that are wrong, one thread finds the same first.
-        const ThreadLimit one(1);
-        for (int i = 0; i < 400; ++i) {
-            std::string damaged = bytes;
-            // Half of them in the masks, which come last but for the values.
-            const std::size_t from = i % 2 ? bytes.size() / 2 : 0;
-            for (int n = 0; n < 1 + i % 3; ++n)
-                damaged[from + random() % (bytes.size() - from)] ^= char(1 << random() % 8);
-            testing::writeBytes("damaged.vdb", damaged);
-            const std::string whole = outcomeOf([] { return readWhole("damaged.vdb"); });
-            EXPECT_EQ(outcomeOf([] { return readVolume("damaged.vdb"); }), whole) << i;
-            refused += whole.find("damaged.vdb") != std::string::npos ? 1 : 0;
-        }
-        EXPECT_GT(refused, 20);
-        EXPECT_LT(refused, 400);
+        for (const bool pack : kPacked) expectSameRefusals(isDense, pack);
     }
 }
 

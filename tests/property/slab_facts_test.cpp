@@ -22,6 +22,7 @@
 #include "file_mark.h"
 #include "ingest/vdb/leaf_sizes.h"
 #include "ingest/vdb/vdb_bytes.h"
+#include "ingest/vdb/vdb_file.h"
 #include "support/small_joined.h"
 #include "support/some_scene.h"
 #include "unit/ingest_helpers.h"
@@ -36,7 +37,7 @@ const std::string kFacts = "facts.json";
 const Notes kOptions = {{"--view", "front"}};
 
 // Writes the deltas of a ball of noise, or of noise everywhere.
-void writeDeltas(int sliceAxis, int keyInterval, bool isBall = true) {
+void writeDeltas(int sliceAxis, int keyInterval, bool isBall = true, bool pack = false) {
     const glm::ivec3 dims(48, 40, 128);
     std::mt19937 random(5);
     std::string voxels;
@@ -56,6 +57,7 @@ void writeDeltas(int sliceAxis, int keyInterval, bool isBall = true) {
     DeltaFileOptions options;
     options.sliceAxis = sliceAxis;
     options.keyInterval = keyInterval;
+    options.pack = pack;
     DeltaFile file;
     file.add(readVolume(name, reading), options);
     file.write(kDeltas);
@@ -173,19 +175,34 @@ std::uint64_t bytesRead() {
 
 TEST(SlabFacts, PartsReadNoMoreThanTheyShow) {
     if (!std::filesystem::exists("/proc/self/io")) GTEST_SKIP() << "not told by this system";
-    const TempFolder folder;
-    writeDeltas(2, 16, false);
-    const double size = double(std::filesystem::file_size(kDeltas));
-    SplatOptions options;
-    options.between = 0;
-    writeFacts(options, cameraOf("front"));
-    std::uint64_t before = bytesRead();
-    readVolume(kDeltas);
-    EXPECT_GT(double(bytesRead() - before), size);
-    for (int i = 1; i <= 8; ++i) {
-        before = bytesRead();
-        ASSERT_TRUE(readPart({i, i, 8}));
-        EXPECT_LT(double(bytesRead() - before), 0.6 * size) << i;
+    for (const bool pack : {false, true}) {
+        const TempFolder folder;
+        writeDeltas(2, 16, false, pack);
+        const double size = double(std::filesystem::file_size(kDeltas));
+        SplatOptions options;
+        options.between = 0;
+        writeFacts(options, cameraOf("front"));
+        std::uint64_t before = bytesRead();
+        readVolume(kDeltas);
+        EXPECT_GT(double(bytesRead() - before), size);
+        for (int i = 1; i <= 8; ++i) {
+            before = bytesRead();
+            ASSERT_TRUE(readPart({i, i, 8}));
+            EXPECT_LT(double(bytesRead() - before), 0.6 * size) << i;
+        }
+    }
+}
+
+// Likewise of deltas that are packed to a stream.
+TEST(SlabFacts, PartsOfPackedDeltasMakeThePicture) {
+    for (const int keyInterval : {8, 24, 128}) {
+        const TempFolder folder;
+        writeDeltas(2, keyInterval, true, true);
+        const CameraOptions camera = cameraOf("front", 13);
+        const Image expected = wholePicture({}, camera);
+        writeFacts({}, camera);
+        for (const int count : {1, 3, 11})
+            EXPECT_TRUE(foldedPicture({}, camera, count).rgba == expected.rgba);
     }
 }
 
@@ -309,6 +326,26 @@ TEST(SlabFacts, NotesOfLeavesAreNoLongerThanTheirLeavesAllow) {
     // One byte that says to be a chunk of Blosc's.
     raw[4] = 1;
     EXPECT_FALSE(leafSizesOf(raw, 2, {}));
+}
+
+// OpenVDB packs arrays of 48 to 127 bytes as if they had 128.
+TEST(SlabFacts, NotesOfAnyNumberOfLeavesAreRead) {
+    const TempFolder folder;
+    openvdb::initialize();
+    for (const int leaves : {1, 2, 6, 15, 16, 47, 48, 49, 66, 127, 128, 129, 300}) {
+        SCOPED_TRACE(leaves);
+        const auto grid = openvdb::Int32Grid::create(0);
+        for (int i = 0; i < leaves; ++i) {
+            for (int n = 0; n <= i % 40; ++n)
+                grid->tree().setValueOn(openvdb::Coord(8 * i, n % 8, n / 8), n * i);
+        }
+        openvdb::io::File("leaves.vdb").write({grid});
+        const VdbFile file("leaves.vdb");
+        const auto found = file.readLeaves(file.grids().front(), true);
+        ASSERT_TRUE(found);
+        EXPECT_EQ(found->leaves().size(), std::size_t(leaves));
+        EXPECT_TRUE(found->areSound());
+    }
 }
 
 // Nothing but the parts can be made of some slices.

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <optional>
 #include <random>
 #include <span>
 #include <utility>
@@ -16,6 +17,7 @@
 
 #include "delta/block_kernels.h"
 #include "ingest/codes/code_counts.h"
+#include "ingest/delta/leaf_kernels.h"
 #include "ingest/raw/raw_kernels.h"
 #include "support/simd_levels.h"
 
@@ -163,6 +165,61 @@ TEST(CodeCounts, addUpBeyond32Bits) {
     EXPECT_EQ(sums[2], 3 * (std::uint64_t{1} << 40));
     EXPECT_EQ(sums[65535], 6u);
     EXPECT_EQ(sums.size(), std::size_t(kCodeCount));
+}
+
+template <typename T>
+void changesWhereverTheyAre() {
+    for (std::size_t n = 0; n < 64; ++n) {
+        std::array<T, 64> deltas{};
+        EXPECT_EQ(changedOf(deltas.data()), 0u);
+        deltas[n] = std::numeric_limits<T>::min();
+        deltas[63 - n] = 1;
+        EXPECT_EQ(changedOf(deltas.data()), std::uint64_t{1} << n | std::uint64_t{1} << (63 - n));
+    }
+}
+
+TEST(LeafKernels, changedOf) {
+    test::atEveryLevel([] {
+        changesWhereverTheyAre<std::int32_t>();
+        changesWhereverTheyAre<std::int64_t>();
+    });
+}
+
+// Returns what a slot is shown as, or nothing if the rules do not allow it.
+std::optional<ShortSlot> shownAs(std::uint32_t slot, const SlotRules& rules) {
+    if (slot == 0) return rules.rest;
+    if (slot >= rules.lowest && slot <= rules.highest) return ShortSlot(slot);
+    const bool isInactive =
+        slot >= rules.firstInactive && slot < rules.firstInactive + rules.inactiveCount;
+    return isInactive ? std::optional<ShortSlot>(0) : std::nullopt;
+}
+
+TEST(LeafKernels, shortenSlots) {
+    const SlotRules values{1, 300, 65537, 0, 0};
+    const SlotRules resting{1, 65534, 65537, 0, 9};
+    const SlotRules halves{1025, 64512, 65537, 0, 0};
+    const SlotRules inactive{1, 300, 65537, 4, 0};
+    test::atEveryLevel([&] {
+        for (const SlotRules& rules : {values, resting, halves, inactive}) {
+            const std::uint32_t usual = rules.highest - 5;
+            for (const std::uint32_t odd :
+                 {0u, 1u, 299u, 300u, 301u, 1024u, 1025u, 64512u, 64513u, 65534u, 65535u, 65536u,
+                  65537u, 65540u, 65541u, 0x7fffffffu, 0x80000000u, 0xffffffffu}) {
+                for (std::size_t n = 0; n < 64; n += 7) {
+                    std::array<std::uint32_t, 64> slots;
+                    slots.fill(usual);
+                    slots[n] = odd;
+                    std::array<ShortSlot, 64> out{};
+                    const auto expected = shownAs(odd, rules);
+                    ASSERT_EQ(shortenSlots(slots.data(), rules, out.data()), expected.has_value())
+                        << odd;
+                    if (!expected) continue;
+                    for (std::size_t i = 0; i < 64; ++i)
+                        ASSERT_EQ(out[i], i == n ? *expected : ShortSlot(usual)) << odd;
+                }
+            }
+        }
+    });
 }
 
 }  // namespace

@@ -19,7 +19,11 @@
 #include "delta/rice_writer.h"
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "ingest/delta/delta_format.h"
+#include "ingest/delta/rice_code.h"
+#include "ingest/delta/stream_index.h"
 #include "ingest/delta/word_grid.h"
+#include "ingest/vdb/vdb_file.h"
 #include "support/error_of.h"
 #include "unit/ingest_helpers.h"
 
@@ -79,6 +83,15 @@ void expectRiceComesBack(int width) {
         std::vector<std::uint64_t> words = out.words();
         BitReader in = readerOf(words);
         for (const Number number : numbers) ASSERT_EQ(code.take(in, parameter), number);
+        const std::size_t end = in.position();
+        for (const std::size_t count : {numbers.size(), std::size_t{1}, std::size_t{63}}) {
+            in = readerOf(words);
+            std::vector<Number> taken(numbers.size());
+            for (std::size_t i = 0; i < taken.size(); i += count)
+                code.takeSome(in, parameter, std::min(count, taken.size() - i), &taken[i]);
+            ASSERT_EQ(taken, numbers);
+            ASSERT_EQ(in.position(), end);
+        }
     }
 }
 
@@ -88,6 +101,33 @@ TEST(BitStream, RiceCodesComeBack) {
     expectRiceComesBack<std::uint32_t>(18);
     expectRiceComesBack<std::uint32_t>(32);
     expectRiceComesBack<std::uint64_t>(64);
+}
+
+// Whatever bits there are, several numbers at once are those that are taken one by one.
+TEST(BitStream, SomeNumbersAreThoseThatAreTakenOneByOne) {
+    std::mt19937_64 random(7);
+    std::vector<std::uint64_t> words(300);
+    for (std::uint64_t& word : words) word = random();
+    // Few zeros, and few ones.
+    for (std::size_t i = 0; i < 100; ++i) words[i] |= random() | random();
+    for (std::size_t i = 100; i < 200; ++i) words[i] &= random() & random();
+    for (const int width : {2, 10, 32, 64}) {
+        const RiceCode code{width};
+        for (int parameter = 0; parameter < 1 << code.parameterBits(); ++parameter) {
+            for (int i = 0; i < 200; ++i) {
+                const std::size_t begin = random() % (150 * 64);
+                const std::size_t count = random() % 65;
+                BitReader some(words.data(), begin);
+                BitReader single(words.data(), begin);
+                std::vector<std::uint64_t> taken(count + 1, 77);
+                code.takeSome(some, parameter, count, taken.data());
+                for (std::size_t n = 0; n < count; ++n)
+                    ASSERT_EQ(taken[n], code.take(single, parameter));
+                ASSERT_EQ(some.position(), single.position());
+                ASSERT_EQ(taken.back(), 77u);
+            }
+        }
+    }
 }
 
 // The parameter that is chosen takes as many bits as it says, and no other takes fewer.
@@ -151,6 +191,54 @@ TEST(WordGrid, TilesOfEqualWordsAreWords) {
     openvdb::tools::prune(grid->tree());
     EXPECT_EQ(grid->tree().leafCount(), 1u);
     EXPECT_EQ(wordsOfGrid(*grid, 0, "words"), words);
+}
+
+// Returns the leaves of a grid of words, and writes it to a file for that.
+VdbLeaves leavesOf(const openvdb::Int64Grid::Ptr& grid) {
+    grid->setName("words");
+    openvdb::io::File("words.vdb").write({grid});
+    const VdbFile file("words.vdb");
+    return file.readLeaves(file.grids().front(), false).value();
+}
+
+TEST(WordGrid, WordsComeBackFromAFile) {
+    const TempFolder folder;
+    std::mt19937_64 random(5);
+    for (const std::size_t count : {0, 1, 511, 512, 513, 512 * 300 + 7}) {
+        SCOPED_TRACE(count);
+        std::vector<std::uint64_t> words(count);
+        for (std::uint64_t& word : words) word = random();
+        const VdbLeaves leaves = leavesOf(gridOfWords(words));
+        EXPECT_EQ(countWords(leaves), count);
+        for (int i = 0; i < 20; ++i) {
+            const std::size_t end = i == 0 ? count : random() % (count + 1);
+            const std::size_t begin = i == 0 ? 0 : random() % (end + 1);
+            std::vector<std::uint64_t> expected(words.begin() + std::ptrdiff_t(begin),
+                                                words.begin() + std::ptrdiff_t(end));
+            expected.resize(end - begin + 3);
+            EXPECT_EQ(wordsOfLeaves(leaves, begin, end, 3, "words"), expected);
+        }
+    }
+}
+
+TEST(WordGrid, LeavesThatAreNoGridOfWords) {
+    const TempFolder folder;
+    const auto read = [](const std::function<void(openvdb::Int64Grid&)>& change) {
+        std::vector<std::uint64_t> words(1500);
+        for (std::size_t i = 0; i < words.size(); ++i) words[i] = i;
+        const auto grid = gridOfWords(words);
+        change(*grid);
+        const VdbLeaves leaves = leavesOf(grid);
+        const auto count = countWords(leaves);
+        return count && wordsOfLeaves(leaves, 0, *count, 0, "words").has_value();
+    };
+    EXPECT_TRUE(read([](openvdb::Int64Grid&) {}));
+    // A gap within the first leaf, and at the end of one; a leaf in another place.
+    EXPECT_FALSE(read([](auto& grid) { grid.tree().setValueOff(Coord(0, 0, 2)); }));
+    EXPECT_FALSE(read([](auto& grid) { grid.tree().setValueOff(Coord(7, 7, 15)); }));
+    EXPECT_FALSE(read([](auto& grid) { grid.tree().setValueOn(Coord(64, 0, 0), 1); }));
+    EXPECT_FALSE(read([](auto& grid) { grid.tree().touchLeaf(Coord(0, 0, 24)); }));
+    EXPECT_FALSE(read([](auto& grid) { grid.tree().addTile(1, Coord(0, 0, 0), 0, false); }));
 }
 
 using Damage = std::function<void(openvdb::MetaMap& metadata, std::vector<std::uint64_t>& words)>;
@@ -316,6 +404,47 @@ TEST(DeltaStreamError, GapsBetweenWords) {
                 "a: got a gap in its words in or behind number 512; expected 1499, one behind the "
                 "other",
                 [&] { wordsOfGrid(*grid, 0, "a"); });
+}
+
+// Where the columns are is read from as many words as that takes.
+TEST(DeltaStream, TheIndexIsReadFromTheFirstWords) {
+    const TempFolder folder;
+    std::string voxels;
+    std::mt19937 random(3);
+    for (int i = 0; i < 64 * 64 * 16; ++i) voxels += char(random());
+    testing::writeBytes("a_64x64x16_uint8.raw", voxels);
+    DeltaFileOptions options;
+    options.sliceAxis = 2;
+    options.keyInterval = 8;
+    options.pack = true;
+    DeltaFile file;
+    file.add(readVolume("a_64x64x16_uint8.raw"), options);
+    file.write("a.vdb");
+    openvdb::io::File input("a.vdb");
+    input.open();
+    const auto grid = openvdb::gridPtrCast<openvdb::Int64Grid>(input.readGrid("a_64x64x16_uint8"));
+    const DeltaHeader header = takeDeltaHeader(*grid, "a");
+    const std::vector<std::uint64_t> words = wordsOfGrid(*grid, kStreamPadding, "a");
+    const std::size_t count = words.size() - kStreamPadding;
+    const auto whole = readStreamIndex(words.data(), count, count, header, "a");
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(whole->size(), 2u * 8 * 8);
+    bool isFound = false;
+    for (std::size_t some = 0; some <= 100; ++some) {
+        std::vector<std::uint64_t> first(words.begin(), words.begin() + std::ptrdiff_t(some));
+        first.resize(some + kStreamPadding);
+        const auto found = readStreamIndex(first.data(), some, count, header, "a");
+        EXPECT_TRUE(found || !isFound) << some;
+        isFound = found.has_value();
+        if (!found) continue;
+        ASSERT_EQ(found->size(), whole->size());
+        for (std::size_t i = 0; i < whole->size(); ++i) {
+            EXPECT_EQ((*found)[i].first, (*whole)[i].first);
+            EXPECT_EQ((*found)[i].begin, (*whole)[i].begin);
+            EXPECT_EQ((*found)[i].end, (*whole)[i].end);
+        }
+    }
+    EXPECT_TRUE(isFound);
 }
 
 }  // namespace

@@ -95,8 +95,8 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
                                 "units",
                                 numberText(command.file.tolerance.value)));
     deltas.addFlag("--pack", command.file.pack,
-                   "Store deltas as a stream of bits: fewer bytes, which take longer to\n"
-                   "read and in which other programs see nothing");
+                   "Store deltas as a stream of bits: about half of the bytes, in which\n"
+                   "other programs see nothing");
     addConversionOptions(app, "sizes, deltas, largest error, seconds", command.files,
                          command.frames);
     addInputOptions(app, command.read);

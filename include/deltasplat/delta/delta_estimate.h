@@ -12,8 +12,8 @@ struct DeltaEstimate {
     double plainBytes = 0;   ///< as an ordinary grid (writeVolume)
     double deltaBytes = 0;   ///< as a delta grid (DeltaFile)
     double packedBytes = 0;  ///< likewise, with DeltaFileOptions::pack
-    /// Whether the delta grid is read straight from its leaves, for pictures along its slices; one
-    /// that is packed never is.
+    /// Whether the delta grid, packed or not, is read straight from the file, block by block, for
+    /// pictures along its slices.
     bool readsFromLeaves = false;
     /// The share of the volume's blocks that was written to find out, above 0 to 1.
     double sampled = 1;

@@ -22,7 +22,7 @@ struct DeltaFileOptions {
     /// smaller file.
     bool codesOnly = false;
     /// Writes deltas as a stream of bits in place of voxels: fewer bytes, of which other programs
-    /// see nothing, and which are not read straight from the file.
+    /// see nothing.
     bool pack = false;
     /// The largest error that is let through, in data units; empty: any.
     std::optional<double> maxError;

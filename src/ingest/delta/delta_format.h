@@ -48,6 +48,8 @@ struct DeltaHeader {
     std::string bookName() const;
     std::uint64_t deltas() const;  ///< of all slabs together
     bool hasZigzag() const { return version >= 3; }
+    /// Whether deltas take 64 bits.
+    bool isWide() const { return exact && *exact != ExactValues::kFloat32; }
     /// Whether the grid's voxels are words of a stream (delta_stream.h) in place of deltas.
     bool isPacked() const { return version == kPackedVersion; }
     bool leavesOutUsual() const { return version >= 5; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "ingest/delta/zigzag.h"
 #include "simd_targets.h"
@@ -35,8 +36,50 @@ void addDeltasKernel(std::uint64_t word, const std::int32_t* HWY_RESTRICT deltas
         slots[std::countr_zero(word)] += std::uint32_t(fromZigzag(*deltas++));
 }
 
+template <typename T>
+HWY_INLINE std::uint64_t changedOfSlice(const T* HWY_RESTRICT deltas) {
+    const hn::CappedTag<T, 64 / sizeof(T)> tag;
+    std::uint64_t changed = 0;
+    for (std::size_t n = 0; n < 64; n += hn::Lanes(tag)) {
+        std::uint8_t bits[8] = {};
+        const auto isChanged = hn::Ne(hn::LoadU(tag, deltas + n), hn::Zero(tag));
+        hn::StoreMaskBits(tag, isChanged, bits);
+        std::uint64_t some = 0;
+        std::memcpy(&some, bits, sizeof some);
+        changed |= some << n;
+    }
+    return changed;
+}
+
+std::uint64_t changedOfKernel(const std::int32_t* deltas) {
+    return changedOfSlice(deltas);
+}
+
+std::uint64_t changedOfWideKernel(const std::int64_t* deltas) {
+    return changedOfSlice(deltas);
+}
+
+// Of slots that all have values up to the highest.
+HWY_INLINE bool shortenValues(const std::uint32_t* HWY_RESTRICT slots, const SlotRules& rules,
+                              ShortSlot* HWY_RESTRICT out) {
+    const hn::CappedTag<std::uint32_t, 16> tag;
+    const hn::RebindToSigned<decltype(tag)> signedTag;
+    const hn::Rebind<ShortSlot, decltype(tag)> shortTag;
+    const auto highest = hn::Set(tag, rules.highest);
+    const auto rest = hn::Set(tag, std::uint32_t{rules.rest});
+    auto most = hn::Zero(tag);
+    for (std::size_t n = 0; n < 64; n += hn::Lanes(tag)) {
+        const auto slot = hn::LoadU(tag, slots + n);
+        most = hn::Max(most, slot);
+        const auto shown = hn::IfThenElse(hn::Eq(slot, hn::Zero(tag)), rest, slot);
+        hn::StoreU(hn::DemoteTo(shortTag, hn::BitCast(signedTag, shown)), shortTag, out + n);
+    }
+    return hn::AllTrue(tag, hn::Eq(hn::Max(most, highest), highest));
+}
+
 bool shortenSlotsKernel(const std::uint32_t* HWY_RESTRICT slots, const SlotRules& rules,
                         ShortSlot* HWY_RESTRICT out) {
+    if (rules.lowest == 1 && rules.inactiveCount == 0) return shortenValues(slots, rules, out);
     const hn::CappedTag<std::uint32_t, 16> tag;
     const hn::RebindToSigned<decltype(tag)> signedTag;
     const hn::Rebind<ShortSlot, decltype(tag)> shortTag;
@@ -91,11 +134,21 @@ HWY_AFTER_NAMESPACE();
 namespace deltasplat {
 
 HWY_EXPORT(addDeltasKernel);
+HWY_EXPORT(changedOfKernel);
+HWY_EXPORT(changedOfWideKernel);
 HWY_EXPORT(shortenSlotsKernel);
 HWY_EXPORT(rangeOfKernel);
 
 void addDeltas(std::uint64_t word, const std::int32_t* deltas, std::uint32_t* slots) {
     HWY_DYNAMIC_DISPATCH(addDeltasKernel)(word, deltas, slots);
+}
+
+std::uint64_t changedOf(const std::int32_t* deltas) {
+    return HWY_DYNAMIC_DISPATCH(changedOfKernel)(deltas);
+}
+
+std::uint64_t changedOf(const std::int64_t* deltas) {
+    return HWY_DYNAMIC_DISPATCH(changedOfWideKernel)(deltas);
 }
 
 bool shortenSlots(const std::uint32_t* slots, const SlotRules& rules, ShortSlot* out) {

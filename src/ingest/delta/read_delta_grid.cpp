@@ -14,11 +14,13 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/slot.h"
 #include "ingest/codes/code_statistics.h"
+#include "ingest/delta/decode_blocks.h"
 #include "ingest/delta/decode_deltas.h"
-#include "ingest/delta/decode_leaves.h"
 #include "ingest/delta/delta_stream.h"
+#include "ingest/delta/leaf_columns.h"
 #include "ingest/delta/read_exact_deltas.h"
 #include "ingest/delta/restored_grid.h"
+#include "ingest/delta/stream_columns.h"
 #include "ingest/grids/grid_codes.h"
 #include "ingest/grids/grid_from_codes.h"
 #include "ingest/grids/grid_volume.h"
@@ -27,6 +29,7 @@
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "listener_part.h"
+#include "memory.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -78,8 +81,7 @@ Volume describe(const DeltaHeader& header, const openvdb::MetaMap& metadata,
 // The grid has the type that its code book asks for, or of packed deltas that of words.
 void requireType(const openvdb::GridBase& grid, const DeltaHeader& header,
                  const std::string& where) {
-    const bool isWide = header.exact && *header.exact != ExactValues::kFloat32;
-    const std::string expected = isWide || header.isPacked() ? "int64" : "int32";
+    const std::string expected = header.isWide() || header.isPacked() ? "int64" : "int32";
     if (grid.valueType() == expected) return;
     fail(where, "deltas of type " + grid.valueType(),
          expected + " for " +
@@ -99,13 +101,31 @@ void fillVolume(const DeltaHeader& header, std::shared_ptr<const CodeTree> codes
     summarize(volume);
 }
 
-// Returns the first and the last of the slices that wanted ones add up from.
-std::optional<glm::ivec2> slicesToRead(const DeltaHeader& header, const SlicesWanted* wanted) {
+// Returns the first and the last of the blocks of slices that wanted ones add up from.
+std::optional<glm::ivec2> blocksToRead(const DeltaHeader& header, const SlicesWanted* wanted) {
     if (!wanted) return std::nullopt;
     const int first = toSliceOrder(header.box.min, header.sliceAxis).x >> 3;
     const int last = toSliceOrder(header.box.max, header.sliceAxis).x >> 3;
     const glm::ivec2 blocks = glm::clamp(wanted->blocks, first, last);
-    return glm::ivec2(8 * slabStart(header, blocks.x), 8 * blocks.y + 7);
+    return glm::ivec2(slabStart(header, blocks.x), blocks.y);
+}
+
+// Reads what of a delta grid is wanted, which stays packed.
+// @param leaves  of all the grid; outlives what is returned
+// @return null if it has to be read as a whole
+std::unique_ptr<const DeltaColumns> columnsOf(VdbLeaves& leaves, const DeltaHeader& header,
+                                              const SlicesWanted* wanted,
+                                              const std::string& where) {
+    const std::optional<glm::ivec2> blocks = blocksToRead(header, wanted);
+    if (header.isPacked()) {
+        auto stream = StreamColumns::read(leaves, header, blocks, where);
+        if (!stream) return nullptr;
+        return std::make_unique<StreamColumns>(std::move(*stream));
+    }
+    if (blocks) leaves.keep(8 * blocks->x, 8 * blocks->y + 7);
+    requireMemory(where, double(leaves.bytes()));
+    leaves.hold();
+    return std::make_unique<LeafColumns>(leaves);
 }
 
 // What is said of a whole volume may come from anywhere.
@@ -159,22 +179,26 @@ Volume readDeltaGrid(openvdb::GridBase& stored, const openvdb::MetaMap::ConstPtr
     return volume;
 }
 
-std::optional<Volume> readDeltaLeaves(const VdbFile& file, const VdbGrid& grid,
+std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
                                       const std::string& where, const ReadOptions& options,
                                       const Listener& listener, const SlicesWanted* wanted) {
-    if (options.keepSource || grid.type != "int32") return std::nullopt;
-    std::optional<VdbLeaves> leaves;
+    if (options.keepSource || (grid.type != "int32" && grid.type != "int64")) return std::nullopt;
     DeltaHeader header;
+    std::optional<VdbLeaves> leaves;
+    std::unique_ptr<const DeltaColumns> columns;
     Volume volume;
     try {
         const openvdb::MetaMap::ConstPtr metadata = file.metadata(grid);
         if (!isDeltaGrid(grid.type, *metadata)) return std::nullopt;
         header = takeDeltaHeader(*metadata, where);
         const bool becomesFog = options.levelSetToFog && sourceClass(*metadata) == "level set";
-        if (!mayDecodeLeaves(header) || becomesFog) return std::nullopt;
+        if (!mayDecodeBlocks(header) || becomesFog) return std::nullopt;
+        if ((grid.type == "int64") != header.isPacked()) return std::nullopt;
         if (wanted && !mayBeBoxOf(header, wanted->box)) return std::nullopt;
-        leaves = file.readLeaves(grid, slicesToRead(header, wanted));
+        leaves = file.readLeaves(grid, wanted != nullptr);
         if (!leaves) return std::nullopt;
+        columns = columnsOf(*leaves, header, wanted, where);
+        if (!columns) return std::nullopt;
         worldFromIndexOf(leaves->transform(), where);
         volume = describe(header, *metadata, leaves->transform());
     } catch (const Error& error) {
@@ -183,7 +207,7 @@ std::optional<Volume> readDeltaLeaves(const VdbFile& file, const VdbGrid& grid,
         return std::nullopt;
     }
     const std::optional<glm::ivec2> blocks = wanted ? std::optional(wanted->blocks) : std::nullopt;
-    std::optional<DecodedLeaves> decoded = decodeLeaves(*leaves, header, where, blocks, listener);
+    std::optional<DecodedBlocks> decoded = decodeBlocks(*columns, header, where, blocks, listener);
     if (!decoded) return std::nullopt;
     if (wanted) {
         decoded->blocks->setFacts(wanted->facts);

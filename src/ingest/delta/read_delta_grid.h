@@ -21,12 +21,12 @@ Volume readDeltaGrid(openvdb::GridBase& grid, const openvdb::MetaMap::ConstPtr& 
                      const Listener& listener);
 
 /// Reads a delta grid of a file as a volume whose codes are blocks along its slices: the same
-/// volume, without an OpenVDB grid, where nothing of what is asked for needs one (decodeLeaves).
-/// @param wanted  some slices: then no more of the file is read than the slabs that hold them, up
-///                to the last of them. Null: all.
+/// volume, without an OpenVDB grid, where nothing of what is asked for needs one (decodeBlocks).
+/// @param wanted  some slices: then no more of the file is read than where deltas lie and the slabs
+///                that hold these slices, of voxels up to the last of them. Null: all.
 /// @return nothing where it is another grid, is not sound, or is asked for otherwise
-/// @throw as decodeLeaves
-std::optional<Volume> readDeltaLeaves(const VdbFile& file, const VdbGrid& grid,
+/// @throw as decodeBlocks
+std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
                                       const std::string& where, const ReadOptions& options,
                                       const Listener& listener,
                                       const SlicesWanted* wanted = nullptr);

@@ -2,12 +2,16 @@
 #include "ingest/delta/word_grid.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <memory>
+#include <span>
 
 #include "deltasplat/error.h"
+#include "ingest/delta/bit_reader.h"
 #include "ingest/grids/leaf_bytes.h"
 #include "memory.h"
+#include "parallel.h"
 
 namespace deltasplat {
 namespace {
@@ -21,6 +25,34 @@ bool holdsFirst(const Leaf& leaf, std::size_t count) {
     return leaf.onVoxelCount() == count &&
            (count == kLeafWords || leaf.getValueMask().findFirstOff() == count);
 }
+bool holdsFirst(const VdbLeaves::Mask& mask, std::size_t count) {
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+        const std::size_t bits = count < 64 * i ? 0 : std::min<std::size_t>(64, count - 64 * i);
+        if (mask[i] != BitReader::lowBits(int(bits))) return false;
+    }
+    return true;
+}
+
+// Takes the words of leaves from a file.
+class LeafWords {
+  public:
+    // @param end  one behind the last leaf that is going to be asked for
+    LeafWords(const VdbLeaves& leaves, std::size_t end) : leaves_(leaves) { room_.end = end; }
+
+    // Returns those of a leaf, until the next; nothing if it has gaps, or is another's place.
+    std::optional<std::span<const std::int64_t>> of(std::size_t i) {
+        const VdbLeaf& leaf = leaves_.leaves()[i];
+        if (openvdb::Coord(leaf.origin.data()) != wordLeafOrigin(i)) return std::nullopt;
+        VdbLeaves::Mask mask;
+        const auto words = leaves_.activeValues(leaf, mask, room_);
+        if (!words || words->empty() || !holdsFirst(mask, words->size())) return std::nullopt;
+        return words;
+    }
+
+  private:
+    const VdbLeaves& leaves_;
+    VdbLeaves::Room<std::int64_t> room_;
+};
 
 }  // namespace
 
@@ -67,6 +99,46 @@ std::vector<std::uint64_t> wordsOfGrid(const openvdb::Int64Grid& grid, std::size
                             std::to_string(count) + ", one behind the other"));
         }
     }
+    return words;
+}
+
+std::optional<std::size_t> countWords(const VdbLeaves& leaves) {
+    if (leaves.leaves().empty()) return 0;
+    const std::size_t last = leaves.leaves().size() - 1;
+    LeafWords leafWords(leaves, last + 1);
+    const auto words = leafWords.of(last);
+    if (!words) return std::nullopt;
+    return last * kLeafWords + words->size();
+}
+
+std::optional<std::vector<std::uint64_t>> wordsOfLeaves(const VdbLeaves& leaves, std::size_t begin,
+                                                        std::size_t end, std::size_t padding,
+                                                        const std::string& where) {
+    requireMemory(where, double(end - begin + padding) * sizeof(std::uint64_t));
+    std::vector<std::uint64_t> words(end - begin + padding);
+    if (begin == end) return words;
+    constexpr std::size_t kLeaves = VdbLeaves::kRun;
+    const std::size_t firstLeaf = begin / kLeafWords;
+    const std::size_t lastLeaf = (end - 1) / kLeafWords;
+    std::atomic<bool> areWhole = true;
+    parallelFor(lastLeaf / kLeaves - firstLeaf / kLeaves + 1, [&](std::size_t part) {
+        const std::size_t firstOfPart = (firstLeaf / kLeaves + part) * kLeaves;
+        const std::size_t endOfPart = std::min(lastLeaf + 1, firstOfPart + kLeaves);
+        LeafWords leafWords(leaves, endOfPart);
+        for (std::size_t leaf = std::max(firstLeaf, firstOfPart); leaf < endOfPart; ++leaf) {
+            const std::size_t place = leaf * kLeafWords;
+            const std::size_t from = std::max(begin, place);
+            const std::size_t to = std::min(end, place + kLeafWords);
+            const auto some = leafWords.of(leaf);
+            if (!some || some->size() < to - place) {
+                areWhole = false;
+                return;
+            }
+            std::memcpy(&words[from - begin], &(*some)[from - place],
+                        (to - from) * sizeof words[0]);
+        }
+    });
+    if (!areWhole) return std::nullopt;
     return words;
 }
 

@@ -5,8 +5,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "ingest/vdb/vdb_leaves.h"
 
 namespace deltasplat {
 
@@ -21,5 +24,14 @@ openvdb::Int64Grid::Ptr gridOfWords(const std::vector<std::uint64_t>& words);
 /// @throw Error(kInput) if there is a gap between them; Error(kFailed) if memory does not hold them
 std::vector<std::uint64_t> wordsOfGrid(const openvdb::Int64Grid& grid, std::size_t padding,
                                        const std::string& where);
+
+/// Returns how many words a file's leaves of int64 have; nothing if these are no grid of words.
+std::optional<std::size_t> countWords(const VdbLeaves& leaves);
+/// Returns the words [begin, end) of such leaves, with `padding` zeros behind them. Multi-threaded.
+/// @return nothing if there is a gap between them
+/// @throw Error(kFailed) if memory does not hold them
+std::optional<std::vector<std::uint64_t>> wordsOfLeaves(const VdbLeaves& leaves, std::size_t begin,
+                                                        std::size_t end, std::size_t padding,
+                                                        const std::string& where);
 
 }  // namespace deltasplat

@@ -2,6 +2,7 @@
 // Based on: the OpenVDB file format, as OpenVDB 10 reads it (io/DelayedLoadMetadata.h).
 #include "ingest/vdb/leaf_sizes.h"
 
+#include <algorithm>
 #include <cstring>
 #include <span>
 
@@ -10,9 +11,12 @@
 namespace deltasplat {
 namespace {
 
+// OpenVDB packs no less than this: shorter arrays have zeros behind them.
+constexpr std::size_t kLeastPacked = 128;
+
 // Takes an array from `place` on as OpenVDB writes one: how many bytes it is packed in, 0 if it is
 // not, and those. Moves `place` behind it; returns whether it is there.
-// @param values  of `bytes`, and room for unpacking
+// @param values  of `bytes`, or kLeastPacked if that is more, and room for unpacking
 bool takeArray(const std::string& stored, std::size_t bytes, std::span<char> values,
                std::uint64_t& place) {
     std::uint32_t packed = 0;
@@ -23,7 +27,7 @@ bool takeArray(const std::string& stored, std::size_t bytes, std::span<char> val
     if (stored.size() - place < size) return false;
     const std::span<const char> data(stored.data() + place, size);
     place += size;
-    if (packed > 0) return unpackBlosc(data, values, bytes);
+    if (packed > 0) return unpackBlosc(data, values, std::max(bytes, kLeastPacked));
     std::memcpy(values.data(), data.data(), size);
     return true;
 }
@@ -40,7 +44,7 @@ std::optional<std::vector<std::uint64_t>> leafSizesOf(const std::string& stored,
     std::uint64_t place = sizeof count;
     const auto take = [&](auto& values) {
         const std::size_t bytes = leaves * sizeof values[0];
-        values.resize(leaves + kUnpackBytes / sizeof values[0]);
+        values.resize((std::max(bytes, kLeastPacked) + kUnpackBytes) / sizeof values[0]);
         const bool isThere = takeArray(
             stored, bytes,
             {reinterpret_cast<char*>(values.data()), values.size() * sizeof values[0]}, place);

@@ -22,7 +22,7 @@ struct SlicesWanted {
     std::shared_ptr<const SlabFacts> facts;
 };
 
-/// Reads a grid of a .vdb file as readVolume chooses it, of a delta grid as readDeltaLeaves reads
+/// Reads a grid of a .vdb file as readVolume chooses it, of a delta grid as readDeltaBlocks reads
 /// it the slices alone that are wanted: all that is said of the volume is that of the whole.
 /// @return nothing if it is another grid, is not sound, or does not say where its leaves are
 /// @throw as readVolume

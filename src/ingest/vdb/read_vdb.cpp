@@ -177,7 +177,7 @@ Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string
         listener.report(told);
     };
     std::optional<Volume> volume;
-    if (!chosen.part) volume = readDeltaLeaves(file, grid, where, options, onward);
+    if (!chosen.part) volume = readDeltaBlocks(file, grid, where, options, onward);
     if (volume) settleEmpty(*volume, {listener, where, grid.valueType(), options});
     if (!volume && !chosen.part) volume = readGridLeaves(file, grid, where, options, onward);
     if (!volume) volume = readWholeGrid(file, chosen, where, options, onward);
@@ -251,7 +251,7 @@ std::optional<Volume> readVdbSlices(const std::filesystem::path& path, const Rea
     const ChosenGrid chosen = chooseGrids(path.string(), file, options.gridName, false).front();
     if (chosen.part) return std::nullopt;
     std::optional<Volume> volume =
-        readDeltaLeaves(file, *chosen.grid, whereOf(path, chosen), options, listener, &wanted);
+        readDeltaBlocks(file, *chosen.grid, whereOf(path, chosen), options, listener, &wanted);
     if (volume) volume->name = chosen.name();
     return volume;
 }

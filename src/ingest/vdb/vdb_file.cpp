@@ -31,6 +31,8 @@ namespace {
 // The first version that says for each grid how it is compressed, from 2013.
 constexpr std::uint32_t kOldestVersion = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
 constexpr std::uint64_t kUuidBytes = 36;
+// OpenVDB uses it for nothing, but refuses what is none.
+const std::string kAnyUuid = "00000000-0000-0000-0000-000000000000";
 
 constexpr std::array<const char*, 6> kScalarTypes{"float", "double", "int32",
                                                   "int64", "bool",   "mask"};
@@ -285,7 +287,8 @@ openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listen
 
     // A file of the same header with no metadata of its own and just the grids needed.
     VdbStreamBuf buffer(file_);
-    buffer.addRange(0, headerEnd_);
+    buffer.addRange(0, headerEnd_ - kUuidBytes);
+    buffer.addText(kAnyUuid);
     std::string counts;
     appendU32(counts, 0);
     appendU32(counts, std::uint32_t(needed.size()));
@@ -316,33 +319,25 @@ openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listen
     });
 }
 
-std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid,
-                                             const std::optional<glm::ivec2>& slices) const {
-    if (!grid.parentName.empty() || grid.type != "int32") return std::nullopt;
+std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid, bool mustBeNoted) const {
+    if (!grid.parentName.empty() || (grid.type != "int32" && grid.type != "int64"))
+        return std::nullopt;
     const std::string where = whereOf(grid);
     VdbBytes bytes(file_);
     const GridHead head = readHead(bytes, grid, file_);
     VdbTreePlaces places;
     walkTopology(bytes, head.format, places);
-    const std::uint64_t begin = bytes.position();
-    if (begin > grid.end) return std::nullopt;
+    if (bytes.position() > grid.end) return std::nullopt;
     if (!placeBySizes(bytes, head, grid.end, places.leaves, where)) {
-        if (slices) return std::nullopt;
+        if (mustBeNoted) return std::nullopt;
         walkLeaves(bytes, head.format, places.leaves);
         requireEnd(bytes, grid);
     }
     bytes.seek(places.background);
-    if (!places.tiles.empty() || bytes.u32() != 0) return std::nullopt;
-    if (slices) {
-        std::erase_if(places.leaves, [&](const VdbLeaf& leaf) {
-            return leaf.origin[0] > slices->y || leaf.origin[0] + 7 < slices->x;
-        });
-    }
-    VdbLeaves leaves(std::make_shared<const FileBytes>(file_), std::move(places.leaves),
+    const bool isZero = (head.format.bytes == 8 ? std::uint64_t(bytes.i64()) : bytes.u32()) == 0;
+    if (!places.tiles.empty() || !isZero) return std::nullopt;
+    return VdbLeaves(std::make_shared<const FileBytes>(file_), std::move(places.leaves),
                      head.format, head.map);
-    requireMemory(where, double(leaves.bytes()));
-    leaves.hold();
-    return leaves;
 }
 
 std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <glm/vec2.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,14 +65,13 @@ class VdbFile {
     /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if it does not fit
     ///        into memory, whatever the listener throws
     openvdb::GridBase::Ptr read(const VdbGrid& grid, const Listener& listener) const;
-    /// Returns the packed leaves of a grid of int32 with background 0, unless there are active
-    /// tiles beside them, or the grid shares its voxels with another.
-    /// @param slices  which leaves are wanted: those with voxels whose x is within [x, y]. The
-    ///                values of others are not read, if the file says how long they are
-    ///                (OpenVDB's "file_delayed_load"). None: all.
-    /// @throw Error(kInput) as read()
-    std::optional<VdbLeaves> readLeaves(const VdbGrid& grid,
-                                        const std::optional<glm::ivec2>& slices = {}) const;
+    /// Finds the leaves of a grid of int32 or int64 with background 0, unless there are active
+    /// tiles beside them, or the grid shares its voxels with another. Their values are read when
+    /// they are unpacked.
+    /// @param mustBeNoted  return nothing where the file does not note where leaves lie (OpenVDB's
+    ///                     "file_delayed_load"): finding them takes walking over all of them then
+    /// @throw as read()
+    std::optional<VdbLeaves> readLeaves(const VdbGrid& grid, bool mustBeNoted) const;
 
     /// How to find where leaves lie: by what the file notes of their sizes (OpenVDB's
     /// "file_delayed_load"), if it does, or by walking over all of them. Notes may be wrong: then

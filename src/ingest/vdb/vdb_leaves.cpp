@@ -58,6 +58,12 @@ std::uint64_t VdbLeaves::bytes() const {
     return sum;
 }
 
+void VdbLeaves::keep(int first, int last) {
+    std::erase_if(leaves_, [&](const VdbLeaf& leaf) {
+        return leaf.origin[0] > last || leaf.origin[0] + 7 < first;
+    });
+}
+
 void VdbLeaves::hold() {
     for (std::size_t i = 0; i < leaves_.size();) {
         const std::uint64_t begin = leaves_[i].begin;
@@ -69,12 +75,12 @@ void VdbLeaves::hold() {
 }
 
 // Reads a leaf, and those that are asked for next.
-bool VdbLeaves::readRun(const VdbLeaf& leaf, VdbRun& run) const {
-    constexpr std::size_t kLeaves = 128;
+// @param behind  the first leaf that is not going to be
+bool VdbLeaves::readRun(const VdbLeaf& leaf, VdbRun& run, std::size_t behind) const {
     // Sound leaves are far from it.
     constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 20;
     const auto first = std::size_t(&leaf - leaves_.data());
-    const std::size_t last = std::min(leaves_.size(), (first / kLeaves + 1) * kLeaves) - 1;
+    const std::size_t last = std::min({leaves_.size(), behind, (first / kRun + 1) * kRun}) - 1;
     std::uint64_t end = leaf.end();
     for (std::size_t i = first + 1; i <= last && leaves_[i].begin == end; ++i) {
         if (leaves_[i].end() - leaf.begin > kMostBytes) break;
@@ -83,9 +89,10 @@ bool VdbLeaves::readRun(const VdbLeaf& leaf, VdbRun& run) const {
     return run.read(*file_, leaf.begin, end);
 }
 
-std::optional<std::span<const char>> VdbLeaves::bytesOf(const VdbLeaf& leaf, VdbRun& room) const {
+std::optional<std::span<const char>> VdbLeaves::bytesOf(const VdbLeaf& leaf, VdbRun& room,
+                                                        std::size_t behind) const {
     if (held_.empty()) {
-        if (!room.has(leaf) && !readRun(leaf, room)) return std::nullopt;
+        if (!room.has(leaf) && !readRun(leaf, room, behind)) return std::nullopt;
         return room.of(leaf);
     }
     const VdbRun* run = &held_.back();
@@ -103,7 +110,7 @@ std::optional<std::span<const char>> VdbLeaves::bytesOf(const VdbLeaf& leaf, Vdb
 template <typename Stored>
 std::optional<std::span<const Stored>> VdbLeaves::activeValues(const VdbLeaf& leaf, Mask& mask,
                                                                Room<Stored>& room) const {
-    const auto bytes = bytesOf(leaf, room.run);
+    const auto bytes = bytesOf(leaf, room.run, room.end);
     if (!bytes) return std::nullopt;
     const auto packed = valuesOf(leaf, *bytes, format_, mask);
     if (!packed) return std::nullopt;
@@ -126,17 +133,16 @@ std::optional<std::span<const Stored>> VdbLeaves::activeValues(const VdbLeaf& le
 }
 
 bool VdbLeaves::areSound() const {
-    constexpr std::size_t kLeaves = 128;
     // Of a grid of vectors of doubles.
     constexpr std::size_t kMostBytes = 24 * std::size_t{kVoxels} + 64;
     std::atomic<bool> areSound = true;
-    parallelFor((leaves_.size() + kLeaves - 1) / kLeaves, [&](std::size_t part) {
+    parallelFor((leaves_.size() + kRun - 1) / kRun, [&](std::size_t part) {
         VdbRun run;
         std::vector<char> values(kMostBytes);
-        const std::size_t end = std::min(leaves_.size(), (part + 1) * kLeaves);
-        for (std::size_t i = part * kLeaves; i < end && areSound; ++i) {
+        const std::size_t end = std::min(leaves_.size(), (part + 1) * kRun);
+        for (std::size_t i = part * kRun; i < end && areSound; ++i) {
             Mask mask;
-            const auto bytes = bytesOf(leaves_[i], run);
+            const auto bytes = bytesOf(leaves_[i], run, end);
             const auto packed = bytes ? valuesOf(leaves_[i], *bytes, format_, mask) : std::nullopt;
             if (!packed || !unpack(*packed, format_, values)) areSound = false;
         }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,6 +44,8 @@ class VdbRun {
 class VdbLeaves {
   public:
     static constexpr int kVoxels = 512;
+    /// So many that follow each other are read at once, from each multiple of it on.
+    static constexpr std::size_t kRun = 128;
     using Mask = VdbLeaf::Mask;
 
     /// What a thread keeps from leaf to leaf.
@@ -51,6 +54,8 @@ class VdbLeaves {
         /// A leaf's values as they are stored, and what Blosc wants besides to unpack them.
         std::array<Stored, kVoxels + 64 / sizeof(Stored)> values;
         VdbRun run;
+        /// One behind the last leaf that is going to be asked for.
+        std::size_t end = std::numeric_limits<std::size_t>::max();
     };
 
     /// @param leaves  in the order of the file
@@ -60,6 +65,8 @@ class VdbLeaves {
     const std::vector<VdbLeaf>& leaves() const { return leaves_; }
     const openvdb::math::Transform& transform() const { return *transform_; }
     std::uint64_t bytes() const;
+    /// Leaves those out that have no voxels whose x is within [first, last]; leaves() changes.
+    void keep(int first, int last);
     /// Reads the bytes of all leaves, on all threads, for leaves that are wanted in another order
     /// than they have. Otherwise some at a time are read, when one of them is wanted.
     void hold();
@@ -76,8 +83,9 @@ class VdbLeaves {
                                                         Room<Stored>& room) const;
 
   private:
-    std::optional<std::span<const char>> bytesOf(const VdbLeaf& leaf, VdbRun& room) const;
-    bool readRun(const VdbLeaf& leaf, VdbRun& run) const;
+    std::optional<std::span<const char>> bytesOf(const VdbLeaf& leaf, VdbRun& room,
+                                                 std::size_t behind) const;
+    bool readRun(const VdbLeaf& leaf, VdbRun& run, std::size_t behind) const;
 
     std::shared_ptr<const FileBytes> file_;
     std::vector<VdbLeaf> leaves_;

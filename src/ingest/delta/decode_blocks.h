@@ -11,32 +11,32 @@
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/progress.h"
 #include "ingest/codes/slot_blocks.h"
+#include "ingest/delta/delta_columns.h"
 #include "ingest/delta/delta_format.h"
-#include "ingest/vdb/vdb_leaves.h"
 
 namespace deltasplat {
 
 /// What the deltas of a volume add up to, as blocks along the slices.
-struct DecodedLeaves {
+struct DecodedBlocks {
     std::shared_ptr<SlotBlocks> blocks;
     std::vector<std::uint64_t> histogram;  ///< as Volume::histogram
     IndexBox active;                       ///< of the active voxels, in the volume's index space
 };
 
-/// Whether decodeLeaves reads what most delta grids are: of 16-bit codes, of version 3, with less
-/// than 65536 codes in use, and without inactive values if what rests is active.
-bool mayDecodeLeaves(const DeltaHeader& header);
+/// Whether decodeBlocks reads what most delta grids are: of 16-bit codes, of versions from 3 on,
+/// with less than 65536 codes in use, and without inactive values if what rests is active.
+bool mayDecodeBlocks(const DeltaHeader& header);
 
-/// Adds up deltas along the slices straight from the leaves of a file: each is unpacked where it is
-/// added, and no trees are made of deltas or codes. Multi-threaded; deterministic.
-/// @param header  as mayDecodeLeaves says
-/// @param wanted  blocks of 8 slices, first and last, which `leaves` has all of from the first's
+/// Adds up deltas along the slices straight from a file: each block is unpacked where it is added,
+/// and no trees are made of deltas or codes. Multi-threaded; deterministic.
+/// @param header  as mayDecodeBlocks says
+/// @param wanted  blocks of 8 slices, first and last, which `deltas` has all of from the first's
 ///                slabStart() on; none: all. Of some, what is found is theirs, and less can be
 ///                checked.
 /// @return nothing where the grid is not sound, or has little in a large box that rests active:
 ///         decodeDeltas then reads it, or says what is wrong
 /// @throw Error(kFailed) if the codes do not fit into memory; whatever the listener throws
-std::optional<DecodedLeaves> decodeLeaves(const VdbLeaves& leaves, const DeltaHeader& header,
+std::optional<DecodedBlocks> decodeBlocks(const DeltaColumns& deltas, const DeltaHeader& header,
                                           const std::string& where,
                                           const std::optional<glm::ivec2>& wanted,
                                           const Listener& listener);

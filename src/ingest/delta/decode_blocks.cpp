@@ -1,42 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: "Accelerating Footprint Method Based on Comparability of Consecutive Image Slices",
 // equation 6, read backwards: a slice is the sum of all changes since the last key slice.
-#include "ingest/delta/decode_leaves.h"
+#include "ingest/delta/decode_blocks.h"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <glm/common.hpp>
 #include <iterator>
+#include <numeric>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include "deltasplat/threads.h"
+#include "ingest/codes/code_counts.h"
 #include "ingest/delta/leaf_kernels.h"
 #include "memory.h"
 #include "parallel.h"
-#include "parallel_sort.h"
 #include "shared_progress.h"
 
 namespace deltasplat {
 namespace {
-
-// A leaf, and its place in (slice, u, v) order divided by 8.
-struct PlacedLeaf {
-    glm::ivec3 block;
-    const VdbLeaf* leaf;
-};
-
-// Leaves of the same u and v, in the order of slices.
-struct Column {
-    glm::ivec2 place;  // u, v
-    const PlacedLeaf* begin;
-    const PlacedLeaf* end;
-};
 
 // What a grid's blocks have in common.
 struct Layout {
@@ -60,9 +46,13 @@ struct Layout {
     }
     bool startsSlab(int block) const { return (block - firstBlock.x) % blocksPerSlab == 0; }
     int slabs() const { return slabOf(lastBlock.x) + 1; }
-    bool hasBlock(const glm::ivec3& block) const {
-        return glm::all(glm::greaterThanEqual(block, firstBlock)) &&
-               glm::all(glm::lessThanEqual(block, lastBlock));
+    double columns() const {
+        const glm::dvec3 blocks = lastBlock - firstBlock + 1;
+        return blocks.y * blocks.z;
+    }
+    bool hasColumn(const glm::ivec2& place) const {
+        return glm::all(glm::greaterThanEqual(place, glm::ivec2(firstBlock.y, firstBlock.z))) &&
+               glm::all(glm::lessThanEqual(place, glm::ivec2(lastBlock.y, lastBlock.z)));
     }
     // The voxels of a slice of a block that are in the box, as a mask word.
     std::uint64_t insideOf(const glm::ivec2& place) const {
@@ -106,41 +96,45 @@ SlotRules rulesOf(const DeltaHeader& header) {
 // What one thread makes of some columns.
 class StripDecoder {
   public:
-    StripDecoder(const VdbLeaves& leaves, const DeltaHeader& header, const Layout& layout,
-                 const SlotRules& rules, const std::string& where)
-        : leaves_(leaves),
+    StripDecoder(std::unique_ptr<DeltaWalker> walker, const DeltaHeader& header,
+                 const Layout& layout, const SlotRules& rules, const std::string& where,
+                 CodeCounts& counts, std::size_t worker)
+        : walker_(std::move(walker)),
           header_(header),
           layout_(layout),
           where_(where),
           rules_(rules),
-          histogram_(kSlotCount),
+          counts_(counts),
+          worker_(worker),
           slabDeltas_(std::size_t(layout.slabs())) {}
 
     // Adds the blocks of a column; returns whether it is sound.
-    bool decode(const Column& column, std::vector<SlotBlock>& blocks) {
+    bool decode(const DeltaColumn& column, std::vector<SlotBlock>& blocks) {
         slots_.fill(0);
         inside_ = layout_.insideOf(column.place);
-        const PlacedLeaf* leaf = column.begin;
+        if (!walker_->start(column) || walker_->block() < layout_.readFirst) return false;
         bool isZero = true;
         for (int block = layout_.readFirst; block <= layout_.keptLast; ++block) {
             if (layout_.startsSlab(block) && !isZero) {
                 slots_.fill(0);
                 isZero = true;
             }
-            const bool changes = leaf != column.end && leaf->block.x == block;
+            const int next = walker_->block();
+            const bool changes = next == block;
             if (!changes && isZero && !header_.restActive) {
-                if (leaf == column.end) break;
-                block = leaf->block.x - 1;
+                if (next > layout_.keptLast) break;
+                block = next - 1;
                 continue;
             }
+            const BlockDeltas* const deltas = changes ? walker_->take() : nullptr;
+            if (changes && !deltas) return false;
             const glm::ivec3 position(block, column.place);
-            if (!decodeBlock(position, changes ? leaf++->leaf : nullptr, blocks)) return false;
+            if (!decodeBlock(position, deltas, blocks)) return false;
             isZero = changes ? isEmpty() : isZero;
         }
-        return true;
+        return walker_->block() == DeltaWalker::kNoBlock || !layout_.isWhole();
     }
 
-    std::span<const std::uint64_t> histogram() const { return histogram_; }
     std::span<const std::uint64_t> slabDeltas() const { return slabDeltas_; }
     const IndexBox& active() const { return active_; }
     std::vector<std::unique_ptr<ShortSlot[]>>& storage() { return storage_; }
@@ -152,19 +146,18 @@ class StripDecoder {
         return std::all_of(slots_.begin(), slots_.end(), [](std::uint32_t s) { return s == 0; });
     }
 
-    bool decodeBlock(const glm::ivec3& position, const VdbLeaf* leaf,
+    bool decodeBlock(const glm::ivec3& position, const BlockDeltas* deltas,
                      std::vector<SlotBlock>& blocks) {
         const bool isWhole = inside_ == ~std::uint64_t{0} && layout_.hasSlice(8 * position.x) &&
                              layout_.hasSlice(8 * position.x + 7);
-        if (!leaf && isWhole && isConstant()) {
+        if (!deltas && isWhole && isConstant()) {
             const ShortSlot slot = shown(slots_[0]);
             if (slot == 0 || position.x < layout_.keptFirst) return true;
             return addTile(position, slot, blocks);
         }
         ShortSlot* out = room();
-        VdbLeaves::Mask mask{};
-        if (leaf) {
-            if (!addLeaf(position, *leaf, mask, out)) return false;
+        if (deltas) {
+            if (!addBlock(position, *deltas, out)) return false;
         } else {
             for (int s = 0; s < 8; ++s)
                 if (!writeSlice(position, s, out + 64 * s)) return false;
@@ -176,7 +169,8 @@ class StripDecoder {
         if (range.lowest == range.highest && !range.hasEmpty) {
             return addTile(position, tile, blocks);
         }
-        count(mask, out);
+        counts_.add(worker_, std::span<const ShortSlot>(out, 512),
+                    range.hasEmpty ? kEmptySlot : range.lowest, range.highest);
         extend(position, out);
         const auto empty = range.hasEmpty ? std::count(out, out + 512, ShortSlot{0}) : 0;
         ++used_;
@@ -195,25 +189,21 @@ class StripDecoder {
         return slot < rules_.firstInactive ? ShortSlot(slot) : ShortSlot{0};
     }
 
-    // Adds a leaf's deltas, slice by slice.
-    // @param mask  becomes the leaf's
-    bool addLeaf(const glm::ivec3& position, const VdbLeaf& leaf, VdbLeaves::Mask& mask,
-                 ShortSlot* out) {
-        const auto deltas = leaves_.activeValues(leaf, mask, room_);
-        if (!deltas) return false;
+    // Adds a block's deltas, slice by slice.
+    bool addBlock(const glm::ivec3& position, const BlockDeltas& deltas, ShortSlot* out) {
+        std::uint64_t& count = slabDeltas_[std::size_t(layout_.slabOf(position.x))];
+        const std::int32_t* next = deltas.numbers;
         for (int s = 0; s < 8; ++s) {
-            const std::uint64_t word = mask[std::size_t(s)];
-            if (word != 0 && ((word & ~inside_) != 0 || !layout_.hasSlice(8 * position.x + s)))
+            const std::uint64_t changed = deltas.changed[std::size_t(s)];
+            if (changed != 0 &&
+                ((changed & ~inside_) != 0 || !layout_.hasSlice(8 * position.x + s)))
                 return false;
-        }
-        const std::int32_t* next = deltas->data();
-        for (int s = 0; s < 8; ++s) {
-            const std::uint64_t word = mask[std::size_t(s)];
-            addDeltas(word, next, slots_.data());
-            next += std::popcount(word);
+            const std::uint64_t given = deltas.given[std::size_t(s)];
+            addDeltas(given, next, slots_.data());
+            next += std::popcount(given);
+            count += std::uint64_t(std::popcount(changed));
             if (!writeSlice(position, s, out + 64 * s)) return false;
         }
-        slabDeltas_[std::size_t(layout_.slabOf(position.x))] += deltas->size();
         return true;
     }
 
@@ -240,7 +230,7 @@ class StripDecoder {
     }
 
     bool addTile(const glm::ivec3& position, ShortSlot slot, std::vector<SlotBlock>& blocks) {
-        histogram_[slot] += 512;
+        counts_.add(worker_, slot, 512);
         include(position, glm::ivec3(0), glm::ivec3(7));
         return add({position, nullptr, slot, Code(slot - 1), Code(slot - 1)}, 512, blocks);
     }
@@ -254,21 +244,6 @@ class StripDecoder {
         blocks.push_back(block);
         activeCount_ += active;
         return activeCount_ <= header_.active;
-    }
-
-    // Slices in which nothing changes count as the one before.
-    void count(const VdbLeaves::Mask& mask, const ShortSlot* out) {
-        for (int s = 0; s < 8;) {
-            int end = s + 1;
-            while (end < 8 && mask[std::size_t(end)] == 0 && !endsBox(end, out)) ++end;
-            const auto times = std::uint64_t(end - s);
-            for (int n = 0; n < 64; ++n) histogram_[out[64 * s + n]] += times;
-            s = end;
-        }
-    }
-    // Whether a slice differs from the one before though no delta says so.
-    static bool endsBox(int s, const ShortSlot* out) {
-        return std::memcmp(out + 64 * s, out + 64 * (s - 1), 64 * sizeof(ShortSlot)) != 0;
     }
 
     // Widens the box by a block's active voxels.
@@ -294,12 +269,13 @@ class StripDecoder {
                       : IndexBox{glm::min(active_.min, box.min), glm::max(active_.max, box.max)};
     }
 
-    const VdbLeaves& leaves_;
+    std::unique_ptr<DeltaWalker> walker_;
     const DeltaHeader& header_;
     const Layout& layout_;
     const std::string& where_;
     SlotRules rules_;
-    std::vector<std::uint64_t> histogram_;  // by slots
+    CodeCounts& counts_;  // of slots
+    std::size_t worker_;  // of them
     std::vector<std::uint64_t> slabDeltas_;
     IndexBox active_;  // in (slice, u, v) order
     std::uint64_t activeCount_ = 0;
@@ -309,50 +285,25 @@ class StripDecoder {
     // Of the column in hand.
     std::array<std::uint32_t, 64> slots_{};
     std::uint64_t inside_ = 0;
-    VdbLeaves::Room<std::int32_t> room_;
 };
 
-// Returns the leaves by u, v and slice; none if one lies outside of the box.
-std::optional<std::vector<PlacedLeaf>> placeLeaves(const VdbLeaves& leaves, const Layout& layout) {
-    std::vector<PlacedLeaf> placed;
-    placed.reserve(leaves.leaves().size());
-    for (const VdbLeaf& leaf : leaves.leaves()) {
-        const glm::ivec3 block(leaf.origin[0] >> 3, leaf.origin[1] >> 3, leaf.origin[2] >> 3);
-        if (!layout.hasBlock(block)) return std::nullopt;
-        placed.push_back({block, &leaf});
+// Returns all columns of the box, those without deltas too.
+std::vector<DeltaColumn> allColumns(const std::vector<DeltaColumn>& columns, const Layout& layout) {
+    std::vector<DeltaColumn> all;
+    auto next = columns.begin();
+    for (int u = layout.firstBlock.y; u <= layout.lastBlock.y; ++u) {
+        for (int v = layout.firstBlock.z; v <= layout.lastBlock.z; ++v) {
+            const bool isNext = next != columns.end() && next->place == glm::ivec2(u, v);
+            all.push_back(isNext ? *next++ : DeltaColumn{{u, v}});
+        }
     }
-    parallelSort(placed, [](const PlacedLeaf& a, const PlacedLeaf& b) {
-        return std::tie(a.block.y, a.block.z, a.block.x) <
-               std::tie(b.block.y, b.block.z, b.block.x);
-    });
-    return placed;
-}
-
-// Returns the columns that have leaves; all of the box where what rests is active.
-std::vector<Column> columnsOf(const std::vector<PlacedLeaf>& leaves, const Layout& layout,
-                              bool all) {
-    std::vector<Column> columns;
-    const PlacedLeaf* next = leaves.data();
-    const PlacedLeaf* const end = next + leaves.size();
-    const auto take = [&](const glm::ivec2& place) {
-        const PlacedLeaf* const begin = next;
-        while (next != end && next->block.y == place.x && next->block.z == place.y) ++next;
-        columns.push_back({place, begin, next});
-    };
-    if (!all) {
-        while (next != end) take({next->block.y, next->block.z});
-        return columns;
-    }
-    for (int u = layout.firstBlock.y; u <= layout.lastBlock.y; ++u)
-        for (int v = layout.firstBlock.z; v <= layout.lastBlock.z; ++v) take({u, v});
-    return columns;
+    return all;
 }
 
 // Of what rests active, all blocks of the box are listed.
-bool canListRest(const Layout& layout, std::size_t leaves) {
-    const glm::dvec3 blocks = layout.lastBlock - layout.firstBlock + 1;
+bool canListRest(const Layout& layout, std::size_t changed) {
     const double slices = layout.keptLast - layout.readFirst + 1;
-    return slices * blocks.y * blocks.z <= 16.0 * double(leaves) + 65536;
+    return slices * layout.columns() <= 16.0 * double(changed) + 65536;
 }
 
 IndexBox inVolume(const IndexBox& box, int sliceAxis) {
@@ -361,19 +312,19 @@ IndexBox inVolume(const IndexBox& box, int sliceAxis) {
 }
 
 // Puts together what the strips found; returns whether it is what the header says.
-bool collect(std::vector<StripDecoder>& strips, const DeltaHeader& header, const Layout& layout,
-             DecodedLeaves& decoded) {
-    decoded.histogram.assign(kCodeCount, 0);
+bool collect(std::vector<StripDecoder>& strips, CodeCounts& counts, const DeltaHeader& header,
+             const Layout& layout, DecodedBlocks& decoded) {
+    decoded.histogram = counts.take();
+    // Of codes, not of slots.
+    decoded.histogram.erase(decoded.histogram.begin());
+    decoded.histogram.push_back(0);
     std::vector<std::uint64_t> slabDeltas(header.slabDeltas.size());
     IndexBox active;
-    std::uint64_t count = 0;
+    const std::uint64_t count =
+        std::accumulate(decoded.histogram.begin(), decoded.histogram.end(), std::uint64_t{0});
     for (StripDecoder& strip : strips) {
         if (strip.slabDeltas().size() != slabDeltas.size()) return false;
         for (std::size_t i = 0; i < slabDeltas.size(); ++i) slabDeltas[i] += strip.slabDeltas()[i];
-        for (std::size_t code = 0; code < decoded.histogram.size(); ++code) {
-            decoded.histogram[code] += strip.histogram()[code + 1];
-            count += strip.histogram()[code + 1];
-        }
         if (!strip.active().empty()) {
             active = active.empty() ? strip.active()
                                     : IndexBox{glm::min(active.min, strip.active().min),
@@ -394,36 +345,38 @@ int slabStart(const DeltaHeader& header, int block) {
     return Layout(header, glm::ivec2(block)).readFirst;
 }
 
-bool mayDecodeLeaves(const DeltaHeader& header) {
-    return !header.exact && header.hasZigzag() && !header.isPacked() &&
-           header.codeCount < kCodeCount && !header.box.empty() &&
-           (!header.restActive || header.inactiveValues.empty());
+bool mayDecodeBlocks(const DeltaHeader& header) {
+    return !header.exact && header.hasZigzag() && header.codeCount < kCodeCount &&
+           !header.box.empty() && (!header.restActive || header.inactiveValues.empty());
 }
 
-std::optional<DecodedLeaves> decodeLeaves(const VdbLeaves& leaves, const DeltaHeader& header,
+std::optional<DecodedBlocks> decodeBlocks(const DeltaColumns& deltas, const DeltaHeader& header,
                                           const std::string& where,
                                           const std::optional<glm::ivec2>& wanted,
                                           const Listener& listener) {
     const Layout layout(header, wanted);
     if (layout.keptFirst > layout.keptLast) return std::nullopt;
     if (header.slabDeltas.size() != std::size_t(layout.slabs())) return std::nullopt;
-    if (header.restActive && !canListRest(layout, leaves.leaves().size())) return std::nullopt;
+    if (header.restActive && !canListRest(layout, deltas.blocks())) return std::nullopt;
     const SlotRules rules = rulesOf(header);
     if (rules.lowest > rules.highest) return std::nullopt;
-    const auto placed = placeLeaves(leaves, layout);
-    if (!placed) return std::nullopt;
-    const std::vector<Column> columns = columnsOf(*placed, layout, header.restActive);
-    // Nearly all leaves become blocks; how many more there are is seen on the way.
-    requireMemory(where, double(leaves.leaves().size()) * 512 * sizeof(ShortSlot));
+    for (const DeltaColumn& column : deltas.columns())
+        if (!layout.hasColumn(column.place)) return std::nullopt;
+    if (header.restActive) requireMemory(where, layout.columns() * sizeof(DeltaColumn));
+    const std::vector<DeltaColumn> columns =
+        header.restActive ? allColumns(deltas.columns(), layout) : deltas.columns();
+    // Nearly all of them become blocks; how many more there are is seen on the way.
+    requireMemory(where, double(deltas.blocks()) * 512 * sizeof(ShortSlot));
 
     // What a thread keeps is large: one for each, not for each piece of work.
     constexpr std::size_t kPiece = 8;  // columns
     const std::size_t pieces = (columns.size() + kPiece - 1) / kPiece;
     const std::size_t threads = std::min(std::size_t(std::max(1, threadCount())), pieces);
+    CodeCounts counts(std::max<std::size_t>(1, threads));
     std::vector<StripDecoder> strips;
     strips.reserve(threads);
     for (std::size_t i = 0; i < threads; ++i)
-        strips.emplace_back(leaves, header, layout, rules, where);
+        strips.emplace_back(deltas.walker(), header, layout, rules, where, counts, i);
     std::vector<std::vector<SlotBlock>> blocks(pieces);
     std::atomic<bool> isSound = true;
     std::atomic<std::size_t> next = 0;
@@ -437,8 +390,8 @@ std::optional<DecodedLeaves> decodeLeaves(const VdbLeaves& leaves, const DeltaHe
             progress.report(double(piece) / double(pieces));
         }
     });
-    DecodedLeaves decoded;
-    if (!isSound || !collect(strips, header, layout, decoded)) return std::nullopt;
+    DecodedBlocks decoded;
+    if (!isSound || !collect(strips, counts, header, layout, decoded)) return std::nullopt;
     std::size_t count = 0;
     for (const auto& some : blocks) count += some.size();
     requireMemory(where, double(count) * sizeof(SlotBlock));

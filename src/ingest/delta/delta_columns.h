@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace deltasplat {
+
+/// Deltas of a block of 8x8x8 voxels, as numbers without sign (zigzag.h).
+/// @tparam Number  of 32 or 64 bits
+template <typename Number>
+struct BlockDeltasOf {
+    std::array<std::uint64_t, 8> changed;  ///< by slice: bit 8 u + v of each voxel with a delta
+    /// Likewise those that have a number: others than `changed` have 0.
+    std::array<std::uint64_t, 8> given;
+    const Number* numbers = nullptr;  ///< of those given, by slice, u and v
+};
+using BlockDeltas = BlockDeltasOf<std::int32_t>;
+
+/// Blocks with the same u and v.
+struct DeltaColumn {
+    glm::ivec2 place{0};    ///< u and v, divided by 8
+    std::size_t begin = 0;  ///< of what it is made of: who has it knows what that is
+    std::size_t end = 0;
+};
+
+/// Goes over the blocks of a column that have deltas, in the order of slices.
+class DeltaWalker {
+  public:
+    static constexpr int kNoBlock = std::numeric_limits<int>::max();
+
+    virtual ~DeltaWalker() = default;
+    /// Goes to the first block; returns whether the column is sound so far.
+    virtual bool start(const DeltaColumn& column) = 0;
+    /// Returns the slice of the next block, divided by 8; kNoBlock behind the last.
+    virtual int block() const = 0;
+    /// Returns its deltas, until the next is taken, and goes on; null if they are damaged.
+    virtual const BlockDeltas* take() = 0;
+};
+
+/// The deltas of a volume as a file has them, packed.
+class DeltaColumns {
+  public:
+    virtual ~DeltaColumns() = default;
+    /// Those that have deltas, by u and v.
+    virtual const std::vector<DeltaColumn>& columns() const = 0;
+    /// How many blocks have deltas, at most.
+    virtual std::size_t blocks() const = 0;
+    /// Returns what one thread unpacks columns with. Thread-safe.
+    virtual std::unique_ptr<DeltaWalker> walker() const = 0;
+};
+
+}  // namespace deltasplat

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/delta/stream_columns.h"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "ingest/delta/column_order.h"
+#include "ingest/delta/part_walker.h"
+#include "ingest/delta/word_grid.h"
+#include "parallel.h"
+
+namespace deltasplat {
+namespace {
+
+class StreamWalker : public DeltaWalker {
+  public:
+    StreamWalker(const std::vector<std::uint64_t>& words, const std::vector<StreamPart>& parts,
+                 const DeltaHeader& header)
+        : parts_(parts), part_(words.data(), header) {}
+
+    bool start(const DeltaColumn& column) override {
+        next_ = column.begin;
+        end_ = column.end;
+        return goOn();
+    }
+    int block() const override { return isDone_ ? kNoBlock : part_.block(); }
+    const BlockDeltas* take() override {
+        const BlockDeltas* const deltas = part_.take();
+        if (deltas && part_.isDone() && !goOn()) return nullptr;
+        return deltas;
+    }
+
+  private:
+    // Goes to the next part; returns whether it is sound so far.
+    bool goOn() {
+        isDone_ = next_ == end_;
+        return isDone_ || part_.start(parts_[next_++]);
+    }
+
+    const std::vector<StreamPart>& parts_;
+    std::size_t next_ = 0;
+    std::size_t end_ = 0;
+    bool isDone_ = true;
+    PartWalker<std::int32_t> part_;
+};
+
+}  // namespace
+
+StreamColumns::StreamColumns(std::vector<std::uint64_t> words, std::vector<StreamPart> parts,
+                             const DeltaHeader& header)
+    : header_(&header), words_(std::move(words)), parts_(std::move(parts)) {
+    columns_ = orderByColumns(parts_, [](const StreamPart& part) { return part.first; });
+    std::atomic<std::size_t> blocks = 0;
+    parallelForChunks(parts_.size(), [&](std::size_t begin, std::size_t end) {
+        const PartWalker<std::int32_t> walker(words_.data(), header);
+        std::size_t some = 0;
+        for (std::size_t i = begin; i < end; ++i) some += walker.countBlocks(parts_[i]);
+        blocks += some;
+    });
+    blocks_ = blocks;
+}
+
+std::optional<StreamColumns> StreamColumns::read(const VdbLeaves& leaves, const DeltaHeader& header,
+                                                 const std::optional<glm::ivec2>& slices,
+                                                 const std::string& where) {
+    const std::optional<std::size_t> count = countWords(leaves);
+    if (!count) return std::nullopt;
+    constexpr std::size_t kFirstWords = 1024;
+    std::vector<StreamPart> parts;
+    std::vector<std::uint64_t> words;
+    for (std::size_t some = slices ? kFirstWords : *count;; some *= 4) {
+        some = std::min(some, *count);
+        auto begin = wordsOfLeaves(leaves, 0, some, kStreamPadding, where);
+        if (!begin) return std::nullopt;
+        words = std::move(*begin);
+        if (*count == 0) break;
+        auto found = readStreamIndex(words.data(), some, *count, header, where);
+        if (!found) continue;
+        parts = std::move(*found);
+        break;
+    }
+    if (slices) {
+        std::erase_if(parts, [&](const StreamPart& part) {
+            return part.first.x < slices->x || part.first.x > slices->y;
+        });
+        // Those of some slabs lie together.
+        const std::size_t begin = parts.empty() ? 0 : parts.front().begin;
+        const std::size_t end = parts.empty() ? 0 : parts.back().end;
+        auto wanted = wordsOfLeaves(leaves, begin, end, kStreamPadding, where);
+        if (!wanted) return std::nullopt;
+        words = std::move(*wanted);
+        for (StreamPart& part : parts) {
+            part.begin -= begin;
+            part.end -= begin;
+        }
+    }
+    return StreamColumns(std::move(words), std::move(parts), header);
+}
+
+std::unique_ptr<DeltaWalker> StreamColumns::walker() const {
+    return std::make_unique<StreamWalker>(words_, parts_, *header_);
+}
+
+}  // namespace deltasplat
