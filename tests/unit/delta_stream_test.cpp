@@ -18,7 +18,9 @@
 #include "delta/bit_writer.h"
 #include "delta/rice_writer.h"
 #include "deltasplat/delta/delta_file.h"
+#include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "deltasplat/memory_limit.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/rice_code.h"
 #include "ingest/delta/stream_index.h"
@@ -395,6 +397,35 @@ TEST(DeltaStreamError, BlocksThatAreNone) {
     };
     EXPECT_EQ(refusalOf(column(0, 0, 0, 3, one(3))), damaged("(8, 0, 0)"));
     EXPECT_EQ(refusalOf(column(0, 0, 0, 2, one(1))), damaged("(0, 0, 0)"));
+}
+
+// Nothing is filled before it shows that it cannot be all.
+TEST(DeltaStreamError, ABoxThatIsLargerThanItsVoxels) {
+    const auto widened = [](openvdb::MetaMap& metadata, std::vector<std::uint64_t>&) {
+        metadata.insertMeta("delta_box_max", openvdb::Vec3IMetadata({1 << 20, 8, 11}));
+    };
+    EXPECT_EQ(refusalOf(widened), kWhere +
+                                      "got 113246316 active voxels; expected 2160, as "
+                                      "\"delta_active\" says");
+}
+
+// Words that are in the file are sound, however little memory there is; those of tiles need not be.
+TEST(DeltaStreamError, MoreThanMemoryHolds) {
+    const auto codeOf = [](const openvdb::Int64Grid& grid) {
+        setMemoryLimit(1);
+        std::optional<ErrorCode> code;
+        try {
+            wordsOfGrid(grid, 0, "a");
+        } catch (const Error& error) {
+            code = error.code();
+        }
+        setMemoryLimit(0);
+        return code;
+    };
+    auto grid = gridOfWords(std::vector<std::uint64_t>(1500, 7));
+    EXPECT_EQ(codeOf(*grid), ErrorCode::kFailed);
+    openvdb::tools::prune(grid->tree());
+    EXPECT_EQ(codeOf(*grid), ErrorCode::kInput);
 }
 
 TEST(DeltaStreamError, GapsBetweenWords) {

@@ -276,7 +276,11 @@ TEST(ReadDeltaError, AnotherBackground) {
 // A box that claims more than there is does not make the reader ask for memory.
 TEST(ReadDeltaError, BoxesThatMemoryCannotHold) {
     const TempFolder folder;
-    writeDamagedBytes(with<openvdb::Vec3i>("delta_box_max", {1 << 20, 1 << 20, 11}));
+    writeDamagedBytes([](openvdb::Int32Grid& grid) {
+        constexpr std::int64_t kSide = (1 << 20) + 1;
+        with<openvdb::Vec3i>("delta_box_max", {kSide - 1, kSide - 1, 11})(grid);
+        with<std::int64_t>("delta_active", kSide * kSide * 12)(grid);
+    });
     expectError(ErrorCode::kInput, "", [] {
         try {
             readVolume("a.vdb");

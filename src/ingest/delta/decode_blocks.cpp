@@ -357,6 +357,8 @@ std::optional<DecodedBlocks> decodeBlocks(const DeltaColumns& deltas, const Delt
     const Layout layout(header, wanted);
     if (layout.keptFirst > layout.keptLast) return std::nullopt;
     if (header.slabDeltas.size() != std::size_t(layout.slabs())) return std::nullopt;
+    if (header.restActive && std::uint64_t(header.box.voxels()) != header.active)
+        return std::nullopt;
     if (header.restActive && !canListRest(layout, deltas.blocks())) return std::nullopt;
     const SlotRules rules = rulesOf(header);
     if (rules.lowest > rules.highest) return std::nullopt;

@@ -14,6 +14,7 @@
 #include "deltasplat/error.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/delta/exact_slots.h"
+#include "ingest/delta/restored_grid.h"
 #include "ingest/delta/zigzag.h"
 #include "ingest/grids/leaf_bytes.h"
 #include "ingest/values/value_cast.h"
@@ -397,6 +398,9 @@ void decode(typename Words::DeltaGrid& grid, const DeltaHeader& header, const Wo
     const auto leaves = orderedLeaves(grid.tree(), decoder);
     checkSlabs(leaves, decoder, header, where);
 
+    // Without empty places all voxels of the box are active, before any of them takes memory.
+    if (header.restActive && header.inactiveValues.empty())
+        requireActiveCount(std::uint64_t(header.box.voxels()), header, where);
     if (header.restActive && !header.box.empty()) fillRest(header, words.rest(), where, values);
     const std::vector<std::size_t> columns = columnsOf(leaves, decoder);
     Collector<Words> collector(header, words, where, values, inactive);

@@ -77,7 +77,6 @@ Unpacker::Leaves<Leaf> Unpacker::takePart(const StreamPart& part) const {
     if (!walker.start(part)) damaged();
     Leaves<Leaf> leaves;
     while (!walker.isDone()) {
-        requireMemory(where_, leafBytes<Leaf>());
         const openvdb::Coord origin(8 * walker.block(), 8 * part.first.y, 8 * part.first.z);
         const auto* const deltas = walker.take();
         if (!deltas) damaged();
@@ -91,6 +90,10 @@ template <typename Grid>
 openvdb::GridBase::Ptr Unpacker::takeDeltas(const Listener& listener) const {
     using Leaf = typename Grid::TreeType::LeafNodeType;
     const std::vector<StreamPart> parts = this->parts();
+    std::size_t blocks = 0;
+    const PartWalker<typename Leaf::ValueType> walker(words_.data(), header_);
+    for (const StreamPart& part : parts) blocks += walker.countBlocks(part);
+    requireMemory(where_, double(blocks) * leafBytes<Leaf>());
     auto grid = Grid::create(0);
     openvdb::tree::ValueAccessor<typename Grid::TreeType> accessor(grid->tree());
     // In portions, so that what is in no tree yet is little.

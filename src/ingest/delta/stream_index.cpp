@@ -72,7 +72,7 @@ std::optional<std::vector<StreamPart>> IndexReader::read() {
     const std::uint64_t number = in_.takeNumber();
     requireBits();
     if (number > count_) failTooMany(number);
-    requireClaimedMemory(where_, double(number) * sizeof(StreamPart));
+    requireMemory(where_, double(number) * sizeof(StreamPart));
     std::vector<StreamPart> parts;
     parts.reserve(std::size_t(number));
     constexpr std::uint64_t kMostNumber = std::uint64_t{1} << 62;

@@ -79,7 +79,9 @@ openvdb::Int64Grid::Ptr gridOfWords(const std::vector<std::uint64_t>& words) {
 std::vector<std::uint64_t> wordsOfGrid(const openvdb::Int64Grid& grid, std::size_t padding,
                                        const std::string& where) {
     const auto count = std::size_t(grid.activeVoxelCount());
-    requireClaimedMemory(where, double(count) * sizeof(std::uint64_t));
+    // Words of tiles are no more than a number in the file.
+    const auto require = grid.tree().hasActiveTiles() ? requireClaimedMemory : requireMemory;
+    require(where, double(count) * sizeof(std::uint64_t));
     std::vector<std::uint64_t> words(count + padding);
     const auto accessor = grid.getConstAccessor();
     for (std::size_t begin = 0; begin < count; begin += kLeafWords) {
