@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <string>
 
 #include "deltasplat/error.h"
 #include "number_text.h"
@@ -13,16 +14,18 @@ namespace deltasplat {
 
 void requireInvertible(const glm::dmat4& worldFromIndex) {
     const glm::dmat3 linear(worldFromIndex);
-    const double edges = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+    const glm::dvec3 edges(glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2]));
+    const double box = edges.x * edges.y * edges.z;
     const double volume = std::abs(glm::determinant(linear));
     const glm::dvec3 origin(worldFromIndex[3]);
 
     // Relative to the edges, so that neither tiny nor huge voxels are taken for flat ones.
-    const bool finite = std::isfinite(edges) && std::isfinite(volume) &&
+    const bool finite = std::isfinite(box) && std::isfinite(volume) &&
                         std::isfinite(origin.x + origin.y + origin.z);
-    if (finite && volume > 1e-12 * edges) return;
+    if (finite && volume > 1e-12 * box) return;
+    const std::string size = finite && volume > 0 ? " and edges of " + numberText(edges) : "";
     throw Error(ErrorCode::kInput,
-                gotExpected("worldFromIndex", "voxels of volume " + numberText(volume),
+                gotExpected("worldFromIndex", "voxels of volume " + numberText(volume) + size,
                             "a finite transform that can be inverted"));
 }
 

@@ -703,6 +703,11 @@ TEST(Camera, refusesAFlatWorld) {
     EXPECT_EQ(messageOf([](CameraOptions&) {}, ErrorCode::kInput, flat),
               "worldFromIndex: got voxels of volume 0; expected a finite transform that can be "
               "inverted");
+    // Of a volume like any other's, but flat beside their edges.
+    flat[2] = {1e100, 0, 1, 0};
+    EXPECT_EQ(messageOf([](CameraOptions&) {}, ErrorCode::kInput, flat),
+              "worldFromIndex: got voxels of volume 1 and edges of 1,1,1e+100; expected a finite "
+              "transform that can be inverted");
 }
 
 }  // namespace
