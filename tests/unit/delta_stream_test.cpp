@@ -243,6 +243,21 @@ TEST(WordGrid, LeavesThatAreNoGridOfWords) {
     EXPECT_FALSE(read([](auto& grid) { grid.tree().addTile(1, Coord(0, 0, 0), 0, false); }));
 }
 
+// Writes packed deltas of a volume, sliced along z, with a key slice every 8, and returns their
+// grid of words.
+openvdb::Int64Grid::Ptr packedGrid(const std::string& source, const std::string& output) {
+    DeltaFileOptions options;
+    options.sliceAxis = 2;
+    options.keyInterval = 8;
+    options.pack = true;
+    DeltaFile file;
+    file.add(readVolume(source), options);
+    file.write(output);
+    openvdb::io::File input(output);
+    input.open();
+    return openvdb::gridPtrCast<openvdb::Int64Grid>(input.readGrid(input.beginName().gridName()));
+}
+
 using Damage = std::function<void(openvdb::MetaMap& metadata, std::vector<std::uint64_t>& words)>;
 
 // Returns what reading damaged packed deltas says: of a 20 x 9 x 12 volume of bytes, sliced along
@@ -252,17 +267,8 @@ std::string refusalOf(const Damage& damage) {
     std::string voxels(20 * 9 * 12, '\0');
     for (std::size_t i = 0; i < voxels.size(); i += 7) voxels[i] = char(i % 250);
     testing::writeBytes("a_20x9x12_uint8.raw", voxels);
-    DeltaFileOptions options;
-    options.sliceAxis = 2;
-    options.keyInterval = 8;
-    options.pack = true;
-    DeltaFile file;
-    file.add(readVolume("a_20x9x12_uint8.raw"), options);
-    file.write("whole.vdb");
+    const auto grid = packedGrid("a_20x9x12_uint8.raw", "whole.vdb");
     EXPECT_NO_THROW(readVolume("whole.vdb"));
-    openvdb::io::File input("whole.vdb");
-    input.open();
-    const auto grid = openvdb::gridPtrCast<openvdb::Int64Grid>(input.readGrid("a_20x9x12_uint8"));
     std::vector<std::uint64_t> words = wordsOfGrid(*grid, 0, "whole");
     openvdb::MetaMap metadata = *grid;
     damage(metadata, words);
@@ -444,16 +450,7 @@ TEST(DeltaStream, TheIndexIsReadFromTheFirstWords) {
     std::mt19937 random(3);
     for (int i = 0; i < 64 * 64 * 16; ++i) voxels += char(random());
     testing::writeBytes("a_64x64x16_uint8.raw", voxels);
-    DeltaFileOptions options;
-    options.sliceAxis = 2;
-    options.keyInterval = 8;
-    options.pack = true;
-    DeltaFile file;
-    file.add(readVolume("a_64x64x16_uint8.raw"), options);
-    file.write("a.vdb");
-    openvdb::io::File input("a.vdb");
-    input.open();
-    const auto grid = openvdb::gridPtrCast<openvdb::Int64Grid>(input.readGrid("a_64x64x16_uint8"));
+    const auto grid = packedGrid("a_64x64x16_uint8.raw", "a.vdb");
     const DeltaHeader header = takeDeltaHeader(*grid, "a");
     const std::vector<std::uint64_t> words = wordsOfGrid(*grid, kStreamPadding, "a");
     const std::size_t count = words.size() - kStreamPadding;
