@@ -90,10 +90,7 @@ template <typename Grid>
 openvdb::GridBase::Ptr Unpacker::takeDeltas(const Listener& listener) const {
     using Leaf = typename Grid::TreeType::LeafNodeType;
     const std::vector<StreamPart> parts = this->parts();
-    std::size_t blocks = 0;
-    const PartWalker<typename Leaf::ValueType> walker(words_.data(), header_);
-    for (const StreamPart& part : parts) blocks += walker.countBlocks(part);
-    requireMemory(where_, double(blocks) * leafBytes<Leaf>());
+    requireMemory(where_, double(countBlocks(words_.data(), parts)) * leafBytes<Leaf>());
     auto grid = Grid::create(0);
     openvdb::tree::ValueAccessor<typename Grid::TreeType> accessor(grid->tree());
     // In portions, so that what is in no tree yet is little.

@@ -55,15 +55,6 @@ class PartWalker {
         return &deltas_;
     }
 
-    /// Returns how many blocks a part says that it has, at most as many as its words can hold.
-    std::size_t countBlocks(const StreamPart& part) const {
-        // One delta at least: its gap, 8 slices, a form, a parameter, rows, a row, a number.
-        constexpr std::size_t kFewestBits = 1 + 8 + 2 + 5 + 8 + 8 + 1;
-        const std::uint64_t more = BitReader(words_, 64 * part.begin).takeNumber();
-        const std::size_t most = 64 * (part.end - part.begin) / kFewestBits;
-        return std::size_t(std::min(more, std::uint64_t(most))) + 1;
-    }
-
   private:
     using Bits = std::make_unsigned_t<Number>;
 

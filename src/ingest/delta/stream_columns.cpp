@@ -2,13 +2,11 @@
 #include "ingest/delta/stream_columns.h"
 
 #include <algorithm>
-#include <atomic>
 #include <utility>
 
 #include "ingest/delta/column_order.h"
 #include "ingest/delta/part_walker.h"
 #include "ingest/delta/word_grid.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {
@@ -51,14 +49,7 @@ StreamColumns::StreamColumns(std::vector<std::uint64_t> words, std::vector<Strea
                              const DeltaHeader& header)
     : header_(&header), words_(std::move(words)), parts_(std::move(parts)) {
     columns_ = orderByColumns(parts_, [](const StreamPart& part) { return part.first; });
-    std::atomic<std::size_t> blocks = 0;
-    parallelForChunks(parts_.size(), [&](std::size_t begin, std::size_t end) {
-        const PartWalker<std::int32_t> walker(words_.data(), header);
-        std::size_t some = 0;
-        for (std::size_t i = begin; i < end; ++i) some += walker.countBlocks(parts_[i]);
-        blocks += some;
-    });
-    blocks_ = blocks;
+    blocks_ = countBlocks(words_.data(), parts_);
 }
 
 std::optional<StreamColumns> StreamColumns::read(const VdbLeaves& leaves, const DeltaHeader& header,

@@ -2,11 +2,13 @@
 #include "ingest/delta/stream_index.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "deltasplat/error.h"
 #include "ingest/delta/bit_reader.h"
 #include "ingest/delta/delta_format.h"
 #include "memory.h"
+#include "parallel.h"
 
 namespace deltasplat {
 namespace {
@@ -106,6 +108,23 @@ std::optional<std::vector<StreamPart>> readStreamIndex(const std::uint64_t* word
                                                        std::size_t count, const DeltaHeader& header,
                                                        const std::string& where) {
     return IndexReader(words, some, count, header, where).read();
+}
+
+std::size_t countBlocks(const std::uint64_t* words, const std::vector<StreamPart>& parts) {
+    // One delta at least: its gap, 8 slices, a form, a parameter, rows, a row, a number.
+    constexpr std::size_t kFewestBits = 1 + 8 + 2 + 5 + 8 + 8 + 1;
+    std::atomic<std::size_t> blocks = 0;
+    parallelForChunks(parts.size(), [&](std::size_t begin, std::size_t end) {
+        std::size_t some = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            const StreamPart& part = parts[i];
+            const std::uint64_t more = BitReader(words, 64 * part.begin).takeNumber();
+            const std::size_t most = 64 * (part.end - part.begin) / kFewestBits;
+            some += std::size_t(std::min(more, std::uint64_t(most))) + 1;
+        }
+        blocks += some;
+    });
+    return blocks;
 }
 
 }  // namespace deltasplat

@@ -34,4 +34,9 @@ std::optional<std::vector<StreamPart>> readStreamIndex(const std::uint64_t* word
                                                        std::size_t count, const DeltaHeader& header,
                                                        const std::string& where);
 
+/// Returns how many blocks parts say that they have, at most as many as their words can hold.
+/// Multi-threaded.
+/// @param words  that the parts' places count from, with kStreamPadding behind them
+std::size_t countBlocks(const std::uint64_t* words, const std::vector<StreamPart>& parts);
+
 }  // namespace deltasplat

@@ -21,16 +21,18 @@ using Leaf = Tree::LeafNodeType;
 constexpr std::size_t kLeafWords = Leaf::NUM_VALUES;
 
 // Whether the first `count` voxels of a leaf are active, and no others.
-bool holdsFirst(const Leaf& leaf, std::size_t count) {
-    return leaf.onVoxelCount() == count &&
-           (count == kLeafWords || leaf.getValueMask().findFirstOff() == count);
-}
 bool holdsFirst(const VdbLeaves::Mask& mask, std::size_t count) {
     for (std::size_t i = 0; i < mask.size(); ++i) {
         const std::size_t bits = count < 64 * i ? 0 : std::min<std::size_t>(64, count - 64 * i);
         if (mask[i] != BitReader::lowBits(int(bits))) return false;
     }
     return true;
+}
+bool holdsFirst(const Leaf& leaf, std::size_t count) {
+    VdbLeaves::Mask mask;
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        mask[i] = leaf.getValueMask().getWord<std::uint64_t>(openvdb::Index(i));
+    return holdsFirst(mask, count);
 }
 
 // Takes the words of leaves from a file.
