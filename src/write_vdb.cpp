@@ -28,12 +28,13 @@ namespace deltasplat {
 namespace {
 
 // Opens what io::Archive keeps for io::File: writing to any stream that can seek, offsets included.
+// There is none of its kind; so it needs nothing of io::Archive's but its functions.
 class SeekableArchive : public openvdb::io::Archive {
   public:
-    void writeTo(std::ostream& out, const openvdb::GridCPtrVec& grids,
-                 const openvdb::MetaMap& metadata) const {
-        Archive::write(out, grids, /*seekable=*/true, metadata);
-    }
+    using Archive::write;
+    static constexpr void (openvdb::io::Archive::*kWrite)(std::ostream&, const openvdb::GridCPtrVec&,
+                                                          bool, const openvdb::MetaMap&) const =
+        &SeekableArchive::write;
 };
 
 // A file of which a stream may write any part, and that tells how far it is in filling up to the
@@ -191,8 +192,8 @@ void writeStream(AtomicFile& file, const openvdb::GridCPtrVec& grids,
     std::ostream stream(&buffer);
     // With exceptions the first byte that cannot be written ends the work, and errno is still its.
     stream.exceptions(std::ios::badbit | std::ios::failbit);
-    SeekableArchive archive;
-    archive.writeTo(stream, parallelGrids(grids), metadata);
+    const openvdb::io::Archive archive;
+    (archive.*SeekableArchive::kWrite)(stream, parallelGrids(grids), /*seekable=*/true, metadata);
     stream.flush();
     // Only a regular file can be read back.
     if (!file.isDevice()) makeTagReproducible(file, archive.getUniqueTag());

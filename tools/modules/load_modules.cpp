@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modules lie beside the program.
-#include <dlfcn.h>
+// Modules lie where the installation has them, as seen from the program.
+#include "modules/load_modules.h"
 
+#include <dlfcn.h>
+#include <sys/auxv.h>
+
+#include <bit>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -25,9 +29,16 @@ namespace {
 
 std::filesystem::path fileOf(const std::string& name) {
     std::error_code error;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-    if (error) refuse(name, "/proc/self/exe: " + error.message(), "the place of the program");
-    return program.parent_path() / (name + ".so");
+    std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+    if (error) {
+        // Without /proc there is what the system was told to run.
+        const auto* const called = std::bit_cast<const char*>(::getauxval(AT_EXECFN));
+        std::error_code unknown = error;
+        if (called) program = std::filesystem::canonical(called, unknown);
+        if (unknown)
+            refuse(name, "/proc/self/exe: " + error.message(), "the place of the program");
+    }
+    return (program.parent_path() / DELTASPLAT_MODULES / (name + ".so")).lexically_normal();
 }
 
 // An installation may be replaced while a program of the one before runs.
@@ -42,19 +53,24 @@ void requireSameVersion(const std::string& name, const std::filesystem::path& fi
 
 template <typename Module>
 const Module& load(const char* name) {
-    const std::filesystem::path file = fileOf(name);
-    void* const library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    const auto module = reinterpret_cast<const Module* (*)()>(
-        library ? ::dlsym(library, "deltasplat_module") : nullptr);
-    if (!module) {
-        const char* const why = ::dlerror();
-        refuse(name, printable(why ? why : "nothing"), file.string());
-    }
-    requireSameVersion(name, file, library);
+    const auto module =
+        reinterpret_cast<const Module* (*)()>(::dlsym(openModule(name), "deltasplat_module"));
+    if (!module) refuse(name, "no functions", "a module");
     return *module();
 }
 
 }  // namespace
+
+void* openModule(const char* name) {
+    const std::filesystem::path file = fileOf(name);
+    void* const library = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    if (!library) {
+        const char* const why = ::dlerror();
+        refuse(name, printable(why ? why : "nothing"), file.string());
+    }
+    requireSameVersion(name, file, library);
+    return library;
+}
 
 const ExrModule& exrModule() {
     static const ExrModule& module = load<ExrModule>("exr");
