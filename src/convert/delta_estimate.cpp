@@ -182,7 +182,7 @@ std::optional<DeltaEstimate> estimateFrom(const Volume& volume, int sliceAxis) {
     putDeltaHeader(voxels.header, *voxels.deltas);
     estimate.deltaBytes = scaledBytes(
         *voxels.deltas, 1 / share, share == 1 ? nodeBytes(voxels.deltas->constBaseTree()) : nodes);
-    estimate.readsFromLeaves =
+    estimate.readsByBlocks =
         mayDecodeBlocks(voxels.header) && volume.gridClass != "level set";  // made fog first
     options.pack = true;
     estimate.packedBytes = packedBytes(takeDeltas(*sample, options), share);

@@ -40,12 +40,12 @@ double deltaBytes(const Volume& volume, bool pack) {
 }
 
 // Within a fifteenth, of few and of many blocks.
-void expectNear(const std::string& file, bool readsFromLeaves, bool isSampled) {
+void expectNear(const std::string& file, bool readsByBlocks, bool isSampled) {
     SCOPED_TRACE(file);
     const Volume volume = readKept(file);
     const std::optional<DeltaEstimate> estimate = estimateDeltaFile(volume, 2);
     ASSERT_TRUE(estimate);
-    EXPECT_EQ(estimate->readsFromLeaves, readsFromLeaves);
+    EXPECT_EQ(estimate->readsByBlocks, readsByBlocks);
     EXPECT_EQ(estimate->sampled < 0.5, isSampled);
     EXPECT_LE(estimate->sampled, 1);
     writeVolumes("plain.vdb", {volume});

@@ -134,7 +134,7 @@ std::string jsonText(const std::vector<FileReport>& reports, const std::string& 
 }
 
 bool isRenderedFaster(const DeltaEstimate& estimate) {
-    return estimate.readsFromLeaves && estimate.deltaBytes < 0.95 * estimate.plainBytes;
+    return estimate.readsByBlocks && estimate.deltaBytes < 0.95 * estimate.plainBytes;
 }
 
 }  // namespace deltasplat

@@ -14,7 +14,7 @@ struct DeltaEstimate {
     double packedBytes = 0;  ///< likewise, with DeltaFileOptions::pack
     /// Whether the delta grid, packed or not, is read straight from the file, block by block, for
     /// pictures along its slices.
-    bool readsFromLeaves = false;
+    bool readsByBlocks = false;
     /// The share of the volume's blocks that was written to find out, above 0 to 1.
     double sampled = 1;
 };
