@@ -32,9 +32,9 @@ namespace {
 class SeekableArchive : public openvdb::io::Archive {
   public:
     using Archive::write;
-    static constexpr void (openvdb::io::Archive::*kWrite)(std::ostream&, const openvdb::GridCPtrVec&,
-                                                          bool, const openvdb::MetaMap&) const =
-        &SeekableArchive::write;
+    static constexpr void (openvdb::io::Archive::*kWrite)(
+        std::ostream&, const openvdb::GridCPtrVec&, bool,
+        const openvdb::MetaMap&) const = &SeekableArchive::write;
 };
 
 // A file of which a stream may write any part, and that tells how far it is in filling up to the

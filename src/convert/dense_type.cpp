@@ -18,7 +18,7 @@ std::optional<RawType> typeNamed(const std::string& name) {
 }
 
 std::string sourceType(const Volume& volume) {
-    return volume.source ? textMetadata(*volume.source->grid, kSourceTypeKey) : "";
+    return volume.source ? VdbMetadata(*volume.source->grid).text(kSourceTypeKey) : "";
 }
 
 // Returns what OpenVDB's own types are called here.

@@ -78,7 +78,7 @@ void noteLostStates(const Volume& volume, const IndexBox& box, Notes& notes) {
                    numberText(volume.background) + ")");
     }
     // What was no grid before has no more than its file's name.
-    if (volume.source && !textMetadata(*volume.source->grid, kSourceTypeKey).empty()) return;
+    if (volume.source && !VdbMetadata(*volume.source->grid).text(kSourceTypeKey).empty()) return;
     notes.loss("the grid's name \"" + volume.name + "\", class \"" + volume.gridClass +
                "\" and other metadata are left out");
 }

@@ -10,7 +10,6 @@
 #include "ingest/dicom/dicom_series.h"
 #include "ingest/files/input_files.h"
 #include "ingest/files/input_kind.h"
-#include "ingest/grids/grid_metadata.h"
 #include "ingest/vdb/default_grid.h"
 #include "ingest/vdb/vdb_file.h"
 
@@ -18,19 +17,17 @@ namespace deltasplat {
 namespace {
 
 // The box that OpenVDB's writers note beside a grid.
-std::optional<IndexBox> notedBox(const openvdb::MetaMap& metadata) {
-    using Vector = openvdb::Vec3IMetadata;
-    const auto min = metadata.getMetadata<Vector>(openvdb::GridBase::META_FILE_BBOX_MIN);
-    const auto max = metadata.getMetadata<Vector>(openvdb::GridBase::META_FILE_BBOX_MAX);
+std::optional<IndexBox> notedBox(const VdbMetadata& metadata) {
+    const auto min = metadata.get<glm::ivec3>(openvdb::GridBase::META_FILE_BBOX_MIN);
+    const auto max = metadata.get<glm::ivec3>(openvdb::GridBase::META_FILE_BBOX_MAX);
     if (!min || !max) return {};
-    const auto vector = [](const openvdb::Vec3i& v) { return glm::ivec3(v.x(), v.y(), v.z()); };
-    const IndexBox box{vector(min->value()), vector(max->value())};
+    const IndexBox box{*min, *max};
     return box.empty() ? IndexBox() : box;
 }
 
-void addMetadata(const openvdb::MetaMap& metadata, const VdbGrid& grid, const std::string& where,
+void addMetadata(const VdbMetadata& metadata, const VdbGrid& grid, const std::string& where,
                  VolumeEntry& entry) {
-    entry.gridClass = textMetadata(metadata, openvdb::GridBase::META_GRID_CLASS);
+    entry.gridClass = metadata.text(openvdb::GridBase::META_GRID_CLASS);
     entry.box = notedBox(metadata);
     if (!isDeltaGrid(grid.type, metadata)) return;
     entry.delta = true;
@@ -51,7 +48,7 @@ std::vector<VolumeEntry> listVdb(const std::filesystem::path& path) {
         entry.scalar = grid.isScalar();
         entry.preferred = &grid == preferred;
         try {
-            addMetadata(*file.metadata(grid), grid, path.string(), entry);
+            addMetadata(file.metadata(grid), grid, path.string(), entry);
         } catch (const Error&) {
             // Grids of other kinds need not be understood; what is wrong with one is said when it
             // is read.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/delta/delta_format.h"
 
-#include <openvdb/openvdb.h>
+#include <openvdb/Grid.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ constexpr const char* kAxisNames[] = {"x", "y", "z"};
 // Reads entries of the metadata, each refused if it is not what it must be.
 class Entries {
   public:
-    Entries(const openvdb::MetaMap& metadata, const std::string& where)
+    Entries(const VdbMetadata& metadata, const std::string& where)
         : metadata_(metadata), where_(where) {}
 
     [[noreturn]] void fail(const std::string& key, const std::string& got,
@@ -35,10 +35,9 @@ class Entries {
 
     template <typename T>
     T get(const std::string& key, const std::string& expected) const {
-        const auto found = metadata_.getMetadata<openvdb::TypedMetadata<T>>(key);
-        if (found) return found->value();
-        const auto other = metadata_[key];
-        fail(key, other ? "type " + printable(other->typeName()) : "nothing", expected);
+        if (const auto found = metadata_.get<T>(key)) return *found;
+        const VdbMetadata::Entry* const other = metadata_.find(key);
+        fail(key, other ? "type " + printable(other->type) : "nothing", expected);
     }
 
     int whole(const std::string& key, int low, int high) const {
@@ -87,14 +86,9 @@ class Entries {
     }
 
   private:
-    const openvdb::MetaMap& metadata_;
+    const VdbMetadata& metadata_;
     const std::string& where_;
 };
-
-std::string textOr(const openvdb::MetaMap& metadata, const char* key) {
-    const auto found = metadata.getMetadata<openvdb::StringMetadata>(key);
-    return found ? printable(found->value()) : std::string();
-}
 
 std::vector<double> takeTable(const Entries& entries) {
     const auto table = entries.list<double>("delta_table", kCodeCount);
@@ -170,10 +164,14 @@ void takeBook(const Entries& entries, DeltaHeader& header) {
         entries.fail("delta_step", numberText(header.book.step), "finite values");
 }
 
+std::string cornerText(const glm::ivec3& corner) {
+    return openvdb::Vec3i(corner.x, corner.y, corner.z).str();
+}
+
 void takeBox(const Entries& entries, DeltaHeader& header) {
     constexpr int kFarthest = 1 << 30;
-    const auto low = entries.get<openvdb::Vec3i>("delta_box_min", "a vec3i");
-    const auto high = entries.get<openvdb::Vec3i>("delta_box_max", "a vec3i");
+    const auto low = entries.get<glm::ivec3>("delta_box_min", "a vec3i");
+    const auto high = entries.get<glm::ivec3>("delta_box_max", "a vec3i");
     double voxels = 1;
     bool sound = true;
     for (int axis = 0; axis < 3; ++axis) {
@@ -184,25 +182,24 @@ void takeBox(const Entries& entries, DeltaHeader& header) {
     }
     if (header.box.empty()) header.box = {};
     if (!sound || (!header.box.empty() && voxels > 0x1p62)) {
-        entries.fail("delta_box_max", high.str() + " with minimum " + low.str(),
+        entries.fail("delta_box_max", cornerText(high) + " with minimum " + cornerText(low),
                      "indices within 2^30 of 0 and a box of at most 2^62 voxels");
     }
 }
 
-void putBook(const DeltaHeader& header, openvdb::MetaMap& metadata) {
-    using namespace openvdb;
-    metadata.insertMeta("delta_code_count", Int32Metadata(header.codeCount));
+void putBook(const DeltaHeader& header, VdbMetadata& metadata) {
+    metadata.insert("delta_code_count", std::int32_t(header.codeCount));
     if (header.book.kind == CodeBook::Kind::kInteger || header.book.kind == CodeBook::Kind::kLinear)
-        metadata.insertMeta("delta_offset", DoubleMetadata(header.book.offset));
+        metadata.insert("delta_offset", header.book.offset);
     if (header.book.kind == CodeBook::Kind::kLinear)
-        metadata.insertMeta("delta_step", DoubleMetadata(header.book.step));
+        metadata.insert("delta_step", header.book.step);
     if (header.book.pieces) {
         std::vector<double> numbers;
         for (const CodeBook::Piece& piece : *header.book.pieces)
             numbers.insert(numbers.end(), {piece.first, piece.step, double(piece.count)});
-        metadata.insertMeta("delta_pieces", StringMetadata(listText(numbers)));
+        metadata.insert("delta_pieces", listText(numbers));
     } else if (header.book.table)
-        metadata.insertMeta("delta_table", StringMetadata(listText(*header.book.table)));
+        metadata.insert("delta_table", listText(*header.book.table));
 }
 
 // Exact values are of the source's type, or of one that holds all that a file's type can be.
@@ -226,7 +223,7 @@ void requireHeldValues(const Entries& entries, const DeltaHeader& header) {
                    ", for active voxels to rest at");
         const glm::ivec3& min = header.box.min;
         if (header.box.empty() || min != glm::ivec3(0))
-            entries.fail("delta_box_min", openvdb::Vec3i(min.x, min.y, min.z).str(),
+            entries.fail("delta_box_min", cornerText(min),
                          std::string("[0, 0, 0] in a box of at least one voxel, for active "
                                      "voxels to rest in a volume of ") +
                              kExactNames[int(*header.exact)]);
@@ -248,50 +245,49 @@ void requireHeldValues(const Entries& entries, const DeltaHeader& header) {
         entries.fail("delta_code_book", "\"half\"", "a book of whole numbers for type " + tree);
 }
 
-void putEntries(const DeltaHeader& header, openvdb::MetaMap& metadata) {
-    using namespace openvdb;
-    const auto vector = [](const glm::ivec3& v) { return Vec3IMetadata({v.x, v.y, v.z}); };
-    metadata.insertMeta(kVersionKey, Int32Metadata(header.version));
-    metadata.insertMeta("delta_slice_axis", StringMetadata(kAxisNames[header.sliceAxis]));
-    metadata.insertMeta("delta_key_interval", Int32Metadata(header.keyInterval));
-    metadata.insertMeta("delta_box_min", vector(header.box.min));
-    metadata.insertMeta("delta_box_max", vector(header.box.max));
-    metadata.insertMeta("delta_code_book", StringMetadata(header.bookName()));
-    if (!header.exact) putBook(header, metadata);
-    metadata.insertMeta("delta_source_type", StringMetadata(header.sourceType));
-    metadata.insertMeta("delta_source_tree", StringMetadata(header.sourceTree));
-    metadata.insertMeta("delta_source_map", StringMetadata(header.sourceMap));
-    metadata.insertMeta("delta_space", StringMetadata(header.space));
-    metadata.insertMeta("delta_background", DoubleMetadata(header.background));
-    metadata.insertMeta("delta_rest", StringMetadata(header.restActive ? "active" : "inactive"));
-    metadata.insertMeta("delta_inactive_values", StringMetadata(listText(header.inactiveValues)));
-    metadata.insertMeta("delta_active", Int64Metadata(std::int64_t(header.active)));
-    metadata.insertMeta("delta_slab_deltas", StringMetadata(listText(header.slabDeltas)));
-    metadata.insertMeta("delta_tolerance", DoubleMetadata(header.tolerance));
-    metadata.insertMeta("delta_tolerance_value", DoubleMetadata(header.toleranceValue));
-    metadata.insertMeta("delta_max_error", DoubleMetadata(header.maxError));
+VdbMetadata allEntries(const DeltaHeader& header) {
+    VdbMetadata all;
+    all.insert(kVersionKey, std::int32_t(header.version));
+    all.insert("delta_slice_axis", std::string(kAxisNames[header.sliceAxis]));
+    all.insert("delta_key_interval", std::int32_t(header.keyInterval));
+    all.insert("delta_box_min", header.box.min);
+    all.insert("delta_box_max", header.box.max);
+    all.insert("delta_code_book", header.bookName());
+    if (!header.exact) putBook(header, all);
+    all.insert("delta_source_type", header.sourceType);
+    all.insert("delta_source_tree", header.sourceTree);
+    all.insert("delta_source_map", header.sourceMap);
+    all.insert("delta_space", header.space);
+    all.insert("delta_background", header.background);
+    all.insert("delta_rest", std::string(header.restActive ? "active" : "inactive"));
+    all.insert("delta_inactive_values", listText(header.inactiveValues));
+    all.insert("delta_active", std::int64_t(header.active));
+    all.insert("delta_slab_deltas", listText(header.slabDeltas));
+    all.insert("delta_tolerance", header.tolerance);
+    all.insert("delta_tolerance_value", header.toleranceValue);
+    all.insert("delta_max_error", header.maxError);
+    return all;
 }
 
 // The entries that are left out: those of an empty grid of floats.
-openvdb::MetaMap usualEntries() {
+VdbMetadata usualEntries() {
     DeltaHeader usual;
     usual.keyInterval = 128;
     usual.box = {glm::ivec3(0), glm::ivec3(-1)};
     usual.codeCount = 1;
     usual.sourceType = usual.sourceTree = "float";
     usual.sourceMap = "UniformScaleMap";
-    openvdb::MetaMap entries;
-    putEntries(usual, entries);
-    entries.removeMeta(kVersionKey);
+    VdbMetadata entries = allEntries(usual);
+    entries.erase(kVersionKey);
     return entries;
 }
 
 // Those of a grid with what it leaves out.
-openvdb::MetaMap withUsualEntries(const openvdb::MetaMap& metadata) {
-    openvdb::MetaMap all = metadata;
-    const openvdb::MetaMap usual = usualEntries();
-    for (auto entry = usual.beginMeta(); entry != usual.endMeta(); ++entry) {
-        if (!metadata[entry->first]) all.insertMeta(entry->first, *entry->second);
+VdbMetadata withUsualEntries(const VdbMetadata& metadata) {
+    VdbMetadata all = metadata;
+    const VdbMetadata usual = usualEntries();
+    for (const auto& [name, entry] : usual.entries()) {
+        if (!metadata.find(name)) all.insert(name, entry);
     }
     return all;
 }
@@ -318,18 +314,22 @@ bool isDeltaGrid(const openvdb::GridBase& grid) {
            (grid.isType<openvdb::Int32Grid>() || grid.isType<openvdb::Int64Grid>());
 }
 
-bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata) {
-    return (valueType == "int32" || valueType == "int64") && bool(metadata[kVersionKey]);
+bool isDeltaGrid(const std::string& valueType, const VdbMetadata& metadata) {
+    return (valueType == "int32" || valueType == "int64") && metadata.find(kVersionKey);
 }
 
 void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
-    putEntries(header, metadata);
-    if (!header.leavesOutUsual()) return;
-    const openvdb::MetaMap usual = usualEntries();
-    for (auto entry = usual.beginMeta(); entry != usual.endMeta(); ++entry) {
-        const openvdb::Metadata::ConstPtr own = metadata[entry->first];
-        if (own && *own == *entry->second) metadata.removeMeta(entry->first);
+    VdbMetadata entries = allEntries(header);
+    if (header.leavesOutUsual()) {
+        const VdbMetadata usual = usualEntries();
+        for (const auto& [name, entry] : usual.entries()) {
+            const VdbMetadata::Entry* const own = entries.find(name);
+            if (!own || *own != entry) continue;
+            entries.erase(name);
+            metadata.removeMeta(name);
+        }
     }
+    metadata.insertMeta(*entries.toMetaMap("delta grid"));
 }
 
 std::string DeltaHeader::bookName() const {
@@ -340,12 +340,11 @@ std::uint64_t DeltaHeader::deltas() const {
     return std::accumulate(slabDeltas.begin(), slabDeltas.end(), std::uint64_t{0});
 }
 
-DeltaHeader takeDeltaHeader(const openvdb::MetaMap& stored, const std::string& where) {
+DeltaHeader takeDeltaHeader(const VdbMetadata& stored, const std::string& where) {
     DeltaHeader header;
     header.version = Entries(stored, where).whole(kVersionKey, 1, DeltaHeader::kVersion);
-    const openvdb::MetaMap whole =
-        header.leavesOutUsual() ? withUsualEntries(stored) : openvdb::MetaMap();
-    const openvdb::MetaMap& metadata = header.leavesOutUsual() ? whole : stored;
+    const VdbMetadata whole = header.leavesOutUsual() ? withUsualEntries(stored) : VdbMetadata();
+    const VdbMetadata& metadata = header.leavesOutUsual() ? whole : stored;
     const Entries entries(metadata, where);
     header.sliceAxis = entries.choice("delta_slice_axis", {"x", "y", "z"});
     header.keyInterval = entries.whole("delta_key_interval", 8, 1 << 30);
@@ -358,8 +357,8 @@ DeltaHeader takeDeltaHeader(const openvdb::MetaMap& stored, const std::string& w
         std::vector<std::string>{
             "", "float", "double", "int32", "int64", "bool", "mask"}[std::size_t(entries.choice(
             "delta_source_tree", {"", "float", "double", "int32", "int64", "bool", "mask"}))];
-    header.sourceMap = textOr(metadata, "delta_source_map");
-    header.space = textOr(metadata, "delta_space");
+    header.sourceMap = printable(metadata.text("delta_source_map"));
+    header.space = printable(metadata.text("delta_space"));
     header.background = entries.get<double>("delta_background", "a double");
     header.restActive = entries.choice("delta_rest", {"inactive", "active"}) == 1;
     requireHeldValues(entries, header);

@@ -11,6 +11,7 @@
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/ingest/volume.h"
 #include "ingest/delta/exact_slots.h"
+#include "ingest/vdb/vdb_metadata.h"
 
 namespace deltasplat {
 
@@ -61,13 +62,13 @@ inline constexpr const char* kSourcePrefix = "source:";
 /// Returns whether a grid is a delta grid of any version.
 bool isDeltaGrid(const openvdb::GridBase& grid);
 /// Returns the same by a grid's value type ("int32", "int64") and metadata.
-bool isDeltaGrid(const std::string& valueType, const openvdb::MetaMap& metadata);
+bool isDeltaGrid(const std::string& valueType, const VdbMetadata& metadata);
 
 /// Adds the header to a grid's metadata: where leavesOutUsual(), only what is not usual.
 void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata);
 
 /// Reads a delta grid's header and checks everything in it that can be checked without its voxels.
 /// @throw Error(kInput) at the first entry that is missing, of another type or out of range
-DeltaHeader takeDeltaHeader(const openvdb::MetaMap& metadata, const std::string& where);
+DeltaHeader takeDeltaHeader(const VdbMetadata& metadata, const std::string& where);
 
 }  // namespace deltasplat

@@ -23,6 +23,7 @@
 #include "ingest/delta/stream_columns.h"
 #include "ingest/grids/grid_codes.h"
 #include "ingest/grids/grid_from_codes.h"
+#include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_volume.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/readers.h"
@@ -41,8 +42,8 @@ namespace {
 }
 
 // The delta grid's axes are the source's in (slice, u, v) order.
-glm::dmat4 sourceTransform(const openvdb::math::Transform& transform, int sliceAxis) {
-    const glm::dmat4 permuted = matrixOf(transform);
+glm::dmat4 sourceTransform(const openvdb::math::MapBase& map, int sliceAxis) {
+    const glm::dmat4 permuted = matrixOf(map);
     const glm::ivec3 order = sliceOrder(sliceAxis);
     glm::dmat4 matrix = permuted;
     for (int axis = 0; axis < 3; ++axis) matrix[order[axis]] = permuted[axis];
@@ -61,20 +62,20 @@ DeltaOrigin originOf(const DeltaHeader& header) {
     return origin;
 }
 
-std::string sourceClass(const openvdb::MetaMap& metadata) {
-    const auto found = metadata.getMetadata<openvdb::StringMetadata>(
-        std::string(kSourcePrefix) + openvdb::GridBase::META_GRID_CLASS);
-    return found ? printable(found->value()) : "unknown";
+std::string sourceClass(const VdbMetadata& metadata) {
+    const auto found =
+        metadata.get<std::string>(std::string(kSourcePrefix) + openvdb::GridBase::META_GRID_CLASS);
+    return found ? printable(*found) : kUnknownClass;
 }
 
 // All of a volume but its voxels.
-Volume describe(const DeltaHeader& header, const openvdb::MetaMap& metadata,
-                const openvdb::math::Transform& transform) {
+Volume describe(const DeltaHeader& header, const VdbMetadata& metadata,
+                const openvdb::math::MapBase& map) {
     Volume volume;
     volume.space = header.space;
     volume.origin = originOf(header);
     volume.gridClass = sourceClass(metadata);
-    volume.worldFromIndex = sourceTransform(transform, header.sliceAxis);
+    volume.worldFromIndex = sourceTransform(map, header.sliceAxis);
     return volume;
 }
 
@@ -146,7 +147,7 @@ Volume readDeltaGrid(openvdb::GridBase& stored, const openvdb::MetaMap::ConstPtr
     if (header.isPacked()) unpacked = unpackDeltas(stored, header, where, partOf(all, 0, 0.3));
     const Listener listener = partOf(all, unpacked ? 0.3 : 0, 1);
     openvdb::GridBase& grid = unpacked ? *unpacked : stored;
-    Volume volume = describe(header, grid, grid.transform());
+    Volume volume = describe(header, grid, *grid.transform().baseMap());
     volume.name = grid.getName();
     if (header.exact) {
         readExactDeltas(grid, header, fileMetadata, {listener, where, header.sourceType, options},
@@ -154,7 +155,7 @@ Volume readDeltaGrid(openvdb::GridBase& stored, const openvdb::MetaMap::ConstPtr
         return volume;
     }
     DecodedDeltas decoded = decodeDeltas(grid, header, where, listener);
-    const bool fog = options.levelSetToFog && volume.gridClass == "level set";
+    const bool fog = options.levelSetToFog && volume.gridClass == kLevelSetClass;
     openvdb::GridBase::Ptr source;
     if (!header.sourceTree.empty() && (options.keepSource || fog)) {
         source = restoreGrid(header, decoded, grid, volume.worldFromIndex);
@@ -188,10 +189,10 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
     std::unique_ptr<const DeltaColumns> columns;
     Volume volume;
     try {
-        const openvdb::MetaMap::ConstPtr metadata = file.metadata(grid);
-        if (!isDeltaGrid(grid.type, *metadata)) return std::nullopt;
-        header = takeDeltaHeader(*metadata, where);
-        const bool becomesFog = options.levelSetToFog && sourceClass(*metadata) == "level set";
+        const VdbMetadata metadata = file.metadata(grid);
+        if (!isDeltaGrid(grid.type, metadata)) return std::nullopt;
+        header = takeDeltaHeader(metadata, where);
+        const bool becomesFog = options.levelSetToFog && sourceClass(metadata) == kLevelSetClass;
         if (!mayDecodeBlocks(header) || becomesFog) return std::nullopt;
         if ((grid.type == "int64") != header.isPacked()) return std::nullopt;
         if (wanted && !mayBeBoxOf(header, wanted->box)) return std::nullopt;
@@ -200,7 +201,7 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
         columns = columnsOf(*leaves, header, wanted, where);
         if (!columns) return std::nullopt;
         worldFromIndexOf(leaves->transform(), where);
-        volume = describe(header, *metadata, leaves->transform());
+        volume = describe(header, metadata, leaves->transform());
     } catch (const Error& error) {
         // What is wrong is said by who reads the grid as a whole.
         if (error.code() != ErrorCode::kInput) throw;

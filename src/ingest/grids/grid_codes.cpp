@@ -11,6 +11,7 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include "deltasplat/error.h"
 #include "heap_growth.h"
@@ -20,6 +21,7 @@
 #include "ingest/codes/error_meter.h"
 #include "ingest/grids/file_leaves.h"
 #include "ingest/grids/grid_errors.h"
+#include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/scalar_grids.h"
@@ -191,12 +193,12 @@ void takeCodes(std::shared_ptr<CodeTree> codes, CodeCounts& counts, const GridCo
     summarize(volume);
 }
 
-template <typename Grid>
-void describeGrid(const Grid& grid, const GridCodesOptions& options, Volume& volume) {
+void describe(double background, const VdbMetadata& metadata, const GridCodesOptions& options,
+              Volume& volume) {
     volume.hasBackground = true;
-    volume.background = double(grid.background());
+    volume.background = background;
     volume.type = options.type;
-    volume.gridClass = openvdb::GridBase::gridClassToString(grid.getGridClass());
+    volume.gridClass = gridClassOf(metadata);
 }
 
 // Chooses a code book and turns values into codes of it.
@@ -237,7 +239,7 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
             scan = scanLeaves(TreeLeaves(grid.tree()), kNumbersAlone);
     }
     fillFromLeaves(TreeLeaves(grid.tree()), std::move(scan), options, volume);
-    describeGrid(grid, options, volume);
+    describe(double(grid.background()), grid, options, volume);
 }
 
 // Returns the codes of tiles, nothing if one is no half.
@@ -289,17 +291,14 @@ bool fillFromNumbers(const VdbValues& values, T background, const GridCodesOptio
 }  // namespace
 
 bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Volume& volume) {
-    bool isFilled = false;
-    values.grid->apply<ScalarGrids>([&](const auto& grid) {
-        using T = typename std::decay_t<decltype(grid)>::ValueType;
-        if constexpr (!std::is_same_v<T, bool>) {
-            isFilled = values.areHalves
-                           ? fillFromHalves(values, grid.background(), options, volume)
-                           : fillFromNumbers(values, grid.background(), options, volume);
-            if (isFilled) describeGrid(grid, options, volume);
-        }
-    });
-    return isFilled;
+    const auto fillWith = [&](const auto background) {
+        const bool isFilled = values.areHalves
+                                  ? fillFromHalves(values, background, options, volume)
+                                  : fillFromNumbers(values, background, options, volume);
+        if (isFilled) describe(double(background), values.metadata, options, volume);
+        return isFilled;
+    };
+    return std::visit(fillWith, values.background);
 }
 
 void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/MetaMap.h>
-#include <openvdb/Metadata.h>
-
 #include <string>
+
+#include "ingest/vdb/vdb_metadata.h"
 
 namespace deltasplat {
 
@@ -16,10 +15,13 @@ inline constexpr const char* kSpaceKey = "deltasplat_space";             ///< as
 inline constexpr const char* kBoxMinKey = "deltasplat_box_min";
 inline constexpr const char* kBoxMaxKey = "deltasplat_box_max";
 
-/// Returns the text under a key; empty if there is none.
-inline std::string textMetadata(const openvdb::MetaMap& metadata, const char* key) {
-    const auto text = metadata.getMetadata<openvdb::StringMetadata>(key);
-    return text ? text->value() : "";
-}
+/// What OpenVDB calls the classes of grids.
+inline constexpr const char* kUnknownClass = "unknown";
+inline constexpr const char* kLevelSetClass = "level set";
+inline constexpr const char* kFogClass = "fog volume";
+inline constexpr const char* kStaggeredClass = "staggered";
+
+/// Returns which of these a grid's metadata name; other names are unknown.
+std::string gridClassOf(const VdbMetadata& metadata);
 
 }  // namespace deltasplat

@@ -2,8 +2,6 @@
 #include "ingest/grids/grid_volume.h"
 
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <memory>
 #include <utility>
 
@@ -19,49 +17,17 @@
 namespace deltasplat {
 namespace {
 
-std::string spaceOf(const openvdb::GridBase& grid) {
-    const std::string space = textMetadata(grid, kSpaceKey);
-    return space == "RAS" || space == "LPS" ? space : "";
-}
-
 // A volume that has its place, and no voxels.
-Volume placedVolume(const openvdb::GridBase& grid, const GridCodesOptions& options) {
+Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,
+                    const GridCodesOptions& options) {
     Volume volume;
-    volume.worldFromIndex = worldFromIndexOf(grid.transform(), options.where);
-    volume.space = spaceOf(grid);
-    requireMemory(options.where,
-                  double(grid.constBaseTree().leafCount()) * leafBytes<CodeTree::Leaf>());
+    volume.worldFromIndex = worldFromIndexOf(map, options.where);
+    const std::string space = metadata.text(kSpaceKey);
+    if (space == "RAS" || space == "LPS") volume.space = space;
     return volume;
 }
 
 }  // namespace
-
-glm::dmat4 worldFromIndexOf(const openvdb::math::Transform& transform, const std::string& where) {
-    const auto fail = [&](const std::string& got, const std::string& expected) {
-        throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
-    };
-    if (!transform.isLinear()) {
-        fail("a " + transform.mapType() + " transform", "a linear one (no frustum)");
-    }
-    glm::dmat4 matrix(0);
-    try {
-        matrix = matrixOf(transform);
-    } catch (const openvdb::ArithmeticError&) {
-        // OpenVDB's own word for a volume of a voxel below 3e-15.
-    }
-    bool finite = true;
-    for (int axis = 0; axis < 4; ++axis) {
-        finite = finite && std::isfinite(glm::dot(matrix[axis], matrix[axis]));
-    }
-    if (!finite || glm::determinant(matrix) == 0) {
-        fail("a transform that cannot be inverted", "a finite affine map");
-    }
-    // A damaged file may hold any matrix, and OpenVDB does not look at the last column.
-    if (glm::dvec4(matrix[0].w, matrix[1].w, matrix[2].w, matrix[3].w) != glm::dvec4(0, 0, 0, 1)) {
-        fail("a transform that is a projection", "a finite affine map");
-    }
-    return matrix;
-}
 
 void settleEmpty(Volume& volume, const GridCodesOptions& options) {
     if (!std::isfinite(volume.background)) {
@@ -75,7 +41,9 @@ void settleEmpty(Volume& volume, const GridCodesOptions& options) {
 
 Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& options,
                     openvdb::MetaMap::ConstPtr fileMetadata) {
-    Volume volume = placedVolume(*grid, options);
+    Volume volume = placedVolume(*grid->transform().baseMap(), *grid, options);
+    requireMemory(options.where,
+                  double(grid->constBaseTree().leafCount()) * leafBytes<CodeTree::Leaf>());
     fillFromGrid(*grid, options, volume);
     const ReadOptions& reading = options.reading;
     if (reading.keepSource || (reading.keepInexact && !volume.codeBook.isExact())) {
@@ -87,7 +55,7 @@ Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& 
 }
 
 std::optional<Volume> volumeOfLeaves(const VdbValues& values, const GridCodesOptions& options) {
-    Volume volume = placedVolume(*values.grid, options);
+    Volume volume = placedVolume(values.leaves.transform(), values.metadata, options);
     if (!fillFromLeaves(values, options, volume)) return std::nullopt;
     settleEmpty(volume, options);
     return volume;

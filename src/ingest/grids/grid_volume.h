@@ -14,11 +14,6 @@ namespace deltasplat {
 Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& options,
                     openvdb::MetaMap::ConstPtr fileMetadata = nullptr);
 
-/// Returns the affine matrix of a transform.
-/// @param where  for messages
-/// @throw Error(kInput) if it is not linear, or cannot be inverted
-glm::dmat4 worldFromIndexOf(const openvdb::math::Transform& transform, const std::string& where);
-
 /// A background of NaN or infinity is taken as what replaces NaN, or 0, with a warning; there is
 /// one for a volume without active voxels as well.
 void settleEmpty(Volume& volume, const GridCodesOptions& options);

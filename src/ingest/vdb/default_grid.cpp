@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/vdb/default_grid.h"
 
-#include <openvdb/Grid.h>
-
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -22,8 +20,7 @@ constexpr std::array<std::string_view, 4> kHelperEnds{"_noise", "_inflow", "_in"
 
 bool isFog(const VdbFile& file, const VdbGrid& grid) {
     try {
-        return textMetadata(*file.metadata(grid), openvdb::GridBase::META_GRID_CLASS) ==
-               openvdb::GridBase::gridClassToString(openvdb::GRID_FOG_VOLUME);
+        return gridClassOf(file.metadata(grid)) == kFogClass;
     } catch (const Error&) {
         // What is wrong with a grid that may not even be wanted is said when it is read.
         return false;

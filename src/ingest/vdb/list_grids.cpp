@@ -20,7 +20,7 @@ GridList listGrids(const std::filesystem::path& file) {
             list.others.push_back(grid.describe());
         }
         const bool mayBeDelta = grid.type == "int32" || grid.type == "int64";
-        if (mayBeDelta && isDeltaGrid(grid.type, *vdb.metadata(grid))) {
+        if (mayBeDelta && isDeltaGrid(grid.type, vdb.metadata(grid))) {
             list.deltas.push_back(grid.name);
         } else {
             list.ordinary.push_back(grid.describe());

@@ -3,13 +3,12 @@
 // io/Compression.h).
 #include "ingest/vdb/packed_values.h"
 
+#include <blosc.h>
 #include <openvdb/io/Compression.h>
-#include <openvdb/points/StreamCompression.h>
 
 #include <array>
 #include <bit>
 #include <cstring>
-#include <exception>
 
 #include "ingest/vdb/zip_chunk.h"
 
@@ -75,12 +74,8 @@ bool unpackBlosc(std::span<const char> chunk, std::span<char> values, std::size_
     if (chunk.size() < sizeof words) return false;
     std::memcpy(words.data(), chunk.data(), sizeof words);
     if (words[1] != size || words[3] != chunk.size()) return false;
-    try {
-        openvdb::compression::bloscDecompress(values.data(), size, values.size(), chunk.data());
-    } catch (const std::exception&) {
-        return false;
-    }
-    return true;
+    const int count = blosc_decompress_ctx(chunk.data(), values.data(), values.size(), 1);
+    return count > 0 && std::size_t(count) == size;
 }
 
 bool unpack(const PackedValues& packed, const VdbValueFormat& format, std::span<char> values) {

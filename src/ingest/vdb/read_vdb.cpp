@@ -16,6 +16,7 @@
 #include "ingest/vdb/default_grid.h"
 #include "ingest/vdb/read_slices.h"
 #include "ingest/vdb/vdb_file.h"
+#include "ingest/vdb/vdb_transform.h"
 #include "ingest/vdb/vector_part.h"
 #include "listener_part.h"
 #include "suggest.h"
@@ -113,7 +114,7 @@ Volume readWholeGrid(const VdbFile& file, const ChosenGrid& chosen, const std::s
     Volume volume;
     if (isDeltaGrid(*loaded)) {
         // What cannot be placed is refused before it is decoded.
-        worldFromIndexOf(loaded->transform(), where);
+        worldFromIndexOf(*loaded->transform().baseMap(), where);
         Listener decoding = listener;
         decoding.progress = [&](double share) {
             listener.report(kReadShare + (1 - kReadShare) * share);
@@ -126,9 +127,8 @@ Volume readWholeGrid(const VdbFile& file, const ChosenGrid& chosen, const std::s
     return volume;
 }
 
-bool isLevelSet(const openvdb::MetaMap& metadata) {
-    const std::string text = textMetadata(metadata, openvdb::GridBase::META_GRID_CLASS);
-    return openvdb::GridBase::stringToGridClass(text) == openvdb::GRID_LEVEL_SET;
+bool isLevelSet(const VdbMetadata& metadata) {
+    return gridClassOf(metadata) == kLevelSetClass;
 }
 
 // Whether a grid may be read leaf by leaf: of which nothing but its codes is wanted.
@@ -136,9 +136,9 @@ bool mayReadLeaves(const VdbFile& file, const VdbGrid& grid, const ReadOptions& 
     // Codes of halves are exact.
     const bool mayNeedSource = options.keepInexact && grid.valueType() != "half";
     if (options.keepSource || options.bits || mayNeedSource) return false;
-    const openvdb::MetaMap::ConstPtr metadata = file.metadata(grid);
-    const bool becomesFog = options.levelSetToFog && isLevelSet(*metadata);
-    return !becomesFog && !isDeltaGrid(grid.type, *metadata);
+    const VdbMetadata metadata = file.metadata(grid);
+    const bool becomesFog = options.levelSetToFog && isLevelSet(metadata);
+    return !becomesFog && !isDeltaGrid(grid.type, metadata);
 }
 
 // Reads such a grid; nothing where that cannot be.
@@ -212,7 +212,7 @@ class GridReader {
             return readGrid(file_, grid, where, options_, listener);
         } catch (const NotFinite& error) {
             // Solvers leave undefined distances in caches, which are of use to nobody else.
-            if (!amongOthers || !visitor_.other || !isLevelSet(*file_.metadata(*grid.grid))) {
+            if (!amongOthers || !visitor_.other || !isLevelSet(file_.metadata(*grid.grid))) {
                 refuse(error);
             } else {
                 passedOver_ = error;

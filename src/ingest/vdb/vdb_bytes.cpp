@@ -1,59 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/vdb/vdb_bytes.h"
 
-#include <openvdb/Grid.h>
-
 #include <algorithm>
-#include <array>
 #include <cstring>
-#include <map>
-#include <string_view>
 #include <utility>
 
 #include "deltasplat/error.h"
-#include "printable.h"
 
 namespace deltasplat {
-namespace {
-
-struct MetadataType {
-    std::string_view name;
-    std::uint32_t bytes;
-};
-
-// OpenVDB reads these without looking at the stored size, so the size must be right.
-constexpr std::array<MetadataType, 16> kFixedTypes{{{"bool", 1},
-                                                    {"int32", 4},
-                                                    {"float", 4},
-                                                    {"int64", 8},
-                                                    {"double", 8},
-                                                    {"vec2i", 8},
-                                                    {"vec2s", 8},
-                                                    {"vec2d", 16},
-                                                    {"vec3i", 12},
-                                                    {"vec3s", 12},
-                                                    {"vec3d", 24},
-                                                    {"vec4i", 16},
-                                                    {"vec4s", 16},
-                                                    {"vec4d", 32},
-                                                    {"mat4s", 64},
-                                                    {"mat4d", 128}}};
-
-bool isKnown(const std::string& type, std::uint32_t bytes) {
-    if (type == "string") return true;
-    for (const MetadataType& known : kFixedTypes) {
-        if (type == known.name) return bytes == known.bytes;
-    }
-    return false;
-}
-
-void appendText(std::string& to, const std::string& text) {
-    appendU32(to, std::uint32_t(text.size()));
-    to += text;
-}
-
-}  // namespace
-
 VdbBytes::VdbBytes(const std::filesystem::path& file)
     : name_(file.string()), file_(file, std::ios::in | std::ios::binary) {
     if (!file_) {
@@ -154,42 +108,6 @@ std::string VdbBytes::text(std::uint32_t most) {
                     "at most " + std::to_string(most) + " (a corrupt .vdb file)");
     }
     return bytes(length);
-}
-
-std::string readMetadata(VdbBytes& bytes, bool half, VdbRange* leafSizes) {
-    const std::string kHalf = openvdb::GridBase::META_SAVE_HALF_FLOAT;
-    const std::uint32_t count = bytes.u32();
-    std::uint32_t kept = 0;
-    std::string entries;
-    std::map<std::string, std::string> types;  // by names
-    const auto add = [&](const std::string& name, const std::string& type,
-                         const std::string& value) {
-        appendText(entries, name);
-        appendText(entries, type);
-        appendText(entries, value);
-        ++kept;
-    };
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const std::string name = bytes.text();
-        const std::string type = bytes.text();
-        const std::uint32_t size = bytes.u32();
-        if (!isKnown(type, size)) {
-            if (leafSizes && type == "__delayedload") *leafSizes = {bytes.position(), size};
-            bytes.skip(size);
-            continue;
-        }
-        const std::string value = bytes.bytes(size);
-        if (name == kHalf) continue;
-        if (types.try_emplace(name, type).first->second != type) {
-            bytes.failCorrupt("metadata \"" + printable(name) + "\" of two types",
-                              "a sound OpenVDB file");
-        }
-        add(name, type, value);
-    }
-    if (half) add(kHalf, "bool", "\1");
-    std::string metadata;
-    appendU32(metadata, kept);
-    return metadata + entries;
 }
 
 void appendU32(std::string& text, std::uint32_t value) {

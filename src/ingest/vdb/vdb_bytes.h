@@ -58,14 +58,6 @@ struct VdbRange {
     std::uint64_t size = 0;
 };
 
-/// Reads the metadata at the current position, which moves behind it. Returns it in the file's
-/// form, reduced to entries whose types and sizes OpenVDB can be trusted with.
-/// @param half       what "is_saved_as_half_float" shall say: OpenVDB believes it where the grid's
-///                   type says otherwise
-/// @param leafSizes  null, or where to put where the value of OpenVDB's "file_delayed_load" lies,
-///                   if there is one; not read, and not to be trusted
-std::string readMetadata(VdbBytes& bytes, bool half = false, VdbRange* leafSizes = nullptr);
-
 /// Appends `value` to `text` as four bytes, little endian.
 void appendU32(std::string& text, std::uint32_t value);
 

@@ -2,7 +2,6 @@
 #include "ingest/vdb/vdb_file.h"
 
 #include <openvdb/io/Compression.h>
-#include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
@@ -21,6 +20,7 @@
 #include "ingest/vdb/leaf_sizes.h"
 #include "ingest/vdb/vdb_bytes.h"
 #include "ingest/vdb/vdb_stream.h"
+#include "ingest/vdb/vdb_transform.h"
 #include "ingest/vdb/vdb_walk.h"
 #include "memory.h"
 #include "printable.h"
@@ -55,11 +55,20 @@ void parseType(const std::string& stored, VdbGrid& grid) {
     grid.type = type;
 }
 
+// What tells grids of one name apart stands behind this in the unique one.
+constexpr char kNameEnd = '\x1e';
+
+std::string nameOf(const std::string& uniqueName) {
+    const std::size_t end = uniqueName.find(kNameEnd);
+    if (end == std::string::npos) return uniqueName;
+    return uniqueName.substr(0, end) + "[" + uniqueName.substr(end + 1) + "]";
+}
+
 VdbGrid readDescriptor(VdbBytes& bytes, bool hasOffsets) {
     VdbGrid grid;
     grid.begin = bytes.position();
     grid.uniqueName = bytes.text();
-    grid.name = printable(openvdb::io::GridDescriptor::nameAsString(grid.uniqueName));
+    grid.name = printable(nameOf(grid.uniqueName));
     parseType(printable(bytes.text()), grid);
     grid.parentName = bytes.text();
     const auto gridStart = std::uint64_t(bytes.i64());
@@ -80,7 +89,6 @@ auto guarded(VdbStreamBuf& buffer, const std::string& where, const Read& read) {
         std::istream stream(&buffer);
         // Without this OpenVDB goes on with zeros after the end, for as long as a count says.
         stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
-        openvdb::io::setCurrentVersion(stream);
         return read(stream);
     } catch (const Error&) {
         throw;
@@ -97,10 +105,10 @@ auto guarded(VdbStreamBuf& buffer, const std::string& where, const Read& read) {
 
 // What stands before a grid's tree.
 struct GridHead {
-    std::string metadata;         // as readMetadata returns it
-    VdbRange leafSizes;           // OpenVDB's "file_delayed_load"; empty: none
-    std::uint64_t transform = 0;  // where it starts
-    openvdb::math::Transform::ConstPtr map;
+    VdbMetadata metadata;
+    VdbRange leafSizes;     // OpenVDB's "file_delayed_load"; empty: none
+    std::uint64_t map = 0;  // where the transform starts
+    openvdb::math::MapBase::ConstPtr transform;
     VdbValueFormat format;
 };
 
@@ -114,17 +122,15 @@ GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::p
     bytes.seek(grid.data);
     head.format.compression = bytes.u32();
     head.metadata = readMetadata(bytes, grid.half, &head.leafSizes);
-    head.transform = bytes.position();
+    head.map = bytes.position();
     bytes.text(256);  // the transform's type: a length that OpenVDB would trust
     VdbStreamBuf buffer(file);
-    buffer.addRange(head.transform, bytes.size());
+    buffer.addRange(head.map, bytes.size());
     const std::string where = file.string() + ": grid \"" + grid.name + "\"";
-    guarded(buffer, where, [&](std::istream& stream) {
-        const auto map = std::make_shared<openvdb::math::Transform>();
-        map->read(stream);
-        head.map = map;
-        bytes.seek(head.transform + std::uint64_t(stream.tellg()));
-        return 0;
+    head.transform = guarded(buffer, where, [&](std::istream& stream) {
+        const auto transform = readMap(stream);
+        bytes.seek(head.map + std::uint64_t(stream.tellg()));
+        return transform;
     });
     return head;
 }
@@ -167,42 +173,17 @@ bool placeBySizes(VdbBytes& bytes, const GridHead& head, std::uint64_t end,
     return position == end;
 }
 
-std::string treeType(const std::string& type) {
-    return kTreeFront + type + kTreeBack;
-}
-
-openvdb::MetaMap::ConstPtr parseMetadata(const std::string& bytes,
-                                         const std::filesystem::path& file) {
-    std::istringstream stream(bytes);
-    const auto metadata = std::make_shared<openvdb::MetaMap>();
-    try {
-        metadata->readMeta(stream);
-    } catch (const openvdb::Exception& error) {
-        throw Error(ErrorCode::kInput, gotExpected(file.string(), printable(error.what()),
-                                                   "metadata that OpenVDB can read"));
-    }
-    return metadata;
-}
-
-// Makes a grid of all but its tree.
-openvdb::GridBase::Ptr emptyGrid(const std::filesystem::path& file, const VdbGrid& grid,
-                                 const GridHead& head) {
-    openvdb::GridBase::Ptr made = openvdb::GridBase::createGrid(treeType(grid.type));
-    const openvdb::MetaMap::ConstPtr metadata = parseMetadata(head.metadata, file);
-    static_cast<openvdb::MetaMap&>(*made) = *metadata;
-    made->setSaveFloatAsHalf(grid.half);
-    made->setTransform(std::make_shared<openvdb::math::Transform>(*head.map));
-    return made;
-}
-
 // Reads the background of a grid of numbers; `bytes` moves there.
-void readBackground(VdbBytes& bytes, std::uint64_t place, openvdb::GridBase& grid) {
-    grid.apply<ScalarGrids>([&](auto& typed) {
-        typename std::decay_t<decltype(typed)>::ValueType background{};
-        bytes.seek(place);
-        bytes.read(&background, sizeof background);
-        typed.tree().root().setBackground(background, /*updateChildNodes=*/false);
-    });
+VdbValues::Number readBackground(VdbBytes& bytes, std::uint64_t place,
+                                 const VdbValueFormat& format) {
+    bytes.seek(place);
+    const auto number = [&]<typename T>(T value) -> VdbValues::Number {
+        bytes.read(&value, sizeof value);
+        return value;
+    };
+    const bool isWide = format.bytes == 8;
+    if (format.real) return isWide ? number(double{}) : number(float{});
+    return isWide ? number(std::int64_t{}) : number(std::int32_t{});
 }
 
 }  // namespace
@@ -220,7 +201,6 @@ std::string VdbGrid::valueType() const {
 }
 
 VdbFile::VdbFile(std::filesystem::path file) : file_(std::move(file)) {
-    openvdb::initialize();
     readDirectory();
 }
 
@@ -250,13 +230,9 @@ void VdbFile::readDirectory() {
     }
 }
 
-openvdb::MetaMap::ConstPtr VdbFile::metadata() const {
-    return parseMetadata(metadata_, file_);
-}
-
-openvdb::MetaMap::ConstPtr VdbFile::metadata(const VdbGrid& grid) const {
+VdbMetadata VdbFile::metadata(const VdbGrid& grid) const {
     VdbBytes bytes(file_);
-    return parseMetadata(readHead(bytes, grid, file_).metadata, file_);
+    return readHead(bytes, grid, file_).metadata;
 }
 
 // A file written as a stream says nowhere how long its grids are.
@@ -304,16 +280,17 @@ openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listen
             requireMemory(where, size.memoryBytes(head.format));
             if (mayBeUnsound(head.format)) {
                 const VdbLeaves leaves(std::make_shared<const FileBytes>(file_),
-                                       std::move(places.leaves), head.format, head.map);
+                                       std::move(places.leaves), head.format, head.transform);
                 if (!leaves.areSound()) throw DamagedLeaves(where);
             }
         }
         requireEnd(bytes, *part);
         buffer.addRange(part->begin, part->data + sizeof(std::uint32_t));
-        buffer.addText(head.metadata);
-        buffer.addRange(head.transform, part->end);
+        buffer.addText(head.metadata.bytes());
+        buffer.addRange(head.map, part->end);
     }
     buffer.onProgress([&](double share) { listener.report(share); });
+    openvdb::initialize();
     return guarded(buffer, where, [](std::istream& stream) {
         return openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids()->back();
     });
@@ -337,7 +314,7 @@ std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid, bool mustBeNot
     const bool isZero = (head.format.bytes == 8 ? std::uint64_t(bytes.i64()) : bytes.u32()) == 0;
     if (!places.tiles.empty() || !isZero) return std::nullopt;
     return VdbLeaves(std::make_shared<const FileBytes>(file_), std::move(places.leaves),
-                     head.format, head.map);
+                     head.format, head.transform);
 }
 
 std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
@@ -364,11 +341,10 @@ std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
         walkLeaves(bytes, head.format, places.leaves);
         requireEnd(bytes, grid);
     }
-    openvdb::GridBase::Ptr empty = emptyGrid(file_, grid, head);
-    readBackground(bytes, places.background, *empty);
-    return VdbValues{std::move(empty),
+    return VdbValues{head.metadata,
+                     readBackground(bytes, places.background, head.format),
                      std::move(*tiles),
-                     {file, std::move(places.leaves), head.format, head.map},
+                     {file, std::move(places.leaves), head.format, head.transform},
                      head.format.stored != head.format.bytes,
                      byNotes};
 }

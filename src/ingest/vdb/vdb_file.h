@@ -7,11 +7,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "deltasplat/progress.h"
-#include "ingest/vdb/vdb_bytes.h"
 #include "ingest/vdb/vdb_leaves.h"
+#include "ingest/vdb/vdb_metadata.h"
 #include "ingest/vdb/vdb_tiles.h"
 
 namespace deltasplat {
@@ -40,7 +41,11 @@ struct VdbGrid {
 
 /// A grid of numbers whose leaves are still packed.
 struct VdbValues {
-    openvdb::GridBase::Ptr grid;  ///< all but its tree, which has the background alone
+    /// Of the grid's value type.
+    using Number = std::variant<float, double, std::int32_t, std::int64_t>;
+
+    VdbMetadata metadata;
+    Number background;
     VdbTiles tiles;
     VdbLeaves leaves;  ///< in the tree's order
     bool areHalves;    ///< whether floats are stored as binary16
@@ -49,7 +54,8 @@ struct VdbValues {
 
 /// A .vdb file that is checked before OpenVDB sees any of it, since OpenVDB 10 crashes on damaged
 /// ones; then OpenVDB is handed only the bytes of the grid asked for. Grids are in file order;
-/// types that OpenVDB does not know do no harm.
+/// types that OpenVDB does not know do no harm. But for read() and frustums, OpenVDB's library is
+/// not needed.
 class VdbFile {
   public:
     /// @throw Error(kInput) if this is no whole .vdb file
@@ -57,10 +63,11 @@ class VdbFile {
 
     const std::vector<VdbGrid>& grids() const { return grids_; }
     /// Returns the metadata of the file itself.
-    openvdb::MetaMap::ConstPtr metadata() const;
+    /// @throw Error(kInput) if OpenVDB does not take them
+    openvdb::MetaMap::ConstPtr metadata() const { return metadata_.toMetaMap(file_.string()); }
     /// Returns the metadata of a scalar grid of grids().
     /// @throw Error(kInput) if its bytes are not a sound grid
-    openvdb::MetaMap::ConstPtr metadata(const VdbGrid& grid) const;
+    VdbMetadata metadata(const VdbGrid& grid) const;
     /// Reads one grid of grids().
     /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if it does not fit
     ///        into memory, whatever the listener throws
@@ -92,7 +99,7 @@ class VdbFile {
 
     std::filesystem::path file_;
     std::uint64_t headerEnd_ = 0;
-    std::string metadata_;  // as readMetadata returns it
+    VdbMetadata metadata_;
     std::vector<VdbGrid> grids_;
 };
 

@@ -46,7 +46,7 @@ bool VdbRun::read(const FileBytes& file, std::uint64_t begin, std::uint64_t end)
 }
 
 VdbLeaves::VdbLeaves(std::shared_ptr<const FileBytes> file, std::vector<VdbLeaf> leaves,
-                     const VdbValueFormat& format, openvdb::math::Transform::ConstPtr transform)
+                     const VdbValueFormat& format, openvdb::math::MapBase::ConstPtr transform)
     : file_(std::move(file)),
       leaves_(std::move(leaves)),
       format_(format),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/math/Transform.h>
+#include <openvdb/math/Maps.h>
 
 #include <array>
 #include <cstddef>
@@ -60,10 +60,10 @@ class VdbLeaves {
 
     /// @param leaves  in the order of the file
     VdbLeaves(std::shared_ptr<const FileBytes> file, std::vector<VdbLeaf> leaves,
-              const VdbValueFormat& format, openvdb::math::Transform::ConstPtr transform);
+              const VdbValueFormat& format, openvdb::math::MapBase::ConstPtr transform);
 
     const std::vector<VdbLeaf>& leaves() const { return leaves_; }
-    const openvdb::math::Transform& transform() const { return *transform_; }
+    const openvdb::math::MapBase& transform() const { return *transform_; }
     std::uint64_t bytes() const;
     /// Leaves those out that have no voxels whose x is within [first, last]; leaves() changes.
     void keep(int first, int last);
@@ -90,7 +90,7 @@ class VdbLeaves {
     std::shared_ptr<const FileBytes> file_;
     std::vector<VdbLeaf> leaves_;
     VdbValueFormat format_;
-    openvdb::math::Transform::ConstPtr transform_;
+    openvdb::math::MapBase::ConstPtr transform_;
     std::vector<VdbRun> held_;  // by where they begin
 };
 

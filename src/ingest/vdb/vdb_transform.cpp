@@ -5,8 +5,11 @@
 #include <openvdb/math/Maps.h>
 #include <openvdb/openvdb.h>
 
+#include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
+#include <map>
 #include <memory>
 #include <sstream>
 
@@ -75,11 +78,63 @@ Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex) {
     return transform;
 }
 
-glm::dmat4 matrixOf(const Transform& transform) {
-    const Mat4d affine = transform.baseMap()->getAffineMap()->getMat4();
+MapBase::Ptr readMap(std::istream& stream) {
+    static const std::map<openvdb::Name, MapBase::Ptr (*)()> kMaps{
+        {AffineMap::mapType(), AffineMap::create},
+        {ScaleMap::mapType(), ScaleMap::create},
+        {ScaleTranslateMap::mapType(), ScaleTranslateMap::create},
+        {TranslationMap::mapType(), TranslationMap::create},
+        {UniformScaleMap::mapType(), UniformScaleMap::create},
+        {UniformScaleTranslateMap::mapType(), UniformScaleTranslateMap::create},
+        {UnitaryMap::mapType(), UnitaryMap::create},
+        {NonlinearFrustumMap::mapType(), NonlinearFrustumMap::create},
+    };
+    const openvdb::Name type = openvdb::readString(stream);
+    const auto found = kMaps.find(type);
+    if (found == kMaps.end())
+        OPENVDB_THROW(openvdb::KeyError, "Map " << type << " is not registered");
+    if (type == NonlinearFrustumMap::mapType()) {
+        // It has another map, which it asks the library for, and reads what older files have.
+        openvdb::initialize();
+        openvdb::io::setCurrentVersion(stream);
+    }
+    MapBase::Ptr map = found->second();
+    map->read(stream);
+    return map;
+}
+
+glm::dmat4 matrixOf(const MapBase& map) {
+    const Mat4d affine = map.getAffineMap()->getMat4();
     glm::dmat4 matrix;
     for (int row = 0; row < 4; ++row) {
         for (int column = 0; column < 4; ++column) matrix[row][column] = affine[row][column];
+    }
+    return matrix;
+}
+
+glm::dmat4 worldFromIndexOf(const MapBase& map, const std::string& where) {
+    const auto fail = [&](const std::string& got, const std::string& expected) {
+        throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
+    };
+    if (!map.isLinear()) {
+        fail("a " + map.type() + " transform", "a linear one (no frustum)");
+    }
+    glm::dmat4 matrix(0);
+    try {
+        matrix = matrixOf(map);
+    } catch (const openvdb::ArithmeticError&) {
+        // OpenVDB's own word for a volume of a voxel below 3e-15.
+    }
+    bool finite = true;
+    for (int axis = 0; axis < 4; ++axis) {
+        finite = finite && std::isfinite(glm::dot(matrix[axis], matrix[axis]));
+    }
+    if (!finite || glm::determinant(matrix) == 0) {
+        fail("a transform that cannot be inverted", "a finite affine map");
+    }
+    // A damaged file may hold any matrix, and OpenVDB does not look at the last column.
+    if (glm::dvec4(matrix[0].w, matrix[1].w, matrix[2].w, matrix[3].w) != glm::dvec4(0, 0, 0, 1)) {
+        fail("a transform that is a projection", "a finite affine map");
     }
     return matrix;
 }

@@ -4,6 +4,7 @@
 #include <openvdb/math/Transform.h>
 
 #include <glm/mat4x4.hpp>
+#include <iosfwd>
 #include <string>
 
 namespace deltasplat {
@@ -17,7 +18,17 @@ openvdb::math::Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex);
 openvdb::math::Transform::Ptr makeTransformOfType(const std::string& mapType,
                                                   const glm::dmat4& worldFromIndex);
 
+/// Reads a map as a .vdb file has it, as Transform::read() does. It needs OpenVDB's library for a
+/// frustum alone.
+/// @throw an exception of OpenVDB's, or what the stream throws
+openvdb::math::MapBase::Ptr readMap(std::istream& stream);
+
 /// Returns the matrix of a linear map; makeTransform's comes back as it was.
-glm::dmat4 matrixOf(const openvdb::math::Transform& transform);
+glm::dmat4 matrixOf(const openvdb::math::MapBase& map);
+
+/// Returns the matrix of a map that places a volume.
+/// @param where  for messages
+/// @throw Error(kInput) if it is not linear, or cannot be inverted
+glm::dmat4 worldFromIndexOf(const openvdb::math::MapBase& map, const std::string& where);
 
 }  // namespace deltasplat
