@@ -277,8 +277,10 @@ const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcom
 int threadsFor(const CommonOptions& options) {
     const int wanted = options.threads > 0 ? options.threads : ThreadLimit::hardwareThreads();
     // Beside the one there is, N threads mean N - 1 of the library's, N - 1 of OpenImageIO's and N
-    // of OpenEXR's.
-    const int startable = wanted > 1 ? startableThreads(3 * wanted - 2) : 0;
+    // of OpenEXR's; and of OpenVDB's library those that it starts (log4cplus), and who loads it.
+    constexpr int kOfOpenVdb = 5;
+    const int startable =
+        wanted > 1 ? startableThreads(3 * wanted - 2 + kOfOpenVdb) - kOfOpenVdb : 0;
     const int threads = std::clamp((startable + 2) / 3, 1, wanted);
     // What OpenImageIO makes for itself when it is first used: as many as there are cores, else.
     ::setenv("OPENIMAGEIO_THREADS", std::to_string(threads).c_str(), 1);

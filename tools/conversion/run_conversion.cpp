@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "ingest/files/file_name.h"
 #include "ingest/label_claim.h"
 #include "memory.h"
+#include "modules/load_early.h"
 #include "output_files.h"
 #include "process/interrupt.h"
 #include "sequence/frame_name.h"
@@ -125,6 +127,7 @@ ConversionStats runConversion(const CLI::App& app, const ConversionFiles& files,
                               const Convert& convert) {
     requireFramesOf(app, frames, files.input, files.output);
     if (frames.asked() && !files.stats.empty()) frameNameOf(frames, "--stats", files.stats);
+    const std::jthread loading = loadEarly(files.toVdb() ? files.output : files.input);
     ConversionStats stats;
     {
         ProgressDisplay display(session.common);

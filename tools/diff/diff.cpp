@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <thread>
 #include <utility>
 
 #include "deltasplat/error.h"
@@ -11,6 +12,7 @@
 #include "ingest/files/file_name.h"
 #include "ingest/grids/grid_errors.h"
 #include "listener.h"
+#include "modules/load_early.h"
 #include "options/input_options.h"
 #include "options/volume_choices.h"
 #include "process/print_out.h"
@@ -247,6 +249,7 @@ Verdict compareFrames(const CLI::App& app, const DiffOptions& options, const Ses
 }
 
 Verdict runDiff(const CLI::App& app, const DiffOptions& options, const Session& session) {
+    const std::jthread loading[] = {loadEarly(options.a), loadEarly(options.b)};
     if (options.frames.asked()) return compareFrames(app, options, session);
     for (const std::filesystem::path& file : {options.a, options.b})
         requireFramesOf(app, options.frames, file);

@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// A function of the program for each of OpenVDB's that it calls, by the same name. Called for the
-// first time, it has the library loaded and learns where the function is (late_openvdb.cpp); from
-// then on it jumps there. Arguments are where calls have them, and stay there.
-// late_calls.inc: a line "late_call NAME" for each, by list_late_calls.sh.
+// A function of the program for each that it calls of libraries which are loaded late, by the same
+// name. Called for the first time, it has the library loaded and learns where the function is
+// (late_calls.cpp); from then on it jumps there. Arguments are where calls have them, and stay there.
+// late_calls.inc: a line "late_call NAME, MODULE" for each, by list_late_calls.sh.
 
-// What late_openvdb.cpp knows as LateCall: where to jump to, and the function's name.
-        .macro late_call_data name
+// What late_calls.cpp knows as LateCall: where to jump to, the function's name and its module's.
+        .macro late_call_data name, module
         .section .rodata
 0:      .asciz "\name"
+3:      .asciz "\module"
         .data
         .balign 8
 1:      .quad 2f
         .quad 0b
+        .quad 3b
         .endm
 
 #if defined(__x86_64__)
 
-        .macro late_call name
-        late_call_data \name
+        .macro late_call name, module
+        late_call_data \name, \module
         .text
         .globl \name
         .type \name, @function
@@ -56,17 +58,27 @@ bind_late_call:
         .cfi_endproc
         .size bind_late_call, . - bind_late_call
 
+// See open_library.h: who looks for handlers of an exception finds no way past it, and ends there.
+        .globl deltasplat_dlopen
+        .type deltasplat_dlopen, @function
+deltasplat_dlopen:
+        sub $8, %rsp
+        call dlopen@PLT
+        add $8, %rsp
+        ret
+        .size deltasplat_dlopen, . - deltasplat_dlopen
+
 #elif defined(__aarch64__)
 
-        .macro late_call name
-        late_call_data \name
+        .macro late_call name, module
+        late_call_data \name, \module
         .text
         .balign 4
         .globl \name
         .type \name, %function
 \name:  adrp x16, 1b
         add x16, x16, :lo12:1b
-        ldr x17, [x16]
+        ldar x17, [x16]
         br x17
 2:      b bind_late_call
         .size \name, . - \name
@@ -110,8 +122,17 @@ bind_late_call:
         .cfi_endproc
         .size bind_late_call, . - bind_late_call
 
+        .globl deltasplat_dlopen
+        .type deltasplat_dlopen, %function
+deltasplat_dlopen:
+        stp x29, x30, [sp, -16]!
+        bl dlopen
+        ldp x29, x30, [sp], 16
+        ret
+        .size deltasplat_dlopen, . - deltasplat_dlopen
+
 #else
-#error "late_calls.S: no calls for this processor; tools/CMakeLists.txt links OpenVDB instead"
+#error "late_calls.S: no calls for this processor; tools/CMakeLists.txt links the libraries instead"
 #endif
 
 #include "late_calls.inc"

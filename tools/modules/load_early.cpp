@@ -3,23 +3,25 @@
 
 #include <system_error>
 
+#include "deltasplat/memory_limit.h"
 #include "deltasplat/threads.h"
 #include "lower_case.h"
 #include "modules/exr_module.h"
 #include "modules/image_module.h"
+#include "modules/late_openvdb.h"
 
 namespace deltasplat {
 
-std::jthread loadEarly(const std::filesystem::path& picture) {
-    const std::string extension = lowerCase(picture.extension().string());
-    const bool isExr = extension == ".exr";
-    const bool isLoaded =
-        isExr || extension.starts_with(".tif") || extension == ".jpg" || extension == ".jpeg";
-    if (!isLoaded || threadCount() < 2) return {};
+namespace {
+
+// @param load  may throw
+std::jthread beside(void (*load)()) {
+    // Under a limit what is taken when must not depend on threads.
+    if (threadCount() < 2 || memoryLimit() != 0) return {};
     try {
-        return std::jthread([isExr] {
+        return std::jthread([load] {
             try {
-                isExr ? void(exrModule()) : void(imageModule());
+                load();
             } catch (...) {
                 // Whoever needs it is told.
             }
@@ -27,6 +29,21 @@ std::jthread loadEarly(const std::filesystem::path& picture) {
     } catch (const std::system_error&) {
         return {};
     }
+}
+
+}  // namespace
+
+std::jthread loadEarly(const std::filesystem::path& file) {
+    const std::string extension = lowerCase(file.extension().string());
+    if (extension == ".exr") return beside([] { exrModule(); });
+    if (extension.starts_with(".tif") || extension == ".jpg" || extension == ".jpeg")
+        return beside([] { imageModule(); });
+    if (extension == ".vdb") return loadOpenVdbEarly();
+    return {};
+}
+
+std::jthread loadOpenVdbEarly() {
+    return beside(loadOpenVdb);
 }
 
 }  // namespace deltasplat

@@ -6,9 +6,11 @@
 
 namespace deltasplat {
 
-/// Loads the module that writes a picture of this name, if there is one to load, beside what comes
-/// before the picture is written. Joins when it is destroyed; what goes wrong is said when the
-/// module is used.
-std::jthread loadEarly(const std::filesystem::path& picture);
+/// Loads what a picture of this name is written by, or a volume is written or kept as it is stored,
+/// if there is something to load, beside what comes before that is needed. Joins when it is
+/// destroyed; what goes wrong is said when it is used.
+std::jthread loadEarly(const std::filesystem::path& file);
+/// Loads OpenVDB likewise.
+std::jthread loadOpenVdbEarly();
 
 }  // namespace deltasplat

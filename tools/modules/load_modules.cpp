@@ -16,6 +16,7 @@
 #include "modules/image_module.h"
 #include "modules/medical_module.h"
 #include "modules/module_version.h"
+#include "modules/open_library.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -35,8 +36,7 @@ std::filesystem::path fileOf(const std::string& name) {
         const auto* const called = std::bit_cast<const char*>(::getauxval(AT_EXECFN));
         std::error_code unknown = error;
         if (called) program = std::filesystem::canonical(called, unknown);
-        if (unknown)
-            refuse(name, "/proc/self/exe: " + error.message(), "the place of the program");
+        if (unknown) refuse(name, "/proc/self/exe: " + error.message(), "the place of the program");
     }
     return (program.parent_path() / DELTASPLAT_MODULES / (name + ".so")).lexically_normal();
 }
@@ -53,17 +53,17 @@ void requireSameVersion(const std::string& name, const std::filesystem::path& fi
 
 template <typename Module>
 const Module& load(const char* name) {
-    const auto module =
-        reinterpret_cast<const Module* (*)()>(::dlsym(openModule(name), "deltasplat_module"));
+    const auto module = reinterpret_cast<const Module* (*)()>(
+        ::dlsym(openModule(name, RTLD_NOW), "deltasplat_module"));
     if (!module) refuse(name, "no functions", "a module");
     return *module();
 }
 
 }  // namespace
 
-void* openModule(const char* name) {
+void* openModule(const char* name, int binding) {
     const std::filesystem::path file = fileOf(name);
-    void* const library = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    void* const library = openLibrary(file.c_str(), binding | RTLD_LOCAL);
     if (!library) {
         const char* const why = ::dlerror();
         refuse(name, printable(why ? why : "nothing"), file.string());

@@ -37,21 +37,24 @@ worked=0
 for limit in 1 3 4 5 6 8 10 12 16 40 100; do
     for threads in 2 16; do
         for name in render convert version; do
-            command=(render slab_8x8x8_uint8.raw -o out.exr --threads $threads -q)
+            command=(render slab_8x8x8_uint8.raw -o out.exr --threads $threads -qq)
             # Of OpenVDB's library, which starts threads while it is loaded.
-            [[ $name == convert ]] && command=(convert slab_8x8x8_uint8.raw out.vdb --threads $threads -q)
+            [[ $name == convert ]] &&
+                command=(convert slab_8x8x8_uint8.raw out.vdb --threads $threads -qq)
             [[ $name == version ]] && command=(--version)
-            "${as_user[@]}" bash -c "ulimit -u $limit; exec there/bin/program \"\$@\"" - "${command[@]}" \
+            timeout -k 5 60 "${as_user[@]}" bash -c "ulimit -u $limit; exec there/bin/program \"\$@\"" - "${command[@]}" \
                 >stdout 2>message
             code=$?
             [[ $code == 0 || $code == 1 ]] ||
                 { echo "ulimit -u $limit, ${command[*]}: exit code $code: $(cat message)"; exit 1; }
-            [[ $code == 0 || ($(wc -l <message) == 1 && $(cat message) == "deltasplat: "*) ]] ||
+            [[ $code == 0 ||
+                ($(wc -l <message) == 1 && $(cat message) == "deltasplat: a thread cannot be started"*) ]] ||
                 { echo "ulimit -u $limit, ${command[*]}: $(cat message)"; exit 1; }
             if [[ $name != version ]]; then
                 [[ $code == 0 && $name == convert ]] && worked=$limit
                 output=$(find . -maxdepth 1 -name 'out.*')
-                [[ ($code == 0 && -n $output) || ($code == 1 && -z $output) ]] ||
+                # TBB may want its first thread after a .vdb is written.
+                [[ ($code == 0 && -n $output) || ($code == 1 && (-z $output || $name == convert)) ]] ||
                     { echo "ulimit -u $limit, ${command[*]}: exit code $code and $output"; exit 1; }
             fi
             rm -f out.exr out.vdb

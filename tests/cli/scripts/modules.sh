@@ -10,7 +10,7 @@ mkdir -p installed/bin installed/lib lonely/bin lonely/lib/deltasplat links
 cp "$program" installed/bin/deltasplat
 cp "$program" lonely/bin/deltasplat
 cp -r "${program%/*}/../lib/deltasplat" installed/lib/
-cp installed/lib/deltasplat/openvdb.so lonely/lib/deltasplat/
+cp installed/lib/deltasplat/{openvdb,blosc}.so lonely/lib/deltasplat/
 ln -s ../installed/bin/deltasplat links/volumes
 program=$PWD/installed/bin/deltasplat
 
@@ -50,7 +50,7 @@ done
 expect_files "" 'none*'
 
 # Nor is one of another version taken.
-cp installed/lib/deltasplat/openvdb.so lonely/lib/deltasplat/
+cp installed/lib/deltasplat/{openvdb,blosc}.so lonely/lib/deltasplat/
 for module in images exr; do
     sed 's/deltasplat module 0/deltasplat module 9/' installed/lib/deltasplat/$module.so >lonely/lib/deltasplat/$module.so
     suffix=jpg

@@ -26,15 +26,22 @@ expect_said "  command line: volumes info -v '' 'it'\\''s'"
 expect_code 2 "$program"
 expect_said "deltasplat: subcommand: got nothing; expected info, convert, delta, restore, diff, render, fold, bench or synth (see 'deltasplat --help')"
 
-# Pictures of what is no .vdb, what is asked of it, and what is said without any volume.
+# Pictures, and what is said without any volume.
 "$program" synth engine engine_24x24x24_uint8.raw --dims 24x24x24 -qq
 "$program" convert engine_24x24x24_uint8.raw engine.npy -qq
+"$program" convert engine_24x24x24_uint8.raw engine.vdb -qq
+"$program" synth cloud cloud.vdb --dims 24x24x24 -qq
+"$program" delta engine_24x24x24_uint8.raw deltas.vdb -qq
+"$program" delta engine_24x24x24_uint8.raw packed.vdb --pack -qq
 loads_openvdb() { LD_DEBUG=files "$@" 2>&1 >/dev/null | grep -q 'libopenvdb'; }
 for command in --version "render --version" --help "render --help" "render --no-such-option" \
     "render missing.vdb -o x.png" "render engine_24x24x24_uint8.raw -o x.png --size 32x32" \
     "render engine.npy -o x.exr --view iso --size 32x32 --between 1 --projection perspective" \
     "render engine.npy -o x.exr --size 32x32 --mode mip" \
     "render engine.npy -o x.exr --size 32x32 --shade --aov depth" \
+    "render engine.vdb -o x.png --size 32x32" "render cloud.vdb -o x.exr --size 32x32 --lighting scatter" \
+    "render deltas.vdb -o x.exr --size 32x32" "render packed.vdb -o x.exr --size 32x32" \
+    "info --list cloud.vdb" "bench engine.vdb --size 32x32 --repeats 1 --threads 1" \
     "diff engine.npy engine_24x24x24_uint8.raw" "convert engine.npy engine.nii" \
     "synth engine x.raw --dims 8x8x8"; do
     # shellcheck disable=SC2086

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Brings OpenVDB's library along, which it is linked with; the program calls that (late_calls.S).
+// A module that brings a library along, which it is linked with; the program calls the library's
+// own functions (late_calls.S).
 #include "modules/module_version.h"
 
 extern "C" const char deltasplat_module_version[];
