@@ -22,6 +22,7 @@
 #include "ingest/delta/decode_blocks.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/word_grid.h"
+#include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
 
@@ -183,7 +184,7 @@ std::optional<DeltaEstimate> estimateFrom(const Volume& volume, int sliceAxis) {
     estimate.deltaBytes = scaledBytes(
         *voxels.deltas, 1 / share, share == 1 ? nodeBytes(voxels.deltas->constBaseTree()) : nodes);
     estimate.readsByBlocks =
-        mayDecodeBlocks(voxels.header) && volume.gridClass != "level set";  // made fog first
+        mayDecodeBlocks(voxels.header) && volume.gridClass != kLevelSetClass;  // made fog first
     options.pack = true;
     estimate.packedBytes = packedBytes(takeDeltas(*sample, options), share);
     return estimate;
