@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/delta/delta_estimate.h"
 
-#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <streambuf>
 #include <utility>
 #include <vector>
 
@@ -25,6 +23,7 @@
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
+#include "vdb/write_vdb.h"
 
 namespace deltasplat {
 namespace {
@@ -104,29 +103,8 @@ std::optional<Volume> sampleOf(const Volume& volume, const Chosen& chosen) {
     return sample;
 }
 
-class CountingBuffer : public std::streambuf {
-  public:
-    double bytes() const { return bytes_; }
-
-  protected:
-    int_type overflow(int_type next) override {
-        ++bytes_;
-        return traits_type::not_eof(next);
-    }
-    std::streamsize xsputn(const char*, std::streamsize count) override {
-        bytes_ += double(count);
-        return count;
-    }
-
-  private:
-    double bytes_ = 0;
-};
-
 double bytesOf(const openvdb::GridBase::ConstPtr& grid) {
-    CountingBuffer counter;
-    std::ostream out(&counter);
-    openvdb::io::Stream(out).write(openvdb::GridCPtrVec{grid});
-    return counter.bytes();
+    return double(writtenBytes(writtenGrid(grid)));
 }
 
 double nodeBytes(const openvdb::TreeBase& tree) {

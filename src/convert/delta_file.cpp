@@ -23,8 +23,8 @@
 #include "ingest/vdb/vdb_transform.h"
 #include "listener_part.h"
 #include "number_text.h"
+#include "vdb/write_vdb.h"
 #include "view/affine.h"
-#include "write_vdb.h"
 
 namespace deltasplat {
 namespace {
@@ -79,7 +79,7 @@ openvdb::math::Transform::Ptr permutedTransform(const glm::dmat4& worldFromIndex
 }  // namespace
 
 struct DeltaFile::Impl {
-    openvdb::GridCPtrVec grids;
+    std::vector<WrittenGrid> grids;
     openvdb::MetaMap fileMetadata;
 };
 
@@ -146,7 +146,7 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
                                 "a largest error of " + numberText(entry.maxError),
                                 "at most " + numberText(*options.maxError) + " (`maxError`)"));
     }
-    impl_->grids.push_back(grid);
+    impl_->grids.push_back(writtenGrid(grid));
     listener.report(1);
     return entry;
 }

@@ -16,7 +16,7 @@
 #include "deltasplat/ingest/value_statistics.h"
 #include "ingest/grids/source_grid.h"
 #include "number_text.h"
-#include "write_vdb.h"
+#include "vdb/write_vdb.h"
 
 namespace deltasplat {
 namespace {
@@ -121,9 +121,9 @@ WriteReport writeGrids(const std::filesystem::path& file, std::vector<Volume> vo
     WriteReport report;
     Notes notes(report, file);
     const openvdb::MetaMap metadata = fileMetadata(volumes);
-    openvdb::GridCPtrVec grids;
+    std::vector<WrittenGrid> grids;
     for (std::size_t i = 0; i < volumes.size(); ++i) {
-        grids.push_back(storedGrid(std::move(volumes[i]), options, notes));
+        grids.push_back(writtenGrid(storedGrid(std::move(volumes[i]), options, notes)));
         listener.report(kGridShare * double(i + 1) / double(volumes.size()));
     }
     Listener writing = listener;

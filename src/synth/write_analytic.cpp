@@ -17,7 +17,7 @@
 #include "parallel.h"
 #include "synth/sample_grids.h"
 #include "synth/sample_voxel.h"
-#include "write_vdb.h"
+#include "vdb/write_vdb.h"
 
 namespace deltasplat {
 namespace {
@@ -90,7 +90,10 @@ void writeGrids(const AnalyticVolume& volume, const std::filesystem::path& file,
                     gotExpected("`type`", "\"" + options.type + "\"", "float32 for .vdb"));
     }
     { const AtomicFile probe(file); }  // a bad name should fail before the work, not after
-    writeVdb(file, sampleGrids(volume, options, listener));
+    std::vector<WrittenGrid> grids;
+    for (const auto& grid : sampleGrids(volume, options, listener))
+        grids.push_back(writtenGrid(grid));
+    writeVdb(file, grids);
 }
 
 void checkOptions(const AnalyticFileOptions& options) {

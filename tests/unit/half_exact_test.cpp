@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "unit/convert_helpers.h"
-#include "write_vdb.h"
+#include "vdb/write_vdb.h"
 
 namespace deltasplat {
 namespace {
@@ -35,7 +35,7 @@ openvdb::FloatGrid::Ptr gridOf(float background, std::initializer_list<float> ac
 bool comesBack(const openvdb::FloatGrid::Ptr& grid) {
     const testing::TempFolder folder;
     grid->setSaveFloatAsHalf(true);
-    writeVdb("half.vdb", {grid});
+    writeVdb("half.vdb", {writtenGrid(grid)});
     const auto back = readGrid<openvdb::FloatGrid>("half.vdb");
     bool same = back->background() == grid->background();
     for (int x = 0; x < 8; ++x) {

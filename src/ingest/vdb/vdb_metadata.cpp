@@ -59,6 +59,8 @@ constexpr const char* kTypeName = nullptr;
 template <>
 constexpr const char* kTypeName<std::string> = "string";
 template <>
+constexpr const char* kTypeName<bool> = "bool";
+template <>
 constexpr const char* kTypeName<std::int32_t> = "int32";
 template <>
 constexpr const char* kTypeName<std::int64_t> = "int64";
@@ -89,6 +91,8 @@ std::optional<T> VdbMetadata::get(const std::string& name) const {
     if (!entry || entry->type != kTypeName<T>) return std::nullopt;
     if constexpr (std::is_same_v<T, std::string>) {
         return entry->value;
+    } else if constexpr (std::is_same_v<T, bool>) {
+        return entry->value[0] != '\0';
     } else {
         T value;
         std::memcpy(&value, entry->value.data(), sizeof value);
@@ -108,11 +112,13 @@ void VdbMetadata::insert(const std::string& name, const T& value) {
 }
 
 template std::optional<std::string> VdbMetadata::get(const std::string&) const;
+template std::optional<bool> VdbMetadata::get(const std::string&) const;
 template std::optional<std::int32_t> VdbMetadata::get(const std::string&) const;
 template std::optional<std::int64_t> VdbMetadata::get(const std::string&) const;
 template std::optional<double> VdbMetadata::get(const std::string&) const;
 template std::optional<glm::ivec3> VdbMetadata::get(const std::string&) const;
 template void VdbMetadata::insert(const std::string&, const std::string&);
+template void VdbMetadata::insert(const std::string&, const bool&);
 template void VdbMetadata::insert(const std::string&, const std::int32_t&);
 template void VdbMetadata::insert(const std::string&, const std::int64_t&);
 template void VdbMetadata::insert(const std::string&, const double&);

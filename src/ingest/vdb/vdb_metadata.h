@@ -33,7 +33,7 @@ class VdbMetadata {
     /// Returns null if there is none of that name.
     const Entry* find(const std::string& name) const;
     /// Returns the value of a name that has one of this type.
-    /// @tparam T  std::string, std::int32_t, std::int64_t, double or glm::ivec3
+    /// @tparam T  std::string, bool, std::int32_t, std::int64_t, double or glm::ivec3
     template <typename T>
     std::optional<T> get(const std::string& name) const;
     /// Returns the text of a name; empty if there is none.

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "deltasplat/progress.h"
+#include "ingest/vdb/vdb_metadata.h"
+#include "vdb/written_grid.h"
+
+namespace deltasplat {
+
+/// Writes grids into one `.vdb`: Blosc and active-mask compression, grid offsets, statistics in the
+/// metadata, the same bytes as openvdb::io::File writes, with two differences. The file appears
+/// only when it is whole (io::File does not notice a full disk). And its 128-bit tag, random
+/// otherwise, is made from the content, so that the same grids give the same bytes (where the file
+/// is a device, from what comes before voxels). On all threads; OpenVDB's library is not needed.
+/// @throw Error(kOutput) if it cannot be written; whatever `listener.progress` throws
+void writeVdb(const std::filesystem::path& file, const std::vector<WrittenGrid>& grids,
+              const VdbMetadata& fileMetadata = {}, const Listener& listener = {});
+
+/// Returns how many bytes a file has of a grid.
+std::uint64_t writtenBytes(const WrittenGrid& grid);
+
+}  // namespace deltasplat

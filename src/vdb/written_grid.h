@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Grid.h>
+#include <openvdb/math/Maps.h>
+
+#include <memory>
+#include <string>
+
+#include "ingest/vdb/vdb_metadata.h"
+#include "vdb/written_tree.h"
+
+namespace deltasplat {
+
+/// A grid on its way into a .vdb file.
+struct WrittenGrid {
+    std::string name;
+    VdbMetadata metadata;  ///< what is noted anew whenever a file is written does not count
+    openvdb::math::MapBase::ConstPtr map;
+    std::shared_ptr<const WrittenTree> tree;
+
+    /// Whether the metadata say that real values are stored as halves.
+    bool isHalf() const;
+};
+
+/// Returns what is written of a scalar grid, or of one of vec3s: itself, which must not change.
+WrittenGrid writtenGrid(const openvdb::GridBase::ConstPtr& grid);
+
+}  // namespace deltasplat

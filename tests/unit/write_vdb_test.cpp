@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+// What writeVdb() writes has to be, to the last byte but the tag, what openvdb::io::File writes.
+#include "vdb/write_vdb.h"
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <cstdint>
+#include <future>
+#include <limits>
+#include <random>
+#include <string>
+#include <type_traits>
+
+#include "deltasplat/threads.h"
+#include "unit/convert_helpers.h"
+
+namespace deltasplat {
+namespace {
+
+using openvdb::Coord;
+using testing::TempFolder;
+
+constexpr std::size_t kTagPlace = 21;
+constexpr std::size_t kTagBytes = 36;
+
+std::vector<WrittenGrid> written(const openvdb::GridCPtrVec& grids) {
+    std::vector<WrittenGrid> all;
+    for (const auto& grid : grids) all.push_back(writtenGrid(grid));
+    return all;
+}
+
+std::string withoutTag(const std::string& file) {
+    std::string bytes = testing::readBytes(file);
+    EXPECT_GE(bytes.size(), kTagPlace + kTagBytes);
+    return bytes.erase(kTagPlace, kTagBytes);
+}
+
+void expectSameBytes(const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata = {}) {
+    const TempFolder folder;
+    openvdb::io::File theirs("theirs.vdb");
+    theirs.write(grids, metadata);
+    theirs.close();
+    writeVdb("ours.vdb", written(grids), metadata);
+    const std::string a = withoutTag("theirs.vdb");
+    const std::string b = withoutTag("ours.vdb");
+    ASSERT_EQ(a.size(), b.size());
+    const auto place = std::mismatch(a.begin(), a.end(), b.begin()).first - a.begin();
+    EXPECT_EQ(std::size_t(place), a.size());
+}
+
+// Values of which some kind of them is stored as inactive.
+enum class Inactive { kBackground, kMinus, kOne, kBoth, kOneBesideBackground, kTwo, kMany };
+constexpr Inactive kAllInactive[] = {
+    Inactive::kBackground,          Inactive::kMinus, Inactive::kOne, Inactive::kBoth,
+    Inactive::kOneBesideBackground, Inactive::kTwo,   Inactive::kMany};
+
+template <typename T>
+T valueOf(int number) {
+    if constexpr (std::is_same_v<T, bool>) {
+        return number % 2 != 0;
+    } else {
+        return T(number);
+    }
+}
+
+template <typename T>
+T inactiveValue(Inactive kind, int number, T background) {
+    const T minus = openvdb::math::negative(background);
+    switch (kind) {
+        case Inactive::kMinus:
+            return minus;
+        case Inactive::kOne:
+            return valueOf<T>(77);
+        case Inactive::kBoth:
+            return number % 3 == 0 ? background : minus;
+        case Inactive::kOneBesideBackground:
+            return number % 3 == 0 ? valueOf<T>(77) : background;
+        case Inactive::kTwo:
+            return valueOf<T>(number % 3 == 0 ? 77 : 78);
+        case Inactive::kMany:
+            return valueOf<T>(number % 100);
+        default:
+            return background;
+    }
+}
+
+// A grid with leaves, and tiles of all levels, in several nodes of the root.
+// @param leaves  how many, of which every fifth is full
+template <typename Grid>
+typename Grid::Ptr randomGrid(int leaves, Inactive inactive, int background, unsigned seed) {
+    openvdb::initialize();
+    using Tree = typename Grid::TreeType;
+    using T = typename Grid::ValueType;
+    constexpr bool kIsMask = std::is_same_v<typename Tree::BuildType, openvdb::ValueMask>;
+    std::mt19937 random(seed);
+    const T empty = valueOf<T>(background);
+    auto grid = Grid::create(empty);
+    Tree& tree = grid->tree();
+    for (int i = 0; i < leaves; ++i) {
+        const int edge = 600;
+        const Coord origin(int(random() % edge) - 300, int(random() % edge), int(random() % 5000));
+        auto* leaf = tree.touchLeaf(origin);
+        for (openvdb::Index n = 0; n < leaf->SIZE; ++n) {
+            const bool isOn = i % 5 == 0 || random() % 3 != 0;
+            leaf->setActiveState(n, isOn);
+            if constexpr (!kIsMask) {
+                leaf->setValueOnly(n, isOn
+                                          ? valueOf<T>(int(random() % 50))
+                                          : inactiveValue<T>(inactive, int(random() % 999), empty));
+            }
+        }
+    }
+    if (leaves > 2) {
+        const T tile = valueOf<T>(7);
+        tree.addTile(1, Coord(1000, 0, 0), tile, true);
+        tree.addTile(1, Coord(1008, 0, 0), inactiveValue<T>(inactive, 3, empty), false);
+        tree.addTile(1, Coord(1016, 0, 0), inactiveValue<T>(inactive, 1, empty), false);
+        tree.addTile(2, Coord(2048, 0, 0), tile, true);
+        tree.addTile(2, Coord(2048, 128, 0), inactiveValue<T>(inactive, 4, empty), false);
+        tree.addTile(3, Coord(-8192, 4096, 0), tile, true);
+        tree.addTile(3, Coord(-4096, 4096, 0), tile, false);
+    }
+    grid->setName("grid");
+    return grid;
+}
+
+template <typename Grid>
+void expectSameBytesOfAll(int background) {
+    unsigned seed = 1;
+    for (const Inactive inactive : kAllInactive) {
+        for (const bool half : {false, true}) {
+            const auto grid = randomGrid<Grid>(40, inactive, background, ++seed);
+            grid->setSaveFloatAsHalf(half);
+            SCOPED_TRACE(grid->type() + " half " + std::to_string(half) + " kind " +
+                         std::to_string(int(inactive)));
+            expectSameBytes({grid});
+        }
+    }
+}
+
+TEST(WriteVdb, GridsOfAllTypesAreOpenVdbs) {
+    for (const int background : {0, 3}) {
+        expectSameBytesOfAll<openvdb::FloatGrid>(background);
+        expectSameBytesOfAll<openvdb::DoubleGrid>(background);
+        expectSameBytesOfAll<openvdb::Int32Grid>(background);
+        expectSameBytesOfAll<openvdb::Int64Grid>(background);
+        expectSameBytesOfAll<openvdb::BoolGrid>(background);
+        expectSameBytesOfAll<openvdb::Vec3SGrid>(background);
+    }
+    expectSameBytesOfAll<openvdb::MaskGrid>(0);
+}
+
+TEST(WriteVdb, NotesOfFewAndManyLeavesAreOpenVdbs) {
+    // Arrays are packed from 49 bytes on, and padded up to 128.
+    for (const int leaves : {0, 1, 2, 6, 7, 15, 16, 17, 48, 49, 50, 127, 128, 129, 1000}) {
+        SCOPED_TRACE(leaves);
+        expectSameBytes({randomGrid<openvdb::FloatGrid>(leaves, Inactive::kBoth, 2, 5)});
+        expectSameBytes({randomGrid<openvdb::BoolGrid>(leaves, Inactive::kBoth, 0, 5)});
+    }
+}
+
+TEST(WriteVdb, ValuesThatDoNotPackAreOpenVdbs) {
+    std::mt19937_64 random(3);
+    const auto noise = openvdb::FloatGrid::create(0);
+    const auto wide = openvdb::Int64Grid::create(0);
+    for (int i = 0; i < 4000; ++i) {
+        const Coord place(int(random() % 16), int(random() % 16), int(random() % 16));
+        noise->tree().setValueOn(place, float(double(random()) * 0x1p-64));
+        wide->tree().setValueOn(place, std::int64_t(random()));
+    }
+    const auto odd = openvdb::FloatGrid::create(0.1F);
+    odd->tree().setValueOn(Coord(0, 0, 0), std::numeric_limits<float>::quiet_NaN());
+    odd->tree().setValueOn(Coord(0, 0, 1), std::numeric_limits<float>::infinity());
+    odd->tree().setValueOff(Coord(0, 0, 2), std::numeric_limits<float>::quiet_NaN());
+    odd->tree().setValueOff(Coord(0, 9, 2), -0.0F);
+    // A leaf and a node without any active voxel.
+    odd->tree().setValueOff(Coord(0, 0, 20), 0.1F);
+    odd->tree().touchLeaf(Coord(-5000, 0, 0));
+    for (const bool half : {false, true}) {
+        noise->setSaveFloatAsHalf(half);
+        odd->setSaveFloatAsHalf(half);
+        expectSameBytes({noise});
+        expectSameBytes({wide});
+        expectSameBytes({odd});
+    }
+}
+
+TEST(WriteVdb, NamesAreToldApartAsByOpenVdb) {
+    openvdb::GridCPtrVec grids;
+    for (const char* const name : {"a", "", "b", "a", "",
+                                   "a\x1e"
+                                   "1",
+                                   "a\x1e"
+                                   "0"}) {
+        const auto grid = randomGrid<openvdb::FloatGrid>(1, Inactive::kBackground, 0, 1);
+        grid->setName(name);
+        grids.push_back(grid);
+    }
+    expectSameBytes(grids);
+    expectSameBytes({});
+}
+
+TEST(WriteVdb, MetadataAndMapsAreOpenVdbs) {
+    openvdb::MetaMap file;
+    file.insertMeta("creator", openvdb::StringMetadata("somebody"));
+    file.insertMeta("size", openvdb::Vec3DMetadata({1, 2, 3}));
+    const auto grid = randomGrid<openvdb::FloatGrid>(3, Inactive::kBackground, 0, 1);
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    grid->insertMeta("matrix", openvdb::Mat4DMetadata(openvdb::Mat4d::identity()));
+    grid->insertMeta("flag", openvdb::BoolMetadata(true));
+    grid->insertMeta(openvdb::GridBase::META_FILE_VOXEL_COUNT, openvdb::Int64Metadata(5));
+    openvdb::Mat4d shear = openvdb::Mat4d::identity();
+    shear(0, 1) = 0.25;
+    shear(3, 0) = 7;
+    using openvdb::math::Transform;
+    for (const Transform::Ptr& transform :
+         {Transform::createLinearTransform(0.3), Transform::createLinearTransform(shear),
+          Transform::createFrustumTransform(openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(100)),
+                                            0.5, 2)}) {
+        grid->setTransform(transform);
+        expectSameBytes({grid}, file);
+    }
+    // OpenVDB takes this one only where it is an int64.
+    auto odd = written({grid});
+    odd[0].metadata.insert(openvdb::GridBase::META_FILE_VOXEL_COUNT, std::string("many"));
+    const TempFolder folder;
+    writeVdb("odd.vdb", odd);
+    EXPECT_EQ(testing::readGrid<openvdb::FloatGrid>("odd.vdb")->activeVoxelCount(),
+              grid->activeVoxelCount());
+}
+
+TEST(WriteVdb, BytesDependOnNothingButTheGrids) {
+    const TempFolder folder;
+    const auto grid = randomGrid<openvdb::FloatGrid>(3000, Inactive::kTwo, 1, 9);
+    for (const int threads : {1, 2, 5}) {
+        const ThreadLimit limit(threads);
+        writeVdb(std::to_string(threads) + ".vdb", written({grid}));
+    }
+    const std::string bytes = testing::readBytes("1.vdb");
+    EXPECT_EQ(bytes, testing::readBytes("2.vdb"));
+    EXPECT_EQ(bytes, testing::readBytes("5.vdb"));
+    EXPECT_EQ(writtenBytes(writtenGrid(grid)) + kTagPlace + kTagBytes + 8, bytes.size());
+    grid->tree().setValueOn(Coord(0), 12345);
+    writeVdb("other.vdb", written({grid}));
+    EXPECT_NE(bytes.substr(kTagPlace, kTagBytes),
+              testing::readBytes("other.vdb").substr(kTagPlace, kTagBytes));
+}
+
+TEST(WriteVdb, APipeTakesAFile) {
+    const TempFolder folder;
+    const auto grid = randomGrid<openvdb::FloatGrid>(30, Inactive::kTwo, 1, 9);
+    writeVdb("file.vdb", written({grid}));
+    ASSERT_EQ(::mkfifo("pipe.vdb", 0600), 0);
+    auto reading = std::async(std::launch::async, [] { return withoutTag("pipe.vdb"); });
+    writeVdb("pipe.vdb", written({grid}));
+    EXPECT_EQ(reading.get(), withoutTag("file.vdb"));
+}
+
+}  // namespace
+}  // namespace deltasplat
