@@ -8,9 +8,14 @@
 #include <memory>
 #include <vector>
 
+#include "ingest/codes/code_tree.h"
+#include "ingest/codes/code_values.h"
 #include "ingest/grids/grid_values.h"
+#include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/values/value_cast.h"
+#include "memory.h"
 
 namespace deltasplat {
 namespace {
@@ -93,6 +98,31 @@ openvdb::GridBase::Ptr drop(const Grid& grid, double value) {
     return result;
 }
 
+// Whether each code stands for the value, as a grid of this type has it.
+template <typename T>
+std::vector<bool> codesOf(const CodeBook& book, double value) {
+    std::vector<bool> codes;
+    for (const double other : valuesOfCodes(book))
+        codes.push_back(valueAs<T>(other) == valueAs<T>(value));
+    return codes;
+}
+
+std::vector<bool> codesOf(const CodeBook& book, double value, const std::string& type) {
+    if (type == "float") return codesOf<float>(book, value);
+    return codesOf<double>(book, value);
+}
+
+// Returns null for a leaf of which nothing is left.
+std::unique_ptr<CodeTree::Leaf> leafWithout(const CodeTree::Leaf& leaf,
+                                            const std::vector<bool>& dropped) {
+    auto copy = std::make_unique<CodeTree::Leaf>(leaf);
+    const Code* const codes = leaf.buffer().data();
+    for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
+        if (dropped[codes[voxel.pos()]]) copy->setValueOff(voxel.pos());
+    }
+    return copy->isEmpty() ? nullptr : std::move(copy);
+}
+
 }  // namespace
 
 double mostFrequentValue(const Volume& volume) {
@@ -111,6 +141,31 @@ openvdb::GridBase::Ptr dropBackground(const openvdb::GridBase& grid, double valu
     openvdb::GridBase::Ptr result;
     grid.apply<ScalarGrids>([&](const auto& typed) { result = drop(typed, value); });
     return result;
+}
+
+void dropBackground(Volume& volume, double value, const std::string& type) {
+    const std::vector<bool> dropped = codesOf(volume.codeBook, value, type);
+    const CodeTree::Tree& tree = volume.codes->tree();
+    std::vector<const CodeTree::Leaf*> leaves;
+    tree.getNodes(leaves);
+    requireMemory("grid \"" + volume.name + "\"",
+                  double(leaves.size()) * leafBytes<CodeTree::Leaf>());
+    std::vector<std::unique_ptr<CodeTree::Leaf>> copies(leaves.size());
+    forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) copies[i] = leafWithout(*leaves[i], dropped);
+    });
+    auto kept = std::make_shared<CodeTree>();
+    openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(kept->tree());
+    for (std::unique_ptr<CodeTree::Leaf>& leaf : copies) {
+        if (leaf) accessor.addLeaf(leaf.release());
+    }
+    forActiveTiles(tree, [&](const auto& tile) {
+        if (!dropped[*tile]) accessor.addTile(tile.getLevel(), tile.getCoord(), *tile, true);
+    });
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+        if (dropped[code]) volume.histogram[code] = 0;
+    }
+    volume.codes = kept;
 }
 
 }  // namespace deltasplat

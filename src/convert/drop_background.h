@@ -3,6 +3,8 @@
 
 #include <openvdb/Grid.h>
 
+#include <string>
+
 #include "deltasplat/ingest/volume.h"
 
 namespace deltasplat {
@@ -16,5 +18,9 @@ double mostFrequentValue(const Volume& volume);
 /// value: those, and what held the old background, are inactive and hold the new one. The active
 /// voxels keep their values, and so do inactive ones that hold neither.
 openvdb::GridBase::Ptr dropBackground(const openvdb::GridBase& grid, double value);
+
+/// Does the same with the codes of a volume without background, and its histogram.
+/// @param type  of the grid that it becomes: codes are dropped whose values are `value` there
+void dropBackground(Volume& volume, double value, const std::string& type);
 
 }  // namespace deltasplat

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ingest/grids/grid_values.h"
+#include "ingest/values/value_cast.h"
 
 namespace deltasplat {
 namespace {
@@ -15,6 +16,16 @@ template <typename T>
 bool isHalf(T value) {
     const auto back = T(float(openvdb::math::half(float(value))));
     return back == value || value != value;
+}
+
+template <typename T>
+bool areHalves(const Volume& volume, double background) {
+    if (!isHalf(valueAs<T>(background))) return false;
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+        if (volume.histogram[code] > 0 && !isHalf(valueAs<T>(volume.codeBook.valueOf(Code(code)))))
+            return false;
+    }
+    return true;
 }
 
 template <typename Leaf>
@@ -52,6 +63,11 @@ bool survivesHalf(const openvdb::GridBase& grid) {
     grid.apply<openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid>>(
         [&](const auto& real) { all = survives(real.constTree()); });
     return all;
+}
+
+bool survivesHalf(const Volume& volume, const std::string& type, double background) {
+    if (type == "float") return areHalves<float>(volume, background);
+    return type == "double" && areHalves<double>(volume, background);
 }
 
 }  // namespace deltasplat

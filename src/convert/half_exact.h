@@ -3,10 +3,19 @@
 
 #include <openvdb/Grid.h>
 
+#include <string>
+
+#include "deltasplat/ingest/volume.h"
+
 namespace deltasplat {
 
 /// Returns whether a grid of real values, stored in half precision by writeVdb, reads back with
 /// every value as it is, inactive ones included; false for grids of other types.
 bool survivesHalf(const openvdb::GridBase& grid);
+
+/// Returns the same of a grid that codes become.
+/// @param volume  whose histogram says which codes there are
+/// @param type    of the grid: "float", "int32", ...
+bool survivesHalf(const Volume& volume, const std::string& type, double background);
 
 }  // namespace deltasplat

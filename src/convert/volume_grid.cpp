@@ -16,6 +16,7 @@
 #include "ingest/grids/source_grid.h"
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
+#include "vdb/code_values.h"
 
 namespace deltasplat {
 namespace {
@@ -107,23 +108,36 @@ GridBase::ConstPtr fromSource(const GridBase::ConstPtr& source, const std::strin
     return fromSource<openvdb::DoubleGrid>(*source);
 }
 
-openvdb::MetaMap metadataOf(const Volume& volume) {
-    openvdb::MetaMap metadata;
-    const auto add = [&](const char* key, const std::string& text) {
-        metadata.insertMeta(key, openvdb::StringMetadata(text));
-    };
-    const openvdb::GridClass gridClass = GridBase::stringToGridClass(volume.gridClass);
-    add(GridBase::META_GRID_NAME, volume.name);
-    add(GridBase::META_GRID_CREATOR, "deltasplat " DELTASPLAT_VERSION);
-    add(GridBase::META_GRID_CLASS, GridBase::gridClassToString(gridClass));
+VdbMetadata metadataOf(const Volume& volume) {
+    VdbMetadata metadata;
+    metadata.insert(GridBase::META_GRID_NAME, volume.name);
+    metadata.insert(GridBase::META_GRID_CREATOR, std::string("deltasplat " DELTASPLAT_VERSION));
+    metadata.insert(GridBase::META_GRID_CLASS, volume.gridClass);
+    metadata.insert(GridBase::META_GRID_CLASS, gridClassOf(metadata));
     if (!volume.hasBackground) {
-        add(kSourceTypeKey, volume.type);
-        const glm::ivec3 &min = volume.box.min, &max = volume.box.max;
-        metadata.insertMeta(kBoxMinKey, openvdb::Vec3IMetadata({min.x, min.y, min.z}));
-        metadata.insertMeta(kBoxMaxKey, openvdb::Vec3IMetadata({max.x, max.y, max.z}));
+        metadata.insert(kSourceTypeKey, volume.type);
+        metadata.insert(kBoxMinKey, volume.box.min);
+        metadata.insert(kBoxMaxKey, volume.box.max);
     }
-    if (!volume.space.empty()) add(kSpaceKey, volume.space);
+    if (!volume.space.empty()) metadata.insert(kSpaceKey, volume.space);
     return metadata;
+}
+
+template <typename Grid>
+std::shared_ptr<const WrittenTree> writtenTree(const Volume& volume, double background) {
+    using Values = CodeValues<typename Grid::TreeType>;
+    return std::make_shared<const TreeWriter<Values>>(
+        Values(volume.codes, volume.codeBook, background));
+}
+
+std::shared_ptr<const WrittenTree> writtenTree(const Volume& volume, const std::string& type,
+                                               double background) {
+    if (type == "double") return writtenTree<openvdb::DoubleGrid>(volume, background);
+    if (type == "int32") return writtenTree<openvdb::Int32Grid>(volume, background);
+    if (type == "int64") return writtenTree<openvdb::Int64Grid>(volume, background);
+    if (type == "bool") return writtenTree<openvdb::BoolGrid>(volume, background);
+    if (type == "mask") return writtenTree<openvdb::MaskGrid>(volume, background);
+    return writtenTree<openvdb::FloatGrid>(volume, background);
 }
 
 }  // namespace
@@ -133,14 +147,23 @@ std::string typeOf(const GridBase& grid) {
     return grid.isType<openvdb::MaskGrid>() ? "mask" : grid.valueType();
 }
 
+std::string gridTypeOf(const Volume& volume) {
+    const bool keepsType = volume.hasBackground && isGridType(volume.type);
+    return keepsType ? volume.type : smallestType(factsOf(volume));
+}
+
+WrittenGrid writtenCodes(const Volume& volume, const std::string& type, double background) {
+    return {volume.name, metadataOf(volume), makeMap(volume.worldFromIndex),
+            writtenTree(volume, type, background)};
+}
+
 GridBase::ConstPtr gridOf(const Volume& volume) {
     openvdb::initialize();
     if (volume.source && volume.hasBackground) return volume.source->grid;
-    const bool keepsType = volume.hasBackground && isGridType(volume.type);
-    const std::string type = keepsType ? volume.type : smallestType(factsOf(volume));
+    const std::string type = gridTypeOf(volume);
     const GridBase::ConstPtr grid =
         volume.source ? fromSource(volume.source->grid, type) : fromCodes(volume, type);
-    return grid->copyGridReplacingMetadataAndTransform(metadataOf(volume),
+    return grid->copyGridReplacingMetadataAndTransform(*metadataOf(volume).toMetaMap(volume.name),
                                                        makeTransform(volume.worldFromIndex));
 }
 

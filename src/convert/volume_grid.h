@@ -3,7 +3,10 @@
 
 #include <openvdb/Grid.h>
 
+#include <string>
+
 #include "deltasplat/ingest/volume.h"
+#include "vdb/written_grid.h"
 
 namespace deltasplat {
 
@@ -15,6 +18,15 @@ namespace deltasplat {
 /// from the codes. Whether it will be stored in half precision is left open. Deterministic.
 /// @throw Error(kFailed) if OpenVDB cannot hold the volume's transform
 openvdb::GridBase::ConstPtr gridOf(const Volume& volume);
+
+/// Returns the value type of that grid: "float", "mask", ...
+std::string gridTypeOf(const Volume& volume);
+
+/// Returns what is written of codes, without a tree of values: the grid that gridOf makes of a
+/// volume that has no source, but for what inactive voxels hold.
+/// @param type  as gridTypeOf
+/// @throw as gridOf
+WrittenGrid writtenCodes(const Volume& volume, const std::string& type, double background);
 
 /// Returns the value type of a grid as Volume::type has it, but never "half": "float", "mask", ...
 std::string typeOf(const openvdb::GridBase& grid);

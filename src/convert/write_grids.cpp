@@ -39,8 +39,7 @@ std::optional<double> droppedValue(const Volume& volume, const WriteOptions& opt
 }
 
 // A background has to be a value of the grid's type.
-void requireValue(const GridBase& grid, double value) {
-    const std::string type = typeOf(grid);
+void requireValue(const std::string& type, double value) {
     bool holds = true;
     if (type == "float") holds = std::abs(value) <= double(std::numeric_limits<float>::max());
     if (type == "int32" || type == "int64") holds = value == std::floor(value);
@@ -52,14 +51,20 @@ void requireValue(const GridBase& grid, double value) {
                 gotExpected("`background`", numberText(value), "a value of type " + type));
 }
 
-GridBase::ConstPtr sparseGrid(const GridBase::ConstPtr& grid, const Volume& volume,
-                              const WriteOptions& options, Notes& notes) {
+// Returns the value to drop, or says that there is none.
+std::optional<double> valueToDrop(const Volume& volume, const WriteOptions& options, Notes& notes) {
     const std::optional<double> dropped = droppedValue(volume, options);
     if (!dropped) {
         notes.remark(
             "`dropBackground`: no value is frequent enough to be one; every voxel stays active");
-        return grid;
     }
+    return dropped;
+}
+
+GridBase::ConstPtr sparseGrid(const GridBase::ConstPtr& grid, const Volume& volume,
+                              const WriteOptions& options, Notes& notes) {
+    const std::optional<double> dropped = valueToDrop(volume, options, notes);
+    if (!dropped) return grid;
     const double value = *dropped;
     // Inactive voxels that are there already have a value, which another background would change.
     if (volume.hasBackground && value != volume.background) {
@@ -67,7 +72,7 @@ GridBase::ConstPtr sparseGrid(const GridBase::ConstPtr& grid, const Volume& volu
                      ", whose background is " + numberText(volume.background));
         return grid;
     }
-    requireValue(*grid, value);
+    requireValue(typeOf(*grid), value);
     const GridBase::Ptr sparse = dropBackground(*grid, value);
     if (volume.hasBackground && sparse->activeVoxelCount() != volume.activeCount) {
         notes.loss(quoted(volume.name) + ": " +
@@ -78,8 +83,7 @@ GridBase::ConstPtr sparseGrid(const GridBase::ConstPtr& grid, const Volume& volu
 }
 
 // Says what a volume without OpenVDB's types is stored as, if that has another name.
-void noteType(const Volume& volume, const GridBase& grid, bool half, Notes& notes) {
-    const std::string type = typeOf(grid);
+void noteType(const Volume& volume, const std::string& type, bool half, Notes& notes) {
     const bool same = volume.type == type || (volume.type == "float32" && type == "float") ||
                       (volume.type == "float64" && type == "double");
     if (volume.hasBackground || same) return;
@@ -87,28 +91,48 @@ void noteType(const Volume& volume, const GridBase& grid, bool half, Notes& note
                  ", which holds every value");
 }
 
+// Returns what is stored of a volume that has codes alone. No tree of values is made.
+WrittenGrid storedCodes(Volume volume, const WriteOptions& options, Notes& notes) {
+    const std::string type = gridTypeOf(volume);
+    double background = volume.hasBackground ? volume.background : 0;
+    if (options.dropBackground) {
+        if (const auto dropped = valueToDrop(volume, options, notes)) {
+            requireValue(type, *dropped);
+            dropBackground(volume, *dropped, type);
+            background = *dropped;
+        }
+    }
+    const bool half = !options.fullFloat && survivesHalf(volume, type, background);
+    noteType(volume, type, half, notes);
+    WrittenGrid grid = writtenCodes(volume, type, background);
+    grid.metadata.insert(GridBase::META_SAVE_HALF_FLOAT, half);
+    return grid;
+}
+
 // Returns the grid as it is to be stored: sparser if that is asked for, in half precision or not.
-GridBase::ConstPtr storedGrid(Volume volume, const WriteOptions& options, Notes& notes) {
+WrittenGrid storedGrid(Volume volume, const WriteOptions& options, Notes& notes) {
+    if (!volume.source && !(volume.hasBackground && options.dropBackground))
+        return storedCodes(std::move(volume), options, notes);
     GridBase::ConstPtr grid = gridOf(volume);
     volume.codes.reset();
     if (options.dropBackground) grid = sparseGrid(grid, volume, options, notes);
 
-    if (options.keepPrecision && volume.source && volume.hasBackground) return grid;
+    if (options.keepPrecision && volume.source && volume.hasBackground) return writtenGrid(grid);
     const bool half = !options.fullFloat && survivesHalf(*grid);
-    openvdb::MetaMap metadata = *grid;
-    metadata.insertMeta(GridBase::META_SAVE_HALF_FLOAT, openvdb::BoolMetadata(half));
-    noteType(volume, *grid, half, notes);
-    return grid->copyGridReplacingMetadata(metadata);
+    noteType(volume, typeOf(*grid), half, notes);
+    WrittenGrid written = writtenGrid(grid);
+    written.metadata.insert(GridBase::META_SAVE_HALF_FLOAT, half);
+    return written;
 }
 
 // Volumes of several files share the metadata of all; where two have one key, the first wins.
-openvdb::MetaMap fileMetadata(const std::vector<Volume>& volumes) {
-    openvdb::MetaMap all;
+VdbMetadata fileMetadata(const std::vector<Volume>& volumes) {
+    VdbMetadata all;
     for (const Volume& volume : volumes) {
         if (!volume.source || !volume.source->fileMetadata) continue;
-        const openvdb::MetaMap& own = *volume.source->fileMetadata;
-        for (auto entry = own.beginMeta(); entry != own.endMeta(); ++entry) {
-            if (!all[entry->first]) all.insertMeta(entry->first, *entry->second);
+        const VdbMetadata own(*volume.source->fileMetadata);
+        for (const auto& [name, entry] : own.entries()) {
+            if (!all.find(name)) all.insert(name, entry);
         }
     }
     return all;
@@ -120,10 +144,10 @@ WriteReport writeGrids(const std::filesystem::path& file, std::vector<Volume> vo
                        const WriteOptions& options, const Listener& listener) {
     WriteReport report;
     Notes notes(report, file);
-    const openvdb::MetaMap metadata = fileMetadata(volumes);
+    const VdbMetadata metadata = fileMetadata(volumes);
     std::vector<WrittenGrid> grids;
     for (std::size_t i = 0; i < volumes.size(); ++i) {
-        grids.push_back(writtenGrid(storedGrid(std::move(volumes[i]), options, notes)));
+        grids.push_back(storedGrid(std::move(volumes[i]), options, notes));
         listener.report(kGridShare * double(i + 1) / double(volumes.size()));
     }
     Listener writing = listener;

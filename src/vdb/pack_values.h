@@ -28,17 +28,25 @@ std::int64_t appendBlosc(const void* values, std::size_t bytes, std::string& to)
 /// @return how many bytes they have
 std::int64_t appendPacked(const void* values, std::size_t bytes, std::string& to);
 
-/// Appends values as they are stored: as halves, if `half` says so and they are real.
+/// Appends values as they are stored.
+/// @param half  whether they are halves
 /// @return what OpenVDB notes of their size
 template <typename T>
 std::int64_t appendStored(const T* values, std::size_t count, bool half, std::string& to) {
-    using ToHalf = openvdb::io::RealToHalf<T>;
     constexpr std::int64_t kSize = sizeof(std::int64_t);
-    if (!ToHalf::isReal || !half) return kSize + appendPacked(values, count * sizeof(T), to);
-    if (count == 0) return kSize;  // which is noted, but not there
+    if (half && count == 0) return kSize;  // which is noted, but not there
+    return kSize + appendPacked(values, count * sizeof(T), to);
+}
+
+/// Appends values, as halves if `half` says so and they are real.
+/// @return as appendStored
+template <typename T>
+std::int64_t appendValues(const T* values, std::size_t count, bool half, std::string& to) {
+    using ToHalf = openvdb::io::RealToHalf<T>;
+    if (!ToHalf::isReal || !half) return appendStored(values, count, false, to);
     const auto halves = std::make_unique_for_overwrite<typename ToHalf::HalfT[]>(count);
     std::transform(values, values + count, halves.get(), ToHalf::convert);
-    return kSize + appendPacked(halves.get(), count * sizeof halves[0], to);
+    return appendStored(halves.get(), count, true, to);
 }
 
 /// Calls use(i) for the bits of a mask that are set.
@@ -73,7 +81,7 @@ LeafNote appendNode(const T* values, const Mask& active, const Mask& children, c
     if (kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL || hasTwo)
         appendInactive(inactive.inactiveVal[0]);
     if (hasTwo) appendInactive(inactive.inactiveVal[1]);
-    if (kind == NO_MASK_AND_ALL_VALS) return {kind, appendStored(values, Mask::SIZE, half, to)};
+    if (kind == NO_MASK_AND_ALL_VALS) return {kind, appendValues(values, Mask::SIZE, half, to)};
     if (hasTwo || kind == MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_NO_INACTIVE_VALS) {
         Mask second;
         Mask others = active;
@@ -84,11 +92,11 @@ LeafNote appendNode(const T* values, const Mask& active, const Mask& children, c
         });
         appendBytes(second, to);
     }
-    if (active.isOn()) return {kind, appendStored(values, Mask::SIZE, half, to)};
+    if (active.isOn()) return {kind, appendValues(values, Mask::SIZE, half, to)};
     const auto kept = std::make_unique_for_overwrite<T[]>(Mask::SIZE);
     std::size_t count = 0;
     forBits(active, [&](std::size_t i) { kept[count++] = values[i]; });
-    return {kind, appendStored(kept.get(), count, half, to)};
+    return {kind, appendValues(kept.get(), count, half, to)};
 }
 
 }  // namespace deltasplat

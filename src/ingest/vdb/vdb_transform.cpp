@@ -54,21 +54,24 @@ MapBase::Ptr affineMap(const glm::dmat4& worldFromIndex) {
 
 }  // namespace
 
-// Transform's constructor takes near numbers for equal and rounds when it simplifies a map. Reading
-// one leaves it as it is.
-Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex) {
+MapBase::Ptr makeMap(const glm::dmat4& worldFromIndex) {
     const glm::dmat4& m = worldFromIndex;
-    openvdb::initialize();
-    MapBase::Ptr map;
     try {
-        map = isScaleAndTranslation(m) ? scaleMap({m[0].x, m[1].y, m[2].z}, glm::dvec3(m[3]))
-                                       : affineMap(m);
+        return isScaleAndTranslation(m) ? scaleMap({m[0].x, m[1].y, m[2].z}, glm::dvec3(m[3]))
+                                        : affineMap(m);
     } catch (const openvdb::ArithmeticError&) {
         const glm::dvec3 size(glm::length(m[0]), glm::length(m[1]), glm::length(m[2]));
         throw Error(ErrorCode::kFailed,
                     gotExpected("voxel size", numberText(size),
                                 "a volume of at least 3e-15, as .vdb has it (other units?)"));
     }
+}
+
+// Transform's constructor takes near numbers for equal and rounds when it simplifies a map. Reading
+// one leaves it as it is.
+Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex) {
+    const MapBase::Ptr map = makeMap(worldFromIndex);
+    openvdb::initialize();
     std::stringstream stream;
     openvdb::io::setCurrentVersion(stream);
     openvdb::writeString(stream, map->type());
