@@ -4,6 +4,8 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tree/ValueAccessor.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -13,7 +15,9 @@
 #include "deltasplat/error.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/code_values.h"
+#include "ingest/grids/grid_values.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/vdb/packed_grid.h"
 
 namespace deltasplat {
 namespace {
@@ -129,6 +133,61 @@ class TreeReader : public VoxelReader {
     std::optional<WideValue> inactive_;
 };
 
+// Unpacks leaves from their file.
+template <typename T>
+class PackedReader : public VoxelReader {
+  public:
+    PackedReader(const PackedGrid& packed, const PackedGrid::Tree<T>& nodes, bool wide)
+        : packed_(packed), nodes_(nodes), decode_{nullptr, wide} {}
+
+    int depthAt(const Coord& at) override { return nodes_.getValueDepth(at); }
+
+    Sample sampleAt(const Coord& at) override {
+        const T value = nodes_.getValue(at);
+        const bool active = nodes_.isValueOn(at);
+        if (active && !isFinite(value)) throw NeedsWholeGrid("tile");
+        return {decode_(value), active};
+    }
+
+    bool readLeaf(const Coord& origin, BlockSamples& block) override {
+        const auto* const leaf = nodes_.probeConstLeaf(origin);
+        if (!leaf) return false;
+        const std::vector<VdbLeaf>& leaves = packed_.leaves.leaves();
+        if (!packed_.leaves.allValues(leaves[leaf->transientData()], nodes_.background(),
+                                      leaves.size(), block.active, room_, values_.data()))
+            throw NeedsWholeGrid("leaf");
+        requireFinite(block.active);
+        for (std::size_t i = 0; i < values_.size(); ++i) {
+            if (!decode_.wide) {
+                block.high[i] = double(values_[i]);
+                continue;
+            }
+            const WideValue value = decode_(values_[i]);
+            block.high[i] = value.high;
+            block.low[i] = value.low;
+        }
+        return true;
+    }
+
+  private:
+    // Values that are not finite are no volume's, where they are active.
+    void requireFinite(const std::array<std::uint64_t, 8>& active) const {
+        if constexpr (std::is_floating_point_v<T>) {
+            if (std::all_of(values_.begin(), values_.end(), isFinite<T>)) return;
+            for (std::size_t i = 0; i < values_.size(); ++i) {
+                const bool isActive = (active[i / 64] >> (i % 64) & 1) != 0;
+                if (isActive && !isFinite(values_[i])) throw NeedsWholeGrid("leaf");
+            }
+        }
+    }
+
+    const PackedGrid& packed_;
+    const PackedGrid::Tree<T>& nodes_;  // an accessor would make room for leaves' values
+    Decoder decode_;
+    VdbLeaves::BytesRoom room_;
+    std::array<T, BlockSamples::kVoxels> values_;
+};
+
 template <typename Tree>
 std::vector<Coord> regionsOf(const Tree& tree) {
     std::vector<Coord> regions;
@@ -205,7 +264,18 @@ VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background, 
             return std::make_unique<TreeReader<Tree>>(*tree, decode, inactive);
         };
     };
-    if (volume.source) {
+    if (volume.source && volume.source->packed) {
+        if (offset != Coord(0)) throw NeedsWholeGrid(volume.name);
+        const std::shared_ptr<const PackedGrid> packed = volume.source->packed;
+        const auto read = [&]<typename T>(const std::shared_ptr<T>& nodes) {
+            regions_ = regionsOf(*nodes);
+            makeReader_ = [packed, &tree = *nodes, wide] {
+                using Value = typename T::ValueType;
+                return std::make_unique<PackedReader<Value>>(*packed, tree, wide);
+            };
+        };
+        std::visit(read, packed->nodes);
+    } else if (volume.source) {
         withSource(volume, [&](const auto& grid) { readTree(grid.tree(), {nullptr, wide}); });
     } else {
         readTree(
@@ -214,16 +284,30 @@ VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background, 
     }
 }
 
+namespace {
+
+// Returns the background of a volume of 64-bit integers; nothing of another.
+std::optional<std::int64_t> wideBackground(const Volume& volume) {
+    if (!volume.source) return std::nullopt;
+    if (volume.source->packed) {
+        const auto* const nodes =
+            std::get_if<PackedGrid::Nodes<std::int64_t>>(&volume.source->packed->nodes);
+        return nodes ? std::optional((*nodes)->background()) : std::nullopt;
+    }
+    if (!volume.source->grid->isType<openvdb::Int64Grid>()) return std::nullopt;
+    return openvdb::gridConstPtrCast<openvdb::Int64Grid>(volume.source->grid)->background();
+}
+
+}  // namespace
+
 bool holdsInt64(const Volume& volume) {
-    return volume.source && volume.source->grid->isType<openvdb::Int64Grid>();
+    return wideBackground(volume).has_value();
 }
 
 WideValue backgroundOf(const Volume& volume, bool wide) {
     // A double cannot hold every 64-bit integer.
-    if (volume.hasBackground && holdsInt64(volume)) {
-        return split(
-            openvdb::gridConstPtrCast<openvdb::Int64Grid>(volume.source->grid)->background());
-    }
+    if (const auto background = wideBackground(volume); volume.hasBackground && background)
+        return split(*background);
     return Decoder{nullptr, wide}(volume.background);
 }
 

@@ -52,6 +52,7 @@ struct BlockSamples {
 };
 
 /// Reads one volume's voxels on one thread.
+/// @throw NeedsWholeGrid if they cannot be unpacked, or are not finite
 class VoxelReader {
   public:
     virtual ~VoxelReader() = default;
@@ -69,6 +70,7 @@ class VoxelSource {
     /// @param wide        whether values are split, as WideValue says
     /// @param background  what voxels outside a dense volume hold
     /// @param offset      added to all indices; unless it is 0, the voxels are copied
+    /// @throw NeedsWholeGrid if they would have to be, of a volume that is packed
     VoxelSource(const Volume& volume, bool wide, WideValue background,
                 const openvdb::Coord& offset = openvdb::Coord(0));
 

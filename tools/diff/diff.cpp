@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <thread>
 #include <utility>
 
 #include "deltasplat/error.h"
@@ -11,8 +10,8 @@
 #include "diff/diff_report.h"
 #include "ingest/files/file_name.h"
 #include "ingest/grids/grid_errors.h"
+#include "ingest/vdb/packed_grid.h"
 #include "listener.h"
-#include "modules/load_early.h"
 #include "options/input_options.h"
 #include "options/volume_choices.h"
 #include "process/print_out.h"
@@ -109,22 +108,26 @@ ReadOptions optionsFor(const std::filesystem::path& file, const std::filesystem:
     return options;
 }
 
+// @param packed  whether values may stay in the file
 Volume readOne(const std::filesystem::path& file, const std::string& grid, ReadOptions options,
-               const Listener& listener) {
+               bool packed, const Listener& listener) {
     options.gridName = isVdb(file) ? grid : "";
     options.keepSource = true;
+    if (packed) {
+        if (auto volume = readPackedVolume(file, options, listener)) return std::move(*volume);
+    }
     Volume volume = readVolume(file, options, listener);
     // The volume's own values are all that is looked at.
     if (volume.source) volume.codes.reset();
     return volume;
 }
 
-GridDiff compareGrids(const DiffOptions& options, const GridPair& pair,
+GridDiff compareGrids(const DiffOptions& options, const GridPair& pair, bool packed,
                       const std::function<Listener(double begin, double end)>& stage) {
     GridDiff diff;
-    diff.a = readOne(options.a, pair.a, optionsFor(options.a, options.b, options.read),
+    diff.a = readOne(options.a, pair.a, optionsFor(options.a, options.b, options.read), packed,
                      stage(0, kReadA));
-    diff.b = readOne(options.b, pair.b, optionsFor(options.b, options.a, options.read),
+    diff.b = readOne(options.b, pair.b, optionsFor(options.b, options.a, options.read), packed,
                      stage(kReadA, kReadB));
     diff.comparison = compareVolumes(diff.a, diff.b, options.compare, stage(kReadB, 1));
     diff.verdict = judge(diff.comparison, options.compare, options.limits);
@@ -134,6 +137,27 @@ GridDiff compareGrids(const DiffOptions& options, const GridPair& pair,
         volume->histogram = {};
     }
     return diff;
+}
+
+// Values are unpacked as they are compared, unless that turns out to be not enough.
+GridDiff compareGrids(const DiffOptions& options, const GridPair& pair,
+                      const std::function<Listener(double begin, double end)>& stage) {
+    // What is said while reading is said once.
+    std::vector<std::string> said;
+    const auto onlyOnce = [&](double begin, double end) {
+        Listener listener = stage(begin, end);
+        listener.warning = [&, warn = listener.warning](const std::string& text) {
+            if (contains(said, text)) return;
+            said.push_back(text);
+            if (warn) warn(text);
+        };
+        return listener;
+    };
+    try {
+        return compareGrids(options, pair, /*packed=*/true, onlyOnce);
+    } catch (const NeedsWholeGrid&) {
+        return compareGrids(options, pair, /*packed=*/false, onlyOnce);
+    }
 }
 
 // Compares two grids of several; undefined distances of solvers do not keep the others from it.
@@ -249,7 +273,6 @@ Verdict compareFrames(const CLI::App& app, const DiffOptions& options, const Ses
 }
 
 Verdict runDiff(const CLI::App& app, const DiffOptions& options, const Session& session) {
-    const std::jthread loading[] = {loadEarly(options.a), loadEarly(options.b)};
     if (options.frames.asked()) return compareFrames(app, options, session);
     for (const std::filesystem::path& file : {options.a, options.b})
         requireFramesOf(app, options.frames, file);

@@ -165,40 +165,14 @@ std::shared_ptr<CodeTree> codesOfLeaves(const Leaves& leaves, const CodeBook& bo
     return codes;
 }
 
-IndexBox boxOf(const CodeTree::Tree& tree, const std::string& where) {
-    openvdb::CoordBBox active;
-    if (!tree.evalActiveVoxelBoundingBox(active)) return {};
-    IndexBox box;
-    double voxels = 1;
-    bool fits = true;
-    for (int axis = 0; axis < 3; ++axis) {
-        constexpr int kFarthest = 1 << 30;
-        box.min[axis] = active.min()[axis];
-        box.max[axis] = active.max()[axis];
-        fits = fits && box.min[axis] > -kFarthest && box.max[axis] < kFarthest;
-        voxels *= double(box.max[axis]) - box.min[axis] + 1;
-    }
-    if (!fits || voxels > 0x1p62) {
-        fail(where, "active voxels spread over " + numberText(voxels) + " places",
-             "indices within 2^30 of 0 and a box of at most 2^62 voxels");
-    }
-    return box;
-}
-
 void takeCodes(std::shared_ptr<CodeTree> codes, CodeCounts& counts, const GridCodesOptions& options,
                Volume& volume) {
-    volume.box = boxOf(codes->tree(), options.where);
+    openvdb::CoordBBox active;
+    if (codes->tree().evalActiveVoxelBoundingBox(active))
+        volume.box = boxOfVoxels(active, options.where);
     volume.histogram = counts.take();
     volume.codes = std::move(codes);
     summarize(volume);
-}
-
-void describe(double background, const VdbMetadata& metadata, const GridCodesOptions& options,
-              Volume& volume) {
-    volume.hasBackground = true;
-    volume.background = background;
-    volume.type = options.type;
-    volume.gridClass = gridClassOf(metadata);
 }
 
 // Chooses a code book and turns values into codes of it.
@@ -239,7 +213,7 @@ void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
             scan = scanLeaves(TreeLeaves(grid.tree()), kNumbersAlone);
     }
     fillFromLeaves(TreeLeaves(grid.tree()), std::move(scan), options, volume);
-    describe(double(grid.background()), grid, options, volume);
+    describeGrid(double(grid.background()), grid, options, volume);
 }
 
 // Returns the codes of tiles, nothing if one is no half.
@@ -290,12 +264,38 @@ bool fillFromNumbers(const VdbValues& values, T background, const GridCodesOptio
 
 }  // namespace
 
+IndexBox boxOfVoxels(const openvdb::CoordBBox& active, const std::string& where) {
+    IndexBox box;
+    double voxels = 1;
+    bool fits = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        constexpr int kFarthest = 1 << 30;
+        box.min[axis] = active.min()[axis];
+        box.max[axis] = active.max()[axis];
+        fits = fits && box.min[axis] > -kFarthest && box.max[axis] < kFarthest;
+        voxels *= double(box.max[axis]) - box.min[axis] + 1;
+    }
+    if (!fits || voxels > 0x1p62) {
+        fail(where, "active voxels spread over " + numberText(voxels) + " places",
+             "indices within 2^30 of 0 and a box of at most 2^62 voxels");
+    }
+    return box;
+}
+
+void describeGrid(double background, const VdbMetadata& metadata, const GridCodesOptions& options,
+                  Volume& volume) {
+    volume.hasBackground = true;
+    volume.background = background;
+    volume.type = options.type;
+    volume.gridClass = gridClassOf(metadata);
+}
+
 bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Volume& volume) {
     const auto fillWith = [&](const auto background) {
         const bool isFilled = values.areHalves
                                   ? fillFromHalves(values, background, options, volume)
                                   : fillFromNumbers(values, background, options, volume);
-        if (isFilled) describe(double(background), values.metadata, options, volume);
+        if (isFilled) describeGrid(double(background), values.metadata, options, volume);
         return isFilled;
     };
     return std::visit(fillWith, values.background);

@@ -34,4 +34,13 @@ void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volu
 ///        says
 bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Volume& volume);
 
+/// Returns the box of the active voxels.
+/// @param active  not empty
+/// @throw Error(kInput) if they lie too far apart
+IndexBox boxOfVoxels(const openvdb::CoordBBox& active, const std::string& where);
+
+/// Fills in what a volume has of a grid beside voxels, name and transform.
+void describeGrid(double background, const VdbMetadata& metadata, const GridCodesOptions& options,
+                  Volume& volume);
+
 }  // namespace deltasplat

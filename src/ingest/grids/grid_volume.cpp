@@ -15,9 +15,7 @@
 #include "number_text.h"
 
 namespace deltasplat {
-namespace {
 
-// A volume that has its place, and no voxels.
 Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,
                     const GridCodesOptions& options) {
     Volume volume;
@@ -26,8 +24,6 @@ Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metada
     if (space == "RAS" || space == "LPS") volume.space = space;
     return volume;
 }
-
-}  // namespace
 
 void settleEmpty(Volume& volume, const GridCodesOptions& options) {
     if (!std::isfinite(volume.background)) {

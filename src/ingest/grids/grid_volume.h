@@ -14,6 +14,10 @@ namespace deltasplat {
 Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& options,
                     openvdb::MetaMap::ConstPtr fileMetadata = nullptr);
 
+/// Returns a volume that has its place, and no voxels.
+Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,
+                    const GridCodesOptions& options);
+
 /// A background of NaN or infinity is taken as what replaces NaN, or 0, with a warning; there is
 /// one for a volume without active voxels as well.
 void settleEmpty(Volume& volume, const GridCodesOptions& options);

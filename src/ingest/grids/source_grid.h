@@ -3,16 +3,22 @@
 
 #include <openvdb/Grid.h>
 
+#include <memory>
+
 #include "deltasplat/ingest/volume.h"
 
 namespace deltasplat {
 
+struct PackedGrid;
+
 /// A volume's own grid, in its own value type: every value, inactive ones included, background,
 /// transform, class and metadata.
 struct SourceGrid {
-    openvdb::GridBase::ConstPtr grid;
+    openvdb::GridBase::ConstPtr grid;  ///< null if `packed` is there
     /// .vdb: the metadata of the file itself, the same for all of its grids; otherwise null.
     openvdb::MetaMap::ConstPtr fileMetadata = nullptr;
+    /// Of a volume that is read to be compared alone: values that are still in their file.
+    std::shared_ptr<const PackedGrid> packed = nullptr;
 };
 
 }  // namespace deltasplat

@@ -4,11 +4,13 @@
 #include "ingest/vdb/packed_values.h"
 
 #include <blosc.h>
+#include <openvdb/Types.h>
 #include <openvdb/io/Compression.h>
 
 #include <array>
 #include <bit>
 #include <cstring>
+#include <type_traits>
 
 #include "ingest/vdb/zip_chunk.h"
 
@@ -74,6 +76,7 @@ bool unpackBlosc(std::span<const char> chunk, std::span<char> values, std::size_
     if (chunk.size() < sizeof words) return false;
     std::memcpy(words.data(), chunk.data(), sizeof words);
     if (words[1] != size || words[3] != chunk.size()) return false;
+    if (size == 0) return true;
     const int count = blosc_decompress_ctx(chunk.data(), values.data(), values.size(), 1);
     return count > 0 && std::size_t(count) == size;
 }
@@ -88,5 +91,85 @@ bool unpack(const PackedValues& packed, const VdbValueFormat& format, std::span<
     std::memcpy(values.data(), packed.data.data(), size);
     return true;
 }
+
+namespace {
+
+// What inactive places hold where values of active ones are all that is stored.
+template <typename T>
+struct InactivePlaces {
+    std::array<T, 2> values;
+    std::span<const char> second;  // a bit for each place that has the second; empty: none has
+
+    // @param bytes  whose length has been looked at
+    InactivePlaces(std::span<const char> bytes, std::size_t maskBytes, T background) {
+        using namespace openvdb::io;
+        const auto kind = std::uint8_t(bytes[0]);
+        // Without the warning for what is no positive number.
+        const T minus = std::is_floating_point_v<T> ? T(-background) : T(0 - Unsigned(background));
+        values = {kind == NO_MASK_OR_INACTIVE_VALS ? background : minus, background};
+        const bool hasTwo = kind == MASK_AND_TWO_INACTIVE_VALS;
+        const bool hasOne =
+            kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL || hasTwo;
+        const std::size_t size = (std::size_t{hasOne} + std::size_t{hasTwo}) * sizeof(T);
+        std::memcpy(values.data(), &bytes[1], size);
+        if (hasTwo || kind == MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_NO_INACTIVE_VALS)
+            second = bytes.subspan(1 + size, maskBytes);
+    }
+    T at(std::size_t place) const {
+        const bool isSecond =
+            !second.empty() && (std::uint8_t(second[place / 8]) >> (place % 8) & 1) != 0;
+        return values[isSecond ? 1 : 0];
+    }
+
+  private:
+    using Unsigned = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+};
+
+// Turns what is stored into values.
+template <typename T>
+void widen(const char* stored, std::size_t count, bool areHalves, T* values) {
+    if (!areHalves) {
+        std::memcpy(values, stored, count * sizeof(T));
+        return;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        openvdb::math::half half;
+        std::memcpy(&half, stored + i * sizeof half, sizeof half);
+        values[i] = T(float(half));
+    }
+}
+
+}  // namespace
+
+template <typename T>
+bool unpackAll(std::span<const char> bytes, std::span<const std::uint64_t> mask,
+               const VdbValueFormat& format, T background, std::vector<char>& stored, T* values) {
+    const auto packed = packedValues(bytes, mask, format);
+    if (!packed) return false;
+    const std::size_t size = std::size_t{format.stored} * packed->count + kUnpackBytes;
+    if (stored.size() < size) stored.resize(size);
+    if (!unpack(*packed, format, {stored.data(), size})) return false;
+    const bool areHalves = format.stored != format.bytes;
+    widen(stored.data(), packed->count, areHalves, values);
+    const std::size_t places = 64 * mask.size();
+    if (packed->count == places) return true;
+    // From the last on, each moves to a place that is not before its own.
+    const InactivePlaces<T> inactive(bytes, mask.size_bytes(), background);
+    std::size_t next = packed->count;
+    for (std::size_t place = places; place-- > 0;) {
+        const bool isActive = (mask[place / 64] >> (place % 64) & 1) != 0;
+        values[place] = isActive ? values[--next] : inactive.at(place);
+    }
+    return true;
+}
+
+#define DELTASPLAT_UNPACK_ALL(T)                                                   \
+    template bool unpackAll(std::span<const char>, std::span<const std::uint64_t>, \
+                            const VdbValueFormat&, T, std::vector<char>&, T*);
+DELTASPLAT_UNPACK_ALL(float)
+DELTASPLAT_UNPACK_ALL(double)
+DELTASPLAT_UNPACK_ALL(std::int32_t)
+DELTASPLAT_UNPACK_ALL(std::int64_t)
+#undef DELTASPLAT_UNPACK_ALL
 
 }  // namespace deltasplat

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "ingest/vdb/vdb_walk.h"
 
@@ -30,6 +31,16 @@ std::optional<PackedValues> packedValues(std::span<const char> bytes,
 /// Writes the values as they are stored; returns whether they are whole.
 /// @param values  takes them and kUnpackBytes
 bool unpack(const PackedValues& packed, const VdbValueFormat& format, std::span<char> values);
+
+/// Writes the values of all places of a node, inactive ones too, as the grid has them; returns
+/// whether they are whole.
+/// @tparam T      the grid's value type: float, double, std::int32_t or std::int64_t
+/// @param bytes   as packedValues
+/// @param stored  room that is kept from node to node
+/// @param values  one for each place
+template <typename T>
+bool unpackAll(std::span<const char> bytes, std::span<const std::uint64_t> mask,
+               const VdbValueFormat& format, T background, std::vector<char>& stored, T* values);
 
 /// Unpacks a chunk of Blosc's; returns whether it is whole, and of `size` bytes.
 /// @param values  takes them and kUnpackBytes

@@ -6,14 +6,19 @@
 #include <optional>
 #include <utility>
 
+#include "default_floats.h"
 #include "deltasplat/error.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/read_delta_grid.h"
+#include "ingest/files/input_files.h"
+#include "ingest/files/input_kind.h"
 #include "ingest/grids/grid_errors.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_volume.h"
+#include "ingest/grids/source_grid.h"
 #include "ingest/readers.h"
 #include "ingest/vdb/default_grid.h"
+#include "ingest/vdb/packed_grid.h"
 #include "ingest/vdb/read_slices.h"
 #include "ingest/vdb/vdb_file.h"
 #include "ingest/vdb/vdb_transform.h"
@@ -243,7 +248,65 @@ std::string whereOf(const std::filesystem::path& path, const ChosenGrid& grid) {
     return path.string() + ": grid \"" + grid.name() + "\"";
 }
 
+// Says which of several grids is read, unless somebody has asked for it.
+void warnOfOthers(const std::filesystem::path& path, const VdbFile& file, const ChosenGrid& chosen,
+                  const ReadOptions& options, const Listener& listener) {
+    if (!options.gridName.empty()) return;
+    const auto scalars = std::count_if(file.grids().begin(), file.grids().end(),
+                                       [](const VdbGrid& grid) { return grid.isScalar(); });
+    if (scalars <= 1) return;
+    listener.warn(path.string() + ": reading grid \"" + chosen.name() + "\" of " +
+                  std::to_string(scalars) + " scalar grids (`gridName` chooses another)");
+}
+
+// Returns nothing if it has to be read as a whole.
+std::optional<Volume> packedVolume(const VdbFile& file, const ChosenGrid& chosen,
+                                   const std::string& where, const ReadOptions& options,
+                                   const Listener& listener) {
+    const VdbGrid& grid = *chosen.grid;
+    if (chosen.part || options.nanValue || options.levelSetToFog) return std::nullopt;
+    if (isDeltaGrid(grid.type, file.metadata(grid))) return std::nullopt;
+    std::optional<VdbFile::Packed> packed = file.readPacked(grid);
+    if (!packed) return std::nullopt;
+    const GridCodesOptions coding{listener, where, grid.valueType(), options};
+    Volume volume = placedVolume(packed->grid.leaves.transform(), packed->metadata, coding);
+    const auto background = std::visit(
+        [](const auto& nodes) { return double(nodes->background()); }, packed->grid.nodes);
+    describeGrid(background, packed->metadata, coding, volume);
+    volume.activeCount = packed->activeVoxels;
+    if (volume.activeCount > 0) volume.box = boxOfVoxels(packed->activeBox, where);
+    volume.source = std::make_shared<const SourceGrid>(
+        SourceGrid{nullptr, nullptr, std::make_shared<const PackedGrid>(std::move(packed->grid))});
+    settleEmpty(volume, coding);
+    volume.name = chosen.name();
+    return volume;
+}
+
 }  // namespace
+
+std::optional<Volume> readPackedVolume(const std::filesystem::path& path,
+                                       const ReadOptions& options, const Listener& listener) {
+    const DefaultFloats floats;
+    try {
+        const InputKind kind = findInput(path, {});
+        if (kind.format != InputKind::Format::kVdb) return std::nullopt;
+        if (inputsAreConfined()) requireConfined(path);
+        const VdbFile file(path);
+        const ChosenGrid chosen = chooseGrids(path.string(), file, options.gridName, false).front();
+        std::vector<std::string> warnings;
+        const Listener noting{{}, [&](const std::string& text) { warnings.push_back(text); }};
+        warnOfOthers(path, file, chosen, options, noting);
+        auto volume = packedVolume(file, chosen, whereOf(path, chosen), options, noting);
+        // What is read as a whole warns by itself.
+        for (const std::string& text : warnings)
+            if (volume) listener.warn(text);
+        return volume;
+    } catch (const Error& error) {
+        // What is wrong is said by who reads the grid as a whole.
+        if (error.code() != ErrorCode::kInput) throw;
+        return std::nullopt;
+    }
+}
 
 std::optional<Volume> readVdbSlices(const std::filesystem::path& path, const ReadOptions& options,
                                     const SlicesWanted& wanted, const Listener& listener) {
@@ -260,14 +323,7 @@ void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool
              const VolumeVisitor& visitor, const Listener& listener) {
     const VdbFile file(path);
     const auto chosen = chooseGrids(path.string(), file, options.gridName, all);
-    if (!all && options.gridName.empty()) {
-        const auto scalars = std::count_if(file.grids().begin(), file.grids().end(),
-                                           [](const VdbGrid& grid) { return grid.isScalar(); });
-        if (scalars > 1) {
-            listener.warn(path.string() + ": reading grid \"" + chosen[0].name() + "\" of " +
-                          std::to_string(scalars) + " scalar grids (`gridName` chooses another)");
-        }
-    }
+    if (!all) warnOfOthers(path, file, chosen[0], options, listener);
     GridReader reader(file, options, visitor);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         Listener part = listener;

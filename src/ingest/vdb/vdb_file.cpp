@@ -21,6 +21,7 @@
 #include "ingest/vdb/vdb_bytes.h"
 #include "ingest/vdb/vdb_stream.h"
 #include "ingest/vdb/vdb_transform.h"
+#include "ingest/vdb/vdb_tree.h"
 #include "ingest/vdb/vdb_walk.h"
 #include "memory.h"
 #include "printable.h"
@@ -173,6 +174,22 @@ bool placeBySizes(VdbBytes& bytes, const GridHead& head, std::uint64_t end,
     return position == end;
 }
 
+// Finds where leaves lie; returns whether it was by notes.
+// @param bytes  at the first leaf
+bool placeLeaves(VdbBytes& bytes, const GridHead& head, const VdbGrid& grid, VdbFile::Find how,
+                 std::vector<VdbLeaf>& leaves, const std::string& where) {
+    if (how == VdbFile::Find::kByNotes && placeBySizes(bytes, head, grid.end, leaves, where))
+        return true;
+    walkLeaves(bytes, head.format, leaves);
+    requireEnd(bytes, grid);
+    return false;
+}
+
+// Whether a grid has a tree of its own, of numbers.
+bool hasNumbers(const VdbGrid& grid) {
+    return grid.isScalar() && grid.parentName.empty() && grid.type != "bool" && grid.type != "mask";
+}
+
 // Reads the background of a grid of numbers; `bytes` moves there.
 VdbValues::Number readBackground(VdbBytes& bytes, std::uint64_t place,
                                  const VdbValueFormat& format) {
@@ -258,10 +275,67 @@ std::string VdbFile::whereOf(const VdbGrid& grid) const {
 }
 
 openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listener) const {
+    if (!hasNumbers(grid)) return readByOpenVdb(grid, listener);
+    openvdb::GridBase::Ptr read = readNumbers(grid, Find::kByNotes, listener);
+    if (!read) read = readNumbers(grid, Find::kByWalking, listener);
+    if (!read) throw DamagedLeaves(whereOf(grid));
+    return read;
+}
+
+openvdb::GridBase::Ptr VdbFile::readNumbers(const VdbGrid& grid, Find how,
+                                            const Listener& listener) const {
+    const std::string where = whereOf(grid);
+    VdbBytes bytes(file_);
+    const GridHead head = readHead(bytes, grid, file_);
+    VdbTreePlaces places;
+    const VdbTreeSize size = walkTopology(bytes, head.format, places);
+    requireMemory(where, size.memoryBytes(head.format));
+    placeLeaves(bytes, head, grid, how, places.leaves, where);
+    const auto file = std::make_shared<const FileBytes>(file_);
+    const VdbLeaves leaves(file, std::move(places.leaves), head.format, head.transform);
+    const auto make = [&]<typename T>(T background) -> openvdb::GridBase::Ptr {
+        const auto tree = readTree(*file, head.format, background, places.nodes, leaves, listener);
+        if (!tree) return nullptr;
+        return openvdb::Grid<typename decltype(tree)::element_type>::create(tree);
+    };
+    openvdb::initialize();
+    const openvdb::GridBase::Ptr read =
+        std::visit(make, readBackground(bytes, places.background, head.format));
+    if (!read) return nullptr;
+    read->insertMeta(*head.metadata.toMetaMap(where));
+    read->setTransform(transformOf(*head.transform));
+    return read;
+}
+
+std::optional<VdbFile::Packed> VdbFile::readPacked(const VdbGrid& grid) const {
+    if (!hasNumbers(grid)) return std::nullopt;
+    const std::string where = whereOf(grid);
+    VdbBytes bytes(file_);
+    const GridHead head = readHead(bytes, grid, file_);
+    VdbTreePlaces places;
+    const VdbTreeSize size = walkTopology(bytes, head.format, places);
+    // Leaves here have no values.
+    requireMemory(where, size.codeBytes(head.format));
+    placeLeaves(bytes, head, grid, Find::kByNotes, places.leaves, where);
+    const auto file = std::make_shared<const FileBytes>(file_);
+    const auto make = [&]<typename T>(T background) -> std::optional<Packed> {
+        VdbLeaves leaves(file, std::move(places.leaves), head.format, head.transform);
+        auto nodes = readNodes(*file, head.format, background, places.nodes, leaves);
+        if (!nodes) return std::nullopt;
+        return Packed{head.metadata,
+                      places.activeVoxels,
+                      places.activeBox,
+                      {PackedGrid::Nodes<T>(std::move(nodes)), std::move(leaves)}};
+    };
+    return std::visit(make, readBackground(bytes, places.background, head.format));
+}
+
+// Reads a grid by OpenVDB, which is handed a file of the same header with no metadata of its own
+// and just the grids needed.
+openvdb::GridBase::Ptr VdbFile::readByOpenVdb(const VdbGrid& grid, const Listener& listener) const {
     std::vector<const VdbGrid*> needed{&grid};
     if (!grid.parentName.empty()) needed.insert(needed.begin(), &parentOf(grid));
 
-    // A file of the same header with no metadata of its own and just the grids needed.
     VdbStreamBuf buffer(file_);
     buffer.addRange(0, headerEnd_ - kUuidBytes);
     buffer.addText(kAnyUuid);
@@ -303,7 +377,7 @@ std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid, bool mustBeNot
     VdbBytes bytes(file_);
     const GridHead head = readHead(bytes, grid, file_);
     VdbTreePlaces places;
-    walkTopology(bytes, head.format, places);
+    const VdbTreeSize size = walkTopology(bytes, head.format, places);
     if (bytes.position() > grid.end) return std::nullopt;
     if (!placeBySizes(bytes, head, grid.end, places.leaves, where)) {
         if (mustBeNoted) return std::nullopt;
@@ -312,14 +386,14 @@ std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid, bool mustBeNot
     }
     bytes.seek(places.background);
     const bool isZero = (head.format.bytes == 8 ? std::uint64_t(bytes.i64()) : bytes.u32()) == 0;
-    if (!places.tiles.empty() || !isZero) return std::nullopt;
+    if (size.tiles > 0 || !isZero) return std::nullopt;
     return VdbLeaves(std::make_shared<const FileBytes>(file_), std::move(places.leaves),
                      head.format, head.transform);
 }
 
 std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
                                              const Listener& listener) const {
-    if (!grid.parentName.empty() || grid.type == "bool" || grid.type == "mask") return std::nullopt;
+    if (!hasNumbers(grid)) return std::nullopt;
     const std::string where = whereOf(grid);
     VdbBytes bytes(file_);
     const GridHead head = readHead(bytes, grid, file_);
@@ -333,14 +407,9 @@ std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
     const VdbTreeSize size = walkTopology(bytes, head.format, places);
     requireMemory(where, size.codeBytes(head.format));
     const auto file = std::make_shared<const FileBytes>(file_);
-    std::optional<VdbTiles> tiles = VdbTiles::read(*file, head.format, places.tiles);
+    std::optional<VdbTiles> tiles = VdbTiles::read(*file, head.format, places.nodes);
     if (!tiles) return std::nullopt;
-    const bool byNotes =
-        how == Find::kByNotes && placeBySizes(bytes, head, grid.end, places.leaves, where);
-    if (!byNotes) {
-        walkLeaves(bytes, head.format, places.leaves);
-        requireEnd(bytes, grid);
-    }
+    const bool byNotes = placeLeaves(bytes, head, grid, how, places.leaves, where);
     return VdbValues{head.metadata,
                      readBackground(bytes, places.background, head.format),
                      std::move(*tiles),

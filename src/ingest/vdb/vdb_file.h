@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "deltasplat/progress.h"
+#include "ingest/vdb/packed_grid.h"
 #include "ingest/vdb/vdb_leaves.h"
 #include "ingest/vdb/vdb_metadata.h"
 #include "ingest/vdb/vdb_tiles.h"
@@ -52,10 +53,10 @@ struct VdbValues {
     bool byNotes;      ///< how leaves were found, as VdbFile::Find
 };
 
-/// A .vdb file that is checked before OpenVDB sees any of it, since OpenVDB 10 crashes on damaged
-/// ones; then OpenVDB is handed only the bytes of the grid asked for. Grids are in file order;
-/// types that OpenVDB does not know do no harm. But for read() and frustums, OpenVDB's library is
-/// not needed.
+/// A .vdb file, whose grids of numbers are read here, on all threads. Other grids are checked
+/// before OpenVDB sees any of them, since OpenVDB 10 crashes on damaged ones; then it is handed
+/// only the bytes of the grid asked for. Grids are in file order; types that OpenVDB does not know
+/// do no harm. But for read() and frustums, OpenVDB's library is not needed.
 class VdbFile {
   public:
     /// @throw Error(kInput) if this is no whole .vdb file
@@ -91,7 +92,22 @@ class VdbFile {
     std::optional<VdbValues> readValues(const VdbGrid& grid, Find how,
                                         const Listener& listener = {}) const;
 
+    /// A grid of numbers whose values stay in the file, and what its volume has besides.
+    struct Packed {
+        VdbMetadata metadata;
+        std::uint64_t activeVoxels;
+        openvdb::CoordBBox activeBox;
+        PackedGrid grid;
+    };
+    /// Reads a grid of numbers but for the values of its leaves, which may turn out to be damaged,
+    /// unless it shares its voxels with another.
+    /// @throw as read()
+    std::optional<Packed> readPacked(const VdbGrid& grid) const;
+
   private:
+    openvdb::GridBase::Ptr readNumbers(const VdbGrid& grid, Find how,
+                                       const Listener& listener) const;
+    openvdb::GridBase::Ptr readByOpenVdb(const VdbGrid& grid, const Listener& listener) const;
     void readDirectory();
     void findEnd(VdbBytes& bytes, VdbGrid& grid) const;
     std::string whereOf(const VdbGrid& grid) const;

@@ -21,12 +21,17 @@ std::uint32_t countOf(const VdbLeaves::Mask& mask) {
     return active;
 }
 
+// Takes a leaf's mask; returns whether it is the leaf's.
+bool takeMask(const VdbLeaf& leaf, std::span<const char> bytes, VdbLeaf::Mask& mask) {
+    if (bytes.size() < sizeof mask) return false;
+    std::memcpy(mask.data(), bytes.data(), sizeof mask);
+    return VdbLeaf::sumOf(mask) == leaf.maskSum;
+}
+
 // Returns nothing if the bytes are not those of the leaf, from the first to the last.
 std::optional<PackedValues> valuesOf(const VdbLeaf& leaf, std::span<const char> bytes,
                                      const VdbValueFormat& format, VdbLeaf::Mask& mask) {
-    if (bytes.size() < sizeof mask) return std::nullopt;
-    std::memcpy(mask.data(), bytes.data(), sizeof mask);
-    if (VdbLeaf::sumOf(mask) != leaf.maskSum) return std::nullopt;
+    if (!takeMask(leaf, bytes, mask)) return std::nullopt;
     return packedValues(bytes.subspan(sizeof mask), mask, format);
 }
 
@@ -132,6 +137,14 @@ std::optional<std::span<const Stored>> VdbLeaves::activeValues(const VdbLeaf& le
     return std::span<const Stored>(values.data(), kept);
 }
 
+template <typename T>
+bool VdbLeaves::allValues(const VdbLeaf& leaf, T background, std::size_t behind, Mask& mask,
+                          BytesRoom& room, T* values) const {
+    const auto bytes = bytesOf(leaf, room.run, behind);
+    return bytes && takeMask(leaf, *bytes, mask) &&
+           unpackAll(bytes->subspan(sizeof mask), mask, format_, background, room.stored, values);
+}
+
 bool VdbLeaves::areSound() const {
     // Of a grid of vectors of doubles.
     constexpr std::size_t kMostBytes = 24 * std::size_t{kVoxels} + 64;
@@ -159,5 +172,14 @@ DELTASPLAT_ACTIVE_VALUES(double)
 DELTASPLAT_ACTIVE_VALUES(std::int32_t)
 DELTASPLAT_ACTIVE_VALUES(std::int64_t)
 #undef DELTASPLAT_ACTIVE_VALUES
+
+#define DELTASPLAT_ALL_VALUES(T)                                                         \
+    template bool VdbLeaves::allValues(const VdbLeaf&, T, std::size_t, VdbLeaves::Mask&, \
+                                       VdbLeaves::BytesRoom&, T*) const;
+DELTASPLAT_ALL_VALUES(float)
+DELTASPLAT_ALL_VALUES(double)
+DELTASPLAT_ALL_VALUES(std::int32_t)
+DELTASPLAT_ALL_VALUES(std::int64_t)
+#undef DELTASPLAT_ALL_VALUES
 
 }  // namespace deltasplat

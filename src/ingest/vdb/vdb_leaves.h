@@ -82,6 +82,20 @@ class VdbLeaves {
     std::optional<std::span<const Stored>> activeValues(const VdbLeaf& leaf, Mask& mask,
                                                         Room<Stored>& room) const;
 
+    /// What a thread keeps from leaf to leaf, of allValues.
+    struct BytesRoom {
+        VdbRun run;
+        std::vector<char> stored;
+    };
+    /// Unpacks the values of all voxels of a leaf, inactive ones too. Thread-safe.
+    /// @tparam T      the grid's value type
+    /// @param mask    becomes which voxels are active
+    /// @param behind  one behind the last leaf that is going to be asked for
+    /// @return whether the leaf's bytes are whole
+    template <typename T>
+    bool allValues(const VdbLeaf& leaf, T background, std::size_t behind, Mask& mask,
+                   BytesRoom& room, T* values) const;
+
   private:
     std::optional<std::span<const char>> bytesOf(const VdbLeaf& leaf, VdbRun& room,
                                                  std::size_t behind) const;

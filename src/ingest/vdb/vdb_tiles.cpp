@@ -24,7 +24,7 @@ constexpr NodeShape shapeOf(int level) {
     return level == 1 ? NodeShape{4, 3} : NodeShape{5, 7};
 }
 
-openvdb::Coord placeOf(const VdbTileNode& node, int child) {
+openvdb::Coord placeOf(const VdbNode& node, int child) {
     const auto [log2, childLog2] = shapeOf(node.level);
     const int mask = (1 << log2) - 1;
     return openvdb::Coord(node.origin.data())
@@ -47,7 +47,7 @@ void writeValue(const char* stored, const VdbValueFormat& format, char* to) {
 }
 
 // Writes the places and values of a node's tiles; returns whether it is sound.
-bool readNode(const FileBytes& file, const VdbValueFormat& format, const VdbTileNode& node,
+bool readNode(const FileBytes& file, const VdbValueFormat& format, const VdbNode& node,
               TilePlace* places, char* values) {
     std::vector<char> bytes(node.size);
     if (file.read(node.begin, bytes.data(), node.size) != node.size) return false;
@@ -84,10 +84,10 @@ bool readNode(const FileBytes& file, const VdbValueFormat& format, const VdbTile
 }  // namespace
 
 std::optional<VdbTiles> VdbTiles::read(const FileBytes& file, const VdbValueFormat& format,
-                                       const std::vector<VdbTileNode>& nodes) {
+                                       const std::vector<VdbNode>& nodes) {
     std::vector<std::size_t> begins;
     std::size_t count = 0;
-    for (const VdbTileNode& node : nodes) {
+    for (const VdbNode& node : nodes) {
         begins.push_back(count);
         count += node.tiles;
     }
@@ -96,6 +96,7 @@ std::optional<VdbTiles> VdbTiles::read(const FileBytes& file, const VdbValueForm
     tiles.values_.resize(count * format.bytes);
     std::atomic<bool> areSound = true;
     parallelFor(nodes.size(), [&](std::size_t i) {
+        if (nodes[i].tiles == 0) return;
         if (!readNode(file, format, nodes[i], &tiles.places_[begins[i]],
                       &tiles.values_[begins[i] * format.bytes]))
             areSound = false;

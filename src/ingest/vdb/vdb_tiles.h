@@ -26,7 +26,7 @@ class VdbTiles {
     /// Reads and unpacks them, on all threads.
     /// @return nothing if they are damaged
     static std::optional<VdbTiles> read(const FileBytes& file, const VdbValueFormat& format,
-                                        const std::vector<VdbTileNode>& nodes);
+                                        const std::vector<VdbNode>& nodes);
 
   private:
     std::vector<TilePlace> places_;

@@ -69,16 +69,19 @@ MapBase::Ptr makeMap(const glm::dmat4& worldFromIndex) {
 
 // Transform's constructor takes near numbers for equal and rounds when it simplifies a map. Reading
 // one leaves it as it is.
-Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex) {
-    const MapBase::Ptr map = makeMap(worldFromIndex);
+Transform::Ptr transformOf(const MapBase& map) {
     openvdb::initialize();
     std::stringstream stream;
     openvdb::io::setCurrentVersion(stream);
-    openvdb::writeString(stream, map->type());
-    map->write(stream);
+    openvdb::writeString(stream, map.type());
+    map.write(stream);
     auto transform = std::make_shared<Transform>();
     transform->read(stream);
     return transform;
+}
+
+Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex) {
+    return transformOf(*makeMap(worldFromIndex));
 }
 
 MapBase::Ptr readMap(std::istream& stream) {

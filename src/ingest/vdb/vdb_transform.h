@@ -12,8 +12,10 @@ namespace deltasplat {
 /// Returns the simplest OpenVDB map that is exactly this affine matrix (uniform scale, scale, ...).
 /// @throw Error(kFailed) if a voxel's volume is below 3e-15, which OpenVDB takes for 0
 openvdb::math::MapBase::Ptr makeMap(const glm::dmat4& worldFromIndex);
-/// Returns a transform of that map.
-/// @throw as makeMap
+/// Returns a transform of a map, as it is.
+openvdb::math::Transform::Ptr transformOf(const openvdb::math::MapBase& map);
+/// Returns a transform of makeMap's.
+/// @throw as that
 openvdb::math::Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex);
 
 /// Returns a map of the type named ("UniformScaleMap", ...), if that can be this matrix, otherwise

@@ -24,7 +24,8 @@ using Leaf = VdbValueFormat::Leaf;
 constexpr int kUpperLog2 = 5;
 constexpr int kLowerLog2 = 4;
 constexpr int kLeafLog2 = 3;
-constexpr int kUpperExtent = 1 << (kUpperLog2 + kLowerLog2 + kLeafLog2);
+constexpr int kUpperExtentLog2 = kUpperLog2 + kLowerLog2 + kLeafLog2;
+constexpr int kUpperExtent = 1 << kUpperExtentLog2;
 
 template <int kLog2>
 using Mask = std::array<std::uint64_t, (std::size_t{1} << (3 * kLog2)) / 64>;
@@ -82,7 +83,8 @@ class Walk {
             bytes_.skip(format_.bytes);
             const int state = bytes_.u8();
             if (state > 1) fail("a tile that is neither active nor inactive");
-            if (state == 1) noteTiles({origin, 3, begin, format_.bytes, 1});
+            noteNode({origin, 3, begin, format_.bytes, std::uint64_t(state)});
+            if (places_ && state == 1) noteRootTile(origin);
         }
         for (std::uint32_t i = 0; i < children; ++i) {
             const Place origin = place();
@@ -130,7 +132,9 @@ class Walk {
         std::uint64_t tiles = 0;
         for (const std::uint64_t word : values) tiles += std::uint64_t(std::popcount(word));
         const int level = kLog2 == kUpperLog2 ? 2 : 1;
-        if (tiles > 0) noteTiles({origin, level, begin, bytes_.position() - begin, tiles});
+        constexpr int kTileLog2 = kLog2 == kUpperLog2 ? kLowerLog2 + kLeafLog2 : kLeafLog2;
+        if (places_) noteActive<kLog2>(origin, values, kTileLog2);
+        noteNode({origin, level, begin, bytes_.position() - begin, tiles});
         if constexpr (kLog2 == kLowerLog2) readLeafMasks(children);
         std::size_t before = 0;
         for (std::size_t i = 0; i < children.size(); ++i) {
@@ -166,12 +170,44 @@ class Walk {
         } else {
             leaves_->push_back({place, 0, 0, VdbLeaf::sumOf(leafMasks_[before])});
             ++size_.leaves;
+            if (places_) noteActive<kLeafLog2>(place, leafMasks_[before], 0);
         }
     }
 
-    void noteTiles(const VdbTileNode& node) {
+    void noteRootTile(const Place& origin) {
+        places_->activeVoxels += std::uint64_t{1} << (3 * kUpperExtentLog2);
+        places_->activeBox.expand(
+            openvdb::CoordBBox::createCube(openvdb::Coord(origin.data()), kUpperExtent));
+    }
+
+    // Notes which voxels are active.
+    // @param values     of a node or leaf at `origin`
+    // @param childLog2  of the voxels that one of its places has along an axis
+    template <int kLog2>
+    void noteActive(const Place& origin, const Mask<kLog2>& values, int childLog2) {
+        std::uint64_t places = 0;
+        for (const std::uint64_t word : values) places += std::uint64_t(std::popcount(word));
+        if (places == 0) return;
+        places_->activeVoxels += places << (3 * childLog2);
+        openvdb::CoordBBox& box = places_->activeBox;
+        const openvdb::Coord first(origin.data());
+        const int width = 1 << (kLog2 + childLog2);
+        if (box.isInside(openvdb::CoordBBox::createCube(first, width))) return;
+        constexpr int kMask = (1 << kLog2) - 1;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            for (std::uint64_t rest = values[i]; rest != 0; rest &= rest - 1) {
+                const int number = int(i * 64) + std::countr_zero(rest);
+                const openvdb::Coord place((number >> (2 * kLog2)) << childLog2,
+                                           (number >> kLog2 & kMask) << childLog2,
+                                           (number & kMask) << childLog2);
+                box.expand(openvdb::CoordBBox::createCube(first + place, 1 << childLog2));
+            }
+        }
+    }
+
+    void noteNode(const VdbNode& node) {
         size_.tiles += node.tiles;
-        if (places_) places_->tiles.push_back(node);
+        if (places_) places_->nodes.push_back(node);
     }
 
     template <int kLog2>

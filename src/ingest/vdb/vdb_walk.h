@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <openvdb/Types.h>
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -56,9 +58,9 @@ struct VdbLeaf {
     std::uint64_t end() const { return begin + size; }
 };
 
-/// Where a node that has active tiles lies in a file: its two masks, of children and of tiles, and
-/// its values. Or a tile of the root: its value.
-struct VdbTileNode {
+/// Where a node that has nodes or leaves below lies in a file: its two masks, of children and of
+/// tiles, and its values. Or a tile of the root: its value.
+struct VdbNode {
     std::array<std::int32_t, 3> origin;
     int level = 1;  ///< of its tiles. 1: of 8^3 voxels, 2: of 128^3, 3: of 4096^3, of the root
     std::uint64_t begin = 0;
@@ -68,9 +70,11 @@ struct VdbTileNode {
 
 /// What of a tree has values, and where these lie in a file.
 struct VdbTreePlaces {
-    std::uint64_t background = 0;    ///< where the background is
-    std::vector<VdbTileNode> tiles;  ///< in file order
-    std::vector<VdbLeaf> leaves;     ///< in file order
+    std::uint64_t background = 0;  ///< where the background is
+    std::vector<VdbNode> nodes;    ///< in file order
+    std::vector<VdbLeaf> leaves;   ///< likewise
+    std::uint64_t activeVoxels = 0;
+    openvdb::CoordBBox activeBox;  ///< of these
 };
 
 /// Walks a grid's tree from its first byte to its last without unpacking it; `bytes` moves along.

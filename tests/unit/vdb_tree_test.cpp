@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grids that VdbFile::read() reads here have to be those that OpenVDB reads, inactive values,
+// tiles, metadata and transforms included: both are written again, and compared byte by byte.
+#include "ingest/vdb/vdb_tree.h"
+
+#include <gtest/gtest.h>
+#include <openvdb/io/Compression.h>
+#include <openvdb/openvdb.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "deltasplat/error.h"
+#include "deltasplat/threads.h"
+#include "ingest/vdb/vdb_file.h"
+#include "unit/convert_helpers.h"
+#include "unit/random_grid.h"
+#include "vdb/write_vdb.h"
+
+namespace deltasplat {
+namespace {
+
+using openvdb::Coord;
+using testing::Inactive;
+using testing::randomGrid;
+using testing::TempFolder;
+
+// OpenVDB's compressions, alone and together.
+constexpr std::uint32_t kCompressions[] = {
+    openvdb::io::COMPRESS_NONE,  openvdb::io::COMPRESS_ACTIVE_MASK,
+    openvdb::io::COMPRESS_ZIP,   openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK,
+    openvdb::io::COMPRESS_BLOSC, openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK,
+};
+
+void writeBy(const std::string& file, const openvdb::GridBase::Ptr& grid,
+             std::uint32_t compression) {
+    openvdb::io::File out(file);
+    out.setCompression(compression);
+    out.write(openvdb::GridPtrVec{grid});
+    out.close();
+}
+
+openvdb::GridBase::Ptr readHere(const std::string& file) {
+    const VdbFile vdb(file);
+    return vdb.read(vdb.grids().front(), {});
+}
+
+void expectSameRead(const openvdb::GridBase::Ptr& grid) {
+    const TempFolder folder;
+    for (const std::uint32_t compression : kCompressions) {
+        SCOPED_TRACE(compression);
+        writeBy("a.vdb", grid, compression);
+        WrittenGrid theirs = writtenGrid(testing::readGrids("a.vdb").front());
+        // What the type of the grid says as well, which counts.
+        if (!theirs.isHalf()) theirs.metadata.erase(openvdb::GridBase::META_SAVE_HALF_FLOAT);
+        writeVdb("theirs.vdb", {theirs});
+        const openvdb::GridBase::Ptr ours = readHere("a.vdb");
+        writeVdb("ours.vdb", {writtenGrid(ours)});
+        EXPECT_TRUE(testing::readBytes("theirs.vdb") == testing::readBytes("ours.vdb"));
+        EXPECT_EQ(ours->type(), grid->type());
+    }
+}
+
+template <typename Grid>
+void expectSameReadOfAll() {
+    unsigned seed = 1;
+    for (const int background : {0, 3}) {
+        for (const Inactive inactive : testing::kAllInactive) {
+            for (const bool half : {false, true}) {
+                const auto grid = randomGrid<Grid>(300, inactive, background, ++seed);
+                grid->setSaveFloatAsHalf(half);
+                SCOPED_TRACE(grid->type() + " half " + std::to_string(half) + " kind " +
+                             std::to_string(int(inactive)));
+                expectSameRead(grid);
+            }
+        }
+    }
+}
+
+TEST(VdbTree, NumbersAreReadAsByOpenVdb) {
+    expectSameReadOfAll<openvdb::FloatGrid>();
+    expectSameReadOfAll<openvdb::DoubleGrid>();
+    expectSameReadOfAll<openvdb::Int32Grid>();
+    expectSameReadOfAll<openvdb::Int64Grid>();
+}
+
+TEST(VdbTree, OddGridsAreReadAsByOpenVdb) {
+    openvdb::initialize();
+    const auto odd = openvdb::FloatGrid::create(0.1F);
+    expectSameRead(odd);
+    odd->tree().setValueOn(Coord(0, 0, 0), std::numeric_limits<float>::quiet_NaN());
+    odd->tree().setValueOff(Coord(0, 0, 2), std::numeric_limits<float>::infinity());
+    odd->tree().setValueOff(Coord(0, 9, 2), -0.0F);
+    // A leaf and nodes without any active voxel.
+    odd->tree().setValueOff(Coord(0, 0, 20), 0.1F);
+    odd->tree().touchLeaf(Coord(-5000, 0, 0));
+    odd->tree().root().touchLeaf(Coord(50000, 0, 0))->setValuesOff();
+    odd->setTransform(openvdb::math::Transform::createFrustumTransform(
+        openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(100)), 0.5, 2));
+    odd->insertMeta("note", openvdb::StringMetadata("kept"));
+    expectSameRead(odd);
+    const auto whole = openvdb::Int32Grid::create(std::numeric_limits<std::int32_t>::min());
+    whole->tree().setValueOff(Coord(0, 0, 0), 5);
+    whole->tree().setValueOff(Coord(0, 0, 1), std::numeric_limits<std::int32_t>::min());
+    expectSameRead(whole);
+}
+
+TEST(VdbTree, TheSameOnAnyNumberOfThreads) {
+    const TempFolder folder;
+    writeBy("a.vdb", randomGrid<openvdb::FloatGrid>(3000, Inactive::kTwo, 1, 7),
+            openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
+    for (const int threads : {1, 3}) {
+        const ThreadLimit limit(threads);
+        writeVdb(std::to_string(threads) + ".vdb", {writtenGrid(readHere("a.vdb"))});
+    }
+    EXPECT_TRUE(testing::readBytes("1.vdb") == testing::readBytes("3.vdb"));
+}
+
+TEST(VdbTree, WrongNotesOfLeavesDoNoHarm) {
+    const TempFolder folder;
+    const auto grid = randomGrid<openvdb::FloatGrid>(5, Inactive::kBackground, 0, 7);
+    writeBy("a.vdb", grid, openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
+    std::string bytes = testing::readBytes("a.vdb");
+    // Of five leaves sizes are noted as they are, of eight bytes each: the first two change places.
+    const std::string name = "__delayedload";
+    const std::size_t sizes = bytes.find(name) + name.size() + 4 + 4 + 4 + 5 + 4;
+    const std::string first = bytes.substr(sizes, 8);
+    const std::string second = bytes.substr(sizes + 8, 8);
+    ASSERT_NE(first, second);
+    bytes.replace(sizes, 16, second + first);
+    testing::writeBytes("b.vdb", bytes);
+    writeVdb("sound.vdb", {writtenGrid(readHere("a.vdb"))});
+    writeVdb("noted.vdb", {writtenGrid(readHere("b.vdb"))});
+    EXPECT_TRUE(testing::readBytes("sound.vdb") == testing::readBytes("noted.vdb"));
+}
+
+TEST(VdbTree, DamagedLeavesAreRefused) {
+    const TempFolder folder;
+    writeBy("a.vdb", randomGrid<openvdb::FloatGrid>(50, Inactive::kBackground, 0, 7),
+            openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
+    std::string bytes = testing::readBytes("a.vdb");
+    // In the middle of the last leaf's chunk.
+    for (std::size_t i = 1; i <= 60; ++i) bytes[bytes.size() - i] = '\xff';
+    testing::writeBytes("a.vdb", bytes);
+    testing::expectError(
+        ErrorCode::kInput,
+        "a.vdb: grid \"grid\": got leaves that are damaged; expected a sound OpenVDB grid",
+        [] { readHere("a.vdb"); });
+}
+
+}  // namespace
+}  // namespace deltasplat
