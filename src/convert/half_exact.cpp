@@ -4,6 +4,7 @@
 #include <openvdb/openvdb.h>
 
 #include <atomic>
+#include <type_traits>
 #include <vector>
 
 #include "ingest/grids/grid_values.h"
@@ -29,15 +30,22 @@ bool areHalves(const Volume& volume, double background) {
 }
 
 template <typename Leaf>
-bool isHalfLeaf(const Leaf& leaf) {
+bool isHalfLeaf(const Leaf& leaf, bool inactiveOnly) {
+    if (inactiveOnly) {
+        for (auto voxel = leaf.cbeginValueOff(); voxel; ++voxel) {
+            if (!isHalf(*voxel)) return false;
+        }
+        return true;
+    }
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
         if (!isHalf(leaf.getValue(i))) return false;
     }
     return true;
 }
 
+// @param inactiveOnly  leaves active voxels of leaves out
 template <typename Tree>
-bool survives(const Tree& tree) {
+bool survives(const Tree& tree, bool inactiveOnly) {
     // Background and inactive values are stored as halves too.
     if (!isHalf(tree.background())) return false;
     auto tile = tree.cbeginValueAll();
@@ -50,7 +58,7 @@ bool survives(const Tree& tree) {
     std::atomic<bool> all = true;
     forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && all; ++i) {
-            if (!isHalfLeaf(*leaves[i])) all = false;
+            if (!isHalfLeaf(*leaves[i], inactiveOnly)) all = false;
         }
     });
     return all;
@@ -58,10 +66,14 @@ bool survives(const Tree& tree) {
 
 }  // namespace
 
-bool survivesHalf(const openvdb::GridBase& grid) {
+bool survivesHalf(const openvdb::GridBase& grid, const Volume* volume) {
     bool all = false;
-    grid.apply<openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid>>(
-        [&](const auto& real) { all = survives(real.constTree()); });
+    grid.apply<openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid>>([&](const auto& real) {
+        using Value = typename std::decay_t<decltype(real)>::ValueType;
+        const bool isCounted = volume && volume->codeBook.isExact();
+        all = (!isCounted || areHalves<Value>(*volume, double(real.background()))) &&
+              survives(real.constTree(), isCounted);
+    });
     return all;
 }
 

@@ -11,7 +11,9 @@ namespace deltasplat {
 
 /// Returns whether a grid of real values, stored in half precision by writeVdb, reads back with
 /// every value as it is, inactive ones included; false for grids of other types.
-bool survivesHalf(const openvdb::GridBase& grid);
+/// @param volume  null, or one whose active values are those of the grid, or more: where its codes
+///                are exact, its histogram says which there are
+bool survivesHalf(const openvdb::GridBase& grid, const Volume* volume = nullptr);
 
 /// Returns the same of a grid that codes become.
 /// @param volume  whose histogram says which codes there are

@@ -23,17 +23,22 @@ bool within(const ValueFacts& facts) {
 }
 
 template <typename Leaf>
-void addLeaf(const Leaf& leaf, ValueFacts& facts) {
-    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) facts.add(leaf.getValue(i));
+void addLeaf(const Leaf& leaf, bool inactiveOnly, ValueFacts& facts) {
+    if (inactiveOnly) {
+        for (auto voxel = leaf.cbeginValueOff(); voxel; ++voxel) facts.add(*voxel);
+    } else {
+        for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) facts.add(leaf.getValue(i));
+    }
 }
 
+// @param inactiveOnly  leaves active voxels of leaves out
 template <typename Tree>
-ValueFacts factsOfTree(const Tree& tree) {
+ValueFacts factsOfTree(const Tree& tree, bool inactiveOnly) {
     std::vector<const typename Tree::LeafNodeType*> leaves;
     tree.getNodes(leaves);
     std::vector<ValueFacts> parts(leaves.size() / kLeafRun + 1);
     forLeafRuns(leaves.size(), [&](std::size_t run, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) addLeaf(*leaves[i], parts[run]);
+        for (std::size_t i = begin; i < end; ++i) addLeaf(*leaves[i], inactiveOnly, parts[run]);
     });
 
     ValueFacts whole;
@@ -76,9 +81,11 @@ bool ValueFacts::fit(RawType type) const {
 
 ValueFacts factsOf(const Volume& volume) {
     if (!volume.source) return factsOfCodes(volume);
-    ValueFacts facts;
+    // Which exact codes there are has been counted.
+    const bool isExact = volume.codeBook.isExact();
+    ValueFacts facts = isExact ? factsOfCodes(volume) : ValueFacts();
     volume.source->grid->apply<ScalarGrids>(
-        [&](const auto& grid) { facts = factsOfTree(grid.constTree()); });
+        [&](const auto& grid) { facts.append(factsOfTree(grid.constTree(), isExact)); });
     return facts;
 }
 

@@ -118,7 +118,7 @@ WrittenGrid storedGrid(Volume volume, const WriteOptions& options, Notes& notes)
     if (options.dropBackground) grid = sparseGrid(grid, volume, options, notes);
 
     if (options.keepPrecision && volume.source && volume.hasBackground) return writtenGrid(grid);
-    const bool half = !options.fullFloat && survivesHalf(*grid);
+    const bool half = !options.fullFloat && survivesHalf(*grid, &volume);
     noteType(volume, typeOf(*grid), half, notes);
     WrittenGrid written = writtenGrid(grid);
     written.metadata.insert(GridBase::META_SAVE_HALF_FLOAT, half);

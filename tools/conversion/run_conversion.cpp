@@ -127,7 +127,7 @@ ConversionStats runConversion(const CLI::App& app, const ConversionFiles& files,
                               const Convert& convert) {
     requireFramesOf(app, frames, files.input, files.output);
     if (frames.asked() && !files.stats.empty()) frameNameOf(frames, "--stats", files.stats);
-    const std::jthread loading = loadEarly(files.toVdb() ? files.output : files.input);
+    const std::jthread loading = loadEarly(files.input);
     ConversionStats stats;
     {
         ProgressDisplay display(session.common);

@@ -15,8 +15,9 @@
 namespace deltasplat {
 namespace {
 
-// What a leaf of floats takes for an 8x8x8 block that is not uniform.
-constexpr double kBytesPerBlock = 2200;
+// What a leaf of floats takes for an 8x8x8 block that is not uniform, of values that codes are not
+// enough for.
+constexpr double kBytesPerInexactBlock = 2200;
 
 // Share of the progress that reading takes.
 constexpr double kReadShare = 0.5;
@@ -128,7 +129,7 @@ Subcommand addConvert(CLI::App& program) {
     // What is in a file is passed on as it is, not as it would be rendered.
     command->read.levelSetToFog = false;
     command->read.keepSource = true;
-    command->read.bytesPerBlock = kBytesPerBlock;
+    command->read.bytesPerInexactBlock = kBytesPerInexactBlock;
     CLI::App& app = addSubcommand(
         program, "convert", "Converts a volume to another format.",
         {"deltasplat convert engine_256x256x128_uint8.raw.gz engine.vdb --background auto",

@@ -183,7 +183,7 @@ Volume readDeltaGrid(openvdb::GridBase& stored, const openvdb::MetaMap::ConstPtr
 std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
                                       const std::string& where, const ReadOptions& options,
                                       const Listener& listener, const SlicesWanted* wanted) {
-    if (options.keepSource || (grid.type != "int32" && grid.type != "int64")) return std::nullopt;
+    if (grid.type != "int32" && grid.type != "int64") return std::nullopt;
     DeltaHeader header;
     std::optional<VdbLeaves> leaves;
     std::unique_ptr<const DeltaColumns> columns;
@@ -194,6 +194,9 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
         header = takeDeltaHeader(metadata, where);
         const bool becomesFog = options.levelSetToFog && sourceClass(metadata) == kLevelSetClass;
         if (!mayDecodeBlocks(header) || becomesFog) return std::nullopt;
+        // Exact codes say all of a volume without empty places.
+        const bool codesAreAll = header.restActive && header.book.isExact();
+        if (options.keepSource && !codesAreAll) return std::nullopt;
         if ((grid.type == "int64") != header.isPacked()) return std::nullopt;
         if (wanted && !mayBeBoxOf(header, wanted->box)) return std::nullopt;
         leaves = file.readLeaves(grid, wanted != nullptr);
