@@ -41,7 +41,7 @@ grep -q "^deltasplat: module exr: got .*; expected $PWD/lonely/lib/deltasplat/ex
     stderr.txt || { cat stderr.txt; fail "expected to be told what is missing"; }
 # OpenVDB's own functions are called from deep within; what fails then is said all the same.
 rm lonely/lib/deltasplat/openvdb.so
-for command in "info in.vdb" "convert in.npy none.vdb" "synth slab none.vdb --dims 8x8x8"; do
+for command in "info in.vdb" "convert in.vdb none.vdb" "delta in.npy none.vdb" "synth slab none.vdb --dims 8x8x8"; do
     # shellcheck disable=SC2086
     expect_code 1 lonely/bin/deltasplat $command
     grep -q "^deltasplat: module openvdb: got .*; expected $PWD/lonely/lib/deltasplat/openvdb.so, installed with" \

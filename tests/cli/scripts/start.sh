@@ -42,12 +42,14 @@ for command in --version "render --version" --help "render --help" "render --no-
     "render engine.vdb -o x.png --size 32x32" "render cloud.vdb -o x.exr --size 32x32 --lighting scatter" \
     "render deltas.vdb -o x.exr --size 32x32" "render packed.vdb -o x.exr --size 32x32" \
     "info --list cloud.vdb" "bench engine.vdb --size 32x32 --repeats 1 --threads 1" \
-    "diff engine.npy engine_24x24x24_uint8.raw" "convert engine.npy engine.nii" \
+    "diff engine.npy engine_24x24x24_uint8.raw" "diff engine.vdb engine.npy" "diff cloud.vdb cloud.vdb" \
+    "convert engine.npy engine.nii" "convert engine.npy x.vdb" "convert engine.npy x.vdb --background auto" \
+    "restore deltas.vdb x.vdb --threads 1" "restore packed.vdb x.npy --threads 1" \
     "synth engine x.raw --dims 8x8x8"; do
     # shellcheck disable=SC2086
     ! loads_openvdb "$program" $command || fail "$command: loads OpenVDB"
 done
-loads_openvdb "$program" convert engine.npy engine.vdb || fail "convert to .vdb: does not load OpenVDB"
+loads_openvdb "$program" delta engine.npy x.vdb || fail "delta: does not load OpenVDB"
 
 versions=$("$program" --version)
 [[ $versions == "$("$program" render --version)" && $versions == "$("$program" -q --version)" ]] ||
