@@ -149,7 +149,8 @@ std::string typeOf(const GridBase& grid) {
 
 std::string gridTypeOf(const Volume& volume) {
     const bool keepsType = volume.hasBackground && isGridType(volume.type);
-    return keepsType ? volume.type : smallestType(factsOf(volume));
+    if (!keepsType) return smallestType(factsOf(volume));
+    return volume.type == "half" ? "float" : volume.type;
 }
 
 WrittenGrid writtenCodes(const Volume& volume, const std::string& type, double background) {

@@ -21,6 +21,7 @@
 
 #include "cannot_write.h"
 #include "deltasplat/atomic_file.h"
+#include "deltasplat/memory_limit.h"
 #include "ingest/grids/file_metadata.h"
 #include "listener_part.h"
 #include "memory.h"
@@ -59,9 +60,9 @@ glm::ivec3 toVector(const openvdb::Coord& place) {
 }
 
 // A grid whose leaves are packed.
-class PackedGrid {
+class GridPacker {
   public:
-    PackedGrid(const WrittenGrid& grid, std::string uniqueName)
+    GridPacker(const WrittenGrid& grid, std::string uniqueName)
         : grid_(grid), name_(std::move(uniqueName)), leaves_(*grid.tree, grid.isHalf()) {}
 
     void pack(std::uint64_t& room, const std::function<void(double)>& step) {
@@ -154,7 +155,7 @@ void writeTag(AtomicFile& file, const std::string& tag) {
     file.write(tag.data(), tag.size());
 }
 
-void writeGrids(AtomicFile& file, const std::vector<std::unique_ptr<PackedGrid>>& grids,
+void writeGrids(AtomicFile& file, const std::vector<std::unique_ptr<GridPacker>>& grids,
                 const VdbMetadata& metadata, const Listener& listener) {
     std::vector<std::string> heads;
     std::string front = fileHead(std::string(kTagBytes, '\0'), metadata, grids.size());
@@ -195,11 +196,12 @@ void writeVdb(const std::filesystem::path& file, const std::vector<WrittenGrid>&
         output.isDevice() && ::fstat(output.descriptor(), &status) == 0 && S_ISREG(status.st_mode);
     if (isOpenFile) throwCannotWrite(file, ESPIPE);
 
-    std::vector<std::unique_ptr<PackedGrid>> packed;
+    std::vector<std::unique_ptr<GridPacker>> packed;
     std::vector<std::string> names = uniqueNames(grids);
-    std::uint64_t room = std::min(kMostKept, availableMemory() / 4);
+    // Under a limit what is taken has to follow from the grids alone.
+    std::uint64_t room = memoryLimit() != 0 ? 0 : std::min(kMostKept, availableMemory() / 4);
     for (std::size_t i = 0; i < grids.size(); ++i) {
-        packed.push_back(std::make_unique<PackedGrid>(grids[i], std::move(names[i])));
+        packed.push_back(std::make_unique<GridPacker>(grids[i], std::move(names[i])));
         packed[i]->pack(room, [&](double share) {
             listener.report(kPackShare * (double(i) + share) / double(grids.size()));
         });
@@ -210,10 +212,11 @@ void writeVdb(const std::filesystem::path& file, const std::vector<WrittenGrid>&
 }
 
 std::uint64_t writtenBytes(const WrittenGrid& grid) {
-    PackedGrid packed(grid, grid.name);
+    GridPacker packed(grid, grid.name);
     std::uint64_t room = 0;
     packed.pack(room, [](double) {});
-    return packed.head(0).size() + packed.leafBytes();
+    const std::string front = fileHead(std::string(kTagBytes, '\0'), {}, 1);
+    return front.size() + packed.head(0).size() + packed.leafBytes();
 }
 
 }  // namespace deltasplat

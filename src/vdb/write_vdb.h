@@ -19,7 +19,7 @@ namespace deltasplat {
 void writeVdb(const std::filesystem::path& file, const std::vector<WrittenGrid>& grids,
               const VdbMetadata& fileMetadata = {}, const Listener& listener = {});
 
-/// Returns how many bytes a file has of a grid.
+/// Returns how many bytes a file of this grid alone has.
 std::uint64_t writtenBytes(const WrittenGrid& grid);
 
 }  // namespace deltasplat

@@ -3,9 +3,9 @@
 
 #include <openvdb/openvdb.h>
 
-#include <cassert>
 #include <type_traits>
 
+#include "deltasplat/error.h"
 #include "ingest/grids/scalar_grids.h"
 #include "vdb/tree_writer.h"
 
@@ -28,8 +28,9 @@ WrittenGrid writtenGrid(const openvdb::GridBase::ConstPtr& grid) {
         written.tree =
             std::make_shared<const TreeWriter<OwnValues<Tree>>>(OwnValues<Tree>(typed.treePtr()));
     });
-    assert(isKnown);
-    (void)isKnown;
+    if (!isKnown)
+        throw Error(ErrorCode::kFailed, gotExpected("grid to write", "type " + grid->valueType(),
+                                                    "a scalar grid, or one of vec3s"));
     return written;
 }
 

@@ -24,6 +24,7 @@ struct WrittenGrid {
 };
 
 /// Returns what is written of a scalar grid, or of one of vec3s: itself, which must not change.
+/// @throw Error(kFailed) if it is of another type
 WrittenGrid writtenGrid(const openvdb::GridBase::ConstPtr& grid);
 
 }  // namespace deltasplat

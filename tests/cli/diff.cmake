@@ -129,6 +129,11 @@ function(deltasplat_diff_refusal name message)
     deltasplat_cli_test(diff.refused.${name} EXIT 4 STDERR "deltasplat: ${message}"
                         STDOUT_MATCHES "^$" ARGS diff ${ARGN})
 endfunction()
+# Of a grid that is found out while it is compared to need another look.
+deltasplat_diff_refusal(not_finite "nan.vdb: grid \"density\": got 2 NaN or infinite active values, the first at (1, 2, 3); expected finite values (--nan VALUE replaces them)" nan.vdb nan.vdb)
+deltasplat_cli_test(diff.warnings_of_both ARGS diff empty.vdb empty.vdb
+    STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels
+deltasplat: warning: empty.vdb: grid \"density\": no active voxels" STDOUT_MATCHES "PASS")
 deltasplat_diff_refusal(missing "nowhere.vdb: got no such file; expected a readable file"
     ball.vdb nowhere.vdb)
 deltasplat_diff_refusal(unreadable "cut_8x8x8_uint8.raw: got 500 bytes; expected 512 (8x8x8 uint8)"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -176,7 +177,10 @@ TEST(PackedVolume, WhatIsNotFiniteOrElsewhereNeedsTheWholeGrid) {
     writeOne("tile.vdb", tile);
     const auto a = readPacked("a.vdb");
     ASSERT_TRUE(a);
-    for (const char* const other : {"moved.vdb", "leaf.vdb", "tile.vdb"}) {
+    std::string bytes = testing::readBytes("a.vdb");
+    std::fill(bytes.end() - 60, bytes.end(), '\xff');
+    testing::writeBytes("damaged.vdb", bytes);
+    for (const char* const other : {"moved.vdb", "leaf.vdb", "tile.vdb", "damaged.vdb"}) {
         const auto b = readPacked(other);
         ASSERT_TRUE(b);
         EXPECT_THROW(compareVolumes(*a, *b), NeedsWholeGrid) << other;

@@ -230,6 +230,20 @@ void expectRemade() {
     EXPECT_EQ(countDifferences(back->constTree(), grid->constTree()), 0u);
 }
 
+TEST(WriteGrids, CodesOfHalvesAreStoredAsHalves) {
+    const TempFolder folder;
+    const auto grid = makeGrid<openvdb::FloatGrid>(
+        "density", [](int i) { return float(i % 50) / 4; }, 0.5F);
+    grid->setSaveFloatAsHalf(true);
+    openvdb::io::File("in.vdb").write({grid});
+    const Volume volume = readVolume("in.vdb");
+    ASSERT_EQ(volume.type, "half");
+    write("out.vdb", volume);
+    const auto back = readGrid<openvdb::FloatGrid>("out.vdb");
+    EXPECT_TRUE(back->saveFloatAsHalf());
+    EXPECT_EQ(countDifferences(back->constTree(), grid->constTree()), 0u);
+}
+
 TEST(WriteGrids, CodesAloneMakeTheSameVoxels) {
     expectRemade<openvdb::FloatGrid>();
     expectRemade<openvdb::DoubleGrid>();

@@ -14,9 +14,11 @@
 #include <string>
 #include <type_traits>
 
+#include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "unit/convert_helpers.h"
 #include "unit/random_grid.h"
+#include "vdb/leaf_pieces.h"
 
 namespace deltasplat {
 namespace {
@@ -170,11 +172,32 @@ TEST(WriteVdb, BytesDependOnNothingButTheGrids) {
     const std::string bytes = testing::readBytes("1.vdb");
     EXPECT_EQ(bytes, testing::readBytes("2.vdb"));
     EXPECT_EQ(bytes, testing::readBytes("5.vdb"));
-    EXPECT_EQ(writtenBytes(writtenGrid(grid)) + kTagPlace + kTagBytes + 8, bytes.size());
+    EXPECT_EQ(writtenBytes(writtenGrid(grid)), bytes.size());
     grid->tree().setValueOn(Coord(0), 12345);
     writeVdb("other.vdb", written({grid}));
     EXPECT_NE(bytes.substr(kTagPlace, kTagBytes),
               testing::readBytes("other.vdb").substr(kTagPlace, kTagBytes));
+}
+
+TEST(WriteVdb, LeavesThatAreNotKeptArePackedAgain) {
+    const WrittenGrid grid =
+        writtenGrid(randomGrid<openvdb::FloatGrid>(3000, Inactive::kTwo, 1, 9));
+    std::vector<std::string> packed;
+    for (const std::uint64_t kept : {0, 1000000, 1 << 30}) {
+        std::uint64_t room = kept;
+        LeafPieces pieces(*grid.tree, false);
+        pieces.pack(room, [](double) {});
+        packed.emplace_back();
+        pieces.take([&](const std::string& bytes) { packed.back() += bytes; });
+        EXPECT_EQ(packed.back().size(), pieces.bytes());
+        EXPECT_TRUE(packed.back() == packed.front());
+        EXPECT_EQ(room == kept, kept == 0);
+    }
+    EXPECT_GT(packed.front().size(), 2000000u);
+}
+
+TEST(WriteVdb, OtherGridsAreRefused) {
+    EXPECT_THROW(writtenGrid(openvdb::Vec3DGrid::create()), Error);
 }
 
 TEST(WriteVdb, APipeTakesAFile) {

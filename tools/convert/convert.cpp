@@ -15,9 +15,10 @@
 namespace deltasplat {
 namespace {
 
-// What a leaf of floats takes for an 8x8x8 block that is not uniform, of values that codes are not
-// enough for.
+// What a leaf takes for an 8x8x8 block that is not uniform: one of floats, of values that codes are
+// not enough for, and one of codes of which a background is dropped.
 constexpr double kBytesPerInexactBlock = 2200;
+constexpr double kBytesPerDroppedBlock = 1200;
 
 // Share of the progress that reading takes.
 constexpr double kReadShare = 0.5;
@@ -88,8 +89,10 @@ std::vector<Volume> readInput(const ConvertCommand& command, const std::filesyst
         volumes.push_back(readVolume(input, command.read, listener));
         return volumes;
     }
+    ReadOptions reading = command.read;
+    if (command.write.dropBackground) reading.bytesPerBlock = kBytesPerDroppedBlock;
     complete = forEachScalarGrid(
-        input, command.read,
+        input, reading,
         [&](Volume volume) {
             // The source says all that the codes do, and more.
             if (volume.source) volume.codes.reset();

@@ -10,6 +10,7 @@
 #include "diff/diff_report.h"
 #include "ingest/files/file_name.h"
 #include "ingest/grids/grid_errors.h"
+#include "ingest/grids/source_grid.h"
 #include "ingest/vdb/packed_grid.h"
 #include "listener.h"
 #include "options/input_options.h"
@@ -129,7 +130,11 @@ GridDiff compareGrids(const DiffOptions& options, const GridPair& pair, bool pac
                      stage(0, kReadA));
     diff.b = readOne(options.b, pair.b, optionsFor(options.b, options.a, options.read), packed,
                      stage(kReadA, kReadB));
-    diff.comparison = compareVolumes(diff.a, diff.b, options.compare, stage(kReadB, 1));
+    // What is packed is read while it is compared.
+    const bool areRead =
+        !diff.a.source || !diff.a.source->packed || !diff.b.source || !diff.b.source->packed;
+    diff.comparison =
+        compareVolumes(diff.a, diff.b, options.compare, stage(areRead ? kReadB : 0, 1));
     diff.verdict = judge(diff.comparison, options.compare, options.limits);
     for (Volume* volume : {&diff.a, &diff.b}) {
         volume->codes.reset();
@@ -142,21 +147,32 @@ GridDiff compareGrids(const DiffOptions& options, const GridPair& pair, bool pac
 // Values are unpacked as they are compared, unless that turns out to be not enough.
 GridDiff compareGrids(const DiffOptions& options, const GridPair& pair,
                       const std::function<Listener(double begin, double end)>& stage) {
-    // What is said while reading is said once.
+    // What has been said is not said again.
     std::vector<std::string> said;
-    const auto onlyOnce = [&](double begin, double end) {
+    const auto noting = [&](double begin, double end) {
         Listener listener = stage(begin, end);
         listener.warning = [&, warn = listener.warning](const std::string& text) {
-            if (contains(said, text)) return;
             said.push_back(text);
             if (warn) warn(text);
         };
         return listener;
     };
+    const auto withoutSaid = [&](double begin, double end) {
+        Listener listener = stage(begin, end);
+        listener.warning = [&, warn = listener.warning](const std::string& text) {
+            const auto found = std::find(said.begin(), said.end(), text);
+            if (found != said.end()) {
+                said.erase(found);
+            } else if (warn) {
+                warn(text);
+            }
+        };
+        return listener;
+    };
     try {
-        return compareGrids(options, pair, /*packed=*/true, onlyOnce);
+        return compareGrids(options, pair, /*packed=*/true, noting);
     } catch (const NeedsWholeGrid&) {
-        return compareGrids(options, pair, /*packed=*/false, onlyOnce);
+        return compareGrids(options, pair, /*packed=*/false, withoutSaid);
     }
 }
 
