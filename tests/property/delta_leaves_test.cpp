@@ -20,6 +20,10 @@
 #include "deltasplat/threads.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/slot_blocks.h"
+#include "ingest/delta/delta_format.h"
+#include "ingest/delta/read_delta_grid.h"
+#include "ingest/vdb/vdb_file.h"
+#include "ingest/vdb/vdb_transform.h"
 #include "support/same_picture.h"
 #include "support/same_volume.h"
 #include "unit/ingest_helpers.h"
@@ -34,11 +38,19 @@ using testing::TempFolder;
 
 const std::string kDeltas = "deltas.vdb";
 
-// Reads a file as a whole OpenVDB grid: what keeps the source needs one.
+// Reads a file as a whole OpenVDB grid, as readVolume does where blocks are not enough.
 Volume readWhole(const std::string& file) {
     ReadOptions options;
     options.keepSource = true;
-    Volume volume = readVolume(file, options);
+    const VdbFile vdb(file);
+    if (vdb.grids().empty() || !vdb.grids().front().isScalar()) return readVolume(file, options);
+    const VdbGrid& grid = vdb.grids().front();
+    const std::string where = file + ": grid \"" + grid.name + "\"";
+    const openvdb::GridBase::Ptr stored = vdb.read(grid, {});
+    if (!isDeltaGrid(*stored)) return readVolume(file, options);
+    worldFromIndexOf(*stored->transform().baseMap(), where);
+    Volume volume = readDeltaGrid(*stored, vdb.metadata(), where, options, {});
+    volume.name = grid.name;
     volume.source = nullptr;
     return volume;
 }
