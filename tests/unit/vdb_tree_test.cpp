@@ -136,6 +136,17 @@ TEST(VdbTree, WrongNotesOfLeavesDoNoHarm) {
     EXPECT_TRUE(testing::readBytes("sound.vdb") == testing::readBytes("noted.vdb"));
 }
 
+TEST(VdbTree, LeavesWithoutActiveVoxelsAreSound) {
+    const TempFolder folder;
+    openvdb::initialize();
+    const auto grid = openvdb::FloatGrid::create(0);
+    grid->tree().setValueOn(Coord(0, 0, 0), 0.1F);
+    grid->tree().setValueOff(Coord(0, 0, 20), 0.7F);
+    grid->tree().touchLeaf(Coord(100, 0, 0));
+    writeBy("a.vdb", grid, openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
+    EXPECT_EQ(readVolume("a.vdb").activeCount, 1u);
+}
+
 TEST(VdbTree, DamagedLeavesAreRefused) {
     const TempFolder folder;
     writeBy("a.vdb", randomGrid<openvdb::FloatGrid>(50, Inactive::kBackground, 0, 7),
