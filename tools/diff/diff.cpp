@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <thread>
 #include <utility>
 
 #include "deltasplat/error.h"
@@ -13,6 +14,7 @@
 #include "ingest/grids/source_grid.h"
 #include "ingest/vdb/packed_grid.h"
 #include "listener.h"
+#include "modules/load_early.h"
 #include "options/input_options.h"
 #include "options/volume_choices.h"
 #include "process/print_out.h"
@@ -289,6 +291,10 @@ Verdict compareFrames(const CLI::App& app, const DiffOptions& options, const Ses
 }
 
 Verdict runDiff(const CLI::App& app, const DiffOptions& options, const Session& session) {
+    // Most grids of a .vdb need no library.
+    std::vector<std::jthread> loading;
+    for (const std::filesystem::path& file : {options.a, options.b})
+        if (!isVdb(file)) loading.push_back(loadEarly(file));
     if (options.frames.asked()) return compareFrames(app, options, session);
     for (const std::filesystem::path& file : {options.a, options.b})
         requireFramesOf(app, options.frames, file);
