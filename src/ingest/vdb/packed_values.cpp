@@ -163,13 +163,14 @@ bool unpackAll(std::span<const char> bytes, std::span<const std::uint64_t> mask,
     return true;
 }
 
-#define DELTASPLAT_UNPACK_ALL(T)                                                   \
-    template bool unpackAll(std::span<const char>, std::span<const std::uint64_t>, \
-                            const VdbValueFormat&, T, std::vector<char>&, T*);
-DELTASPLAT_UNPACK_ALL(float)
-DELTASPLAT_UNPACK_ALL(double)
-DELTASPLAT_UNPACK_ALL(std::int32_t)
-DELTASPLAT_UNPACK_ALL(std::int64_t)
-#undef DELTASPLAT_UNPACK_ALL
+using Bytes = std::span<const char>;
+using MaskWords = std::span<const std::uint64_t>;
+template bool unpackAll(Bytes, MaskWords, const VdbValueFormat&, float, std::vector<char>&, float*);
+template bool unpackAll(Bytes, MaskWords, const VdbValueFormat&, double, std::vector<char>&,
+                        double*);
+template bool unpackAll(Bytes, MaskWords, const VdbValueFormat&, std::int32_t, std::vector<char>&,
+                        std::int32_t*);
+template bool unpackAll(Bytes, MaskWords, const VdbValueFormat&, std::int64_t, std::vector<char>&,
+                        std::int64_t*);
 
 }  // namespace deltasplat

@@ -173,13 +173,13 @@ DELTASPLAT_ACTIVE_VALUES(std::int32_t)
 DELTASPLAT_ACTIVE_VALUES(std::int64_t)
 #undef DELTASPLAT_ACTIVE_VALUES
 
-#define DELTASPLAT_ALL_VALUES(T)                                                         \
-    template bool VdbLeaves::allValues(const VdbLeaf&, T, std::size_t, VdbLeaves::Mask&, \
-                                       VdbLeaves::BytesRoom&, T*) const;
-DELTASPLAT_ALL_VALUES(float)
-DELTASPLAT_ALL_VALUES(double)
-DELTASPLAT_ALL_VALUES(std::int32_t)
-DELTASPLAT_ALL_VALUES(std::int64_t)
-#undef DELTASPLAT_ALL_VALUES
+template bool VdbLeaves::allValues(const VdbLeaf&, float, std::size_t, Mask&, BytesRoom&,
+                                   float*) const;
+template bool VdbLeaves::allValues(const VdbLeaf&, double, std::size_t, Mask&, BytesRoom&,
+                                   double*) const;
+template bool VdbLeaves::allValues(const VdbLeaf&, std::int32_t, std::size_t, Mask&, BytesRoom&,
+                                   std::int32_t*) const;
+template bool VdbLeaves::allValues(const VdbLeaf&, std::int64_t, std::size_t, Mask&, BytesRoom&,
+                                   std::int64_t*) const;
 
 }  // namespace deltasplat
