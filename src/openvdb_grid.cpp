@@ -6,6 +6,7 @@
 #include "deltasplat/error.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/grids/grid_volume.h"
+#include "ingest/grids/source_grid.h"
 #include "ingest/readers.h"
 #include "memory.h"
 
@@ -28,17 +29,23 @@ Volume makeVolume(const openvdb::GridBase::ConstPtr& grid, const ReadOptions& op
     if (!grid) throw Error(ErrorCode::kUsage, gotExpected(where, "none", "a grid"));
     openvdb::initialize();
     requireFiniteNan(options);
-    if (isDeltaGrid(*grid)) {
+    const TreeGrid given = fromOpenVdb(grid);
+    if (isDeltaGrid(given)) {
         throw Error(ErrorCode::kUsage,
                     gotExpected(where, "the differences of a delta grid",
                                 "the volume itself: readVolume reads a delta grid's file"));
     }
     const bool changes = isChanged(*grid, options);
     if (changes) requireMemory(where, double(grid->memUsage()));
-    const openvdb::GridBase::Ptr own =
-        changes ? grid->deepCopyGrid() : openvdb::ConstPtrCast<openvdb::GridBase>(grid);
-    Volume volume = volumeOfGrid(own, {listener, where, typeOf(*grid), options});
-    volume.name = grid->getName();
+    TreeGrid own = given;
+    if (changes) own.tree = own.tree->copy();
+    Volume volume = volumeOfGrid(std::move(own), {listener, where, given.type(), options});
+    volume.name = given.name();
+    if (volume.source && !changes) {
+        SourceGrid source = *volume.source;
+        source.given = grid;
+        volume.source = std::make_shared<const SourceGrid>(std::move(source));
+    }
     listener.report(1);
     return volume;
 }
@@ -50,7 +57,8 @@ openvdb::GridBase::ConstPtr makeGrid(const Volume& volume) {
                     gotExpected("OpenVDB grid to make", "a volume without voxels",
                                 "one that was read or made"));
     }
-    return gridOf(volume);
+    const bool wasGiven = volume.source && volume.source->given && volume.hasBackground;
+    return wasGiven ? volume.source->given : toOpenVdb(gridOf(volume));
 }
 
 }  // namespace deltasplat

@@ -204,8 +204,11 @@ void refuseExtras(const CLI::App& app, const std::vector<Subcommand>& subcommand
     }
     if (option != extras.end()) {
         const std::string name = option->substr(0, option->find('='));
-        throw Error(ErrorCode::kUsage,
-                    "Unknown option '" + name + "'." + suggestion(name, longOptions(app)));
+        const bool isOutput = (name == "-o" || name == "--output") &&
+                              app.get_option_no_throw("OUTPUT") != nullptr;
+        throw Error(ErrorCode::kUsage, "Unknown option '" + name + "'." +
+                                           (isOutput ? " OUTPUT is the last argument, without one"
+                                                     : suggestion(name, longOptions(app))));
     }
     throw Error(ErrorCode::kUsage,
                 "Unexpected argument '" + extras.front() + "'; see '" + callOf(app) + " --help'" +
@@ -277,8 +280,8 @@ const Subcommand* parse(CLI::App& program, const std::vector<Subcommand>& subcom
 int threadsFor(const CommonOptions& options) {
     const int wanted = options.threads > 0 ? options.threads : ThreadLimit::hardwareThreads();
     // Beside the one there is, N threads mean N - 1 of the library's, N - 1 of OpenImageIO's and N
-    // of OpenEXR's; and of OpenVDB's library those that it starts (log4cplus), and who loads it.
-    constexpr int kOfOpenVdb = 5;
+    // of OpenEXR's; and of OpenVDB's library those that it starts (log4cplus).
+    constexpr int kOfOpenVdb = 4;
     const int startable =
         wanted > 1 ? startableThreads(3 * wanted - 2 + kOfOpenVdb) - kOfOpenVdb : 0;
     const int threads = std::clamp((startable + 2) / 3, 1, wanted);

@@ -21,8 +21,8 @@ namespace deltasplat {
 Volume makeVolume(const openvdb::GridBase::ConstPtr& grid, const ReadOptions& options = {},
                   const Listener& listener = {});
 
-/// Returns the OpenVDB grid that a volume is. The grid of a volume that was one, and whose source
-/// is kept, is that source itself. Otherwise: a volume that has a background gets a grid of its own
+/// Returns the OpenVDB grid that a volume is. Of a volume that was one, and whose source is kept,
+/// that is the grid that makeVolume was given, or else one with the source's own tree. Otherwise: a volume that has a background gets a grid of its own
 /// type if OpenVDB has it, another one a float grid if floats hold every value, else int32 if that
 /// does, else double; with name, class, transform and metadata. Tiles stay tiles, and every active
 /// voxel is active. Values come from Volume::source, or if there is none from the codes.

@@ -19,10 +19,10 @@
 #include "ingest/codes/code_tree.h"
 #include "ingest/delta/decode_blocks.h"
 #include "ingest/delta/delta_format.h"
-#include "ingest/delta/word_grid.h"
+#include "ingest/delta/word_tree.h"
 #include "ingest/grids/grid_metadata.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/vdb/vdb_transform.h"
 #include "vdb/write_vdb.h"
 
 namespace deltasplat {
@@ -87,23 +87,20 @@ std::optional<Volume> sampleOf(const Volume& volume, const Chosen& chosen) {
     bool fits = copyChosen(volume.codes->tree(), chosen, codes->tree());
     sample.codes = codes;
     if (volume.source) {
-        openvdb::GridBase::Ptr grid;
-        volume.source->grid->apply<ScalarGrids>([&](const auto& typed) {
-            using Grid = std::decay_t<decltype(typed)>;
-            auto part = Grid::create(typed.background());
-            fits = copyChosen(typed.constTree(), chosen, part->tree()) && fits;
-            part->setTransform(typed.transform().copy());
-            part->setSaveFloatAsHalf(typed.saveFloatAsHalf());
-            grid = part;
+        TreeGrid part{nullptr, {}, volume.source->grid.map};
+        volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
+            const auto some = std::make_shared<std::decay_t<decltype(tree)>>(tree.background());
+            fits = copyChosen(tree, chosen, *some) && fits;
+            part.tree = some;
         });
-        sample.source =
-            std::make_shared<const SourceGrid>(SourceGrid{grid, volume.source->fileMetadata});
+        sample.source = std::make_shared<const SourceGrid>(
+            SourceGrid{std::move(part), volume.source->fileMetadata});
     }
     if (!fits) return {};
     return sample;
 }
 
-double bytesOf(const openvdb::GridBase::ConstPtr& grid) {
+double bytesOf(const TreeGrid& grid) {
     return double(writtenBytes(writtenGrid(grid)));
 }
 
@@ -115,26 +112,34 @@ double nodeBytes(const openvdb::TreeBase& tree) {
 // Returns the bytes of a grid's metadata and nodes, and of all the leaves that its own stand for.
 // @param leaves  how many times its own
 // @param nodes  bytes of all nodes
-double scaledBytes(const openvdb::GridBase& grid, double leaves, double nodes) {
-    const double header = bytesOf(grid.copyGridWithNewTree());
-    const double own = bytesOf(grid.copyGrid()) - header - nodeBytes(grid.constBaseTree());
+double scaledBytes(const TreeGrid& grid, double leaves, double nodes) {
+    TreeGrid empty{nullptr, grid.metadata, grid.map};
+    grid.apply<ScalarTrees>([&](const auto& tree) {
+        empty.tree = std::make_shared<std::decay_t<decltype(tree)>>(tree.background());
+    });
+    const double header = bytesOf(empty);
+    const double own = bytesOf(grid) - header - nodeBytes(*grid.tree);
     return header + nodes + leaves * own;
 }
 
-double plainBytes(const openvdb::GridBase& sample, double share, double nodes) {
-    openvdb::MetaMap metadata = sample;
-    metadata.insertMeta(openvdb::GridBase::META_SAVE_HALF_FLOAT,
-                        openvdb::BoolMetadata(survivesHalf(sample)));
-    return scaledBytes(*sample.copyGridReplacingMetadata(metadata), 1 / share, nodes);
+double plainBytes(TreeGrid sample, double share, double nodes) {
+    sample.metadata.insert(openvdb::GridBase::META_SAVE_HALF_FLOAT, survivesHalf(sample));
+    return scaledBytes(sample, 1 / share, nodes);
+}
+
+// Returns the grid of a delta file, but for its place.
+TreeGrid deltaGrid(std::shared_ptr<openvdb::TreeBase> tree, const DeltaHeader& header) {
+    TreeGrid grid{std::move(tree), {}, makeMap(glm::dmat4(1))};
+    putDeltaHeader(header, grid.metadata);
+    return grid;
 }
 
 double packedBytes(const TakenDeltas& sample, double share) {
     const std::vector<std::uint64_t> words = streamOf(*sample.deltas, sample.header);
-    const openvdb::GridBase::Ptr packed = gridOfWords(words);
-    putDeltaHeader(sample.header, *packed);
+    const TreeGrid packed = deltaGrid(treeOfWords(words), sample.header);
     const double leaves = double(words.size()) / share / kLeafWords;
     const double nodes = words.empty() ? 0 : kUpperNode + kLowerNode * (1 + leaves / 4096);
-    return scaledBytes(*packed, 1 / share, nodes);
+    return scaledBytes(packed, 1 / share, nodes);
 }
 
 std::optional<DeltaEstimate> estimateFrom(const Volume& volume, int sliceAxis) {
@@ -148,19 +153,18 @@ std::optional<DeltaEstimate> estimateFrom(const Volume& volume, int sliceAxis) {
     const double share = blocks == 0 ? 1 : double(sampled) / double(blocks);
     estimate.sampled = share;
     const double nodes = nodeBytes(volume.codes->tree());
-    const openvdb::GridBase::ConstPtr plain = gridOf(*sample);
-    estimate.plainBytes = plainBytes(*plain, share, nodes);
+    const TreeGrid plain = gridOf(*sample);
+    estimate.plainBytes = plainBytes(plain, share, nodes);
     // What a table is worth is known of values by their own bits.
     if (!sample->source && sample->hasBackground)
-        sample->source = std::make_shared<const SourceGrid>(SourceGrid{plain, nullptr});
+        sample->source = std::make_shared<const SourceGrid>(SourceGrid{plain});
     DeltaFileOptions options;
     options.sliceAxis = sliceAxis;
     const TakenDeltas voxels = takeDeltas(*sample, options);
     // Of what inactive voxels hold a sample says little.
     if (voxels.inactive.numbers || voxels.inactive.tooMany) return {};
-    putDeltaHeader(voxels.header, *voxels.deltas);
-    estimate.deltaBytes = scaledBytes(
-        *voxels.deltas, 1 / share, share == 1 ? nodeBytes(voxels.deltas->constBaseTree()) : nodes);
+    estimate.deltaBytes = scaledBytes(deltaGrid(voxels.deltas, voxels.header), 1 / share,
+                                      share == 1 ? nodeBytes(*voxels.deltas) : nodes);
     estimate.readsByBlocks =
         mayDecodeBlocks(voxels.header) && volume.gridClass != kLevelSetClass;  // made fog first
     options.pack = true;
@@ -172,7 +176,6 @@ std::optional<DeltaEstimate> estimateFrom(const Volume& volume, int sliceAxis) {
 
 std::optional<DeltaEstimate> estimateDeltaFile(const Volume& volume, int sliceAxis) {
     const DefaultFloats floats;
-    openvdb::initialize();
     if (volume.empty() || (!volume.source && !volume.codeBook.isExact())) return {};
     try {
         return estimateFrom(volume, sliceAxis);

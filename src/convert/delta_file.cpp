@@ -10,14 +10,13 @@
 #include <utility>
 
 #include "convert/take_deltas.h"
-#include "convert/volume_grid.h"
 #include "default_floats.h"
 #include "delta/stream_writer.h"
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/error.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/read_delta_grid.h"
-#include "ingest/delta/word_grid.h"
+#include "ingest/delta/word_tree.h"
 #include "ingest/grids/file_metadata.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/vdb/vdb_transform.h"
@@ -61,31 +60,29 @@ void requireRoom(const Tolerance& tolerance, const Volume& volume) {
 
 // Copies what the source says of itself, under names of its own, but for what is noted anew
 // whenever a file is written.
-void putSourceMetadata(const openvdb::GridBase& source, openvdb::MetaMap& metadata) {
+void putSourceMetadata(const VdbMetadata& source, VdbMetadata& metadata) {
     const auto noted = fileMetadata();
-    for (auto entry = source.beginMeta(); entry != source.endMeta(); ++entry) {
-        const bool isNoted = std::find(noted.begin(), noted.end(), entry->first) != noted.end();
-        if (!isNoted) metadata.insertMeta(kSourcePrefix + entry->first, *entry->second);
+    for (const auto& [name, entry] : source.entries()) {
+        const bool isNoted = std::find(noted.begin(), noted.end(), name) != noted.end();
+        if (!isNoted) metadata.insert(kSourcePrefix + name, entry);
     }
 }
 
-openvdb::math::Transform::Ptr permutedTransform(const glm::dmat4& worldFromIndex, int sliceAxis) {
+openvdb::math::MapBase::Ptr permutedMap(const glm::dmat4& worldFromIndex, int sliceAxis) {
     const glm::ivec3 order = sliceOrder(sliceAxis);
     glm::dmat4 permuted = worldFromIndex;
     for (int axis = 0; axis < 3; ++axis) permuted[axis] = worldFromIndex[order[axis]];
-    return makeTransformOfType("AffineMap", permuted);
+    return makeMap(permuted);
 }
 
 }  // namespace
 
 struct DeltaFile::Impl {
     std::vector<WrittenGrid> grids;
-    openvdb::MetaMap fileMetadata;
+    VdbMetadata fileMetadata;
 };
 
-DeltaFile::DeltaFile() : impl_(std::make_unique<Impl>()) {
-    openvdb::initialize();
-}
+DeltaFile::DeltaFile() : impl_(std::make_unique<Impl>()) {}
 
 DeltaFile::~DeltaFile() = default;
 
@@ -96,24 +93,23 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     checkTolerance("`tolerance.value`", options.tolerance.value);
     requireRoom(options.tolerance, volume);
 
-    const openvdb::GridBase::ConstPtr source = volume.source ? volume.source->grid : nullptr;
+    const TreeGrid* const source = volume.source ? &volume.source->grid : nullptr;
     TakenDeltas taken = takeDeltas(volume, options, partOf(listener, 0, 0.6));
     DeltaHeader& header = taken.header;
     const InactiveValues& inactive = taken.inactive;
-    openvdb::GridBase::Ptr grid = std::exchange(taken.deltas, nullptr);
-    if (options.pack) grid = gridOfWords(streamOf(*grid, header));
+    TreeGrid grid{std::exchange(taken.deltas, nullptr), {}};
+    if (options.pack) grid.tree = treeOfWords(streamOf(*grid.tree, header));
     listener.report(0.7);
     if (source && volume.hasBackground) {
-        header.sourceTree = typeOf(*source);
-        header.sourceMap = source->transform().mapType();
-        putSourceMetadata(*source, *grid);
-        if (impl_->grids.empty() && volume.source->fileMetadata)
-            impl_->fileMetadata = *volume.source->fileMetadata;
+        header.sourceTree = source->type();
+        header.sourceMap = source->map->type();
+        putSourceMetadata(source->metadata, grid.metadata);
+        if (impl_->grids.empty()) impl_->fileMetadata = volume.source->fileMetadata;
     }
-    grid->setName(volume.name);
-    grid->setCreator("deltasplat");
-    grid->setTransform(permutedTransform(volume.worldFromIndex, header.sliceAxis));
-    putDeltaHeader(header, *grid);
+    grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, volume.name);
+    grid.metadata.insert(openvdb::GridBase::META_GRID_CREATOR, std::string("deltasplat"));
+    grid.map = permutedMap(volume.worldFromIndex, header.sliceAxis);
+    putDeltaHeader(header, grid.metadata);
 
     DeltaFileEntry entry;
     entry.sliceAxis = header.sliceAxis;
@@ -125,10 +121,10 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
         ReadOptions reading;
         reading.levelSetToFog = false;
         reading.keepSource = true;
-        const Volume restored = readDeltaGrid(*grid, nullptr, volume.name, reading, {});
+        const Volume restored = readDeltaGrid(grid, {}, volume.name, reading, {});
         entry.maxError = compareVolumes(restored, volume).maxError;
         header.maxError += entry.maxError;
-        putDeltaHeader(header, *grid);
+        putDeltaHeader(header, grid.metadata);
     }
     entry.maxError = header.maxError;
     entry.lossless = entry.maxError == 0 && !inactive.tooMany && !inactive.rounded;

@@ -18,7 +18,7 @@ std::optional<RawType> typeNamed(const std::string& name) {
 }
 
 std::string sourceType(const Volume& volume) {
-    return volume.source ? VdbMetadata(*volume.source->grid).text(kSourceTypeKey) : "";
+    return volume.source ? volume.source->grid.metadata.text(kSourceTypeKey) : "";
 }
 
 // Returns what OpenVDB's own types are called here.

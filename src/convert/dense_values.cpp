@@ -12,7 +12,6 @@
 
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/code_values.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/raw/raw_load.h"
 #include "ingest/values/value_cast.h"
@@ -110,9 +109,9 @@ double store(const double* values, std::size_t count, std::byte* out) {
 ReadBox boxReader(const Volume& volume) {
     if (!volume.source) return codeReader(volume);
     ReadBox reader;
-    volume.source->grid->apply<ScalarGrids>([&](const auto& grid) {
-        using T = typename std::decay_t<decltype(grid)>::ValueType;
-        reader = treeReader(grid.constTree(), [background = volume.background](T value, bool) {
+    volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
+        using T = typename std::decay_t<decltype(tree)>::ValueType;
+        reader = treeReader(tree, [background = volume.background](T value, bool) {
             if constexpr (std::is_floating_point_v<T>) {
                 if (!std::isfinite(value)) return background;
             } else {

@@ -12,7 +12,6 @@
 #include "ingest/codes/code_values.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/leaf_bytes.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/values/value_cast.h"
 #include "memory.h"
@@ -66,12 +65,10 @@ std::unique_ptr<Leaf> copyLeaf(const Leaf& leaf, const Dropped<T>& dropped) {
     return copy;
 }
 
-template <typename Grid>
-openvdb::GridBase::Ptr drop(const Grid& grid, double value) {
-    using Tree = typename Grid::TreeType;
+template <typename Tree>
+std::shared_ptr<openvdb::TreeBase> drop(const Tree& tree, double value) {
     using Leaf = typename Tree::LeafNodeType;
     using T = typename Tree::ValueType;
-    const Tree& tree = grid.constTree();
     const Dropped<T> dropped{tree.background(), T(value)};
     typename Tree::Ptr made(new Tree(T(value)));
 
@@ -92,10 +89,7 @@ openvdb::GridBase::Ptr drop(const Grid& grid, double value) {
     for (std::unique_ptr<Leaf>& leaf : copies) {
         if (leaf) made->addLeaf(leaf.release());
     }
-    typename Grid::Ptr result = Grid::create(made);
-    result->insertMeta(grid);
-    result->setTransform(grid.transform().copy());
-    return result;
+    return made;
 }
 
 // Whether each code stands for the value, as a grid of this type has it.
@@ -132,14 +126,14 @@ double mostFrequentValue(const Volume& volume) {
     const auto code = Code(std::max_element(counts.begin(), counts.end()) - counts.begin());
     double value = volume.empty() ? 0 : volume.codeBook.valueOf(code);
     if (volume.empty() || volume.codeBook.isExact() || !volume.source) return value;
-    volume.source->grid->apply<ScalarGrids>(
-        [&](const auto& grid) { value = mostFrequentOf(grid.constTree(), volume.codeBook, code); });
+    volume.source->grid.apply<ScalarTrees>(
+        [&](const auto& tree) { value = mostFrequentOf(tree, volume.codeBook, code); });
     return value;
 }
 
-openvdb::GridBase::Ptr dropBackground(const openvdb::GridBase& grid, double value) {
-    openvdb::GridBase::Ptr result;
-    grid.apply<ScalarGrids>([&](const auto& typed) { result = drop(typed, value); });
+TreeGrid dropBackground(const TreeGrid& grid, double value) {
+    TreeGrid result{nullptr, grid.metadata, grid.map};
+    grid.apply<ScalarTrees>([&](const auto& tree) { result.tree = drop(tree, value); });
     return result;
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
-
 #include <string>
 
 #include "deltasplat/ingest/volume.h"
+#include "ingest/grids/tree_grid.h"
 
 namespace deltasplat {
 
@@ -17,7 +16,7 @@ double mostFrequentValue(const Volume& volume);
 /// Returns a copy of a scalar grid with background `value`, in which no active voxel has this
 /// value: those, and what held the old background, are inactive and hold the new one. The active
 /// voxels keep their values, and so do inactive ones that hold neither.
-openvdb::GridBase::Ptr dropBackground(const openvdb::GridBase& grid, double value);
+TreeGrid dropBackground(const TreeGrid& grid, double value);
 
 /// Does the same with the codes of a volume without background, and its histogram.
 /// @param type  of the grid that it becomes: codes are dropped whose values are `value` there

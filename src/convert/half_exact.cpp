@@ -66,13 +66,13 @@ bool survives(const Tree& tree, bool inactiveOnly) {
 
 }  // namespace
 
-bool survivesHalf(const openvdb::GridBase& grid, const Volume* volume) {
+bool survivesHalf(const TreeGrid& grid, const Volume* volume) {
     bool all = false;
-    grid.apply<openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid>>([&](const auto& real) {
-        using Value = typename std::decay_t<decltype(real)>::ValueType;
+    grid.apply<TreeTypes<openvdb::FloatTree, openvdb::DoubleTree>>([&](const auto& tree) {
+        using Value = typename std::decay_t<decltype(tree)>::ValueType;
         const bool isCounted = volume && volume->codeBook.isExact();
-        all = (!isCounted || areHalves<Value>(*volume, double(real.background()))) &&
-              survives(real.constTree(), isCounted);
+        all = (!isCounted || areHalves<Value>(*volume, double(tree.background()))) &&
+              survives(tree, isCounted);
     });
     return all;
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
-
 #include <string>
 
 #include "deltasplat/ingest/volume.h"
+#include "ingest/grids/tree_grid.h"
 
 namespace deltasplat {
 
@@ -13,7 +12,7 @@ namespace deltasplat {
 /// every value as it is, inactive ones included; false for grids of other types.
 /// @param volume  null, or one whose active values are those of the grid, or more: where its codes
 ///                are exact, its histogram says which there are
-bool survivesHalf(const openvdb::GridBase& grid, const Volume* volume = nullptr);
+bool survivesHalf(const TreeGrid& grid, const Volume* volume = nullptr);
 
 /// Returns the same of a grid that codes become.
 /// @param volume  whose histogram says which codes there are

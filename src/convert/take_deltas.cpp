@@ -16,10 +16,10 @@
 #include "ingest/delta/delta_origin.h"
 #include "ingest/delta/number_list.h"
 #include "ingest/delta/zigzag.h"
-#include "ingest/grids/grid_from_codes.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_from_codes.h"
 #include "memory.h"
 #include "parallel.h"
 #include "view/affine.h"
@@ -84,26 +84,26 @@ bool isTableLarger(const Volume& volume) {
     return listText(*volume.codeBook.table).size() > (isWide ? 6 : 2) * volume.activeCount;
 }
 
-template <typename Grid>
-openvdb::GridBase::ConstPtr gridOfCodes(const Volume& volume) {
-    using Leaf = typename Grid::TreeType::LeafNodeType;
+template <typename Tree>
+std::shared_ptr<Tree> treeOfCodes(const Volume& volume) {
+    using Leaf = typename Tree::LeafNodeType;
     const CodeTree::Tree& codes = volume.codes->tree();
     requireMemory("grid \"" + volume.name + "\"", double(codes.leafCount()) * leafBytes<Leaf>());
-    return gridFromCodes<Grid>(codes, volume.codeBook, 0);
+    return treeFromCodes<Tree>(codes, volume.codeBook, 0);
 }
 
-// The grid of a volume without empty places, whose codes are exact.
-openvdb::GridBase::ConstPtr gridOfExactCodes(const Volume& volume) {
-    if (volume.type == "float32") return gridOfCodes<openvdb::FloatGrid>(volume);
-    if (volume.type == "int32") return gridOfCodes<openvdb::Int32Grid>(volume);
+// The tree of a volume without empty places, whose codes are exact.
+std::shared_ptr<openvdb::TreeBase> treeOfExactCodes(const Volume& volume) {
+    if (volume.type == "float32") return treeOfCodes<openvdb::FloatTree>(volume);
+    if (volume.type == "int32") return treeOfCodes<openvdb::Int32Tree>(volume);
     if (volume.type == "uint32" || volume.type == "int64")
-        return gridOfCodes<openvdb::Int64Grid>(volume);
-    return gridOfCodes<openvdb::DoubleGrid>(volume);
+        return treeOfCodes<openvdb::Int64Tree>(volume);
+    return treeOfCodes<openvdb::DoubleTree>(volume);
 }
 
 // What goes into the file by its values' own bits.
 struct StoredValues {
-    openvdb::GridBase::ConstPtr grid;
+    TreeGrid grid;
     ExactValues type;
 };
 
@@ -116,22 +116,22 @@ std::optional<StoredValues> valuesToStore(const Volume& volume, const DeltaFileO
     const bool isExact = volume.codeBook.isExact();
     if (isExact && !isTableLarger(volume)) return {};
     if (!volume.hasBackground && volume.box.min != glm::ivec3(0)) return {};
-    openvdb::GridBase::ConstPtr grid;
+    TreeGrid grid;
     if (volume.source) {
         grid = volume.source->grid;
     } else if (isExact && !volume.hasBackground) {
-        grid = gridOfExactCodes(volume);
+        grid.tree = treeOfExactCodes(volume);
     }
-    if (!grid) return {};
-    const std::optional<ExactValues> type = exactValuesOf(*grid);
+    if (!grid.tree) return {};
+    const std::optional<ExactValues> type = exactValuesOf(grid);
     if (!type) return {};
     return StoredValues{grid, *type};
 }
 
 // Deltas go into files as numbers without sign.
-void removeSigns(openvdb::Int32Grid& grid) {
+void removeSigns(openvdb::Int32Tree& deltas) {
     std::vector<DeltaTree::Leaf*> leaves;
-    grid.tree().getNodes(leaves);
+    deltas.getNodes(leaves);
     parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             std::int32_t* const values = leaves[i]->buffer().data();
@@ -180,9 +180,9 @@ std::vector<Slot> beginLow(const Volume& volume, const Rest& rest, DeltaHeader& 
     return slotMap;
 }
 
-openvdb::GridBase::Ptr takeCodes(const Volume& volume, const Rest& rest,
-                                 const InactiveValues& inactive, const Tolerance& tolerance,
-                                 DeltaHeader& header) {
+std::shared_ptr<openvdb::TreeBase> takeCodes(const Volume& volume, const Rest& rest,
+                                             const InactiveValues& inactive,
+                                             const Tolerance& tolerance, DeltaHeader& header) {
     Volume held = volume;
     held.box = header.box;
     holdValues(held, header.sliceAxis, header.keyInterval, tolerance, rest.slotMap);
@@ -195,12 +195,12 @@ openvdb::GridBase::Ptr takeCodes(const Volume& volume, const Rest& rest,
     options.keyInterval = header.keyInterval;
     const DeltaGrid deltas = makeDeltaGrid(held, options);
     for (const Slab& slab : deltas.slabs) header.slabDeltas.push_back(slab.deltas);
-    removeSigns(*deltas.tree->grid);
-    return deltas.tree->grid;
+    removeSigns(*deltas.tree->deltas);
+    return deltas.tree->deltas;
 }
 
-openvdb::GridBase::Ptr takeValues(const Volume& volume, const StoredValues& values,
-                                  const InactiveValues& inactive, DeltaHeader& header) {
+std::shared_ptr<openvdb::TreeBase> takeValues(const Volume& volume, const StoredValues& values,
+                                              const InactiveValues& inactive, DeltaHeader& header) {
     header.exact = values.type;
     std::optional<double> rest;
     if (header.restActive) {
@@ -210,10 +210,10 @@ openvdb::GridBase::Ptr takeValues(const Volume& volume, const StoredValues& valu
         header.background = *rest;
     }
     ExactDeltas taken = takeExactDeltas(
-        *values.grid, {header.sliceAxis, header.keyInterval, header.box, rest, inactive},
+        values.grid, {header.sliceAxis, header.keyInterval, header.box, rest, inactive},
         "grid \"" + volume.name + "\"");
     header.slabDeltas = std::move(taken.slabDeltas);
-    return taken.grid;
+    return taken.deltas;
 }
 
 }  // namespace
@@ -222,7 +222,7 @@ TakenDeltas takeDeltas(const Volume& volume, const DeltaFileOptions& options,
                        const Listener& listener) {
     TakenDeltas taken;
     DeltaHeader& header = taken.header;
-    const openvdb::GridBase::ConstPtr source = volume.source ? volume.source->grid : nullptr;
+    const TreeGrid* const source = volume.source ? &volume.source->grid : nullptr;
     if (source && volume.hasBackground) taken.inactive = findInactiveValues(*source);
     const InactiveValues& inactive = taken.inactive;
     Rest rest = restOf(volume);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
+#include <openvdb/tree/Tree.h>
+
+#include <memory>
 
 #include "delta/inactive_values.h"
 #include "deltasplat/delta/delta_file.h"
@@ -13,8 +15,9 @@ namespace deltasplat {
 
 /// What becomes a delta grid.
 struct TakenDeltas {
-    openvdb::GridBase::Ptr deltas;  ///< without sign, as voxels: if asked for, still to be packed
-    DeltaHeader header;             ///< but for what a .vdb source says of itself
+    std::shared_ptr<openvdb::TreeBase>
+        deltas;          ///< without sign, as voxels: if asked for, still to be packed
+    DeltaHeader header;  ///< but for what a .vdb source says of itself
     InactiveValues inactive;
 };
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "ingest/grids/grid_values.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/raw/raw_load.h"
 
@@ -84,8 +83,8 @@ ValueFacts factsOf(const Volume& volume) {
     // Which exact codes there are has been counted.
     const bool isExact = volume.codeBook.isExact();
     ValueFacts facts = isExact ? factsOfCodes(volume) : ValueFacts();
-    volume.source->grid->apply<ScalarGrids>(
-        [&](const auto& grid) { facts.append(factsOfTree(grid.constTree(), isExact)); });
+    volume.source->grid.apply<ScalarTrees>(
+        [&](const auto& tree) { facts.append(factsOfTree(tree, isExact)); });
     return facts;
 }
 

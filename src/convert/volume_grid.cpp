@@ -12,7 +12,6 @@
 #include "ingest/codes/code_values.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_values.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
@@ -21,7 +20,7 @@
 namespace deltasplat {
 namespace {
 
-using openvdb::GridBase;
+using openvdb::GridBase;  // for names of metadata
 
 template <typename SourceLeaf, typename Leaf, typename ValueOf>
 void fillLeaf(const SourceLeaf& source, Leaf& leaf, const ValueOf& valueOf) {
@@ -36,17 +35,16 @@ void fillLeaf(const SourceLeaf& source, Leaf& leaf, const ValueOf& valueOf) {
     }
 }
 
-// Makes a grid with the active voxels and tiles of `tree`, whose values `valueOf` translates.
-template <typename Grid, typename Tree, typename ValueOf>
-typename Grid::Ptr translate(const Tree& tree, const ValueOf& valueOf, double background) {
-    using T = typename Grid::ValueType;
+// Makes a tree with the active voxels and tiles of `tree`, whose values `valueOf` translates.
+template <typename Made, typename Tree, typename ValueOf>
+std::shared_ptr<Made> translate(const Tree& tree, const ValueOf& valueOf, double background) {
+    using T = typename Made::ValueType;
     // OpenVDB's trees cannot be assigned, only made in place.
-    typename Grid::TreePtrType made(
-        new typename Grid::TreeType(tree, valueAs<T>(background), openvdb::TopologyCopy()));
+    auto made = std::make_shared<Made>(tree, valueAs<T>(background), openvdb::TopologyCopy());
     // The leaves of a mask are all topology.
-    if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
+    if constexpr (!std::is_same_v<Made, openvdb::MaskTree>) {
         std::vector<const typename Tree::LeafNodeType*> sources;
-        std::vector<typename Grid::TreeType::LeafNodeType*> leaves;
+        std::vector<typename Made::LeafNodeType*> leaves;
         tree.getNodes(sources);
         made->getNodes(leaves);
         forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -55,14 +53,14 @@ typename Grid::Ptr translate(const Tree& tree, const ValueOf& valueOf, double ba
     }
     forActiveTiles(
         *made, [&](const auto& tile) { tile.setValue(valueOf(tree.getValue(tile.getCoord()))); });
-    return Grid::create(made);
+    return made;
 }
 
-template <typename Grid>
-GridBase::Ptr fromCodes(const Volume& volume) {
-    using T = typename Grid::ValueType;
+template <typename Tree>
+std::shared_ptr<Tree> fromCodes(const Volume& volume) {
+    using T = typename Tree::ValueType;
     const std::vector<double> values = valuesOfCodes(volume.codeBook);
-    return translate<Grid>(
+    return translate<Tree>(
         volume.codes->tree(), [&](Code code) { return valueAs<T>(values[code]); },
         volume.hasBackground ? volume.background : 0);
 }
@@ -80,32 +78,32 @@ std::string smallestType(const ValueFacts& facts) {
     return facts.doubleError == 0 ? "double" : "int64";
 }
 
-GridBase::Ptr fromCodes(const Volume& volume, const std::string& type) {
-    if (type == "double") return fromCodes<openvdb::DoubleGrid>(volume);
-    if (type == "int32") return fromCodes<openvdb::Int32Grid>(volume);
-    if (type == "int64") return fromCodes<openvdb::Int64Grid>(volume);
-    if (type == "bool") return fromCodes<openvdb::BoolGrid>(volume);
-    if (type == "mask") return fromCodes<openvdb::MaskGrid>(volume);
-    return fromCodes<openvdb::FloatGrid>(volume);
+std::shared_ptr<openvdb::TreeBase> fromCodes(const Volume& volume, const std::string& type) {
+    if (type == "double") return fromCodes<openvdb::DoubleTree>(volume);
+    if (type == "int32") return fromCodes<openvdb::Int32Tree>(volume);
+    if (type == "int64") return fromCodes<openvdb::Int64Tree>(volume);
+    if (type == "bool") return fromCodes<openvdb::BoolTree>(volume);
+    if (type == "mask") return fromCodes<openvdb::MaskTree>(volume);
+    return fromCodes<openvdb::FloatTree>(volume);
 }
 
-template <typename Grid>
-GridBase::Ptr fromSource(const GridBase& source) {
-    using Wide = openvdb::TypeList<openvdb::DoubleGrid, openvdb::Int64Grid, openvdb::Int32Grid>;
-    GridBase::Ptr made;
-    source.apply<Wide>([&](const auto& grid) {
-        made = translate<Grid>(
-            grid.constTree(), [](auto value) { return typename Grid::ValueType(value); }, 0);
-    });
+template <typename Made>
+std::shared_ptr<Made> fromSource(const TreeGrid& source) {
+    std::shared_ptr<Made> made;
+    const auto make = [&](const auto& tree) {
+        made = translate<Made>(
+            tree, [](auto value) { return typename Made::ValueType(value); }, 0);
+    };
+    source.apply<TreeTypes<openvdb::DoubleTree, openvdb::Int64Tree, openvdb::Int32Tree>>(make);
     return made;
 }
 
-// The grid of a dense source may have a wider type than its values need.
-GridBase::ConstPtr fromSource(const GridBase::ConstPtr& source, const std::string& type) {
-    if (type == typeOf(*source)) return source;
-    if (type == "float") return fromSource<openvdb::FloatGrid>(*source);
-    if (type == "int32") return fromSource<openvdb::Int32Grid>(*source);
-    return fromSource<openvdb::DoubleGrid>(*source);
+// The tree of a dense source may have a wider type than its values need.
+std::shared_ptr<openvdb::TreeBase> fromSource(const TreeGrid& source, const std::string& type) {
+    if (type == source.type()) return source.tree;
+    if (type == "float") return fromSource<openvdb::FloatTree>(source);
+    if (type == "int32") return fromSource<openvdb::Int32Tree>(source);
+    return fromSource<openvdb::DoubleTree>(source);
 }
 
 VdbMetadata metadataOf(const Volume& volume) {
@@ -123,29 +121,24 @@ VdbMetadata metadataOf(const Volume& volume) {
     return metadata;
 }
 
-template <typename Grid>
+template <typename Tree>
 std::shared_ptr<const WrittenTree> writtenTree(const Volume& volume, double background) {
-    using Values = CodeValues<typename Grid::TreeType>;
+    using Values = CodeValues<Tree>;
     return std::make_shared<const TreeWriter<Values>>(
         Values(volume.codes, volume.codeBook, background));
 }
 
 std::shared_ptr<const WrittenTree> writtenTree(const Volume& volume, const std::string& type,
                                                double background) {
-    if (type == "double") return writtenTree<openvdb::DoubleGrid>(volume, background);
-    if (type == "int32") return writtenTree<openvdb::Int32Grid>(volume, background);
-    if (type == "int64") return writtenTree<openvdb::Int64Grid>(volume, background);
-    if (type == "bool") return writtenTree<openvdb::BoolGrid>(volume, background);
-    if (type == "mask") return writtenTree<openvdb::MaskGrid>(volume, background);
-    return writtenTree<openvdb::FloatGrid>(volume, background);
+    if (type == "double") return writtenTree<openvdb::DoubleTree>(volume, background);
+    if (type == "int32") return writtenTree<openvdb::Int32Tree>(volume, background);
+    if (type == "int64") return writtenTree<openvdb::Int64Tree>(volume, background);
+    if (type == "bool") return writtenTree<openvdb::BoolTree>(volume, background);
+    if (type == "mask") return writtenTree<openvdb::MaskTree>(volume, background);
+    return writtenTree<openvdb::FloatTree>(volume, background);
 }
 
 }  // namespace
-
-std::string typeOf(const GridBase& grid) {
-    // Masks call their values bool.
-    return grid.isType<openvdb::MaskGrid>() ? "mask" : grid.valueType();
-}
 
 std::string gridTypeOf(const Volume& volume) {
     const bool keepsType = volume.hasBackground && isGridType(volume.type);
@@ -158,14 +151,11 @@ WrittenGrid writtenCodes(const Volume& volume, const std::string& type, double b
             writtenTree(volume, type, background)};
 }
 
-GridBase::ConstPtr gridOf(const Volume& volume) {
-    openvdb::initialize();
+TreeGrid gridOf(const Volume& volume) {
     if (volume.source && volume.hasBackground) return volume.source->grid;
     const std::string type = gridTypeOf(volume);
-    const GridBase::ConstPtr grid =
-        volume.source ? fromSource(volume.source->grid, type) : fromCodes(volume, type);
-    return grid->copyGridReplacingMetadataAndTransform(*metadataOf(volume).toMetaMap(volume.name),
-                                                       makeTransform(volume.worldFromIndex));
+    return {volume.source ? fromSource(volume.source->grid, type) : fromCodes(volume, type),
+            metadataOf(volume), makeMap(volume.worldFromIndex)};
 }
 
 }  // namespace deltasplat

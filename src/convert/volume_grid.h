@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
-
 #include <string>
 
 #include "deltasplat/ingest/volume.h"
+#include "ingest/grids/tree_grid.h"
 #include "vdb/written_grid.h"
 
 namespace deltasplat {
 
-/// Returns the OpenVDB grid that a volume is. The grid of a .vdb source is that source itself.
+/// Returns the grid that a volume is. The grid of a .vdb source is that source itself.
 /// Otherwise: a volume that has a background (it was a .vdb once) gets a grid of its own type
 /// again, another one a float grid if floats hold every value, else int32 if that does, else
 /// double; with name, class, transform, creator and the metadata of grid_metadata.h. Tiles stay
 /// tiles, and every active voxel is active. Values come from Volume::source, or if there is none
 /// from the codes. Whether it will be stored in half precision is left open. Deterministic.
 /// @throw Error(kFailed) if OpenVDB cannot hold the volume's transform
-openvdb::GridBase::ConstPtr gridOf(const Volume& volume);
+TreeGrid gridOf(const Volume& volume);
 
 /// Returns the value type of that grid: "float", "mask", ...
 std::string gridTypeOf(const Volume& volume);
@@ -27,8 +26,5 @@ std::string gridTypeOf(const Volume& volume);
 /// @param type  as gridTypeOf
 /// @throw as gridOf
 WrittenGrid writtenCodes(const Volume& volume, const std::string& type, double background);
-
-/// Returns the value type of a grid as Volume::type has it, but never "half": "float", "mask", ...
-std::string typeOf(const openvdb::GridBase& grid);
 
 }  // namespace deltasplat

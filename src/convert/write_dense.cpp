@@ -36,15 +36,14 @@ bool contains(const IndexBox& outer, const IndexBox& inner) {
 // Returns the voxels to write: those of the file that a grid was made from, if it was made so.
 IndexBox boxOf(const Volume& volume) {
     if (!volume.source) return volume.box;
-    const openvdb::GridBase& grid = *volume.source->grid;
-    const auto min = grid.getMetadata<openvdb::Vec3IMetadata>(kBoxMinKey);
-    const auto max = grid.getMetadata<openvdb::Vec3IMetadata>(kBoxMaxKey);
+    const VdbMetadata& metadata = volume.source->grid.metadata;
+    const auto min = metadata.get<glm::ivec3>(kBoxMinKey);
+    const auto max = metadata.get<glm::ivec3>(kBoxMaxKey);
     if (!min || !max) return volume.box;
-    const openvdb::Vec3i &low = min->value(), &high = max->value();
-    const IndexBox box{{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
+    const IndexBox box{*min, *max};
     constexpr double kMostVoxels = 0x1p62;  // as readers have it
-    const openvdb::Vec3d sides = openvdb::Vec3d(high) - openvdb::Vec3d(low) + openvdb::Vec3d(1);
-    const bool sound = !box.empty() && sides.x() * sides.y() * sides.z() <= kMostVoxels;
+    const glm::dvec3 sides = glm::dvec3(*max) - glm::dvec3(*min) + 1.0;
+    const bool sound = !box.empty() && sides.x * sides.y * sides.z <= kMostVoxels;
     return sound && (volume.empty() || contains(box, volume.box)) ? box : volume.box;
 }
 
@@ -78,7 +77,7 @@ void noteLostStates(const Volume& volume, const IndexBox& box, Notes& notes) {
                    numberText(volume.background) + ")");
     }
     // What was no grid before has no more than its file's name.
-    if (volume.source && !VdbMetadata(*volume.source->grid).text(kSourceTypeKey).empty()) return;
+    if (volume.source && !volume.source->grid.metadata.text(kSourceTypeKey).empty()) return;
     notes.loss("the grid's name \"" + volume.name + "\", class \"" + volume.gridClass +
                "\" and other metadata are left out");
 }

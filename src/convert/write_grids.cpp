@@ -21,8 +21,6 @@
 namespace deltasplat {
 namespace {
 
-using openvdb::GridBase;
-
 // Share of the progress that making the grids takes; compressing and writing is the longer part.
 constexpr double kGridShare = 0.3;
 
@@ -61,8 +59,8 @@ std::optional<double> valueToDrop(const Volume& volume, const WriteOptions& opti
     return dropped;
 }
 
-GridBase::ConstPtr sparseGrid(const GridBase::ConstPtr& grid, const Volume& volume,
-                              const WriteOptions& options, Notes& notes) {
+TreeGrid sparseGrid(const TreeGrid& grid, const Volume& volume, const WriteOptions& options,
+                    Notes& notes) {
     const std::optional<double> dropped = valueToDrop(volume, options, notes);
     if (!dropped) return grid;
     const double value = *dropped;
@@ -72,11 +70,11 @@ GridBase::ConstPtr sparseGrid(const GridBase::ConstPtr& grid, const Volume& volu
                      ", whose background is " + numberText(volume.background));
         return grid;
     }
-    requireValue(typeOf(*grid), value);
-    const GridBase::Ptr sparse = dropBackground(*grid, value);
-    if (volume.hasBackground && sparse->activeVoxelCount() != volume.activeCount) {
-        notes.loss(quoted(volume.name) + ": " +
-                   std::to_string(volume.activeCount - sparse->activeVoxelCount()) +
+    requireValue(grid.type(), value);
+    TreeGrid sparse = dropBackground(grid, value);
+    const std::uint64_t kept = sparse.tree->activeVoxelCount();
+    if (volume.hasBackground && kept != volume.activeCount) {
+        notes.loss(quoted(volume.name) + ": " + std::to_string(volume.activeCount - kept) +
                    " active voxels of value " + numberText(value) + " made inactive");
     }
     return sparse;
@@ -105,7 +103,7 @@ WrittenGrid storedCodes(Volume volume, const WriteOptions& options, Notes& notes
     const bool half = !options.fullFloat && survivesHalf(volume, type, background);
     noteType(volume, type, half, notes);
     WrittenGrid grid = writtenCodes(volume, type, background);
-    grid.metadata.insert(GridBase::META_SAVE_HALF_FLOAT, half);
+    grid.metadata.insert(openvdb::GridBase::META_SAVE_HALF_FLOAT, half);
     return grid;
 }
 
@@ -113,15 +111,15 @@ WrittenGrid storedCodes(Volume volume, const WriteOptions& options, Notes& notes
 WrittenGrid storedGrid(Volume volume, const WriteOptions& options, Notes& notes) {
     if (!volume.source && !(volume.hasBackground && options.dropBackground))
         return storedCodes(std::move(volume), options, notes);
-    GridBase::ConstPtr grid = gridOf(volume);
+    TreeGrid grid = gridOf(volume);
     volume.codes.reset();
     if (options.dropBackground) grid = sparseGrid(grid, volume, options, notes);
 
     if (options.keepPrecision && volume.source && volume.hasBackground) return writtenGrid(grid);
-    const bool half = !options.fullFloat && survivesHalf(*grid, &volume);
-    noteType(volume, typeOf(*grid), half, notes);
+    const bool half = !options.fullFloat && survivesHalf(grid, &volume);
+    noteType(volume, grid.type(), half, notes);
     WrittenGrid written = writtenGrid(grid);
-    written.metadata.insert(GridBase::META_SAVE_HALF_FLOAT, half);
+    written.metadata.insert(openvdb::GridBase::META_SAVE_HALF_FLOAT, half);
     return written;
 }
 
@@ -129,9 +127,8 @@ WrittenGrid storedGrid(Volume volume, const WriteOptions& options, Notes& notes)
 VdbMetadata fileMetadata(const std::vector<Volume>& volumes) {
     VdbMetadata all;
     for (const Volume& volume : volumes) {
-        if (!volume.source || !volume.source->fileMetadata) continue;
-        const VdbMetadata own(*volume.source->fileMetadata);
-        for (const auto& [name, entry] : own.entries()) {
+        if (!volume.source) continue;
+        for (const auto& [name, entry] : volume.source->fileMetadata.entries()) {
             if (!all.find(name)) all.insert(name, entry);
         }
     }

@@ -2,7 +2,6 @@
 #include "cut/cut_source.h"
 
 #include "ingest/grids/grid_values.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
 #include "memory.h"
 
@@ -30,18 +29,18 @@ void dropVoxels(Tree& tree, const CodeTree::Tree& kept) {
 }  // namespace
 
 void cutSource(Volume& volume) {
-    requireMemory("cut", double(volume.source->grid->memUsage()));
-    volume.source->grid->apply<ScalarGrids>([&](const auto& grid) {
-        const auto cut = grid.deepCopy();
-        dropVoxels(cut->tree(), volume.codes->tree());
+    SourceGrid cut{volume.source->grid, volume.source->fileMetadata};
+    requireMemory("cut", double(cut.grid.tree->memUsage()));
+    cut.grid.tree = cut.grid.tree->copy();
+    cut.grid.apply<ScalarTrees>([&](auto& tree) {
+        dropVoxels(tree, volume.codes->tree());
         if (!volume.codeBook.isExact()) {
-            const GridScan scan = scanLeaves(TreeLeaves(cut->tree()), kNumbersAlone);
+            const GridScan scan = scanLeaves(TreeLeaves(tree), kNumbersAlone);
             volume.valueMin = scan.census.min;
             volume.valueMax = scan.census.max;
         }
-        volume.source =
-            std::make_shared<const SourceGrid>(SourceGrid{cut, volume.source->fileMetadata});
     });
+    volume.source = std::make_shared<const SourceGrid>(std::move(cut));
 }
 
 }  // namespace deltasplat

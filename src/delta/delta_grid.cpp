@@ -103,7 +103,7 @@ std::shared_ptr<DeltaTree> makeTree(const Differences& differences) {
     for (auto& leaf : leaves) {
         if (!leaf) continue;
         tree->leaves.push_back(leaf.get());
-        tree->grid->tree().addLeaf(leaf.release());
+        tree->deltas->addLeaf(leaf.release());
     }
     std::sort(tree->leaves.begin(), tree->leaves.end(),
               [](const Leaf* a, const Leaf* b) { return a->origin() < b->origin(); });

@@ -3,6 +3,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <memory>
 #include <vector>
 
 #include "deltasplat/delta/delta_grid.h"
@@ -15,8 +16,8 @@ namespace deltasplat {
 struct DeltaTree {
     using Leaf = openvdb::Int32Tree::LeafNodeType;
 
-    openvdb::Int32Grid::Ptr grid = openvdb::Int32Grid::create(0);
-    std::vector<const Leaf*> leaves;  ///< of the grid, ordered by slice, then u, then v
+    openvdb::Int32Tree::Ptr deltas = std::make_shared<openvdb::Int32Tree>(0);
+    std::vector<const Leaf*> leaves;  ///< of that, ordered by slice, then u, then v
 };
 
 }  // namespace deltasplat

@@ -35,7 +35,7 @@ class Taker {
     using Slots = ExactSlots<T>;
     using Slot = typename Slots::Slot;
     using Tree = typename openvdb::tree::Tree4<T, 5, 4, 3>::Type;
-    using DeltaTree = typename Slots::DeltaGrid::TreeType;
+    using DeltaTree = typename Slots::DeltaTree;
     using DeltaLeaf = typename DeltaTree::LeafNodeType;
     using Leaves = std::vector<std::unique_ptr<DeltaLeaf>>;
 
@@ -214,11 +214,11 @@ class Taker {
     std::optional<Slot> rest_;
 };
 
-template <typename Grid>
-ExactDeltas take(const Grid& grid, const ExactDeltaOptions& options, const std::string& where) {
-    using T = typename Grid::ValueType;
-    using Deltas = typename ExactSlots<T>::DeltaGrid;
-    const Taker<T> taker(grid.constTree(), options, where);
+template <typename Tree>
+ExactDeltas take(const Tree& tree, const ExactDeltaOptions& options, const std::string& where) {
+    using T = typename Tree::ValueType;
+    using Deltas = typename ExactSlots<T>::DeltaTree;
+    const Taker<T> taker(tree, options, where);
     const std::vector<Run> runs = taker.runs();
     const std::vector<std::size_t> columns = runBegins(runs, [](const Run& a, const Run& b) {
         return a.position.y == b.position.y && a.position.z == b.position.z;
@@ -228,10 +228,10 @@ ExactDeltas take(const Grid& grid, const ExactDeltaOptions& options, const std::
         for (std::size_t i = begin; i < end; ++i)
             leaves[i] = taker.takeColumn(&runs[columns[i]], runs.data() + columns[i + 1]);
     });
-    auto deltas = Deltas::create(0);
+    auto deltas = std::make_shared<Deltas>(0);
     ExactDeltas taken;
     taken.slabDeltas.resize(std::size_t(taker.slabs()));
-    openvdb::tree::ValueAccessor<typename Deltas::TreeType> accessor(deltas->tree());
+    openvdb::tree::ValueAccessor<Deltas> accessor(*deltas);
     for (auto& column : leaves) {
         for (auto& leaf : column) {
             taken.slabDeltas[std::size_t(taker.slabOf(leaf->origin().x() >> 3))] +=
@@ -239,28 +239,28 @@ ExactDeltas take(const Grid& grid, const ExactDeltaOptions& options, const std::
             accessor.addLeaf(leaf.release());
         }
     }
-    taken.grid = std::move(deltas);
+    taken.deltas = std::move(deltas);
     return taken;
 }
 
 }  // namespace
 
-std::optional<ExactValues> exactValuesOf(const openvdb::GridBase& grid) {
-    if (grid.isType<openvdb::FloatGrid>()) return ExactValues::kFloat32;
-    if (grid.isType<openvdb::DoubleGrid>()) return ExactValues::kFloat64;
-    if (grid.isType<openvdb::Int32Grid>()) return ExactValues::kInt32;
-    if (!grid.isType<openvdb::Int64Grid>()) return {};
-    const auto& wide = static_cast<const openvdb::Int64Grid&>(grid);
-    for (auto value = wide.cbeginValueOn(); value; ++value) {
+std::optional<ExactValues> exactValuesOf(const TreeGrid& grid) {
+    if (grid.as<openvdb::FloatTree>()) return ExactValues::kFloat32;
+    if (grid.as<openvdb::DoubleTree>()) return ExactValues::kFloat64;
+    if (grid.as<openvdb::Int32Tree>()) return ExactValues::kInt32;
+    const auto* const wide = grid.as<openvdb::Int64Tree>();
+    if (!wide) return {};
+    for (auto value = wide->cbeginValueOn(); value; ++value) {
         if (*value > ExactSlots<std::int64_t>::largest()) return {};
     }
     return ExactValues::kInt64;
 }
 
-ExactDeltas takeExactDeltas(const openvdb::GridBase& grid, const ExactDeltaOptions& options,
+ExactDeltas takeExactDeltas(const TreeGrid& grid, const ExactDeltaOptions& options,
                             const std::string& where) {
     ExactDeltas taken;
-    grid.apply<ExactGrids>([&](const auto& typed) { taken = take(typed, options, where); });
+    grid.apply<ExactTrees>([&](const auto& tree) { taken = take(tree, options, where); });
     return taken;
 }
 

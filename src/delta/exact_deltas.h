@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,13 +10,14 @@
 #include "delta/inactive_values.h"
 #include "deltasplat/ingest/volume.h"
 #include "ingest/delta/exact_slots.h"
+#include "ingest/grids/tree_grid.h"
 
 namespace deltasplat {
 
 /// What a grid's own values become, slice by slice.
 struct ExactDeltas {
-    openvdb::GridBase::Ptr grid;            ///< zigzag numbers, in (slice, u, v) order
-    std::vector<std::uint64_t> slabDeltas;  ///< deltas of each slab
+    std::shared_ptr<openvdb::TreeBase> deltas;  ///< zigzag numbers, in (slice, u, v) order
+    std::vector<std::uint64_t> slabDeltas;      ///< deltas of each slab
 };
 
 /// How to take them.
@@ -32,14 +32,14 @@ struct ExactDeltaOptions {
 
 /// Returns how a grid's values can be stored by their own bits; empty if its type has no such code
 /// book, or one of its values no slot.
-std::optional<ExactValues> exactValuesOf(const openvdb::GridBase& grid);
+std::optional<ExactValues> exactValuesOf(const TreeGrid& grid);
 
 /// Takes the differences of consecutive slices. Multi-threaded; deterministic. Memory grows with
 /// the active voxels and the surface of tiles.
 /// @param grid  exactValuesOf it; active values are finite
 /// @param where  for messages
 /// @throw Error(kFailed) if they do not fit into memory
-ExactDeltas takeExactDeltas(const openvdb::GridBase& grid, const ExactDeltaOptions& options,
+ExactDeltas takeExactDeltas(const TreeGrid& grid, const ExactDeltaOptions& options,
                             const std::string& where);
 
 }  // namespace deltasplat

@@ -8,7 +8,6 @@
 
 #include "ingest/codes/book_encoder.h"
 #include "ingest/grids/grid_values.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/values/distinct_values.h"
 #include "ingest/values/same_bits.h"
 #include "ingest/values/value_cast.h"
@@ -77,15 +76,15 @@ InactiveValues find(const Tree& tree) {
 
 }  // namespace
 
-double backgroundOf(const openvdb::GridBase& grid) {
+double backgroundOf(const TreeGrid& grid) {
     double background = 0;
-    grid.apply<ScalarGrids>([&](const auto& typed) { background = double(typed.background()); });
+    grid.apply<ScalarTrees>([&](const auto& tree) { background = double(tree.background()); });
     return background;
 }
 
-InactiveValues findInactiveValues(const openvdb::GridBase& grid) {
+InactiveValues findInactiveValues(const TreeGrid& grid) {
     InactiveValues found;
-    grid.apply<ScalarGrids>([&](const auto& typed) { found = find(typed.tree()); });
+    grid.apply<ScalarTrees>([&](const auto& tree) { found = find(tree); });
     return found;
 }
 

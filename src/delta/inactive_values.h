@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
-
 #include <memory>
 #include <vector>
 
 #include "ingest/codes/code_tree.h"
+#include "ingest/grids/tree_grid.h"
 
 namespace deltasplat {
 
@@ -22,9 +21,9 @@ struct InactiveValues {
 };
 
 /// Returns a scalar grid's background as a double; 0 for masks.
-double backgroundOf(const openvdb::GridBase& grid);
+double backgroundOf(const TreeGrid& grid);
 
 /// Collects the inactive values of a scalar grid.
-InactiveValues findInactiveValues(const openvdb::GridBase& grid);
+InactiveValues findInactiveValues(const TreeGrid& grid);
 
 }  // namespace deltasplat

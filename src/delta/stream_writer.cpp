@@ -117,13 +117,13 @@ void putColumn(const glm::ivec3& column, glm::ivec3& before, std::size_t words, 
     before = column;
 }
 
-template <typename Grid>
-std::vector<std::uint64_t> wordsOf(const Grid& deltas, const DeltaHeader& header) {
-    using Leaf = typename Grid::TreeType::LeafNodeType;
+template <typename Tree>
+std::vector<std::uint64_t> wordsOf(const Tree& deltas, const DeltaHeader& header) {
+    using Leaf = typename Tree::LeafNodeType;
     const Places places(header);
     const RiceCode code{deltaWidth(header)};
     std::vector<const Leaf*> leaves;
-    deltas.tree().getNodes(leaves);
+    deltas.getNodes(leaves);
     std::erase_if(leaves, [](const Leaf* leaf) { return leaf->isEmpty(); });
     std::sort(leaves.begin(), leaves.end(), [&](const Leaf* a, const Leaf* b) {
         const glm::ivec3 p = places.columnOf(*a), q = places.columnOf(*b);
@@ -156,10 +156,10 @@ std::vector<std::uint64_t> wordsOf(const Grid& deltas, const DeltaHeader& header
 
 }  // namespace
 
-std::vector<std::uint64_t> streamOf(const openvdb::GridBase& deltas, const DeltaHeader& header) {
-    if (deltas.isType<openvdb::Int64Grid>())
-        return wordsOf(static_cast<const openvdb::Int64Grid&>(deltas), header);
-    return wordsOf(static_cast<const openvdb::Int32Grid&>(deltas), header);
+std::vector<std::uint64_t> streamOf(const openvdb::TreeBase& deltas, const DeltaHeader& header) {
+    if (deltas.isType<openvdb::Int64Tree>())
+        return wordsOf(static_cast<const openvdb::Int64Tree&>(deltas), header);
+    return wordsOf(static_cast<const openvdb::Int32Tree&>(deltas), header);
 }
 
 }  // namespace deltasplat

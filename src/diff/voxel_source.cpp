@@ -230,15 +230,13 @@ std::shared_ptr<const Tree> moved(const Tree& tree, const Coord& offset) {
     return result;
 }
 
-// Calls use(typed grid) for the volume's own grid.
+// Calls use(tree) for the volume's own grid.
 template <typename Use>
 void withSource(const Volume& volume, const Use& use) {
-    using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                    openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid>;
-    const openvdb::GridBase& grid = *volume.source->grid;
-    if (grid.apply<Types>(use)) return;
+    const TreeGrid& grid = volume.source->grid;
+    if (grid.apply<ScalarTrees>(use)) return;
     throw Error(ErrorCode::kInput, gotExpected("grid \"" + volume.name + "\"",
-                                               "type " + grid.valueType(), "a scalar grid"));
+                                               "type " + grid.type(), "a scalar grid"));
 }
 
 }  // namespace
@@ -276,7 +274,7 @@ VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background, 
         };
         std::visit(read, packed->nodes);
     } else if (volume.source) {
-        withSource(volume, [&](const auto& grid) { readTree(grid.tree(), {nullptr, wide}); });
+        withSource(volume, [&](const auto& tree) { readTree(tree, {nullptr, wide}); });
     } else {
         readTree(
             volume.codes->tree(),
@@ -294,8 +292,8 @@ std::optional<std::int64_t> wideBackground(const Volume& volume) {
             std::get_if<PackedGrid::Nodes<std::int64_t>>(&volume.source->packed->nodes);
         return nodes ? std::optional((*nodes)->background()) : std::nullopt;
     }
-    if (!volume.source->grid->isType<openvdb::Int64Grid>()) return std::nullopt;
-    return openvdb::gridConstPtrCast<openvdb::Int64Grid>(volume.source->grid)->background();
+    const auto* const tree = volume.source->grid.as<openvdb::Int64Tree>();
+    return tree ? std::optional(tree->background()) : std::nullopt;
 }
 
 }  // namespace

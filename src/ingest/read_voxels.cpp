@@ -6,7 +6,6 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/make_volume.h"
 #include "ingest/codes/code_tree.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
 #include "number_text.h"
 #include "parallel.h"
@@ -62,10 +61,9 @@ void readVoxels(const Volume& volume, const IndexBox& box, std::span<double> val
     if (!active.empty()) requireSize("active", active.size());
     if (voxels == 0) return;
     if (volume.source) {
-        volume.source->grid->apply<ScalarGrids>([&](const auto& grid) {
+        volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
             readTree(
-                grid.constTree(), volume, box, [](auto value) { return double(value); }, values,
-                active);
+                tree, volume, box, [](auto value) { return double(value); }, values, active);
         });
     } else if (volume.codes) {
         readTree(

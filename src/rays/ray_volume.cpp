@@ -8,7 +8,6 @@
 #include "delta/block_windows.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/delta/delta_origin.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
 #include "memory.h"
 
@@ -81,8 +80,7 @@ void readSource(const Volume& volume, RayRule rule, const ValueMap& map, std::ve
     // A code of value 0 may stand for something else as well.
     for (std::size_t code = 0; code < volume.histogram.size(); ++code)
         slots[code + 1] = volume.histogram[code] > 0 ? Slot(code + 1) : kEmptySlot;
-    volume.source->grid->apply<ScalarGrids>([&](const auto& grid) {
-        const auto& tree = grid.constTree();
+    volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
         rays.sourceValues = [&tree, map, axis = rays.sliceAxis](const CodeBlock& block,
                                                                 const BlockPlace& place) {
             const openvdb::Coord origin = blockOrigin(block.position, axis);
@@ -96,8 +94,7 @@ void readSource(const Volume& volume, RayRule rule, const ValueMap& map, std::ve
 // Takes out uniform blocks of nothing: of a sum they are no part.
 void dropZeros(const Volume& volume, int sliceAxis, const ValueMap& map,
                std::vector<CodeBlock>& blocks) {
-    volume.source->grid->apply<ScalarGrids>([&](const auto& grid) {
-        const auto& tree = grid.constTree();
+    volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
         std::erase_if(blocks, [&](const CodeBlock& block) {
             if (block.leaf) return false;
             const openvdb::Coord origin = blockOrigin(block.position, sliceAxis);

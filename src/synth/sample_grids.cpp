@@ -6,11 +6,16 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <glm/ext/matrix_transform.hpp>
 #include <limits>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/leaf_bytes.h"
+#include "ingest/vdb/vdb_transform.h"
 #include "memory.h"
 #include "parallel.h"
 #include "synth/sample_voxel.h"
@@ -48,14 +53,18 @@ void addLeaf(openvdb::FloatTree& tree, std::unique_ptr<Leaf> leaf) {
     }
 }
 
-openvdb::FloatGrid::Ptr sampleScalars(const AnalyticGrid& sampled,
+// Makes tiles of what is uniform, as OpenVDB's prune does, which its library has.
+void pruneUniform(openvdb::FloatTree& tree) {
+    openvdb::tree::NodeManager<openvdb::FloatTree, openvdb::FloatTree::DEPTH - 2> nodes(tree);
+    nodes.foreachBottomUp(openvdb::tools::TolerancePruneOp<openvdb::FloatTree>(tree, 0.0f));
+}
+
+openvdb::FloatTree::Ptr sampleScalars(const AnalyticGrid& sampled,
                                       const AnalyticFileOptions& options,
                                       const Listener& listener) {
     constexpr int kEdge = int(Leaf::DIM);
     const glm::ivec3 leaves = (options.dims - 1) / kEdge + 1;
-    auto grid = openvdb::FloatGrid::create(0.0f);
-    grid->setName(sampled.name);
-    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    auto tree = std::make_shared<openvdb::FloatTree>(0.0f);
     // One layer of leaves at a time keeps the work in large pieces and the list of them short.
     const std::size_t layerLeaves = std::size_t(leaves.y) * std::size_t(leaves.z);
     // What a layer takes is known only when it is there, so room is asked for one full layer more.
@@ -68,11 +77,11 @@ openvdb::FloatGrid::Ptr sampleScalars(const AnalyticGrid& sampled,
             const int y = int(i / std::size_t(leaves.z)), z = int(i % std::size_t(leaves.z));
             layer[i] = sampleLeaf(sampled, {x * kEdge, y * kEdge, z * kEdge}, options);
         });
-        for (std::unique_ptr<Leaf>& leaf : layer) addLeaf(grid->tree(), std::move(leaf));
+        for (std::unique_ptr<Leaf>& leaf : layer) addLeaf(*tree, std::move(leaf));
         listener.report(double(x + 1) / leaves.x);
     }
-    openvdb::tools::prune(grid->tree());
-    return grid;
+    pruneUniform(*tree);
+    return tree;
 }
 
 void colorLeaf(const AnalyticVolume& volume, const AnalyticFileOptions& options, ColorLeaf& leaf) {
@@ -84,41 +93,41 @@ void colorLeaf(const AnalyticVolume& volume, const AnalyticFileOptions& options,
 }
 
 // Smoke that is one value throughout has colours of its own: its tiles become leaves.
-openvdb::Vec3SGrid::Ptr sampleColors(const AnalyticVolume& volume,
-                                     const openvdb::FloatGrid& density,
+openvdb::Vec3STree::Ptr sampleColors(const AnalyticVolume& volume, const openvdb::FloatTree& shape,
                                      const AnalyticFileOptions& options, const Listener& listener) {
     constexpr std::size_t kBatch = 4096;  // leaves
-    const openvdb::FloatTree& shape = density.tree();
     const double mostLeaves =
         double(shape.leafCount()) + double(shape.activeVoxelCount()) / ColorLeaf::SIZE;
     requireMemory("`dims`", leafBytes<ColorLeaf>() * mostLeaves);
-    auto grid = openvdb::Vec3SGrid::create(
-        std::make_shared<openvdb::Vec3STree>(shape, openvdb::Vec3s(0.0f), openvdb::TopologyCopy()));
-    grid->setName("Cd");
-    grid->tree().voxelizeActiveTiles(/*threaded=*/false);
+    auto tree =
+        std::make_shared<openvdb::Vec3STree>(shape, openvdb::Vec3s(0.0f), openvdb::TopologyCopy());
+    tree->voxelizeActiveTiles(/*threaded=*/false);
     std::vector<ColorLeaf*> leaves;
-    grid->tree().getNodes(leaves);
+    tree->getNodes(leaves);
     for (std::size_t first = 0; first < leaves.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, leaves.size() - first);
         parallelFor(count, [&](std::size_t i) { colorLeaf(volume, options, *leaves[first + i]); });
         listener.report(double(first + count) / double(leaves.size()));
     }
-    return grid;
-}
-
-void place(openvdb::GridBase& grid, const glm::dvec3& spacing) {
-    const openvdb::Vec3d scale(spacing.x, spacing.y, spacing.z);
-    grid.setTransform(openvdb::math::Transform::Ptr(new openvdb::math::Transform(
-        openvdb::math::MapBase::Ptr(new openvdb::math::ScaleMap(scale)))));
-    grid.setCreator("deltasplat");
+    return tree;
 }
 
 }  // namespace
 
-openvdb::GridCPtrVec sampleGrids(const AnalyticVolume& volume, const AnalyticFileOptions& options,
-                                 const Listener& listener) {
+std::vector<TreeGrid> sampleGrids(const AnalyticVolume& volume, const AnalyticFileOptions& options,
+                                  const Listener& listener) {
     const double parts = 1 + double(volume.others.size()) + (volume.colorAt ? 1 : 0);
-    std::vector<openvdb::GridBase::Ptr> grids;
+    const auto map = makeMap(glm::scale(glm::dmat4(1), options.spacing));
+    std::vector<TreeGrid> grids;
+    const auto add = [&](std::shared_ptr<openvdb::TreeBase> tree, const std::string& name) {
+        TreeGrid& grid = grids.emplace_back(TreeGrid{std::move(tree), {}, map});
+        grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, name);
+        grid.metadata.insert(openvdb::GridBase::META_GRID_CREATOR, std::string("deltasplat"));
+    };
+    const auto addFog = [&](std::shared_ptr<openvdb::TreeBase> tree, const std::string& name) {
+        add(std::move(tree), name);
+        grids.back().metadata.insert(openvdb::GridBase::META_GRID_CLASS, std::string(kFogClass));
+    };
     const auto part = [&] {
         Listener own = listener;
         own.progress = [&, done = double(grids.size())](double share) {
@@ -129,13 +138,11 @@ openvdb::GridCPtrVec sampleGrids(const AnalyticVolume& volume, const AnalyticFil
     // Whatever is not 0 is density: there are volumes with values below it.
     constexpr double kNone = std::numeric_limits<double>::lowest();
     const auto density = sampleScalars({"density", volume.valueAt, kNone}, options, part());
-    grids.push_back(density);
+    addFog(density, "density");
     for (const AnalyticGrid& other : volume.others)
-        grids.push_back(sampleScalars(other, options, part()));
-    if (volume.colorAt) grids.push_back(sampleColors(volume, *density, options, part()));
-
-    for (const openvdb::GridBase::Ptr& grid : grids) place(*grid, options.spacing);
-    return {grids.begin(), grids.end()};
+        addFog(sampleScalars(other, options, part()), other.name);
+    if (volume.colorAt) add(sampleColors(volume, *density, options, part()), "Cd");
+    return grids;
 }
 
 }  // namespace deltasplat

@@ -6,14 +6,16 @@
 #include <type_traits>
 
 #include "deltasplat/error.h"
-#include "ingest/grids/scalar_grids.h"
 #include "vdb/tree_writer.h"
 
 namespace deltasplat {
 namespace {
 
-// Volumes and, of samples, colours.
-using WrittenGrids = ScalarGrids::Append<openvdb::Vec3SGrid>;
+template <typename Tree>
+std::shared_ptr<const WrittenTree> writerOf(const std::shared_ptr<openvdb::TreeBase>& tree) {
+    return std::make_shared<const TreeWriter<OwnValues<Tree>>>(
+        OwnValues<Tree>(std::static_pointer_cast<const Tree>(tree)));
+}
 
 }  // namespace
 
@@ -21,15 +23,16 @@ bool WrittenGrid::isHalf() const {
     return metadata.get<bool>(openvdb::GridBase::META_SAVE_HALF_FLOAT).value_or(false);
 }
 
-WrittenGrid writtenGrid(const openvdb::GridBase::ConstPtr& grid) {
-    WrittenGrid written{grid->getName(), *grid, grid->constTransform().baseMap(), nullptr};
-    const bool isKnown = grid->apply<WrittenGrids>([&](const auto& typed) {
-        using Tree = typename std::decay_t<decltype(typed)>::TreeType;
-        written.tree =
-            std::make_shared<const TreeWriter<OwnValues<Tree>>>(OwnValues<Tree>(typed.treePtr()));
-    });
+WrittenGrid writtenGrid(const TreeGrid& grid) {
+    WrittenGrid written{grid.name(), grid.metadata, grid.map, nullptr};
+    const auto take = [&](const auto& tree) {
+        written.tree = writerOf<std::decay_t<decltype(tree)>>(grid.tree);
+    };
+    // Volumes and, of samples, colours.
+    const bool isKnown =
+        grid.apply<ScalarTrees>(take) || grid.apply<TreeTypes<openvdb::Vec3STree>>(take);
     if (!isKnown)
-        throw Error(ErrorCode::kFailed, gotExpected("grid to write", "type " + grid->valueType(),
+        throw Error(ErrorCode::kFailed, gotExpected("grid to write", "type " + grid.type(),
                                                     "a scalar grid, or one of vec3s"));
     return written;
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
 #include <openvdb/math/Maps.h>
 
 #include <memory>
 #include <string>
 
+#include "ingest/grids/tree_grid.h"
 #include "ingest/vdb/vdb_metadata.h"
 #include "vdb/written_tree.h"
 
@@ -25,6 +25,6 @@ struct WrittenGrid {
 
 /// Returns what is written of a scalar grid, or of one of vec3s: itself, which must not change.
 /// @throw Error(kFailed) if it is of another type
-WrittenGrid writtenGrid(const openvdb::GridBase::ConstPtr& grid);
+WrittenGrid writtenGrid(const TreeGrid& grid);
 
 }  // namespace deltasplat

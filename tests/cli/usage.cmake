@@ -33,6 +33,8 @@ deltasplat_cli_test(usage.unlike_any_subcommand EXIT 2 ARGS compress
     STDERR "deltasplat: Unknown subcommand 'compress'. Expected info, convert, delta, restore, diff, render, fold, bench or synth")
 deltasplat_cli_test(usage.unknown_option_before EXIT 2 ARGS --verbos info ${cube}
     STDERR "deltasplat: Unknown option '--verbos'. Did you mean '--verbose'?")
+deltasplat_cli_test(usage.output_option EXIT 2 ARGS convert ${cube} -o out.vdb
+    STDERR "deltasplat: Unknown option '-o'. OUTPUT is the last argument, without one")
 # The names that there are, and the one that is nearest: letters that have changed places count once.
 deltasplat_refusal(unknown_option_swapped "Unknown option '--szie'. Did you mean '--size'?" --szie 8x8)
 deltasplat_refusal(mode_swapped

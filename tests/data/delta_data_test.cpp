@@ -58,8 +58,9 @@ openvdb::MetaMap::Ptr comparable(const openvdb::GridBase& grid) {
 
 void expectSameGrid(const Volume& source, const Volume& restored) {
     ASSERT_TRUE(source.source && restored.source);
-    const openvdb::GridBase& a = *source.source->grid;
-    const openvdb::GridBase& b = *restored.source->grid;
+    const openvdb::GridBase::Ptr kept = toOpenVdb(source.source->grid);
+    const openvdb::GridBase::Ptr back = toOpenVdb(restored.source->grid);
+    const openvdb::GridBase &a = *kept, &b = *back;
     EXPECT_EQ(a.type(), b.type());
     EXPECT_EQ(a.transform(), b.transform());
     EXPECT_EQ(a.activeVoxelCount(), b.activeVoxelCount());

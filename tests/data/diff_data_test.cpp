@@ -14,12 +14,14 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/grids/source_grid.h"
+#include "support/kept_grid.h"
 
 namespace deltasplat {
 namespace {
 
 namespace fs = std::filesystem;
 using openvdb::Coord;
+using testing::keptGrid;
 
 class DiffData : public ::testing::Test {
   protected:
@@ -103,8 +105,7 @@ TEST_F(DiffData, OneVoxelOfEveryFloatGridIsFound) {
                 const Volume volume = read(file, name);
                 EXPECT_TRUE(compareVolumes(volume, read(file, name)).equal());
 
-                const auto source =
-                    openvdb::gridConstPtrCast<openvdb::FloatGrid>(volume.source->grid);
+                const auto source = keptGrid<openvdb::FloatGrid>(volume);
                 ASSERT_TRUE(source);
                 const auto grid = source->deepCopy();
                 auto voxel = grid->beginValueOn();
@@ -117,7 +118,7 @@ TEST_F(DiffData, OneVoxelOfEveryFloatGridIsFound) {
                 grid->tree().setValueOn(place, before + 0.5F);
                 Volume changed = volume;
                 SourceGrid changedSource = *volume.source;
-                changedSource.grid = grid;
+                changedSource.grid = fromOpenVdb(grid);
                 changed.source = std::make_shared<SourceGrid>(changedSource);
                 expectOneChange(compareVolumes(volume, changed), {place.x(), place.y(), place.z()},
                                 before, before + 0.5F);
@@ -136,8 +137,8 @@ TEST_F(DiffData, FramesOfASequence) {
         SCOPED_TRACE(frames[i]);
         const Volume a = read(frames[i], "density");
         const Volume b = read(frames[i + 1], "density");
-        const auto gridA = openvdb::gridConstPtrCast<openvdb::FloatGrid>(a.source->grid);
-        const auto gridB = openvdb::gridConstPtrCast<openvdb::FloatGrid>(b.source->grid);
+        const auto gridA = keptGrid<openvdb::FloatGrid>(a);
+        const auto gridB = keptGrid<openvdb::FloatGrid>(b);
         openvdb::BoolTree either(gridA->tree(), false, true, openvdb::TopologyCopy());
         either.topologyUnion(gridB->tree());
         std::uint64_t mismatch = 0;

@@ -21,8 +21,9 @@
 #include "ingest/codes/code_tree.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/grids/file_metadata.h"
-#include "ingest/grids/source_grid.h"
 #include "reference/plain_delta_reader.h"
+#include "support/kept_grid.h"
+#include "support/put_header.h"
 #include "support/same_volume.h"
 #include "unit/ingest_helpers.h"
 
@@ -31,6 +32,7 @@ namespace {
 
 using openvdb::Coord;
 using test::expectSameVolume;
+using testing::keptGrid;
 using testing::PlainVolume;
 using testing::TempFolder;
 
@@ -180,8 +182,9 @@ openvdb::MetaMap ownMetadata(const openvdb::MetaMap& metadata) {
 template <typename Grid>
 void expectEqual(const Grid& expected, const Volume& restored, const PlainVolume& plain) {
     ASSERT_TRUE(restored.source);
-    ASSERT_TRUE(restored.source->grid->isType<Grid>());
-    const auto& grid = static_cast<const Grid&>(*restored.source->grid);
+    const auto kept = keptGrid<Grid>(restored);
+    ASSERT_TRUE(kept);
+    const Grid& grid = *kept;
     EXPECT_EQ(bits(double(grid.background())), bits(double(expected.background())));
     EXPECT_EQ(bits(plain.background), bits(double(expected.background())));
     EXPECT_EQ(grid.transform(), expected.transform());
@@ -351,8 +354,7 @@ TEST(DeltaFile, WideIntegersComeBackAsFarAsThereAreSlots) {
         EXPECT_TRUE(entry.lossless);
         file.write("delta.vdb");
         const Volume restored = readVolume("delta.vdb", reading);
-        const auto& back = static_cast<const openvdb::Int64Grid&>(*restored.source->grid);
-        expectSameVoxels(*grid, back);
+        expectSameVoxels(*grid, *keptGrid<openvdb::Int64Grid>(restored));
     }
 
     grid->tree().setValueOn(Coord(3, 0, 0), kLargest + 1);
@@ -391,10 +393,10 @@ TEST(DeltaFile, BlocksOfNearlyOneValueComeBack) {
     ReadOptions reading;
     reading.gridName = "floats";
     const Volume restored = readKept("delta.vdb", reading);
-    expectSameVoxels(*floats, static_cast<const openvdb::FloatGrid&>(*restored.source->grid));
+    expectSameVoxels(*floats, *keptGrid<openvdb::FloatGrid>(restored));
     reading.gridName = "ints";
     const Volume others = readKept("delta.vdb", reading);
-    expectSameVoxels(*ints, static_cast<const openvdb::Int32Grid&>(*others.source->grid));
+    expectSameVoxels(*ints, *keptGrid<openvdb::Int32Grid>(others));
 }
 
 TEST(DeltaFile, BoolGridsComeBack) {
@@ -645,7 +647,7 @@ TEST(DeltaFile, DenseVolumesOfManyValuesComeBackAsTheyAreRead) {
             EXPECT_EQ(restored.origin->codeBook, book);
             expectSameVolume(volume, restored);
             // What lies outside is what a converted source has there.
-            EXPECT_EQ(backgroundOf(*restored.source->grid), backgroundOf(*volume.source->grid));
+            EXPECT_EQ(backgroundOf(restored.source->grid), backgroundOf(volume.source->grid));
             const PlainVolume plain = testing::readPlainDeltas("delta.vdb", name);
             std::uint64_t wrong = 0;
             for (std::size_t i = 0; i < floats.size(); ++i) {
@@ -714,8 +716,8 @@ TEST(DeltaFile, DenseVolumesOfTheLargestIntegersComeBack) {
     EXPECT_EQ(entry.codeBook, "int64");
     EXPECT_TRUE(entry.lossless);
     const Volume restored = readKept("delta.vdb");
-    const auto& source = static_cast<const openvdb::Int64Grid&>(*volume.source->grid);
-    expectSameVoxels(source, static_cast<const openvdb::Int64Grid&>(*restored.source->grid));
+    expectSameVoxels(*keptGrid<openvdb::Int64Grid>(volume),
+                     *keptGrid<openvdb::Int64Grid>(restored));
 }
 
 // Without sign and of 64 bits, whole numbers are doubles here, but their codes those of whole ones.
@@ -835,8 +837,9 @@ TEST(DeltaFile, WideIntegersStayWholeAndWithinHalfAStep) {
         const DeltaFileEntry entry = file.add(volume, codesOnly());
         file.write("delta.vdb");
         const Volume restored = readKept("delta.vdb");
-        ASSERT_TRUE(restored.source->grid->isType<openvdb::Int32Grid>());
-        const auto& back = static_cast<const openvdb::Int32Grid&>(*restored.source->grid);
+        const auto kept = keptGrid<openvdb::Int32Grid>(restored);
+        ASSERT_TRUE(kept);
+        const openvdb::Int32Grid& back = *kept;
         std::int64_t largest = 0;
         const PlainVolume plain = testing::readPlainDeltas("delta.vdb", "count");
         for (auto voxel = grid->cbeginValueOn(); voxel; ++voxel) {
@@ -885,7 +888,7 @@ void makeOlder(int version, openvdb::Int32Grid& grid) {
     DeltaHeader header = takeDeltaHeader(grid, "new");
     ASSERT_EQ(header.version, 6);
     header.version = version;
-    putDeltaHeader(header, grid);
+    testing::putHeader(header, grid);
     if (version > 2) return;
     std::uint64_t negative = 0;
     for (auto delta = grid.beginValueOn(); delta; ++delta) {
@@ -978,8 +981,8 @@ TEST(DeltaFile, PackedGridsWithoutVoxelsComeBack) {
     const Volume restored = readKept("delta.vdb");
     EXPECT_EQ(restored.activeCount, 0u);
     EXPECT_EQ(restored.background, 0.25);
-    ASSERT_TRUE(restored.source->grid->isType<openvdb::FloatGrid>());
-    EXPECT_EQ(restored.source->grid->constBaseTree().leafCount(), 0u);
+    ASSERT_TRUE(restored.source->grid.as<openvdb::FloatTree>());
+    EXPECT_EQ(restored.source->grid.tree->leafCount(), 0u);
     EXPECT_EQ(testing::readPlainDeltas("delta.vdb", "density").background, 0.25);
 }
 

@@ -46,10 +46,10 @@ Volume readWhole(const std::string& file) {
     if (vdb.grids().empty() || !vdb.grids().front().isScalar()) return readVolume(file, options);
     const VdbGrid& grid = vdb.grids().front();
     const std::string where = file + ": grid \"" + grid.name + "\"";
-    const openvdb::GridBase::Ptr stored = vdb.read(grid, {});
-    if (!isDeltaGrid(*stored)) return readVolume(file, options);
-    worldFromIndexOf(*stored->transform().baseMap(), where);
-    Volume volume = readDeltaGrid(*stored, vdb.metadata(), where, options, {});
+    TreeGrid stored = vdb.read(grid, {});
+    if (!isDeltaGrid(stored)) return readVolume(file, options);
+    worldFromIndexOf(*stored.map, where);
+    Volume volume = readDeltaGrid(stored, vdb.metadata(), where, options, {});
     volume.name = grid.name;
     volume.source = nullptr;
     return volume;

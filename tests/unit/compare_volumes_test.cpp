@@ -34,7 +34,7 @@ Volume volumeOf(const typename Grid::Ptr& grid) {
     const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
     volume.box = {{box.min().x(), box.min().y(), box.min().z()},
                   {box.max().x(), box.max().y(), box.max().z()}};
-    volume.source = std::make_shared<SourceGrid>(SourceGrid{grid});
+    volume.source = std::make_shared<SourceGrid>(SourceGrid{fromOpenVdb(grid)});
     return volume;
 }
 
@@ -92,9 +92,7 @@ Voxel voxelOf(const Volume& volume, const Coord& at) {
         return {active ? volume.codeBook.valueOf(code) : volume.background, active};
     }
     Voxel voxel;
-    using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                    openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid>;
-    volume.source->grid->apply<Types>([&](const auto& grid) { voxel = probe(grid.tree(), at); });
+    volume.source->grid.apply<ScalarTrees>([&](const auto& tree) { voxel = probe(tree, at); });
     return voxel;
 }
 
@@ -238,7 +236,7 @@ TEST(CompareVolumes, TheSameForAnyNumberOfThreads) {
         EXPECT_EQ(result.voxels, first.voxels);
     }
     EXPECT_GT(first.meanError, 0.1);
-    EXPECT_EQ(first.voxels, a.source->grid->activeVoxelCount());
+    EXPECT_EQ(first.voxels, a.source->grid.tree->activeVoxelCount());
 }
 
 TEST(CompareVolumes, HugeTilesAreComparedAsTiles) {
@@ -454,15 +452,13 @@ TEST(CompareVolumes, ShiftIsInVoxels) {
 // A volume with a source of its own, at the same place in the world, but `offset` further on.
 Volume elsewhere(const Volume& volume, const Coord& offset) {
     Volume result = volume;
-    using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                    openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid>;
-    volume.source->grid->apply<Types>([&](const auto& grid) {
-        auto moved = std::decay_t<decltype(grid)>::create(grid.background());
+    volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
+        const auto moved = std::make_shared<std::decay_t<decltype(tree)>>(tree.background());
         for (auto voxel = openvdb::CoordBBox(-21, -9, -13, 14, 27, 22).begin(); voxel; ++voxel) {
-            moved->tree().setValueOn(*voxel + offset, grid.tree().getValue(*voxel));
-            moved->tree().setActiveState(*voxel + offset, grid.tree().isValueOn(*voxel));
+            moved->setValueOn(*voxel + offset, tree.getValue(*voxel));
+            moved->setActiveState(*voxel + offset, tree.isValueOn(*voxel));
         }
-        result.source = std::make_shared<SourceGrid>(SourceGrid{moved});
+        result.source = std::make_shared<SourceGrid>(SourceGrid{{moved, {}}});
     });
     const glm::ivec3 way(offset.x(), offset.y(), offset.z());
     result.box = {volume.box.min + way, volume.box.max + way};

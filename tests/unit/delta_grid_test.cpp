@@ -36,7 +36,7 @@ SlotMap slotsOf(const Volume& volume, int sliceAxis, std::span<const Slot> slotM
 // Adds up deltas slab by slab, through OpenVDB's accessor alone.
 SlotMap sumOfDeltas(const DeltaGrid& grid) {
     SlotMap slots;
-    const auto accessor = grid.tree->grid->getConstAccessor();
+    const openvdb::tree::ValueAccessor<const openvdb::Int32Tree> accessor(*grid.tree->deltas);
     const IndexBox& box = grid.box;
     for (const Slab& slab : grid.slabs) {
         for (int u = box.min.y; u <= box.max.y; ++u) {
@@ -81,7 +81,7 @@ TEST(DeltaGrid, ActiveVoxelsAreExactlyTheChanges) {
         return found == slots.end() ? kEmptySlot : found->second;
     };
     std::uint64_t changes = 0;
-    const auto accessor = grid.tree->grid->getConstAccessor();
+    const openvdb::tree::ValueAccessor<const openvdb::Int32Tree> accessor(*grid.tree->deltas);
     for (int s = grid.box.min.x; s <= grid.box.max.x; ++s) {
         for (int u = grid.box.min.y; u <= grid.box.max.y; ++u) {
             for (int v = grid.box.min.z; v <= grid.box.max.z; ++v) {
@@ -93,7 +93,7 @@ TEST(DeltaGrid, ActiveVoxelsAreExactlyTheChanges) {
         }
     }
     EXPECT_EQ(grid.deltas(), changes);
-    EXPECT_EQ(grid.tree->grid->activeVoxelCount(), changes);
+    EXPECT_EQ(grid.tree->deltas->activeVoxelCount(), changes);
 }
 
 TEST(DeltaGrid, TilesCountAsTheirVoxels) {
@@ -132,7 +132,7 @@ TEST(DeltaGrid, LeavesWithoutActiveVoxelsCountForNothing) {
         const DeltaGrid grid = makeDeltaGrid(volume, {axis, 8, {}});
         const DeltaGrid expected = makeDeltaGrid(plain, {axis, 8, {}});
         EXPECT_EQ(sumOfDeltas(grid), slotsOf(plain, axis));
-        EXPECT_EQ(grid.tree->grid->tree().leafCount(), expected.tree->grid->tree().leafCount());
+        EXPECT_EQ(grid.tree->deltas->leafCount(), expected.tree->deltas->leafCount());
         EXPECT_EQ(grid.deltas(), expected.deltas());
         EXPECT_EQ(countDeltas(volume, axis).deltas, countDeltas(plain, axis).deltas);
     }

@@ -24,7 +24,7 @@
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/rice_code.h"
 #include "ingest/delta/stream_index.h"
-#include "ingest/delta/word_grid.h"
+#include "ingest/delta/word_tree.h"
 #include "ingest/vdb/vdb_file.h"
 #include "support/error_of.h"
 #include "unit/ingest_helpers.h"
@@ -160,17 +160,21 @@ TEST(BitStream, TheBestParameterIsChosen) {
     }
 }
 
+openvdb::Int64Grid::Ptr wordGrid(const std::vector<std::uint64_t>& words) {
+    return openvdb::Int64Grid::create(treeOfWords(words));
+}
+
 TEST(WordGrid, WordsComeBack) {
     std::mt19937_64 random(2);
     for (const std::size_t count : {0, 1, 511, 512, 513, 5000, (4096 + 17) * 512 + 3}) {
         SCOPED_TRACE(count);
         std::vector<std::uint64_t> words(count);
         for (std::uint64_t& word : words) word = random();
-        const auto grid = gridOfWords(words);
+        const auto grid = wordGrid(words);
         EXPECT_EQ(grid->activeVoxelCount(), count);
         std::vector<std::uint64_t> padded = words;
         padded.resize(count + 3);
-        EXPECT_EQ(wordsOfGrid(*grid, 3, "words"), padded);
+        EXPECT_EQ(wordsOfTree(grid->tree(), 3, "words"), padded);
         // OpenVDB walks them in this order.
         std::size_t wrong = 0, next = 0;
         for (auto word = grid->cbeginValueOn(); word; ++word, ++next)
@@ -189,10 +193,10 @@ TEST(WordGrid, EveryLeafHasAPlaceOfItsOwn) {
 
 TEST(WordGrid, TilesOfEqualWordsAreWords) {
     const std::vector<std::uint64_t> words(1500, 7);
-    const auto grid = gridOfWords(words);
+    const auto grid = wordGrid(words);
     openvdb::tools::prune(grid->tree());
     EXPECT_EQ(grid->tree().leafCount(), 1u);
-    EXPECT_EQ(wordsOfGrid(*grid, 0, "words"), words);
+    EXPECT_EQ(wordsOfTree(grid->tree(), 0, "words"), words);
 }
 
 // Returns the leaves of a grid of words, and writes it to a file for that.
@@ -210,7 +214,7 @@ TEST(WordGrid, WordsComeBackFromAFile) {
         SCOPED_TRACE(count);
         std::vector<std::uint64_t> words(count);
         for (std::uint64_t& word : words) word = random();
-        const VdbLeaves leaves = leavesOf(gridOfWords(words));
+        const VdbLeaves leaves = leavesOf(wordGrid(words));
         EXPECT_EQ(countWords(leaves), count);
         for (int i = 0; i < 20; ++i) {
             const std::size_t end = i == 0 ? count : random() % (count + 1);
@@ -228,7 +232,7 @@ TEST(WordGrid, LeavesThatAreNoGridOfWords) {
     const auto read = [](const std::function<void(openvdb::Int64Grid&)>& change) {
         std::vector<std::uint64_t> words(1500);
         for (std::size_t i = 0; i < words.size(); ++i) words[i] = i;
-        const auto grid = gridOfWords(words);
+        const auto grid = wordGrid(words);
         change(*grid);
         const VdbLeaves leaves = leavesOf(grid);
         const auto count = countWords(leaves);
@@ -269,10 +273,10 @@ std::string refusalOf(const Damage& damage) {
     testing::writeBytes("a_20x9x12_uint8.raw", voxels);
     const auto grid = packedGrid("a_20x9x12_uint8.raw", "whole.vdb");
     EXPECT_NO_THROW(readVolume("whole.vdb"));
-    std::vector<std::uint64_t> words = wordsOfGrid(*grid, 0, "whole");
+    std::vector<std::uint64_t> words = wordsOfTree(grid->tree(), 0, "whole");
     openvdb::MetaMap metadata = *grid;
     damage(metadata, words);
-    const auto damaged = gridOfWords(words);
+    const auto damaged = wordGrid(words);
     damaged->insertMeta(metadata);
     damaged->setTransform(grid->transform().copy());
     openvdb::io::File("a.vdb").write({damaged});
@@ -421,26 +425,26 @@ TEST(DeltaStreamError, MoreThanMemoryHolds) {
         setMemoryLimit(1);
         std::optional<ErrorCode> code;
         try {
-            wordsOfGrid(grid, 0, "a");
+            wordsOfTree(grid.tree(), 0, "a");
         } catch (const Error& error) {
             code = error.code();
         }
         setMemoryLimit(0);
         return code;
     };
-    auto grid = gridOfWords(std::vector<std::uint64_t>(1500, 7));
+    auto grid = wordGrid(std::vector<std::uint64_t>(1500, 7));
     EXPECT_EQ(codeOf(*grid), ErrorCode::kFailed);
     openvdb::tools::prune(grid->tree());
     EXPECT_EQ(codeOf(*grid), ErrorCode::kInput);
 }
 
 TEST(DeltaStreamError, GapsBetweenWords) {
-    auto grid = gridOfWords(std::vector<std::uint64_t>(1500, 7));
+    auto grid = wordGrid(std::vector<std::uint64_t>(1500, 7));
     grid->tree().setValueOff(Coord(0, 0, 8 + 2));
     expectError(ErrorCode::kInput,
                 "a: got a gap in its words in or behind number 512; expected 1499, one behind the "
                 "other",
-                [&] { wordsOfGrid(*grid, 0, "a"); });
+                [&] { wordsOfTree(grid->tree(), 0, "a"); });
 }
 
 // Where the columns are is read from as many words as that takes.
@@ -452,7 +456,7 @@ TEST(DeltaStream, TheIndexIsReadFromTheFirstWords) {
     testing::writeBytes("a_64x64x16_uint8.raw", voxels);
     const auto grid = packedGrid("a_64x64x16_uint8.raw", "a.vdb");
     const DeltaHeader header = takeDeltaHeader(*grid, "a");
-    const std::vector<std::uint64_t> words = wordsOfGrid(*grid, kStreamPadding, "a");
+    const std::vector<std::uint64_t> words = wordsOfTree(grid->tree(), kStreamPadding, "a");
     const std::size_t count = words.size() - kStreamPadding;
     const auto whole = readStreamIndex(words.data(), count, count, header, "a");
     ASSERT_TRUE(whole);

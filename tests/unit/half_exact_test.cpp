@@ -35,7 +35,7 @@ openvdb::FloatGrid::Ptr gridOf(float background, std::initializer_list<float> ac
 bool comesBack(const openvdb::FloatGrid::Ptr& grid) {
     const testing::TempFolder folder;
     grid->setSaveFloatAsHalf(true);
-    writeVdb("half.vdb", {writtenGrid(grid)});
+    writeVdb("half.vdb", {writtenGrid(fromOpenVdb(grid))});
     const auto back = readGrid<openvdb::FloatGrid>("half.vdb");
     bool same = back->background() == grid->background();
     for (int x = 0; x < 8; ++x) {
@@ -49,7 +49,7 @@ bool comesBack(const openvdb::FloatGrid::Ptr& grid) {
 }
 
 void expectSurvival(bool expected, const openvdb::FloatGrid::Ptr& grid) {
-    EXPECT_EQ(survivesHalf(*grid), expected);
+    EXPECT_EQ(survivesHalf(fromOpenVdb(grid)), expected);
     EXPECT_EQ(comesBack(grid), expected);
 }
 
@@ -77,18 +77,18 @@ TEST(HalfExact, InactiveValues) {
 TEST(HalfExact, Tiles) {
     const auto grid = gridOf(0, {0.5F}, {});
     grid->tree().addTile(1, Coord(64, 0, 0), 0.25F, true);
-    EXPECT_TRUE(survivesHalf(*grid));
+    EXPECT_TRUE(survivesHalf(fromOpenVdb(grid)));
     grid->tree().addTile(1, Coord(128, 0, 0), 0.1F, true);
-    EXPECT_FALSE(survivesHalf(*grid));
+    EXPECT_FALSE(survivesHalf(fromOpenVdb(grid)));
 }
 
 TEST(HalfExact, OnlyRealGrids) {
     openvdb::initialize();
-    EXPECT_FALSE(survivesHalf(*openvdb::Int32Grid::create(0)));
+    EXPECT_FALSE(survivesHalf(fromOpenVdb(openvdb::Int32Grid::create(0))));
     const auto fine = openvdb::DoubleGrid::create(0.5);
-    EXPECT_TRUE(survivesHalf(*fine));
+    EXPECT_TRUE(survivesHalf(fromOpenVdb(fine)));
     fine->tree().setValueOn(Coord(0), 1.0 + 0x1p-40);
-    EXPECT_FALSE(survivesHalf(*fine));
+    EXPECT_FALSE(survivesHalf(fromOpenVdb(fine)));
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ void expectSame(const Volume& packed, const Volume& whole) {
 }
 
 void writeOne(const std::string& file, const openvdb::GridBase::ConstPtr& grid) {
-    writeVdb(file, {writtenGrid(grid)});
+    writeVdb(file, {writtenGrid(fromOpenVdb(grid))});
 }
 
 // Compares a.vdb with b.vdb packed, whole, and one of each.

@@ -11,6 +11,7 @@
 #include "deltasplat/memory_limit.h"
 #include "ingest/delta/delta_format.h"
 #include "number_text.h"
+#include "support/put_header.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {
@@ -69,7 +70,7 @@ Damage inVersion(int version) {
     return [=](openvdb::Int32Grid& grid) {
         DeltaHeader header = takeDeltaHeader(grid, "whole.vdb");
         header.version = version;
-        putDeltaHeader(header, grid);
+        testing::putHeader(header, grid);
     };
 }
 

@@ -42,7 +42,7 @@ void writeBy(const std::string& file, const openvdb::GridBase::Ptr& grid,
     out.close();
 }
 
-openvdb::GridBase::Ptr readHere(const std::string& file) {
+TreeGrid readHere(const std::string& file) {
     const VdbFile vdb(file);
     return vdb.read(vdb.grids().front(), {});
 }
@@ -52,14 +52,14 @@ void expectSameRead(const openvdb::GridBase::Ptr& grid) {
     for (const std::uint32_t compression : kCompressions) {
         SCOPED_TRACE(compression);
         writeBy("a.vdb", grid, compression);
-        WrittenGrid theirs = writtenGrid(testing::readGrids("a.vdb").front());
+        WrittenGrid theirs = writtenGrid(fromOpenVdb(testing::readGrids("a.vdb").front()));
         // What the type of the grid says as well, which counts.
         if (!theirs.isHalf()) theirs.metadata.erase(openvdb::GridBase::META_SAVE_HALF_FLOAT);
         writeVdb("theirs.vdb", {theirs});
-        const openvdb::GridBase::Ptr ours = readHere("a.vdb");
+        const TreeGrid ours = readHere("a.vdb");
         writeVdb("ours.vdb", {writtenGrid(ours)});
         EXPECT_TRUE(testing::readBytes("theirs.vdb") == testing::readBytes("ours.vdb"));
-        EXPECT_EQ(ours->type(), grid->type());
+        EXPECT_EQ(ours.tree->type(), grid->type());
     }
 }
 

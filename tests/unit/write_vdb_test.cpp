@@ -34,7 +34,7 @@ constexpr std::size_t kTagBytes = 36;
 
 std::vector<WrittenGrid> written(const openvdb::GridCPtrVec& grids) {
     std::vector<WrittenGrid> all;
-    for (const auto& grid : grids) all.push_back(writtenGrid(grid));
+    for (const auto& grid : grids) all.push_back(writtenGrid(fromOpenVdb(grid)));
     return all;
 }
 
@@ -172,7 +172,7 @@ TEST(WriteVdb, BytesDependOnNothingButTheGrids) {
     const std::string bytes = testing::readBytes("1.vdb");
     EXPECT_EQ(bytes, testing::readBytes("2.vdb"));
     EXPECT_EQ(bytes, testing::readBytes("5.vdb"));
-    EXPECT_EQ(writtenBytes(writtenGrid(grid)), bytes.size());
+    EXPECT_EQ(writtenBytes(writtenGrid(fromOpenVdb(grid))), bytes.size());
     grid->tree().setValueOn(Coord(0), 12345);
     writeVdb("other.vdb", written({grid}));
     EXPECT_NE(bytes.substr(kTagPlace, kTagBytes),
@@ -181,7 +181,7 @@ TEST(WriteVdb, BytesDependOnNothingButTheGrids) {
 
 TEST(WriteVdb, LeavesThatAreNotKeptArePackedAgain) {
     const WrittenGrid grid =
-        writtenGrid(randomGrid<openvdb::FloatGrid>(3000, Inactive::kTwo, 1, 9));
+        writtenGrid(fromOpenVdb(randomGrid<openvdb::FloatGrid>(3000, Inactive::kTwo, 1, 9)));
     std::vector<std::string> packed;
     for (const std::uint64_t kept : {0, 1000000, 1 << 30}) {
         std::uint64_t room = kept;
@@ -197,7 +197,7 @@ TEST(WriteVdb, LeavesThatAreNotKeptArePackedAgain) {
 }
 
 TEST(WriteVdb, OtherGridsAreRefused) {
-    EXPECT_THROW(writtenGrid(openvdb::Vec3DGrid::create()), Error);
+    EXPECT_THROW(writtenGrid(fromOpenVdb(openvdb::Vec3DGrid::create())), Error);
 }
 
 TEST(WriteVdb, APipeTakesAFile) {

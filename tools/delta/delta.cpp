@@ -13,7 +13,6 @@
 #include "ingest/delta/delta_origin.h"
 #include "ingest/files/file_name.h"
 #include "listener_part.h"
-#include "modules/load_early.h"
 #include "number_text.h"
 #include "options/input_options.h"
 #include "process/print_out.h"
@@ -172,7 +171,6 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
 
 void runDelta(const CLI::App& app, const DeltaCommand& command, const Session& session) {
     checkFirstOutput(command.files, command.frames, checkDeltaFile);
-    const std::jthread loading = loadOpenVdbEarly();
     const ConversionStats stats =
         runConversion(app, command.files, command.frames, session,
                       [&](const ConversionFiles& files, const Listener& listener) {

@@ -15,7 +15,6 @@
 #include "info/slice_plot.h"
 #include "ingest/files/input_kind.h"
 #include "listener.h"
-#include "modules/load_early.h"
 #include "options/input_options.h"
 #include "options/transfer_function_option.h"
 #include "options/volume_choices.h"
@@ -213,7 +212,6 @@ InfoOptions withFrames(const CLI::App& app, InfoOptions options, const Session& 
 void runInfo(const CLI::App& app, const InfoOptions& asked, const Session& session) {
     const InfoOptions options = withFrames(app, asked, session);
     if (options.list) return listInputs(app, options, session);
-    const std::jthread loading = loadOpenVdbEarly();  // for what a delta grid would take
     if (!options.plot.empty()) {
         checkDrawingFile(options.plot);
         const Files inputs(options.inputs.begin(), options.inputs.end());

@@ -8,7 +8,6 @@
 #include "lower_case.h"
 #include "modules/exr_module.h"
 #include "modules/image_module.h"
-#include "modules/late_openvdb.h"
 
 namespace deltasplat {
 
@@ -38,12 +37,7 @@ std::jthread loadEarly(const std::filesystem::path& file) {
     if (extension == ".exr") return beside([] { exrModule(); });
     if (extension.starts_with(".tif") || extension == ".jpg" || extension == ".jpeg")
         return beside([] { imageModule(); });
-    if (extension == ".vdb") return loadOpenVdbEarly();
     return {};
-}
-
-std::jthread loadOpenVdbEarly() {
-    return beside(loadOpenVdb);
 }
 
 }  // namespace deltasplat

@@ -10,7 +10,5 @@ namespace deltasplat {
 /// something to load, beside what comes before that is needed. Joins when it is destroyed; what
 /// goes wrong is said when it is used.
 std::jthread loadEarly(const std::filesystem::path& file);
-/// Loads OpenVDB likewise.
-std::jthread loadOpenVdbEarly();
 
 }  // namespace deltasplat

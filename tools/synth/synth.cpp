@@ -8,7 +8,6 @@
 #include "deltasplat/synth/write_analytic.h"
 #include "listener.h"
 #include "lower_case.h"
-#include "modules/load_early.h"
 #include "number_text.h"
 #include "output_files.h"
 #include "process/interrupt.h"
@@ -97,7 +96,6 @@ void runSynth(const CLI::App& app, const SynthOptions& options, const Session& s
     const AnalyticVolume volume = makeAnalytic(options.name, options.seed, options.noise);
     requireArgument(!options.output.empty(), "OUTPUT", "FILE (see 'deltasplat synth --help')");
     refuseLog("OUTPUT", options.output);
-    const std::jthread loading = loadEarly(options.output);
     ProgressDisplay display(session.common);
     warnOfUnusedOptions(app, options, display);
     writeAnalytic(volume, options.output, options.file, display.stage(0, 1));

@@ -46,7 +46,7 @@ glm::ivec3 blockOf(const DeltaLeaf& leaf) {
 class CodeWords {
   public:
     using Slot = std::uint32_t;
-    using DeltaGrid = openvdb::Int32Grid;
+    using DeltaTree = openvdb::Int32Tree;
     using Tree = CodeTree::Tree;
 
     explicit CodeWords(const DeltaHeader& header)
@@ -91,7 +91,7 @@ class ExactWords {
   public:
     using Slots = ExactSlots<T>;
     using Slot = typename Slots::Slot;
-    using DeltaGrid = typename Slots::DeltaGrid;
+    using DeltaTree = typename Slots::DeltaTree;
     using Tree = typename openvdb::tree::Tree4<T, 5, 4, 3>::Type;
 
     explicit ExactWords(const DeltaHeader& header)
@@ -133,7 +133,7 @@ template <typename Words>
 class Decoder {
   public:
     using Slot = typename Words::Slot;
-    using DeltaLeaf = typename Words::DeltaGrid::TreeType::LeafNodeType;
+    using DeltaLeaf = typename Words::DeltaTree::LeafNodeType;
     using Leaf = typename Words::Tree::LeafNodeType;
 
     Decoder(const DeltaHeader& header, const Words& words, const std::string& where)
@@ -389,13 +389,14 @@ void fillRest(const DeltaHeader& header, typename Tree::ValueType rest, const st
 
 // @param values, inactive  empty trees
 template <typename Words>
-void decode(typename Words::DeltaGrid& grid, const DeltaHeader& header, const Words& words,
+void decode(typename Words::DeltaTree& deltas, const DeltaHeader& header, const Words& words,
             const std::string& where, const Listener& listener, typename Words::Tree& values,
             CodeTree::Tree& inactive) {
-    if (grid.background() != 0) fail(where, "background " + std::to_string(grid.background()), "0");
+    if (deltas.background() != 0)
+        fail(where, "background " + std::to_string(deltas.background()), "0");
     const Decoder<Words> decoder(header, words, where);
-    voxelizeTiles(grid.tree(), where);
-    const auto leaves = orderedLeaves(grid.tree(), decoder);
+    voxelizeTiles(deltas, where);
+    const auto leaves = orderedLeaves(deltas, decoder);
     checkSlabs(leaves, decoder, header, where);
 
     // Without empty places all voxels of the box are active, before any of them takes memory.
@@ -423,30 +424,30 @@ void decode(typename Words::DeltaGrid& grid, const DeltaHeader& header, const Wo
 }
 
 template <typename T>
-DecodedValues decodeExact(openvdb::GridBase& grid, const DeltaHeader& header,
-                          const std::string& where, const Listener& listener) {
+DecodedValues decodeExact(TreeGrid& grid, const DeltaHeader& header, const std::string& where,
+                          const Listener& listener) {
     using Words = ExactWords<T>;
     const Words words(header);
-    auto values = openvdb::Grid<typename Words::Tree>::create(words.inactiveValue());
+    auto values = std::make_shared<typename Words::Tree>(words.inactiveValue());
     DecodedValues decoded;
-    decode(static_cast<typename Words::DeltaGrid&>(grid), header, words, where, listener,
-           values->tree(), decoded.inactive->tree());
+    decode(*grid.as<typename Words::DeltaTree>(), header, words, where, listener, *values,
+           decoded.inactive->tree());
     decoded.values = std::move(values);
     return decoded;
 }
 
 }  // namespace
 
-DecodedDeltas decodeDeltas(openvdb::GridBase& grid, const DeltaHeader& header,
-                           const std::string& where, const Listener& listener) {
+DecodedDeltas decodeDeltas(TreeGrid& grid, const DeltaHeader& header, const std::string& where,
+                           const Listener& listener) {
     DecodedDeltas decoded;
-    decode(static_cast<openvdb::Int32Grid&>(grid), header, CodeWords(header), where, listener,
+    decode(*grid.as<openvdb::Int32Tree>(), header, CodeWords(header), where, listener,
            decoded.codes->tree(), decoded.inactive->tree());
     return decoded;
 }
 
-DecodedValues decodeValues(openvdb::GridBase& grid, const DeltaHeader& header,
-                           const std::string& where, const Listener& listener) {
+DecodedValues decodeValues(TreeGrid& grid, const DeltaHeader& header, const std::string& where,
+                           const Listener& listener) {
     switch (*header.exact) {
         case ExactValues::kFloat32:
             return decodeExact<float>(grid, header, where, listener);

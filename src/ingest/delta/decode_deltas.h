@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <memory>
 #include <string>
 
 #include "deltasplat/progress.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/delta/delta_format.h"
+#include "ingest/grids/tree_grid.h"
 
 namespace deltasplat {
 
@@ -23,7 +22,7 @@ struct DecodedDeltas {
 /// The same of a source whose values stand for themselves (DeltaHeader::exact).
 struct DecodedValues {
     /// Of the type DeltaHeader::exact, with the source's background; 0 if it has none.
-    openvdb::GridBase::Ptr values;
+    std::shared_ptr<openvdb::TreeBase> values;
     std::shared_ptr<CodeTree> inactive = std::make_shared<CodeTree>();  ///< as above
 };
 
@@ -33,11 +32,11 @@ struct DecodedValues {
 /// @throw Error(kInput) if the deltas contradict the header or lead outside of the code book, or if
 ///        the header alone asks for more than memory holds; Error(kFailed) if the codes do not fit
 ///        into memory, whatever the listener throws
-DecodedDeltas decodeDeltas(openvdb::GridBase& grid, const DeltaHeader& header,
-                           const std::string& where, const Listener& listener);
+DecodedDeltas decodeDeltas(TreeGrid& grid, const DeltaHeader& header, const std::string& where,
+                           const Listener& listener);
 
 /// As decodeDeltas, of a grid of exact values.
-DecodedValues decodeValues(openvdb::GridBase& grid, const DeltaHeader& header,
-                           const std::string& where, const Listener& listener);
+DecodedValues decodeValues(TreeGrid& grid, const DeltaHeader& header, const std::string& where,
+                           const Listener& listener);
 
 }  // namespace deltasplat

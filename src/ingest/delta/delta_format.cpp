@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/delta/delta_format.h"
 
-#include <openvdb/Grid.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -309,16 +307,15 @@ bool hasSlot(ExactValues type, double value) {
     }
 }
 
-bool isDeltaGrid(const openvdb::GridBase& grid) {
-    return isDeltaGrid(grid.valueType(), grid) &&
-           (grid.isType<openvdb::Int32Grid>() || grid.isType<openvdb::Int64Grid>());
+bool isDeltaGrid(const TreeGrid& grid) {
+    return isDeltaGrid(grid.type(), grid.metadata);
 }
 
 bool isDeltaGrid(const std::string& valueType, const VdbMetadata& metadata) {
     return (valueType == "int32" || valueType == "int64") && metadata.find(kVersionKey);
 }
 
-void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
+void putDeltaHeader(const DeltaHeader& header, VdbMetadata& metadata) {
     VdbMetadata entries = allEntries(header);
     if (header.leavesOutUsual()) {
         const VdbMetadata usual = usualEntries();
@@ -326,10 +323,10 @@ void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata) {
             const VdbMetadata::Entry* const own = entries.find(name);
             if (!own || *own != entry) continue;
             entries.erase(name);
-            metadata.removeMeta(name);
+            metadata.erase(name);
         }
     }
-    metadata.insertMeta(*entries.toMetaMap("delta grid"));
+    for (const auto& [name, entry] : entries.entries()) metadata.insert(name, entry);
 }
 
 std::string DeltaHeader::bookName() const {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
-
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,6 +9,7 @@
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/ingest/volume.h"
 #include "ingest/delta/exact_slots.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/vdb/vdb_metadata.h"
 
 namespace deltasplat {
@@ -60,12 +59,12 @@ struct DeltaHeader {
 inline constexpr const char* kSourcePrefix = "source:";
 
 /// Returns whether a grid is a delta grid of any version.
-bool isDeltaGrid(const openvdb::GridBase& grid);
+bool isDeltaGrid(const TreeGrid& grid);
 /// Returns the same by a grid's value type ("int32", "int64") and metadata.
 bool isDeltaGrid(const std::string& valueType, const VdbMetadata& metadata);
 
 /// Adds the header to a grid's metadata: where leavesOutUsual(), only what is not usual.
-void putDeltaHeader(const DeltaHeader& header, openvdb::MetaMap& metadata);
+void putDeltaHeader(const DeltaHeader& header, VdbMetadata& metadata);
 
 /// Reads a delta grid's header and checks everything in it that can be checked without its voxels.
 /// @throw Error(kInput) at the first entry that is missing, of another type or out of range

@@ -14,7 +14,7 @@
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/part_walker.h"
 #include "ingest/delta/stream_index.h"
-#include "ingest/delta/word_grid.h"
+#include "ingest/delta/word_tree.h"
 #include "ingest/grids/leaf_bytes.h"
 #include "memory.h"
 #include "parallel.h"
@@ -42,11 +42,11 @@ void fillLeaf(const BlockDeltasOf<typename Leaf::ValueType>& deltas, Leaf& leaf)
 
 class Unpacker {
   public:
-    Unpacker(const openvdb::Int64Grid& grid, const DeltaHeader& header, const std::string& where)
-        : header_(header), where_(where), words_(wordsOfGrid(grid, kStreamPadding, where)) {}
+    Unpacker(const openvdb::Int64Tree& tree, const DeltaHeader& header, const std::string& where)
+        : header_(header), where_(where), words_(wordsOfTree(tree, kStreamPadding, where)) {}
 
-    template <typename Grid>
-    openvdb::GridBase::Ptr takeDeltas(const Listener& listener) const;
+    template <typename Tree>
+    std::shared_ptr<Tree> takeDeltas(const Listener& listener) const;
 
   private:
     template <typename Leaf>
@@ -86,13 +86,13 @@ Unpacker::Leaves<Leaf> Unpacker::takePart(const StreamPart& part) const {
     return leaves;
 }
 
-template <typename Grid>
-openvdb::GridBase::Ptr Unpacker::takeDeltas(const Listener& listener) const {
-    using Leaf = typename Grid::TreeType::LeafNodeType;
+template <typename Tree>
+std::shared_ptr<Tree> Unpacker::takeDeltas(const Listener& listener) const {
+    using Leaf = typename Tree::LeafNodeType;
     const std::vector<StreamPart> parts = this->parts();
     requireMemory(where_, double(countBlocks(words_.data(), parts)) * leafBytes<Leaf>());
-    auto grid = Grid::create(0);
-    openvdb::tree::ValueAccessor<typename Grid::TreeType> accessor(grid->tree());
+    auto tree = std::make_shared<Tree>(0);
+    openvdb::tree::ValueAccessor<Tree> accessor(*tree);
     // In portions, so that what is in no tree yet is little.
     constexpr std::size_t kPortion = 2048;
     for (std::size_t begin = 0; begin < parts.size(); begin += kPortion) {
@@ -106,19 +106,20 @@ openvdb::GridBase::Ptr Unpacker::takeDeltas(const Listener& listener) const {
         }
         listener.report(double(begin + count) / double(parts.size()));
     }
-    return grid;
+    return tree;
 }
 
 }  // namespace
 
-openvdb::GridBase::Ptr unpackDeltas(const openvdb::GridBase& grid, const DeltaHeader& header,
-                                    const std::string& where, const Listener& listener) {
-    const Unpacker unpacker(static_cast<const openvdb::Int64Grid&>(grid), header, where);
-    const openvdb::GridBase::Ptr deltas = header.isWide()
-                                              ? unpacker.takeDeltas<openvdb::Int64Grid>(listener)
-                                              : unpacker.takeDeltas<openvdb::Int32Grid>(listener);
-    deltas->insertMeta(grid);
-    deltas->setTransform(grid.transform().copy());
+TreeGrid unpackDeltas(const TreeGrid& grid, const DeltaHeader& header, const std::string& where,
+                      const Listener& listener) {
+    const Unpacker unpacker(*grid.as<openvdb::Int64Tree>(), header, where);
+    TreeGrid deltas{nullptr, grid.metadata, grid.map};
+    if (header.isWide()) {
+        deltas.tree = unpacker.takeDeltas<openvdb::Int64Tree>(listener);
+    } else {
+        deltas.tree = unpacker.takeDeltas<openvdb::Int32Tree>(listener);
+    }
     return deltas;
 }
 

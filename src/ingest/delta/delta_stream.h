@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <string>
 
 #include "deltasplat/progress.h"
+#include "ingest/grids/tree_grid.h"
 
 namespace deltasplat {
 
@@ -26,8 +25,8 @@ enum class SliceForm {
 ///         them, within the header's box; what they say may contradict the header
 /// @throw Error(kInput) if the words have gaps, or the stream ends early or late or says what it
 ///        cannot; Error(kFailed) if memory does not hold the deltas
-openvdb::GridBase::Ptr unpackDeltas(const openvdb::GridBase& grid, const DeltaHeader& header,
-                                    const std::string& where, const Listener& listener);
+TreeGrid unpackDeltas(const TreeGrid& grid, const DeltaHeader& header, const std::string& where,
+                      const Listener& listener);
 /// Returns how many bits a delta without sign takes at most.
 int deltaWidth(const DeltaHeader& header);
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <bit>
 #include <cstdint>
 #include <limits>
@@ -10,6 +8,7 @@
 
 #include "deltasplat/ingest/code_book.h"
 #include "ingest/codes/code_math.h"
+#include "ingest/grids/tree_grid.h"
 
 namespace deltasplat {
 
@@ -20,9 +19,9 @@ enum class ExactValues { kFloat32, kFloat64, kInt32, kInt64 };
 /// Names of the code books, in the order of ExactValues.
 inline constexpr const char* kExactNames[] = {"float32", "float64", "int32", "int64"};
 
-/// The grids that have such values, in the order of ExactValues.
-using ExactGrids = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                     openvdb::Int64Grid>;
+/// The trees that have such values, in the order of ExactValues.
+using ExactTrees =
+    TreeTypes<openvdb::FloatTree, openvdb::DoubleTree, openvdb::Int32Tree, openvdb::Int64Tree>;
 
 /// Returns whether a number is a value of a type that has a slot.
 bool hasSlot(ExactValues type, double value);
@@ -35,7 +34,7 @@ struct ExactSlots {
     static constexpr bool kIsFloat = std::is_same_v<T, float>;
     using Slot = std::conditional_t<kIsFloat, std::uint32_t, std::uint64_t>;
     using Delta = std::make_signed_t<Slot>;
-    using DeltaGrid = std::conditional_t<kIsFloat, openvdb::Int32Grid, openvdb::Int64Grid>;
+    using DeltaTree = std::conditional_t<kIsFloat, openvdb::Int32Tree, openvdb::Int64Tree>;
 
     /// Returns the slot of an active voxel, one of the range below; `value` is finite, and an int64
     /// at most 2^63 - 65538.

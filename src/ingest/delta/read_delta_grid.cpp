@@ -22,10 +22,10 @@
 #include "ingest/delta/restored_grid.h"
 #include "ingest/delta/stream_columns.h"
 #include "ingest/grids/grid_codes.h"
-#include "ingest/grids/grid_from_codes.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_volume.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_from_codes.h"
 #include "ingest/readers.h"
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
@@ -80,11 +80,10 @@ Volume describe(const DeltaHeader& header, const VdbMetadata& metadata,
 }
 
 // The grid has the type that its code book asks for, or of packed deltas that of words.
-void requireType(const openvdb::GridBase& grid, const DeltaHeader& header,
-                 const std::string& where) {
+void requireType(const TreeGrid& grid, const DeltaHeader& header, const std::string& where) {
     const std::string expected = header.isWide() || header.isPacked() ? "int64" : "int32";
-    if (grid.valueType() == expected) return;
-    fail(where, "deltas of type " + grid.valueType(),
+    if (grid.type() == expected) return;
+    fail(where, "deltas of type " + grid.type(),
          expected + " for " +
              (header.isPacked() ? "packed deltas" : "the code book " + header.bookName()));
 }
@@ -139,16 +138,16 @@ bool mayBeBoxOf(const DeltaHeader& header, const IndexBox& box) {
 
 }  // namespace
 
-Volume readDeltaGrid(openvdb::GridBase& stored, const openvdb::MetaMap::ConstPtr& fileMetadata,
-                     const std::string& where, const ReadOptions& options, const Listener& all) {
-    const DeltaHeader header = takeDeltaHeader(stored, where);
+Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const std::string& where,
+                     const ReadOptions& options, const Listener& all) {
+    const DeltaHeader header = takeDeltaHeader(stored.metadata, where);
     requireType(stored, header, where);
-    openvdb::GridBase::Ptr unpacked;
+    TreeGrid unpacked;
     if (header.isPacked()) unpacked = unpackDeltas(stored, header, where, partOf(all, 0, 0.3));
-    const Listener listener = partOf(all, unpacked ? 0.3 : 0, 1);
-    openvdb::GridBase& grid = unpacked ? *unpacked : stored;
-    Volume volume = describe(header, grid, *grid.transform().baseMap());
-    volume.name = grid.getName();
+    const Listener listener = partOf(all, header.isPacked() ? 0.3 : 0, 1);
+    TreeGrid& grid = header.isPacked() ? unpacked : stored;
+    Volume volume = describe(header, grid.metadata, *grid.map);
+    volume.name = grid.name();
     if (header.exact) {
         readExactDeltas(grid, header, fileMetadata, {listener, where, header.sourceType, options},
                         volume);
@@ -156,25 +155,26 @@ Volume readDeltaGrid(openvdb::GridBase& stored, const openvdb::MetaMap::ConstPtr
     }
     DecodedDeltas decoded = decodeDeltas(grid, header, where, listener);
     const bool fog = options.levelSetToFog && volume.gridClass == kLevelSetClass;
-    openvdb::GridBase::Ptr source;
+    TreeGrid source;
     if (!header.sourceTree.empty() && (options.keepSource || fog)) {
         source = restoreGrid(header, decoded, grid, volume.worldFromIndex);
     }
     // Values between two floats come back as the nearer one.
     if (options.keepSource && header.sourceType == "float32" && !header.book.isExact()) {
-        source = gridFromCodes<openvdb::FloatGrid>(decoded.codes->tree(), header.book, 0);
-        source->setName(grid.getName());
-        source->setTransform(makeTransform(volume.worldFromIndex));
+        source = {treeFromCodes<openvdb::FloatTree>(decoded.codes->tree(), header.book, 0),
+                  {},
+                  makeMap(volume.worldFromIndex)};
+        source.metadata.insert(openvdb::GridBase::META_GRID_NAME, grid.name());
     }
-    if (fog && source) {
+    if (fog && source.tree) {
         decoded = {};
-        fillFromGrid(*source, {listener, where, header.sourceType, options}, volume);
+        fillFromGrid(source, {listener, where, header.sourceType, options}, volume);
     } else {
         const CodeTree::Tree& codes = decoded.codes->tree();
         fillVolume(header, decoded.codes, histogramOf(codes), activeBox(codes), volume);
         requireActiveCount(volume.activeCount, header, where);
     }
-    if (options.keepSource && source)
+    if (options.keepSource && source.tree)
         volume.source =
             std::make_shared<const SourceGrid>(SourceGrid{std::move(source), fileMetadata});
     return volume;

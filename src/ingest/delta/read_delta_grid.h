@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <optional>
 #include <string>
 
 #include "deltasplat/ingest/read_volume.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/vdb/read_slices.h"
 #include "ingest/vdb/vdb_file.h"
 
@@ -16,9 +15,8 @@ namespace deltasplat {
 /// `options.levelSetToFog` says.
 /// @param grid  as isDeltaGrid says; active tiles become voxels
 /// @throw Error(kInput) if the grid is damaged; as readVolume
-Volume readDeltaGrid(openvdb::GridBase& grid, const openvdb::MetaMap::ConstPtr& fileMetadata,
-                     const std::string& where, const ReadOptions& options,
-                     const Listener& listener);
+Volume readDeltaGrid(TreeGrid& grid, const VdbMetadata& fileMetadata, const std::string& where,
+                     const ReadOptions& options, const Listener& listener);
 
 /// Reads a delta grid of a file as a volume whose codes are blocks along its slices: the same
 /// volume, without an OpenVDB grid, where nothing of what is asked for needs one (decodeBlocks).

@@ -18,18 +18,18 @@
 namespace deltasplat {
 namespace {
 
-// Hands on a grid's box, layer by layer.
-template <typename Grid>
-void forEachLayer(const Grid& grid, const glm::ivec3& size, const DenseSource::LayerUse& use,
+// Hands on a tree's box, layer by layer.
+template <typename Tree>
+void forEachLayer(const Tree& tree, const glm::ivec3& size, const DenseSource::LayerUse& use,
                   const Listener& listener) {
-    using Value = typename Grid::ValueType;
+    using Value = typename Tree::ValueType;
     using Layer = openvdb::tools::Dense<Value, openvdb::tools::LayoutXYZ>;
     std::vector<Value> values(std::size_t(size.x) * std::size_t(size.y) *
                               DenseSource::kLayerSlices);
     for (int first = 0; first < size.z; first += DenseSource::kLayerSlices) {
         const int slices = std::min(size.z - first, DenseSource::kLayerSlices);
         Layer layer({{0, 0, first}, {size.x - 1, size.y - 1, first + slices - 1}}, values.data());
-        openvdb::tools::copyToDense(grid, layer);
+        openvdb::tools::copyToDense(tree, layer);
         use(first, slices, reinterpret_cast<const std::byte*>(values.data()));
         listener.report(double(first + slices) / double(size.z));
     }
@@ -38,7 +38,7 @@ void forEachLayer(const Grid& grid, const glm::ivec3& size, const DenseSource::L
 constexpr RawType kRawTypes[] = {RawType::kFloat32, RawType::kFloat64, RawType::kInt32,
                                  RawType::kInt64};
 
-DenseSource denseSource(const openvdb::GridBase& grid, const DeltaHeader& header,
+DenseSource denseSource(const TreeGrid& grid, const DeltaHeader& header,
                         const GridCodesOptions& options, const Volume& volume) {
     DenseSource source;
     source.where = options.where;
@@ -52,40 +52,40 @@ DenseSource denseSource(const openvdb::GridBase& grid, const DeltaHeader& header
     source.space = header.space;
     source.forEachLayer = [&grid, size = header.box.dims()](const DenseSource::LayerUse& use,
                                                             const Listener& listener) {
-        grid.apply<ExactGrids>(
-            [&](const auto& typed) { forEachLayer(typed, size, use, listener); });
+        grid.apply<ExactTrees>([&](const auto& tree) { forEachLayer(tree, size, use, listener); });
     };
     return source;
 }
 
 }  // namespace
 
-void readExactDeltas(openvdb::GridBase& deltas, const DeltaHeader& header,
-                     const openvdb::MetaMap::ConstPtr& fileMetadata,
+void readExactDeltas(TreeGrid& deltas, const DeltaHeader& header, const VdbMetadata& fileMetadata,
                      const GridCodesOptions& options, Volume& volume) {
     const std::string& where = options.where;
     const Listener decoding = partOf(options.listener, 0, 0.5);
     Listener reading = partOf(options.listener, 0.5, 1);
-    const openvdb::GridBase::Ptr source = restoreGrid(
-        header, decodeValues(deltas, header, where, decoding), deltas, volume.worldFromIndex);
-    requireActiveCount(source->activeVoxelCount(), header, where);
+    TreeGrid source = restoreGrid(header, decodeValues(deltas, header, where, decoding), deltas,
+                                  volume.worldFromIndex);
+    requireActiveCount(source.tree->activeVoxelCount(), header, where);
     if (header.restActive) {
         ReadOptions codesOnly = options.reading;
         codesOnly.keepSource = codesOnly.keepInexact = false;
         // Who keeps the source has its values.
         if (options.reading.keepSource && !options.reading.bits) reading.warning = {};
-        Volume dense = readDense(denseSource(*source, header, options, volume), codesOnly, reading);
+        Volume dense = readDense(denseSource(source, header, options, volume), codesOnly, reading);
         dense.origin = volume.origin;
         dense.type = header.sourceType;
         dense.gridClass = volume.gridClass;
         volume = std::move(dense);
     } else {
-        fillFromGrid(*source, options, volume);
+        fillFromGrid(source, options, volume);
     }
     const bool isExact = volume.codeBook.isExact();
     const bool keeps = options.reading.keepSource ? volume.hasBackground || !isExact
                                                   : options.reading.keepInexact && !isExact;
-    if (keeps) volume.source = std::make_shared<const SourceGrid>(SourceGrid{source, fileMetadata});
+    if (keeps)
+        volume.source =
+            std::make_shared<const SourceGrid>(SourceGrid{std::move(source), fileMetadata});
 }
 
 }  // namespace deltasplat

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include "ingest/delta/delta_format.h"
 #include "ingest/grids/grid_codes.h"
 
@@ -11,8 +9,7 @@ namespace deltasplat {
 /// Turns a delta grid of exact values into the volume that its source would be read as.
 /// @param volume  has its name, transform and origin, and is given the rest
 /// @throw as readDeltaGrid
-void readExactDeltas(openvdb::GridBase& deltas, const DeltaHeader& header,
-                     const openvdb::MetaMap::ConstPtr& fileMetadata,
+void readExactDeltas(TreeGrid& deltas, const DeltaHeader& header, const VdbMetadata& fileMetadata,
                      const GridCodesOptions& options, Volume& volume);
 
 }  // namespace deltasplat

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "deltasplat/error.h"
-#include "ingest/grids/grid_from_codes.h"
 #include "ingest/grids/prune_same_bits.h"
+#include "ingest/grids/tree_from_codes.h"
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
 
@@ -32,64 +32,59 @@ void setInactive(const CodeTree::Tree& inactive, const std::vector<double>& valu
     pruneSameBits(tree);
 }
 
-template <typename Grid>
-openvdb::GridBase::Ptr restoredGrid(const DeltaHeader& header, const DecodedDeltas& decoded) {
-    using Value = typename Grid::ValueType;
-    auto grid =
-        gridFromCodes<Grid>(decoded.codes->tree(), header.book, valueAs<Value>(header.background));
-    setInactive(decoded.inactive->tree(), header.inactiveValues, grid->tree());
-    return grid;
+template <typename Tree>
+std::shared_ptr<Tree> restoredTree(const DeltaHeader& header, const DecodedDeltas& decoded) {
+    using Value = typename Tree::ValueType;
+    auto tree =
+        treeFromCodes<Tree>(decoded.codes->tree(), header.book, valueAs<Value>(header.background));
+    setInactive(decoded.inactive->tree(), header.inactiveValues, *tree);
+    return tree;
 }
 
-openvdb::GridBase::Ptr undressedGrid(const DeltaHeader& header, const DecodedDeltas& decoded) {
-    if (header.sourceTree == "float") return restoredGrid<openvdb::FloatGrid>(header, decoded);
-    if (header.sourceTree == "double") return restoredGrid<openvdb::DoubleGrid>(header, decoded);
-    if (header.sourceTree == "int32") return restoredGrid<openvdb::Int32Grid>(header, decoded);
-    if (header.sourceTree == "int64") return restoredGrid<openvdb::Int64Grid>(header, decoded);
-    if (header.sourceTree == "bool") return restoredGrid<openvdb::BoolGrid>(header, decoded);
-    return restoredGrid<openvdb::MaskGrid>(header, decoded);
+std::shared_ptr<openvdb::TreeBase> restoredTree(const DeltaHeader& header,
+                                                const DecodedDeltas& decoded) {
+    if (header.sourceTree == "float") return restoredTree<openvdb::FloatTree>(header, decoded);
+    if (header.sourceTree == "double") return restoredTree<openvdb::DoubleTree>(header, decoded);
+    if (header.sourceTree == "int32") return restoredTree<openvdb::Int32Tree>(header, decoded);
+    if (header.sourceTree == "int64") return restoredTree<openvdb::Int64Tree>(header, decoded);
+    if (header.sourceTree == "bool") return restoredTree<openvdb::BoolTree>(header, decoded);
+    return restoredTree<openvdb::MaskTree>(header, decoded);
 }
 
-// Puts the source's own metadata back under their names.
-void restoreMetadata(const openvdb::MetaMap& from, openvdb::MetaMap& to) {
+// Returns the source's own metadata under their names.
+VdbMetadata sourceMetadata(const VdbMetadata& stored) {
     const std::string_view prefix = kSourcePrefix;
-    to.clearMetadata();
-    for (auto entry = from.beginMeta(); entry != from.endMeta(); ++entry) {
-        if (entry->first.starts_with(prefix) && entry->first.size() > prefix.size())
-            to.insertMeta(entry->first.substr(prefix.size()), *entry->second);
+    VdbMetadata own;
+    for (const auto& [name, entry] : stored.entries()) {
+        if (name.starts_with(prefix) && name.size() > prefix.size())
+            own.insert(name.substr(prefix.size()), entry);
     }
+    return own;
 }
 
-// Gives a grid all of the source but its voxels.
-void dress(openvdb::GridBase& grid, const openvdb::GridBase& deltas, const DeltaHeader& header,
-           const glm::dmat4& worldFromIndex) {
-    restoreMetadata(deltas, grid);
-    grid.setTransform(makeTransformOfType(header.sourceMap, worldFromIndex));
+// Gives a tree all of the source but its voxels.
+TreeGrid dressed(std::shared_ptr<openvdb::TreeBase> tree, const TreeGrid& deltas,
+                 const DeltaHeader& header, const glm::dmat4& worldFromIndex) {
+    return {std::move(tree), sourceMetadata(deltas.metadata),
+            makeMapOfType(header.sourceMap, worldFromIndex)};
 }
 
 }  // namespace
 
-openvdb::GridBase::Ptr restoreGrid(const DeltaHeader& header, const DecodedDeltas& decoded,
-                                   const openvdb::GridBase& deltas,
-                                   const glm::dmat4& worldFromIndex) {
-    const openvdb::GridBase::Ptr grid = undressedGrid(header, decoded);
-    dress(*grid, deltas, header, worldFromIndex);
-    return grid;
+TreeGrid restoreGrid(const DeltaHeader& header, const DecodedDeltas& decoded,
+                     const TreeGrid& deltas, const glm::dmat4& worldFromIndex) {
+    return dressed(restoredTree(header, decoded), deltas, header, worldFromIndex);
 }
 
-openvdb::GridBase::Ptr restoreGrid(const DeltaHeader& header, const DecodedValues& decoded,
-                                   const openvdb::GridBase& deltas,
-                                   const glm::dmat4& worldFromIndex) {
-    const openvdb::GridBase::Ptr grid = decoded.values;
-    grid->apply<ExactGrids>([&](auto& typed) {
-        setInactive(decoded.inactive->tree(), header.inactiveValues, typed.tree());
-    });
-    if (header.sourceTree.empty()) {
-        grid->setName(deltas.getName());
-        grid->setTransform(makeTransform(worldFromIndex));
-    } else {
-        dress(*grid, deltas, header, worldFromIndex);
-    }
+TreeGrid restoreGrid(const DeltaHeader& header, const DecodedValues& decoded,
+                     const TreeGrid& deltas, const glm::dmat4& worldFromIndex) {
+    TreeGrid grid = header.sourceTree.empty()
+                        ? TreeGrid{decoded.values, {}, makeMap(worldFromIndex)}
+                        : dressed(decoded.values, deltas, header, worldFromIndex);
+    if (header.sourceTree.empty())
+        grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, deltas.name());
+    grid.apply<ExactTrees>(
+        [&](auto& tree) { setInactive(decoded.inactive->tree(), header.inactiveValues, tree); });
     return grid;
 }
 

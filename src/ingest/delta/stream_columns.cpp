@@ -6,7 +6,7 @@
 
 #include "ingest/delta/column_order.h"
 #include "ingest/delta/part_walker.h"
-#include "ingest/delta/word_grid.h"
+#include "ingest/delta/word_tree.h"
 
 namespace deltasplat {
 namespace {

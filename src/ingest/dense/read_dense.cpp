@@ -23,7 +23,6 @@
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/grid_volume.h"
 #include "ingest/grids/leaf_bytes.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/raw/raw_values.h"
 #include "ingest/readers.h"
@@ -265,12 +264,12 @@ void readCodes(const DenseSource& source, const ReadOptions& options, const Surv
 }
 
 // @param nonFinite  what NaN and infinities are read as; empty: as they are
-template <typename Grid>
-openvdb::GridBase::Ptr readGrid(const DenseSource& source, std::optional<double> nonFinite,
-                                const Listener& listener) {
-    using Value = typename Grid::ValueType;
-    auto grid = Grid::create();
-    SliceAdder<typename Grid::TreeType> adder(source, grid->tree());
+template <typename Tree>
+std::shared_ptr<Tree> readTree(const DenseSource& source, std::optional<double> nonFinite,
+                               const Listener& listener) {
+    using Value = typename Tree::ValueType;
+    auto tree = std::make_shared<Tree>();
+    SliceAdder<Tree> adder(source, *tree);
     std::optional<Value> nanValue;
     if (nonFinite) nanValue = valueAs<Value>(*nonFinite);
     source.forEachLayer(
@@ -283,39 +282,53 @@ openvdb::GridBase::Ptr readGrid(const DenseSource& source, std::optional<double>
                 [](auto&&...) {});
         },
         listener);
-    grid->setTransform(makeTransform(source.worldFromIndex));
-    grid->setName(source.name);
+    return tree;
+}
+
+std::shared_ptr<openvdb::TreeBase> readSourceTree(const DenseSource& source,
+                                                  std::optional<double> nonFinite,
+                                                  const Listener& listener) {
+    switch (source.type) {
+        case RawType::kFloat32:
+            return readTree<openvdb::FloatTree>(source, nonFinite, listener);
+        case RawType::kFloat64:
+        case RawType::kUint64:  // beyond what an Int64Tree holds
+            return readTree<openvdb::DoubleTree>(source, nonFinite, listener);
+        case RawType::kUint32:
+        case RawType::kInt64:
+            return readTree<openvdb::Int64Tree>(source, nonFinite, listener);
+        default:
+            return readTree<openvdb::Int32Tree>(source, nonFinite, listener);
+    }
+}
+
+TreeGrid readSourceGrid(const DenseSource& source, std::optional<double> nonFinite,
+                        const Listener& listener) {
+    TreeGrid grid{readSourceTree(source, nonFinite, listener), {}, makeMap(source.worldFromIndex)};
+    grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, source.name);
     return grid;
 }
 
-openvdb::GridBase::Ptr readSourceGrid(const DenseSource& source, std::optional<double> nonFinite,
-                                      const Listener& listener) {
-    openvdb::initialize();
-    switch (source.type) {
-        case RawType::kFloat32:
-            return readGrid<openvdb::FloatGrid>(source, nonFinite, listener);
-        case RawType::kFloat64:
-        case RawType::kUint64:  // beyond what an Int64Grid holds
-            return readGrid<openvdb::DoubleGrid>(source, nonFinite, listener);
-        case RawType::kUint32:
-        case RawType::kInt64:
-            return readGrid<openvdb::Int64Grid>(source, nonFinite, listener);
-        default:
-            return readGrid<openvdb::Int32Grid>(source, nonFinite, listener);
-    }
+// Does what OpenVDB's changeBackground and pruneInactive do, which its library has.
+template <typename Tree>
+void settleBackground(Tree& tree, const typename Tree::ValueType& background) {
+    openvdb::tree::NodeManager<Tree> all(tree);
+    all.foreachTopDown(openvdb::tools::ChangeBackgroundOp<Tree>(tree, background));
+    openvdb::tree::NodeManager<Tree, Tree::DEPTH - 2> inner(tree);
+    inner.foreachBottomUp(openvdb::tools::InactivePruneOp<Tree>(tree));
 }
 
 // Makes inactive what has a value, as the grid's type has it, and that value the background; NaN
 // stands for itself, and makes the background 0.
-template <typename Grid>
-void dropValue(Grid& grid, double dropped) {
-    using Value = typename Grid::ValueType;
+template <typename Tree>
+void dropValue(Tree& tree, double dropped) {
+    using Value = typename Tree::ValueType;
     const Value background = std::isnan(dropped) ? Value{} : valueAs<Value>(dropped);
     const auto isDropped = [&](Value value) {
         return std::isnan(dropped) ? double(value) != double(value) : value == background;
     };
-    std::vector<typename Grid::TreeType::LeafNodeType*> leaves;
-    grid.tree().getNodes(leaves);
+    std::vector<typename Tree::LeafNodeType*> leaves;
+    tree.getNodes(leaves);
     forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             for (auto voxel = leaves[i]->beginValueOn(); voxel; ++voxel) {
@@ -323,13 +336,12 @@ void dropValue(Grid& grid, double dropped) {
             }
         }
     });
-    forActiveTiles(grid.tree(), [&](const auto& tile) {
+    forActiveTiles(tree, [&](const auto& tile) {
         if (!isDropped(*tile)) return;
         tile.setValue(background);
         tile.setActiveState(false);
     });
-    openvdb::tools::changeBackground(grid.tree(), background);
-    openvdb::tools::pruneInactive(grid.tree());
+    settleBackground(tree, background);
 }
 
 // What a value takes in the grid that readSourceGrid makes.
@@ -379,9 +391,8 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
         readCodes(source, options, survey, partOf(listener, scanned, coded), volume);
     }
     if (keep) {
-        auto grid =
-            readSourceGrid(source, options.nanValue.value_or(0), partOf(listener, coded, 1));
-        volume.source = std::make_shared<const SourceGrid>(SourceGrid{std::move(grid)});
+        volume.source = std::make_shared<const SourceGrid>(SourceGrid{
+            readSourceGrid(source, options.nanValue.value_or(0), partOf(listener, coded, 1))});
     }
 
     volume.name = source.name;
@@ -400,12 +411,12 @@ Volume readSparse(const DenseSource& source, double background, const ReadOption
     double readError = 0;
     if (source.type == RawType::kUint64)
         readError = scan(source, options, partOf(listener, 0, 0.1)).census.rounding;
-    const openvdb::GridBase::Ptr grid =
-        readSourceGrid(source, {}, partOf(listener, 0.1, kReadShare));
-    if (!source.space.empty()) grid->insertMeta(kSpaceKey, openvdb::StringMetadata(source.space));
-    grid->apply<ScalarGrids>([&](auto& typed) { dropValue(typed, background); });
+    TreeGrid grid = readSourceGrid(source, {}, partOf(listener, 0.1, kReadShare));
+    if (!source.space.empty()) grid.metadata.insert(kSpaceKey, source.space);
+    grid.apply<ScalarTrees>([&](auto& tree) { dropValue(tree, background); });
     const Listener coding = partOf(listener, kReadShare, 1);
-    Volume volume = volumeOfGrid(grid, {coding, source.where, rawTypeName(source.type), options});
+    Volume volume =
+        volumeOfGrid(std::move(grid), {coding, source.where, rawTypeName(source.type), options});
     volume.name = source.name;
     volume.worldFromIndex = source.worldFromIndex;
     volume.readError = readError;

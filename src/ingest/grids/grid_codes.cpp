@@ -24,7 +24,6 @@
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/leaf_bytes.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/readers.h"
 #include "ingest/values/float_kernels.h"
 #include "number_text.h"
@@ -38,8 +37,8 @@ namespace {
 }
 
 // Replaces what is not finite, or refuses it.
-template <typename Grid>
-void settleNonFinite(Grid& grid, const GridScan& range, const GridCodesOptions& options) {
+template <typename Tree>
+void settleNonFinite(Tree& tree, const GridScan& range, const GridCodesOptions& options) {
     if (!options.reading.nanValue) {
         const std::string got =
             std::to_string(range.nonFinite) + " NaN or infinite active values, the first at (" +
@@ -49,28 +48,45 @@ void settleNonFinite(Grid& grid, const GridScan& range, const GridCodesOptions& 
             ErrorCode::kInput,
             gotExpected(options.where, got, "finite values (`nanValue` VALUE replaces them)"));
     }
-    if constexpr (std::is_same_v<typename Grid::ValueType, float>) {
+    if constexpr (std::is_same_v<typename Tree::ValueType, float>) {
         requireFloatNan(*options.reading.nanValue);
     }
-    replaceNonFinite(grid.tree(), typename Grid::ValueType(*options.reading.nanValue));
+    replaceNonFinite(tree, typename Tree::ValueType(*options.reading.nanValue));
     options.listener.warn(options.where + ": " + std::to_string(range.nonFinite) +
                           " NaN or infinite active values replaced by " +
                           numberText(*options.reading.nanValue));
 }
 
-// Returns whether the grid was a level set, and has been made fog.
-template <typename Grid>
-bool makeFog(Grid& grid, const GridCodesOptions& options) {
-    if (grid.getGridClass() != openvdb::GRID_LEVEL_SET || !options.reading.levelSetToFog)
+// What OpenVDB's sdfToFogVolume needs of a grid.
+template <typename T>
+struct LevelSet {
+    using TreeType = T;
+    using ValueType = typename T::ValueType;
+
+    T& tree() const { return *grid.as<T>(); }
+    void setTree(std::shared_ptr<T> tree) { grid.tree = std::move(tree); }
+    void setGridClass(openvdb::GridClass) {
+        grid.metadata.insert(openvdb::GridBase::META_GRID_CLASS, std::string(kFogClass));
+    }
+
+    TreeGrid& grid;
+};
+
+// Returns whether the grid was a level set, and has become fog: another tree.
+// @tparam Tree  what grid.tree is
+template <typename Tree>
+bool makeFog(TreeGrid& grid, const GridCodesOptions& options) {
+    if (gridClassOf(grid.metadata) != kLevelSetClass || !options.reading.levelSetToFog)
         return false;
     // Simulation caches label whole fields of distances as level sets, with a background of 0.
-    const double width = double(grid.background());
+    const double width = double(grid.as<Tree>()->background());
     if (!(width > 0) || !std::isfinite(width)) {
         options.listener.warn(options.where + ": level set with background " + numberText(width) +
                               " kept as it is, not made fog");
         return false;
     }
-    openvdb::tools::sdfToFogVolume(grid);
+    LevelSet<Tree> levelSet{grid};
+    openvdb::tools::sdfToFogVolume(levelSet);
     return true;
 }
 
@@ -202,18 +218,20 @@ void fillFromLeaves(const Leaves& leaves, GridScan scan, const GridCodesOptions&
     warnOfCodeError(options.where, volume, options.reading, options.listener);
 }
 
-template <typename Grid>
-void fill(Grid& grid, const GridCodesOptions& options, Volume& volume) {
-    GridScan scan = scanLeaves(TreeLeaves(grid.tree()), kNumbersAlone);
-    if constexpr (std::is_floating_point_v<typename Grid::ValueType>) {
+// @tparam Tree  what grid.tree is
+template <typename Tree>
+void fill(const GridCodesOptions& options, TreeGrid& grid, Volume& volume) {
+    GridScan scan = scanLeaves(TreeLeaves(*grid.as<Tree>()), kNumbersAlone);
+    if constexpr (std::is_floating_point_v<typename Tree::ValueType>) {
         volume.replaced = scan.nonFinite;
-        if (scan.nonFinite > 0) settleNonFinite(grid, scan, options);
-        volume.fromLevelSet = makeFog(grid, options);
+        if (scan.nonFinite > 0) settleNonFinite(*grid.as<Tree>(), scan, options);
+        volume.fromLevelSet = makeFog<Tree>(grid, options);
         if (volume.replaced > 0 || volume.fromLevelSet)
-            scan = scanLeaves(TreeLeaves(grid.tree()), kNumbersAlone);
+            scan = scanLeaves(TreeLeaves(*grid.as<Tree>()), kNumbersAlone);
     }
-    fillFromLeaves(TreeLeaves(grid.tree()), std::move(scan), options, volume);
-    describeGrid(double(grid.background()), grid, options, volume);
+    const Tree& tree = *grid.as<Tree>();
+    fillFromLeaves(TreeLeaves(tree), std::move(scan), options, volume);
+    describeGrid(double(tree.background()), grid.metadata, options, volume);
 }
 
 // Returns the codes of tiles, nothing if one is no half.
@@ -301,8 +319,9 @@ bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Vo
     return std::visit(fillWith, values.background);
 }
 
-void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume) {
-    const bool known = grid.apply<ScalarGrids>([&](auto& typed) { fill(typed, options, volume); });
+void fillFromGrid(TreeGrid& grid, const GridCodesOptions& options, Volume& volume) {
+    const bool known = grid.apply<ScalarTrees>(
+        [&](const auto& tree) { fill<std::decay_t<decltype(tree)>>(options, grid, volume); });
     if (!known) fail(options.where, "type " + options.type, "a scalar grid");
 }
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
-
 #include <string>
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/progress.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/vdb/vdb_file.h"
 
 namespace deltasplat {
@@ -25,7 +24,7 @@ struct GridCodesOptions {
 /// tiles stay tiles at their level. Deterministic.
 /// @throw NotFinite if values are NaN or infinite and not replaced; Error(kInput) if they lie too
 ///        far apart
-void fillFromGrid(openvdb::GridBase& grid, const GridCodesOptions& options, Volume& volume);
+void fillFromGrid(TreeGrid& grid, const GridCodesOptions& options, Volume& volume);
 
 /// Does the same with a grid whose leaves' values are still in their file. Returns false if a value
 /// is not finite, or a tile's is no half where leaves have halves: then the grid is to be read as a

@@ -35,16 +35,15 @@ void settleEmpty(Volume& volume, const GridCodesOptions& options) {
     if (volume.empty()) options.listener.warn(options.where + ": no active voxels");
 }
 
-Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& options,
-                    openvdb::MetaMap::ConstPtr fileMetadata) {
-    Volume volume = placedVolume(*grid->transform().baseMap(), *grid, options);
-    requireMemory(options.where,
-                  double(grid->constBaseTree().leafCount()) * leafBytes<CodeTree::Leaf>());
-    fillFromGrid(*grid, options, volume);
+Volume volumeOfGrid(TreeGrid grid, const GridCodesOptions& options,
+                    const VdbMetadata& fileMetadata) {
+    Volume volume = placedVolume(*grid.map, grid.metadata, options);
+    requireMemory(options.where, double(grid.tree->leafCount()) * leafBytes<CodeTree::Leaf>());
+    fillFromGrid(grid, options, volume);
     const ReadOptions& reading = options.reading;
     if (reading.keepSource || (reading.keepInexact && !volume.codeBook.isExact())) {
         volume.source =
-            std::make_shared<const SourceGrid>(SourceGrid{grid, std::move(fileMetadata)});
+            std::make_shared<const SourceGrid>(SourceGrid{std::move(grid), fileMetadata});
     }
     settleEmpty(volume, options);
     return volume;

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
-
 #include "ingest/grids/grid_codes.h"
 
 namespace deltasplat {
 
 /// Makes a volume of a scalar grid: all of it but its name, and Volume::source where `options` ask
 /// for it, which then is this grid. The grid may be changed on the way.
-/// @param fileMetadata  goes into the source; may be null
+/// @param fileMetadata  goes into the source
 /// @throw as fillFromGrid; Error(kInput) for a transform that is not linear
-Volume volumeOfGrid(const openvdb::GridBase::Ptr& grid, const GridCodesOptions& options,
-                    openvdb::MetaMap::ConstPtr fileMetadata = nullptr);
+Volume volumeOfGrid(TreeGrid grid, const GridCodesOptions& options,
+                    const VdbMetadata& fileMetadata = {});
 
 /// Returns a volume that has its place, and no voxels.
 Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,

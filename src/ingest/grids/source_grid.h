@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "deltasplat/ingest/volume.h"
+#include "ingest/grids/tree_grid.h"
 
 namespace deltasplat {
 
@@ -14,11 +15,13 @@ struct PackedGrid;
 /// A volume's own grid, in its own value type: every value, inactive ones included, background,
 /// transform, class and metadata.
 struct SourceGrid {
-    openvdb::GridBase::ConstPtr grid;  ///< null if `packed` is there
-    /// .vdb: the metadata of the file itself, the same for all of its grids; otherwise null.
-    openvdb::MetaMap::ConstPtr fileMetadata = nullptr;
+    TreeGrid grid;  ///< without a tree if `packed` is there
+    /// .vdb: the metadata of the file itself, the same for all of its grids.
+    VdbMetadata fileMetadata = {};
     /// Of a volume that is read to be compared alone: values that are still in their file.
     std::shared_ptr<const PackedGrid> packed = nullptr;
+    /// The grid that makeVolume() was given; null of others.
+    openvdb::GridBase::ConstPtr given = nullptr;
 };
 
 }  // namespace deltasplat

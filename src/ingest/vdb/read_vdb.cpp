@@ -113,21 +113,21 @@ Volume readWholeGrid(const VdbFile& file, const ChosenGrid& chosen, const std::s
     const VdbGrid& grid = *chosen.grid;
     Listener reading;
     reading.progress = [&](double share) { listener.report(kReadShare * share); };
-    openvdb::GridBase::Ptr loaded = file.read(grid, reading);
-    if (chosen.part) loaded = gridOfPart(*loaded, *chosen.part);
+    TreeGrid loaded = file.read(grid, reading);
+    if (chosen.part) loaded = gridOfPart(loaded, *chosen.part);
     const GridCodesOptions coding{listener, where, grid.valueType(), options};
     Volume volume;
-    if (isDeltaGrid(*loaded)) {
+    if (isDeltaGrid(loaded)) {
         // What cannot be placed is refused before it is decoded.
-        worldFromIndexOf(*loaded->transform().baseMap(), where);
+        worldFromIndexOf(*loaded.map, where);
         Listener decoding = listener;
         decoding.progress = [&](double share) {
             listener.report(kReadShare + (1 - kReadShare) * share);
         };
-        volume = readDeltaGrid(*loaded, file.metadata(), where, options, decoding);
+        volume = readDeltaGrid(loaded, file.metadata(), where, options, decoding);
         settleEmpty(volume, coding);
     } else {
-        volume = volumeOfGrid(loaded, coding, file.metadata());
+        volume = volumeOfGrid(std::move(loaded), coding, file.metadata());
     }
     return volume;
 }
@@ -276,7 +276,7 @@ std::optional<Volume> packedVolume(const VdbFile& file, const ChosenGrid& chosen
     volume.activeCount = packed->activeVoxels;
     if (volume.activeCount > 0) volume.box = boxOfVoxels(packed->activeBox, where);
     volume.source = std::make_shared<const SourceGrid>(
-        SourceGrid{nullptr, nullptr, std::make_shared<const PackedGrid>(std::move(packed->grid))});
+        SourceGrid{{}, {}, std::make_shared<const PackedGrid>(std::move(packed->grid))});
     settleEmpty(volume, coding);
     volume.name = chosen.name();
     return volume;

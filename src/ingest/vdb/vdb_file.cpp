@@ -16,7 +16,6 @@
 #include "deltasplat/error.h"
 #include "ingest/files/file_bytes.h"
 #include "ingest/grids/grid_errors.h"
-#include "ingest/grids/scalar_grids.h"
 #include "ingest/vdb/leaf_sizes.h"
 #include "ingest/vdb/vdb_bytes.h"
 #include "ingest/vdb/vdb_stream.h"
@@ -274,16 +273,16 @@ std::string VdbFile::whereOf(const VdbGrid& grid) const {
     return file_.string() + ": grid \"" + grid.name + "\"";
 }
 
-openvdb::GridBase::Ptr VdbFile::read(const VdbGrid& grid, const Listener& listener) const {
+TreeGrid VdbFile::read(const VdbGrid& grid, const Listener& listener) const {
     if (!hasNumbers(grid)) return readByOpenVdb(grid, listener);
-    openvdb::GridBase::Ptr read = readNumbers(grid, Find::kByNotes, listener);
+    std::optional<TreeGrid> read = readNumbers(grid, Find::kByNotes, listener);
     if (!read) read = readNumbers(grid, Find::kByWalking, listener);
     if (!read) throw DamagedLeaves(whereOf(grid));
-    return read;
+    return std::move(*read);
 }
 
-openvdb::GridBase::Ptr VdbFile::readNumbers(const VdbGrid& grid, Find how,
-                                            const Listener& listener) const {
+std::optional<TreeGrid> VdbFile::readNumbers(const VdbGrid& grid, Find how,
+                                             const Listener& listener) const {
     const std::string where = whereOf(grid);
     VdbBytes bytes(file_);
     const GridHead head = readHead(bytes, grid, file_);
@@ -293,18 +292,12 @@ openvdb::GridBase::Ptr VdbFile::readNumbers(const VdbGrid& grid, Find how,
     placeLeaves(bytes, head, grid, how, places.leaves, where);
     const auto file = std::make_shared<const FileBytes>(file_);
     const VdbLeaves leaves(file, std::move(places.leaves), head.format, head.transform);
-    const auto make = [&]<typename T>(T background) -> openvdb::GridBase::Ptr {
-        const auto tree = readTree(*file, head.format, background, places.nodes, leaves, listener);
-        if (!tree) return nullptr;
-        return openvdb::Grid<typename decltype(tree)::element_type>::create(tree);
+    const auto make = [&]<typename T>(T background) -> std::shared_ptr<openvdb::TreeBase> {
+        return readTree(*file, head.format, background, places.nodes, leaves, listener);
     };
-    openvdb::initialize();
-    const openvdb::GridBase::Ptr read =
-        std::visit(make, readBackground(bytes, places.background, head.format));
-    if (!read) return nullptr;
-    read->insertMeta(*head.metadata.toMetaMap(where));
-    read->setTransform(transformOf(*head.transform));
-    return read;
+    auto tree = std::visit(make, readBackground(bytes, places.background, head.format));
+    if (!tree) return std::nullopt;
+    return TreeGrid{std::move(tree), head.metadata, head.transform};
 }
 
 std::optional<VdbFile::Packed> VdbFile::readPacked(const VdbGrid& grid) const {
@@ -332,7 +325,7 @@ std::optional<VdbFile::Packed> VdbFile::readPacked(const VdbGrid& grid) const {
 
 // Reads a grid by OpenVDB, which is handed a file of the same header with no metadata of its own
 // and just the grids needed.
-openvdb::GridBase::Ptr VdbFile::readByOpenVdb(const VdbGrid& grid, const Listener& listener) const {
+TreeGrid VdbFile::readByOpenVdb(const VdbGrid& grid, const Listener& listener) const {
     std::vector<const VdbGrid*> needed{&grid};
     if (!grid.parentName.empty()) needed.insert(needed.begin(), &parentOf(grid));
 
@@ -366,7 +359,7 @@ openvdb::GridBase::Ptr VdbFile::readByOpenVdb(const VdbGrid& grid, const Listene
     buffer.onProgress([&](double share) { listener.report(share); });
     openvdb::initialize();
     return guarded(buffer, where, [](std::istream& stream) {
-        return openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids()->back();
+        return fromOpenVdb(openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids()->back());
     });
 }
 

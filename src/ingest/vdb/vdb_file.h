@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "deltasplat/progress.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/vdb/packed_grid.h"
 #include "ingest/vdb/vdb_leaves.h"
 #include "ingest/vdb/vdb_metadata.h"
@@ -64,15 +63,14 @@ class VdbFile {
 
     const std::vector<VdbGrid>& grids() const { return grids_; }
     /// Returns the metadata of the file itself.
-    /// @throw Error(kInput) if OpenVDB does not take them
-    openvdb::MetaMap::ConstPtr metadata() const { return metadata_.toMetaMap(file_.string()); }
+    const VdbMetadata& metadata() const { return metadata_; }
     /// Returns the metadata of a scalar grid of grids().
     /// @throw Error(kInput) if its bytes are not a sound grid
     VdbMetadata metadata(const VdbGrid& grid) const;
     /// Reads one grid of grids().
     /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if it does not fit
     ///        into memory, whatever the listener throws
-    openvdb::GridBase::Ptr read(const VdbGrid& grid, const Listener& listener) const;
+    TreeGrid read(const VdbGrid& grid, const Listener& listener) const;
     /// Finds the leaves of a grid of int32 or int64 with background 0, unless there are active
     /// tiles beside them, or the grid shares its voxels with another. Their values are read when
     /// they are unpacked.
@@ -105,9 +103,9 @@ class VdbFile {
     std::optional<Packed> readPacked(const VdbGrid& grid) const;
 
   private:
-    openvdb::GridBase::Ptr readNumbers(const VdbGrid& grid, Find how,
-                                       const Listener& listener) const;
-    openvdb::GridBase::Ptr readByOpenVdb(const VdbGrid& grid, const Listener& listener) const;
+    std::optional<TreeGrid> readNumbers(const VdbGrid& grid, Find how,
+                                        const Listener& listener) const;
+    TreeGrid readByOpenVdb(const VdbGrid& grid, const Listener& listener) const;
     void readDirectory();
     void findEnd(VdbBytes& bytes, VdbGrid& grid) const;
     std::string whereOf(const VdbGrid& grid) const;

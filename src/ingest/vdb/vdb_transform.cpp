@@ -80,10 +80,6 @@ Transform::Ptr transformOf(const MapBase& map) {
     return transform;
 }
 
-Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex) {
-    return transformOf(*makeMap(worldFromIndex));
-}
-
 MapBase::Ptr readMap(std::istream& stream) {
     static const std::map<openvdb::Name, MapBase::Ptr (*)()> kMaps{
         {AffineMap::mapType(), AffineMap::create},
@@ -163,11 +159,11 @@ MapBase::Ptr mapOfType(const std::string& type, const glm::dmat4& matrix) {
 
 }  // namespace
 
-Transform::Ptr makeTransformOfType(const std::string& mapType, const glm::dmat4& worldFromIndex) {
+MapBase::Ptr makeMapOfType(const std::string& mapType, const glm::dmat4& worldFromIndex) {
     const MapBase::Ptr affine = affineMap(worldFromIndex);
     MapBase::Ptr map = mapOfType(mapType, worldFromIndex);
     if (!map || map->getAffineMap()->getMat4() != affine->getAffineMap()->getMat4()) map = affine;
-    return std::make_shared<Transform>(map);
+    return map;
 }
 
 }  // namespace deltasplat

@@ -12,23 +12,20 @@ namespace deltasplat {
 /// Returns the simplest OpenVDB map that is exactly this affine matrix (uniform scale, scale, ...).
 /// @throw Error(kFailed) if a voxel's volume is below 3e-15, which OpenVDB takes for 0
 openvdb::math::MapBase::Ptr makeMap(const glm::dmat4& worldFromIndex);
-/// Returns a transform of a map, as it is.
-openvdb::math::Transform::Ptr transformOf(const openvdb::math::MapBase& map);
-/// Returns a transform of makeMap's.
-/// @throw as that
-openvdb::math::Transform::Ptr makeTransform(const glm::dmat4& worldFromIndex);
-
 /// Returns a map of the type named ("UniformScaleMap", ...), if that can be this matrix, otherwise
 /// an "AffineMap".
-openvdb::math::Transform::Ptr makeTransformOfType(const std::string& mapType,
-                                                  const glm::dmat4& worldFromIndex);
+openvdb::math::MapBase::Ptr makeMapOfType(const std::string& mapType,
+                                          const glm::dmat4& worldFromIndex);
+
+/// Returns a transform of a map, as it is. It needs OpenVDB's library.
+openvdb::math::Transform::Ptr transformOf(const openvdb::math::MapBase& map);
 
 /// Reads a map as a .vdb file has it, as Transform::read() does. It needs OpenVDB's library for a
 /// frustum alone.
 /// @throw an exception of OpenVDB's, or what the stream throws
 openvdb::math::MapBase::Ptr readMap(std::istream& stream);
 
-/// Returns the matrix of a linear map; makeTransform's comes back as it was.
+/// Returns the matrix of a linear map; makeMap's comes back as it was.
 glm::dmat4 matrixOf(const openvdb::math::MapBase& map);
 
 /// Returns the matrix of a map that places a volume.

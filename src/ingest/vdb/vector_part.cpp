@@ -9,30 +9,25 @@
 namespace deltasplat {
 namespace {
 
-template <typename PartGrid, typename VectorGrid>
-openvdb::GridBase::Ptr partOf(const VectorGrid& grid, int axis) {
-    using PartTree = typename PartGrid::TreeType;
-    const auto& vectors = grid.tree();
-    const auto tree =
+template <typename PartTree, typename VectorTree>
+std::shared_ptr<PartTree> partOf(const VectorTree& vectors, int axis) {
+    auto tree =
         std::make_shared<PartTree>(vectors, vectors.background()[axis], openvdb::TopologyCopy());
     // Above leaves, values are those of tiles.
     auto tiles = vectors.cbeginValueOn();
-    tiles.setMaxDepth(VectorGrid::ValueOnCIter::LEAF_DEPTH - 1);
+    tiles.setMaxDepth(VectorTree::ValueOnCIter::LEAF_DEPTH - 1);
     for (; tiles; ++tiles) {
         tree->addTile(openvdb::Index(PartTree::DEPTH - 1 - tiles.getDepth()), tiles.getCoord(),
                       tiles.getValue()[axis], true);
     }
-    const openvdb::tree::LeafManager<const typename VectorGrid::TreeType> from(vectors);
+    const openvdb::tree::LeafManager<const VectorTree> from(vectors);
     openvdb::tree::LeafManager<PartTree> to(*tree);
     parallelFor(to.leafCount(), [&](std::size_t leaf) {
         auto* values = to.leaf(leaf).buffer().data();
         const auto* all = from.leaf(leaf).buffer().data();
         for (openvdb::Index i = 0; i < PartTree::LeafNodeType::SIZE; ++i) values[i] = all[i][axis];
     });
-    const auto result = PartGrid::create(tree);
-    static_cast<openvdb::MetaMap&>(*result) = grid;
-    result->setTransform(grid.transform().copy());
-    return result;
+    return tree;
 }
 
 }  // namespace
@@ -48,12 +43,16 @@ std::optional<VectorPart> vectorPartOf(const std::string& name) {
     return VectorPart{name.substr(0, name.size() - 2), axis};
 }
 
-openvdb::GridBase::Ptr gridOfPart(const openvdb::GridBase& grid, int axis) {
-    if (grid.isType<openvdb::Vec3DGrid>())
-        return partOf<openvdb::DoubleGrid>(static_cast<const openvdb::Vec3DGrid&>(grid), axis);
-    if (grid.isType<openvdb::Vec3IGrid>())
-        return partOf<openvdb::Int32Grid>(static_cast<const openvdb::Vec3IGrid&>(grid), axis);
-    return partOf<openvdb::FloatGrid>(static_cast<const openvdb::Vec3SGrid&>(grid), axis);
+TreeGrid gridOfPart(const TreeGrid& grid, int axis) {
+    TreeGrid part{nullptr, grid.metadata, grid.map};
+    if (const auto* const doubles = grid.as<openvdb::Vec3DTree>()) {
+        part.tree = partOf<openvdb::DoubleTree>(*doubles, axis);
+    } else if (const auto* const integers = grid.as<openvdb::Vec3ITree>()) {
+        part.tree = partOf<openvdb::Int32Tree>(*integers, axis);
+    } else {
+        part.tree = partOf<openvdb::FloatTree>(*grid.as<openvdb::Vec3STree>(), axis);
+    }
+    return part;
 }
 
 }  // namespace deltasplat

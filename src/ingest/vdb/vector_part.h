@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
-
 #include <optional>
 #include <string>
 
+#include "ingest/grids/tree_grid.h"
 #include "ingest/vdb/vdb_file.h"
 
 namespace deltasplat {
@@ -23,6 +22,6 @@ std::optional<VectorPart> vectorPartOf(const std::string& name);
 /// Returns a grid of one part of a vector grid, with the same active voxels, transform and
 /// metadata. Multi-threaded.
 /// @param grid  of isVector()
-openvdb::GridBase::Ptr gridOfPart(const openvdb::GridBase& grid, int axis);
+TreeGrid gridOfPart(const TreeGrid& grid, int axis);
 
 }  // namespace deltasplat

@@ -11,6 +11,7 @@ trap 'rm -rf "$scratch"' EXIT
 chmod 755 "$scratch"
 cd "$scratch" || exit 1
 "$program" synth slab slab_8x8x8_uint8.raw --dims 8x8x8 -q || exit 1
+"$program" synth explosion colored.vdb --dims 8x8x8 -q || exit 1
 "$program" render slab_8x8x8_uint8.raw -o expected.exr -q || exit 1
 
 # The limit is on a user's threads altogether, and not on root's: a user who has none is needed.
@@ -36,11 +37,11 @@ chmod 777 .
 declare -A worked
 for limit in 1 3 4 5 6 8 10 12 16 40 100; do
     for threads in 2 16; do
-        for name in render delta version; do
+        for name in render colors version; do
             command=(render slab_8x8x8_uint8.raw -o out.exr --threads $threads -qq)
             # Of OpenVDB's library, which starts threads while it is loaded.
-            [[ $name == delta ]] &&
-                command=(delta slab_8x8x8_uint8.raw out.vdb --threads $threads -qq)
+            [[ $name == colors ]] &&
+                command=(convert colored.vdb out.vdb --grid Cd.x --threads $threads -qq)
             [[ $name == version ]] && command=(--version)
             timeout -k 5 60 "${as_user[@]}" bash -c "ulimit -u $limit; exec there/bin/program \"\$@\"" - "${command[@]}" \
                 >stdout 2>message
@@ -54,12 +55,12 @@ for limit in 1 3 4 5 6 8 10 12 16 40 100; do
                 [[ $code == 0 ]] && worked[$name]=$limit
                 output=$(find . -maxdepth 1 -name 'out.*')
                 # TBB may want its first thread after a .vdb is written.
-                [[ ($code == 0 && -n $output) || ($code == 1 && (-z $output || $name == delta)) ]] ||
+                [[ ($code == 0 && -n $output) || ($code == 1 && (-z $output || $name == colors)) ]] ||
                     { echo "ulimit -u $limit, ${command[*]}: exit code $code and $output"; exit 1; }
             fi
             rm -f out.exr out.vdb
         done
     done
-    [[ $limit != 10 || (-n ${worked[render]:-} && -n ${worked[delta]:-}) ]] ||
+    [[ $limit != 10 || (-n ${worked[render]:-} && -n ${worked[colors]:-}) ]] ||
         { echo "ten threads are not enough"; exit 1; }
 done

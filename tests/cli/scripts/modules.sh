@@ -41,7 +41,9 @@ grep -q "^deltasplat: module exr: got .*; expected $PWD/lonely/lib/deltasplat/ex
     stderr.txt || { cat stderr.txt; fail "expected to be told what is missing"; }
 # OpenVDB's own functions are called from deep within; what fails then is said all the same.
 rm lonely/lib/deltasplat/openvdb.so
-for command in "info in.vdb" "convert in.vdb none.vdb" "delta in.npy none.vdb" "synth slab none.vdb --dims 8x8x8"; do
+"$program" synth explosion colored.vdb --dims 16x16x16 -qq
+for command in "info colored.vdb --grid Cd.x" "convert colored.vdb none.vdb --grid Cd.x" \
+    "render colored.vdb -o none.png --grid Cd.y --size 32x32"; do
     # shellcheck disable=SC2086
     expect_code 1 lonely/bin/deltasplat $command
     grep -q "^deltasplat: module openvdb: got .*; expected $PWD/lonely/lib/deltasplat/openvdb.so, installed with" \

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/delta/word_grid.h"
+#include "ingest/delta/word_tree.h"
 
 #include <algorithm>
 #include <atomic>
@@ -16,7 +16,7 @@
 namespace deltasplat {
 namespace {
 
-using Tree = openvdb::Int64Grid::TreeType;
+using Tree = openvdb::Int64Tree;
 using Leaf = Tree::LeafNodeType;
 constexpr std::size_t kLeafWords = Leaf::NUM_VALUES;
 
@@ -65,9 +65,9 @@ openvdb::Coord wordLeafOrigin(std::size_t leaf) {
             int(8 * (leaf & 15) + 128 * (node & 31))};
 }
 
-openvdb::Int64Grid::Ptr gridOfWords(const std::vector<std::uint64_t>& words) {
-    auto grid = openvdb::Int64Grid::create(0);
-    openvdb::tree::ValueAccessor<Tree> accessor(grid->tree());
+Tree::Ptr treeOfWords(const std::vector<std::uint64_t>& words) {
+    auto tree = std::make_shared<Tree>(0);
+    openvdb::tree::ValueAccessor<Tree> accessor(*tree);
     for (std::size_t begin = 0; begin < words.size(); begin += kLeafWords) {
         const std::size_t count = std::min(kLeafWords, words.size() - begin);
         auto leaf = std::make_unique<Leaf>(wordLeafOrigin(begin / kLeafWords), 0, false);
@@ -75,17 +75,17 @@ openvdb::Int64Grid::Ptr gridOfWords(const std::vector<std::uint64_t>& words) {
         for (std::size_t i = 0; i < count; ++i) leaf->setValueOn(openvdb::Index(i));
         accessor.addLeaf(leaf.release());
     }
-    return grid;
+    return tree;
 }
 
-std::vector<std::uint64_t> wordsOfGrid(const openvdb::Int64Grid& grid, std::size_t padding,
+std::vector<std::uint64_t> wordsOfTree(const Tree& tree, std::size_t padding,
                                        const std::string& where) {
-    const auto count = std::size_t(grid.activeVoxelCount());
+    const auto count = std::size_t(tree.activeVoxelCount());
     // Words of tiles are no more than a number in the file.
-    const auto require = grid.tree().hasActiveTiles() ? requireClaimedMemory : requireMemory;
+    const auto require = tree.hasActiveTiles() ? requireClaimedMemory : requireMemory;
     require(where, double(count) * sizeof(std::uint64_t));
     std::vector<std::uint64_t> words(count + padding);
-    const auto accessor = grid.getConstAccessor();
+    const openvdb::tree::ValueAccessor<const Tree> accessor(tree);
     for (std::size_t begin = 0; begin < count; begin += kLeafWords) {
         const std::size_t size = std::min(kLeafWords, count - begin);
         const openvdb::Coord origin = wordLeafOrigin(begin / kLeafWords);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Grid.h>
+#include <openvdb/openvdb.h>
 
 #include <type_traits>
 #include <vector>
@@ -13,16 +13,15 @@
 
 namespace deltasplat {
 
-/// Makes a grid of the values that codes stand for, active where they are, tiles as tiles.
+/// Makes a tree of the values that codes stand for, active where they are, tiles as tiles.
 /// Multi-threaded.
-template <typename Grid>
-typename Grid::Ptr gridFromCodes(const CodeTree::Tree& codes, const CodeBook& book,
-                                 typename Grid::ValueType background) {
-    using Tree = typename Grid::TreeType;
-    using Value = typename Grid::ValueType;
+template <typename Tree>
+typename Tree::Ptr treeFromCodes(const CodeTree::Tree& codes, const CodeBook& book,
+                                 typename Tree::ValueType background) {
+    using Value = typename Tree::ValueType;
     auto tree = typename Tree::Ptr(new Tree(codes, background, openvdb::TopologyCopy()));
     const auto valueOf = [&](Code code) { return valueAs<Value>(book.valueOf(code)); };
-    if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
+    if constexpr (!std::is_same_v<Tree, openvdb::MaskTree>) {
         std::vector<const CodeTree::Leaf*> sources;
         std::vector<typename Tree::LeafNodeType*> targets;
         codes.getNodes(sources);
@@ -38,7 +37,7 @@ typename Grid::Ptr gridFromCodes(const CodeTree::Tree& codes, const CodeBook& bo
     // Tiles of a mask have values, too.
     forActiveTiles(
         *tree, [&](const auto& tile) { tile.setValue(valueOf(codes.getValue(tile.getCoord()))); });
-    return Grid::create(tree);
+    return tree;
 }
 
 }  // namespace deltasplat

@@ -13,19 +13,19 @@
 
 namespace deltasplat {
 
-/// Returns the place in a grid of words of the leaf that has the words from 512 * `leaf` on: nodes
+/// Returns the place in a tree of words of the leaf that has the words from 512 * `leaf` on: nodes
 /// are filled one behind the other, in OpenVDB's own order.
 openvdb::Coord wordLeafOrigin(std::size_t leaf);
 
-/// Returns a grid whose active voxels are words, one behind the other.
-openvdb::Int64Grid::Ptr gridOfWords(const std::vector<std::uint64_t>& words);
+/// Returns a tree whose active voxels are words, one behind the other.
+openvdb::Int64Tree::Ptr treeOfWords(const std::vector<std::uint64_t>& words);
 
-/// Returns the words of such a grid, with `padding` zeros behind them.
+/// Returns the words of such a tree, with `padding` zeros behind them.
 /// @throw Error(kInput) if there is a gap between them; Error(kFailed) if memory does not hold them
-std::vector<std::uint64_t> wordsOfGrid(const openvdb::Int64Grid& grid, std::size_t padding,
+std::vector<std::uint64_t> wordsOfTree(const openvdb::Int64Tree& tree, std::size_t padding,
                                        const std::string& where);
 
-/// Returns how many words a file's leaves of int64 have; nothing if these are no grid of words.
+/// Returns how many words a file's leaves of int64 have; nothing if these are no tree of words.
 std::optional<std::size_t> countWords(const VdbLeaves& leaves);
 /// Returns the words [begin, end) of such leaves, with `padding` zeros behind them. Multi-threaded.
 /// @return nothing if there is a gap between them

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/grids/tree_grid.h"
+
+#include "deltasplat/error.h"
+#include "ingest/vdb/vdb_transform.h"
+
+namespace deltasplat {
+
+std::string TreeGrid::name() const {
+    return metadata.text(openvdb::GridBase::META_GRID_NAME);
+}
+
+std::string TreeGrid::type() const {
+    // Masks call their values bool.
+    return as<openvdb::MaskTree>() ? "mask" : tree->valueType();
+}
+
+TreeGrid fromOpenVdb(const openvdb::GridBase::ConstPtr& grid) {
+    return {openvdb::ConstPtrCast<openvdb::GridBase>(grid)->baseTreePtr(), *grid,
+            grid->constTransform().baseMap()};
+}
+
+openvdb::GridBase::Ptr toOpenVdb(const TreeGrid& grid) {
+    openvdb::initialize();
+    openvdb::GridBase::Ptr made;
+    grid.apply<ScalarTrees>([&](const auto& tree) {
+        using Tree = std::decay_t<decltype(tree)>;
+        made = openvdb::Grid<Tree>::create(std::static_pointer_cast<Tree>(grid.tree));
+    });
+    if (!made) {
+        throw Error(ErrorCode::kFailed,
+                    gotExpected("grid \"" + grid.name() + "\"", "type " + grid.type(),
+                                "a scalar grid"));
+    }
+    made->insertMeta(*grid.metadata.toMetaMap(grid.name()));
+    made->setTransform(transformOf(*grid.map));
+    return made;
+}
+
+}  // namespace deltasplat

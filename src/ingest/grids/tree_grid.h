@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/math/Maps.h>
+#include <openvdb/openvdb.h>
+
+#include <memory>
+#include <string>
+
+#include "ingest/vdb/vdb_metadata.h"
+
+namespace deltasplat {
+
+/// Trees, for TreeGrid::apply.
+template <typename... Trees>
+struct TreeTypes {};
+
+/// The trees that are volumes here.
+using ScalarTrees =
+    TreeTypes<openvdb::FloatTree, openvdb::DoubleTree, openvdb::Int32Tree, openvdb::Int64Tree,
+              openvdb::BoolTree, openvdb::MaskTree>;
+
+/// A grid: a tree of OpenVDB's, and what a .vdb file says besides. OpenVDB's own grids need its
+/// library, which takes longer to load than small grids to read; this one does not.
+struct TreeGrid {
+    std::shared_ptr<openvdb::TreeBase> tree;
+    VdbMetadata metadata;                       ///< name and class among them
+    openvdb::math::MapBase::ConstPtr map = {};  ///< world from index
+
+    std::string name() const;
+    /// Returns the value type as a .vdb file has it: "float", "mask", ...
+    std::string type() const;
+
+    /// Returns the tree as what it is; null if it is another.
+    template <typename Tree>
+    const Tree* as() const {
+        return tree->type() == Tree::treeType() ? static_cast<const Tree*>(tree.get()) : nullptr;
+    }
+    template <typename Tree>
+    Tree* as() {
+        return const_cast<Tree*>(static_cast<const TreeGrid&>(*this).as<Tree>());
+    }
+
+    /// Calls use(tree) with the tree as what it is; returns false, and does not, if it is none of
+    /// `Types`, a TreeTypes.
+    template <typename Types, typename Use>
+    bool apply(const Use& use) const {
+        return applyAs(*this, Types(), use);
+    }
+    template <typename Types, typename Use>
+    bool apply(const Use& use) {
+        return applyAs(*this, Types(), use);
+    }
+
+  private:
+    template <typename Grid, typename... Trees, typename Use>
+    static bool applyAs(Grid& grid, TreeTypes<Trees...>, const Use& use) {
+        const auto tryOne = [&](auto* typed) {
+            if (typed) use(*typed);
+            return typed != nullptr;
+        };
+        return (tryOne(grid.template as<Trees>()) || ...);
+    }
+};
+
+/// Returns a grid of the same tree.
+TreeGrid fromOpenVdb(const openvdb::GridBase::ConstPtr& grid);
+
+/// Returns a grid of OpenVDB's, of the same tree. It needs OpenVDB's library.
+/// @throw Error(kFailed) if it is not a scalar grid; Error(kInput) if OpenVDB does not take the
+///        metadata
+openvdb::GridBase::Ptr toOpenVdb(const TreeGrid& grid);
+
+}  // namespace deltasplat
