@@ -204,8 +204,8 @@ void refuseExtras(const CLI::App& app, const std::vector<Subcommand>& subcommand
     }
     if (option != extras.end()) {
         const std::string name = option->substr(0, option->find('='));
-        const bool isOutput = (name == "-o" || name == "--output") &&
-                              app.get_option_no_throw("OUTPUT") != nullptr;
+        const bool isOutput =
+            (name == "-o" || name == "--output") && app.get_option_no_throw("OUTPUT") != nullptr;
         throw Error(ErrorCode::kUsage, "Unknown option '" + name + "'." +
                                            (isOutput ? " OUTPUT is the last argument, without one"
                                                      : suggestion(name, longOptions(app))));

@@ -22,11 +22,11 @@ Volume makeVolume(const openvdb::GridBase::ConstPtr& grid, const ReadOptions& op
                   const Listener& listener = {});
 
 /// Returns the OpenVDB grid that a volume is. Of a volume that was one, and whose source is kept,
-/// that is the grid that makeVolume was given, or else one with the source's own tree. Otherwise: a volume that has a background gets a grid of its own
-/// type if OpenVDB has it, another one a float grid if floats hold every value, else int32 if that
-/// does, else double; with name, class, transform and metadata. Tiles stay tiles, and every active
-/// voxel is active. Values come from Volume::source, or if there is none from the codes.
-/// Deterministic.
+/// that is the grid that makeVolume was given, or else one with the source's own tree. Otherwise: a
+/// volume that has a background gets a grid of its own type if OpenVDB has it, another one a float
+/// grid if floats hold every value, else int32 if that does, else double; with name, class,
+/// transform and metadata (of OpenVDB's own types). Tiles stay tiles, and every active voxel is
+/// active. Values come from Volume::source, or if there is none from the codes. Deterministic.
 /// @throw Error(kUsage) for a volume without voxels (Volume::codes); Error(kFailed) if OpenVDB
 ///        cannot hold the volume's transform
 openvdb::GridBase::ConstPtr makeGrid(const Volume& volume);

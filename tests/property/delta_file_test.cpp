@@ -917,6 +917,7 @@ TEST(DeltaFile, OlderVersionsAreRead) {
         DeltaFile file;
         file.add(volume, isExact ? DeltaFileOptions() : codesOnly());
         file.write("delta.vdb");
+        openvdb::initialize();
         openvdb::io::File input("delta.vdb");
         input.open();
         const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid(volume.name));

@@ -310,6 +310,7 @@ TEST(DeltaLeaves, PicturesThatNeedTheTreeAreTheSame) {
 template <typename Grid>
 void expectSameOfOtherWriters() {
     const Volume whole = readWhole(kDeltas);
+    openvdb::initialize();
     openvdb::io::File input(kDeltas);
     input.open();
     const auto grid = openvdb::gridPtrCast<Grid>(input.readGrid(whole.name));
@@ -360,6 +361,7 @@ TEST(DeltaLeaves, StreamsOfManyLeaves) {
     reading.keepSource = true;
     const Volume quick =
         throughDeltas(readVolume("noise_100x90x80_uint8.raw", reading), 1, 16, true);
+    openvdb::initialize();
     openvdb::io::File input(kDeltas);
     input.open();
     const auto words = openvdb::gridPtrCast<openvdb::Int64Grid>(input.readGrid(quick.name));

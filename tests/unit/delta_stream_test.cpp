@@ -257,6 +257,7 @@ openvdb::Int64Grid::Ptr packedGrid(const std::string& source, const std::string&
     DeltaFile file;
     file.add(readVolume(source), options);
     file.write(output);
+    openvdb::initialize();
     openvdb::io::File input(output);
     input.open();
     return openvdb::gridPtrCast<openvdb::Int64Grid>(input.readGrid(input.beginName().gridName()));

@@ -31,6 +31,7 @@ void writeDamaged(const std::string& name, const DeltaFileOptions& options, cons
     file.add(readVolume(name + ".raw", reading), options);
     file.write("whole.vdb");
     EXPECT_NO_THROW(readVolume("whole.vdb"));
+    openvdb::initialize();
     openvdb::io::File input("whole.vdb");
     input.open();
     const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid(name));

@@ -58,6 +58,21 @@ TEST(TreeGrid, TreesCanBeChanged) {
     EXPECT_EQ(grid.as<openvdb::Int32Tree>()->getValue(openvdb::Coord(-1)), 9);
 }
 
+TEST(TreeGrid, NamesAreWhatOpenVdbTakesForNames) {
+    const auto grid = openvdb::FloatGrid::create();
+    EXPECT_EQ(fromOpenVdb(grid).name(), grid->getName());
+    const auto expectSame = [&](const openvdb::Metadata& name) {
+        grid->removeMeta("name");
+        grid->insertMeta("name", name);
+        EXPECT_EQ(fromOpenVdb(grid).name(), grid->getName());
+    };
+    expectSame(openvdb::StringMetadata("fog"));
+    expectSame(openvdb::Int32Metadata(-7));
+    expectSame(openvdb::Int64Metadata(1ll << 40));
+    expectSame(openvdb::BoolMetadata(true));
+    expectSame(openvdb::BoolMetadata(false));
+}
+
 TEST(TreeGrid, OpenVdbsGridsComeBack) {
     openvdb::initialize();
     using namespace openvdb::math;

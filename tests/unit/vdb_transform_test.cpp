@@ -5,6 +5,7 @@
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
 
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -67,6 +68,37 @@ TEST(ReadMap, RefusesMapsOfNoTypeKnown) {
         std::istringstream stream(bytes.str());
         EXPECT_THROW(readMap(stream), openvdb::KeyError) << type;
     }
+}
+
+TEST(MakeMapOfType, MakesLinearMapsAgain) {
+    std::vector<MapBase::Ptr> maps = oneOfEach();
+    // (0.1 + 0.7) - 0.7 is not 0.1.
+    maps.push_back(std::make_shared<ScaleTranslateMap>(Vec3d(0.1, 0.1, 0.3), Vec3d(0.7, 1e5, -3)));
+    maps.push_back(std::make_shared<UniformScaleTranslateMap>(0.1, Vec3d(0.7, 1e5, -3)));
+    maps.push_back(std::make_shared<ScaleMap>(Vec3d(1, std::nextafter(1, 2), 1)));
+    maps.push_back(std::make_shared<AffineMap>(Mat4d::identity()));
+    maps.push_back(std::make_shared<UnitaryMap>());
+    for (const MapBase::Ptr& map : maps) {
+        if (!map->isLinear()) continue;
+        const MapBase::Ptr again = makeMapOfType(map->type(), matrixOf(*map));
+        EXPECT_EQ(again->type(), map->type());
+        EXPECT_EQ(bytesOf(*again), bytesOf(*map)) << map->type();
+    }
+}
+
+TEST(MakeMapOfType, TakesTheSimplestWhereThatTypeCannotBe) {
+    const auto typeOf = [](const char* type, const MapBase& map) {
+        const MapBase::Ptr made = makeMapOfType(type, matrixOf(map));
+        EXPECT_EQ(matrixOf(*made), matrixOf(map));
+        return made->type();
+    };
+    const ScaleTranslateMap moved(Vec3d(1, 2, 3), Vec3d(4, 5, 6));
+    for (const char* const type : {"", "Map", "ScaleMap", "UniformScaleMap", "TranslationMap",
+                                   "UnitaryMap", "NonlinearFrustumMap"})
+        EXPECT_EQ(typeOf(type, moved), "ScaleTranslateMap") << type;
+    EXPECT_EQ(typeOf("AffineMap", moved), "AffineMap");
+    EXPECT_EQ(typeOf("ScaleMap", ScaleMap(Vec3d(2))), "ScaleMap");
+    EXPECT_EQ(typeOf("", ScaleMap(Vec3d(2))), "UniformScaleMap");
 }
 
 TEST(WorldFromIndex, RefusesWhatPlacesNoVolume) {

@@ -9,7 +9,6 @@
 
 #include "deltasplat/error.h"
 #include "memory.h"
-#include "modules/late_openvdb.h"
 #include "modules/load_modules.h"
 #include "printable.h"
 
@@ -38,10 +37,6 @@ void* opened(const std::string& module) {
 }
 
 }  // namespace
-
-void loadOpenVdb() {
-    opened(kOpenVdb);
-}
 
 // Called by late_calls.S; what it throws passes through to who called the function.
 extern "C" void* deltasplat_bind_late_call(LateCall* call);

@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/grids/tree_grid.h"
 
+#include <cstdint>
+#include <type_traits>
+
 #include "deltasplat/error.h"
 #include "ingest/vdb/vdb_transform.h"
 
 namespace deltasplat {
 
 std::string TreeGrid::name() const {
-    return metadata.text(openvdb::GridBase::META_GRID_NAME);
+    const std::string key = openvdb::GridBase::META_GRID_NAME;
+    // To OpenVDB numbers are names as well.
+    if (const auto number = metadata.get<std::int32_t>(key)) return std::to_string(*number);
+    if (const auto number = metadata.get<std::int64_t>(key)) return std::to_string(*number);
+    if (const auto flag = metadata.get<bool>(key)) return *flag ? "true" : "false";
+    return metadata.text(key);
 }
 
 std::string TreeGrid::type() const {
@@ -28,9 +36,8 @@ openvdb::GridBase::Ptr toOpenVdb(const TreeGrid& grid) {
         made = openvdb::Grid<Tree>::create(std::static_pointer_cast<Tree>(grid.tree));
     });
     if (!made) {
-        throw Error(ErrorCode::kFailed,
-                    gotExpected("grid \"" + grid.name() + "\"", "type " + grid.type(),
-                                "a scalar grid"));
+        throw Error(ErrorCode::kFailed, gotExpected("grid \"" + grid.name() + "\"",
+                                                    "type " + grid.type(), "a scalar grid"));
     }
     made->insertMeta(*grid.metadata.toMetaMap(grid.name()));
     made->setTransform(transformOf(*grid.map));

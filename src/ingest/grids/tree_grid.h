@@ -16,9 +16,8 @@ template <typename... Trees>
 struct TreeTypes {};
 
 /// The trees that are volumes here.
-using ScalarTrees =
-    TreeTypes<openvdb::FloatTree, openvdb::DoubleTree, openvdb::Int32Tree, openvdb::Int64Tree,
-              openvdb::BoolTree, openvdb::MaskTree>;
+using ScalarTrees = TreeTypes<openvdb::FloatTree, openvdb::DoubleTree, openvdb::Int32Tree,
+                              openvdb::Int64Tree, openvdb::BoolTree, openvdb::MaskTree>;
 
 /// A grid: a tree of OpenVDB's, and what a .vdb file says besides. OpenVDB's own grids need its
 /// library, which takes longer to load than small grids to read; this one does not.

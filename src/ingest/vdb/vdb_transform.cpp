@@ -143,7 +143,8 @@ glm::dmat4 worldFromIndexOf(const MapBase& map, const std::string& where) {
 
 namespace {
 
-// A map of the type named, or null if there is none of that type.
+// A map of the type named, which may be of another matrix.
+// @throw an exception of OpenVDB's where none of that type is like it
 MapBase::Ptr mapOfType(const std::string& type, const glm::dmat4& matrix) {
     const Vec3d scale(matrix[0].x, matrix[1].y, matrix[2].z);
     const Vec3d translation(matrix[3].x, matrix[3].y, matrix[3].z);
@@ -154,16 +155,21 @@ MapBase::Ptr mapOfType(const std::string& type, const glm::dmat4& matrix) {
         return std::make_shared<UniformScaleTranslateMap>(scale[0], translation);
     if (type == ScaleTranslateMap::mapType())
         return std::make_shared<ScaleTranslateMap>(scale, translation);
-    return nullptr;
+    if (type == UnitaryMap::mapType())
+        return std::make_shared<UnitaryMap>(affineMap(matrix)->getAffineMap()->getMat4());
+    return type == AffineMap::mapType() ? affineMap(matrix) : makeMap(matrix);
 }
 
 }  // namespace
 
 MapBase::Ptr makeMapOfType(const std::string& mapType, const glm::dmat4& worldFromIndex) {
-    const MapBase::Ptr affine = affineMap(worldFromIndex);
-    MapBase::Ptr map = mapOfType(mapType, worldFromIndex);
-    if (!map || map->getAffineMap()->getMat4() != affine->getAffineMap()->getMat4()) map = affine;
-    return map;
+    try {
+        const MapBase::Ptr map = mapOfType(mapType, worldFromIndex);
+        if (matrixOf(*map) == worldFromIndex) return map;
+    } catch (const openvdb::ArithmeticError&) {
+        // The matrix may be one of another type.
+    }
+    return makeMap(worldFromIndex);
 }
 
 }  // namespace deltasplat

@@ -13,7 +13,7 @@ namespace deltasplat {
 /// @throw Error(kFailed) if a voxel's volume is below 3e-15, which OpenVDB takes for 0
 openvdb::math::MapBase::Ptr makeMap(const glm::dmat4& worldFromIndex);
 /// Returns a map of the type named ("UniformScaleMap", ...), if that can be this matrix, otherwise
-/// an "AffineMap".
+/// what makeMap returns, or throws.
 openvdb::math::MapBase::Ptr makeMapOfType(const std::string& mapType,
                                           const glm::dmat4& worldFromIndex);
 

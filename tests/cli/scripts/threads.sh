@@ -28,8 +28,9 @@ most_at_once() { # ARGUMENTS...
          /\+\+\+ exited/ { --now }
          END { print most + 0 }' trace.txt
 }
-# Those of OpenVDB's logger, which are started where its library is loaded, and who loads it.
-loaded=$(($(most_at_once synth slab slab.vdb --dims 2x2x2 --threads 1) + 1))
+# Those of OpenVDB's logger, which are started where its library is loaded.
+"$program" synth explosion colored.vdb --dims 8x8x8 -q
+loaded=$(most_at_once convert colored.vdb part.vdb --grid Cd.x --threads 1)
 for threads in 1 2 5; do
     # N - 1 of the library's, N - 1 of OpenImageIO's but at least one, and N of OpenEXR's.
     limit=$((loaded + 3 * threads - 2 + (threads == 1)))
