@@ -341,7 +341,7 @@ TEST(SlabFacts, NotesOfAnyNumberOfLeavesAreRead) {
         }
         openvdb::io::File("leaves.vdb").write({grid});
         const VdbFile file("leaves.vdb");
-        const auto found = file.readLeaves(file.grids().front(), true);
+        const auto found = file.readLeaves(file.grids().front(), VdbFile::Find::kByNotesAlone);
         ASSERT_TRUE(found);
         EXPECT_EQ(found->leaves().size(), std::size_t(leaves));
         EXPECT_TRUE(found->areSound());

@@ -160,17 +160,17 @@ TEST(BitStream, TheBestParameterIsChosen) {
     }
 }
 
-openvdb::Int64Grid::Ptr wordGrid(const std::vector<std::uint64_t>& words) {
+openvdb::Int64Grid::Ptr gridOfWords(const std::vector<std::uint64_t>& words) {
     return openvdb::Int64Grid::create(treeOfWords(words));
 }
 
-TEST(WordGrid, WordsComeBack) {
+TEST(TreeOfWords, WordsComeBack) {
     std::mt19937_64 random(2);
     for (const std::size_t count : {0, 1, 511, 512, 513, 5000, (4096 + 17) * 512 + 3}) {
         SCOPED_TRACE(count);
         std::vector<std::uint64_t> words(count);
         for (std::uint64_t& word : words) word = random();
-        const auto grid = wordGrid(words);
+        const auto grid = gridOfWords(words);
         EXPECT_EQ(grid->activeVoxelCount(), count);
         std::vector<std::uint64_t> padded = words;
         padded.resize(count + 3);
@@ -183,7 +183,7 @@ TEST(WordGrid, WordsComeBack) {
     }
 }
 
-TEST(WordGrid, EveryLeafHasAPlaceOfItsOwn) {
+TEST(TreeOfWords, EveryLeafHasAPlaceOfItsOwn) {
     std::set<Coord> places;
     for (std::size_t leaf = 0; leaf < 300000; ++leaf) places.insert(wordLeafOrigin(leaf));
     EXPECT_EQ(places.size(), 300000u);
@@ -191,9 +191,9 @@ TEST(WordGrid, EveryLeafHasAPlaceOfItsOwn) {
     EXPECT_EQ(wordLeafOrigin(std::size_t{1} << 27), Coord(4096, 0, 0));
 }
 
-TEST(WordGrid, TilesOfEqualWordsAreWords) {
+TEST(TreeOfWords, TilesOfEqualWordsAreWords) {
     const std::vector<std::uint64_t> words(1500, 7);
-    const auto grid = wordGrid(words);
+    const auto grid = gridOfWords(words);
     openvdb::tools::prune(grid->tree());
     EXPECT_EQ(grid->tree().leafCount(), 1u);
     EXPECT_EQ(wordsOfTree(grid->tree(), 0, "words"), words);
@@ -204,17 +204,17 @@ VdbLeaves leavesOf(const openvdb::Int64Grid::Ptr& grid) {
     grid->setName("words");
     openvdb::io::File("words.vdb").write({grid});
     const VdbFile file("words.vdb");
-    return file.readLeaves(file.grids().front(), false).value();
+    return file.readLeaves(file.grids().front(), VdbFile::Find::kByNotes).value();
 }
 
-TEST(WordGrid, WordsComeBackFromAFile) {
+TEST(TreeOfWords, WordsComeBackFromAFile) {
     const TempFolder folder;
     std::mt19937_64 random(5);
     for (const std::size_t count : {0, 1, 511, 512, 513, 512 * 300 + 7}) {
         SCOPED_TRACE(count);
         std::vector<std::uint64_t> words(count);
         for (std::uint64_t& word : words) word = random();
-        const VdbLeaves leaves = leavesOf(wordGrid(words));
+        const VdbLeaves leaves = leavesOf(gridOfWords(words));
         EXPECT_EQ(countWords(leaves), count);
         for (int i = 0; i < 20; ++i) {
             const std::size_t end = i == 0 ? count : random() % (count + 1);
@@ -227,12 +227,12 @@ TEST(WordGrid, WordsComeBackFromAFile) {
     }
 }
 
-TEST(WordGrid, LeavesThatAreNoGridOfWords) {
+TEST(TreeOfWords, LeavesThatAreNoGridOfWords) {
     const TempFolder folder;
     const auto read = [](const std::function<void(openvdb::Int64Grid&)>& change) {
         std::vector<std::uint64_t> words(1500);
         for (std::size_t i = 0; i < words.size(); ++i) words[i] = i;
-        const auto grid = wordGrid(words);
+        const auto grid = gridOfWords(words);
         change(*grid);
         const VdbLeaves leaves = leavesOf(grid);
         const auto count = countWords(leaves);
@@ -277,7 +277,7 @@ std::string refusalOf(const Damage& damage) {
     std::vector<std::uint64_t> words = wordsOfTree(grid->tree(), 0, "whole");
     openvdb::MetaMap metadata = *grid;
     damage(metadata, words);
-    const auto damaged = wordGrid(words);
+    const auto damaged = gridOfWords(words);
     damaged->insertMeta(metadata);
     damaged->setTransform(grid->transform().copy());
     openvdb::io::File("a.vdb").write({damaged});
@@ -433,14 +433,14 @@ TEST(DeltaStreamError, MoreThanMemoryHolds) {
         setMemoryLimit(0);
         return code;
     };
-    auto grid = wordGrid(std::vector<std::uint64_t>(1500, 7));
+    auto grid = gridOfWords(std::vector<std::uint64_t>(1500, 7));
     EXPECT_EQ(codeOf(*grid), ErrorCode::kFailed);
     openvdb::tools::prune(grid->tree());
     EXPECT_EQ(codeOf(*grid), ErrorCode::kInput);
 }
 
 TEST(DeltaStreamError, GapsBetweenWords) {
-    auto grid = wordGrid(std::vector<std::uint64_t>(1500, 7));
+    auto grid = gridOfWords(std::vector<std::uint64_t>(1500, 7));
     grid->tree().setValueOff(Coord(0, 0, 8 + 2));
     expectError(ErrorCode::kInput,
                 "a: got a gap in its words in or behind number 512; expected 1499, one behind the "

@@ -18,7 +18,7 @@ namespace deltasplat {
 /// The OpenVDB tree of codes; defined in src/ingest/codes/code_tree.h for the stages that walk it.
 struct CodeTree;
 
-/// The source's own OpenVDB grid; defined in src/ingest/grids/source_grid.h.
+/// The source's own grid of values; defined in src/ingest/grids/source_grid.h.
 struct SourceGrid;
 
 /// A box of voxel indices, both corners inclusive; empty when any max < min.

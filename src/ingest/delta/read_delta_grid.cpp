@@ -199,7 +199,8 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
         if (options.keepSource && !codesAreAll) return std::nullopt;
         if ((grid.type == "int64") != header.isPacked()) return std::nullopt;
         if (wanted && !mayBeBoxOf(header, wanted->box)) return std::nullopt;
-        leaves = file.readLeaves(grid, wanted != nullptr);
+        leaves =
+            file.readLeaves(grid, wanted ? VdbFile::Find::kByNotesAlone : VdbFile::Find::kByNotes);
         if (!leaves) return std::nullopt;
         columns = columnsOf(*leaves, header, wanted, where);
         if (!columns) return std::nullopt;

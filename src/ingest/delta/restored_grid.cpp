@@ -32,23 +32,16 @@ void setInactive(const CodeTree::Tree& inactive, const std::vector<double>& valu
     pruneSameBits(tree);
 }
 
-template <typename Tree>
-std::shared_ptr<Tree> restoredTree(const DeltaHeader& header, const DecodedDeltas& decoded) {
-    using Value = typename Tree::ValueType;
-    auto tree =
-        treeFromCodes<Tree>(decoded.codes->tree(), header.book, valueAs<Value>(header.background));
-    setInactive(decoded.inactive->tree(), header.inactiveValues, *tree);
-    return tree;
-}
-
 std::shared_ptr<openvdb::TreeBase> restoredTree(const DeltaHeader& header,
                                                 const DecodedDeltas& decoded) {
-    if (header.sourceTree == "float") return restoredTree<openvdb::FloatTree>(header, decoded);
-    if (header.sourceTree == "double") return restoredTree<openvdb::DoubleTree>(header, decoded);
-    if (header.sourceTree == "int32") return restoredTree<openvdb::Int32Tree>(header, decoded);
-    if (header.sourceTree == "int64") return restoredTree<openvdb::Int64Tree>(header, decoded);
-    if (header.sourceTree == "bool") return restoredTree<openvdb::BoolTree>(header, decoded);
-    return restoredTree<openvdb::MaskTree>(header, decoded);
+    std::shared_ptr<openvdb::TreeBase> restored;
+    applyType(ScalarTrees(), header.sourceTree, [&]<typename Tree>(std::type_identity<Tree>) {
+        auto tree = treeFromCodes<Tree>(decoded.codes->tree(), header.book,
+                                        valueAs<typename Tree::ValueType>(header.background));
+        setInactive(decoded.inactive->tree(), header.inactiveValues, *tree);
+        restored = std::move(tree);
+    });
+    return restored;
 }
 
 // Returns the source's own metadata under their names.

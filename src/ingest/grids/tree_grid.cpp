@@ -19,8 +19,7 @@ std::string TreeGrid::name() const {
 }
 
 std::string TreeGrid::type() const {
-    // Masks call their values bool.
-    return as<openvdb::MaskTree>() ? "mask" : tree->valueType();
+    return as<openvdb::MaskTree>() ? typeOf<openvdb::MaskTree>() : tree->valueType();
 }
 
 TreeGrid fromOpenVdb(const openvdb::GridBase::ConstPtr& grid) {

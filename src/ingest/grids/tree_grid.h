@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <type_traits>
 
 #include "ingest/vdb/vdb_metadata.h"
 
@@ -19,6 +20,26 @@ struct TreeTypes {};
 using ScalarTrees = TreeTypes<openvdb::FloatTree, openvdb::DoubleTree, openvdb::Int32Tree,
                               openvdb::Int64Tree, openvdb::BoolTree, openvdb::MaskTree>;
 
+/// Returns what a .vdb file calls the type of a tree's values: "float", "mask", ...
+template <typename Tree>
+std::string typeOf() {
+    // Masks call their values bool.
+    const bool isMask = std::is_same_v<Tree, openvdb::MaskTree>;
+    return isMask ? "mask" : openvdb::typeNameAsString<typename Tree::ValueType>();
+}
+
+/// Calls use(std::type_identity<Tree>()) with the one of `Trees` that has values of `type`, a
+/// typeOf(); returns false, and does not, if there is none.
+template <typename... Trees, typename Use>
+bool applyType(TreeTypes<Trees...>, const std::string& type, const Use& use) {
+    const auto tryOne = [&]<typename Tree>(std::type_identity<Tree> one) {
+        if (type != typeOf<Tree>()) return false;
+        use(one);
+        return true;
+    };
+    return (tryOne(std::type_identity<Trees>()) || ...);
+}
+
 /// A grid: a tree of OpenVDB's, and what a .vdb file says besides. OpenVDB's own grids need its
 /// library, which takes longer to load than small grids to read; this one does not.
 struct TreeGrid {
@@ -27,7 +48,7 @@ struct TreeGrid {
     openvdb::math::MapBase::ConstPtr map = {};  ///< world from index
 
     std::string name() const;
-    /// Returns the value type as a .vdb file has it: "float", "mask", ...
+    /// Returns typeOf() the tree.
     std::string type() const;
 
     /// Returns the tree as what it is; null if it is another.

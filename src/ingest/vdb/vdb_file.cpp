@@ -81,6 +81,11 @@ VdbGrid readDescriptor(VdbBytes& bytes, bool hasOffsets) {
     return grid;
 }
 
+// For messages.
+std::string whereOf(const std::filesystem::path& file, const VdbGrid& grid) {
+    return file.string() + ": grid \"" + grid.name + "\"";
+}
+
 // Calls read(stream of buffer), and turns whatever goes wrong in OpenVDB into one kind of error.
 template <typename Read>
 auto guarded(VdbStreamBuf& buffer, const std::string& where, const Read& read) {
@@ -126,8 +131,7 @@ GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::p
     bytes.text(256);  // the transform's type: a length that OpenVDB would trust
     VdbStreamBuf buffer(file);
     buffer.addRange(head.map, bytes.size());
-    const std::string where = file.string() + ": grid \"" + grid.name + "\"";
-    head.transform = guarded(buffer, where, [&](std::istream& stream) {
+    head.transform = guarded(buffer, whereOf(file, grid), [&](std::istream& stream) {
         const auto transform = readMap(stream);
         bytes.seek(head.map + std::uint64_t(stream.tellg()));
         return transform;
@@ -173,17 +177,6 @@ bool placeBySizes(VdbBytes& bytes, const GridHead& head, std::uint64_t end,
     return position == end;
 }
 
-// Finds where leaves lie; returns whether it was by notes.
-// @param bytes  at the first leaf
-bool placeLeaves(VdbBytes& bytes, const GridHead& head, const VdbGrid& grid, VdbFile::Find how,
-                 std::vector<VdbLeaf>& leaves, const std::string& where) {
-    if (how == VdbFile::Find::kByNotes && placeBySizes(bytes, head, grid.end, leaves, where))
-        return true;
-    walkLeaves(bytes, head.format, leaves);
-    requireEnd(bytes, grid);
-    return false;
-}
-
 // Whether a grid has a tree of its own, of numbers.
 bool hasNumbers(const VdbGrid& grid) {
     return grid.isScalar() && grid.parentName.empty() && grid.type != "bool" && grid.type != "mask";
@@ -200,6 +193,60 @@ VdbValues::Number readBackground(VdbBytes& bytes, std::uint64_t place,
     const bool isWide = format.bytes == 8;
     if (format.real) return isWide ? number(double{}) : number(float{});
     return isWide ? number(std::int64_t{}) : number(std::int32_t{});
+}
+
+// A grid of numbers, none of whose values but the background has been read.
+struct FoundNumbers {
+    std::string where;  // for messages
+    GridHead head;
+    VdbTreeSize size;
+    VdbTreePlaces places;  // but for those of leaves
+    VdbValues::Number background;
+    std::shared_ptr<const FileBytes> file;
+    VdbLeaves leaves;
+    bool byNotes;  // whether leaves lie where the file notes them
+};
+
+// Returns nothing if the grid is none of its own, of numbers, or has no notes to be found by.
+// @param listener  hears how far the file is read, or passed over
+std::optional<FoundNumbers> findNumbers(const std::filesystem::path& path, const VdbGrid& grid,
+                                        VdbFile::Find how, const Listener& listener = {}) {
+    if (!hasNumbers(grid)) return std::nullopt;
+    const std::string where = whereOf(path, grid);
+    VdbBytes bytes(path);
+    const GridHead head = readHead(bytes, grid, path);
+    const std::uint64_t begin = bytes.position();
+    bytes.onProgress([&](std::uint64_t position) {
+        if (position >= begin && position < grid.end)
+            listener.report(double(position - begin) / double(grid.end - begin));
+    });
+    VdbTreePlaces places;
+    const VdbTreeSize size = walkTopology(bytes, head.format, places);
+    if (bytes.position() > grid.end) requireEnd(bytes, grid);
+    const bool byNotes = how != VdbFile::Find::kByWalking &&
+                         placeBySizes(bytes, head, grid.end, places.leaves, where);
+    if (!byNotes) {
+        if (how == VdbFile::Find::kByNotesAlone) return std::nullopt;
+        walkLeaves(bytes, head.format, places.leaves);
+        requireEnd(bytes, grid);
+    }
+    const auto background = readBackground(bytes, places.background, head.format);
+    auto file = std::make_shared<const FileBytes>(path);
+    VdbLeaves leaves(file, std::move(places.leaves), head.format, head.transform);
+    return FoundNumbers{
+        where,  head, size, std::move(places), background, std::move(file), std::move(leaves),
+        byNotes};
+}
+
+// Returns nothing if some of it is damaged, or lies elsewhere.
+std::optional<TreeGrid> treeOf(const FoundNumbers& found, const Listener& listener) {
+    const auto make = [&]<typename T>(T background) -> std::shared_ptr<openvdb::TreeBase> {
+        return readTree(*found.file, found.head.format, background, found.places.nodes,
+                        found.leaves, listener);
+    };
+    auto tree = std::visit(make, found.background);
+    if (!tree) return std::nullopt;
+    return TreeGrid{std::move(tree), found.head.metadata, found.head.transform};
 }
 
 }  // namespace
@@ -269,58 +316,33 @@ const VdbGrid& VdbFile::parentOf(const VdbGrid& grid) const {
                                                "a sound .vdb file"));
 }
 
-std::string VdbFile::whereOf(const VdbGrid& grid) const {
-    return file_.string() + ": grid \"" + grid.name + "\"";
-}
-
 TreeGrid VdbFile::read(const VdbGrid& grid, const Listener& listener) const {
-    if (!hasNumbers(grid)) return readByOpenVdb(grid, listener);
-    std::optional<TreeGrid> read = readNumbers(grid, Find::kByNotes, listener);
-    if (!read) read = readNumbers(grid, Find::kByWalking, listener);
-    if (!read) throw DamagedLeaves(whereOf(grid));
-    return std::move(*read);
-}
-
-std::optional<TreeGrid> VdbFile::readNumbers(const VdbGrid& grid, Find how,
-                                             const Listener& listener) const {
-    const std::string where = whereOf(grid);
-    VdbBytes bytes(file_);
-    const GridHead head = readHead(bytes, grid, file_);
-    VdbTreePlaces places;
-    const VdbTreeSize size = walkTopology(bytes, head.format, places);
-    requireMemory(where, size.memoryBytes(head.format));
-    placeLeaves(bytes, head, grid, how, places.leaves, where);
-    const auto file = std::make_shared<const FileBytes>(file_);
-    const VdbLeaves leaves(file, std::move(places.leaves), head.format, head.transform);
-    const auto make = [&]<typename T>(T background) -> std::shared_ptr<openvdb::TreeBase> {
-        return readTree(*file, head.format, background, places.nodes, leaves, listener);
-    };
-    auto tree = std::visit(make, readBackground(bytes, places.background, head.format));
-    if (!tree) return std::nullopt;
-    return TreeGrid{std::move(tree), head.metadata, head.transform};
+    for (const Find how : {Find::kByNotes, Find::kByWalking}) {
+        const std::optional<FoundNumbers> found = findNumbers(file_, grid, how);
+        if (!found) return readByOpenVdb(grid, listener);
+        requireMemory(found->where, found->size.memoryBytes(found->head.format));
+        std::optional<TreeGrid> read = treeOf(*found, listener);
+        if (read) return std::move(*read);
+        if (!found->byNotes) break;
+    }
+    throw DamagedLeaves(whereOf(file_, grid));
 }
 
 std::optional<VdbFile::Packed> VdbFile::readPacked(const VdbGrid& grid) const {
-    if (!hasNumbers(grid)) return std::nullopt;
-    const std::string where = whereOf(grid);
-    VdbBytes bytes(file_);
-    const GridHead head = readHead(bytes, grid, file_);
-    VdbTreePlaces places;
-    const VdbTreeSize size = walkTopology(bytes, head.format, places);
-    // Leaves here have no values.
-    requireMemory(where, size.codeBytes(head.format));
-    placeLeaves(bytes, head, grid, Find::kByNotes, places.leaves, where);
-    const auto file = std::make_shared<const FileBytes>(file_);
+    std::optional<FoundNumbers> found = findNumbers(file_, grid, Find::kByNotes);
+    if (!found) return std::nullopt;
+    requireMemory(found->where, found->size.nodeBytes());
+    const VdbTreePlaces& places = found->places;
     const auto make = [&]<typename T>(T background) -> std::optional<Packed> {
-        VdbLeaves leaves(file, std::move(places.leaves), head.format, head.transform);
-        auto nodes = readNodes(*file, head.format, background, places.nodes, leaves);
+        auto nodes =
+            readNodes(*found->file, found->head.format, background, places.nodes, found->leaves);
         if (!nodes) return std::nullopt;
-        return Packed{head.metadata,
+        return Packed{found->head.metadata,
                       places.activeVoxels,
                       places.activeBox,
-                      {PackedGrid::Nodes<T>(std::move(nodes)), std::move(leaves)}};
+                      {PackedGrid::Nodes<T>(std::move(nodes)), std::move(found->leaves)}};
     };
-    return std::visit(make, readBackground(bytes, places.background, head.format));
+    return std::visit(make, found->background);
 }
 
 // Reads a grid by OpenVDB, which is handed a file of the same header with no metadata of its own
@@ -336,7 +358,7 @@ TreeGrid VdbFile::readByOpenVdb(const VdbGrid& grid, const Listener& listener) c
     appendU32(counts, 0);
     appendU32(counts, std::uint32_t(needed.size()));
     buffer.addText(counts);
-    const std::string where = whereOf(grid);
+    const std::string where = whereOf(file_, grid);
     VdbBytes bytes(file_);
     for (const VdbGrid* part : needed) {
         const GridHead head = readHead(bytes, *part, file_);
@@ -363,52 +385,28 @@ TreeGrid VdbFile::readByOpenVdb(const VdbGrid& grid, const Listener& listener) c
     });
 }
 
-std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid, bool mustBeNoted) const {
-    if (!grid.parentName.empty() || (grid.type != "int32" && grid.type != "int64"))
-        return std::nullopt;
-    const std::string where = whereOf(grid);
-    VdbBytes bytes(file_);
-    const GridHead head = readHead(bytes, grid, file_);
-    VdbTreePlaces places;
-    const VdbTreeSize size = walkTopology(bytes, head.format, places);
-    if (bytes.position() > grid.end) return std::nullopt;
-    if (!placeBySizes(bytes, head, grid.end, places.leaves, where)) {
-        if (mustBeNoted) return std::nullopt;
-        walkLeaves(bytes, head.format, places.leaves);
-        requireEnd(bytes, grid);
-    }
-    bytes.seek(places.background);
-    const bool isZero = (head.format.bytes == 8 ? std::uint64_t(bytes.i64()) : bytes.u32()) == 0;
-    if (size.tiles > 0 || !isZero) return std::nullopt;
-    return VdbLeaves(std::make_shared<const FileBytes>(file_), std::move(places.leaves),
-                     head.format, head.transform);
+std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid, Find how) const {
+    if (grid.type != "int32" && grid.type != "int64") return std::nullopt;
+    std::optional<FoundNumbers> found = findNumbers(file_, grid, how);
+    if (!found || found->size.tiles > 0) return std::nullopt;
+    const bool isZero = std::visit([](auto number) { return number == 0; }, found->background);
+    return isZero ? std::optional(std::move(found->leaves)) : std::nullopt;
 }
 
 std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
                                              const Listener& listener) const {
-    if (!hasNumbers(grid)) return std::nullopt;
-    const std::string where = whereOf(grid);
-    VdbBytes bytes(file_);
-    const GridHead head = readHead(bytes, grid, file_);
-    const std::uint64_t begin = bytes.position();
-    if (begin > grid.end) return std::nullopt;
-    bytes.onProgress([&](std::uint64_t position) {
-        if (position >= begin && position < grid.end)
-            listener.report(double(position - begin) / double(grid.end - begin));
-    });
-    VdbTreePlaces places;
-    const VdbTreeSize size = walkTopology(bytes, head.format, places);
-    requireMemory(where, size.codeBytes(head.format));
-    const auto file = std::make_shared<const FileBytes>(file_);
-    std::optional<VdbTiles> tiles = VdbTiles::read(*file, head.format, places.nodes);
+    std::optional<FoundNumbers> found = findNumbers(file_, grid, how, listener);
+    if (!found) return std::nullopt;
+    const VdbValueFormat& format = found->head.format;
+    requireMemory(found->where, found->size.codeBytes(format));
+    std::optional<VdbTiles> tiles = VdbTiles::read(*found->file, format, found->places.nodes);
     if (!tiles) return std::nullopt;
-    const bool byNotes = placeLeaves(bytes, head, grid, how, places.leaves, where);
-    return VdbValues{head.metadata,
-                     readBackground(bytes, places.background, head.format),
+    return VdbValues{found->head.metadata,
+                     found->background,
                      std::move(*tiles),
-                     {file, std::move(places.leaves), head.format, head.transform},
-                     head.format.stored != head.format.bytes,
-                     byNotes};
+                     std::move(found->leaves),
+                     format.stored != format.bytes,
+                     found->byNotes};
 }
 
 }  // namespace deltasplat

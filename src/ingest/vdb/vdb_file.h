@@ -49,13 +49,13 @@ struct VdbValues {
     VdbTiles tiles;
     VdbLeaves leaves;  ///< in the tree's order
     bool areHalves;    ///< whether floats are stored as binary16
-    bool byNotes;      ///< how leaves were found, as VdbFile::Find
+    bool byNotes;      ///< whether leaves were found by the file's notes, which may be wrong
 };
 
-/// A .vdb file, whose grids of numbers are read here, on all threads. Other grids are checked
-/// before OpenVDB sees any of them, since OpenVDB 10 crashes on damaged ones; then it is handed
-/// only the bytes of the grid asked for. Grids are in file order; types that OpenVDB does not know
-/// do no harm. But for read() and frustums, OpenVDB's library is not needed.
+/// A .vdb file, whose grids of numbers are read here, on all threads. Others (bools, masks,
+/// vectors, grids that share their voxels) need OpenVDB's library, and are checked before it sees
+/// any of them, since OpenVDB 10 crashes on damaged ones; then it is handed only the bytes of the
+/// grid asked for. Grids are in file order; types that OpenVDB does not know do no harm.
 class VdbFile {
   public:
     /// @throw Error(kInput) if this is no whole .vdb file
@@ -68,21 +68,20 @@ class VdbFile {
     /// @throw Error(kInput) if its bytes are not a sound grid
     VdbMetadata metadata(const VdbGrid& grid) const;
     /// Reads one grid of grids().
-    /// @throw Error(kInput) if its bytes are not a sound grid, Error(kUsage) if it does not fit
+    /// @throw Error(kInput) if its bytes are not a sound grid, Error(kFailed) if it does not fit
     ///        into memory, whatever the listener throws
     TreeGrid read(const VdbGrid& grid, const Listener& listener) const;
+
+    /// How to find where leaves lie: by what the file notes of their sizes (OpenVDB's
+    /// "file_delayed_load"), or by walking over all of them, which `kByNotes` does where there are
+    /// no notes. Notes may be wrong: then leaves look damaged.
+    enum class Find { kByNotes, kByNotesAlone, kByWalking };
     /// Finds the leaves of a grid of int32 or int64 with background 0, unless there are active
     /// tiles beside them, or the grid shares its voxels with another. Their values are read when
     /// they are unpacked.
-    /// @param mustBeNoted  return nothing where the file does not note where leaves lie (OpenVDB's
-    ///                     "file_delayed_load"): finding them takes walking over all of them then
+    /// @param how  `kByNotesAlone`: return nothing where the file has no notes
     /// @throw as read()
-    std::optional<VdbLeaves> readLeaves(const VdbGrid& grid, bool mustBeNoted) const;
-
-    /// How to find where leaves lie: by what the file notes of their sizes (OpenVDB's
-    /// "file_delayed_load"), if it does, or by walking over all of them. Notes may be wrong: then
-    /// leaves look damaged.
-    enum class Find { kByNotes, kByWalking };
+    std::optional<VdbLeaves> readLeaves(const VdbGrid& grid, Find how) const;
     /// Reads a grid of numbers without making a tree of them, unless it shares its voxels with
     /// another.
     /// @param listener  hears how far the file is read here; leaves are read when they are unpacked
@@ -103,12 +102,9 @@ class VdbFile {
     std::optional<Packed> readPacked(const VdbGrid& grid) const;
 
   private:
-    std::optional<TreeGrid> readNumbers(const VdbGrid& grid, Find how,
-                                        const Listener& listener) const;
     TreeGrid readByOpenVdb(const VdbGrid& grid, const Listener& listener) const;
     void readDirectory();
     void findEnd(VdbBytes& bytes, VdbGrid& grid) const;
-    std::string whereOf(const VdbGrid& grid) const;
     const VdbGrid& parentOf(const VdbGrid& grid) const;
 
     std::filesystem::path file_;

@@ -341,6 +341,12 @@ double VdbTreeSize::codeBytes(const VdbValueFormat& format) const {
            (double(lower) * 4096 + double(upper) * 32768) * 8;
 }
 
+double VdbTreeSize::nodeBytes() const {
+    // A leaf's mask, what else it is made of, and a VdbLeaf.
+    const double leafBytes = 64 + 64 + sizeof(VdbLeaf);
+    return double(leaves) * leafBytes + (double(lower) * 4096 + double(upper) * 32768) * 8;
+}
+
 VdbTreeSize walkTree(VdbBytes& bytes, const VdbValueFormat& format) {
     return Walk(bytes, format, nullptr).run();
 }

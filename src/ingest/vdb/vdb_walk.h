@@ -39,6 +39,8 @@ struct VdbTreeSize {
     double memoryBytes(const VdbValueFormat& format) const;
     /// Returns the same of the tree of codes alone.
     double codeBytes(const VdbValueFormat& format) const;
+    /// Returns the same of a tree whose leaves have no values, and of where these lie in the file.
+    double nodeBytes() const;
 };
 
 /// Where a leaf of values lies in a file.
