@@ -24,9 +24,11 @@ deltasplat_script_test(sequence sequence.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/sequence)
 deltasplat_script_test(sheets_and_movies sheets_and_movies.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/sheets_and_movies)
-deltasplat_script_test(start start.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/start)
-deltasplat_script_test(modules modules.sh
-    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/modules)
+foreach(name start modules)
+    deltasplat_script_test(${name} ${name}.sh
+        ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/${name} ${DELTASPLAT_FIXTURES}/frustum.vdb)
+    set_tests_properties(cli.${name} PROPERTIES FIXTURES_REQUIRED cli_files)
+endforeach()
 deltasplat_script_test(preview preview.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/preview)
 deltasplat_script_test(batch batch.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/batch)
@@ -38,8 +40,8 @@ deltasplat_script_test(interrupt.full_pipe interrupt_full_pipe.sh
 deltasplat_script_test(interrupt.write interrupt_write.sh ARGS ${tool} ${scratch}/interrupt_write)
 deltasplat_script_test(shared_output shared_output.sh ARGS ${tool} ${scratch}/shared_output)
 deltasplat_script_test(killed killed.sh ARGS ${tool} ${scratch}/killed)
-deltasplat_script_test(few_threads few_threads.sh ARGS ${tool})
-set_tests_properties(cli.few_threads PROPERTIES SKIP_RETURN_CODE 77)
+deltasplat_script_test(few_threads few_threads.sh ARGS ${tool} ${DELTASPLAT_FIXTURES}/frustum.vdb)
+set_tests_properties(cli.few_threads PROPERTIES SKIP_RETURN_CODE 77 FIXTURES_REQUIRED cli_files)
 deltasplat_script_test(inputs_kept inputs_kept.sh
     ARGS ${tool} ${scratch}/inputs_kept $<BOOL:${DELTASPLAT_ITK}>)
 deltasplat_script_test(full_disk.deep full_disk.sh

@@ -18,6 +18,9 @@ template <typename T>
 T valueOf(int number) {
     if constexpr (std::is_same_v<T, bool>) {
         return number % 2 != 0;
+    } else if constexpr (openvdb::VecTraits<T>::IsVec) {
+        return T(typename T::ValueType(number), typename T::ValueType(number + 1),
+                 typename T::ValueType(-2 * number));
     } else {
         return T(number);
     }

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string>
 
@@ -63,6 +64,45 @@ void expectSameRead(const openvdb::GridBase::Ptr& grid) {
     }
 }
 
+// Whether two trees have the same values, bit for bit, in nodes of the same places.
+template <typename Tree>
+bool areSame(const Tree& a, const Tree& b) {
+    auto voxel = a.cbeginValueAll();
+    auto other = b.cbeginValueAll();
+    for (; voxel && other; ++voxel, ++other) {
+        const auto mine = *voxel;
+        const auto theirs = *other;
+        if (voxel.getBoundingBox() != other.getBoundingBox() ||
+            voxel.isValueOn() != other.isValueOn() || std::memcmp(&mine, &theirs, sizeof mine) != 0)
+            return false;
+    }
+    return !voxel && !other && a.background() == b.background();
+}
+
+template <typename Grid>
+void expectSameVectors() {
+    using Tree = typename Grid::TreeType;
+    const TempFolder folder;
+    unsigned seed = 1;
+    for (const Inactive inactive : testing::kAllInactive) {
+        for (const bool half : {false, true}) {
+            const auto grid = randomGrid<Grid>(100, inactive, 3, ++seed);
+            grid->setSaveFloatAsHalf(half);
+            for (const std::uint32_t compression : kCompressions) {
+                SCOPED_TRACE(grid->type() + " half " + std::to_string(half) + " kind " +
+                             std::to_string(int(inactive)) + " compression " +
+                             std::to_string(compression));
+                writeBy("a.vdb", grid, compression);
+                const auto theirs = openvdb::gridPtrCast<Grid>(testing::readGrids("a.vdb").front());
+                const TreeGrid ours = readHere("a.vdb");
+                ASSERT_TRUE(ours.as<Tree>());
+                EXPECT_TRUE(areSame(*ours.as<Tree>(), theirs->tree()));
+                EXPECT_EQ(ours.name(), "grid");
+            }
+        }
+    }
+}
+
 template <typename Grid>
 void expectSameReadOfAll() {
     unsigned seed = 1;
@@ -84,6 +124,49 @@ TEST(VdbTree, NumbersAreReadAsByOpenVdb) {
     expectSameReadOfAll<openvdb::DoubleGrid>();
     expectSameReadOfAll<openvdb::Int32Grid>();
     expectSameReadOfAll<openvdb::Int64Grid>();
+}
+
+TEST(VdbTree, BoolsAndMasksAreReadAsByOpenVdb) {
+    expectSameReadOfAll<openvdb::BoolGrid>();
+    expectSameReadOfAll<openvdb::MaskGrid>();
+}
+
+TEST(VdbTree, VectorsAreReadAsByOpenVdb) {
+    expectSameVectors<openvdb::Vec3SGrid>();
+    expectSameVectors<openvdb::Vec3DGrid>();
+    expectSameVectors<openvdb::Vec3IGrid>();
+}
+
+// Voxels that several grids have are stored once, of the first, and read of each.
+TEST(VdbTree, GridsThatShareVoxelsAreReadAsByOpenVdb) {
+    const TempFolder folder;
+    const auto first = randomGrid<openvdb::FloatGrid>(20, Inactive::kTwo, 1, 7);
+    first->setSaveFloatAsHalf(true);
+    const auto second = openvdb::FloatGrid::create(first->treePtr());
+    second->setName("second");
+    second->insertMeta("note", openvdb::StringMetadata("its own"));
+    second->setTransform(openvdb::math::Transform::createLinearTransform(3));
+    openvdb::io::File("a.vdb").write(openvdb::GridCPtrVec{first, second});
+    const VdbFile file("a.vdb");
+    const VdbGrid& shared = file.grids().back();
+    ASSERT_EQ(shared.parentName, "grid");
+    const TreeGrid ours = file.read(shared, {});
+    const TreeGrid whole = file.read(file.grids().front(), {});
+    EXPECT_TRUE(areSame(*ours.as<openvdb::FloatTree>(), *whole.as<openvdb::FloatTree>()));
+    EXPECT_EQ(ours.metadata.text("note"), "its own");
+    EXPECT_EQ(ours.map->voxelSize(), openvdb::Vec3d(3));
+    EXPECT_TRUE(file.readValues(shared, VdbFile::Find::kByNotes));
+    EXPECT_TRUE(file.readPacked(shared));
+
+    std::string bytes = testing::readBytes("a.vdb");
+    const std::string type = "Tree_float_5_4_3";
+    bytes.replace(bytes.rfind(type), type.size(), "Tree_int32_5_4_3");
+    testing::writeBytes("b.vdb", bytes);
+    const VdbFile damaged("b.vdb");
+    testing::expectError(ErrorCode::kInput,
+                         "b.vdb: got a grid of type int32 that shares voxels of type float; "
+                         "expected a sound .vdb file",
+                         [&] { damaged.read(damaged.grids().back(), {}); });
 }
 
 TEST(VdbTree, OddGridsAreReadAsByOpenVdb) {

@@ -55,8 +55,8 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
                    withDefault("Threads to use, 0 = all", std::to_string(options.threads)));
     group.addValue("--max-memory", "SIZE", options.maxMemory, byteCount(),
                    "Refuse up front what would take more memory than this, such as 4G,\n"
-                   "the program itself (20M; for grids of bools, masks and vectors 50M; with\n"
-                   ".jpg, DICOM and other formats of libraries 150M) included\n"
+                   "the program itself (20M; with .jpg, DICOM and other formats of libraries\n"
+                   "150M) included\n"
                    "(default: what the machine has)");
     group.addFlag("--fsync", options.fsync,
                   "End only when what was written would outlive a power failure");

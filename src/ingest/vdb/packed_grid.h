@@ -41,8 +41,8 @@ struct NeedsWholeGrid : Error {
 /// Reads a grid of a .vdb whose values stay packed: a volume without codes, whose `source` has
 /// them, for compareVolumes(), which throws NeedsWholeGrid where that is not enough.
 /// @param options  what to read; level sets stay what they are
-/// @return nothing where readVolume() has to read it: vectors, bools and masks, delta grids, grids
-///         that share another's voxels, what is not finite to be replaced
+/// @return nothing where readVolume() has to read it: vectors, bools and masks, delta grids, what
+///         is not finite to be replaced
 /// @throw as readVolume
 std::optional<Volume> readPackedVolume(const std::filesystem::path& file,
                                        const ReadOptions& options, const Listener& listener);

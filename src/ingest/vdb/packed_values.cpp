@@ -94,6 +94,25 @@ bool unpack(const PackedValues& packed, const VdbValueFormat& format, std::span<
 
 namespace {
 
+template <typename T>
+using Traits = openvdb::VecTraits<T>;
+
+// Returns the value that OpenVDB takes for the opposite of one.
+template <typename T>
+T opposite(const T& value) {
+    if constexpr (Traits<T>::IsVec) {
+        T parts;
+        for (int i = 0; i < Traits<T>::Size; ++i) parts[i] = opposite(value[i]);
+        return parts;
+    } else if constexpr (std::is_same_v<T, std::uint8_t>) {
+        return value == 0;  // a bool
+    } else if constexpr (std::is_floating_point_v<T>) {
+        return -value;
+    } else {
+        return T(0 - std::make_unsigned_t<T>(value));
+    }
+}
+
 // What inactive places hold where values of active ones are all that is stored.
 template <typename T>
 struct InactivePlaces {
@@ -104,14 +123,12 @@ struct InactivePlaces {
     InactivePlaces(std::span<const char> bytes, std::size_t maskBytes, T background) {
         using namespace openvdb::io;
         const auto kind = std::uint8_t(bytes[0]);
-        // Without the warning for what is no positive number.
-        const T minus = std::is_floating_point_v<T> ? T(-background) : T(0 - Unsigned(background));
-        values = {kind == NO_MASK_OR_INACTIVE_VALS ? background : minus, background};
+        values = {kind == NO_MASK_OR_INACTIVE_VALS ? background : opposite(background), background};
         const bool hasTwo = kind == MASK_AND_TWO_INACTIVE_VALS;
         const bool hasOne =
             kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL || hasTwo;
         const std::size_t size = (std::size_t{hasOne} + std::size_t{hasTwo}) * sizeof(T);
-        std::memcpy(values.data(), &bytes[1], size);
+        std::memcpy(static_cast<void*>(values.data()), &bytes[1], size);
         if (hasTwo || kind == MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_NO_INACTIVE_VALS)
             second = bytes.subspan(1 + size, maskBytes);
     }
@@ -120,22 +137,27 @@ struct InactivePlaces {
             !second.empty() && (std::uint8_t(second[place / 8]) >> (place % 8) & 1) != 0;
         return values[isSecond ? 1 : 0];
     }
-
-  private:
-    using Unsigned = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
 };
 
 // Turns what is stored into values.
 template <typename T>
 void widen(const char* stored, std::size_t count, bool areHalves, T* values) {
     if (!areHalves) {
-        std::memcpy(values, stored, count * sizeof(T));
+        std::memcpy(static_cast<void*>(values), stored, count * sizeof(T));
         return;
     }
-    for (std::size_t i = 0; i < count; ++i) {
+    const auto take = [&](auto& value) {
         openvdb::math::half half;
-        std::memcpy(&half, stored + i * sizeof half, sizeof half);
-        values[i] = T(float(half));
+        std::memcpy(&half, stored, sizeof half);
+        stored += sizeof half;
+        value = std::decay_t<decltype(value)>(float(half));
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        if constexpr (Traits<T>::IsVec) {
+            for (int part = 0; part < Traits<T>::Size; ++part) take(values[i][part]);
+        } else {
+            take(values[i]);
+        }
     }
 }
 
@@ -172,5 +194,13 @@ template bool unpackAll(Bytes, MaskWords, const VdbValueFormat&, std::int32_t, s
                         std::int32_t*);
 template bool unpackAll(Bytes, MaskWords, const VdbValueFormat&, std::int64_t, std::vector<char>&,
                         std::int64_t*);
+template bool unpackAll(Bytes, MaskWords, const VdbValueFormat&, std::uint8_t, std::vector<char>&,
+                        std::uint8_t*);
+template bool unpackAll(Bytes, MaskWords, const VdbValueFormat&, openvdb::Vec3f, std::vector<char>&,
+                        openvdb::Vec3f*);
+template bool unpackAll(Bytes, MaskWords, const VdbValueFormat&, openvdb::Vec3d, std::vector<char>&,
+                        openvdb::Vec3d*);
+template bool unpackAll(Bytes, MaskWords, const VdbValueFormat&, openvdb::Vec3i, std::vector<char>&,
+                        openvdb::Vec3i*);
 
 }  // namespace deltasplat

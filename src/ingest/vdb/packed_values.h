@@ -34,7 +34,8 @@ bool unpack(const PackedValues& packed, const VdbValueFormat& format, std::span<
 
 /// Writes the values of all places of a node, inactive ones too, as the grid has them; returns
 /// whether they are whole.
-/// @tparam T      the grid's value type: float, double, std::int32_t or std::int64_t
+/// @tparam T      the grid's value type: a number, or openvdb::Vec3f, Vec3d or Vec3i of them; for
+///                bools the std::uint8_t that one is stored as
 /// @param bytes   as packedValues
 /// @param stored  room that is kept from node to node
 /// @param values  one for each place

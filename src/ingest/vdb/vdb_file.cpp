@@ -2,12 +2,11 @@
 #include "ingest/vdb/vdb_file.h"
 
 #include <openvdb/io/Compression.h>
-#include <openvdb/io/Stream.h>
-#include <openvdb/openvdb.h>
+#include <openvdb/version.h>
 
 #include <algorithm>
 #include <array>
-#include <functional>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <sstream>
@@ -18,7 +17,6 @@
 #include "ingest/grids/grid_errors.h"
 #include "ingest/vdb/leaf_sizes.h"
 #include "ingest/vdb/vdb_bytes.h"
-#include "ingest/vdb/vdb_stream.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "ingest/vdb/vdb_tree.h"
 #include "ingest/vdb/vdb_walk.h"
@@ -31,8 +29,6 @@ namespace {
 // The first version that says for each grid how it is compressed, from 2013.
 constexpr std::uint32_t kOldestVersion = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
 constexpr std::uint64_t kUuidBytes = 36;
-// OpenVDB uses it for nothing, but refuses what is none.
-const std::string kAnyUuid = "00000000-0000-0000-0000-000000000000";
 
 constexpr std::array<const char*, 6> kScalarTypes{"float", "double", "int32",
                                                   "int64", "bool",   "mask"};
@@ -66,7 +62,6 @@ std::string nameOf(const std::string& uniqueName) {
 
 VdbGrid readDescriptor(VdbBytes& bytes, bool hasOffsets) {
     VdbGrid grid;
-    grid.begin = bytes.position();
     grid.uniqueName = bytes.text();
     grid.name = printable(nameOf(grid.uniqueName));
     parseType(printable(bytes.text()), grid);
@@ -86,15 +81,13 @@ std::string whereOf(const std::filesystem::path& file, const VdbGrid& grid) {
     return file.string() + ": grid \"" + grid.name + "\"";
 }
 
-// Calls read(stream of buffer), and turns whatever goes wrong in OpenVDB into one kind of error.
-template <typename Read>
-auto guarded(VdbStreamBuf& buffer, const std::string& where, const Read& read) {
+// Reads a transform; whatever goes wrong in OpenVDB becomes one kind of error.
+openvdb::math::MapBase::ConstPtr takeMap(std::istream& stream, const std::string& where) {
     std::string got;
     try {
-        std::istream stream(&buffer);
         // Without this OpenVDB goes on with zeros after the end, for as long as a count says.
         stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
-        return read(stream);
+        return readMap(stream);
     } catch (const Error&) {
         throw;
     } catch (const std::ios_base::failure&) {
@@ -104,21 +97,20 @@ auto guarded(VdbStreamBuf& buffer, const std::string& where, const Read& read) {
     } catch (const std::exception& error) {
         got = printable(error.what());
     }
-    if (buffer.stopped()) std::rethrow_exception(buffer.stopped());
     throw Error(ErrorCode::kInput, gotExpected(where, got, "a sound OpenVDB grid"));
 }
 
 // What stands before a grid's tree.
 struct GridHead {
     VdbMetadata metadata;
-    VdbRange leafSizes;     // OpenVDB's "file_delayed_load"; empty: none
-    std::uint64_t map = 0;  // where the transform starts
+    VdbRange leafSizes;  // OpenVDB's "file_delayed_load"; empty: none
     openvdb::math::MapBase::ConstPtr transform;
     VdbValueFormat format;
 };
 
-// Reads up to the tree. The transform's own fields have no sizes: OpenVDB must say where it ends.
+// Reads up to the tree. The transform's own fields have no sizes: reading it says where it ends.
 GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::path& file) {
+    constexpr std::uint64_t kMostMapBytes = 4096;
     GridHead head;
     if (!head.format.setType(grid.type, grid.half)) {
         bytes.failCorrupt("a grid of type " + grid.type + " in a file without offsets",
@@ -127,29 +119,35 @@ GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::p
     bytes.seek(grid.data);
     head.format.compression = bytes.u32();
     head.metadata = readMetadata(bytes, grid.half, &head.leafSizes);
-    head.map = bytes.position();
+    const std::uint64_t map = bytes.position();
     bytes.text(256);  // the transform's type: a length that OpenVDB would trust
-    VdbStreamBuf buffer(file);
-    buffer.addRange(head.map, bytes.size());
-    head.transform = guarded(buffer, whereOf(file, grid), [&](std::istream& stream) {
-        const auto transform = readMap(stream);
-        bytes.seek(head.map + std::uint64_t(stream.tellg()));
-        return transform;
-    });
+    bytes.seek(map);
+    std::istringstream stream(bytes.bytes(std::min(kMostMapBytes, bytes.size() - map)));
+    head.transform = takeMap(stream, whereOf(file, grid));
+    bytes.seek(map + std::uint64_t(stream.tellg()));
     return head;
-}
-
-// Whether OpenVDB reads leaves without finding out whether they are whole.
-bool mayBeUnsound(const VdbValueFormat& format) {
-    return (format.compression & openvdb::io::COMPRESS_ZIP) != 0 &&
-           (format.compression & openvdb::io::COMPRESS_BLOSC) == 0 &&
-           format.leaf == VdbValueFormat::Leaf::kValues;
 }
 
 void requireEnd(const VdbBytes& bytes, const VdbGrid& grid) {
     if (bytes.position() == grid.end) return;
     bytes.failCorrupt("a grid that ends at byte " + std::to_string(bytes.position()),
                       std::to_string(grid.end));
+}
+
+// Reads up to the tree, which may be another grid's.
+GridHead readHeads(VdbBytes& bytes, const VdbGrid& grid, const VdbGrid& owner,
+                   const std::filesystem::path& file) {
+    GridHead head = readHead(bytes, grid, file);
+    if (&owner == &grid) return head;
+    requireEnd(bytes, grid);
+    if (owner.type != grid.type)
+        bytes.failCorrupt(
+            "a grid of type " + grid.type + " that shares voxels of type " + owner.type,
+            "a sound .vdb file");
+    const GridHead tree = readHead(bytes, owner, file);
+    head.format = tree.format;
+    head.leafSizes = tree.leafSizes;
+    return head;
 }
 
 // Finds where leaves lie by what the file notes of their sizes; returns whether it does, and they
@@ -177,76 +175,8 @@ bool placeBySizes(VdbBytes& bytes, const GridHead& head, std::uint64_t end,
     return position == end;
 }
 
-// Whether a grid has a tree of its own, of numbers.
 bool hasNumbers(const VdbGrid& grid) {
-    return grid.isScalar() && grid.parentName.empty() && grid.type != "bool" && grid.type != "mask";
-}
-
-// Reads the background of a grid of numbers; `bytes` moves there.
-VdbValues::Number readBackground(VdbBytes& bytes, std::uint64_t place,
-                                 const VdbValueFormat& format) {
-    bytes.seek(place);
-    const auto number = [&]<typename T>(T value) -> VdbValues::Number {
-        bytes.read(&value, sizeof value);
-        return value;
-    };
-    const bool isWide = format.bytes == 8;
-    if (format.real) return isWide ? number(double{}) : number(float{});
-    return isWide ? number(std::int64_t{}) : number(std::int32_t{});
-}
-
-// A grid of numbers, none of whose values but the background has been read.
-struct FoundNumbers {
-    std::string where;  // for messages
-    GridHead head;
-    VdbTreeSize size;
-    VdbTreePlaces places;  // but for those of leaves
-    VdbValues::Number background;
-    std::shared_ptr<const FileBytes> file;
-    VdbLeaves leaves;
-    bool byNotes;  // whether leaves lie where the file notes them
-};
-
-// Returns nothing if the grid is none of its own, of numbers, or has no notes to be found by.
-// @param listener  hears how far the file is read, or passed over
-std::optional<FoundNumbers> findNumbers(const std::filesystem::path& path, const VdbGrid& grid,
-                                        VdbFile::Find how, const Listener& listener = {}) {
-    if (!hasNumbers(grid)) return std::nullopt;
-    const std::string where = whereOf(path, grid);
-    VdbBytes bytes(path);
-    const GridHead head = readHead(bytes, grid, path);
-    const std::uint64_t begin = bytes.position();
-    bytes.onProgress([&](std::uint64_t position) {
-        if (position >= begin && position < grid.end)
-            listener.report(double(position - begin) / double(grid.end - begin));
-    });
-    VdbTreePlaces places;
-    const VdbTreeSize size = walkTopology(bytes, head.format, places);
-    if (bytes.position() > grid.end) requireEnd(bytes, grid);
-    const bool byNotes = how != VdbFile::Find::kByWalking &&
-                         placeBySizes(bytes, head, grid.end, places.leaves, where);
-    if (!byNotes) {
-        if (how == VdbFile::Find::kByNotesAlone) return std::nullopt;
-        walkLeaves(bytes, head.format, places.leaves);
-        requireEnd(bytes, grid);
-    }
-    const auto background = readBackground(bytes, places.background, head.format);
-    auto file = std::make_shared<const FileBytes>(path);
-    VdbLeaves leaves(file, std::move(places.leaves), head.format, head.transform);
-    return FoundNumbers{
-        where,  head, size, std::move(places), background, std::move(file), std::move(leaves),
-        byNotes};
-}
-
-// Returns nothing if some of it is damaged, or lies elsewhere.
-std::optional<TreeGrid> treeOf(const FoundNumbers& found, const Listener& listener) {
-    const auto make = [&]<typename T>(T background) -> std::shared_ptr<openvdb::TreeBase> {
-        return readTree(*found.file, found.head.format, background, found.places.nodes,
-                        found.leaves, listener);
-    };
-    auto tree = std::visit(make, found.background);
-    if (!tree) return std::nullopt;
-    return TreeGrid{std::move(tree), found.head.metadata, found.head.transform};
+    return grid.isScalar() && grid.type != "bool" && grid.type != "mask";
 }
 
 }  // namespace
@@ -281,7 +211,6 @@ void VdbFile::readDirectory() {
     bytes.skip(8);  // the version of the library that wrote it
     const bool hasOffsets = bytes.u8() != 0;
     bytes.skip(kUuidBytes);
-    headerEnd_ = bytes.position();
     metadata_ = readMetadata(bytes);
 
     const auto count = std::int32_t(bytes.u32());
@@ -316,97 +245,116 @@ const VdbGrid& VdbFile::parentOf(const VdbGrid& grid) const {
                                                "a sound .vdb file"));
 }
 
+// A grid, none of whose values but the background has been read.
+struct VdbFile::Found {
+    std::string where;  // for messages
+    GridHead head;
+    VdbTreeSize size;
+    VdbTreePlaces places;          // but for those of leaves
+    std::vector<char> background;  // as it is stored
+    std::shared_ptr<const FileBytes> file;
+    VdbLeaves leaves;
+    bool byNotes;  // whether leaves lie where the file notes them
+
+    // Returns the background of a grid of numbers.
+    VdbValues::Number number() const {
+        const auto as = [&]<typename T>(T value) -> VdbValues::Number {
+            std::memcpy(&value, background.data(), sizeof value);
+            return value;
+        };
+        const bool isWide = head.format.bytes == 8;
+        if (head.format.real) return isWide ? as(double{}) : as(float{});
+        return isWide ? as(std::int64_t{}) : as(std::int32_t{});
+    }
+};
+
+// Returns nothing if notes are asked for and there are none.
+// @param listener  hears how far the file is read, or passed over
+std::optional<VdbFile::Found> VdbFile::find(const VdbGrid& grid, Find how,
+                                            const Listener& listener) const {
+    const std::string where = whereOf(file_, grid);
+    const VdbGrid& owner = grid.parentName.empty() ? grid : parentOf(grid);
+    VdbBytes bytes(file_);
+    const GridHead head = readHeads(bytes, grid, owner, file_);
+    const std::uint64_t begin = bytes.position();
+    bytes.onProgress([&](std::uint64_t position) {
+        if (position >= begin && position < owner.end)
+            listener.report(double(position - begin) / double(owner.end - begin));
+    });
+    VdbTreePlaces places;
+    const VdbTreeSize size = walkTopology(bytes, head.format, places);
+    if (bytes.position() > owner.end) requireEnd(bytes, owner);
+    const bool byNotes =
+        how != Find::kByWalking && placeBySizes(bytes, head, owner.end, places.leaves, where);
+    if (!byNotes) {
+        if (how == Find::kByNotesAlone) return std::nullopt;
+        walkLeaves(bytes, head.format, places.leaves);
+        requireEnd(bytes, owner);
+    }
+    std::vector<char> background(head.format.bytes);
+    bytes.seek(places.background);
+    bytes.read(background.data(), background.size());
+    auto file = std::make_shared<const FileBytes>(file_);
+    VdbLeaves leaves(file, std::move(places.leaves), head.format, head.transform);
+    return Found{where,
+                 head,
+                 size,
+                 std::move(places),
+                 std::move(background),
+                 std::move(file),
+                 std::move(leaves),
+                 byNotes};
+}
+
 TreeGrid VdbFile::read(const VdbGrid& grid, const Listener& listener) const {
     for (const Find how : {Find::kByNotes, Find::kByWalking}) {
-        const std::optional<FoundNumbers> found = findNumbers(file_, grid, how);
-        if (!found) return readByOpenVdb(grid, listener);
-        requireMemory(found->where, found->size.memoryBytes(found->head.format));
-        std::optional<TreeGrid> read = treeOf(*found, listener);
-        if (read) return std::move(*read);
-        if (!found->byNotes) break;
+        const Found found = find(grid, how, {}).value();
+        const GridHead& head = found.head;
+        requireMemory(found.where, found.size.memoryBytes(head.format));
+        auto tree = readTree(*found.file, grid.type, head.format, found.background,
+                             found.places.nodes, found.leaves, listener);
+        if (tree) return {std::move(tree), head.metadata, head.transform};
+        if (!found.byNotes) break;
     }
     throw DamagedLeaves(whereOf(file_, grid));
 }
 
 std::optional<VdbFile::Packed> VdbFile::readPacked(const VdbGrid& grid) const {
-    std::optional<FoundNumbers> found = findNumbers(file_, grid, Find::kByNotes);
-    if (!found) return std::nullopt;
-    requireMemory(found->where, found->size.nodeBytes());
-    const VdbTreePlaces& places = found->places;
+    if (!hasNumbers(grid)) return std::nullopt;
+    Found found = find(grid, Find::kByNotes, {}).value();
+    requireMemory(found.where, found.size.nodeBytes());
     const auto make = [&]<typename T>(T background) -> std::optional<Packed> {
         auto nodes =
-            readNodes(*found->file, found->head.format, background, places.nodes, found->leaves);
+            readNodes(*found.file, found.head.format, background, found.places.nodes, found.leaves);
         if (!nodes) return std::nullopt;
-        return Packed{found->head.metadata,
-                      places.activeVoxels,
-                      places.activeBox,
-                      {PackedGrid::Nodes<T>(std::move(nodes)), std::move(found->leaves)}};
+        return Packed{found.head.metadata,
+                      found.places.activeVoxels,
+                      found.places.activeBox,
+                      {PackedGrid::Nodes<T>(std::move(nodes)), std::move(found.leaves)}};
     };
-    return std::visit(make, found->background);
-}
-
-// Reads a grid by OpenVDB, which is handed a file of the same header with no metadata of its own
-// and just the grids needed.
-TreeGrid VdbFile::readByOpenVdb(const VdbGrid& grid, const Listener& listener) const {
-    std::vector<const VdbGrid*> needed{&grid};
-    if (!grid.parentName.empty()) needed.insert(needed.begin(), &parentOf(grid));
-
-    VdbStreamBuf buffer(file_);
-    buffer.addRange(0, headerEnd_ - kUuidBytes);
-    buffer.addText(kAnyUuid);
-    std::string counts;
-    appendU32(counts, 0);
-    appendU32(counts, std::uint32_t(needed.size()));
-    buffer.addText(counts);
-    const std::string where = whereOf(file_, grid);
-    VdbBytes bytes(file_);
-    for (const VdbGrid* part : needed) {
-        const GridHead head = readHead(bytes, *part, file_);
-        if (part->parentName.empty()) {
-            VdbTreePlaces places;
-            const VdbTreeSize size = walkTopology(bytes, head.format, places);
-            walkLeaves(bytes, head.format, places.leaves);
-            requireMemory(where, size.memoryBytes(head.format));
-            if (mayBeUnsound(head.format)) {
-                const VdbLeaves leaves(std::make_shared<const FileBytes>(file_),
-                                       std::move(places.leaves), head.format, head.transform);
-                if (!leaves.areSound()) throw DamagedLeaves(where);
-            }
-        }
-        requireEnd(bytes, *part);
-        buffer.addRange(part->begin, part->data + sizeof(std::uint32_t));
-        buffer.addText(head.metadata.bytes());
-        buffer.addRange(head.map, part->end);
-    }
-    buffer.onProgress([&](double share) { listener.report(share); });
-    openvdb::initialize();
-    return guarded(buffer, where, [](std::istream& stream) {
-        return fromOpenVdb(openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids()->back());
-    });
+    return std::visit(make, found.number());
 }
 
 std::optional<VdbLeaves> VdbFile::readLeaves(const VdbGrid& grid, Find how) const {
     if (grid.type != "int32" && grid.type != "int64") return std::nullopt;
-    std::optional<FoundNumbers> found = findNumbers(file_, grid, how);
+    std::optional<Found> found = find(grid, how, {});
     if (!found || found->size.tiles > 0) return std::nullopt;
-    const bool isZero = std::visit([](auto number) { return number == 0; }, found->background);
+    const bool isZero = std::visit([](auto number) { return number == 0; }, found->number());
     return isZero ? std::optional(std::move(found->leaves)) : std::nullopt;
 }
 
 std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
                                              const Listener& listener) const {
-    std::optional<FoundNumbers> found = findNumbers(file_, grid, how, listener);
+    if (!hasNumbers(grid)) return std::nullopt;
+    std::optional<Found> found = find(grid, how, listener);
     if (!found) return std::nullopt;
     const VdbValueFormat& format = found->head.format;
     requireMemory(found->where, found->size.codeBytes(format));
     std::optional<VdbTiles> tiles = VdbTiles::read(*found->file, format, found->places.nodes);
     if (!tiles) return std::nullopt;
-    return VdbValues{found->head.metadata,
-                     found->background,
-                     std::move(*tiles),
-                     std::move(found->leaves),
-                     format.stored != format.bytes,
-                     found->byNotes};
+    return VdbValues{
+        found->head.metadata,          found->number(), std::move(*tiles), std::move(found->leaves),
+        format.stored != format.bytes, found->byNotes};
 }
 
 }  // namespace deltasplat

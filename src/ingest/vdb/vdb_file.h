@@ -24,11 +24,10 @@ struct VdbGrid {
     bool half = false;  ///< real values are stored as binary16 (writers set it for integers too)
     bool supported = true;  ///< in OpenVDB's standard tree layout
 
-    std::string uniqueName;   ///< name as stored
-    std::string parentName;   ///< as stored, of the grid whose tree it shares; or empty
-    std::uint64_t begin = 0;  ///< where its directory entry starts
-    std::uint64_t data = 0;   ///< where the grid itself starts
-    std::uint64_t end = 0;    ///< one past its last byte
+    std::string uniqueName;  ///< name as stored
+    std::string parentName;  ///< as stored, of the grid whose tree it shares; or empty
+    std::uint64_t data = 0;  ///< where the grid itself starts
+    std::uint64_t end = 0;   ///< one past its last byte
 
     bool isScalar() const;
     /// Returns `type`, or "half" for real values stored so.
@@ -52,10 +51,9 @@ struct VdbValues {
     bool byNotes;      ///< whether leaves were found by the file's notes, which may be wrong
 };
 
-/// A .vdb file, whose grids of numbers are read here, on all threads. Others (bools, masks,
-/// vectors, grids that share their voxels) need OpenVDB's library, and are checked before it sees
-/// any of them, since OpenVDB 10 crashes on damaged ones; then it is handed only the bytes of the
-/// grid asked for. Grids are in file order; types that OpenVDB does not know do no harm.
+/// A .vdb file, which is read here, on all threads, for OpenVDB 10 crashes on damaged ones and its
+/// library takes longer to load than small grids to read; only transforms that are frustums need
+/// it. Grids are in file order; types that OpenVDB does not know do no harm.
 class VdbFile {
   public:
     /// @throw Error(kInput) if this is no whole .vdb file
@@ -67,7 +65,7 @@ class VdbFile {
     /// Returns the metadata of a scalar grid of grids().
     /// @throw Error(kInput) if its bytes are not a sound grid
     VdbMetadata metadata(const VdbGrid& grid) const;
-    /// Reads one grid of grids().
+    /// Reads a scalar grid of grids(), or one of vectors.
     /// @throw Error(kInput) if its bytes are not a sound grid, Error(kFailed) if it does not fit
     ///        into memory, whatever the listener throws
     TreeGrid read(const VdbGrid& grid, const Listener& listener) const;
@@ -77,13 +75,11 @@ class VdbFile {
     /// no notes. Notes may be wrong: then leaves look damaged.
     enum class Find { kByNotes, kByNotesAlone, kByWalking };
     /// Finds the leaves of a grid of int32 or int64 with background 0, unless there are active
-    /// tiles beside them, or the grid shares its voxels with another. Their values are read when
-    /// they are unpacked.
+    /// tiles beside them. Their values are read when they are unpacked.
     /// @param how  `kByNotesAlone`: return nothing where the file has no notes
     /// @throw as read()
     std::optional<VdbLeaves> readLeaves(const VdbGrid& grid, Find how) const;
-    /// Reads a grid of numbers without making a tree of them, unless it shares its voxels with
-    /// another.
+    /// Reads a grid of numbers without making a tree of them.
     /// @param listener  hears how far the file is read here; leaves are read when they are unpacked
     /// @throw as read()
     std::optional<VdbValues> readValues(const VdbGrid& grid, Find how,
@@ -96,19 +92,18 @@ class VdbFile {
         openvdb::CoordBBox activeBox;
         PackedGrid grid;
     };
-    /// Reads a grid of numbers but for the values of its leaves, which may turn out to be damaged,
-    /// unless it shares its voxels with another.
+    /// Reads a grid of numbers but for the values of its leaves, which may turn out to be damaged.
     /// @throw as read()
     std::optional<Packed> readPacked(const VdbGrid& grid) const;
 
   private:
-    TreeGrid readByOpenVdb(const VdbGrid& grid, const Listener& listener) const;
+    struct Found;
+    std::optional<Found> find(const VdbGrid& grid, Find how, const Listener& listener) const;
     void readDirectory();
     void findEnd(VdbBytes& bytes, VdbGrid& grid) const;
     const VdbGrid& parentOf(const VdbGrid& grid) const;
 
     std::filesystem::path file_;
-    std::uint64_t headerEnd_ = 0;
     VdbMetadata metadata_;
     std::vector<VdbGrid> grids_;
 };

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/vdb/vdb_leaves.h"
 
+#include <openvdb/Types.h>
+
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cstring>
 #include <iterator>
 #include <utility>
 
 #include "ingest/vdb/packed_values.h"
-#include "parallel.h"
 
 namespace deltasplat {
 
@@ -145,22 +145,18 @@ bool VdbLeaves::allValues(const VdbLeaf& leaf, T background, std::size_t behind,
            unpackAll(bytes->subspan(sizeof mask), mask, format_, background, room.stored, values);
 }
 
-bool VdbLeaves::areSound() const {
-    // Of a grid of vectors of doubles.
-    constexpr std::size_t kMostBytes = 24 * std::size_t{kVoxels} + 64;
-    std::atomic<bool> areSound = true;
-    parallelFor((leaves_.size() + kRun - 1) / kRun, [&](std::size_t part) {
-        VdbRun run;
-        std::vector<char> values(kMostBytes);
-        const std::size_t end = std::min(leaves_.size(), (part + 1) * kRun);
-        for (std::size_t i = part * kRun; i < end && areSound; ++i) {
-            Mask mask;
-            const auto bytes = bytesOf(leaves_[i], run, end);
-            const auto packed = bytes ? valuesOf(leaves_[i], *bytes, format_, mask) : std::nullopt;
-            if (!packed || !unpack(*packed, format_, values)) areSound = false;
-        }
-    });
-    return areSound;
+bool VdbLeaves::allBools(const VdbLeaf& leaf, std::size_t behind, Mask& mask, VdbRun& run,
+                         Mask& values) const {
+    const auto bytes = bytesOf(leaf, run, behind);
+    if (!bytes || !takeMask(leaf, *bytes, mask)) return false;
+    values = mask;
+    const bool isMask = format_.leaf == VdbValueFormat::Leaf::kMask;
+    const std::size_t place = sizeof mask;
+    const std::size_t bits = place + sizeof leaf.origin;
+    if (bytes->size() != bits + (isMask ? 0 : sizeof values)) return false;
+    if (std::memcmp(&(*bytes)[place], leaf.origin.data(), sizeof leaf.origin) != 0) return false;
+    if (!isMask) std::memcpy(values.data(), &(*bytes)[bits], sizeof values);
+    return true;
 }
 
 #define DELTASPLAT_ACTIVE_VALUES(Stored)                                     \
@@ -181,5 +177,11 @@ template bool VdbLeaves::allValues(const VdbLeaf&, std::int32_t, std::size_t, Ma
                                    std::int32_t*) const;
 template bool VdbLeaves::allValues(const VdbLeaf&, std::int64_t, std::size_t, Mask&, BytesRoom&,
                                    std::int64_t*) const;
+template bool VdbLeaves::allValues(const VdbLeaf&, openvdb::Vec3f, std::size_t, Mask&, BytesRoom&,
+                                   openvdb::Vec3f*) const;
+template bool VdbLeaves::allValues(const VdbLeaf&, openvdb::Vec3d, std::size_t, Mask&, BytesRoom&,
+                                   openvdb::Vec3d*) const;
+template bool VdbLeaves::allValues(const VdbLeaf&, openvdb::Vec3i, std::size_t, Mask&, BytesRoom&,
+                                   openvdb::Vec3i*) const;
 
 }  // namespace deltasplat

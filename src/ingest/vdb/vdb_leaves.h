@@ -70,9 +70,6 @@ class VdbLeaves {
     /// Reads the bytes of all leaves, on all threads, for leaves that are wanted in another order
     /// than they have. Otherwise some at a time are read, when one of them is wanted.
     void hold();
-    /// Unpacks all leaves, of numbers or of vectors, on all threads; returns whether none is
-    /// damaged.
-    bool areSound() const;
     /// Unpacks the values of a leaf's active voxels, in the order of the mask's bits. Thread-safe.
     /// @tparam Stored  of the format's size: a number, or the std::uint16_t that a half is
     /// @param leaf     of leaves()
@@ -88,13 +85,17 @@ class VdbLeaves {
         std::vector<char> stored;
     };
     /// Unpacks the values of all voxels of a leaf, inactive ones too. Thread-safe.
-    /// @tparam T      the grid's value type
+    /// @tparam T      the grid's value type: a number or a vector
     /// @param mask    becomes which voxels are active
     /// @param behind  one behind the last leaf that is going to be asked for
     /// @return whether the leaf's bytes are whole
     template <typename T>
     bool allValues(const VdbLeaf& leaf, T background, std::size_t behind, Mask& mask,
                    BytesRoom& room, T* values) const;
+    /// As allValues, of grids of bools and masks.
+    /// @param values  becomes which voxels are true; all that are active in a mask
+    bool allBools(const VdbLeaf& leaf, std::size_t behind, Mask& mask, VdbRun& run,
+                  Mask& values) const;
 
   private:
     std::optional<std::span<const char>> bytesOf(const VdbLeaf& leaf, VdbRun& room,

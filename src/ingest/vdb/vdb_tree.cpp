@@ -5,11 +5,10 @@
 #include <atomic>
 #include <cstring>
 #include <map>
-#include <memory>
-#include <span>
-#include <vector>
+#include <type_traits>
 
 #include "heap_growth.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/vdb/packed_values.h"
 #include "parallel.h"
 #include "shared_progress.h"
@@ -21,27 +20,32 @@ openvdb::Coord placeOf(const std::array<std::int32_t, 3>& origin) {
     return openvdb::Coord(origin.data());
 }
 
+// What is stored of a value: of a bool a byte, which may hold anything.
 template <typename T>
+using StoredValue = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
+
+template <typename Tree>
 class TreeReader {
   public:
-    using Tree = typename openvdb::tree::Tree4<T, 5, 4, 3>::Type;
+    using T = typename Tree::ValueType;
+    using Stored = StoredValue<T>;
     using Upper = typename Tree::RootNodeType::ChildNodeType;
     using Lower = typename Upper::ChildNodeType;
     using Leaf = typename Lower::ChildNodeType;
 
-    TreeReader(const FileBytes& file, const VdbValueFormat& format, T background,
+    TreeReader(const FileBytes& file, const VdbValueFormat& format, const Stored& background,
                const std::vector<VdbNode>& nodes, const VdbLeaves& leaves)
         : file_(file), format_(format), background_(background), nodes_(nodes), leaves_(leaves) {}
 
     typename Tree::Ptr read(const Listener& listener) {
-        auto tree = std::make_shared<Tree>(background_);
+        auto tree = std::make_shared<Tree>(T(background_));
         readInner(*tree);
         if (isSound_) readLeaves(listener);
         return whole(std::move(tree));
     }
 
     typename Tree::Ptr readNodes() {
-        auto tree = std::make_shared<Tree>(background_);
+        auto tree = std::make_shared<Tree>(T(background_));
         readInner(*tree);
         if (isSound_) noteLeaves();
         return whole(std::move(tree));
@@ -74,12 +78,12 @@ class TreeReader {
     }
 
     void readRootTile(const VdbNode& node, Tree& tree) {
-        T value;
+        Stored value;
         if (file_.read(node.begin, reinterpret_cast<char*>(&value), sizeof value) != sizeof value) {
             isSound_ = false;
             return;
         }
-        tree.root().addTile(placeOf(node.origin), value, node.tiles > 0);
+        tree.root().addTile(placeOf(node.origin), T(value), node.tiles > 0);
     }
 
     template <typename Node>
@@ -92,17 +96,17 @@ class TreeReader {
         if (isThere) std::memcpy(masks.data(), bytes.data(), all.size_bytes());
         const auto children = all.first(all.size() / 2);
         const auto active = all.last(all.size() / 2);
-        std::vector<T> values(Node::NUM_VALUES);
+        std::vector<Stored> values(Node::NUM_VALUES);
         std::vector<char> stored;
         if (!isThere || !unpackAll(std::span<const char>(bytes).subspan(all.size_bytes()), active,
                                    format_, background_, stored, values.data())) {
             isSound_ = false;
             return nullptr;
         }
-        auto made = std::make_unique<Node>(placeOf(node.origin), background_, /*active=*/false);
+        auto made = std::make_unique<Node>(placeOf(node.origin), T(background_), /*active=*/false);
         for (openvdb::Index i = 0; i < Node::NUM_VALUES; ++i) {
             const auto has = [&](const auto& mask) { return (mask[i / 64] >> (i % 64) & 1) != 0; };
-            if (!has(children)) made->addTile(i, values[i], has(active));
+            if (!has(children)) made->addTile(i, T(values[i]), has(active));
         }
         return made;
     }
@@ -147,8 +151,7 @@ class TreeReader {
         auto made = std::make_unique<Leaf>(openvdb::PartialCreate(), placeOf(leaf.origin));
         made->allocate();
         VdbLeaves::Mask mask;
-        if (!leaves_.allValues(leaf, background_, behind, mask, room, made->buffer().data()))
-            return nullptr;
+        if (!readValues(leaf, behind, room, mask, *made)) return nullptr;
         typename Leaf::NodeMaskType active;
         for (openvdb::Index x = 0; x < mask.size(); ++x)
             active.template getWord<std::uint64_t>(x) = mask[x];
@@ -156,9 +159,22 @@ class TreeReader {
         return made;
     }
 
+    bool readValues(const VdbLeaf& leaf, std::size_t behind, VdbLeaves::BytesRoom& room,
+                    VdbLeaves::Mask& mask, Leaf& made) const {
+        auto* const values = made.buffer().data();
+        if constexpr (std::is_same_v<T, bool>) {
+            VdbLeaves::Mask bits;
+            if (!leaves_.allBools(leaf, behind, mask, room.run, bits)) return false;
+            std::copy(bits.begin(), bits.end(), values);
+            return true;
+        } else {
+            return leaves_.allValues(leaf, background_, behind, mask, room, values);
+        }
+    }
+
     const FileBytes& file_;
     const VdbValueFormat& format_;
-    T background_;
+    Stored background_;
     const std::vector<VdbNode>& nodes_;
     const VdbLeaves& leaves_;
     std::map<openvdb::Coord, std::unique_ptr<Upper>> uppers_;
@@ -169,11 +185,21 @@ class TreeReader {
 
 }  // namespace
 
-template <typename T>
-typename openvdb::tree::Tree4<T, 5, 4, 3>::Type::Ptr readTree(
-    const FileBytes& file, const VdbValueFormat& format, T background,
-    const std::vector<VdbNode>& nodes, const VdbLeaves& leaves, const Listener& listener) {
-    return TreeReader<T>(file, format, background, nodes, leaves).read(listener);
+openvdb::tree::TreeBase::Ptr readTree(const FileBytes& file, const std::string& type,
+                                      const VdbValueFormat& format,
+                                      std::span<const char> background,
+                                      const std::vector<VdbNode>& nodes, const VdbLeaves& leaves,
+                                      const Listener& listener) {
+    using Trees = TreeTypes<openvdb::FloatTree, openvdb::DoubleTree, openvdb::Int32Tree,
+                            openvdb::Int64Tree, openvdb::BoolTree, openvdb::MaskTree,
+                            openvdb::Vec3STree, openvdb::Vec3DTree, openvdb::Vec3ITree>;
+    openvdb::tree::TreeBase::Ptr tree;
+    applyType(Trees(), type, [&]<typename Tree>(std::type_identity<Tree>) {
+        StoredValue<typename Tree::ValueType> value;
+        std::copy_n(background.begin(), sizeof value, reinterpret_cast<char*>(&value));
+        tree = TreeReader<Tree>(file, format, value, nodes, leaves).read(listener);
+    });
+    return tree;
 }
 
 template <typename T>
@@ -182,20 +208,18 @@ typename openvdb::tree::Tree4<T, 5, 4, 3>::Type::Ptr readNodes(const FileBytes& 
                                                                T background,
                                                                const std::vector<VdbNode>& nodes,
                                                                const VdbLeaves& leaves) {
-    return TreeReader<T>(file, format, background, nodes, leaves).readNodes();
+    using Tree = typename openvdb::tree::Tree4<T, 5, 4, 3>::Type;
+    return TreeReader<Tree>(file, format, background, nodes, leaves).readNodes();
 }
 
-#define DELTASPLAT_READ_TREE(T)                                                                    \
-    template openvdb::tree::Tree4<T, 5, 4, 3>::Type::Ptr readTree(                                 \
-        const FileBytes&, const VdbValueFormat&, T, const std::vector<VdbNode>&, const VdbLeaves&, \
-        const Listener&);                                                                          \
-    template openvdb::tree::Tree4<T, 5, 4, 3>::Type::Ptr readNodes(                                \
-        const FileBytes&, const VdbValueFormat&, T, const std::vector<VdbNode>&,                   \
+#define DELTASPLAT_READ_NODES(T)                                                 \
+    template openvdb::tree::Tree4<T, 5, 4, 3>::Type::Ptr readNodes(              \
+        const FileBytes&, const VdbValueFormat&, T, const std::vector<VdbNode>&, \
         const VdbLeaves&);
-DELTASPLAT_READ_TREE(float)
-DELTASPLAT_READ_TREE(double)
-DELTASPLAT_READ_TREE(std::int32_t)
-DELTASPLAT_READ_TREE(std::int64_t)
-#undef DELTASPLAT_READ_TREE
+DELTASPLAT_READ_NODES(float)
+DELTASPLAT_READ_NODES(double)
+DELTASPLAT_READ_NODES(std::int32_t)
+DELTASPLAT_READ_NODES(std::int64_t)
+#undef DELTASPLAT_READ_NODES
 
 }  // namespace deltasplat

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # The program finds what belongs to it from wherever it is called, and loads OpenVDB, which takes
 # longer than most of what it is asked for, only where that is needed.
-# Usage: start.sh PROGRAM OIIOTOOL SCRATCH
+# Usage: start.sh PROGRAM OIIOTOOL SCRATCH FRUSTUM.vdb
 source "${BASH_SOURCE%/*}/pictures.sh"
 source "${BASH_SOURCE%/*}/runs.sh"
 begin "$@"
+frustum=$4
 mkdir -p "with space/bin" "with space/lib" links
 cp "$program" "with space/bin/deltasplat"
 cp -r "${program%/*}/../lib/deltasplat" "with space/lib/"
@@ -45,6 +46,7 @@ for command in --version "render --version" --help "render --help" "render --no-
     "info --list cloud.vdb" "info cloud.vdb" "info engine.npy" "info packed.vdb" "bench engine.vdb --size 32x32 --repeats 1 --threads 1" \
     "diff engine.npy engine_24x24x24_uint8.raw" "diff engine.vdb engine.npy" "diff cloud.vdb cloud.vdb" \
     "convert engine.npy engine.nii" "convert engine.npy x.vdb" "convert engine.npy x.vdb --background auto" \
+    "convert colored.vdb x.vdb --grid Cd.x" "render colored.vdb -o x.png --size 32x32 --color Cd" \
     "convert cloud.vdb x.vdb" "convert cloud.vdb x.npy" "convert cloud.vdb x.vdb --background 0" \
     "delta cloud.vdb x.vdb" "delta engine.npy x.vdb" \
     "delta engine.npy x.vdb --pack" "restore deltas.vdb x.vdb" "restore packed.vdb x.npy" \
@@ -52,7 +54,7 @@ for command in --version "render --version" --help "render --help" "render --no-
     # shellcheck disable=SC2086
     ! loads_openvdb "$program" $command || fail "$command: loads OpenVDB"
 done
-loads_openvdb "$program" convert colored.vdb x.vdb --grid Cd.x || fail "colours: do not load OpenVDB"
+loads_openvdb "$program" info "$frustum" || fail "a frustum: does not load OpenVDB"
 
 versions=$("$program" --version)
 [[ $versions == "$("$program" render --version)" && $versions == "$("$program" -q --version)" ]] ||
