@@ -11,10 +11,10 @@
 namespace deltasplat {
 namespace {
 
-template <typename Tree>
+template <typename Values>
 std::shared_ptr<const WrittenTree> writerOf(const std::shared_ptr<openvdb::TreeBase>& tree) {
-    return std::make_shared<const TreeWriter<OwnValues<Tree>>>(
-        OwnValues<Tree>(std::static_pointer_cast<const Tree>(tree)));
+    return std::make_shared<const TreeWriter<Values>>(
+        Values(std::static_pointer_cast<const typename Values::Tree>(tree)));
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ bool WrittenGrid::isHalf() const {
 WrittenGrid writtenGrid(const TreeGrid& grid) {
     WrittenGrid written{grid.name(), grid.metadata, grid.map, nullptr};
     const auto take = [&](const auto& tree) {
-        written.tree = writerOf<std::decay_t<decltype(tree)>>(grid.tree);
+        written.tree = writerOf<OwnValues<std::decay_t<decltype(tree)>>>(grid.tree);
     };
     // Volumes and, of samples, colours.
     const bool isKnown =
@@ -34,6 +34,14 @@ WrittenGrid writtenGrid(const TreeGrid& grid) {
     if (!isKnown)
         throw Error(ErrorCode::kFailed, gotExpected("grid to write", "type " + grid.type(),
                                                     "a scalar grid, or one of vec3s"));
+    return written;
+}
+
+WrittenGrid writtenDeltas(const TreeGrid& grid) {
+    WrittenGrid written{grid.name(), grid.metadata, grid.map, nullptr};
+    grid.apply<TreeTypes<openvdb::Int32Tree, openvdb::Int64Tree>>([&](const auto& tree) {
+        written.tree = writerOf<DeltaValues<std::decay_t<decltype(tree)>>>(grid.tree);
+    });
     return written;
 }
 

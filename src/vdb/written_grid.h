@@ -27,4 +27,7 @@ struct WrittenGrid {
 /// @throw Error(kFailed) if it is of another type
 WrittenGrid writtenGrid(const TreeGrid& grid);
 
+/// Returns the same of a grid of deltas, of int32 or int64, in fewer bytes.
+WrittenGrid writtenDeltas(const TreeGrid& grid);
+
 }  // namespace deltasplat

@@ -16,6 +16,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
+#include "ingest/vdb/vdb_file.h"
 #include "unit/convert_helpers.h"
 #include "unit/random_grid.h"
 #include "vdb/leaf_pieces.h"
@@ -194,6 +195,50 @@ TEST(WriteVdb, LeavesThatAreNotKeptArePackedAgain) {
         EXPECT_EQ(room == kept, kept == 0);
     }
     EXPECT_GT(packed.front().size(), 2000000u);
+}
+
+// Leaves of every number of active voxels, of small numbers, of any, and of the largest.
+template <typename Grid>
+typename Grid::Ptr deltasOfAllCounts() {
+    using T = typename Grid::ValueType;
+    const auto grid = Grid::create(0);
+    std::mt19937_64 random(5);
+    for (int leaf = 0; leaf < 3 * 512; ++leaf) {
+        for (int i = 0; i <= leaf % 512; ++i) {
+            const auto any = T(random());
+            const T value = leaf < 512 ? T(1 + std::uint64_t(any) % 9) : any;
+            grid->tree().setValueOn(Coord(8 * leaf + i % 8, i / 8 % 8, i / 64),
+                                    leaf < 1024 ? value : std::numeric_limits<T>::max());
+        }
+    }
+    // Inactive voxels that hold something.
+    grid->tree().setValueOff(Coord(-100, 0, 0), 5);
+    grid->tree().setValueOff(Coord(-101, 0, 0), 6);
+    grid->setName("deltas");
+    return grid;
+}
+
+template <typename Grid>
+void expectDeltasReadByOpenVdb() {
+    const TempFolder folder;
+    openvdb::initialize();
+    const auto grid = deltasOfAllCounts<Grid>();
+    writeVdb("plain.vdb", {writtenGrid(fromOpenVdb(grid))});
+    writeVdb("deltas.vdb", {writtenDeltas(fromOpenVdb(grid))});
+    EXPECT_LT(testing::readBytes("deltas.vdb").size(), testing::readBytes("plain.vdb").size());
+    const auto read = openvdb::gridPtrCast<Grid>(testing::readGrids("deltas.vdb").front());
+    writeVdb("again.vdb", {writtenGrid(fromOpenVdb(read))});
+    EXPECT_EQ(withoutTag("again.vdb"), withoutTag("plain.vdb"));
+    const VdbFile file("deltas.vdb");
+    writeVdb("ours.vdb", {writtenGrid(file.read(file.grids().front(), {}))});
+    EXPECT_EQ(withoutTag("ours.vdb"), withoutTag("plain.vdb"));
+    EXPECT_TRUE(file.readLeaves(file.grids().front(), VdbFile::Find::kByNotesAlone));
+}
+
+// Chunks that OpenVDB does not ask Blosc for are chunks that it reads.
+TEST(WriteVdb, DeltasAreSmallerAndReadByOpenVdb) {
+    expectDeltasReadByOpenVdb<openvdb::Int32Grid>();
+    expectDeltasReadByOpenVdb<openvdb::Int64Grid>();
 }
 
 TEST(WriteVdb, OtherGridsAreRefused) {
