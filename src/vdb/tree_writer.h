@@ -46,31 +46,31 @@ class OwnValues {
     std::shared_ptr<const Tree> tree_;
 };
 
-/// How a tree of deltas is written: as it is, but of each leaf by bits if that is smaller, which
-/// OpenVDB does not ask Blosc for, and reads all the same.
+/// How a tree of deltas is written: active values alone, for others mean nothing, and of each leaf
+/// by bits if that is smaller, which OpenVDB does not ask Blosc for, and reads all the same.
 template <typename T>
 class DeltaValues : public OwnValues<T> {
   public:
     using typename OwnValues<T>::Leaf;
     using OwnValues<T>::OwnValues;
 
-    LeafNote appendLeaf(const Leaf& leaf, bool half, std::string& to) const {
+    LeafNote appendLeaf(const Leaf& leaf, bool, std::string& to) const {
+        constexpr std::int8_t kKind = openvdb::io::NO_MASK_OR_INACTIVE_VALS;
         constexpr std::int64_t kSize = sizeof(std::int64_t);
-        const std::size_t place = to.size();
-        const LeafNote note = OwnValues<T>::appendLeaf(leaf, half, to);
-        // Others have more than deltas.
-        if (note.kind != openvdb::io::NO_MASK_OR_INACTIVE_VALS) return note;
+        appendBytes(kKind, to);
         std::array<typename T::ValueType, Leaf::SIZE> values;
         std::size_t count = 0;
-        forBits(leaf.getValueMask(),
-                [&](std::size_t i) { values[count++] = leaf.buffer().data()[i]; });
+        const auto* const all = leaf.buffer().data();
+        forBits(leaf.getValueMask(), [&](std::size_t i) { values[count++] = all[i]; });
+        const std::size_t place = to.size();
+        const std::int64_t plain = appendStored(values.data(), count, false, to);
         std::string bits;
         const std::int64_t size = appendBloscBits(values.data(), count, sizeof values[0], bits);
-        if (size == 0 || kSize + size >= note.size) return note;
-        to.resize(place + sizeof note.kind);
+        if (size == 0 || kSize + size >= plain) return {kKind, plain};
+        to.resize(place);
         appendBytes(size, to);
         to += bits;
-        return {note.kind, kSize + size};
+        return {kKind, kSize + size};
     }
 };
 

@@ -211,9 +211,6 @@ typename Grid::Ptr deltasOfAllCounts() {
                                     leaf < 1024 ? value : std::numeric_limits<T>::max());
         }
     }
-    // Inactive voxels that hold something.
-    grid->tree().setValueOff(Coord(-100, 0, 0), 5);
-    grid->tree().setValueOff(Coord(-101, 0, 0), 6);
     grid->setName("deltas");
     return grid;
 }
