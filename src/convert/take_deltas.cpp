@@ -134,9 +134,10 @@ void removeSigns(openvdb::Int32Tree& deltas) {
     deltas.getNodes(leaves);
     parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
+            // Inactive ones as well, which are 0 and stay so: without looking at masks.
             std::int32_t* const values = leaves[i]->buffer().data();
-            for (auto on = leaves[i]->valueMask().beginOn(); on; ++on)
-                values[on.pos()] = toZigzag(values[on.pos()]);
+            std::transform(values, values + DeltaTree::Leaf::SIZE, values,
+                           [](std::int32_t delta) { return toZigzag(delta); });
         }
     });
 }
