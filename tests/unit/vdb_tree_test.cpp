@@ -144,6 +144,7 @@ TEST(VdbTree, GridsThatShareVoxelsAreReadAsByOpenVdb) {
     first->setSaveFloatAsHalf(true);
     const auto second = openvdb::FloatGrid::create(first->treePtr());
     second->setName("second");
+    second->setSaveFloatAsHalf(true);
     second->insertMeta("note", openvdb::StringMetadata("its own"));
     second->setTransform(openvdb::math::Transform::createLinearTransform(3));
     openvdb::io::File("a.vdb").write(openvdb::GridCPtrVec{first, second});
