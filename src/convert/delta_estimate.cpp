@@ -100,18 +100,19 @@ std::optional<Volume> sampleOf(const Volume& volume, const Chosen& chosen) {
     return sample;
 }
 
+double bytesOf(const TreeGrid& grid) {
+    return double(writtenBytes(writtenGrid(grid)));
+}
+
 double nodeBytes(const openvdb::TreeBase& tree) {
     const auto counts = tree.nodeCount();  // leaves first, the root last
     return kLowerNode * counts[1] + kUpperNode * counts[2];
 }
 
 // Returns the bytes of a grid's metadata and nodes, and of all the leaves that its own stand for.
-// @param leaves   how many times its own
-// @param nodes    bytes of all nodes
-// @param written  how it is written
-double scaledBytes(const TreeGrid& grid, double leaves, double nodes,
-                   WrittenGrid (*written)(const TreeGrid&) = writtenGrid) {
-    const auto bytesOf = [&](const TreeGrid& of) { return double(writtenBytes(written(of))); };
+// @param leaves  how many times its own
+// @param nodes  bytes of all nodes
+double scaledBytes(const TreeGrid& grid, double leaves, double nodes) {
     TreeGrid empty{nullptr, grid.metadata, grid.map};
     grid.apply<ScalarTrees>([&](const auto& tree) {
         empty.tree = std::make_shared<std::decay_t<decltype(tree)>>(tree.background());
@@ -162,9 +163,8 @@ std::optional<DeltaEstimate> estimateFrom(const Volume& volume, int sliceAxis) {
     const TakenDeltas voxels = takeDeltas(*sample, options);
     // Of what inactive voxels hold a sample says little.
     if (voxels.inactive.numbers || voxels.inactive.tooMany) return {};
-    estimate.deltaBytes =
-        scaledBytes(deltaGrid(voxels.deltas, voxels.header), 1 / share,
-                    share == 1 ? nodeBytes(*voxels.deltas) : nodes, writtenDeltas);
+    estimate.deltaBytes = scaledBytes(deltaGrid(voxels.deltas, voxels.header), 1 / share,
+                                      share == 1 ? nodeBytes(*voxels.deltas) : nodes);
     estimate.readsByBlocks =
         mayDecodeBlocks(voxels.header) && volume.gridClass != kLevelSetClass;  // made fog first
     options.pack = true;

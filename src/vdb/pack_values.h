@@ -23,12 +23,6 @@ void appendBytes(const T& value, std::string& to) {
 /// Appends a chunk of Blosc's as OpenVDB makes them; returns its bytes, 0 if it cannot be made.
 std::int64_t appendBlosc(const void* values, std::size_t bytes, std::string& to);
 
-/// Appends a chunk of Blosc's of numbers whose bits of equal weight lie together (its bit shuffle),
-/// in which LZ4 finds more of small ones; returns its bytes, 0 if it cannot be made, or is no
-/// smaller than they.
-std::int64_t appendBloscBits(const void* values, std::size_t count, std::size_t bytesOfOne,
-                             std::string& to);
-
 /// Appends values packed by Blosc, or as they are where that makes them no smaller: their number of
 /// bytes, negative if they are not packed, and they themselves.
 /// @return how many bytes they have

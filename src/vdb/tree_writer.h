@@ -46,8 +46,7 @@ class OwnValues {
     std::shared_ptr<const Tree> tree_;
 };
 
-/// How a tree of deltas is written: active values alone, for others mean nothing, and of each leaf
-/// by bits if that is smaller, which OpenVDB does not ask Blosc for, and reads all the same.
+/// How a tree of deltas is written: active values alone, for others mean nothing.
 template <typename T>
 class DeltaValues : public OwnValues<T> {
   public:
@@ -56,21 +55,12 @@ class DeltaValues : public OwnValues<T> {
 
     LeafNote appendLeaf(const Leaf& leaf, bool, std::string& to) const {
         constexpr std::int8_t kKind = openvdb::io::NO_MASK_OR_INACTIVE_VALS;
-        constexpr std::int64_t kSize = sizeof(std::int64_t);
         appendBytes(kKind, to);
         std::array<typename T::ValueType, Leaf::SIZE> values;
         std::size_t count = 0;
         const auto* const all = leaf.buffer().data();
         forBits(leaf.getValueMask(), [&](std::size_t i) { values[count++] = all[i]; });
-        const std::size_t place = to.size();
-        const std::int64_t plain = appendStored(values.data(), count, false, to);
-        std::string bits;
-        const std::int64_t size = appendBloscBits(values.data(), count, sizeof values[0], bits);
-        if (size == 0 || kSize + size >= plain) return {kKind, plain};
-        to.resize(place);
-        appendBytes(size, to);
-        to += bits;
-        return {kKind, kSize + size};
+        return {kKind, appendStored(values.data(), count, false, to)};
     }
 };
 

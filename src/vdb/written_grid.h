@@ -27,7 +27,8 @@ struct WrittenGrid {
 /// @throw Error(kFailed) if it is of another type
 WrittenGrid writtenGrid(const TreeGrid& grid);
 
-/// Returns the same of a grid of deltas, of int32 or int64, in fewer bytes.
+/// Returns what is written of a grid of deltas, of int32 or int64: active values, on a background
+/// of 0, sooner than writtenGrid() has it.
 WrittenGrid writtenDeltas(const TreeGrid& grid);
 
 }  // namespace deltasplat

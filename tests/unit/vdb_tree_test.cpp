@@ -137,6 +137,24 @@ TEST(VdbTree, VectorsAreReadAsByOpenVdb) {
     expectSameVectors<openvdb::Vec3IGrid>();
 }
 
+// Says of the last grid of a file that its values are whole floats.
+// @param type  place of its type in the file, and how long that is without "_HalfFloat"
+std::string withoutHalf(std::string bytes, std::size_t type, std::size_t length) {
+    const std::string half = "_HalfFloat";
+    bytes.erase(type + length, half.size());
+    const auto subtract = [&](std::size_t place, auto number) {
+        std::memcpy(&number, &bytes[place], sizeof number);
+        number -= decltype(number)(half.size());
+        std::memcpy(&bytes[place], &number, sizeof number);
+    };
+    subtract(type - 4, std::uint32_t{});
+    std::uint32_t parent = 0;
+    std::memcpy(&parent, &bytes[type + length], sizeof parent);
+    for (std::size_t i = 0; i < 3; ++i)
+        subtract(type + length + 4 + parent + 8 * i, std::uint64_t{});
+    return bytes;
+}
+
 // Voxels that several grids have are stored once, of the first, and read of each.
 TEST(VdbTree, GridsThatShareVoxelsAreReadAsByOpenVdb) {
     const TempFolder folder;
@@ -161,6 +179,12 @@ TEST(VdbTree, GridsThatShareVoxelsAreReadAsByOpenVdb) {
 
     std::string bytes = testing::readBytes("a.vdb");
     const std::string type = "Tree_float_5_4_3";
+    testing::writeBytes("whole.vdb", withoutHalf(bytes, bytes.rfind(type), type.size()));
+    const VdbFile other("whole.vdb");
+    EXPECT_EQ(other.grids().back().valueType(), "half");
+    EXPECT_TRUE(areSame(*other.read(other.grids().back(), {}).as<openvdb::FloatTree>(),
+                        *whole.as<openvdb::FloatTree>()));
+
     bytes.replace(bytes.rfind(type), type.size(), "Tree_int32_5_4_3");
     testing::writeBytes("b.vdb", bytes);
     const VdbFile damaged("b.vdb");

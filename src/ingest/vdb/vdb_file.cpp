@@ -220,6 +220,10 @@ void VdbFile::readDirectory() {
         bytes.seek(grid.end);
         grids_.push_back(std::move(grid));
     }
+    // Voxels that are shared are stored as the grid that has them says.
+    for (VdbGrid& grid : grids_) {
+        if (const VdbGrid* const owner = findOwner(grid)) grid.half = owner->half;
+    }
 }
 
 VdbMetadata VdbFile::metadata(const VdbGrid& grid) const {
@@ -234,10 +238,17 @@ void VdbFile::findEnd(VdbBytes& bytes, VdbGrid& grid) const {
     grid.end = bytes.position();
 }
 
-const VdbGrid& VdbFile::parentOf(const VdbGrid& grid) const {
-    for (const VdbGrid& other : grids_) {
-        if (other.uniqueName == grid.parentName && other.parentName.empty()) return other;
-    }
+// Returns the grid whose voxels a grid has, which may be itself; null if there is none.
+const VdbGrid* VdbFile::findOwner(const VdbGrid& grid) const {
+    if (grid.parentName.empty()) return &grid;
+    const auto found = std::find_if(grids_.begin(), grids_.end(), [&](const VdbGrid& other) {
+        return other.uniqueName == grid.parentName && other.parentName.empty();
+    });
+    return found == grids_.end() ? nullptr : &*found;
+}
+
+const VdbGrid& VdbFile::ownerOf(const VdbGrid& grid) const {
+    if (const VdbGrid* const owner = findOwner(grid)) return *owner;
     throw Error(ErrorCode::kInput, gotExpected(file_.string(),
                                                "grid \"" + grid.name +
                                                    "\" without "
@@ -273,7 +284,7 @@ struct VdbFile::Found {
 std::optional<VdbFile::Found> VdbFile::find(const VdbGrid& grid, Find how,
                                             const Listener& listener) const {
     const std::string where = whereOf(file_, grid);
-    const VdbGrid& owner = grid.parentName.empty() ? grid : parentOf(grid);
+    const VdbGrid& owner = ownerOf(grid);
     VdbBytes bytes(file_);
     const GridHead head = readHeads(bytes, grid, owner, file_);
     const std::uint64_t begin = bytes.position();

@@ -101,7 +101,8 @@ class VdbFile {
     std::optional<Found> find(const VdbGrid& grid, Find how, const Listener& listener) const;
     void readDirectory();
     void findEnd(VdbBytes& bytes, VdbGrid& grid) const;
-    const VdbGrid& parentOf(const VdbGrid& grid) const;
+    const VdbGrid* findOwner(const VdbGrid& grid) const;
+    const VdbGrid& ownerOf(const VdbGrid& grid) const;
 
     std::filesystem::path file_;
     VdbMetadata metadata_;

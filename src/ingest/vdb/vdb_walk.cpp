@@ -327,11 +327,16 @@ bool VdbValueFormat::setType(const std::string& type, bool half) {
 }
 
 double VdbTreeSize::memoryBytes(const VdbValueFormat& format) const {
-    // Two trees of the same nodes, whose slots hold a pointer or a value; 128 bytes of leaf beside
-    // its values.
-    const double slot = 8 + std::max<std::uint32_t>(8, format.bytes);
-    const double leafBytes = 512.0 * (2 + (format.leaf == Leaf::kValues ? format.bytes : 1)) + 256;
-    return double(leaves) * leafBytes + double(lower) * 4096 * slot + double(upper) * 32768 * slot;
+    // A node's slots hold a pointer or a value; a leaf has 128 bytes beside its values.
+    const auto treeBytes = [&](std::uint32_t value) {
+        const std::uint32_t slot = std::max<std::uint32_t>(8, (value + 7) / 8 * 8);
+        return double(leaves) * (512.0 * value + 128) +
+               (double(lower) * 4096 + double(upper) * 32768) * slot;
+    };
+    constexpr std::uint32_t kCodeBytes = 2;
+    const bool isVector = format.bytes > 8;
+    return treeBytes(format.bytes) + treeBytes(kCodeBytes) +
+           (isVector ? treeBytes(format.bytes / 3) : 0);
 }
 
 double VdbTreeSize::codeBytes(const VdbValueFormat& format) const {

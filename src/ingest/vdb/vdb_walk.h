@@ -35,7 +35,7 @@ struct VdbTreeSize {
     std::uint64_t lower = 0;   ///< nodes of 16^3 leaves
     std::uint64_t upper = 0;   ///< nodes of 32^3 lower nodes
     std::uint64_t tiles = 0;   ///< active ones, of all levels
-    /// Returns about how much memory the tree and a tree of codes beside it take.
+    /// Returns about how much memory the tree, one of a part of vectors, and one of codes take.
     double memoryBytes(const VdbValueFormat& format) const;
     /// Returns the same of the tree of codes alone.
     double codeBytes(const VdbValueFormat& format) const;

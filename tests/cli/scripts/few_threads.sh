@@ -46,7 +46,8 @@ for limit in 1 3 4 5 6 8 10 12 16 40 100; do
             timeout -k 5 60 "${as_user[@]}" bash -c "ulimit -u $limit; exec there/bin/program \"\$@\"" - "${command[@]}" \
                 >stdout 2>message
             code=$?
-            [[ $name == frustum && $code == 3 ]] && code=0 && : >message
+            [[ $name == frustum && $code == 3 && $(cat message) == *NonlinearFrustumMap* ]] &&
+                code=0 && : >message
             [[ $code == 0 || $code == 1 ]] ||
                 { echo "ulimit -u $limit, ${command[*]}: exit code $code: $(cat message)"; exit 1; }
             [[ $code == 0 ||
