@@ -12,6 +12,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
@@ -67,13 +68,16 @@ void expectSameRead(const openvdb::GridBase::Ptr& grid) {
 // Whether two trees have the same values, bit for bit, in nodes of the same places.
 template <typename Tree>
 bool areSame(const Tree& a, const Tree& b) {
+    const auto bytesOf = [](const auto& value) {
+        return std::string_view(reinterpret_cast<const char*>(&value), sizeof value);
+    };
     auto voxel = a.cbeginValueAll();
     auto other = b.cbeginValueAll();
     for (; voxel && other; ++voxel, ++other) {
         const auto mine = *voxel;
         const auto theirs = *other;
         if (voxel.getBoundingBox() != other.getBoundingBox() ||
-            voxel.isValueOn() != other.isValueOn() || std::memcmp(&mine, &theirs, sizeof mine) != 0)
+            voxel.isValueOn() != other.isValueOn() || bytesOf(mine) != bytesOf(theirs))
             return false;
     }
     return !voxel && !other && a.background() == b.background();
