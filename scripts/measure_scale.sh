@@ -34,16 +34,19 @@ milliseconds() { # JSON METHOD
 run = json.load(open(sys.argv[1]))["runs"][0]["methods"][sys.argv[2]]
 print("%.2f" % (1e3 * run["render"]["median"]))' "$1" "$2"
 }
-# Seconds of a peer's picture, of the JSON that it prints: the median; empty without one.
+# Milliseconds of a peer's picture, of the JSON that it prints: the median; empty without one, which
+# is said.
 peer() { # DRIVER FILE THREADS
     [[ -n $peers ]] || return 0
-    local run=()
+    local run=() got
     [[ $1 == peer_vtk ]] && run=(xvfb-run -a)
-    "${run[@]}" python3 "$peers/$1.py" "$2" --tf ct --view oblique --threads "$3" \
+    got=$("${run[@]}" python3 "$peers/$1.py" "$2" --tf ct --view oblique --threads "$3" \
         --repeats $repeats --out "$folder/peer.png" 2>"$folder/errors.txt" | tail -1 |
         python3 -c 'import json, sys
 try: print("%.1f" % (1e3 * json.load(sys.stdin)["render_s"]["median"]))
-except Exception: print("")'
+except Exception: print("")') || true
+    [[ -n $got ]] || echo "$1: no figure of $2: $(tail -1 "$folder/errors.txt")" >&2
+    echo "$got"
 }
 measure() { # FILE THREADS SIZE
     "$bin/deltasplat" -qq bench "$1" --json --tf "$root/examples/ct.json" "${camera[@]}" \
