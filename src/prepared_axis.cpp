@@ -147,7 +147,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
                      holdRule(levels, classes, tolerance), mixer ? &*mixer : nullptr};
     pack.descending = request.descending;
     if (joiner) pack.joiner = &*joiner;
-    pack.slant = parts.slant;
+    if (joiner) pack.slants = {glm::ivec2(0), parts.slant};
     pack.seen = request.seen;
     pack.slabLength = request.slabLength;
     pack.opacities = opacities;

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "delta/block_kernels.h"
-#include "delta/joined_class_reader.h"
+#include "delta/joined_tile_reader.h"
 #include "delta/mixed_sight.h"
 #include "delta/slot_holder.h"
 #include "hwy/cache_control.h"
@@ -47,7 +47,8 @@ ColumnPacker::ColumnPacker(const IndexBox& box, const PackOptions& options, cons
       box_(box),
       planner_(box),
       range_(range),
-      classReader_(slotMap, tools.ramps, options.sliceAxis) {
+      classReader_(slotMap, tools.ramps, options.sliceAxis),
+      before_(options.joiner ? JoinedTileReader::kColumns : 4) {
     if (!tools.mixer) return;
     parts_ = tools.mixer->parts();
     window_.emplace(*tools.codes, options.sliceAxis,
@@ -66,6 +67,7 @@ void ColumnPacker::forParts(const Use& use) const {
 }
 
 void ColumnPacker::run(const Columns& columns) {
+    rows_.resize(std::size_t(parts_.within));
     reserve(columns);
     if (options_.painter) {
         own_ = std::make_unique<BlockLooks>(*options_.painter, *tools_.uncut, options_.sliceAxis,
@@ -79,18 +81,18 @@ void ColumnPacker::run(const Columns& columns) {
             block == columns.begin || !follows(block[-1], *block) || !isIn(block[-1]);
         const bool isLast = block + 1 == columns.end || !follows(*block, block[1]);
         if (isFirst) {
-            before_ = {};
+            std::fill(before_.begin(), before_.end(), SliceClasses{});
             held_ = {};
             if (own_) own_->beginColumn();
-            for (std::size_t half = 0; half < halves_.size(); ++half)
-                firstWord[half] = halves_[half].words.size();
+            for (std::size_t half = 0; half < rows_.size(); ++half)
+                firstWord[half] = rows_[half].words.size();
         }
         if (tools_.mixer) {
             addMixed(*block);
         } else {
             fetchAhead(block + 1, columns.end);
             read(*block);
-            add(block->position, {0, 0}, range_.layout.slicesOf(block->position.x));
+            add(block->position, 0, 0, range_.layout.slicesOf(block->position.x));
         }
         // What a block showed must be taken away behind it.
         const int next = firstPart(*block).x + parts_.slices;
@@ -98,25 +100,35 @@ void ColumnPacker::run(const Columns& columns) {
         if (!isLast) continue;
         if (next <= last) {
             classes_.fill(kEmptySlot);
-            forParts([&](const glm::ivec2& part) { add(partOf(*block, next, part), part, 1); });
+            forParts([&](const glm::ivec2& part) {
+                add(partOf(*block, next, part), numberOf(part), std::size_t(part.x), 1);
+            });
         }
         payForWords();
         if (parts_.within == 1) continue;
-        for (std::size_t half = 0; half < halves_.size(); ++half)
-            sortParts(halves_[half].words, firstWord[half]);
+        for (std::size_t half = 0; half < rows_.size(); ++half)
+            sortParts(rows_[half].words, firstWord[half]);
     }
     own_.reset();
     painted_ = {};
     finish();
 }
 
-void ColumnPacker::runJoined(std::span<const JoinedColumn> columns) {
-    std::size_t blocks = 0;
-    for (const JoinedColumn& column : columns)
-        blocks += column.mostBlocks(range_.firstBlock, range_.lastBlock);
-    reserveWords(kMostWordsOfBlock * blocks);
-    for (const JoinedColumn& column : columns) {
-        addJoined(column);
+void ColumnPacker::runJoined(const JoinedTiles& tiles, std::size_t run) {
+    rows_.resize(std::size_t(kTileColumns.x));
+    std::vector<TileSources> sources;
+    for (const JoinedTile& tile : tiles.runs()[run]) sources.push_back(tiles.sourcesOf(tile));
+    payForWords();
+    for (std::size_t u = 0; range_.storesWords && u < rows_.size(); ++u) {
+        std::size_t blocks = 0;
+        for (const TileSources& ofTile : sources)
+            blocks += tiles.mostBlocks(ofTile, int(u), range_.firstBlock, range_.lastBlock);
+        reserveWords(rows_[u], kMostWordsOfBlock * blocks);
+    }
+    JoinedTileReader reader(classReader_, *options_.joiner, tiles);
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        reader.begin(sources[i], range_.firstBlock, range_.lastBlock);
+        addJoined(reader, tiles.runs()[run][i]);
         payForWords();
     }
     finish();
@@ -125,55 +137,72 @@ void ColumnPacker::runJoined(std::span<const JoinedColumn> columns) {
 // Where all packers have more words than they may, there are to be none.
 void ColumnPacker::payForWords() {
     if (!range_.budget || !range_.storesWords) return;
-    const std::size_t words = halves_[0].words.size() + halves_[1].words.size();
+    std::size_t words = 0;
+    for (const PackedColumns& packed : rows_) words += packed.words.size();
     if (range_.budget->take(words - std::exchange(paidWords_, words))) return;
     range_.storesWords = false;
-    halves_ = {};
+    std::fill(rows_.begin(), rows_.end(), PackedColumns());
 }
 
 void ColumnPacker::finish() {
-    for (PackedColumns& packed : halves_) {
+    for (PackedColumns& packed : rows_) {
         if (options_.descending) dropUnneeded(packed.words);
         sortClasses(box_, packed);
     }
 }
 
-// Adds the words of a column of joined slices, block after block.
-void ColumnPacker::addJoined(const JoinedColumn& column) {
-    const JoinedClassReader reader(classReader_, *options_.joiner, options_.slant);
-    std::array<std::span<const CodeBlock>, 4> rest = column.sources;
-    constexpr int kNone = std::numeric_limits<int>::max();
-    std::optional<int> before;
-    const auto endRun = [&](int next) {
-        // What a block showed must be taken away behind it.
-        if (before && *before + 1 < next && *before + 1 <= range_.lastBlock) {
-            classes_.fill(kEmptySlot);
-            add({*before + 1, column.place}, {0, 0}, 1);
-        }
-        if (!before || *before + 1 < next) before_ = {};
+// Adds the words of a tile of joined slices, from its first slice to its last: of each row of
+// columns those of a slice are in the order of v.
+void ColumnPacker::addJoined(JoinedTileReader& reader, const JoinedTile& tile) {
+    constexpr int kNever = std::numeric_limits<int>::min();
+    std::array<int, JoinedTileReader::kColumns> last;  // place at which each column had a block
+    last.fill(kNever);
+    std::fill(before_.begin(), before_.end(), SliceClasses{});
+    std::vector<std::size_t> firstWords;
+    for (const PackedColumns& packed : rows_) firstWords.push_back(packed.words.size());
+    const auto addTo = [&](std::size_t column, int place, int slices) {
+        const std::size_t u = column / std::size_t(kTileColumns.y);
+        const std::size_t v = column % std::size_t(kTileColumns.y);
+        const glm::ivec2 at = tile * kTileColumns + glm::ivec2(u, v);
+        add({place, at}, column, u, slices);
     };
-    while (true) {
-        int place = kNone;
-        for (const auto& source : rest)
-            if (!source.empty()) place = std::min(place, source.front().position.x >> 1);
-        if (place > range_.lastBlock) break;
-        JoinedSources sources{};
-        for (std::size_t i = 0; i < rest.size(); ++i) {
-            while (!rest[i].empty() && rest[i].front().position.x >> 1 == place) {
-                sources[std::size_t(rest[i].front().position.x & 1)][i] = &rest[i].front();
-                rest[i] = rest[i].subspan(1);
+    // What a block showed must be taken away behind it.
+    const auto endBefore = [&](std::size_t column, int place) {
+        if (last[column] == kNever || last[column] != place - 1 || place > range_.lastBlock) return;
+        classes_.fill(kEmptySlot);
+        addTo(column, place, 1);
+    };
+    int place = kNever;
+    const auto endAll = [&] {
+        for (std::size_t column = 0; column < last.size(); ++column) endBefore(column, place + 1);
+    };
+    while (reader.next()) {
+        if (place != kNever && place + 1 < reader.place()) endAll();
+        place = reader.place();
+        for (std::size_t column = 0; column < last.size(); ++column) {
+            if (!reader.has(column)) {
+                endBefore(column, place);
+                continue;
             }
+            classes_ = reader.classes(column);
+            addTo(column, place, range_.layout.slicesOf(place));
+            last[column] = place;
         }
-        if (place < range_.firstBlock) continue;
-        const std::span<const CodeBlock> behind = rest[0];
-        for (std::size_t i = 0; i < std::min<std::size_t>(behind.size(), 2); ++i)
-            fetchAhead(&behind[i], behind.data() + behind.size());
-        endRun(place);
-        reader.read(sources, classes_);
-        add({place, column.place}, {0, 0}, range_.layout.slicesOf(place));
-        before = place;
     }
-    endRun(kNone);
+    if (place != kNever) endAll();
+    if (!options_.descending) return;
+    for (std::size_t u = 0; u < rows_.size(); ++u) groupByColumn(rows_[u].words, firstWords[u]);
+}
+
+// Puts the words of a row of a tile one column behind the other: then a word's neighbours are those
+// of its block.
+void ColumnPacker::groupByColumn(std::vector<PendingWord>& words, std::size_t first) {
+    std::array<std::vector<PendingWord>, std::size_t(kTileColumns.y)> columns;
+    for (std::size_t i = first; i < words.size(); ++i)
+        columns[std::size_t(words[i].block.y & (kTileColumns.y - 1))].push_back(words[i]);
+    words.resize(first);
+    for (const std::vector<PendingWord>& column : columns)
+        words.insert(words.end(), column.begin(), column.end());
 }
 
 // Puts words of a column's parts along v one part behind the other.
@@ -205,25 +234,22 @@ bool ColumnPacker::isIn(const CodeBlock& block) const {
            (block.position.x >= range_.firstBlock && block.position.x <= range_.lastBlock);
 }
 
-// Makes room for the most words that there can be: what is not used of it takes no memory.
+// Makes room for the most words that there can be.
 void ColumnPacker::reserve(const Columns& columns) {
+    payForWords();
     if (!range_.storesWords) return;
     const auto blocks = std::size_t(
         std::count_if(columns.begin, columns.end, [&](const CodeBlock& b) { return isIn(b); }));
     const std::size_t most =
         kMostWordsOfBlock * std::size_t(parts_.slices) * std::size_t(parts_.within) * blocks;
-    reserveWords(most);
+    for (PackedColumns& packed : rows_) reserveWords(packed, most);
 }
 
-void ColumnPacker::reserveWords(std::size_t most) {
-    payForWords();
-    if (!range_.storesWords) return;
-    for (int half = 0; half < parts_.within; ++half) {
-        PackedColumns& packed = halves_[std::size_t(half)];
-        packed.words.reserve(most);
-        packed.storage.reserve(64 * most);
-        if (options_.painter) packed.looks.reserve(64 * most);
-    }
+// What is not used of it takes no memory.
+void ColumnPacker::reserveWords(PackedColumns& packed, std::size_t most) {
+    packed.words.reserve(most);
+    packed.storage.reserve(64 * most);
+    if (options_.painter) packed.looks.reserve(64 * most);
 }
 
 // Returns the position of a block's first part.
@@ -322,7 +348,7 @@ void ColumnPacker::addMixed(const CodeBlock& block) {
                      std::copy(slots.begin(), slots.end(), classes_.begin());
                      if (own_) own_->paint(position, number, classes_);
                  }
-                 add(position, part, slices);
+                 add(position, numberOf(part), std::size_t(part.x), slices);
              });
 }
 
@@ -372,13 +398,16 @@ void ColumnPacker::clearCutOff(const glm::ivec3& position) {
 }
 
 // Adds the words of the first `slices` slices of classes_.
-// @param part  of the column: what was before is kept for each
-void ColumnPacker::add(const glm::ivec3& position, const glm::ivec2& part, int slices) {
-    SliceClasses& before = before_[numberOf(part)];
-    PackedColumns& packed = halves_[std::size_t(part.x)];
+// @param number  of the column's part, or of the column in its tile: what was before is kept for
+//                each
+// @param row     that it is packed in
+void ColumnPacker::add(const glm::ivec3& position, std::size_t number, std::size_t row,
+                       int slices) {
+    SliceClasses& before = before_[number];
+    PackedColumns& packed = rows_[row];
     BlockChanges changes;
     compareClasses(before.data(), classes_.data(), changes.visible.data(), changes.changed.data());
-    if (own_) own_->compare(numberOf(part), changes);
+    if (own_) own_->compare(number, changes);
     planner_.add(8 * position.x, std::span(changes.visible).first(std::size_t(slices)),
                  std::span(changes.changed).first(std::size_t(slices)));
     for (int s = 0; s < slices; ++s) {
@@ -394,7 +423,7 @@ void ColumnPacker::add(const glm::ivec3& position, const glm::ivec2& part, int s
         packed.looks.insert(packed.looks.end(), looks, looks + 64);
     }
     std::copy_n(&classes_[7 * 64], 64, before.begin());
-    if (own_) own_->endBlock(numberOf(part));
+    if (own_) own_->endBlock(number);
 }
 
 // Whether a word is needed of what a slice shows. Of slabs that are walked from the last slice on,

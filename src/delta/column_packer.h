@@ -15,7 +15,7 @@
 #include "delta/class_reader.h"
 #include "delta/code_blocks.h"
 #include "delta/hold_slots.h"
-#include "delta/joined_columns.h"
+#include "delta/joined_tiles.h"
 #include "delta/mix_window.h"
 #include "delta/packed_deltas.h"
 #include "delta/value_mixer.h"
@@ -24,6 +24,7 @@
 
 namespace deltasplat {
 
+class JoinedTileReader;
 class MixedSight;
 class SlotHolder;
 
@@ -75,11 +76,12 @@ class ColumnPacker {
                  std::span<const Slot> slotMap, const PackRange& range);
 
     void run(const Columns& columns);
-    /// The same of columns whose slices are joined.
-    void runJoined(std::span<const JoinedColumn> columns);
+    /// The same of a run of tiles whose slices are joined.
+    void runJoined(const JoinedTiles& tiles, std::size_t run);
 
-    /// Of the parts of columns along u, one.
-    PackedColumns& half(int i) { return halves_[std::size_t(i)]; }
+    /// What it packed: of columns that are halved along u, the first halves and the second ones;
+    /// of tiles, each row of columns.
+    std::vector<PackedColumns>& rows() { return rows_; }
     const SlabPlanner& planner() const { return planner_; }
 
   private:
@@ -91,7 +93,8 @@ class ColumnPacker {
     };
     using SliceClasses = std::array<ClassIndex, 64>;
     using BlockClasses = std::array<ClassIndex, 512>;
-    void addJoined(const JoinedColumn& column);
+    void addJoined(JoinedTileReader& reader, const JoinedTile& tile);
+    static void groupByColumn(std::vector<PendingWord>& words, std::size_t first);
     void payForWords();
     void finish();
     void dropUnneeded(std::vector<PendingWord>& words) const;
@@ -99,7 +102,7 @@ class ColumnPacker {
     static void sortParts(std::vector<PendingWord>& words, std::size_t first);
     bool isIn(const CodeBlock& block) const;
     void reserve(const Columns& columns);
-    void reserveWords(std::size_t most);
+    void reserveWords(PackedColumns& packed, std::size_t most);
     glm::ivec3 firstPart(const CodeBlock& block) const;
     glm::ivec3 partOf(const CodeBlock& block, int slices, const glm::ivec2& part) const;
     template <typename Use>
@@ -115,7 +118,7 @@ class ColumnPacker {
     void paintMixed(const CodeBlock& block);
     void keepSeen();
     void clearCutOff(const glm::ivec3& position);
-    void add(const glm::ivec3& position, const glm::ivec2& part, int slices);
+    void add(const glm::ivec3& position, std::size_t number, std::size_t row, int slices);
     bool isNeeded(int slice, std::uint64_t visible, std::uint64_t changed) const;
 
     const PackOptions& options_;
@@ -126,9 +129,9 @@ class ColumnPacker {
     PackRange range_;
     Subdivision parts_;
     ClassReader classReader_;
-    BlockClasses classes_{};                // of the block in hand, [slice][u][v]
-    std::array<SliceClasses, 4> before_{};  // [part]: of the slice before it
-    std::array<HeldSlots, 4> held_{};       // [part]
+    BlockClasses classes_{};            // of the block in hand, [slice][u][v]
+    std::vector<SliceClasses> before_;  // [part, or column of a tile]: of the slice before it
+    std::array<HeldSlots, 4> held_{};   // [part]
     BlockSlots slots_{};
     std::optional<Window> window_;
     std::optional<Window> uncut_;    // what was there before, if surfaces are cut
@@ -139,7 +142,7 @@ class ColumnPacker {
         std::array<OwnLook, 512> looks;
     };
     std::vector<PaintedBlock> painted_;
-    std::array<PackedColumns, 2> halves_;
+    std::vector<PackedColumns> rows_;
     std::size_t paidWords_ = 0;        // of them
     std::unique_ptr<BlockLooks> own_;  // null: classes say all
     const CodeBlock* inHand_ = nullptr;

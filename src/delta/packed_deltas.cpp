@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "delta/column_packer.h"
-#include "delta/joined_columns.h"
+#include "delta/joined_tiles.h"
 #include "delta/mixed_sight.h"
 #include "delta/slab_facts.h"
 #include "delta/slice_joiner.h"
@@ -57,44 +57,17 @@ std::vector<Columns> cutAtColumns(const std::vector<CodeBlock>& blocks, bool atR
     return runs;
 }
 
-// The same of columns of joined slices.
-std::vector<std::span<const JoinedColumn>> cutAtColumns(const std::vector<JoinedColumn>& columns) {
-    const auto sizeOf = [](const JoinedColumn& column) {
-        std::size_t blocks = 0;
-        for (const auto& source : column.sources) blocks += source.size();
-        return blocks;
-    };
-    std::size_t blocks = 0;
-    for (const JoinedColumn& column : columns) blocks += sizeOf(column);
-    const std::size_t least = std::max<std::size_t>(256, blocks / 256);
-    std::vector<std::span<const JoinedColumn>> runs;
-    std::size_t first = 0;
-    std::size_t inRun = 0;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        inRun += sizeOf(columns[i]);
-        if (inRun < least && i + 1 < columns.size()) continue;
-        runs.push_back(std::span(columns).subspan(first, i + 1 - first));
-        first = i + 1;
-        inRun = 0;
-    }
-    return runs;
-}
-
-// Returns the packed columns ordered by u, then v: of a row of blocks that is halved along u, first
-// all that lies before the middle.
-std::vector<PackedColumns*> inOrder(const std::vector<Columns>& runs,
-                                    std::vector<ColumnPacker>& packers, int halves) {
+// Returns the packed columns ordered by u, then v.
+// @param rowOf  rowOf(i): what tells packers of one row of columns from those of others; these have
+//               several rows each where blocks are halved along u, or joined
+template <typename RowOf>
+std::vector<PackedColumns*> inOrder(std::vector<ColumnPacker>& packers, const RowOf& rowOf) {
     std::vector<PackedColumns*> columns;
-    if (halves == 1) {
-        for (ColumnPacker& packer : packers) columns.push_back(&packer.half(0));
-        return columns;
-    }
-    for (std::size_t first = 0; first < runs.size();) {
+    for (std::size_t first = 0; first < packers.size();) {
         std::size_t last = first + 1;
-        const auto row = [&](std::size_t i) { return runs[i].begin->position.y; };
-        while (last < runs.size() && row(last) == row(first)) ++last;
-        for (int half = 0; half < halves; ++half)
-            for (std::size_t i = first; i < last; ++i) columns.push_back(&packers[i].half(half));
+        while (last < packers.size() && rowOf(last) == rowOf(first)) ++last;
+        for (std::size_t row = 0; row < packers[first].rows().size(); ++row)
+            for (std::size_t i = first; i < last; ++i) columns.push_back(&packers[i].rows()[row]);
         first = last;
     }
     return columns;
@@ -163,7 +136,7 @@ struct DeltaPacker::Impl {
             joiner = *options.joiner;
             options.joiner = &*joiner;
             divided.joined = 2;
-            divided.slant = options.slant;
+            divided.slant = options.slants[1];
         }
         box = boxOfSlices(volume.box, options.sliceAxis, divided);
         if (volume.empty()) return;
@@ -183,8 +156,7 @@ struct DeltaPacker::Impl {
                           [&](const CodeBlock& block) { return !seen->sees(block.position); });
         }
         if (joiner) {
-            joinedColumns = joinColumns(blocks, options.slant);
-            joinedRuns = cutAtColumns(joinedColumns);
+            joined.emplace(blocks, options.slants);
         } else {
             runs = cutAtColumns(blocks, divided.within > 1);
         }
@@ -234,12 +206,12 @@ struct DeltaPacker::Impl {
                               volume.uncut ? volume.uncut.get() : volume.codes.get(),
                               opacities};
         std::vector<ColumnPacker> packers;
-        const std::size_t count = joiner ? joinedRuns.size() : runs.size();
+        const std::size_t count = joined ? joined->runs().size() : runs.size();
         packers.reserve(count);
         for (std::size_t i = 0; i < count; ++i)
             packers.emplace_back(box, options, tools, slotMap, range);
         const auto pack = [&](std::size_t i) {
-            joiner ? packers[i].runJoined(joinedRuns[i]) : packers[i].run(runs[i]);
+            joined ? packers[i].runJoined(*joined, i) : packers[i].run(runs[i]);
         };
         if (!range.budget) {
             parallelFor(count, pack);
@@ -263,17 +235,20 @@ struct DeltaPacker::Impl {
         for (const ColumnPacker& packer : packers) planner.add(packer.planner());
         SlabPlan plan = planOf(volume, options, packed.box, planner);
         packed.slabs = std::move(plan.slabs);
-        collectWords(inOrder(runs, packers, divided.within), plan.layout,
-                     options.painter != nullptr, packed);
+        collectWords(columnsOf(packers), plan.layout, options.painter != nullptr, packed);
+    }
+
+    std::vector<PackedColumns*> columnsOf(std::vector<ColumnPacker>& packers) const {
+        // Where packers have one row of columns each, they are in order.
+        return inOrder(packers, [&](std::size_t i) {
+            if (joined) return joined->runs()[i].front().x;
+            return divided.within > 1 ? runs[i].begin->position.y : int(i);
+        });
     }
 
     // The most blocks that there are words of.
     double mostBlocks() const {
-        if (!joiner) return double(blocks.size()) * divided.voxels();
-        std::size_t most = 0;
-        for (const JoinedColumn& column : joinedColumns)
-            most += column.mostBlocks(box.min.x >> 3, box.max.x >> 3);
-        return double(most);
+        return joined ? double(joined->mostBlocks()) : double(blocks.size()) * divided.voxels();
     }
 
     // The most bytes that words can take.
@@ -313,9 +288,7 @@ struct DeltaPacker::Impl {
     std::optional<MixedSight> sight;
     std::vector<CodeBlock> blocks;
     std::vector<Columns> runs;
-    // In their place, where slices are joined.
-    std::vector<JoinedColumn> joinedColumns;
-    std::vector<std::span<const JoinedColumn>> joinedRuns;
+    std::optional<JoinedTiles> joined;  // in their place, where slices are
     SlabPlan planned;
     std::vector<SlabRange> parts;
 };
@@ -390,7 +363,7 @@ PackedDeltas DeltaPacker::pack(const SlabRange& part) const {
     requireMemory("part of a delta grid", words * kBytesPerWord);
     std::vector<ColumnPacker> packers =
         impl_->run({layout, firstBlock, lastBlock, true, impl_->planned.slabs});
-    collectWords(inOrder(impl_->runs, packers, 1), layout, false, packed);
+    collectWords(impl_->columnsOf(packers), layout, false, packed);
     return packed;
 }
 

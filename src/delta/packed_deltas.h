@@ -92,7 +92,7 @@ struct PackOptions {
     /// Joins slices two and two, whose voxels then have its classes. Null: none are. Not with a
     /// mixer or a painter, or where voxels are held.
     const SliceJoiner* joiner = nullptr;
-    glm::ivec2 slant{0};  ///< with a joiner, as Subdivision::slant
+    std::vector<glm::ivec2> slants = {};  ///< with a joiner, of each of the slices that become one
     /// Leaves out blocks of voxels that it does not see. Not where voxels are held.
     std::optional<SeenCone> seen = {};
     SlabLength slabLength = SlabLength::kByCounts;

@@ -29,6 +29,13 @@ struct SumLevels {
     std::int32_t count;   // what is above them all has a level of its own
 };
 
+// Two slices, as SliceJoiner::join takes them.
+struct SlicePair {
+    const ClassIndex* first;
+    const ClassIndex* second;
+    std::size_t pitch;
+};
+
 }  // namespace deltasplat
 #endif
 
@@ -36,31 +43,39 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void joinPairsKernel(const ClassIndex* HWY_RESTRICT first, const ClassIndex* HWY_RESTRICT second,
-                     std::size_t classCount, ClassIndex* HWY_RESTRICT out) {
-    const hn::CappedTag<std::uint16_t, 32> tag;
+void joinPairsKernel(const SlicePair& slices, std::size_t classCount,
+                     ClassIndex* HWY_RESTRICT out) {
+    const hn::CappedTag<std::uint16_t, 8> tag;
     const auto count = hn::Set(tag, std::uint16_t(classCount));
-    for (std::size_t n = 0; n < 64; n += hn::Lanes(tag)) {
-        const auto pair = hn::Mul(hn::LoadU(tag, first + n), count);
-        hn::StoreU(hn::Add(pair, hn::LoadU(tag, second + n)), tag, out + n);
+    for (std::size_t u = 0; u < 8; ++u) {
+        for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
+            const std::size_t n = u * slices.pitch + v;
+            const auto pair = hn::Mul(hn::LoadU(tag, slices.first + n), count);
+            hn::StoreU(hn::Add(pair, hn::LoadU(tag, slices.second + n)), tag, out + 8 * u + v);
+        }
     }
 }
 
-bool anyClass(const ClassIndex* HWY_RESTRICT first, const ClassIndex* HWY_RESTRICT second) {
-    const hn::CappedTag<std::uint16_t, 32> tag;
+bool anyClass(const SlicePair& slices) {
+    const hn::CappedTag<std::uint16_t, 8> tag;
     auto any = hn::Zero(tag);
-    for (std::size_t n = 0; n < 64; n += hn::Lanes(tag))
-        any = hn::Or(any, hn::Or(hn::LoadU(tag, first + n), hn::LoadU(tag, second + n)));
+    for (std::size_t u = 0; u < 8; ++u) {
+        for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
+            const std::size_t n = u * slices.pitch + v;
+            any = hn::Or(
+                any, hn::Or(hn::LoadU(tag, slices.first + n), hn::LoadU(tag, slices.second + n)));
+        }
+    }
     return !hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)));
 }
 
-void joinSumsKernel(const ClassIndex* HWY_RESTRICT first, const ClassIndex* HWY_RESTRICT second,
-                    const SumLevels& levels, ClassIndex* HWY_RESTRICT out) {
-    if (!anyClass(first, second)) {
+void joinSumsKernel(const SlicePair& slices, const SumLevels& levels,
+                    ClassIndex* HWY_RESTRICT out) {
+    if (!anyClass(slices)) {
         std::fill_n(out, 64, ClassIndex{0});
         return;
     }
-    const hn::CappedTag<float, 16> tag;
+    const hn::CappedTag<float, 8> tag;
     const hn::RebindToSigned<decltype(tag)> integers;
     const hn::Rebind<std::uint16_t, decltype(tag)> shorts;
     const auto half = hn::Set(integers, 1 << (SumLevels::kDroppedBits - 1));
@@ -70,15 +85,19 @@ void joinSumsKernel(const ClassIndex* HWY_RESTRICT first, const ClassIndex* HWY_
         const auto indices = hn::PromoteTo(integers, hn::LoadU(shorts, classes));
         return hn::GatherIndex(tag, levels.shares, indices);
     };
-    for (std::size_t n = 0; n < 64; n += hn::Lanes(tag)) {
-        const auto sum = hn::Add(shareOf(first + n), shareOf(second + n));
-        // The bits of floats that are not negative are in the order of the numbers.
-        const auto bits =
-            hn::ShiftRight<SumLevels::kDroppedBits>(hn::Add(hn::BitCast(integers, sum), half));
-        const auto level = hn::Min(hn::Sub(hn::Max(bits, least), least), last);
-        const auto number = hn::Add(level, hn::Set(integers, 1));
-        const auto isEmpty = hn::Eq(bits, hn::Zero(integers));
-        hn::StoreU(hn::DemoteTo(shorts, hn::IfThenZeroElse(isEmpty, number)), shorts, out + n);
+    for (std::size_t u = 0; u < 8; ++u) {
+        for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
+            const std::size_t n = u * slices.pitch + v;
+            const auto sum = hn::Add(shareOf(slices.first + n), shareOf(slices.second + n));
+            // The bits of floats that are not negative are in the order of the numbers.
+            const auto bits =
+                hn::ShiftRight<SumLevels::kDroppedBits>(hn::Add(hn::BitCast(integers, sum), half));
+            const auto level = hn::Min(hn::Sub(hn::Max(bits, least), least), last);
+            const auto number = hn::Add(level, hn::Set(integers, 1));
+            const auto isEmpty = hn::Eq(bits, hn::Zero(integers));
+            hn::StoreU(hn::DemoteTo(shorts, hn::IfThenZeroElse(isEmpty, number)), shorts,
+                       out + 8 * u + v);
+        }
     }
 }
 
@@ -145,12 +164,14 @@ std::vector<double> SliceJoiner::levels() const {
     return levels;
 }
 
-void SliceJoiner::join(const ClassIndex* first, const ClassIndex* second, ClassIndex* out) const {
+void SliceJoiner::join(std::span<const ClassIndex* const> slices, std::size_t pitch,
+                       ClassIndex* out) const {
+    const SlicePair pair{slices[0], slices[1], pitch};
     if (classCount_ > 0) {
-        HWY_DYNAMIC_DISPATCH(joinPairsKernel)(first, second, classCount_, out);
+        HWY_DYNAMIC_DISPATCH(joinPairsKernel)(pair, classCount_, out);
     } else {
         const SumLevels levels{shares_.data(), first_, count_};
-        HWY_DYNAMIC_DISPATCH(joinSumsKernel)(first, second, levels, out);
+        HWY_DYNAMIC_DISPATCH(joinSumsKernel)(pair, levels, out);
     }
 }
 

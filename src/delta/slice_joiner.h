@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "delta/class_index.h"
@@ -23,8 +24,11 @@ class SliceJoiner {
     /// Of sums, the extinctions that classes have once they are joined, the first of them 0. Each
     /// is within 2^-11 of what it stands for, down to 2^-58 of the largest.
     std::vector<double> levels() const;
-    /// Joins 64 voxels of a slice and of the one after it.
-    void join(const ClassIndex* first, const ClassIndex* second, ClassIndex* out) const;
+    /// Joins 8x8 voxels of slices that lie one behind the other.
+    /// @param slices  the first of them in each
+    /// @param pitch   from row to row of them
+    /// @param out     [64]
+    void join(std::span<const ClassIndex* const> slices, std::size_t pitch, ClassIndex* out) const;
 
     bool operator==(const SliceJoiner&) const = default;
 

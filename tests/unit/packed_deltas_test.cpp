@@ -106,7 +106,8 @@ Classes joinedClassesOf(const Classes& classes, const SliceJoiner& joiner,
         std::array<ClassIndex, 64> out;
         first[0] = classAt(2 * slice, u, v);
         second[0] = classAt(2 * slice + 1, u - slant.x, v - slant.y);
-        joiner.join(first.data(), second.data(), out.data());
+        const std::array<const ClassIndex*, 2> slices = {first.data(), second.data()};
+        joiner.join(slices, 8, out.data());
         joined[{slice, u, v}] = out[0];
     };
     for (const auto& [place, found] : classes) {
@@ -161,9 +162,9 @@ TEST(PackedDeltas, TakeClassesThatFollowEachOther) {
             PackOptions options = optionsOf(axis, Encoding::kChanges, classes, false);
             EXPECT_EQ(walk(packDeltas(volume, options)), expected) << axis;
             options.joiner = &joiner;
-            options.slant = {-1, 1};
+            options.slants = {{0, 0}, {-1, 1}};
             EXPECT_EQ(walk(packDeltas(volume, options)),
-                      joinedClassesOf(expected, joiner, options.slant))
+                      joinedClassesOf(expected, joiner, options.slants[1]))
                 << axis;
         }
     }
@@ -275,7 +276,7 @@ TEST(PackedDeltas, JoinSlices) {
             for (const auto& [encoding, descending] : kWays) {
                 PackOptions options = optionsOf(axis, encoding, classes, descending);
                 options.joiner = &joiner;
-                options.slant = slant;
+                options.slants = {{0, 0}, slant};
                 const PackedDeltas whole = packDeltas(volume, options);
                 EXPECT_EQ(walk(whole), expected) << i << ", axis " << axis;
                 EXPECT_EQ(whole.visible(), expected.size());
@@ -308,9 +309,9 @@ TEST(PackedDeltas, JoinSlicesOfTiles) {
     for (int axis = 0; axis < 3; ++axis) {
         PackOptions options = optionsOf(axis, Encoding::kChanges, classes, false);
         options.joiner = &joiner;
-        options.slant = {1, -1};
+        options.slants = {{0, 0}, {1, -1}};
         const Classes expected =
-            joinedClassesOf(classesOf(volume, axis, classes), joiner, options.slant);
+            joinedClassesOf(classesOf(volume, axis, classes), joiner, options.slants[1]);
         EXPECT_EQ(walk(packDeltas(tiled, options)), expected);
     }
 }

@@ -31,7 +31,8 @@ SliceClasses randomClasses(std::size_t count, std::uint32_t seed) {
 SliceClasses joined(const SliceJoiner& joiner, const SliceClasses& first,
                     const SliceClasses& second) {
     SliceClasses out;
-    joiner.join(first.data(), second.data(), out.data());
+    const std::array<const ClassIndex*, 2> slices = {first.data(), second.data()};
+    joiner.join(slices, 8, out.data());
     return out;
 }
 

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/joined_tile_reader.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "hwy/cache_control.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr std::size_t kSlice = 64;  // of a block
+constexpr int kSlices = 8;
+
+}  // namespace
+
+JoinedTileReader::JoinedTileReader(const ClassReader& classes, const SliceJoiner& joiner,
+                                   const JoinedTiles& tiles)
+    : classReader_(classes),
+      joiner_(joiner),
+      tiles_(tiles),
+      layer_(std::size_t(kSlices * kVoxels.x * kVoxels.y)),
+      joined_(kColumns) {}
+
+void JoinedTileReader::begin(const TileSources& sources, int firstPlace, int lastPlace) {
+    rest_ = sources;
+    lastPlace_ = lastPlace;
+    for (std::span<const CodeBlock>& column : rest_.columns) {
+        const auto first =
+            std::partition_point(column.begin(), column.end(), [&](const CodeBlock& block) {
+                return block.position.x >> tiles_.shift() < firstPlace;
+            });
+        column = column.subspan(std::size_t(first - column.begin()));
+    }
+}
+
+bool JoinedTileReader::next() {
+    constexpr int kNone = std::numeric_limits<int>::max();
+    place_ = kNone;
+    for (const std::span<const CodeBlock>& column : rest_.columns)
+        if (!column.empty()) place_ = std::min(place_, column.front().position.x >> tiles_.shift());
+    if (place_ > lastPlace_) return false;
+    has_.reset();
+    const int layers = 1 << tiles_.shift();
+    for (int layer = 0; layer < layers; ++layer)
+        if (readLayer(place_ * layers + layer)) joinLayer(layer);
+    return true;
+}
+
+// Reads the blocks at a position along the slices. Returns whether there are any.
+bool JoinedTileReader::readLayer(int position) {
+    for (std::size_t column = 0; column < rest_.columns.size(); ++column) {
+        std::span<const CodeBlock>& blocks = rest_.columns[column];
+        if (!blocks.empty() && blocks.front().position.x == position) {
+            fetchAhead(column);
+            readBlock(column, blocks.front());
+            blocks = blocks.subspan(1);
+            isFilled_.set(column);
+        } else if (isFilled_[column]) {
+            clearBlock(column);
+            isFilled_.reset(column);
+        }
+    }
+    return isFilled_.any();
+}
+
+// Brings what will be read soon nearer: blocks lie anywhere, and nobody else can tell where.
+void JoinedTileReader::fetchAhead(std::size_t column) const {
+    constexpr std::size_t kLineBytes = 64;
+    constexpr std::size_t kLeafAhead = 6;
+    constexpr std::size_t kCodesAhead = 2;
+    const auto leafOf = [&](std::size_t of) -> const CodeTree::Leaf* {
+        const bool isThere = of < rest_.columns.size() && !rest_.columns[of].empty();
+        return isThere ? rest_.columns[of].front().leaf : nullptr;
+    };
+    if (const CodeTree::Leaf* leaf = leafOf(column + kLeafAhead)) hwy::Prefetch(leaf);
+    if (const CodeTree::Leaf* leaf = leafOf(column + kCodesAhead)) {
+        const Code* const codes = leaf->buffer().data();
+        for (std::size_t i = 0; i < 512; i += kLineBytes / sizeof(Code)) hwy::Prefetch(codes + i);
+    }
+}
+
+// Returns where a source column's first voxel is in the layer.
+ClassIndex* JoinedTileReader::rowsOf(std::size_t column) {
+    const auto u = int(column) / TileSources::kColumns.y;
+    const auto v = int(column) % TileSources::kColumns.y;
+    return &layer_[std::size_t(8 * u * kVoxels.y + 8 * v)];
+}
+
+void JoinedTileReader::readBlock(std::size_t column, const CodeBlock& block) {
+    BlockClasses classes;
+    classReader_.read(block, std::span(classes));
+    ClassIndex* const rows = rowsOf(column);
+    for (int slice = 0; slice < kSlices; ++slice)
+        for (int u = 0; u < 8; ++u)
+            std::copy_n(&classes[kSlice * std::size_t(slice) + 8 * std::size_t(u)], 8,
+                        rows + (slice * kVoxels.x + u) * kVoxels.y);
+}
+
+void JoinedTileReader::clearBlock(std::size_t column) {
+    ClassIndex* const rows = rowsOf(column);
+    for (int slice = 0; slice < kSlices; ++slice)
+        for (int u = 0; u < 8; ++u)
+            std::fill_n(rows + (slice * kVoxels.x + u) * kVoxels.y, 8, ClassIndex{0});
+}
+
+// Joins the slices of the layer in hand, a part of those that blocks at this place have.
+void JoinedTileReader::joinLayer(int layer) {
+    for (int u = 0; u < kTileColumns.x; ++u) {
+        for (int v = 0; v < kTileColumns.y; ++v) {
+            if (!hasSources(u, v)) continue;
+            const auto column = std::size_t(u * kTileColumns.y + v);
+            if (!has_[column]) joined_[column].fill(0);
+            has_.set(column);
+            joinBlock(u, v, layer, joined_[column]);
+        }
+    }
+}
+
+bool JoinedTileReader::hasSources(int u, int v) const {
+    for (int i = 0; i < tiles_.sourcesOfColumn().x; ++i)
+        for (int j = 0; j < tiles_.sourcesOfColumn().y; ++j)
+            if (isFilled_[std::size_t((u + i) * TileSources::kColumns.y + v + j)]) return true;
+    return false;
+}
+
+void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) const {
+    const std::span<const glm::ivec2> slants = tiles_.slants();
+    const std::size_t joined = kSlices / slants.size();
+    const glm::ivec2 first = 8 * (glm::ivec2(u, v) + tiles_.own());
+    std::array<const ClassIndex*, kSlices> slices;
+    for (std::size_t i = 0; i < joined; ++i) {
+        for (std::size_t k = 0; k < slants.size(); ++k) {
+            const glm::ivec2 at = first - slants[k];
+            const auto slice = int(i * slants.size() + k);
+            slices[k] = &layer_[std::size_t((slice * kVoxels.x + at.x) * kVoxels.y + at.y)];
+        }
+        joiner_.join(std::span(slices).first(slants.size()), std::size_t(kVoxels.y),
+                     &out[kSlice * (std::size_t(layer) * joined + i)]);
+    }
+}
+
+}  // namespace deltasplat

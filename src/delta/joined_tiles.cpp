@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/joined_tiles.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <tuple>
+
+#include "floor_div.h"
+#include "run_begins.h"
+
+namespace deltasplat {
+namespace {
+
+bool isBefore(const glm::ivec2& a, const glm::ivec2& b) {
+    return std::tie(a.x, a.y) < std::tie(b.x, b.y);
+}
+
+JoinedTile tileOf(const glm::ivec2& column) {
+    return {floorDiv(column.x, kTileColumns.x), floorDiv(column.y, kTileColumns.y)};
+}
+
+}  // namespace
+
+JoinedTiles::JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const glm::ivec2> slants)
+    : blocks_(blocks),
+      slants_(slants.begin(), slants.end()),
+      begins_(runBegins(blocks, shareColumn)),
+      shift_(int(std::bit_width(slants.size())) - 1) {
+    for (int axis = 0; axis < 2; ++axis) {
+        for (const glm::ivec2& slant : slants) {
+            // What is moved up comes from the column before.
+            if (slant[axis] > 0) own_[axis] = 1;
+            if (slant[axis] != 0) sources_[axis] = 2;
+        }
+    }
+    // A run has a share of all blocks, and no more than a row of tiles.
+    const std::size_t least = std::max<std::size_t>(256, blocks.size() / 256);
+    constexpr int kAny = std::numeric_limits<int>::max() >> 3;
+    std::size_t inRun = least;
+    for (const JoinedTile& tile : listTiles()) {
+        if (inRun >= least || runs_.back().back().x != tile.x) {
+            runs_.emplace_back();
+            inRun = 0;
+        }
+        runs_.back().push_back(tile);
+        const TileSources sources = sourcesOf(tile);
+        for (const std::span<const CodeBlock>& column : sources.columns) inRun += column.size();
+        for (int u = 0; u < kTileColumns.x; ++u) mostBlocks_ += mostBlocks(sources, u, -kAny, kAny);
+    }
+}
+
+glm::ivec2 JoinedTiles::placeOf(std::size_t column) const {
+    const glm::ivec3& position = blocks_[begins_[column]].position;
+    return {position.y, position.z};
+}
+
+std::vector<JoinedTile> JoinedTiles::listTiles() const {
+    std::vector<JoinedTile> tiles;
+    for (int u = 0; u < sources_.x; ++u) {
+        for (int v = 0; v < sources_.y; ++v) {
+            // Of a row of columns most are in the tile of the one before.
+            for (std::size_t column = 0; column + 1 < begins_.size(); ++column) {
+                const JoinedTile tile = tileOf(placeOf(column) + own_ - glm::ivec2(u, v));
+                if (tiles.empty() || tiles.back() != tile) tiles.push_back(tile);
+            }
+        }
+    }
+    std::sort(tiles.begin(), tiles.end(), isBefore);
+    tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+    return tiles;
+}
+
+TileSources JoinedTiles::sourcesOf(const JoinedTile& tile) const {
+    TileSources sources;
+    const glm::ivec2 first = tile * kTileColumns - own_;
+    const std::size_t columns = begins_.size() - 1;
+    for (int u = 0; u < TileSources::kColumns.x; ++u) {
+        const glm::ivec2 begin = first + glm::ivec2(u, 0);
+        const auto found = std::lower_bound(
+            begins_.begin(), begins_.begin() + std::ptrdiff_t(columns), begin,
+            [&](std::size_t of, const glm::ivec2& place) {
+                return isBefore({blocks_[of].position.y, blocks_[of].position.z}, place);
+            });
+        for (auto c = std::size_t(found - begins_.begin()); c < columns; ++c) {
+            const glm::ivec2 at = placeOf(c) - begin;
+            if (at.x != 0 || at.y >= TileSources::kColumns.y) break;
+            sources.at(u, at.y) = blocks_.subspan(begins_[c], begins_[c + 1] - begins_[c]);
+        }
+    }
+    return sources;
+}
+
+std::size_t JoinedTiles::mostBlocks(const TileSources& sources, int u, int firstPlace,
+                                    int lastPlace) const {
+    std::size_t most = 0;
+    for (int v = 0; v < kTileColumns.y; ++v) {
+        std::size_t count = 0;
+        int first = lastPlace + 1;
+        int last = firstPlace - 1;
+        for (int i = 0; i < sources_.x; ++i) {
+            for (int j = 0; j < sources_.y; ++j) {
+                const std::span<const CodeBlock> column = sources.at(u + i, v + j);
+                if (column.empty()) continue;
+                count += column.size();
+                first = std::min(first, column.front().position.x >> shift_);
+                last = std::max(last, column.back().position.x >> shift_);
+            }
+        }
+        first = std::max(first, firstPlace);
+        last = std::min(last, lastPlace);
+        if (first <= last) most += std::min(count, std::size_t(last - first) + 1);
+    }
+    return most;
+}
+
+}  // namespace deltasplat

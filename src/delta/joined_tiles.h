@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+#include "delta/code_blocks.h"
+
+namespace deltasplat {
+
+/// A rectangle of columns of blocks (same u and v) of joined slices: the place (u, v) of its first
+/// one is this times kTileColumns.
+using JoinedTile = glm::ivec2;
+
+inline constexpr glm::ivec2 kTileColumns{8, 16};
+
+/// The blocks that a tile's columns are made of, before slices are joined: of columns [u][v], one
+/// more each way than the tile has, for slants reach into neighbours. Empty where there are none.
+struct TileSources {
+    static constexpr glm::ivec2 kColumns = kTileColumns + 1;
+
+    std::array<std::span<const CodeBlock>, kColumns.x * kColumns.y> columns;
+
+    std::span<const CodeBlock>& at(int u, int v) {
+        return columns[std::size_t(u * kColumns.y + v)];
+    }
+    const std::span<const CodeBlock>& at(int u, int v) const {
+        return columns[std::size_t(u * kColumns.y + v)];
+    }
+};
+
+/// Where there are columns of joined slices, and what they are made of. Slices n * i to n * i + n -
+/// 1 become one, each moved by a slant of its own.
+class JoinedTiles {
+  public:
+    /// @param blocks  ordered by u, v and slice; must outlive this
+    /// @param slants  [n = 1, 2, 4 or 8]: as Subdivision::slants
+    JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const glm::ivec2> slants);
+
+    /// The tiles in which there may be anything, ordered by u, then v: in runs of neighbours along
+    /// v, which are one task each.
+    const std::vector<std::vector<JoinedTile>>& runs() const { return runs_; }
+    std::span<const glm::ivec2> slants() const { return slants_; }
+    /// The power of two that slices are joined by.
+    int shift() const { return shift_; }
+    /// Of the sources, where the tile's own first column is.
+    const glm::ivec2& own() const { return own_; }
+    /// How many columns one is made of, along u and v: 1 or 2, from its own place in the tile on.
+    const glm::ivec2& sourcesOfColumn() const { return sources_; }
+
+    TileSources sourcesOf(const JoinedTile& tile) const;
+    /// Returns the most blocks of joined slices that a tile's columns of the same u can have.
+    std::size_t mostBlocks(const TileSources& sources, int u, int firstPlace, int lastPlace) const;
+    /// The same of all tiles together, whatever their place.
+    std::size_t mostBlocks() const { return mostBlocks_; }
+
+  private:
+    std::vector<JoinedTile> listTiles() const;
+    glm::ivec2 placeOf(std::size_t column) const;
+
+    std::span<const CodeBlock> blocks_;
+    std::vector<glm::ivec2> slants_;
+    std::vector<std::size_t> begins_;  // of columns, and the number of all blocks
+    int shift_;
+    glm::ivec2 own_{0};
+    glm::ivec2 sources_{1};
+    std::vector<std::vector<JoinedTile>> runs_;
+    std::size_t mostBlocks_ = 0;
+};
+
+}  // namespace deltasplat
