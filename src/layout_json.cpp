@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <glm/common.hpp>
@@ -54,6 +55,12 @@ class Writer {
         for (const T& value : values) json.push_back(jsonOf(value));
         return json;
     }
+    template <typename T, std::size_t N>
+    static Json jsonOf(const std::array<T, N>& values) {
+        Json json = Json::array();
+        for (const T& value : values) json.push_back(jsonOf(value));
+        return json;
+    }
 };
 
 class Reader {
@@ -101,6 +108,10 @@ class Reader {
         values.clear();
         for (const Json& element : json) read(element, values.emplace_back());
     }
+    template <typename T, std::size_t N>
+    static void read(const Json& json, std::array<T, N>& values) {
+        for (std::size_t i = 0; i < N; ++i) read(json.at(i), values[i]);
+    }
 
     const Json& json_;
 };
@@ -142,7 +153,7 @@ void visitView(Visitor& visit, ViewT& layout) {
     visit("thin_slices", place.parts.slices);
     visit("thin_within", place.parts.within);
     visit("joined_slices", place.parts.joined);
-    visit("joined_slant", place.parts.slant);
+    visit("joined_slants", place.parts.slants);
     visit("thin_origin", place.parts.origin);
     visit("first_slice", place.firstSlice);
     visit("first_voxel", place.firstVoxel);
@@ -205,6 +216,22 @@ void check(const Camera& camera) {
     }
 }
 
+// Whether slices can be joined so.
+bool canBeJoined(const Subdivision& parts) {
+    const int joined = parts.joined;
+    const bool isPower = joined == 1 || joined == 2 || joined == 4 || joined == kMostJoined;
+    if (!isPower || (joined > 1 && parts.divides())) return false;
+    for (int i = 0; i < kMostJoined; ++i) {
+        const glm::ivec2& slant = parts.slants[std::size_t(i)];
+        const int most = i < joined ? i : 0;
+        const glm::ivec2 opposite = slant * parts.slants[std::size_t(joined - 1)];
+        if (std::max(std::abs(slant.x), std::abs(slant.y)) > most || opposite.x < 0 ||
+            opposite.y < 0)
+            return false;
+    }
+    return true;
+}
+
 void check(const ViewLayout& layout) {
     const PlanePlace& place = layout.place;
     const Factorization& view = place.view;
@@ -212,15 +239,12 @@ void check(const ViewLayout& layout) {
     require(layout.channels == (place.color ? 1 : 4), "channels that no layer has");
     require(place.parts.slices >= 1 && place.parts.within >= 1 && place.parts.within <= 2,
             "voxels in parts that there are not");
+    require(canBeJoined(place.parts), "slices joined that cannot be");
     const int joined = place.parts.joined;
-    const glm::ivec2 slant = glm::abs(place.parts.slant);
-    require(joined == 1 ? slant == glm::ivec2(0)
-                        : joined == 2 && !place.parts.divides() && std::max(slant.x, slant.y) <= 1,
-            "slices joined that cannot be");
+    const glm::ivec2 slant = place.parts.slants[1];
     // From an eye, regions of joined slices are those of one slant.
     require(view.slopeStep.has_value() == (joined == 2 && view.eye) &&
-                (!view.slopeStep ||
-                 *view.slopeStep == (view.frontToBack ? -place.parts.slant : place.parts.slant)),
+                (!view.slopeStep || *view.slopeStep == (view.frontToBack ? -slant : slant)),
             "slopes that are not those of joined slices");
     require(isResolution(place.resolution) && place.spacing > 0 && std::isfinite(place.spacing),
             "a base plane of no pixels");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "prepared_axis.h"
 
+#include <bit>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -83,6 +85,15 @@ std::vector<float> opacitiesOf(const Volume& volume, const ClassTable& classes) 
     return opacities;
 }
 
+// Says so where looks of joined slices had to be rounded so far that it may be seen.
+void warnOfRounding(const SliceJoiner& joiner, const Listener& listener) {
+    constexpr int kFewBits = 4;
+    const int bits = joiner.run().bits;
+    if (!joiner.isOfLooks() || bits > kFewBits) return;
+    listener.warn("voxels have so many looks that joined slices have colours of " +
+                  std::to_string(1 << bits) + " levels a channel; `between` 0 draws every voxel");
+}
+
 // What an axis is to be.
 struct AxisRequest {
     int sliceAxis;
@@ -133,9 +144,10 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     Encoding encoding = request.encoding;
     if (encoding == Encoding::kSmaller && !classes.oneDigit()) encoding = Encoding::kSmallerOfSums;
     std::shared_ptr<const PackedDeltas> words = sharedWords(request, scene, classes);
+    const JoinedRun run{parts.joined, request.seenThrough, request.steps / first};
     std::optional<SliceJoiner> joiner;
     if (parts.joined > 1) {
-        joiner.emplace(joinerOf(classes));
+        joiner.emplace(joinerOf(classes, run));
         if (words && joiner != before->joiner) words = nullptr;
     }
     std::vector<float> opacities;
@@ -147,7 +159,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
                      holdRule(levels, classes, tolerance), mixer ? &*mixer : nullptr};
     pack.descending = request.descending;
     if (joiner) pack.joiner = &*joiner;
-    if (joiner) pack.slants = {glm::ivec2(0), parts.slant};
+    pack.slants = parts.joinedSlants();
     pack.seen = request.seen;
     pack.slabLength = request.slabLength;
     pack.opacities = opacities;
@@ -164,16 +176,21 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
         }
     }
     std::shared_ptr<DeltaPacker> packer;
-    if (!words) {
+    while (!words) {
         packer = std::make_shared<DeltaPacker>(volume, pack);
         const bool inParts =
             request.mayBeParted && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
         words = std::make_shared<const PackedDeltas>(inParts ? packer->packOrPlan(scene.wordBytes)
                                                              : packer->packAll());
         if (packer->parts().empty()) packer = nullptr;
+        if (!joiner || !joiner->hasTooMany()) break;
+        // Rounded further, looks are fewer.
+        joiner.emplace(joinerOf(classes, run, joiner->run().bits - 1));
+        words = nullptr;
     }
     if (joiner) {
-        classes = joinedClasses(classes, *joiner, request.seenThrough, request.steps / first);
+        warnOfRounding(*joiner, listener);
+        classes = joinedClasses(classes, *joiner, run);
     } else if (request.steps != first) {
         classes = classes.atSteps(request.steps);
         if (light) light = painter->lightOf(classes, nullptr);
@@ -264,8 +281,8 @@ const PreparedAxis* PreparedScene::Impl::axisBefore(const Key& key, const Key& o
 
 void PreparedScene::Impl::forgetSlants(const Key& key) const {
     const auto isOther = [&](const Places::value_type& one) {
-        const bool isSame = std::equal(key.begin(), key.end() - 2, one.first.begin());
-        return isSame && one.first != key;
+        const auto end = key.begin() + kKeyOfAllSlants;
+        return std::equal(key.begin(), end, one.first.begin()) && one.first != key;
     };
     std::uint64_t last = 0;
     for (const auto& one : places_)
@@ -294,12 +311,13 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
         isWhole ? Encoding::kWhole : encodingOf(options.method, painter != nullptr, hasPixels);
     // Slices are walked from the front on. Whole ones do not depend on it.
     const bool descending = !view.frontToBack && encoding != Encoding::kWhole;
-    // Of joined ones, what they look like does.
+    // Of joined ones, what they look like does; and on how long steps are, unless they are pairs.
     const bool isJoined = parts.joined > 1;
+    const bool isOfSteps = parts.joined > 2 || (isJoined && !canPairSlices());
     const bool fromEnd = descending || (isJoined && !view.frontToBack);
     AxisRequest request{sliceAxis, descending, parts,
                         view.frontToBack ? SeenThrough::kSecond : SeenThrough::kFirst,
-                        isForOne ? stepsOf(view, *scene.volume) : 1};
+                        isForOne || isOfSteps ? stepsOf(view, *scene.volume) : 1};
     request.encoding = encoding;
     // From an eye slabs are as long as they are, whatever is in them: what is seen is all that may
     // be packed. What is held depends on all that lies before it.
@@ -310,9 +328,10 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
     if (packsSeen) request.seen = seenCone(*this, *camera, view, plan);
     // No other region sees the same.
     if (packsSeen && isForOne) return prepare(*this, request, listener);
-    const Key key{sliceAxis,    int(encoding), int(fromEnd), int(request.slabLength),
-                  parts.slices, parts.within,  parts.joined, parts.slant.x,
-                  parts.slant.y};
+    Key key{sliceAxis,    int(encoding), int(fromEnd), int(request.slabLength),
+            parts.slices, parts.within,  parts.joined};
+    for (const glm::ivec2& slant : parts.joinedSlants()) key.insert(key.end(), {slant.x, slant.y});
+    if (isOfSteps) key.push_back(std::bit_cast<std::int64_t>(request.steps));
     Key otherKey = key;
     otherKey[2] = int(!fromEnd);
     std::shared_ptr<Place> otherWay;
@@ -346,19 +365,23 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
 }
 
 bool PreparedScene::Impl::canJoinSlices() const {
-    if (painter || !options.tolerance.isExact() || scene.volume->empty()) return false;
+    return !painter && options.tolerance.isExact() && !scene.volume->empty();
+}
+
+bool PreparedScene::Impl::canPairSlices() const {
+    if (!canJoinSlices()) return false;
     // Of one colour for sure.
     if (optics.transferFunction.colors.size() == 1) return true;
     const std::lock_guard lock(blocksMutex_);
-    if (!canJoinSlices_) {
+    if (!canPairSlices_) {
         double farthest = 0;
         for (int axis = 0; axis < 3; ++axis)
             farthest = std::max(farthest, planeDistance(scene.volume->worldFromIndex, axis));
         // In shorter steps there are no more classes.
         isolated(
-            [&] { canJoinSlices_ = canBeJoined(classify(*scene.volume, scene.optics, farthest)); });
+            [&] { canPairSlices_ = canBePaired(classify(*scene.volume, scene.optics, farthest)); });
     }
-    return *canJoinSlices_;
+    return *canPairSlices_;
 }
 
 std::size_t PreparedScene::Impl::blocksSeen(int sliceAxis) const {

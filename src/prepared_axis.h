@@ -68,15 +68,18 @@ struct PreparedScene::Impl {
     std::shared_ptr<const PreparedAxis> axis(const Factorization& view, const SheetPlan& plan,
                                              const Listener& listener, const Camera* camera,
                                              bool inParts = false) const;
-    /// Returns whether slices can be joined (optics/joined_classes.h), along whatever axis.
+    /// Returns whether slices can be joined.
     bool canJoinSlices() const;
+    /// Returns whether two can be for all cameras (optics/joined_classes.h), along whatever axis.
+    bool canPairSlices() const;
     /// Returns how many blocks of 8x8x8 voxels can be seen; counted once for each axis.
     std::size_t blocksSeen(int sliceAxis) const;
 
   private:
-    // Axis, encoding, from which end slices are walked, how long slabs are, parts, whether they are
-    // joined, by which slant.
-    using Key = std::array<int, 9>;
+    // Axis, encoding, from which end slices are walked, how long slabs are, parts, how many are
+    // joined; then by which slants and for which steps.
+    using Key = std::vector<std::int64_t>;
+    static constexpr std::ptrdiff_t kKeyOfAllSlants = 7;
     using Axes = std::map<Key, std::shared_ptr<const PreparedAxis>>;
     struct Place {
         std::mutex mutex;
@@ -108,7 +111,7 @@ struct PreparedScene::Impl {
     mutable std::uint64_t uses_ = 0;
     mutable std::mutex blocksMutex_;
     mutable std::array<std::optional<std::size_t>, 3> blocksSeen_;  // [slice axis]
-    mutable std::optional<bool> canJoinSlices_;
+    mutable std::optional<bool> canPairSlices_;
 };
 
 class DeepStages;

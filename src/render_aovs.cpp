@@ -249,7 +249,7 @@ class AovRender {
 
     void addMattes(const Listener& listener) {
         // Of white alone slices could be joined where the picture's are not.
-        options_.joinsSlices = joinsSlicesOfPicture();
+        options_.mostJoined = joinedOfPicture();
         const auto layers = 1 + int(withoutGlow(options_.optics).parts.size());
         for (int first = 0; first < layers; first += 3) {
             const Image image = picture(mattes(options_.optics, first),
@@ -260,12 +260,12 @@ class AovRender {
         }
     }
 
-    // Whether slices are joined in the picture that channels are beside.
-    bool joinsSlicesOfPicture() const {
+    // How many slices are joined in the picture that channels are beside.
+    int joinedOfPicture() const {
         const Optics& optics = options_.optics;
-        if (optics.scattering || optics.shading || !optics.parts.empty()) return false;
+        if (optics.scattering || optics.shading || !optics.parts.empty()) return 1;
         const PreparedScene scene({volume_, optics}, options_);
-        return ViewPlan(scene.impl(), camera_, false, {}).sheets.joined() > 1;
+        return ViewPlan(scene.impl(), camera_, false, {}).sheets.joined();
     }
 
     // Made for the first channel that needs it, as those below.

@@ -9,6 +9,7 @@
 #include "deltasplat/error.h"
 #include "dims_text.h"
 #include "number_text.h"
+#include "view/joined_slants.h"
 
 namespace deltasplat {
 namespace {
@@ -25,6 +26,12 @@ void checkBetween(int between) {
     throw Error(ErrorCode::kUsage,
                 gotExpected("`between`", std::to_string(between),
                             "a whole number within 0.." + std::to_string(kMostBetween)));
+}
+
+void checkMostJoined(int most) {
+    if (most == 1 || most == 2 || most == 4 || most == kMostJoined) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("`mostJoined`", std::to_string(most), "1, 2, 4 or 8"));
 }
 
 // Voxels that share a sheet pixel have a kernel of its width.
@@ -78,9 +85,9 @@ bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
     return false;
 }
 
-// Whether voxels are so small on the screen that slices may be joined: moved by a quarter of a
-// voxel along u and along v, which is less than a fifth of a pixel, in a picture that averages two
-// voxels each way at least, nothing of one voxel's width is seen to move.
+// Whether voxels are so small on the screen that slices may be joined two and two: moved by a
+// quarter of a voxel along u and along v, which is less than a fifth of a pixel, in a picture that
+// averages two voxels each way at least, nothing of one voxel's width is seen to move.
 bool areSmall(const Camera& camera, const Volume& volume, const Factorization& view) {
     constexpr double kMostPixelsPerVoxel = 0.5;
     // From an eye the nearest voxel covers more than others.
@@ -94,25 +101,37 @@ bool areSmall(const Camera& camera, const Volume& volume, const Factorization& v
     return mostPixelsOf(longest, camera, volume.box, volume.worldFromIndex) <= kMostOfNearest;
 }
 
-// Whether slices are joined where nobody says otherwise.
-bool joinsUnasked(const PreparedScene::Impl& scene, const Camera& camera,
-                  const Factorization& view) {
-    const SplatOptions& options = scene.options;
-    if (!options.joinsSlices || options.resolution || options.between || options.sigma ||
-        options.footprintWidth)
-        return false;
-    const Volume& volume = *scene.scene.volume;
-    return areSmall(camera, volume, view) && volume.activeCount >= leastVoxelsJoined &&
-           scene.canJoinSlices();
-}
-
-// How far a line of sight goes from a slice to the next, in whole voxels, along u and v.
-glm::ivec2 slantOf(const Factorization& view) {
-    if (view.eye) return view.frontToBack ? -*view.slopeStep : *view.slopeStep;
+// Returns how so many slices are moved along lines of sight, by whole voxels.
+JoinedSlants slantsOf(const Factorization& view, int joined) {
+    if (view.eye) {
+        JoinedSlants slants;
+        slants.slants[1] = view.frontToBack ? -*view.slopeStep : *view.slopeStep;
+        return slants;
+    }
     // What a turning camera rounds must not decide.
     constexpr double kSnap = 1e-9;
-    const glm::dvec2 shift = view.shiftPerSlice * (1 - kSnap);
-    return {int(std::lround(shift.x)), int(std::lround(shift.y))};
+    return joinedSlants(view.shiftPerSlice * (1 - kSnap), joined);
+}
+
+// Returns how many slices are joined where nobody says otherwise: more than two as far as none of
+// them is moved by more than a quarter of a pixel.
+int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
+                  const Factorization& view) {
+    const SplatOptions& options = scene.options;
+    const Volume& volume = *scene.scene.volume;
+    if (options.mostJoined < 2 || options.resolution || options.between || options.sigma ||
+        options.footprintWidth || !scene.canJoinSlices() ||
+        volume.activeCount < leastVoxelsJoined || !areSmall(camera, volume, view))
+        return 1;
+    const bool canBeMany = options.mostJoined > 2 && !view.eye;
+    constexpr double kMostPixelsMoved = 0.25;
+    constexpr double kSnap = 1e-9;
+    for (int joined = options.mostJoined; canBeMany && joined > 2; joined /= 2) {
+        const JoinedSlants slants = slantsOf(view, joined);
+        const double moved = slants.farthest * view.pixelsPerVoxel;
+        if (slants.keepsDensity && moved * (1 - kSnap) <= kMostPixelsMoved) return joined;
+    }
+    return canBeMany || scene.canPairSlices() ? 2 : 1;
 }
 
 }  // namespace
@@ -126,6 +145,7 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
     const IndexBox& box = scene.scene.volume->box;
     const SplatOptions& options = scene.options;
     checkKernel(options);
+    checkMostJoined(options.mostJoined);
     // What is thin shows nothing else with more sheet pixels, while it is not smoothed.
     if (!options.resolution && scene.isThin && hasOwnPixelIn(view, 1, 1)) resolution_ = 1;
     int between = 0;
@@ -148,7 +168,7 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
     if (between > 0 && !options.resolution) resolution_ = 2;
     parts_.slices = between + 1;
     parts_.within = between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1;
-    if (!keepsSlices && joinsUnasked(scene, camera, view)) parts_.joined = 2;
+    if (!keepsSlices) parts_.joined = joinedUnasked(scene, camera, view);
 }
 
 std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
@@ -159,7 +179,7 @@ std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
 
 Subdivision SheetPlan::partsIn(const Factorization& view) const {
     Subdivision parts = parts_;
-    if (parts.joined > 1) parts.slant = slantOf(view);
+    if (parts.joined > 1) parts.slants = slantsOf(view, parts.joined).slants;
     // Whole blocks are divided.
     if (parts.divides()) parts.origin = toSliceOrder(firstVoxel_, view.sliceAxis) & ~7;
     return parts;

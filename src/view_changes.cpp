@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "delta/word_changes.h"
@@ -88,6 +89,28 @@ std::vector<ClassIndex> matchLevels(const ClassTable& a, const ClassTable& b) {
     return nowOfBefore;
 }
 
+// Of looks in any order, of which no two are alike.
+std::vector<ClassIndex> matchAll(const ClassTable& a, const ClassTable& b) {
+    const auto isBefore = [](const Look& one, const Look& other) {
+        return std::tie(one.extinction, one.color.r, one.color.g, one.color.b) <
+               std::tie(other.extinction, other.color.r, other.color.g, other.color.b);
+    };
+    std::vector<std::size_t> order(b.looks.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
+        return isBefore(b.looks[one], b.looks[other]);
+    });
+    std::vector<ClassIndex> nowOfBefore(a.looks.size());
+    for (std::size_t before = 1; before < a.looks.size(); ++before) {
+        const auto found = std::lower_bound(
+            order.begin(), order.end(), a.looks[before],
+            [&](std::size_t now, const Look& look) { return isBefore(b.looks[now], look); });
+        if (found != order.end() && b.looks[*found] == a.looks[before])
+            nowOfBefore[before] = ClassIndex(*found);
+    }
+    return nowOfBefore;
+}
+
 // Of pairs of classes that match.
 std::vector<ClassIndex> matchPairs(const ClassTable& a, const ClassTable& b) {
     const std::vector<ClassIndex> single = matchLooks(a, b);
@@ -114,7 +137,7 @@ ClassMatch matchClasses(const StepColors& before, const StepColors& now, bool ar
         return match;
     }
     match.nowOfBefore = b.pairs     ? matchPairs(a, b)
-                        : areJoined ? matchLevels(a, b)
+                        : areJoined ? (b.oneColor ? matchLevels(a, b) : matchAll(a, b))
                                     : matchLooks(a, b);
     if (!match.isSameLight) return match;
     for (std::size_t i = 0; i < match.nowOfBefore.size(); ++i) {
@@ -164,7 +187,7 @@ std::optional<ViewChanges> compareViews(const PictureView& before, const Picture
         !haveSameSlabs(a.splat.deltas, b.splat.deltas) ||
         (colorsBefore.own() == nullptr) != (colorsNow.own() == nullptr) ||
         before.axis().parts.joined != now.axis().parts.joined ||
-        before.axis().parts.slant != now.axis().parts.slant ||
+        before.axis().parts.slants != now.axis().parts.slants ||
         colorsBefore.classes().pairs != colorsNow.classes().pairs ||
         !haveSameSteps(colorsBefore.classes(), colorsNow.classes())) {
         return {};

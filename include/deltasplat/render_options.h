@@ -51,13 +51,16 @@ struct SplatOptions {
     /// thin (no opacity of the transfer function above 0.25 a voxel, extinction scale included),
     /// where colours jump or values are labels (TransferFunction::colorsJump), or, with a warning,
     /// where more than kMostDivided blocks of 8x8x8 voxels can be seen. Where the screen is so
-    /// coarse that it cannot be seen, empty lets two slices be drawn as one (joinsSlices,
+    /// coarse that it cannot be seen, empty lets slices be drawn as one (mostJoined,
     /// RenderStats::joined), unless sigma, resolution or footprintWidth is given.
     std::optional<int> between;
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: 1 (hasOwnPixel) or by sigma
     PictureFilter filter = PictureFilter::kCatmullRom;
-    bool joinsSlices = true;  ///< whether two slices may be drawn as one
+    /// How many slices may be drawn as one: 1, 2, 4 or kMostJoined. More than 2 are joined anew for
+    /// every direction that is looked along, which is worth it for one camera, and only in parallel
+    /// projection.
+    int mostJoined = 2;
 };
 
 /// How x-rays get through a CT scan of values in Hounsfield units: mu = muWater * (1 + HU / 1000),

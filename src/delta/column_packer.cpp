@@ -126,7 +126,8 @@ void ColumnPacker::runJoined(const JoinedTiles& tiles, std::size_t run) {
         reserveWords(rows_[u], kMostWordsOfBlock * blocks);
     }
     JoinedTileReader reader(classReader_, *options_.joiner, tiles);
-    for (std::size_t i = 0; i < sources.size(); ++i) {
+    // Where looks are too many, all is joined anew.
+    for (std::size_t i = 0; i < sources.size() && !options_.joiner->hasTooMany(); ++i) {
         reader.begin(sources[i], range_.firstBlock, range_.lastBlock);
         addJoined(reader, tiles.runs()[run][i]);
         payForWords();

@@ -124,7 +124,7 @@ bool JoinedTileReader::hasSources(int u, int v) const {
     return false;
 }
 
-void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) const {
+void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) {
     const std::span<const glm::ivec2> slants = tiles_.slants();
     const std::size_t joined = kSlices / slants.size();
     const glm::ivec2 first = 8 * (glm::ivec2(u, v) + tiles_.own());
@@ -136,7 +136,7 @@ void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) con
             slices[k] = &layer_[std::size_t((slice * kVoxels.x + at.x) * kVoxels.y + at.y)];
         }
         joiner_.join(std::span(slices).first(slants.size()), std::size_t(kVoxels.y),
-                     &out[kSlice * (std::size_t(layer) * joined + i)]);
+                     &out[kSlice * (std::size_t(layer) * joined + i)], cache_);
     }
 }
 

@@ -45,7 +45,7 @@ class JoinedTileReader {
     void fetchAhead(std::size_t column) const;
     void joinLayer(int layer);
     bool hasSources(int u, int v) const;
-    void joinBlock(int u, int v, int layer, BlockClasses& out) const;
+    void joinBlock(int u, int v, int layer, BlockClasses& out);
 
     const ClassReader& classReader_;
     const SliceJoiner& joiner_;
@@ -58,6 +58,7 @@ class JoinedTileReader {
     std::bitset<std::size_t(TileSources::kColumns.x* TileSources::kColumns.y)> isFilled_;
     std::vector<BlockClasses> joined_;  // [column]
     std::bitset<kColumns> has_;
+    LookCache cache_;
 };
 
 }  // namespace deltasplat

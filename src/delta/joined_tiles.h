@@ -37,7 +37,7 @@ struct TileSources {
 class JoinedTiles {
   public:
     /// @param blocks  ordered by u, v and slice; must outlive this
-    /// @param slants  [n = 1, 2, 4 or 8]: as Subdivision::slants
+    /// @param slants  [n = 1, 2, 4 or 8]: as Subdivision::joinedSlants
     JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const glm::ivec2> slants);
 
     /// The tiles in which there may be anything, ordered by u, then v: in runs of neighbours along

@@ -19,6 +19,7 @@
 #include "delta/slice_joiner.h"
 #include "delta/slot_holder.h"
 #include "deltasplat/error.h"
+#include "floor_div.h"
 #include "memory.h"
 #include "parallel.h"
 #include "run_begins.h"
@@ -98,10 +99,14 @@ SlabPlan planOf(const Volume& volume, const PackOptions& options, const IndexBox
 IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& parts) {
     const IndexBox own = permutedBox(box, sliceAxis);
     if (parts.joined > 1) {
-        const glm::ivec3 slant(0, parts.slant);
-        // Shifts round down.
-        return {glm::min(own.min, own.min + slant) >> glm::ivec3(1, 0, 0),
-                glm::max(own.max, own.max + slant) >> glm::ivec3(1, 0, 0)};
+        IndexBox joined = own;
+        for (const glm::ivec2& slant : parts.joinedSlants()) {
+            joined.min = glm::min(joined.min, own.min + glm::ivec3(0, slant));
+            joined.max = glm::max(joined.max, own.max + glm::ivec3(0, slant));
+        }
+        joined.min.x = floorDiv(joined.min.x, parts.joined);
+        joined.max.x = floorDiv(joined.max.x, parts.joined);
+        return joined;
     }
     const glm::ivec3 per(parts.slices, parts.within, parts.within);
     return {(own.min - parts.origin) * per, (own.max - parts.origin) * per + per - 1};
@@ -135,8 +140,8 @@ struct DeltaPacker::Impl {
         if (options.joiner) {
             joiner = *options.joiner;
             options.joiner = &*joiner;
-            divided.joined = 2;
-            divided.slant = options.slants[1];
+            divided.joined = int(options.slants.size());
+            std::copy(options.slants.begin(), options.slants.end(), divided.slants.begin());
         }
         box = boxOfSlices(volume.box, options.sliceAxis, divided);
         if (volume.empty()) return;

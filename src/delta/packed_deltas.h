@@ -89,10 +89,10 @@ struct PackOptions {
     /// Empty: never.
     std::function<bool(const VoxelLook& held, const VoxelLook& look)> looksHold = {};
     bool descending = false;  ///< as PackedDeltas has it
-    /// Joins slices two and two, whose voxels then have its classes. Null: none are. Not with a
-    /// mixer or a painter, or where voxels are held.
+    /// Joins slices, whose voxels then have its classes. Null: none are. Not with a mixer or a
+    /// painter, or where voxels are held.
     const SliceJoiner* joiner = nullptr;
-    std::vector<glm::ivec2> slants = {};  ///< with a joiner, of each of the slices that become one
+    std::span<const glm::ivec2> slants = {};  ///< with a joiner, as Subdivision::joinedSlants
     /// Leaves out blocks of voxels that it does not see. Not where voxels are held.
     std::optional<SeenCone> seen = {};
     SlabLength slabLength = SlabLength::kByCounts;

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/joined_classes.h"
 
-#include <stdexcept>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
 #include <vector>
+
+#include "portable_math.h"
 
 namespace deltasplat {
 
@@ -13,31 +17,59 @@ bool areSummed(const ClassTable& classes) {
     return classes.oneColor || classes.looks.size() == 1;
 }
 
+// What each class looks like over a step, premultiplied.
+std::vector<glm::dvec4> lightsOf(const ClassTable& classes) {
+    std::vector<glm::dvec4> lights;
+    const std::vector<double> alphas = classes.alphas();
+    for (std::size_t i = 0; i < alphas.size(); ++i)
+        lights.emplace_back(alphas[i] * classes.looks[i].color, alphas[i]);
+    return lights;
+}
+
+// The look that is this over a step of the classes.
+Look lookOf(const glm::dvec4& light, const ClassTable& classes) {
+    const double unitDistances =
+        classes.extinctionScale * (classes.stepWorld / classes.unitDistanceWorld);
+    const double extinction = light.a < 1 ? -portable::log1p(-light.a) / unitDistances
+                                          : std::numeric_limits<double>::infinity();
+    return {light.a > 0 ? extinction : 0, glm::dvec3(light)};
+}
+
 }  // namespace
 
-bool canBeJoined(const ClassTable& classes) {
+bool canBePaired(const ClassTable& classes) {
     return areSummed(classes) || classes.size() * classes.size() <= ClassTable::kMaxClasses;
 }
 
-SliceJoiner joinerOf(const ClassTable& classes) {
-    if (!canBeJoined(classes)) throw std::logic_error("slices joined without numbers");
-    if (!areSummed(classes)) return SliceJoiner::ofPairs(classes.size());
-    std::vector<double> extinctions;
-    for (const Look& look : classes.looks) extinctions.push_back(look.extinction);
-    return SliceJoiner::ofSums(extinctions);
+SliceJoiner joinerOf(const ClassTable& classes, const JoinedRun& run, int bits) {
+    if (areSummed(classes)) {
+        std::vector<double> extinctions;
+        for (const Look& look : classes.looks) extinctions.push_back(look.extinction);
+        return SliceJoiner::ofSums(extinctions, run.slices);
+    }
+    if (run.slices == 2 && canBePaired(classes)) return SliceJoiner::ofPairs(classes.size());
+    return SliceJoiner::ofLooks(lightsOf(classes.atSteps(run.steps)),
+                                {run.slices, run.seenThrough == SeenThrough::kFirst, bits});
 }
 
 ClassTable joinedClasses(const ClassTable& classes, const SliceJoiner& joiner,
-                         SeenThrough seenThrough, double steps) {
+                         const JoinedRun& run) {
     ClassTable joined = classes;
+    if (joiner.isOfLooks()) {
+        joined = classes.atSteps(run.steps);
+        joined.looks.clear();
+        for (const glm::dvec4& light : joiner.looks())
+            joined.looks.push_back(lookOf(light, joined));
+        return joined.atSteps(1);
+    }
     if (areSummed(classes)) {
         joined.looks.clear();
         for (const double extinction : joiner.levels())
             joined.looks.push_back({extinction, classes.looks.back().color});
     } else {
-        joined.pairs = seenThrough;
+        joined.pairs = run.seenThrough;
     }
-    return joined.atSteps(steps);
+    return joined.atSteps(run.steps);
 }
 
 }  // namespace deltasplat

@@ -6,17 +6,26 @@
 
 namespace deltasplat {
 
-/// Whether slices of voxels of these classes can be joined: all have one colour, for then it does
-/// not matter which is in front, or there are few enough for pairs of them to be numbered.
-bool canBeJoined(const ClassTable& classes);
+/// Whether two slices of voxels of these classes can be joined for steps of any length: all have
+/// one colour, for then it does not matter which is in front, or there are few enough for pairs of
+/// them to be numbered.
+bool canBePaired(const ClassTable& classes);
 
-/// Returns what joins slices.
-/// @throw std::logic_error if they cannot be joined
-SliceJoiner joinerOf(const ClassTable& classes);
+/// What becomes one.
+struct JoinedRun {
+    int slices;
+    SeenThrough seenThrough;  ///< of two that follow each other, which is behind
+    double steps;             ///< how many times as long as those of the classes steps are
+};
 
-/// Returns the classes that voxels of joined slices have, in steps that are so many times as long.
-/// @param seenThrough  which of two is behind
+/// Returns what joins slices: for steps of any length if they are of one colour, or two that can be
+/// paired.
+/// @param bits  as LookRun has them
+SliceJoiner joinerOf(const ClassTable& classes, const JoinedRun& run,
+                     int bits = LookRun::kMostBits);
+
+/// Returns the classes that voxels of joined slices have, once these are joined.
 ClassTable joinedClasses(const ClassTable& classes, const SliceJoiner& joiner,
-                         SeenThrough seenThrough, double steps);
+                         const JoinedRun& run);
 
 }  // namespace deltasplat

@@ -400,7 +400,7 @@ Factorization subdividedFromEye(const Factorization& view, const Subdivision& pa
     const glm::dvec3 per = parts.per();
     // What is joined is counted as its first voxel, and lies between both.
     result.eye = (*view.eye - glm::dvec3(parts.origin)) * per + 0.5 * (per - 1.0) +
-                 0.5 * glm::dvec3(0, parts.slant);
+                 0.5 * glm::dvec3(0, parts.slants[1]);
     for (int axis = 0; axis < 3; ++axis) result.worldFromStep[axis] /= per[axis];
     const double slopes = per.y / per.x;
     result.slopeLimit *= slopes;
@@ -410,6 +410,20 @@ Factorization subdividedFromEye(const Factorization& view, const Subdivision& pa
     result.sliceStepWorld /= per.x;
     result.pixelsPerVoxel /= per.y;
     return result;
+}
+
+// Where joined voxels are drawn, counted from the first of them: in the middle between the
+// outermost places of all.
+glm::dvec2 middleOfJoined(const glm::dvec2& shiftPerSlice, const Subdivision& parts) {
+    glm::dvec2 least(0.0);
+    glm::dvec2 most(0.0);
+    for (int i = 1; i < parts.joined; ++i) {
+        const glm::dvec2 place =
+            double(i) * shiftPerSlice - glm::dvec2(parts.slants[std::size_t(i)]);
+        least = glm::min(least, place);
+        most = glm::max(most, place);
+    }
+    return 0.5 * (least + most);
 }
 
 }  // namespace
@@ -423,9 +437,9 @@ Factorization subdivided(const Factorization& view, const Subdivision& parts) {
     result.sliceStepWorld /= slices;
     result.pixelsPerVoxel /= within;
     // The first thin voxel lies before the middle of the one that it is a part of, on each axis.
-    const glm::dvec2 first = 0.5 * (within - 1) +
-                             within * (0.5 - 0.5 / slices) * view.shiftPerSlice +
-                             0.5 * glm::dvec2(parts.slant);
+    const glm::dvec2 first =
+        parts.joined > 1 ? -middleOfJoined(view.shiftPerSlice, parts)
+                         : 0.5 * (within - 1) + within * (0.5 - 0.5 / slices) * view.shiftPerSlice;
     const glm::dvec2 origin =
         glm::dvec2(parts.origin.y, parts.origin.z) + double(parts.origin.x) * view.shiftPerSlice;
     result.baseFromPixel[2] -= glm::dvec3(origin, 0);

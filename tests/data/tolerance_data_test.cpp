@@ -53,7 +53,7 @@ TEST(ToleranceData, NoPixelIsFartherOffThanProved) {
         options.camera.direction = glm::dvec3(-1, 0.8, -0.6);
         options.camera.sizePixels = {128, 128};
         // As pictures with a tolerance are, for which the bound is.
-        options.joinsSlices = false;
+        options.mostJoined = 1;
         const RenderResult exact = render(volume, options);
         options.tolerance.relative = 0.05;
         const RenderResult held = render(volume, options);

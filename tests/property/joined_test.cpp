@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/vector_relational.hpp>
 #include <memory>
 #include <numeric>
+#include <utility>
 #include <vector>
 
+#include "deltasplat/error.h"
 #include "deltasplat/render.h"
 #include "deltasplat/render_deep.h"
 #include "support/make_volume.h"
@@ -69,6 +72,12 @@ double largestDifference(const Image& a, const Image& b) {
     return largest;
 }
 
+double sumOf(const Image& image) {
+    double sum = 0;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) sum += double(image.rgba[i]);
+    return sum;
+}
+
 const glm::dvec3 kOblique(1, 0.7, -0.9);
 
 TEST_F(Joined, chosenWhereVoxelsCoverHalfAPixel) {
@@ -83,6 +92,58 @@ TEST_F(Joined, chosenWhereVoxelsCoverHalfAPixel) {
     }
     EXPECT_EQ(joinedOf(Colors::kOwn, 0.1), 1);
     EXPECT_EQ(joinedOf(Colors::kLit, 0.1), 1);
+}
+
+// More than two where they are moved by no more than a quarter of a pixel, for who asks for it.
+TEST_F(Joined, joinsUpToEightWhereThatMovesLittle) {
+    const Volume volume = test::randomVolume(kBox, 5, 0.5);
+    const auto joinedOf = [&](double pixels, const glm::dvec3& direction, int most) {
+        RenderOptions options = optionsFor(Colors::kSeveral, pixels, direction);
+        options.mostJoined = most;
+        return render(volume, options).stats.joined;
+    };
+    EXPECT_EQ(joinedOf(0.5, {0, 0, 1}, 8), 8);
+    EXPECT_EQ(joinedOf(0.5, {0, 0, 1}, 4), 4);
+    EXPECT_EQ(joinedOf(0.51, {0, 0, 1}, 8), 1);
+    // Fifths and tenths of voxels: eight slices are up to 0.4 and 0.4 from their places, four 0.3
+    // and 0.3.
+    const glm::dvec3 oblique(1, 0.8, 0.6);
+    EXPECT_EQ(joinedOf(0.25 / std::hypot(0.4, 0.4) - 1e-3, oblique, 8), 8);
+    EXPECT_EQ(joinedOf(0.25 / std::hypot(0.4, 0.4) + 1e-3, oblique, 8), 4);
+    EXPECT_EQ(joinedOf(0.5, oblique, 8), 4);
+    // Not where lines of sight leave a column only now and then.
+    struct Joint {
+        double slope;
+        int ofEight;
+        int ofFour;
+    };
+    for (const Joint& joint :
+         {Joint{0.03, 4, 4}, {0.12, 2, 2}, {0.13, 8, 2}, {0.24, 8, 2}, {0.26, 8, 4}}) {
+        EXPECT_EQ(joinedOf(0.2, {1, joint.slope, 0.8}, 8), joint.ofEight) << joint.slope;
+        EXPECT_EQ(joinedOf(0.2, {1, joint.slope, 0.8}, 4), joint.ofFour) << joint.slope;
+    }
+    for (const int none : {0, 3, 5, 16, -2}) EXPECT_THROW(joinedOf(0.2, oblique, none), Error);
+    RenderOptions eye = fromEye(Colors::kSeveral, 0.1, kOblique, 20);
+    eye.mostJoined = 8;
+    EXPECT_EQ(render(volume, eye).stats.joined, 2);
+}
+
+// Of however many classes, then.
+TEST_F(Joined, joinsAnyNumberOfClasses) {
+    const Volume volume = test::makeVolume(
+        kBox, [&](int x, int y, int z) { return (x * 7 + y * 31 + z * 3 + 4000) % 9000; });
+    RenderOptions options = optionsFor(Colors::kSeveral, 0.3, kOblique);
+    options.optics.transferFunction.opacities = {{-1, 0, 0.5, 0}, {9000, 0.5, 0.5, 0}};
+    for (auto& point : options.optics.transferFunction.colors) point.x *= 30;
+    const RenderResult expected = unjoined(volume, options);
+    for (const int most : {4, 8}) {
+        options.mostJoined = most;
+        const RenderResult joined = render(volume, options);
+        EXPECT_GE(joined.stats.joined, 2);
+        EXPECT_NEAR(sumOf(joined.image) / sumOf(expected.image), 1, 0.01);
+    }
+    options.mostJoined = 2;
+    EXPECT_EQ(render(volume, options).stats.joined, 1);
 }
 
 TEST_F(Joined, notWhereLittleIsSaved) {
@@ -104,7 +165,7 @@ TEST_F(Joined, notWhereVoxelsAreAskedFor) {
     all[3].tolerance.relative = 0.01;
     all[4].tolerance.value = 1;
     all[5].footprintWidth = 1;
-    all[6].joinsSlices = false;
+    all[6].mostJoined = 1;
     EXPECT_EQ(render(volume, plain).stats.joined, 2);
     for (const RenderOptions& options : all) EXPECT_EQ(render(volume, options).stats.joined, 1);
     DeepImage deep;
@@ -164,7 +225,7 @@ TEST_F(Joined, notFromAnEyeWhereVoxelsAreAskedFor) {
     all[0].between = 0;
     all[1].resolution = 1;
     all[2].tolerance.relative = 0.01;
-    all[3].joinsSlices = false;
+    all[3].mostJoined = 1;
     EXPECT_EQ(render(volume, plain).stats.joined, 2);
     for (const RenderOptions& options : all) EXPECT_EQ(render(volume, options).stats.joined, 1);
     DeepImage deep;
@@ -201,6 +262,12 @@ TEST_F(Joined, straightViewsShowTheSame) {
                     const RenderResult expected = unjoined(volume, options);
                     EXPECT_LT(joined.stats.visible, expected.stats.visible);
                     EXPECT_LT(largestDifference(joined.image, expected.image), 4e-4)
+                        << axis << ", " << sign;
+                    options.mostJoined = 8;
+                    const RenderResult eight = render(volume, options);
+                    EXPECT_EQ(eight.stats.joined, 8);
+                    // Looks are rounded.
+                    EXPECT_LT(largestDifference(eight.image, expected.image), 4e-3)
                         << axis << ", " << sign;
                 }
             }
@@ -271,12 +338,6 @@ TEST_F(Joined, movesNothingByMoreThanAFifthOfAPixel) {
                 0.03);
 }
 
-double sumOf(const Image& image) {
-    double sum = 0;
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4) sum += double(image.rgba[i]);
-    return sum;
-}
-
 // What the picture of plates of one voxel adds up to, voxel by voxel and with slices joined.
 struct PlateSums {
     double single;
@@ -287,7 +348,7 @@ constexpr int kPlate = 64;
 constexpr double kPlatePixels = 0.4;
 
 PlateSums sumsOfPlates(int axis, bool isOne, double opacity, const glm::dvec3& direction,
-                       Colors colors, bool isFromEye = false) {
+                       Colors colors, bool isFromEye = false, int mostJoined = 2) {
     const IndexBox box{glm::ivec3(0), glm::ivec3(kPlate - 1)};
     const Volume plates = test::makeVolume(box, [&](int x, int y, int z) {
         const int at = glm::ivec3(x, y, z)[axis];
@@ -298,9 +359,81 @@ PlateSums sumsOfPlates(int axis, bool isOne, double opacity, const glm::dvec3& d
     options.camera.sizePixels = {60, 60};
     if (isFromEye) options = fromEye(options, 25);
     options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, opacity, 0.5, 0}};
+    options.mostJoined = mostJoined;
     const RenderResult joined = render(plates, options);
-    EXPECT_EQ(joined.stats.joined, 2);
     return {sumOf(unjoined(plates, options).image), sumOf(joined.image)};
+}
+
+// So do eight slices: by no more than a quarter, and what a sheet's reading takes.
+TEST_F(Joined, movesNothingOfEightSlicesByMoreThanAQuarterOfAPixel) {
+    double farthest = 0;
+    for (const glm::ivec3& place : {glm::ivec3(0, 30, -20), {-7, 21, -19}, {5, 33, -26}}) {
+        const Volume volume = test::makeVolume(kBox, [&](int x, int y, int z) {
+            return glm::ivec3(x, y, z) == place ? 180 : test::kInactive;
+        });
+        for (const glm::dvec3& direction : kDirections) {
+            for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+                RenderOptions options = optionsFor(colors, 0.4, direction);
+                options.filter = PictureFilter::kGauss;
+                options.camera.sizePixels = {120, 120};
+                options.camera.frameWidthWorld = 300;
+                options.mostJoined = 8;
+                const RenderResult joined = render(volume, options);
+                if (joined.stats.joined == 2) continue;
+                const Middle now = middleOf(joined.image);
+                const Middle expected = middleOf(unjoined(volume, options).image);
+                EXPECT_NEAR(now.sum / expected.sum, 1, 0.04);
+                const double moved = glm::length(now.place - expected.place);
+                EXPECT_LE(moved, 0.26);
+                farthest = std::max(farthest, moved);
+            }
+        }
+    }
+    EXPECT_GT(farthest, 0.1);
+}
+
+// What the picture of plates adds up to, by walking along lines of sight through solid voxels.
+double truthOfPlates(int axis, double opacity, const glm::dvec3& direction) {
+    const glm::dvec3 along = glm::normalize(direction);
+    const glm::dvec3 aside = glm::normalize(glm::cross(along, glm::dvec3(0.1, 1, 0.2)));
+    const glm::dvec3 up = glm::cross(aside, along);
+    constexpr double kStep = 0.06;     // of a line of sight
+    constexpr double kBetween = 0.61;  // lines of sight
+    constexpr double kReach = 0.87 * kPlate;
+    const double extinction = -std::log(1 - opacity);
+    double sum = 0;
+    for (double x = -kReach; x < kReach; x += kBetween) {
+        for (double y = -kReach; y < kReach; y += kBetween) {
+            double length = 0;
+            for (double z = -kReach; z < kReach; z += kStep) {
+                const glm::dvec3 place = 0.5 * kPlate + x * aside + y * up + z * along;
+                const bool isIn = glm::all(glm::greaterThanEqual(place, glm::dvec3(0))) &&
+                                  glm::all(glm::lessThan(place, glm::dvec3(kPlate)));
+                if (isIn && int(place[axis]) % 8 == 3) length += kStep;
+            }
+            sum += 1 - std::exp(-extinction * length);
+        }
+    }
+    return sum * std::pow(kBetween * kPlatePixels, 2);
+}
+
+// Many plates of one voxel are as dense as they are, also of more slices than two, wherever they
+// are joined.
+TEST_F(Joined, keepsManySlicesAsDense) {
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const double opacity : {0.9, 0.05}) {
+            for (const glm::dvec3& direction : kDirections) {
+                const double truth = truthOfPlates(axis, opacity, direction);
+                for (const int most : {4, 8}) {
+                    const PlateSums sums = sumsOfPlates(axis, false, opacity, direction,
+                                                        Colors::kSeveral, false, most);
+                    EXPECT_NEAR(sums.joined / truth, 1, 0.045)
+                        << axis << ' ' << opacity << ' ' << direction.x << ' ' << direction.y << ' '
+                        << most;
+                }
+            }
+        }
+    }
 }
 
 // Many plates hide what is behind them as before.
@@ -344,11 +477,15 @@ TEST_F(Joined, keepsOnePlateAsNearToTheTruth) {
 
 TEST_F(Joined, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
     const Volume volume = test::randomVolume(kBox, 8, 0.5, {1, 1.2, 0.8});
+    int joined = 0;
     for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
         for (const double pixels : {0.3, 0.05}) {
             for (const glm::dvec3& direction : kDirections) {
-                const RenderOptions options = optionsFor(colors, pixels, direction);
+                RenderOptions options = optionsFor(colors, pixels, direction);
                 EXPECT_EQ(render(volume, options).stats.joined, 2);
+                test::expectTheSameHoweverItIsMade(volume, options);
+                options.mostJoined = 8;
+                joined += render(volume, options).stats.joined;
                 test::expectTheSameHoweverItIsMade(volume, options);
             }
             for (const double fov : {20.0, 60.0}) {
@@ -358,6 +495,7 @@ TEST_F(Joined, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
             }
         }
     }
+    EXPECT_GT(joined, 100);  // of 28, most are 8
 }
 
 // From both ends of an axis, which share words where they may, and with other optics, which do so
@@ -370,6 +508,7 @@ TEST_F(Joined, preparedScenesShowTheSame) {
             for (const double pixels : {0.3, 0.05}) {
                 RenderOptions options = optionsFor(colors, pixels, kOblique);
                 options.method = method;
+                options.mostJoined = pixels < 0.1 ? 8 : 2;
                 Optics recolored = options.optics;
                 recolored.transferFunction.colors[0].rgb = {0.3, 0.6, 0};
                 Optics thinner = recolored;
@@ -387,7 +526,7 @@ TEST_F(Joined, preparedScenesShowTheSame) {
                         one.optics = optics;
                         one.camera.direction = sign * kOblique;
                         const RenderResult expected = render(*volume, one);
-                        EXPECT_EQ(expected.stats.joined, 2);
+                        EXPECT_EQ(expected.stats.joined, options.mostJoined);
                         Image image(expected.camera.sizePixels);
                         renderComposite(scene, expected.camera, image);
                         EXPECT_EQ(image.rgba, expected.image.rgba) << sign;

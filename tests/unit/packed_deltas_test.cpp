@@ -18,6 +18,7 @@
 
 #include "delta/slice_joiner.h"
 #include "deltasplat/threads.h"
+#include "floor_div.h"
 #include "support/make_volume.h"
 #include "support/simd_levels.h"
 
@@ -94,26 +95,31 @@ Classes walk(const PackedDeltas& packed) {
 
 // Classes of joined slices, voxel by voxel.
 Classes joinedClassesOf(const Classes& classes, const SliceJoiner& joiner,
-                        const glm::ivec2& slant) {
+                        std::span<const glm::ivec2> slants) {
     const auto classAt = [&](int s, int u, int v) {
         const auto voxel = classes.find({s, u, v});
         return voxel == classes.end() ? ClassIndex{0} : voxel->second;
     };
+    const int count = int(slants.size());
     Classes joined;
+    LookCache cache;
     const auto join = [&](int slice, int u, int v) {
-        std::array<ClassIndex, 64> first{};
-        std::array<ClassIndex, 64> second{};
+        std::vector<std::array<ClassIndex, 64>> voxels(slants.size());
+        std::vector<const ClassIndex*> slices;
+        for (int i = 0; i < count; ++i) {
+            const glm::ivec2& slant = slants[std::size_t(i)];
+            voxels[std::size_t(i)][0] = classAt(count * slice + i, u - slant.x, v - slant.y);
+            slices.push_back(voxels[std::size_t(i)].data());
+        }
         std::array<ClassIndex, 64> out;
-        first[0] = classAt(2 * slice, u, v);
-        second[0] = classAt(2 * slice + 1, u - slant.x, v - slant.y);
-        const std::array<const ClassIndex*, 2> slices = {first.data(), second.data()};
-        joiner.join(slices, 8, out.data());
+        joiner.join(slices, 8, out.data(), cache);
         joined[{slice, u, v}] = out[0];
     };
     for (const auto& [place, found] : classes) {
         const auto [s, u, v] = place;
-        const int slice = int(std::floor(s / 2.0));
-        s == 2 * slice ? join(slice, u, v) : join(slice, u + slant.x, v + slant.y);
+        const int slice = floorDiv(s, count);
+        const glm::ivec2& slant = slants[std::size_t(s - count * slice)];
+        join(slice, u + slant.x, v + slant.y);
     }
     return joined;
 }
@@ -162,9 +168,10 @@ TEST(PackedDeltas, TakeClassesThatFollowEachOther) {
             PackOptions options = optionsOf(axis, Encoding::kChanges, classes, false);
             EXPECT_EQ(walk(packDeltas(volume, options)), expected) << axis;
             options.joiner = &joiner;
-            options.slants = {{0, 0}, {-1, 1}};
+            const std::array<glm::ivec2, 2> slants = {glm::ivec2(0), {-1, 1}};
+            options.slants = slants;
             EXPECT_EQ(walk(packDeltas(volume, options)),
-                      joinedClassesOf(expected, joiner, options.slants[1]))
+                      joinedClassesOf(expected, joiner, options.slants))
                 << axis;
         }
     }
@@ -264,26 +271,50 @@ TEST(PackedDeltas, JoinSlices) {
     const std::vector<Slot> classes = plainClasses();
     std::vector<double> extinctions(40);
     for (std::size_t i = 0; i < extinctions.size(); ++i) extinctions[i] = 0.01 * double(i * i);
-    const SliceJoiner joiners[] = {SliceJoiner::ofPairs(40), SliceJoiner::ofSums(extinctions)};
+    std::vector<glm::dvec4> lights;
+    for (std::size_t i = 0; i < 40; ++i) {
+        const double alpha = i == 0 ? 0 : 1 / double(i);
+        lights.emplace_back(alpha * 0.02 * double(i), 0.5 * alpha, 0, alpha);
+    }
+    struct Case {
+        SliceJoiner joiner;
+        std::vector<glm::ivec2> slants;
+    };
+    std::vector<Case> cases;
     for (int i = 0; i < 18; ++i) {
-        const SliceJoiner& joiner = joiners[i / 9];
-        const glm::ivec2 slant(i / 3 % 3 - 1, i % 3 - 1);
-        // Some of the slants.
+        const SliceJoiner joiner =
+            i < 9 ? SliceJoiner::ofPairs(40) : SliceJoiner::ofSums(extinctions);
+        cases.push_back({joiner, {{0, 0}, {i / 3 % 3 - 1, i % 3 - 1}}});
+    }
+    for (const bool lastInFront : {false, true}) {
+        const auto ofLooks = [&](int slices) {
+            return SliceJoiner::ofLooks(lights, {slices, lastInFront});
+        };
+        cases.push_back({ofLooks(2), {{0, 0}, {-1, 0}}});
+        cases.push_back({ofLooks(4), {{0, 0}, {0, -1}, {0, -2}, {0, -3}}});
+        cases.push_back(
+            {ofLooks(8), {{0, 0}, {1, 0}, {1, -1}, {2, -1}, {3, -1}, {4, -2}, {4, -2}, {5, -2}}});
+        cases.push_back({SliceJoiner::ofSums(extinctions, 8),
+                         {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}, {0, 6}, {0, 7}}});
+    }
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const SliceJoiner& joiner = cases[i].joiner;
+        // Some of them.
         if (test::kIsSanitized && i % 4 != 0) continue;
         for (int axis = 0; axis < 3; ++axis) {
             const Classes expected =
-                joinedClassesOf(classesOf(volume, axis, classes), joiner, slant);
+                joinedClassesOf(classesOf(volume, axis, classes), joiner, cases[i].slants);
             for (const auto& [encoding, descending] : kWays) {
                 PackOptions options = optionsOf(axis, encoding, classes, descending);
                 options.joiner = &joiner;
-                options.slants = {{0, 0}, slant};
+                options.slants = cases[i].slants;
                 const PackedDeltas whole = packDeltas(volume, options);
                 EXPECT_EQ(walk(whole), expected) << i << ", axis " << axis;
                 EXPECT_EQ(whole.visible(), expected.size());
                 if (axis != 2) continue;
                 DeltaPacker packer(volume, options);
                 packer.packOrPlan(0);
-                EXPECT_GT(packer.parts().size(), 2u);
+                EXPECT_GT(packer.parts().size(), cases[i].slants.size() == 2 ? 2u : 0u);
                 for (const SlabRange& range : packer.parts()) {
                     const PackedDeltas part = packer.pack(range);
                     const PlannedSlab& slab = whole.slabs[std::size_t(range.first)];
@@ -309,9 +340,10 @@ TEST(PackedDeltas, JoinSlicesOfTiles) {
     for (int axis = 0; axis < 3; ++axis) {
         PackOptions options = optionsOf(axis, Encoding::kChanges, classes, false);
         options.joiner = &joiner;
-        options.slants = {{0, 0}, {1, -1}};
+        const std::array<glm::ivec2, 2> slants = {glm::ivec2(0), {1, -1}};
+        options.slants = slants;
         const Classes expected =
-            joinedClassesOf(classesOf(volume, axis, classes), joiner, options.slants[1]);
+            joinedClassesOf(classesOf(volume, axis, classes), joiner, options.slants);
         EXPECT_EQ(walk(packDeltas(tiled, options)), expected);
     }
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/vec4.hpp>
 #include <limits>
 #include <random>
 #include <string>
@@ -28,12 +29,18 @@ SliceClasses randomClasses(std::size_t count, std::uint32_t seed) {
     return classes;
 }
 
+SliceClasses joined(const SliceJoiner& joiner, const std::vector<SliceClasses>& slices) {
+    std::vector<const ClassIndex*> rows;
+    for (const SliceClasses& slice : slices) rows.push_back(slice.data());
+    SliceClasses out;
+    LookCache cache;
+    joiner.join(rows, 8, out.data(), cache);
+    return out;
+}
+
 SliceClasses joined(const SliceJoiner& joiner, const SliceClasses& first,
                     const SliceClasses& second) {
-    SliceClasses out;
-    const std::array<const ClassIndex*, 2> slices = {first.data(), second.data()};
-    joiner.join(slices, 8, out.data());
-    return out;
+    return joined(joiner, std::vector{first, second});
 }
 
 TEST(SliceJoiner, numbersPairs) {
@@ -73,6 +80,128 @@ TEST(SliceJoiner, roundsSumsToLevels) {
             }
         }
     }
+}
+
+TEST(SliceJoiner, addsUpManySlices) {
+    const std::vector<double> extinctions = someExtinctions();
+    for (const int count : {4, 8}) {
+        const SliceJoiner joiner = SliceJoiner::ofSums(extinctions, count);
+        const std::vector<double> levels = joiner.levels();
+        EXPECT_LE(levels.size(), 65536u);
+        for (std::uint32_t seed = 0; seed < 30; ++seed) {
+            std::vector<SliceClasses> slices;
+            for (int i = 0; i < count; ++i)
+                slices.push_back(randomClasses(extinctions.size(), 8 * seed + std::uint32_t(i)));
+            // The most that there can be, and opaque.
+            for (SliceClasses& slice : slices) slice[0] = ClassIndex(extinctions.size() - 1);
+            slices[1][1] = 1;
+            const SliceClasses out = joined(joiner, slices);
+            for (std::size_t i = 0; i < 64; ++i) {
+                double sum = 0;
+                for (const SliceClasses& slice : slices) sum += extinctions[slice[i]];
+                ASSERT_LT(out[i], levels.size());
+                if (sum == 0 || std::isinf(sum)) {
+                    EXPECT_EQ(levels[out[i]], sum);
+                } else {
+                    EXPECT_NEAR(levels[out[i]] / sum, 1, 0x1p-11 + 1e-6);
+                }
+            }
+        }
+    }
+}
+
+// Premultiplied, of six decades, opaque ones among them; colours beyond 1.
+std::vector<glm::dvec4> someLights(std::size_t count) {
+    std::vector<glm::dvec4> lights(1);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> share(0, 1);
+    while (lights.size() < count) {
+        const double alpha = lights.size() % 17 == 0 ? 1 : std::exp2(-20 * share(random));
+        lights.emplace_back(alpha * 3 * share(random), alpha * share(random), 0, alpha);
+    }
+    return lights;
+}
+
+// What slices look like one behind the other, the nearest first.
+glm::dvec4 composite(const std::vector<glm::dvec4>& lights) {
+    glm::dvec4 sum(0.0);
+    for (const glm::dvec4& light : lights) sum += (1 - sum.a) * light;
+    return sum;
+}
+
+TEST(SliceJoiner, roundsLooks) {
+    const std::vector<glm::dvec4> lights = someLights(40);
+    for (const int count : {2, 4, 8}) {
+        for (const bool lastInFront : {false, true}) {
+            const SliceJoiner joiner = SliceJoiner::ofLooks(lights, {count, lastInFront});
+            std::vector<std::vector<SliceClasses>> all;
+            std::vector<SliceClasses> outs;
+            for (std::uint32_t seed = 0; seed < 20; ++seed) {
+                std::vector<SliceClasses>& slices = all.emplace_back();
+                for (int i = 0; i < count; ++i)
+                    slices.push_back(randomClasses(lights.size(), 100 * seed + std::uint32_t(i)));
+                // Nothing, and one class alone, once and more often.
+                for (SliceClasses& slice : slices) slice[0] = slice[1] = slice[2] = 0;
+                slices.back()[1] = slices.back()[2] = slices.front()[2] = 7;
+                outs.push_back(joined(joiner, slices));
+            }
+            EXPECT_FALSE(joiner.hasTooMany());
+            const std::vector<glm::dvec4> looks = joiner.looks();
+            for (std::size_t n = 0; n < all.size(); ++n) {
+                for (std::size_t i = 0; i < 64; ++i) {
+                    std::vector<glm::dvec4> ofSlices;
+                    for (const SliceClasses& slice : all[n]) ofSlices.push_back(lights[slice[i]]);
+                    if (lastInFront) std::reverse(ofSlices.begin(), ofSlices.end());
+                    const glm::dvec4 expected = composite(ofSlices);
+                    ASSERT_LT(outs[n][i], looks.size());
+                    const glm::dvec4& look = looks[outs[n][i]];
+                    EXPECT_EQ(outs[n][i] > 0, expected.a > 0);
+                    EXPECT_EQ(look.a > 0, expected.a > 0);
+                    if (expected.a == 0) continue;
+                    const bool isAlone = i == 1 || i == 2;
+                    // 16 levels an octave, of opacity or of what gets through; 127 of a root.
+                    const double ofAlpha = isAlone ? 1e-6 : 0.033;
+                    EXPECT_NEAR(look.a / expected.a, 1, ofAlpha) << i;
+                    EXPECT_NEAR((1 - look.a) / (1 - expected.a + 0x1p-12), 1, 1.1) << i;
+                    EXPECT_EQ(look.a == 1, expected.a > 1 - 0x1p-17) << i << ' ' << expected.a;
+                    for (int c = 0; c < 3; ++c) {
+                        const double color = expected[c] / expected.a;
+                        const double step = 2 * std::sqrt(3 * color) / 127 + 3.0 / (127 * 127);
+                        EXPECT_NEAR(look[c], color, isAlone ? 1e-6 : 1.05 * step) << i << ' ' << c;
+                    }
+                }
+            }
+        }
+    }
+}
+
+// Of more classes than can be told apart alone, they are rounded as well.
+TEST(SliceJoiner, roundsLooksOfManyClasses) {
+    const std::vector<glm::dvec4> lights = someLights(60000);
+    const SliceJoiner joiner = SliceJoiner::ofLooks(lights, {8});
+    std::vector<SliceClasses> slices(8);
+    for (std::size_t i = 1; i < 64; ++i) slices[i % 8][i] = ClassIndex(900 * i);
+    const SliceClasses out = joined(joiner, slices);
+    const std::vector<glm::dvec4> looks = joiner.looks();
+    EXPECT_EQ(out[0], 0);
+    for (std::size_t i = 1; i < 64; ++i)
+        EXPECT_NEAR(looks[out[i]].a / lights[900 * i].a, 1, 0.033) << i;
+}
+
+TEST(SliceJoiner, saysWhereLooksAreTooMany) {
+    const std::vector<glm::dvec4> lights = someLights(200);
+    const SliceJoiner fine = SliceJoiner::ofLooks(lights, {8});
+    const SliceJoiner coarse = SliceJoiner::ofLooks(lights, {8, false, 2});
+    for (std::uint32_t seed = 0; seed < 4000; ++seed) {
+        std::vector<SliceClasses> slices;
+        for (std::uint32_t i = 0; i < 8; ++i)
+            slices.push_back(randomClasses(lights.size(), 8 * seed + i));
+        joined(fine, slices);
+        joined(coarse, slices);
+    }
+    EXPECT_TRUE(fine.hasTooMany());
+    EXPECT_FALSE(coarse.hasTooMany());
+    EXPECT_LE(coarse.looks().size(), 65536u);
 }
 
 // The most that there is has a level of its own, opaque or not.
@@ -127,16 +256,23 @@ TEST(SliceJoiner, hasLevelsThatOthersHave) {
 
 TEST(SliceJoiner, givesTheSameAtEverySimdLevel) {
     const std::vector<double> extinctions = someExtinctions();
-    for (const SliceJoiner& joiner :
-         {SliceJoiner::ofPairs(256), SliceJoiner::ofSums(extinctions)}) {
-        const SliceClasses first = randomClasses(250, 7);
-        const SliceClasses second = randomClasses(250, 8);
-        const SliceClasses expected = joined(joiner, first, second);
-        for (const std::string& level : test::testedSimdLevels()) {
-            setSimdLevel(level);
-            EXPECT_EQ(joined(joiner, first, second), expected) << level;
+    const std::vector<glm::dvec4> lights = someLights(250);
+    for (const int count : {2, 8}) {
+        std::vector<SliceClasses> slices;
+        for (int i = 0; i < count; ++i) slices.push_back(randomClasses(250, 7 + std::uint32_t(i)));
+        // Of looks, numbers are those of the first time that they came up.
+        std::vector<SliceJoiner> joiners = {SliceJoiner::ofSums(extinctions, count),
+                                            SliceJoiner::ofLooks(lights, {count}),
+                                            SliceJoiner::ofLooks(lights, {count, true})};
+        if (count == 2) joiners.push_back(SliceJoiner::ofPairs(256));
+        for (const SliceJoiner& joiner : joiners) {
+            const SliceClasses expected = joined(joiner, slices);
+            for (const std::string& level : test::testedSimdLevels()) {
+                setSimdLevel(level);
+                EXPECT_EQ(joined(joiner, slices), expected) << level;
+            }
+            setSimdLevel("auto");
         }
-        setSimdLevel("auto");
     }
 }
 

@@ -86,7 +86,7 @@ ToleranceRuns measureTolerance(const Volume& volume, RenderOptions options, cons
     options.method = Method::kDelta;
     options.tolerance = {};
     // Nor are slices joined with a tolerance.
-    options.joinsSlices = false;
+    options.mostJoined = 1;
     RenderResult exact = render(volume, options, listener);
     runs.measured = differenceOf(run.picture, exact.image);
     runs.exact = std::move(exact.image);

@@ -31,12 +31,19 @@
 
 namespace deltasplat {
 
+/// What is rendered but for one camera, unless there are more.
+inline RenderOptions ofOneCamera() {
+    RenderOptions options;
+    options.mostJoined = kMostJoined;
+    return options;
+}
+
 /// What to make a picture of and how: what all subcommands that render are asked.
 struct PictureOptions {
     std::filesystem::path transferFunction;  ///< empty: a ramp
     std::optional<glm::vec4> background;
     ReadOptions read;
-    RenderOptions render;
+    RenderOptions render = ofOneCamera();
     ShadingChoice shading;
     ScatterChoice scatter;
     MediumChoice medium;

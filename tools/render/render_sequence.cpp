@@ -223,7 +223,8 @@ PreparedScene prepareOnce(const RenderCommand& command, SequenceLook& look,
     Listener warnings;
     warnings.warning = listener.warning;
     const FrameLook frame{look, 0};
-    const ReadScene scene = readScene(command.input, command.picture, warnings, &frame);
+    ReadScene scene = readScene(command.input, command.picture, warnings, &frame);
+    scene.options.mostJoined = SplatOptions().mostJoined;
     return PreparedScene({scene.volume, scene.options.optics}, scene.options);
 }
 

@@ -130,7 +130,9 @@ VolumeReader slabReader(const CLI::App& app, const RenderCommand& command) {
 
 void writeSlabs(const CLI::App& app, const RenderCommand& command, const ReadScene& scene,
                 const Session& session, const Listener& listener) {
-    const PreparedScene prepared({scene.volume, scene.options.optics}, scene.options);
+    SplatOptions splat = scene.options;
+    splat.mostJoined = SplatOptions().mostJoined;
+    const PreparedScene prepared({scene.volume, scene.options.optics}, splat);
     // Of all grids of a medium.
     const Volume& seen = *prepared.scene().volume;
     const Camera camera =

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "deltasplat/view/camera.h"
@@ -108,21 +111,28 @@ inline bool isNearSlope(int slopeStep, double along, double slices) {
     return 2.0 * slopeStep * along > slices;
 }
 
+/// Most slices that are drawn as one.
+inline constexpr int kMostJoined = 8;
+
 /// What voxels are drawn as: into how many thin ones each is divided, evenly spaced and as far from
-/// its faces as from each other by half; or whether slices are joined two and two.
+/// its faces as from each other by half; or how many slices are joined.
 struct Subdivision {
     int slices = 1;  ///< along the slice axis
     int within = 1;  ///< along u and along v: 1 or 2
-    /// Undivided slices that are drawn as one, in their middle: 1, or 2, the first of an even
-    /// index.
+    /// Undivided slices that are drawn as one: 1, 2, 4 or kMostJoined, of an index that is a
+    /// multiple and those behind it.
     int joined = 1;
-    /// -1 to 1 each: of joined slices, voxel (u, v) of the second is drawn with (u, v) + slant of
-    /// the first, which nearly the same line of sight meets.
-    glm::ivec2 slant{0};
+    /// [joined]: voxel (u, v) of each of them is drawn with (u, v) + slant of the first, which
+    /// nearly the same line of sight meets. Along u all have one sign, and along v, and none is as
+    /// long as there are slices.
+    std::array<glm::ivec2, kMostJoined> slants{};
     /// (slice, u, v) of the voxel that thin voxels are counted from: numbers stay small wherever in
     /// index space a volume lies.
     glm::ivec3 origin{0};
 
+    std::span<const glm::ivec2> joinedSlants() const {
+        return std::span(slants).first(std::size_t(joined));
+    }
     /// Whether there is more than one.
     bool divides() const { return slices > 1 || within > 1; }
     /// Slices and voxels that are drawn for one along each axis.

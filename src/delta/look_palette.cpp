@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delta/look_palette.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr int kPlaceBits = 17;
+constexpr std::size_t kPlaces = std::size_t{1} << kPlaceBits;
+
+}  // namespace
+
+LookPalette::LookPalette(std::size_t most) : most_(most), places_(kPlaces) {}
+
+std::uint32_t LookPalette::numberOf(std::uint64_t key) {
+    constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 / golden ratio (D. Knuth)
+    std::size_t at = (key * kSpread) >> (64 - kPlaceBits);
+    for (; !hasTooMany(); at = (at + 1) % kPlaces) {
+        Place& place = places_[at];
+        std::uint64_t there = place.key.load(std::memory_order_acquire);
+        if (there == 0 && place.key.compare_exchange_strong(there, key)) {
+            const std::uint32_t number = ++count_;
+            if (number > most_) hasTooMany_ = true;
+            place.number.store(number, std::memory_order_release);
+            there = key;
+        }
+        if (there != key) continue;
+        // Who took the place is about to say.
+        std::uint32_t number = 0;
+        while (number == 0) number = place.number.load(std::memory_order_acquire);
+        return number > most_ ? 0 : number;
+    }
+    return 0;
+}
+
+std::vector<std::uint64_t> LookPalette::keys() const {
+    std::vector<std::uint64_t> keys(count_);
+    for (const Place& place : places_)
+        if (place.key != 0) keys[place.number - 1] = place.key;
+    return keys;
+}
+
+}  // namespace deltasplat

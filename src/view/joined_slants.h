@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <glm/vec2.hpp>
+
+#include "deltasplat/view/factorization.h"
+
+namespace deltasplat {
+
+/// How slices are moved that become one, and by how much that moves them.
+struct JoinedSlants {
+    std::array<glm::ivec2, kMostJoined> slants{};  ///< as Subdivision has them
+    /// How far what is joined lies from where it is drawn, in voxels: at most.
+    double farthest = 0;
+    /// Whether what is thin, and seen nearly edge-on, stays as dense as it is: along u and along v,
+    /// lines of sight go on by a voxel within these slices, or hardly at all.
+    bool keepsDensity = true;
+};
+
+/// Returns the slants by which slices stay nearest to their places.
+/// @param shiftPerSlice  -1 to 1 each
+/// @param count          2, 4 or kMostJoined
+JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count);
+
+}  // namespace deltasplat
