@@ -69,6 +69,13 @@ LayeredPicture::Impl::Impl(const PreparedScene& ofScene, const Camera& ofCamera,
                            const Listener& listener)
     : scene(ofScene), camera(ofCamera) {
     const PreparedScene::Impl& prepared = scene.impl();
+    // Looks of more slices have numbers that are others in each process.
+    if (prepared.options.mostJoined > 2) {
+        throw Error(
+            ErrorCode::kUsage,
+            gotExpected("`mostJoined`", std::to_string(prepared.options.mostJoined) + " for slabs",
+                        "1 or 2"));
+    }
     const Volume& volume = *prepared.scene.volume;
     const ViewPlan plan(prepared, camera, false, listener);
     if (volume.empty()) return;

@@ -68,6 +68,7 @@ constexpr FlagName kFlagNames[] = {
     {"maxError", "--max-error"},
     {"memoryLimit", "--max-memory"},
     {"mode", "--mode"},
+    {"mostJoined", "--join"},
     {"name", "NAME"},
     {"nanValue", "--nan"},
     {"nearWorld", "--near"},

@@ -18,6 +18,8 @@ foreach(share 1 1/10001 a/b 1/2/3 1/)
 endforeach()
 deltasplat_refusal(slab_range_of_a_picture
     "--slab-range: got --output out.exr; expected a .slabs file" --slab-range 1/2)
+deltasplat_refusal(slab_range_of_many_joined
+    "--slab-range: got --join 4; expected --join 1 or 2" --slab-range 1/2 -o out.slabs --join 4)
 deltasplat_refusal(slab_range_of_rays
     "--slab-range: got --mode xray; expected --mode composite"
     --slab-range 1/2 -o out.slabs --mode xray)

@@ -133,6 +133,12 @@ TEST(LayeredPicture, refusesLayersThatAreNotItsOwn) {
     EXPECT_EQ(errorOf([&] { picture.render(int(layers.size())); }),
               "usage: layers of a picture: got slab " + slabs + "; expected one of " + slabs +
                   ", counted from 0");
+    SplatOptions many;
+    many.mostJoined = 4;
+    EXPECT_EQ(errorOf([&] {
+                  LayeredPicture({scene.scene(), many}, cameraOf(*scene.scene().volume, options));
+              }),
+              "usage: `mostJoined`: got 4 for slabs; expected 1 or 2");
     // Nothing was changed by what was refused.
     Image other({3, 3});
     EXPECT_NE(errorOf([&] { picture.fold(layers, other); }).find("image: got 3x3"),

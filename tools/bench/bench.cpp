@@ -62,7 +62,7 @@ void addBenchOptions(CLI::App& app, BenchCommand& command) {
     addScatterOptions(app, command.picture.scatter);
     addMediumOptions(app, command.picture.medium);
     addPartOptions(app, command.picture);
-    addSplattingOptions(app, command.picture.render);
+    addSplattingOptions(app, command.picture);
     addInputOptions(app, command.picture.read);
 }
 

@@ -219,6 +219,7 @@ void finishSurface(const PictureOptions& picture, const Volume& volume, Optics& 
 
 RenderOptions readOptics(const PictureOptions& picture, const Listener& listener) {
     RenderOptions options = picture.render;
+    options.mostJoined = picture.join.value_or(kMostJoined);
     const ColorBy colorBy = options.optics.colorBy;
     if (picture.shading.asked() && !isFog(picture) && colorBy != ColorBy::kValue) {
         throw Error(ErrorCode::kUsage,

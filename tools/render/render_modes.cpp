@@ -75,10 +75,11 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
     warnOfOtherModes(app, command, display);
     if (mode == Mode::kComposite) return;
     std::vector<std::string> unused = {
-        "--method",     "--tolerance",     "--tolerance-value",  "--resolution",    "--between",
-        "--extinction", "--unit-distance", "--color-by",         "--shade",         "--light",
-        "--ambient",    "--diffuse",       "--specular",         "--shininess",     "--surface",
-        "--isovalue",   "--surface-color", "--gradient-opacity", "--density-scale", "--filter"};
+        "--method",  "--tolerance",  "--tolerance-value", "--resolution",       "--between",
+        "--join",    "--extinction", "--unit-distance",   "--color-by",         "--shade",
+        "--light",   "--ambient",    "--diffuse",         "--specular",         "--shininess",
+        "--surface", "--isovalue",   "--surface-color",   "--gradient-opacity", "--density-scale",
+        "--filter"};
     for (const std::vector<std::string>& ofFog : {scatterOptions(), mediumOptions()})
         unused.insert(unused.end(), ofFog.begin(), ofFog.end());
     if (colorsValues(command)) unused.push_back("--sigma");

@@ -99,6 +99,12 @@ Parser<double> resolution() {
     };
 }
 
+Parser<int> sliceCount() {
+    return [](const std::string& option, const std::string& text) {
+        return std::stoi(choice({"1", "2", "4", "8"})(option, text));
+    };
+}
+
 Parser<bool> zeroOrOne() {
     return [](const std::string& option, const std::string& text) {
         return choice({"0", "1"})(option, text) == "1";
@@ -336,7 +342,8 @@ void addPartOptions(CLI::App& app, PictureOptions& options) {
     addLabelOptions(app, options.parts.labels);
 }
 
-void addSplattingOptions(CLI::App& app, RenderOptions& options) {
+void addSplattingOptions(CLI::App& app, PictureOptions& picture) {
+    RenderOptions& options = picture.render;
     OptionGroup group(app, "Splatting");
     group.addValue("--tolerance", "T", options.tolerance.relative, relativeTolerance(),
                    withDefault("Stamp less: keep what a voxel was while it is within T times the\n"
@@ -359,9 +366,13 @@ void addSplattingOptions(CLI::App& app, RenderOptions& options) {
             "slice\n(default: 1 where a voxel covers 1.5 pixels or more and no\n"
             "--resolution is given, but not for thin fog (opacities up to\n0.25 a voxel), "
             "labels and colours that jump, nor more\nthan " +
-            std::to_string(kMostDivided) +
-            " blocks of voxels; else 0, and where a voxel\ncovers half a pixel or less two "
-            "slices are drawn as one)");
+            std::to_string(kMostDivided) + " blocks of voxels; else 0, and slices may\nbe joined)");
+    group.addValue(
+        "--join", "N", picture.join, sliceCount(),
+        "Slices that may be drawn as one, 1, 2, 4 or 8, where a voxel of\na large volume "
+        "covers half a pixel or less, and none of the\nsplatting options but --method "
+        "and --filter is given (default: 8;\nof a turntable and other frames of one "
+        "volume, and of parts\nmade with --slab-range, 2)");
     group.addValue("--resolution", "R", options.resolution, resolution(),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        ", or 1/2, 1/4 or 1/8:\nvoxels share a pixel, which is softer, not faster, "
@@ -400,7 +411,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addMediumOptions(app, command.picture.medium);
     addPartOptions(app, command.picture);
     addMethodOption(app, command.picture.render.method);
-    addSplattingOptions(app, command.picture.render);
+    addSplattingOptions(app, command.picture);
     addAnnotationOptions(app, command.annotations);
     addInputOptions(app, command.picture.read);
 }

@@ -31,19 +31,15 @@
 
 namespace deltasplat {
 
-/// What is rendered but for one camera, unless there are more.
-inline RenderOptions ofOneCamera() {
-    RenderOptions options;
-    options.mostJoined = kMostJoined;
-    return options;
-}
-
 /// What to make a picture of and how: what all subcommands that render are asked.
 struct PictureOptions {
     std::filesystem::path transferFunction;  ///< empty: a ramp
     std::optional<glm::vec4> background;
     ReadOptions read;
-    RenderOptions render = ofOneCamera();
+    RenderOptions render;
+    /// Most slices that may be drawn as one; empty: kMostJoined, and of pictures that are to be
+    /// what one of many is, SplatOptions::mostJoined.
+    std::optional<int> join;
     ShadingChoice shading;
     ScatterChoice scatter;
     MediumChoice medium;
@@ -144,7 +140,7 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options);
 /// Declares the options that say which parts of the volume are shown.
 void addPartOptions(CLI::App& app, PictureOptions& options);
 /// Declares the options of splatting that all methods share.
-void addSplattingOptions(CLI::App& app, RenderOptions& options);
+void addSplattingOptions(CLI::App& app, PictureOptions& options);
 
 /// Declares all options of `deltasplat render`.
 void addRenderOptions(CLI::App& app, RenderCommand& command);

@@ -224,7 +224,7 @@ PreparedScene prepareOnce(const RenderCommand& command, SequenceLook& look,
     warnings.warning = listener.warning;
     const FrameLook frame{look, 0};
     ReadScene scene = readScene(command.input, command.picture, warnings, &frame);
-    scene.options.mostJoined = SplatOptions().mostJoined;
+    scene.options.mostJoined = command.picture.join.value_or(SplatOptions().mostJoined);
     return PreparedScene({scene.volume, scene.options.optics}, scene.options);
 }
 

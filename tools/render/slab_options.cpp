@@ -112,6 +112,8 @@ void applySlabs(const CLI::App& app, const RenderCommand& command) {
                              name == "--ground" || name == "--window";
         if (isOther && !contains(used, name)) refuse(name + " besides", "one of the two");
     }
+    if (command.picture.join.value_or(1) > 2)
+        refuse("--join " + std::to_string(*command.picture.join), "--join 1 or 2");
     if (command.picture.render.mode != Mode::kComposite)
         refuse("--mode " + modeName(command.picture.render.mode), "--mode composite");
     if (lowerCase(command.output.extension().string()) != ".slabs")
@@ -131,7 +133,7 @@ VolumeReader slabReader(const CLI::App& app, const RenderCommand& command) {
 void writeSlabs(const CLI::App& app, const RenderCommand& command, const ReadScene& scene,
                 const Session& session, const Listener& listener) {
     SplatOptions splat = scene.options;
-    splat.mostJoined = SplatOptions().mostJoined;
+    splat.mostJoined = command.picture.join.value_or(SplatOptions().mostJoined);
     const PreparedScene prepared({scene.volume, scene.options.optics}, splat);
     // Of all grids of a medium.
     const Volume& seen = *prepared.scene().volume;
