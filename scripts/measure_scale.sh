@@ -34,6 +34,12 @@ milliseconds() { # JSON METHOD
 run = json.load(open(sys.argv[1]))["runs"][0]["methods"][sys.argv[2]]
 print("%.2f" % (1e3 * run["render"]["median"]))' "$1" "$2"
 }
+# How many slices are joined, and milliseconds of preparing them: the median.
+joined() { # JSON
+    python3 -c 'import json, sys
+run = json.load(open(sys.argv[1]))["runs"][0]
+print("%d, %.1f" % (run["joined"], 1e3 * run["prepare"]["median"]))' "$1"
+}
 # Milliseconds of a peer's picture, of the JSON that it prints: the median; empty without one, which
 # is said.
 peer() { # DRIVER FILE THREADS
@@ -58,14 +64,14 @@ row() { # FILE THREADS
         "$(milliseconds "$folder/bench.json" traditional) |" \
         "$(milliseconds "$folder/bench.json" sparse) |" \
         "$(milliseconds "$folder/bench.json" delta) |" \
-        "$(milliseconds "$folder/bench.json" auto) |" \
+        "$(milliseconds "$folder/bench.json" auto) | $(joined "$folder/bench.json") |" \
         "$(peer peer_vtk "$1" "$2") | $([[ $2 == 1 ]] && peer peer_volpack "$1" 1) |"
 }
 
 echo "Milliseconds a picture of 512x512, medians of $repeats:"
 echo
-echo "| volume | threads | traditional | sparse | delta | auto | VTK | VolPack |"
-echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
+echo "| volume | threads | traditional | sparse | delta | auto | slices joined, prepare | VTK | VolPack |"
+echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
 for factor in 1 2 4; do
     for file in "$data"/engine/engine_256x256x128_uint8.raw.gz \
         "$data"/ct_head/cthead_256x256x225_uint8.raw.gz \
