@@ -221,15 +221,17 @@ bool canBeJoined(const Subdivision& parts) {
     const int joined = parts.joined;
     const bool isPower = joined == 1 || joined == 2 || joined == 4 || joined == kMostJoined;
     if (!isPower || (joined > 1 && parts.divides())) return false;
+    glm::ivec2 least(0);
+    glm::ivec2 largest(0);
     for (int i = 0; i < kMostJoined; ++i) {
         const glm::ivec2& slant = parts.slants[std::size_t(i)];
         const int most = i < joined ? i : 0;
-        const glm::ivec2 opposite = slant * parts.slants[std::size_t(joined - 1)];
-        if (std::max(std::abs(slant.x), std::abs(slant.y)) > most || opposite.x < 0 ||
-            opposite.y < 0)
-            return false;
+        if (slant.x < -most || slant.y < -most || slant.x > most || slant.y > most) return false;
+        least = glm::min(least, slant);
+        largest = glm::max(largest, slant);
     }
-    return true;
+    // Along each axis all have one sign.
+    return least * largest == glm::ivec2(0);
 }
 
 void check(const ViewLayout& layout) {

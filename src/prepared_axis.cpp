@@ -88,8 +88,9 @@ std::vector<float> opacitiesOf(const Volume& volume, const ClassTable& classes) 
 // Says so where looks of joined slices had to be rounded so far that it may be seen.
 void warnOfRounding(const SliceJoiner& joiner, const Listener& listener) {
     constexpr int kFewBits = 4;
-    const int bits = joiner.run().bits;
-    if (!joiner.isOfLooks() || bits > kFewBits) return;
+    if (!joiner.looks()) return;
+    const int bits = joiner.looks()->run().bits;
+    if (bits > kFewBits) return;
     listener.warn("voxels have so many looks that joined slices have colours of " +
                   std::to_string(1 << bits) + " levels a channel; `between` 0 draws every voxel");
 }
@@ -176,17 +177,14 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
         }
     }
     std::shared_ptr<DeltaPacker> packer;
-    while (!words) {
+    if (!words) {
         packer = std::make_shared<DeltaPacker>(volume, pack);
         const bool inParts =
             request.mayBeParted && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
         words = std::make_shared<const PackedDeltas>(inParts ? packer->packOrPlan(scene.wordBytes)
                                                              : packer->packAll());
+        joiner = packer->joiner();
         if (packer->parts().empty()) packer = nullptr;
-        if (!joiner || !joiner->hasTooMany()) break;
-        // Rounded further, looks are fewer.
-        joiner.emplace(joinerOf(classes, run, joiner->run().bits - 1));
-        words = nullptr;
     }
     if (joiner) {
         warnOfRounding(*joiner, listener);
@@ -311,9 +309,11 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
         isWhole ? Encoding::kWhole : encodingOf(options.method, painter != nullptr, hasPixels);
     // Slices are walked from the front on. Whole ones do not depend on it.
     const bool descending = !view.frontToBack && encoding != Encoding::kWhole;
-    // Of joined ones, what they look like does; and on how long steps are, unless they are pairs.
+    // Of joined ones, what they look like does; of several colours, unless they are pairs, also how
+    // long steps are.
     const bool isJoined = parts.joined > 1;
-    const bool isOfSteps = parts.joined > 2 || (isJoined && !canPairSlices());
+    const bool isOneColor = optics.transferFunction.colors.size() == 1;
+    const bool isOfSteps = isJoined && !isOneColor && (parts.joined > 2 || !canPairSlices());
     const bool fromEnd = descending || (isJoined && !view.frontToBack);
     AxisRequest request{sliceAxis, descending, parts,
                         view.frontToBack ? SeenThrough::kSecond : SeenThrough::kFirst,

@@ -27,7 +27,7 @@ struct SlabLayer {
 /// has prepared the same scene. Its pixels are those of `renderComposite`, bit for bit.
 class LayeredPicture {
   public:
-    /// @throw as renderComposite
+    /// @throw as renderComposite; Error(kUsage) for a mostJoined above 2
     LayeredPicture(const PreparedScene& scene, const Camera& camera, const Listener& listener = {});
     ~LayeredPicture();
     LayeredPicture(LayeredPicture&&) noexcept;

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "delta/block_kernels.h"
+#include "delta/fetch_codes.h"
 #include "delta/joined_tile_reader.h"
 #include "delta/mixed_sight.h"
 #include "delta/slot_holder.h"
-#include "hwy/cache_control.h"
 
 namespace deltasplat {
 namespace {
@@ -22,15 +22,11 @@ std::size_t numberOf(const glm::ivec2& part) {
     return std::size_t(number);
 }
 
-// Brings the codes of a block's leaf nearer, which will be read next, and the leaf behind it:
-// leaves lie anywhere, and nobody else can tell where.
+// Brings the codes of the next block nearer, and the leaf of the one behind it.
 void fetchAhead(const CodeBlock* next, const CodeBlock* end) {
-    constexpr std::size_t kLineBytes = 64;
     if (next == end) return;
     if (next + 1 < end) hwy::Prefetch(next[1].leaf);
-    if (!next->leaf) return;
-    const Code* const codes = next->leaf->buffer().data();
-    for (std::size_t i = 0; i < 512; i += kLineBytes / sizeof(Code)) hwy::Prefetch(codes + i);
+    if (next->leaf) fetchCodes(*next->leaf);
 }
 
 }  // namespace
@@ -126,8 +122,9 @@ void ColumnPacker::runJoined(const JoinedTiles& tiles, std::size_t run) {
         reserveWords(rows_[u], kMostWordsOfBlock * blocks);
     }
     JoinedTileReader reader(classReader_, *options_.joiner, tiles);
-    // Where looks are too many, all is joined anew.
-    for (std::size_t i = 0; i < sources.size() && !options_.joiner->hasTooMany(); ++i) {
+    const std::optional<LookJoiner>& looks = options_.joiner->looks();
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        if (looks && looks->hasTooMany()) break;  // all is joined again
         reader.begin(sources[i], range_.firstBlock, range_.lastBlock);
         addJoined(reader, tiles.runs()[run][i]);
         payForWords();

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "hwy/cache_control.h"
+#include "delta/fetch_codes.h"
 
 namespace deltasplat {
 namespace {
@@ -64,9 +64,8 @@ bool JoinedTileReader::readLayer(int position) {
     return isFilled_.any();
 }
 
-// Brings what will be read soon nearer: blocks lie anywhere, and nobody else can tell where.
+// Brings what will be read soon nearer.
 void JoinedTileReader::fetchAhead(std::size_t column) const {
-    constexpr std::size_t kLineBytes = 64;
     constexpr std::size_t kLeafAhead = 6;
     constexpr std::size_t kCodesAhead = 2;
     const auto leafOf = [&](std::size_t of) -> const CodeTree::Leaf* {
@@ -74,10 +73,7 @@ void JoinedTileReader::fetchAhead(std::size_t column) const {
         return isThere ? rest_.columns[of].front().leaf : nullptr;
     };
     if (const CodeTree::Leaf* leaf = leafOf(column + kLeafAhead)) hwy::Prefetch(leaf);
-    if (const CodeTree::Leaf* leaf = leafOf(column + kCodesAhead)) {
-        const Code* const codes = leaf->buffer().data();
-        for (std::size_t i = 0; i < 512; i += kLineBytes / sizeof(Code)) hwy::Prefetch(codes + i);
-    }
+    if (const CodeTree::Leaf* leaf = leafOf(column + kCodesAhead)) fetchCodes(*leaf);
 }
 
 // Returns where a source column's first voxel is in the layer.

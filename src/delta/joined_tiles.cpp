@@ -75,7 +75,8 @@ TileSources JoinedTiles::sourcesOf(const JoinedTile& tile) const {
     TileSources sources;
     const glm::ivec2 first = tile * kTileColumns - own_;
     const std::size_t columns = begins_.size() - 1;
-    for (int u = 0; u < TileSources::kColumns.x; ++u) {
+    const glm::ivec2 count = kTileColumns + sources_ - 1;
+    for (int u = 0; u < count.x; ++u) {
         const glm::ivec2 begin = first + glm::ivec2(u, 0);
         const auto found = std::lower_bound(
             begins_.begin(), begins_.begin() + std::ptrdiff_t(columns), begin,
@@ -84,7 +85,7 @@ TileSources JoinedTiles::sourcesOf(const JoinedTile& tile) const {
             });
         for (auto c = std::size_t(found - begins_.begin()); c < columns; ++c) {
             const glm::ivec2 at = placeOf(c) - begin;
-            if (at.x != 0 || at.y >= TileSources::kColumns.y) break;
+            if (at.x != 0 || at.y >= count.y) break;
             sources.at(u, at.y) = blocks_.subspan(begins_[c], begins_[c + 1] - begins_[c]);
         }
     }

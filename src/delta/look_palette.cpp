@@ -32,6 +32,10 @@ std::uint32_t LookPalette::numberOf(std::uint64_t key) {
     return 0;
 }
 
+void LookPalette::limitTo(double share) {
+    if (double(count_) > share * double(most_)) hasTooMany_ = true;
+}
+
 std::vector<std::uint64_t> LookPalette::keys() const {
     std::vector<std::uint64_t> keys(count_);
     for (const Place& place : places_)

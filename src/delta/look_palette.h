@@ -18,6 +18,8 @@ class LookPalette {
     /// Returns the number of a key, 1 to `most`; 0 if there are too many.
     /// @param key  not 0
     std::uint32_t numberOf(std::uint64_t key);
+    /// Takes more than a share of `most` for too many, of those that have numbers by now.
+    void limitTo(double share);
     bool hasTooMany() const { return hasTooMany_.load(std::memory_order_relaxed); }
     /// Returns the keys in the order of their numbers. Not while others ask.
     std::vector<std::uint64_t> keys() const;

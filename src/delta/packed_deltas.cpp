@@ -218,20 +218,32 @@ struct DeltaPacker::Impl {
         const auto pack = [&](std::size_t i) {
             joined ? packers[i].runJoined(*joined, i) : packers[i].run(runs[i]);
         };
-        if (!range.budget) {
+        const bool areLooks = joiner && joiner->looks();
+        if (!range.budget && !areLooks) {
             parallelFor(count, pack);
             return packers;
         }
-        // Some from all over the volume show how many words there will be. The others in order:
-        // neighbours read some of the same leaves.
+        // Some from all over the volume show how many words, and looks, there will be. The others
+        // in order: neighbours read some of the same leaves.
         constexpr std::size_t kStep = 16;
         const std::size_t sample = (count + kStep - 1) / kStep;
         parallelFor(sample, [&](std::size_t i) { pack(kStep * i); });
-        range.budget->foresee(double(sample) / double(count));
+        if (range.budget) range.budget->foresee(double(sample) / double(count));
+        if (areLooks && sample < count) joiner->looks()->foresee();
+        if (areLooks && joiner->looks()->hasTooMany()) return packers;
         parallelFor(count, [&](std::size_t i) {
             if (i % kStep != 0) pack(i);
         });
         return packers;
+    }
+
+    // Whether looks were too many, and slices are to be joined again, with looks rounded further.
+    bool mustJoinAgain() {
+        if (!joiner || !joiner->looks() || !joiner->looks()->hasTooMany()) return false;
+        if (joiner->looks()->run().bits == LookRun::kLeastBits)
+            throw std::logic_error("looks of few levels without numbers");
+        joiner->looks() = joiner->looks()->coarser();
+        return true;
     }
 
     // Plans slabs by what packers counted, and puts their words in order.
@@ -316,7 +328,10 @@ PackedDeltas DeltaPacker::packAll() {
     if (impl_->volume.empty()) return packed;
     impl_->requireBlocks();
     SlabPlanner planner(packed.box);
-    std::vector<ColumnPacker> packers = impl_->run(impl_->wholeRange(planner));
+    std::vector<ColumnPacker> packers;
+    do {
+        packers = impl_->run(impl_->wholeRange(planner));
+    } while (impl_->mustJoinAgain());
     impl_->collect(packers, planner, packed);
     return packed;
 }
@@ -326,11 +341,15 @@ PackedDeltas DeltaPacker::packOrPlan(double mostBytes) {
     if (impl_->volume.empty()) return packed;
     SlabPlanner planner(packed.box);
     PackRange range = impl_->wholeRange(planner);
-    WordBudget budget(impl_->wordsToTry(mostBytes));
-    range.storesWords = !budget.isSpent();
-    if (range.storesWords) range.budget = &budget;
-    std::vector<ColumnPacker> packers = impl_->run(range);
-    if (!budget.isSpent()) {
+    std::optional<WordBudget> budget;
+    std::vector<ColumnPacker> packers;
+    do {
+        budget.emplace(impl_->wordsToTry(mostBytes));
+        range.storesWords = !budget->isSpent();
+        range.budget = range.storesWords ? &*budget : nullptr;
+        packers = impl_->run(range);
+    } while (impl_->mustJoinAgain());
+    if (!budget->isSpent()) {
         impl_->collect(packers, planner, packed);
         return packed;
     }
@@ -349,6 +368,10 @@ PackedDeltas DeltaPacker::packOrPlan(double mostBytes) {
         bytes += ofSlab;
     }
     return packed;
+}
+
+const std::optional<SliceJoiner>& DeltaPacker::joiner() const {
+    return impl_->joiner;
 }
 
 const std::vector<SlabRange>& DeltaPacker::parts() const {

@@ -89,8 +89,9 @@ struct PackOptions {
     /// Empty: never.
     std::function<bool(const VoxelLook& held, const VoxelLook& look)> looksHold = {};
     bool descending = false;  ///< as PackedDeltas has it
-    /// Joins slices, whose voxels then have its classes. Null: none are. Not with a mixer or a
-    /// painter, or where voxels are held.
+    /// Joins slices, whose voxels then have its classes, or those of what the packer made of it
+    /// (DeltaPacker::joiner). Null: none are. Not with a mixer or a painter, or where voxels are
+    /// held.
     const SliceJoiner* joiner = nullptr;
     std::span<const glm::ivec2> slants = {};  ///< with a joiner, as Subdivision::joinedSlants
     /// Leaves out blocks of voxels that it does not see. Not where voxels are held.
@@ -132,6 +133,8 @@ class DeltaPacker {
     /// without words. Only where parts can be made.
     /// @param mostBytes  also of a part, unless it is of one slab
     PackedDeltas packOrPlan(double mostBytes);
+    /// What joined slices, once that is done: looks are rounded as far as they have to be.
+    const std::optional<SliceJoiner>& joiner() const;
     /// The parts that the words are packed in, in increasing order, once there is a plan of some.
     const std::vector<SlabRange>& parts() const;
     /// Returns all slabs, of which those of a part have their words.

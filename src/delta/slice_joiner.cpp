@@ -6,10 +6,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <glm/vec3.hpp>
 #include <limits>
 
-#include "portable_math.h"
 #include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -37,32 +35,6 @@ struct JoinedRows {
     const ClassIndex* const* slices;
     std::size_t count;
     std::size_t pitch;
-};
-
-// What looks are rounded to.
-struct LookLevels {
-    // Of x = A / (1 - A + kLeastRest), which tells opacities apart where these are small, and
-    // transmittances where those are: 0 to 1 / kLeastRest.
-    static constexpr float kLeastRest = 0x1p-12F;
-    // What is less is seen as this.
-    static constexpr float kLeast = 0x1p-60F;
-    static constexpr int kMantissaBits = 23;  // of a float
-
-    const float* lights;  // [classes][4]
-    std::array<float, 3> perLargest;
-    int opacityBits;
-    int colorBits;
-    // Of classes that are alone: see SliceJoiner::aloneClasses_.
-    std::uint16_t aloneClasses;
-};
-
-// Of 64 voxels.
-struct LookKeys {
-    std::array<ClassIndex, 64> alone;    // what it is of one class that is alone
-    std::array<std::uint8_t, 8> others;  // [row]: the voxels that are not
-    // Of these:
-    std::array<std::uint32_t, 64> opacities;
-    std::array<std::uint32_t, 64> colors;
 };
 
 }  // namespace deltasplat
@@ -127,136 +99,6 @@ void joinSumsKernel(const JoinedRows& rows, const SumLevels& levels, ClassIndex*
     }
 }
 
-// Rounds eight looks.
-// @param lights  [8][4]: premultiplied, opacity last
-HWY_INLINE void roundLooks(const LookLevels& levels, const float* lights, std::uint32_t* opacities,
-                           std::uint32_t* colors) {
-    const hn::CappedTag<float, 8> tag;
-    const hn::RebindToSigned<decltype(tag)> integers;
-    const hn::RebindToUnsigned<decltype(tag)> numbers;
-    using V = hn::Vec<decltype(tag)>;
-    const V one = hn::Set(tag, 1.0F);
-    const V steps = hn::Set(tag, float((1 << levels.colorBits) - 1));
-    const int dropped = LookLevels::kMantissaBits - levels.opacityBits;
-    const auto half = hn::Set(integers, 1 << (dropped - 1));
-    for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
-        V red, green, blue, alpha;
-        hn::LoadInterleaved4(tag, lights + 4 * v, red, green, blue, alpha);
-        const auto isSeen = hn::Gt(alpha, hn::Zero(tag));
-        const V rest = hn::Add(hn::Sub(one, alpha), hn::Set(tag, LookLevels::kLeastRest));
-        const V opacity = hn::Max(hn::Div(alpha, rest), hn::Set(tag, LookLevels::kLeast));
-        const auto level =
-            hn::ShiftRightSame(hn::Add(hn::BitCast(integers, opacity), half), dropped);
-        hn::StoreU(
-            hn::BitCast(numbers, hn::IfThenElseZero(hn::RebindMask(integers, isSeen), level)),
-            numbers, opacities + v);
-        const V perAlpha = hn::Div(one, hn::IfThenElse(isSeen, alpha, one));
-        const auto shareOf = [&](V channel, int c) HWY_ATTR {
-            const V share = hn::Mul(hn::Mul(channel, perAlpha),
-                                    hn::Set(tag, levels.perLargest[std::size_t(c)]));
-            const V root = hn::Sqrt(hn::Min(hn::Max(share, hn::Zero(tag)), one));
-            return hn::ConvertTo(integers, hn::Add(hn::Mul(root, steps), hn::Set(tag, 0.5F)));
-        };
-        auto key = shareOf(red, 0);
-        key = hn::Or(hn::ShiftLeftSame(key, levels.colorBits), shareOf(green, 1));
-        key = hn::Or(hn::ShiftLeftSame(key, levels.colorBits), shareOf(blue, 2));
-        hn::StoreU(hn::BitCast(numbers, key), numbers, colors + v);
-    }
-}
-
-// Numbers eight voxels of which one class alone is seen. Returns which are not.
-HWY_INLINE unsigned numberAlone(const JoinedRows& rows, std::size_t first,
-                                std::uint16_t aloneClasses, ClassIndex* HWY_RESTRICT out) {
-    const hn::CappedTag<std::uint16_t, 8> tag;
-    unsigned others = 0;
-    for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
-        auto seen = hn::LoadU(tag, rows.slices[0] + first + v);
-        for (std::size_t slice = 1; slice < rows.count; ++slice)
-            seen = hn::Max(seen, hn::LoadU(tag, rows.slices[slice] + first + v));
-        auto isOther = hn::FirstN(tag, 0);
-        auto number = hn::Zero(tag);
-        for (std::size_t slice = 0; slice < rows.count; ++slice) {
-            const auto one = hn::LoadU(tag, rows.slices[slice] + first + v);
-            const auto isSame = hn::Eq(one, seen);
-            isOther = hn::Or(isOther, hn::Not(hn::Or(isSame, hn::Eq(one, hn::Zero(tag)))));
-            number = hn::Add(number, hn::IfThenElseZero(isSame, hn::Set(tag, aloneClasses)));
-        }
-        // How often it is there says which of its numbers it has.
-        number = hn::Add(hn::Sub(number, hn::Set(tag, aloneClasses)), seen);
-        hn::StoreU(hn::IfThenElseZero(hn::Ne(seen, hn::Zero(tag)), number), tag, out + v);
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(tag, isOther, bits);
-        others |= unsigned(bits[0]) << v;
-    }
-    return others;
-}
-
-// What a voxel looks like, or two neighbours in a vector that has room for both.
-template <class D>
-HWY_INLINE hn::Vec<D> lightsOf(D tag, const float* lights, const ClassIndex* classes) {
-    if constexpr (hn::MaxLanes(D()) == 4) {
-        return hn::Load(tag, lights + 4 * std::size_t(classes[0]));
-    } else {
-        const hn::Half<D> half;
-        return hn::Combine(tag, hn::Load(half, lights + 4 * std::size_t(classes[1])),
-                           hn::Load(half, lights + 4 * std::size_t(classes[0])));
-    }
-}
-
-// What eight voxels of a row look like, their slices one behind the other: all at once, for each
-// has to wait for the slice before.
-// @param out  [8][4]
-HWY_INLINE void joinRow(const JoinedRows& rows, const float* lights, std::size_t first,
-                        float* HWY_RESTRICT out) {
-    const hn::CappedTag<float, 8> tag;
-    using V = hn::Vec<decltype(tag)>;
-    constexpr std::size_t kVoxels = hn::MaxLanes(decltype(tag)()) / 4;  // of a vector
-    const V one = hn::Set(tag, 1.0F);
-    const auto lightOf = [&](std::size_t slice, std::size_t v) HWY_ATTR {
-        return lightsOf(tag, lights, rows.slices[slice] + first + v);
-    };
-    for (std::size_t half = 0; half < 8; half += 4 * kVoxels) {
-        V a = lightOf(0, half);
-        V b = lightOf(0, half + kVoxels);
-        V c = lightOf(0, half + 2 * kVoxels);
-        V d = lightOf(0, half + 3 * kVoxels);
-        const auto add = [&](V& light, std::size_t slice, std::size_t v) HWY_ATTR {
-            const V through = hn::Sub(one, hn::Broadcast<3>(light));
-            light = hn::Add(light, hn::Mul(through, lightOf(slice, v)));
-        };
-        for (std::size_t slice = 1; slice < rows.count; ++slice) {
-            add(a, slice, half);
-            add(b, slice, half + kVoxels);
-            add(c, slice, half + 2 * kVoxels);
-            add(d, slice, half + 3 * kVoxels);
-        }
-        hn::Store(a, tag, out + 4 * half);
-        hn::Store(b, tag, out + 4 * (half + kVoxels));
-        hn::Store(c, tag, out + 4 * (half + 2 * kVoxels));
-        hn::Store(d, tag, out + 4 * (half + 3 * kVoxels));
-    }
-}
-
-void joinLooksKernel(const JoinedRows& rows, const LookLevels& levels, LookKeys& keys) {
-    for (std::size_t u = 0; u < 8; ++u) {
-        const std::size_t first = u * rows.pitch;
-        unsigned others = 0;
-        if (!anyClass(rows, first)) {
-            std::fill_n(&keys.alone[8 * u], 8, ClassIndex{0});
-        } else if (levels.aloneClasses > 0) {
-            others = numberAlone(rows, first, levels.aloneClasses, &keys.alone[8 * u]);
-        } else {
-            std::fill_n(&keys.alone[8 * u], 8, ClassIndex{0});
-            others = 0xFF;
-        }
-        keys.others[u] = std::uint8_t(others);
-        if (others == 0) continue;
-        HWY_ALIGN float lights[8 * 4];
-        joinRow(rows, levels.lights, first, lights);
-        roundLooks(levels, lights, &keys.opacities[8 * u], &keys.colors[8 * u]);
-    }
-}
-
 }  // namespace deltasplat::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -266,7 +108,6 @@ namespace {
 
 HWY_EXPORT(joinPairsKernel);
 HWY_EXPORT(joinSumsKernel);
-HWY_EXPORT(joinLooksKernel);
 
 // Of what stands for a sum beyond all that can be told apart.
 constexpr float kOpaque = 0x1p100F;
@@ -281,6 +122,12 @@ std::int32_t roundedBits(float value) {
 SliceJoiner SliceJoiner::ofPairs(std::size_t classCount) {
     SliceJoiner joiner;
     joiner.classCount_ = classCount;
+    return joiner;
+}
+
+SliceJoiner SliceJoiner::ofLooks(const std::vector<glm::dvec4>& lights, const LookRun& run) {
+    SliceJoiner joiner;
+    joiner.looks_.emplace(lights, run);
     return joiner;
 }
 
@@ -311,31 +158,6 @@ SliceJoiner SliceJoiner::ofSums(const std::vector<double>& extinctions, int slic
     return joiner;
 }
 
-SliceJoiner SliceJoiner::ofLooks(const std::vector<glm::dvec4>& lights, const LookRun& run) {
-    SliceJoiner joiner;
-    for (const glm::dvec4& light : lights) {
-        joiner.lights_.push_back({float(light.r), float(light.g), float(light.b), float(light.a)});
-        for (int c = 0; c < 3 && light.a > 0; ++c) {
-            double& largest = joiner.largest_[std::size_t(c)];
-            largest = std::max(largest, light[c] / light.a);
-        }
-    }
-    joiner.run_ = run;
-    const std::size_t alone = std::size_t(run.slices) * (lights.size() - 1);
-    constexpr std::size_t kMostAlone = 32768;
-    if (alone <= kMostAlone) joiner.aloneClasses_ = lights.size() - 1;
-    constexpr std::size_t kMost = std::numeric_limits<ClassIndex>::max();
-    joiner.palette_ =
-        std::make_shared<LookPalette>(kMost - std::size_t(run.slices) * joiner.aloneClasses_);
-    return joiner;
-}
-
-// What is not alone is of all kinds, so that errors of opacity add up to little; many have nearly
-// the same colour.
-int SliceJoiner::opacityBits() const {
-    return std::max(run_.bits - 3, 0);
-}
-
 std::vector<double> SliceJoiner::levels() const {
     std::vector<double> levels(1);
     for (std::int32_t i = 0; i < count_; ++i) {
@@ -346,85 +168,16 @@ std::vector<double> SliceJoiner::levels() const {
     return levels;
 }
 
-// What the levels of a channel stand for: the mean of the classes that have it, or its middle.
-std::vector<double> SliceJoiner::channelLevels(std::size_t channel) const {
-    const double steps = (1 << run_.bits) - 1;
-    std::vector<double> sums(std::size_t(1) << run_.bits);
-    std::vector<int> counts(sums.size());
-    const double largest = largest_[channel];
-    for (const std::array<float, 4>& light : lights_) {
-        if (!(light[3] > 0) || !(largest > 0)) continue;
-        const double value = std::min(double(light[channel]) / double(light[3]), largest);
-        const auto level = std::size_t(std::sqrt(value / largest) * steps + 0.5);
-        sums[level] += value;
-        ++counts[level];
-    }
-    std::vector<double> levels;
-    for (std::size_t level = 0; level < sums.size(); ++level) {
-        const double root = double(level) / steps;
-        levels.push_back(counts[level] > 0 ? sums[level] / counts[level] : root * root * largest);
-    }
-    return levels;
-}
-
-std::vector<glm::dvec4> SliceJoiner::looks() const {
-    std::vector<glm::dvec4> looks(1);
-    for (int times = 1; times <= run_.slices; ++times) {
-        for (std::size_t i = 1; i <= aloneClasses_; ++i) {
-            const glm::dvec4 light(lights_[i][0], lights_[i][1], lights_[i][2], lights_[i][3]);
-            const double rest = portable::pow(1 - light.a, times);
-            looks.emplace_back(light.a > 0 ? glm::dvec3(light) / light.a : glm::dvec3(0), 1 - rest);
-        }
-    }
-    const std::array<std::vector<double>, 3> levels = {channelLevels(0), channelLevels(1),
-                                                       channelLevels(2)};
-    const int dropped = LookLevels::kMantissaBits - opacityBits();
-    for (const std::uint64_t key : palette_->keys()) {
-        glm::dvec4& look = looks.emplace_back();
-        for (int c = 0; c < 3; ++c) {
-            const std::uint64_t level = key >> (run_.bits * (2 - c)) & ((1U << run_.bits) - 1);
-            look[c] = levels[std::size_t(c)][level];
-        }
-        const double x = std::bit_cast<float>(std::uint32_t(key >> 32) << dropped);
-        look.a = std::min(x * (1 + double(LookLevels::kLeastRest)) / (1 + x), 1.0);
-    }
-    return looks;
-}
-
 void SliceJoiner::join(std::span<const ClassIndex* const> slices, std::size_t pitch,
                        ClassIndex* out, LookCache& cache) const {
     const JoinedRows rows{slices.data(), slices.size(), pitch};
-    if (palette_) {
-        joinLooks(slices, pitch, out, cache);
+    if (looks_) {
+        looks_->join(slices, pitch, out, cache);
     } else if (classCount_ > 0) {
         HWY_DYNAMIC_DISPATCH(joinPairsKernel)(rows, classCount_, out);
     } else {
         const SumLevels levels{shares_.data(), first_, count_};
         HWY_DYNAMIC_DISPATCH(joinSumsKernel)(rows, levels, out);
-    }
-}
-
-void SliceJoiner::joinLooks(std::span<const ClassIndex* const> slices, std::size_t pitch,
-                            ClassIndex* out, LookCache& cache) const {
-    std::array<const ClassIndex*, 8> fromFront;
-    std::copy(slices.begin(), slices.end(), fromFront.begin());
-    if (run_.lastInFront) std::reverse(fromFront.begin(), fromFront.begin() + slices.size());
-    LookLevels levels{
-        lights_.front().data(), {}, opacityBits(), run_.bits, std::uint16_t(aloneClasses_)};
-    for (std::size_t c = 0; c < 3; ++c)
-        levels.perLargest[c] = largest_[c] > 0 ? float(1 / largest_[c]) : 0;
-    LookKeys keys;
-    HWY_DYNAMIC_DISPATCH(joinLooksKernel)({fromFront.data(), slices.size(), pitch}, levels, keys);
-    std::copy(keys.alone.begin(), keys.alone.end(), out);
-    const std::size_t first = std::size_t(run_.slices) * aloneClasses_;
-    for (std::size_t u = 0; u < 8; ++u) {
-        for (unsigned rest = keys.others[u]; rest != 0; rest &= rest - 1) {
-            const std::size_t i = 8 * u + std::size_t(std::countr_zero(rest));
-            const std::uint64_t opacity = keys.opacities[i];
-            if (opacity == 0) continue;  // none is seen
-            const std::size_t number = cache.numberOf(opacity << 32 | keys.colors[i], *palette_);
-            out[i] = number == 0 ? ClassIndex{0} : ClassIndex(first + number);
-        }
     }
 }
 

@@ -23,7 +23,8 @@ struct PendingWord {
 /// Where a word points to classes of which nothing is seen, or nobody needs them.
 inline constexpr std::size_t kNoClasses = std::numeric_limits<std::size_t>::max();
 
-/// Words of columns of blocks, those of a block together and in the order of its slices, and the
+/// Words of columns of blocks, those of a column in the order of its slices (and together, where
+/// slices are walked from the last one on, or nothing is joined), and the
 /// classes that they point to.
 struct PackedColumns {
     std::vector<PendingWord> words;

@@ -41,7 +41,7 @@ bool canBePaired(const ClassTable& classes) {
     return areSummed(classes) || classes.size() * classes.size() <= ClassTable::kMaxClasses;
 }
 
-SliceJoiner joinerOf(const ClassTable& classes, const JoinedRun& run, int bits) {
+SliceJoiner joinerOf(const ClassTable& classes, const JoinedRun& run) {
     if (areSummed(classes)) {
         std::vector<double> extinctions;
         for (const Look& look : classes.looks) extinctions.push_back(look.extinction);
@@ -49,16 +49,16 @@ SliceJoiner joinerOf(const ClassTable& classes, const JoinedRun& run, int bits) 
     }
     if (run.slices == 2 && canBePaired(classes)) return SliceJoiner::ofPairs(classes.size());
     return SliceJoiner::ofLooks(lightsOf(classes.atSteps(run.steps)),
-                                {run.slices, run.seenThrough == SeenThrough::kFirst, bits});
+                                {run.slices, run.seenThrough == SeenThrough::kFirst});
 }
 
 ClassTable joinedClasses(const ClassTable& classes, const SliceJoiner& joiner,
                          const JoinedRun& run) {
     ClassTable joined = classes;
-    if (joiner.isOfLooks()) {
+    if (joiner.looks()) {
         joined = classes.atSteps(run.steps);
         joined.looks.clear();
-        for (const glm::dvec4& light : joiner.looks())
+        for (const glm::dvec4& light : joiner.looks()->looks())
             joined.looks.push_back(lookOf(light, joined));
         return joined.atSteps(1);
     }

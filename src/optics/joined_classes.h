@@ -20,9 +20,7 @@ struct JoinedRun {
 
 /// Returns what joins slices: for steps of any length if they are of one colour, or two that can be
 /// paired.
-/// @param bits  as LookRun has them
-SliceJoiner joinerOf(const ClassTable& classes, const JoinedRun& run,
-                     int bits = LookRun::kMostBits);
+SliceJoiner joinerOf(const ClassTable& classes, const JoinedRun& run);
 
 /// Returns the classes that voxels of joined slices have, once these are joined.
 ClassTable joinedClasses(const ClassTable& classes, const SliceJoiner& joiner,

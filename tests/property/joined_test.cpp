@@ -128,6 +128,23 @@ TEST_F(Joined, joinsUpToEightWhereThatMovesLittle) {
     EXPECT_EQ(render(volume, eye).stats.joined, 2);
 }
 
+// What is even, but for values that alternate, is not rounded to steps that can be seen.
+TEST_F(Joined, showsNoStepsInWhatIsEven) {
+    const Volume volume = test::makeVolume({{0, 0, 0}, {127, 63, 127}},
+                                           [](int x, int, int z) { return 40 + x + (z & 1); });
+    RenderOptions options = optionsFor(Colors::kSeveral, 0.4, {0, 0, 1});
+    options.camera.sizePixels = {60, 30};
+    options.camera.frameWidthWorld = 150;
+    options.mostJoined = 8;
+    for (const double extinction : {0.3, 0.05, 0.005}) {
+        options.optics.extinctionScale = extinction;
+        const RenderResult joined = render(volume, options);
+        EXPECT_EQ(joined.stats.joined, 8);
+        EXPECT_LT(largestDifference(joined.image, unjoined(volume, options).image), 1.0 / 255)
+            << extinction;
+    }
+}
+
 // Of however many classes, then.
 TEST_F(Joined, joinsAnyNumberOfClasses) {
     const Volume volume = test::makeVolume(

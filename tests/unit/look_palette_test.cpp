@@ -48,5 +48,15 @@ TEST(LookPalette, hasNoMoreNumbersThanItMay) {
     EXPECT_EQ(palette.numberOf(9), 0u);
 }
 
+TEST(LookPalette, canBeLimited) {
+    LookPalette palette(8);
+    for (const std::uint64_t key : {1, 2, 3, 4}) palette.numberOf(key);
+    palette.limitTo(0.5);
+    EXPECT_FALSE(palette.hasTooMany());
+    palette.numberOf(5);
+    palette.limitTo(0.5);
+    EXPECT_TRUE(palette.hasTooMany());
+}
+
 }  // namespace
 }  // namespace deltasplat

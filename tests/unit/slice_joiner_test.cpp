@@ -145,8 +145,8 @@ TEST(SliceJoiner, roundsLooks) {
                 slices.back()[1] = slices.back()[2] = slices.front()[2] = 7;
                 outs.push_back(joined(joiner, slices));
             }
-            EXPECT_FALSE(joiner.hasTooMany());
-            const std::vector<glm::dvec4> looks = joiner.looks();
+            EXPECT_FALSE(joiner.looks()->hasTooMany());
+            const std::vector<glm::dvec4> looks = joiner.looks()->looks();
             for (std::size_t n = 0; n < all.size(); ++n) {
                 for (std::size_t i = 0; i < 64; ++i) {
                     std::vector<glm::dvec4> ofSlices;
@@ -159,15 +159,15 @@ TEST(SliceJoiner, roundsLooks) {
                     EXPECT_EQ(look.a > 0, expected.a > 0);
                     if (expected.a == 0) continue;
                     const bool isAlone = i == 1 || i == 2;
-                    // 16 levels an octave, of opacity or of what gets through; 127 of a root.
-                    const double ofAlpha = isAlone ? 1e-6 : 0.033;
+                    // 512 levels an octave, of opacity or of what gets through; 1023 of a root.
+                    const double ofAlpha = isAlone ? 1e-12 : 0x1p-10 + 1e-6;
                     EXPECT_NEAR(look.a / expected.a, 1, ofAlpha) << i;
-                    EXPECT_NEAR((1 - look.a) / (1 - expected.a + 0x1p-12), 1, 1.1) << i;
+                    EXPECT_NEAR(1 - look.a, 1 - expected.a, 0x1p-9 * (1 - expected.a) + 1e-6);
                     EXPECT_EQ(look.a == 1, expected.a > 1 - 0x1p-17) << i << ' ' << expected.a;
                     for (int c = 0; c < 3; ++c) {
                         const double color = expected[c] / expected.a;
-                        const double step = 2 * std::sqrt(3 * color) / 127 + 3.0 / (127 * 127);
-                        EXPECT_NEAR(look[c], color, isAlone ? 1e-6 : 1.05 * step) << i << ' ' << c;
+                        const double step = 2 * std::sqrt(3 * color) / 1023 + 3.0 / (1023 * 1023);
+                        EXPECT_NEAR(look[c], color, isAlone ? 1e-12 : 1.05 * step) << i << ' ' << c;
                     }
                 }
             }
@@ -182,16 +182,19 @@ TEST(SliceJoiner, roundsLooksOfManyClasses) {
     std::vector<SliceClasses> slices(8);
     for (std::size_t i = 1; i < 64; ++i) slices[i % 8][i] = ClassIndex(900 * i);
     const SliceClasses out = joined(joiner, slices);
-    const std::vector<glm::dvec4> looks = joiner.looks();
+    const std::vector<glm::dvec4> looks = joiner.looks()->looks();
     EXPECT_EQ(out[0], 0);
     for (std::size_t i = 1; i < 64; ++i)
-        EXPECT_NEAR(looks[out[i]].a / lights[900 * i].a, 1, 0.033) << i;
+        EXPECT_NEAR(looks[out[i]].a / lights[900 * i].a, 1, 0x1p-9) << i;
 }
 
 TEST(SliceJoiner, saysWhereLooksAreTooMany) {
     const std::vector<glm::dvec4> lights = someLights(200);
     const SliceJoiner fine = SliceJoiner::ofLooks(lights, {8});
-    const SliceJoiner coarse = SliceJoiner::ofLooks(lights, {8, false, 2});
+    SliceJoiner coarse = fine;
+    while (coarse.looks()->run().bits > LookRun::kLeastBits)
+        coarse.looks() = coarse.looks()->coarser();
+    EXPECT_FALSE(coarse == fine);
     for (std::uint32_t seed = 0; seed < 4000; ++seed) {
         std::vector<SliceClasses> slices;
         for (std::uint32_t i = 0; i < 8; ++i)
@@ -199,9 +202,11 @@ TEST(SliceJoiner, saysWhereLooksAreTooMany) {
         joined(fine, slices);
         joined(coarse, slices);
     }
-    EXPECT_TRUE(fine.hasTooMany());
-    EXPECT_FALSE(coarse.hasTooMany());
-    EXPECT_LE(coarse.looks().size(), 65536u);
+    EXPECT_TRUE(fine.looks()->hasTooMany());
+    EXPECT_FALSE(coarse.looks()->hasTooMany());
+    coarse.looks()->foresee();
+    EXPECT_FALSE(coarse.looks()->hasTooMany());
+    EXPECT_LE(coarse.looks()->looks().size(), 65536u);
 }
 
 // The most that there is has a level of its own, opaque or not.

@@ -37,9 +37,7 @@ struct PictureOptions {
     std::optional<glm::vec4> background;
     ReadOptions read;
     RenderOptions render;
-    /// Most slices that may be drawn as one; empty: kMostJoined, and of pictures that are to be
-    /// what one of many is, SplatOptions::mostJoined.
-    std::optional<int> join;
+    std::optional<int> join;  ///< most slices that may be drawn as one; empty: kMostJoined
     ShadingChoice shading;
     ScatterChoice scatter;
     MediumChoice medium;
@@ -49,6 +47,12 @@ struct PictureOptions {
     glm::dmat4 worldFromInput{1.0};     ///< where a scene has the volume
     std::optional<glm::dvec3> upWorld;  ///< what is up in a scene, unless the camera says
 };
+
+/// Most slices that may be drawn as one where a picture is to be as others of the same volume are,
+/// by a camera that moves or by other processes.
+inline int joinOfMany(const PictureOptions& picture) {
+    return picture.join.value_or(SplatOptions().mostJoined);
+}
 
 /// Whether what is shown is fog by what was asked for, which has no surfaces.
 inline bool isFog(const PictureOptions& picture) {

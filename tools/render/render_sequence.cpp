@@ -223,8 +223,7 @@ PreparedScene prepareOnce(const RenderCommand& command, SequenceLook& look,
     Listener warnings;
     warnings.warning = listener.warning;
     const FrameLook frame{look, 0};
-    ReadScene scene = readScene(command.input, command.picture, warnings, &frame);
-    scene.options.mostJoined = command.picture.join.value_or(SplatOptions().mostJoined);
+    const ReadScene scene = readScene(command.input, command.picture, warnings, &frame);
     return PreparedScene({scene.volume, scene.options.optics}, scene.options);
 }
 
@@ -266,6 +265,10 @@ RenderCommand fixedTo(const SequenceLook& look, RenderCommand command) {
     if (!options.optics.unitDistance && look.smallestVoxelWorld() > 0)
         options.optics.unitDistance = look.smallestVoxelWorld();
     fixCamera(look.seen(), command.turntable, options.camera);
+    const bool cameraTurns = command.turntable || cameraMoves(command.picture) ||
+                             FrameName::find(command.picture.camera.file);
+    const bool showOne = !FrameName::findInput(command.input) && !command.scene.moves();
+    if (cameraTurns || showOne) command.picture.join = joinOfMany(command.picture);
     return command;
 }
 

@@ -133,7 +133,7 @@ VolumeReader slabReader(const CLI::App& app, const RenderCommand& command) {
 void writeSlabs(const CLI::App& app, const RenderCommand& command, const ReadScene& scene,
                 const Session& session, const Listener& listener) {
     SplatOptions splat = scene.options;
-    splat.mostJoined = command.picture.join.value_or(SplatOptions().mostJoined);
+    splat.mostJoined = joinOfMany(command.picture);
     const PreparedScene prepared({scene.volume, scene.options.optics}, splat);
     // Of all grids of a medium.
     const Volume& seen = *prepared.scene().volume;

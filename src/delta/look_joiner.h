@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "delta/class_index.h"
+#include "delta/look_palette.h"
+
+namespace deltasplat {
+
+/// How looks of several slices are joined.
+struct LookRun {
+    int slices = 2;            ///< that become one
+    bool lastInFront = false;  ///< whether slices lie in front of those before them
+    /// To how many bits the square root of a colour's channel is rounded, kLeastBits to kMostBits;
+    /// opacity, or transmittance where that is less, to 2^(bits - 1) levels an octave.
+    int bits = kMostBits;
+
+    static constexpr int kMostBits = 10;
+    static constexpr int kLeastBits = 2;
+
+    bool operator==(const LookRun&) const = default;
+};
+
+/// Joins slices of classes of any colours, over steps of one length: numbers what voxels look like
+/// one behind the other as it comes up. One class alone, however often it is there, is what it is;
+/// others are rounded.
+class LookJoiner {
+  public:
+    /// @param lights  of each class, premultiplied RGBA; the first, of what is empty, is 0
+    LookJoiner(const std::vector<glm::dvec4>& lights, const LookRun& run);
+
+    const LookRun& run() const { return run_; }
+    /// As SliceJoiner::join.
+    void join(std::span<const ClassIndex* const> slices, std::size_t pitch, ClassIndex* out,
+              LookCache& cache) const;
+    /// Returns what has come up so far: [number], colour, not multiplied by opacity, and opacity
+    /// over a step. Not while others join.
+    std::vector<glm::dvec4> looks() const;
+
+    /// Whether more came up than there are numbers for: then what was joined is nothing.
+    bool hasTooMany() const { return palette_->hasTooMany(); }
+    /// Says that what came up is of a small part of all: there are too many if these are many.
+    void foresee() const;
+    /// Returns the same, rounded further, of which nothing has come up yet.
+    LookJoiner coarser() const;
+
+    /// Whether both have one numbering.
+    bool operator==(const LookJoiner& other) const { return palette_ == other.palette_; }
+
+  private:
+    int opacityBits() const { return run_.bits - 1; }
+    std::vector<double> channelLevels(int channel) const;
+
+    LookRun run_;
+    std::vector<glm::dvec4> lights_;             // [classes]
+    std::vector<std::array<float, 4>> rounded_;  // the same
+    glm::dvec3 largest_{0.0};                    // of each channel of colours
+    // Classes that have numbers of their own where they are alone, for each time that they are
+    // there: the first ones. 0: there are too many, and these are rounded as well.
+    std::size_t aloneClasses_ = 0;
+    std::shared_ptr<LookPalette> palette_;
+};
+
+}  // namespace deltasplat
