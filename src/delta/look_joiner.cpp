@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <limits>
 
 #include "portable_math.h"

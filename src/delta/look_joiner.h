@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
 #include <span>
