@@ -11,6 +11,12 @@ namespace {
 
 constexpr std::size_t kSlice = 64;  // of a block
 constexpr int kSlices = 8;
+constexpr glm::ivec2 kVoxels = 8 * TileSources::kColumns;  // of a layer's slice
+
+// Of a layer's voxel, where it is.
+std::ptrdiff_t placeOf(int slice, const glm::ivec2& at) {
+    return (std::ptrdiff_t{slice} * kVoxels.x + at.x) * kVoxels.y + at.y;
+}
 
 }  // namespace
 
@@ -19,7 +25,7 @@ JoinedTileReader::JoinedTileReader(const ClassReader& classes, const SliceJoiner
     : classReader_(classes),
       joiner_(joiner),
       tiles_(tiles),
-      layer_(std::size_t(kSlices * kVoxels.x * kVoxels.y)),
+      layer_(std::size_t{kSlices} * kVoxels.x * kVoxels.y),
       joined_(kColumns) {}
 
 void JoinedTileReader::begin(const TileSources& sources, int firstPlace, int lastPlace) {
@@ -80,7 +86,7 @@ void JoinedTileReader::fetchAhead(std::size_t column) const {
 ClassIndex* JoinedTileReader::rowsOf(std::size_t column) {
     const auto u = int(column) / TileSources::kColumns.y;
     const auto v = int(column) % TileSources::kColumns.y;
-    return &layer_[std::size_t(8 * u * kVoxels.y + 8 * v)];
+    return layer_.data() + placeOf(0, {8 * u, 8 * v});
 }
 
 void JoinedTileReader::readBlock(std::size_t column, const CodeBlock& block) {
@@ -90,14 +96,13 @@ void JoinedTileReader::readBlock(std::size_t column, const CodeBlock& block) {
     for (int slice = 0; slice < kSlices; ++slice)
         for (int u = 0; u < 8; ++u)
             std::copy_n(&classes[kSlice * std::size_t(slice) + 8 * std::size_t(u)], 8,
-                        rows + (slice * kVoxels.x + u) * kVoxels.y);
+                        rows + placeOf(slice, {u, 0}));
 }
 
 void JoinedTileReader::clearBlock(std::size_t column) {
     ClassIndex* const rows = rowsOf(column);
     for (int slice = 0; slice < kSlices; ++slice)
-        for (int u = 0; u < 8; ++u)
-            std::fill_n(rows + (slice * kVoxels.x + u) * kVoxels.y, 8, ClassIndex{0});
+        for (int u = 0; u < 8; ++u) std::fill_n(rows + placeOf(slice, {u, 0}), 8, ClassIndex{0});
 }
 
 // Joins the slices of the layer in hand, a part of those that blocks at this place have.
@@ -105,7 +110,7 @@ void JoinedTileReader::joinLayer(int layer) {
     for (int u = 0; u < kTileColumns.x; ++u) {
         for (int v = 0; v < kTileColumns.y; ++v) {
             if (!hasSources(u, v)) continue;
-            const auto column = std::size_t(u * kTileColumns.y + v);
+            const std::size_t column = std::size_t(u) * kTileColumns.y + std::size_t(v);
             if (!has_[column]) joined_[column].fill(0);
             has_.set(column);
             joinBlock(u, v, layer, joined_[column]);
@@ -116,7 +121,7 @@ void JoinedTileReader::joinLayer(int layer) {
 bool JoinedTileReader::hasSources(int u, int v) const {
     for (int i = 0; i < tiles_.sourcesOfColumn().x; ++i)
         for (int j = 0; j < tiles_.sourcesOfColumn().y; ++j)
-            if (isFilled_[std::size_t((u + i) * TileSources::kColumns.y + v + j)]) return true;
+            if (isFilled_[TileSources::numberOf(u + i, v + j)]) return true;
     return false;
 }
 
@@ -129,7 +134,7 @@ void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) {
         for (std::size_t k = 0; k < slants.size(); ++k) {
             const glm::ivec2 at = first - slants[k];
             const auto slice = int(i * slants.size() + k);
-            slices[k] = &layer_[std::size_t((slice * kVoxels.x + at.x) * kVoxels.y + at.y)];
+            slices[k] = layer_.data() + placeOf(slice, at);
         }
         joiner_.join(std::span(slices).first(slants.size()), std::size_t(kVoxels.y),
                      &out[kSlice * (std::size_t(layer) * joined + i)], cache_);

@@ -17,7 +17,7 @@ namespace deltasplat {
 /// last. Every block is read once for a tile, with those around it at hand.
 class JoinedTileReader {
   public:
-    static constexpr std::size_t kColumns = std::size_t(kTileColumns.x * kTileColumns.y);
+    static constexpr std::size_t kColumns = std::size_t{kTileColumns.x} * kTileColumns.y;
     using BlockClasses = std::array<ClassIndex, 512>;
 
     /// @param classes,joiner,tiles  must outlive this
@@ -36,8 +36,6 @@ class JoinedTileReader {
     const BlockClasses& classes(std::size_t column) const { return joined_[column]; }
 
   private:
-    static constexpr glm::ivec2 kVoxels = 8 * TileSources::kColumns;
-
     bool readLayer(int position);
     void readBlock(std::size_t column, const CodeBlock& block);
     void clearBlock(std::size_t column);
@@ -55,7 +53,7 @@ class JoinedTileReader {
     int place_ = 0;
     // A block of every source column, of the same slices: [slice][u][v].
     std::vector<ClassIndex> layer_;
-    std::bitset<std::size_t(TileSources::kColumns.x* TileSources::kColumns.y)> isFilled_;
+    std::bitset<TileSources::kCount> isFilled_;
     std::vector<BlockClasses> joined_;  // [column]
     std::bitset<kColumns> has_;
     LookCache cache_;

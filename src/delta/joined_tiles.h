@@ -22,14 +22,16 @@ inline constexpr glm::ivec2 kTileColumns{8, 16};
 struct TileSources {
     static constexpr glm::ivec2 kColumns = kTileColumns + 1;
 
-    std::array<std::span<const CodeBlock>, kColumns.x * kColumns.y> columns;
+    static constexpr std::size_t kCount = std::size_t{kColumns.x} * kColumns.y;
 
-    std::span<const CodeBlock>& at(int u, int v) {
-        return columns[std::size_t(u * kColumns.y + v)];
+    std::array<std::span<const CodeBlock>, kCount> columns;
+
+    /// Returns the number of a column.
+    static constexpr std::size_t numberOf(int u, int v) {
+        return std::size_t(u) * kColumns.y + std::size_t(v);
     }
-    const std::span<const CodeBlock>& at(int u, int v) const {
-        return columns[std::size_t(u * kColumns.y + v)];
-    }
+    std::span<const CodeBlock>& at(int u, int v) { return columns[numberOf(u, v)]; }
+    const std::span<const CodeBlock>& at(int u, int v) const { return columns[numberOf(u, v)]; }
 };
 
 /// Where there are columns of joined slices, and what they are made of. Slices n * i to n * i + n -

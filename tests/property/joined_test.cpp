@@ -564,7 +564,8 @@ TEST_F(Joined, preparedScenesShowTheSameFromWhereverTheyAreSeen) {
     thinner.extinctionScale = 0.3;
     const PreparedScene other = scene.withOptics(thinner);
     for (int i = 0; i < 12; ++i) {
-        options.camera.azimuthDegrees = 11 * (i / 2);
+        const int turn = i / 2;
+        options.camera.azimuthDegrees = 11 * turn;
         *options.camera.distanceWorld += i % 3;
         options.camera.frameOffset = {0.1 * (i % 2), 0};
         const RenderResult expected = render(*volume, options);
