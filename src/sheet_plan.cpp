@@ -123,7 +123,11 @@ int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
         options.footprintWidth || !scene.canJoinSlices() ||
         volume.activeCount < leastVoxelsJoined || !areSmall(camera, volume, view))
         return 1;
-    const bool canBeMany = options.mostJoined > 2 && !view.eye;
+    // Numbering looks takes what it saves, but of volumes that are larger still.
+    constexpr std::uint64_t kTimesLarger = 32;
+    const bool isOneColor = scene.optics.transferFunction.colors.size() == 1;
+    const bool isWorthIt = isOneColor || volume.activeCount >= kTimesLarger * leastVoxelsJoined;
+    const bool canBeMany = options.mostJoined > 2 && !view.eye && isWorthIt;
     constexpr double kMostPixelsMoved = 0.25;
     constexpr double kSnap = 1e-9;
     for (int joined = options.mostJoined; canBeMany && joined > 2; joined /= 2) {

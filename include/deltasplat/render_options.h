@@ -59,7 +59,7 @@ struct SplatOptions {
     PictureFilter filter = PictureFilter::kCatmullRom;
     /// How many slices may be drawn as one: 1, 2, 4 or kMostJoined. More than 2 are joined anew for
     /// every direction that is looked along, which is worth it for one camera, and only in parallel
-    /// projection.
+    /// projection; of several colours, in volumes of 2^28 active voxels or more.
     int mostJoined = 2;
 };
 

@@ -170,6 +170,15 @@ TEST_F(Joined, notWhereLittleIsSaved) {
     EXPECT_EQ(render(volume, options).stats.joined, 1);
     leastVoxelsJoined = volume.activeCount;
     EXPECT_EQ(render(volume, options).stats.joined, 2);
+    // Nor more than two of several colours, but in a large volume.
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+        RenderOptions many = optionsFor(colors, 0.3, {0, 0, 1});
+        many.mostJoined = 8;
+        leastVoxelsJoined = volume.activeCount / 32 + 1;
+        EXPECT_EQ(render(volume, many).stats.joined, colors == Colors::kOne ? 8 : 2);
+        leastVoxelsJoined = volume.activeCount / 32;
+        EXPECT_EQ(render(volume, many).stats.joined, 8);
+    }
 }
 
 TEST_F(Joined, notWhereVoxelsAreAskedFor) {
