@@ -14,6 +14,9 @@
 namespace deltasplat {
 namespace {
 
+// What a turning camera rounds must not decide.
+constexpr double kSnap = 1e-9;
+
 // What whole blocks are divided into is counted with 32 bits, and some more voxels around it.
 bool canBeDivided(const IndexBox& box, int between) {
     constexpr std::int64_t kMost = std::int64_t{1} << 30;
@@ -57,9 +60,8 @@ bool dividesVoxels(const PreparedScene::Impl& scene) {
 }
 
 // Whether voxels of a view, or what they are divided into, have a sheet pixel of their own if
-// nothing else is asked for. What a turning camera rounds must not decide.
+// nothing else is asked for.
 bool hasOwnPixelIn(const Factorization& view, int parts, double resolution) {
-    constexpr double kSnap = 1e-9;
     return hasOwnPixel(view.pixelsPerVoxel / parts * (1 + kSnap), resolution);
 }
 
@@ -92,7 +94,6 @@ bool areSmall(const Camera& camera, const Volume& volume, const Factorization& v
     constexpr double kMostPixelsPerVoxel = 0.5;
     // From an eye the nearest voxel covers more than others.
     constexpr double kMostOfNearest = 0.75;
-    constexpr double kSnap = 1e-9;
     if (!(view.pixelsPerVoxel * (1 - kSnap) <= kMostPixelsPerVoxel)) return false;
     if (!view.eye) return true;
     double longest = 0;
@@ -108,8 +109,6 @@ JoinedSlants slantsOf(const Factorization& view, int joined) {
         slants.slants[1] = view.frontToBack ? -*view.slopeStep : *view.slopeStep;
         return slants;
     }
-    // What a turning camera rounds must not decide.
-    constexpr double kSnap = 1e-9;
     return joinedSlants(view.shiftPerSlice * (1 - kSnap), joined);
 }
 
@@ -129,7 +128,6 @@ int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
     const bool isWorthIt = isOneColor || volume.activeCount >= kTimesLarger * leastVoxelsJoined;
     const bool canBeMany = options.mostJoined > 2 && !view.eye && isWorthIt;
     constexpr double kMostPixelsMoved = 0.25;
-    constexpr double kSnap = 1e-9;
     for (int joined = options.mostJoined; canBeMany && joined > 2; joined /= 2) {
         const JoinedSlants slants = slantsOf(view, joined);
         const double moved = slants.farthest * view.pixelsPerVoxel;

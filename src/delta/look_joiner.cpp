@@ -115,7 +115,6 @@ HWY_INLINE unsigned numberAlone(const LookRows& rows, std::size_t first, std::ui
             isOther = hn::Or(isOther, hn::Not(hn::Or(isSame, hn::Eq(one, hn::Zero(tag)))));
             number = hn::Add(number, hn::IfThenElseZero(isSame, hn::Set(tag, aloneClasses)));
         }
-        // How often it is there says which of its numbers it has.
         const auto isSeen = hn::Ne(seen, hn::Zero(tag));
         if (aloneClasses == 0) {
             isOther = isSeen;

@@ -142,6 +142,7 @@ struct DeltaPacker::Impl {
             options.joiner = &*joiner;
             divided.joined = int(options.slants.size());
             std::copy(options.slants.begin(), options.slants.end(), divided.slants.begin());
+            options.slants = divided.joinedSlants();  // whoever gave them may be gone
         }
         box = boxOfSlices(volume.box, options.sliceAxis, divided);
         if (volume.empty()) return;
