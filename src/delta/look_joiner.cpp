@@ -212,6 +212,8 @@ LookJoiner::LookJoiner(const std::vector<glm::dvec4>& lights, const LookRun& run
         for (int c = 0; c < 3 && light.a > 0; ++c)
             largest_[c] = std::max(largest_[c], light[c] / light.a);
     }
+    for (int c = 0; c < 3; ++c)
+        perLargest_[std::size_t(c)] = largest_[c] > 0 ? float(1 / largest_[c]) : 0;
     const std::size_t alone = std::size_t(run.slices) * (lights.size() - 1);
     constexpr std::size_t kMostAlone = 32768;
     if (alone <= kMostAlone) aloneClasses_ = lights.size() - 1;
@@ -286,10 +288,8 @@ void LookJoiner::join(std::span<const ClassIndex* const> slices, std::size_t pit
     std::copy(slices.begin(), slices.end(), fromFront.begin());
     if (run_.lastInFront)
         std::reverse(fromFront.begin(), fromFront.begin() + std::ptrdiff_t(slices.size()));
-    LookLevels levels{
-        rounded_.front().data(), {}, opacityBits(), run_.bits, std::uint16_t(aloneClasses_)};
-    for (int c = 0; c < 3; ++c)
-        levels.perLargest[std::size_t(c)] = largest_[c] > 0 ? float(1 / largest_[c]) : 0;
+    const LookLevels levels{rounded_.front().data(), perLargest_, opacityBits(), run_.bits,
+                            std::uint16_t(aloneClasses_)};
     LookKeys keys;
     HWY_DYNAMIC_DISPATCH(joinLooksKernel)({fromFront.data(), slices.size(), pitch}, levels, keys);
     std::copy(keys.alone.begin(), keys.alone.end(), out);

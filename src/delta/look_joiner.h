@@ -62,6 +62,7 @@ class LookJoiner {
     std::vector<glm::dvec4> lights_;             // [classes]
     std::vector<std::array<float, 4>> rounded_;  // the same
     glm::dvec3 largest_{0.0};                    // of each channel of colours
+    std::array<float, 3> perLargest_{};          // 1 / that, 0 where it is 0
     // Classes that have numbers of their own where they are alone, for each time that they are
     // there: the first ones. 0: there are too many, and these are rounded as well.
     std::size_t aloneClasses_ = 0;

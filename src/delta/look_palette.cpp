@@ -4,16 +4,14 @@
 namespace deltasplat {
 namespace {
 
-constexpr int kPlaceBits = 17;
-constexpr std::size_t kPlaces = std::size_t{1} << kPlaceBits;
+constexpr std::size_t kPlaces = std::size_t{1} << 17;
 
 }  // namespace
 
 LookPalette::LookPalette(std::size_t most) : most_(most), places_(kPlaces) {}
 
 std::uint32_t LookPalette::numberOf(std::uint64_t key) {
-    constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 / golden ratio (D. Knuth)
-    std::size_t at = (key * kSpread) >> (64 - kPlaceBits);
+    std::size_t at = hashPlace(key, kPlaces);
     for (; !hasTooMany(); at = (at + 1) % kPlaces) {
         Place& place = places_[at];
         std::uint64_t there = place.key.load(std::memory_order_acquire);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "ingest/values/hash_place.h"
+
 namespace deltasplat {
 
 /// Numbers keys as they come up. Any number of threads may ask at once: which key gets which number
@@ -42,7 +44,7 @@ class LookCache {
     LookCache() : entries_(kEntries) {}
 
     std::uint32_t numberOf(std::uint64_t key, LookPalette& palette) {
-        Entry& entry = entries_[(key * kSpread) >> kShift];
+        Entry& entry = entries_[hashPlace(key, kEntries)];
         if (entry.key != key) entry = {key, palette.numberOf(key)};
         return entry.number;
     }
@@ -52,9 +54,7 @@ class LookCache {
         std::uint64_t key = 0;
         std::uint32_t number = 0;
     };
-    static constexpr int kShift = 64 - 12;
-    static constexpr std::size_t kEntries = std::size_t{1} << (64 - kShift);
-    static constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 / golden ratio (D. Knuth)
+    static constexpr std::size_t kEntries = std::size_t{1} << 12;
 
     std::vector<Entry> entries_;
 };
