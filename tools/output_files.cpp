@@ -88,9 +88,9 @@ Files makeFolderOf(const std::filesystem::path& file) {
 }
 
 void OutputFolders::makeFor(const std::filesystem::path& file) {
-    const Files made = makeFolderOf(file);
-    if (made.empty()) return;
+    // One at a time, or a folder in one that another thread has just made might be listed after it.
     const std::lock_guard lock(mutex_);
+    const Files made = makeFolderOf(file);
     made_.insert(made_.begin(), made.begin(), made.end());
 }
 
