@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <glm/common.hpp>
@@ -55,12 +54,6 @@ class Writer {
         for (const T& value : values) json.push_back(jsonOf(value));
         return json;
     }
-    template <typename T, std::size_t N>
-    static Json jsonOf(const std::array<T, N>& values) {
-        Json json = Json::array();
-        for (const T& value : values) json.push_back(jsonOf(value));
-        return json;
-    }
 };
 
 class Reader {
@@ -108,10 +101,6 @@ class Reader {
         values.clear();
         for (const Json& element : json) read(element, values.emplace_back());
     }
-    template <typename T, std::size_t N>
-    static void read(const Json& json, std::array<T, N>& values) {
-        for (std::size_t i = 0; i < N; ++i) read(json.at(i), values[i]);
-    }
 
     const Json& json_;
 };
@@ -153,7 +142,7 @@ void visitView(Visitor& visit, ViewT& layout) {
     visit("thin_slices", place.parts.slices);
     visit("thin_within", place.parts.within);
     visit("joined_slices", place.parts.joined);
-    visit("joined_slants", place.parts.slants);
+    visit("joined_slant", place.parts.slants[1]);  // no more than two are
     visit("thin_origin", place.parts.origin);
     visit("first_slice", place.firstSlice);
     visit("first_voxel", place.firstVoxel);
@@ -218,20 +207,9 @@ void check(const Camera& camera) {
 
 // Whether slices can be joined so.
 bool canBeJoined(const Subdivision& parts) {
-    const int joined = parts.joined;
-    const bool isPower = joined == 1 || joined == 2 || joined == 4 || joined == kMostJoined;
-    if (!isPower || (joined > 1 && parts.divides())) return false;
-    glm::ivec2 least(0);
-    glm::ivec2 largest(0);
-    for (int i = 0; i < kMostJoined; ++i) {
-        const glm::ivec2& slant = parts.slants[std::size_t(i)];
-        const int most = i < joined ? i : 0;
-        if (slant.x < -most || slant.y < -most || slant.x > most || slant.y > most) return false;
-        least = glm::min(least, slant);
-        largest = glm::max(largest, slant);
-    }
-    // Along each axis all have one sign.
-    return least * largest == glm::ivec2(0);
+    const glm::ivec2 slant = glm::abs(parts.slants[1]);
+    if (parts.joined == 1) return slant == glm::ivec2(0);
+    return parts.joined == 2 && !parts.divides() && std::max(slant.x, slant.y) <= 1;
 }
 
 void check(const ViewLayout& layout) {

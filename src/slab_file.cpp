@@ -19,7 +19,7 @@ namespace deltasplat {
 namespace {
 
 constexpr std::string_view kName = "deltasplat slabs ";
-constexpr std::string_view kVersion = "5\n";
+constexpr std::string_view kVersion = "4\n";
 constexpr std::string_view kEnd = "end\n";
 constexpr const char* kExpected = "a whole part of a picture's slabs";
 

@@ -14,7 +14,7 @@
 namespace deltasplat::fuzz {
 namespace {
 
-constexpr std::size_t kLine = 19;  // "deltasplat slabs 5\n"
+constexpr std::size_t kLine = 19;  // "deltasplat slabs 4\n"
 
 std::uint32_t numberAt(const std::string& bytes, std::size_t at) {
     std::uint32_t number = 0;
