@@ -2,6 +2,7 @@
 #include "sheet_plan.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -32,9 +33,10 @@ void checkBetween(int between) {
 }
 
 void checkMostJoined(int most) {
-    if (most == 1 || most == 2 || most == 4 || most == kMostJoined) return;
+    if (most >= 1 && most <= kMostJoined && std::has_single_bit(unsigned(most))) return;
     throw Error(ErrorCode::kUsage,
-                gotExpected("`mostJoined`", std::to_string(most), "1, 2, 4 or 8"));
+                gotExpected("`mostJoined`", std::to_string(most),
+                            "a power of two, at most " + std::to_string(kMostJoined)));
 }
 
 // Voxels that share a sheet pixel have a kernel of its width.
@@ -112,8 +114,8 @@ JoinedSlants slantsOf(const Factorization& view, int joined) {
     return joinedSlants(view.shiftPerSlice * (1 - kSnap), joined);
 }
 
-// Returns how many slices are joined where nobody says otherwise: more than two as far as none of
-// them is moved by more than a quarter of a pixel.
+// Returns how many slices are joined where nobody says otherwise: more than two as far as what is
+// joined is a few pixels deep, and none of them is moved by more than a quarter of a pixel.
 int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
                   const Factorization& view) {
     const SplatOptions& options = scene.options;
@@ -127,8 +129,10 @@ int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
     const bool isOneColor = scene.optics.transferFunction.colors.size() == 1;
     const bool isWorthIt = isOneColor || volume.activeCount >= kTimesLarger * leastVoxelsJoined;
     const bool canBeMany = options.mostJoined > 2 && !view.eye && isWorthIt;
+    constexpr double kMostPixelsDeep = 4;
     constexpr double kMostPixelsMoved = 0.25;
     for (int joined = options.mostJoined; canBeMany && joined > 2; joined /= 2) {
+        if (joined * view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsDeep) continue;
         const JoinedSlants slants = slantsOf(view, joined);
         const double moved = slants.farthest * view.pixelsPerVoxel;
         if (slants.keepsDensity && moved * (1 - kSnap) <= kMostPixelsMoved) return joined;

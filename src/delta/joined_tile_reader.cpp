@@ -10,13 +10,7 @@ namespace deltasplat {
 namespace {
 
 constexpr std::size_t kSlice = 64;  // of a block
-constexpr int kSlices = 8;
-constexpr glm::ivec2 kVoxels = 8 * TileSources::kColumns;  // of a layer's slice
-
-// Of a layer's voxel, where it is.
-std::ptrdiff_t placeOf(int slice, const glm::ivec2& at) {
-    return (std::ptrdiff_t{slice} * kVoxels.x + at.x) * kVoxels.y + at.y;
-}
+constexpr std::size_t kSlices = 8;
 
 }  // namespace
 
@@ -25,8 +19,13 @@ JoinedTileReader::JoinedTileReader(const ClassReader& classes, const SliceJoiner
     : classReader_(classes),
       joiner_(joiner),
       tiles_(tiles),
-      layer_(std::size_t{kSlices} * kVoxels.x * kVoxels.y),
-      joined_(kColumns) {}
+      parts_(std::max<std::size_t>(tiles.slants().size() / kSlices, 1)),
+      voxels_(8 * tiles.sourceColumns()),
+      layer_(kSlices * parts_.size() * std::size_t(voxels_.x) * std::size_t(voxels_.y)),
+      joined_(kColumns) {
+    for (std::size_t part = 0; part < parts_.size(); ++part)
+        parts_[part].sourcesOfFirst = tiles.sourcesOfFirst(int(kSlices * part));
+}
 
 void JoinedTileReader::begin(const TileSources& sources, int firstPlace, int lastPlace) {
     rest_ = sources;
@@ -47,27 +46,37 @@ bool JoinedTileReader::next() {
         if (!column.empty()) place_ = std::min(place_, column.front().position.x >> tiles_.shift());
     if (place_ > lastPlace_) return false;
     has_.reset();
-    const int layers = 1 << tiles_.shift();
+    // Of 8 slices of joined ones.
+    const int layers = (1 << tiles_.shift()) / int(parts_.size());
     for (int layer = 0; layer < layers; ++layer)
         if (readLayer(place_ * layers + layer)) joinLayer(layer);
     return true;
 }
 
-// Reads the blocks at a position along the slices. Returns whether there are any.
-bool JoinedTileReader::readLayer(int position) {
+// Reads the blocks of a layer, of which there is one after the other along the slices. Returns
+// whether there are any.
+bool JoinedTileReader::readLayer(int layer) {
+    bool hasAny = false;
+    for (std::size_t part = 0; part < parts_.size(); ++part)
+        hasAny = readPart(part, layer * int(parts_.size()) + int(part)) || hasAny;
+    return hasAny;
+}
+
+bool JoinedTileReader::readPart(std::size_t number, int position) {
+    Part& part = parts_[number];
     for (std::size_t column = 0; column < rest_.columns.size(); ++column) {
         std::span<const CodeBlock>& blocks = rest_.columns[column];
         if (!blocks.empty() && blocks.front().position.x == position) {
             fetchAhead(column);
-            readBlock(column, blocks.front());
+            readBlock(number, column, blocks.front());
             blocks = blocks.subspan(1);
-            isFilled_.set(column);
-        } else if (isFilled_[column]) {
-            clearBlock(column);
-            isFilled_.reset(column);
+            part.isFilled.set(column);
+        } else if (part.isFilled[column]) {
+            clearBlock(number, column);
+            part.isFilled.reset(column);
         }
     }
-    return isFilled_.any();
+    return part.isFilled.any();
 }
 
 // Brings what will be read soon nearer.
@@ -82,26 +91,31 @@ void JoinedTileReader::fetchAhead(std::size_t column) const {
     if (const CodeTree::Leaf* leaf = leafOf(column + kCodesAhead)) fetchCodes(*leaf);
 }
 
-// Returns where a source column's first voxel is in the layer.
-ClassIndex* JoinedTileReader::rowsOf(std::size_t column) {
-    const auto u = int(column) / TileSources::kColumns.y;
-    const auto v = int(column) % TileSources::kColumns.y;
-    return layer_.data() + placeOf(0, {8 * u, 8 * v});
+// Of the layer's voxel, where it is.
+std::ptrdiff_t JoinedTileReader::placeOf(std::size_t slice, const glm::ivec2& at) const {
+    return (std::ptrdiff_t(slice) * voxels_.x + at.x) * voxels_.y + at.y;
 }
 
-void JoinedTileReader::readBlock(std::size_t column, const CodeBlock& block) {
+// Returns where a source column's first voxel is in the layer.
+ClassIndex* JoinedTileReader::rowsOf(std::size_t part, std::size_t column) {
+    const auto u = int(column) / TileSources::kColumns.y;
+    const auto v = int(column) % TileSources::kColumns.y;
+    return layer_.data() + placeOf(kSlices * part, {8 * u, 8 * v});
+}
+
+void JoinedTileReader::readBlock(std::size_t part, std::size_t column, const CodeBlock& block) {
     BlockClasses classes;
     classReader_.read(block, std::span(classes));
-    ClassIndex* const rows = rowsOf(column);
-    for (int slice = 0; slice < kSlices; ++slice)
+    ClassIndex* const rows = rowsOf(part, column);
+    for (std::size_t slice = 0; slice < kSlices; ++slice)
         for (int u = 0; u < 8; ++u)
-            std::copy_n(&classes[kSlice * std::size_t(slice) + 8 * std::size_t(u)], 8,
+            std::copy_n(&classes[kSlice * slice + 8 * std::size_t(u)], 8,
                         rows + placeOf(slice, {u, 0}));
 }
 
-void JoinedTileReader::clearBlock(std::size_t column) {
-    ClassIndex* const rows = rowsOf(column);
-    for (int slice = 0; slice < kSlices; ++slice)
+void JoinedTileReader::clearBlock(std::size_t part, std::size_t column) {
+    ClassIndex* const rows = rowsOf(part, column);
+    for (std::size_t slice = 0; slice < kSlices; ++slice)
         for (int u = 0; u < 8; ++u) std::fill_n(rows + placeOf(slice, {u, 0}), 8, ClassIndex{0});
 }
 
@@ -119,24 +133,24 @@ void JoinedTileReader::joinLayer(int layer) {
 }
 
 bool JoinedTileReader::hasSources(int u, int v) const {
-    for (int i = 0; i < tiles_.sourcesOfColumn().x; ++i)
-        for (int j = 0; j < tiles_.sourcesOfColumn().y; ++j)
-            if (isFilled_[TileSources::numberOf(u + i, v + j)]) return true;
+    for (const Part& part : parts_) {
+        const glm::ivec2 first = part.sourcesOfFirst.first + glm::ivec2(u, v);
+        for (int i = 0; i < part.sourcesOfFirst.count.x; ++i)
+            for (int j = 0; j < part.sourcesOfFirst.count.y; ++j)
+                if (part.isFilled[TileSources::numberOf(first.x + i, first.y + j)]) return true;
+    }
     return false;
 }
 
 void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) {
     const std::span<const glm::ivec2> slants = tiles_.slants();
-    const std::size_t joined = kSlices / slants.size();
+    const std::size_t joined = kSlices * parts_.size() / slants.size();
     const glm::ivec2 first = 8 * (glm::ivec2(u, v) + tiles_.own());
-    std::array<const ClassIndex*, kSlices> slices;
+    std::array<const ClassIndex*, kMostJoined> slices;
     for (std::size_t i = 0; i < joined; ++i) {
-        for (std::size_t k = 0; k < slants.size(); ++k) {
-            const glm::ivec2 at = first - slants[k];
-            const auto slice = int(i * slants.size() + k);
-            slices[k] = layer_.data() + placeOf(slice, at);
-        }
-        joiner_.join(std::span(slices).first(slants.size()), std::size_t(kVoxels.y),
+        for (std::size_t k = 0; k < slants.size(); ++k)
+            slices[k] = layer_.data() + placeOf(i * slants.size() + k, first - slants[k]);
+        joiner_.join(std::span(slices).first(slants.size()), std::size_t(voxels_.y),
                      &out[kSlice * (std::size_t(layer) * joined + i)], cache_);
     }
 }

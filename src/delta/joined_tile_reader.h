@@ -36,10 +36,18 @@ class JoinedTileReader {
     const BlockClasses& classes(std::size_t column) const { return joined_[column]; }
 
   private:
-    bool readLayer(int position);
-    void readBlock(std::size_t column, const CodeBlock& block);
-    void clearBlock(std::size_t column);
-    ClassIndex* rowsOf(std::size_t column);
+    // Of the blocks in hand, those at one position along the slices.
+    struct Part {
+        ColumnRange sourcesOfFirst;  // of columns of the tile: of (0, 0)
+        std::bitset<TileSources::kCount> isFilled;
+    };
+
+    bool readLayer(int layer);
+    bool readPart(std::size_t number, int position);
+    void readBlock(std::size_t part, std::size_t column, const CodeBlock& block);
+    void clearBlock(std::size_t part, std::size_t column);
+    ClassIndex* rowsOf(std::size_t part, std::size_t column);
+    std::ptrdiff_t placeOf(std::size_t slice, const glm::ivec2& at) const;
     void fetchAhead(std::size_t column) const;
     void joinLayer(int layer);
     bool hasSources(int u, int v) const;
@@ -51,9 +59,11 @@ class JoinedTileReader {
     TileSources rest_;  // blocks that are still to come
     int lastPlace_ = 0;
     int place_ = 0;
-    // A block of every source column, of the same slices: [slice][u][v].
+    // The fewest blocks one behind the other of which slices become whole ones, of every source
+    // column: [slice][u][v].
+    std::vector<Part> parts_;
+    glm::ivec2 voxels_;  // of a slice of them
     std::vector<ClassIndex> layer_;
-    std::bitset<TileSources::kCount> isFilled_;
     std::vector<BlockClasses> joined_;  // [column]
     std::bitset<kColumns> has_;
     LookCache cache_;

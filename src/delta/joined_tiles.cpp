@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <glm/common.hpp>
 #include <limits>
 #include <tuple>
 
@@ -20,6 +21,20 @@ JoinedTile tileOf(const glm::ivec2& column) {
     return {floorDiv(column.x, kTileColumns.x), floorDiv(column.y, kTileColumns.y)};
 }
 
+// Returns which columns one is read from, counted from itself.
+ColumnRange columnsReadFor(std::span<const glm::ivec2> slants) {
+    glm::ivec2 down = slants.front();
+    glm::ivec2 up = slants.front();
+    for (const glm::ivec2& slant : slants) {
+        down = glm::min(down, slant);
+        up = glm::max(up, slant);
+    }
+    // What is moved up comes from a column before.
+    const glm::ivec2 first(floorDiv(-up.x, 8), floorDiv(-up.y, 8));
+    const glm::ivec2 last(floorDiv(7 - down.x, 8), floorDiv(7 - down.y, 8));
+    return {first, last - first + 1};
+}
+
 }  // namespace
 
 JoinedTiles::JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const glm::ivec2> slants)
@@ -27,13 +42,9 @@ JoinedTiles::JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const g
       slants_(slants.begin(), slants.end()),
       begins_(runBegins(blocks, shareColumn)),
       shift_(int(std::bit_width(slants.size())) - 1) {
-    for (int axis = 0; axis < 2; ++axis) {
-        for (const glm::ivec2& slant : slants) {
-            // What is moved up comes from the column before.
-            if (slant[axis] > 0) own_[axis] = 1;
-            if (slant[axis] != 0) sources_[axis] = 2;
-        }
-    }
+    const ColumnRange ofColumn = columnsReadFor(slants_);
+    own_ = -ofColumn.first;
+    sources_ = ofColumn.count;
     // A run has a share of all blocks, and no more than a row of tiles.
     const std::size_t least = std::max<std::size_t>(256, blocks.size() / 256);
     constexpr int kAny = std::numeric_limits<int>::max() >> 3;
@@ -53,6 +64,13 @@ JoinedTiles::JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const g
 glm::ivec2 JoinedTiles::placeOf(std::size_t column) const {
     const glm::ivec3& position = blocks_[begins_[column]].position;
     return {position.y, position.z};
+}
+
+ColumnRange JoinedTiles::sourcesOfFirst(int slice) const {
+    const std::size_t count = std::min<std::size_t>(slants_.size(), 8);
+    const ColumnRange sources =
+        columnsReadFor(std::span(slants_).subspan(std::size_t(slice), count));
+    return {own_ + sources.first, sources.count};
 }
 
 std::vector<JoinedTile> JoinedTiles::listTiles() const {
@@ -75,7 +93,7 @@ TileSources JoinedTiles::sourcesOf(const JoinedTile& tile) const {
     TileSources sources;
     const glm::ivec2 first = tile * kTileColumns - own_;
     const std::size_t columns = begins_.size() - 1;
-    const glm::ivec2 count = kTileColumns + sources_ - 1;
+    const glm::ivec2 count = sourceColumns();
     for (int u = 0; u < count.x; ++u) {
         const glm::ivec2 begin = first + glm::ivec2(u, 0);
         const auto found = std::lower_bound(

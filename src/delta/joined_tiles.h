@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "delta/code_blocks.h"
+#include "deltasplat/view/factorization.h"
 
 namespace deltasplat {
 
@@ -17,10 +18,10 @@ using JoinedTile = glm::ivec2;
 
 inline constexpr glm::ivec2 kTileColumns{8, 16};
 
-/// The blocks that a tile's columns are made of, before slices are joined: of columns [u][v], one
-/// more each way than the tile has, for slants reach into neighbours. Empty where there are none.
+/// The blocks that a tile's columns are made of, before slices are joined: of columns [u][v], some
+/// more than the tile has, for slants reach into neighbours. Empty where there are none.
 struct TileSources {
-    static constexpr glm::ivec2 kColumns = kTileColumns + 1;
+    static constexpr glm::ivec2 kColumns = kTileColumns + kMostJoined / 8;
 
     static constexpr std::size_t kCount = std::size_t{kColumns.x} * kColumns.y;
 
@@ -34,12 +35,18 @@ struct TileSources {
     const std::span<const CodeBlock>& at(int u, int v) const { return columns[numberOf(u, v)]; }
 };
 
+/// Columns along u and v: the first of several, and how many there are.
+struct ColumnRange {
+    glm::ivec2 first;
+    glm::ivec2 count;
+};
+
 /// Where there are columns of joined slices, and what they are made of. Slices n * i to n * i + n -
 /// 1 become one, each moved by a slant of its own.
 class JoinedTiles {
   public:
     /// @param blocks  ordered by u, v and slice; must outlive this
-    /// @param slants  [n = 1, 2, 4 or 8]: as Subdivision::joinedSlants
+    /// @param slants  [n, a power of two]: as Subdivision::joinedSlants
     JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const glm::ivec2> slants);
 
     /// The tiles in which there may be anything, ordered by u, then v: in runs of neighbours along
@@ -48,10 +55,13 @@ class JoinedTiles {
     std::span<const glm::ivec2> slants() const { return slants_; }
     /// The power of two that slices are joined by.
     int shift() const { return shift_; }
+    /// How many columns of sources there are at most: no more than TileSources::kColumns.
+    glm::ivec2 sourceColumns() const { return kTileColumns + sources_ - 1; }
     /// Of the sources, where the tile's own first column is.
     const glm::ivec2& own() const { return own_; }
-    /// How many columns one is made of, along u and v: 1 or 2, from its own place in the tile on.
-    const glm::ivec2& sourcesOfColumn() const { return sources_; }
+    /// Returns which sources column (0, 0) is made of, as far as blocks go that begin at the slice
+    /// of an index, 0 to n - 1, of those that become one.
+    ColumnRange sourcesOfFirst(int slice) const;
 
     TileSources sourcesOf(const JoinedTile& tile) const;
     /// Returns the most blocks of joined slices that a tile's columns of the same u can have.
@@ -68,7 +78,7 @@ class JoinedTiles {
     std::vector<std::size_t> begins_;  // of columns, and the number of all blocks
     int shift_;
     glm::ivec2 own_{0};
-    glm::ivec2 sources_{1};
+    glm::ivec2 sources_{1};  // how many columns one is made of, from its own place in the tile on
     std::vector<std::vector<JoinedTile>> runs_;
     std::size_t mostBlocks_ = 0;
 };

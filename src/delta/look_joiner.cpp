@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "deltasplat/view/factorization.h"
 #include "portable_math.h"
 #include "simd_targets.h"
 
@@ -284,7 +285,7 @@ std::vector<glm::dvec4> LookJoiner::looks() const {
 
 void LookJoiner::join(std::span<const ClassIndex* const> slices, std::size_t pitch, ClassIndex* out,
                       LookCache& cache) const {
-    std::array<const ClassIndex*, 8> fromFront;
+    std::array<const ClassIndex*, kMostJoined> fromFront;
     std::copy(slices.begin(), slices.end(), fromFront.begin());
     if (run_.lastInFront)
         std::reverse(fromFront.begin(), fromFront.begin() + std::ptrdiff_t(slices.size()));

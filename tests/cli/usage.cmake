@@ -230,7 +230,7 @@ deltasplat_refusal(scatter_and_head_light
 deltasplat_refusal(point_light_on_surfaces
     "--light: got point:X,Y,Z without --lighting scatter; expected head, X,Y,Z or view:X,Y,Z"
     --light point:1,2,3)
-deltasplat_refusal(join_three "--join: got 3; expected 1, 2, 4 or 8" --join 3)
+deltasplat_refusal(join_three "--join: got 3; expected 1, 2, 4, 8, 16 or 32" --join 3)
 deltasplat_refusal(scatter_and_between
     "--between: got 1 with --lighting scatter; expected 0: lit fog and media of several grids are drawn by whole voxels"
     --lighting scatter --between 1)

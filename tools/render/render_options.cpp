@@ -101,7 +101,7 @@ Parser<double> resolution() {
 
 Parser<int> sliceCount() {
     return [](const std::string& option, const std::string& text) {
-        return std::stoi(choice({"1", "2", "4", "8"})(option, text));
+        return std::stoi(choice({"1", "2", "4", "8", "16", "32"})(option, text));
     };
 }
 
@@ -369,10 +369,10 @@ void addSplattingOptions(CLI::App& app, PictureOptions& picture) {
             std::to_string(kMostDivided) + " blocks of voxels; else 0, and slices may\nbe joined)");
     group.addValue(
         "--join", "N", picture.join, sliceCount(),
-        "Slices that may be drawn as one, 1, 2, 4 or 8, where a voxel of\na large volume covers "
-        "half a pixel or less, and none of the\nsplatting options but --method and --filter is "
-        "given (default: 8;\n2 where a camera moves, frames show one volume, or parts are\nmade "
-        "with --slab-range)");
+        "Slices that may be drawn as one, 1, 2, 4, 8, 16 or 32, where a\nvoxel of a large volume "
+        "covers half a pixel or less, and none of\nthe splatting options but --method and "
+        "--filter is given (default:\n32, as far as they are four pixels deep together; 2 where a "
+        "camera\nmoves, frames show one volume, or parts are made with --slab-range)");
     group.addValue("--resolution", "R", options.resolution, resolution(),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        ", or 1/2, 1/4 or 1/8:\nvoxels share a pixel, which is softer, not faster, "

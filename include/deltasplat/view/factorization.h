@@ -111,16 +111,16 @@ inline bool isNearSlope(int slopeStep, double along, double slices) {
     return 2.0 * slopeStep * along > slices;
 }
 
-/// Most slices that are drawn as one.
-inline constexpr int kMostJoined = 8;
+/// Most slices that are drawn as one: a power of two.
+inline constexpr int kMostJoined = 32;
 
 /// What voxels are drawn as: into how many thin ones each is divided, evenly spaced and as far from
 /// its faces as from each other by half; or how many slices are joined.
 struct Subdivision {
     int slices = 1;  ///< along the slice axis
     int within = 1;  ///< along u and along v: 1 or 2
-    /// Undivided slices that are drawn as one: 1, 2, 4 or kMostJoined, of an index that is a
-    /// multiple and those behind it.
+    /// Undivided slices that are drawn as one, of an index that is a multiple and those behind it:
+    /// a power of two, kMostJoined at most.
     int joined = 1;
     /// [joined]: voxel (u, v) of each of them is drawn with (u, v) + slant of the first, which
     /// nearly the same line of sight meets. Along u all have one sign, and along v, and none is as
