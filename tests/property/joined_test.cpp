@@ -122,10 +122,26 @@ TEST_F(Joined, joinsUpToEightWhereThatMovesLittle) {
         EXPECT_EQ(joinedOf(0.2, {1, joint.slope, 0.8}, 8), joint.ofEight) << joint.slope;
         EXPECT_EQ(joinedOf(0.2, {1, joint.slope, 0.8}, 4), joint.ofFour) << joint.slope;
     }
-    for (const int none : {0, 3, 5, 16, -2}) EXPECT_THROW(joinedOf(0.2, oblique, none), Error);
+    for (const int none : {0, 3, 5, 64, -2}) EXPECT_THROW(joinedOf(0.2, oblique, none), Error);
     RenderOptions eye = fromEye(Colors::kSeveral, 0.1, kOblique, 20);
     eye.mostJoined = 8;
     EXPECT_EQ(render(volume, eye).stats.joined, 2);
+}
+
+// As many as are four pixels deep.
+TEST_F(Joined, joinsTheMoreTheSmallerVoxelsAre) {
+    const Volume volume = test::randomVolume(kBox, 5, 0.5);
+    RenderOptions options;
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+        for (int joined = kMostJoined; joined >= 16; joined /= 2) {
+            options = optionsFor(colors, 4.0 / joined, {0, 0, 1});
+            options.mostJoined = kMostJoined;
+            EXPECT_EQ(render(volume, options).stats.joined, joined);
+            options = optionsFor(colors, 4.01 / joined, {0, 0, 1});
+            options.mostJoined = kMostJoined;
+            EXPECT_EQ(render(volume, options).stats.joined, joined / 2);
+        }
+    }
 }
 
 // What is even, but for values that alternate, is not rounded to steps that can be seen.
@@ -295,6 +311,12 @@ TEST_F(Joined, straightViewsShowTheSame) {
                     // Looks are rounded.
                     EXPECT_LT(largestDifference(eight.image, expected.image), 4e-3)
                         << axis << ", " << sign;
+                    if (pixels > 0.125) continue;
+                    options.mostJoined = kMostJoined;
+                    const RenderResult most = render(volume, options);
+                    EXPECT_EQ(most.stats.joined, kMostJoined);
+                    EXPECT_LT(largestDifference(most.image, expected.image), 4e-3)
+                        << axis << ", " << sign;
                 }
             }
         }
@@ -371,7 +393,11 @@ struct PlateSums {
 };
 
 constexpr int kPlate = 64;
-constexpr double kPlatePixels = 0.4;
+
+// Pixels that a voxel covers, for so many slices to be joined.
+double platePixels(int mostJoined) {
+    return std::min(0.4, 4.0 / mostJoined);
+}
 
 PlateSums sumsOfPlates(int axis, bool isOne, double opacity, const glm::dvec3& direction,
                        Colors colors, bool isFromEye = false, int mostJoined = 2) {
@@ -380,8 +406,9 @@ PlateSums sumsOfPlates(int axis, bool isOne, double opacity, const glm::dvec3& d
         const int at = glm::ivec3(x, y, z)[axis];
         return (isOne ? at == 30 : at % 8 == 3) ? 255 : test::kInactive;
     });
-    RenderOptions options = optionsFor(colors, kPlatePixels, direction);
-    options.camera.frameWidthWorld = 60 / kPlatePixels;
+    const double pixels = platePixels(mostJoined);
+    RenderOptions options = optionsFor(colors, pixels, direction);
+    options.camera.frameWidthWorld = 60 / pixels;
     options.camera.sizePixels = {60, 60};
     if (isFromEye) options = fromEye(options, 25);
     options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, opacity, 0.5, 0}};
@@ -418,7 +445,8 @@ TEST_F(Joined, movesNothingOfEightSlicesByMoreThanAQuarterOfAPixel) {
     EXPECT_GT(farthest, 0.1);
 }
 
-// What the picture of plates adds up to, by walking along lines of sight through solid voxels.
+// What the picture of plates adds up to in squares of voxels, by walking along lines of sight
+// through solid voxels.
 double truthOfPlates(int axis, double opacity, const glm::dvec3& direction) {
     const glm::dvec3 along = glm::normalize(direction);
     const glm::dvec3 aside = glm::normalize(glm::cross(along, glm::dvec3(0.1, 1, 0.2)));
@@ -440,7 +468,7 @@ double truthOfPlates(int axis, double opacity, const glm::dvec3& direction) {
             sum += 1 - std::exp(-extinction * length);
         }
     }
-    return sum * std::pow(kBetween * kPlatePixels, 2);
+    return sum * std::pow(kBetween, 2);
 }
 
 // Many plates of one voxel are as dense as they are, also of more slices than two, wherever they
@@ -449,10 +477,11 @@ TEST_F(Joined, keepsManySlicesAsDense) {
     for (int axis = 0; axis < 3; ++axis) {
         for (const double opacity : {0.9, 0.05}) {
             for (const glm::dvec3& direction : kDirections) {
-                const double truth = truthOfPlates(axis, opacity, direction);
-                for (const int most : {4, 8}) {
+                const double inVoxels = truthOfPlates(axis, opacity, direction);
+                for (const int most : {4, 8, 16, kMostJoined}) {
                     const PlateSums sums = sumsOfPlates(axis, false, opacity, direction,
                                                         Colors::kSeveral, false, most);
+                    const double truth = inVoxels * std::pow(platePixels(most), 2);
                     EXPECT_NEAR(sums.joined / truth, 1, 0.045)
                         << axis << ' ' << opacity << ' ' << direction.x << ' ' << direction.y << ' '
                         << most;
@@ -491,7 +520,7 @@ TEST_F(Joined, keepsOnePlateAsNearToTheTruth) {
                 const double across = std::abs(glm::normalize(direction)[axis]);
                 if (across < 0.2) continue;  // its rim is most of what is seen
                 const double alpha = 1 - std::pow(1 - opacity, 1 / across);
-                const double truth = alpha * across * std::pow(kPlate * kPlatePixels, 2);
+                const double truth = alpha * across * std::pow(kPlate * platePixels(2), 2);
                 EXPECT_LE(std::abs(sums.joined / truth - 1),
                           std::abs(sums.single / truth - 1) + 0.03)
                     << axis << ' ' << opacity << ' ' << direction.x << ' ' << direction.y;
@@ -510,7 +539,7 @@ TEST_F(Joined, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
                 RenderOptions options = optionsFor(colors, pixels, direction);
                 EXPECT_EQ(render(volume, options).stats.joined, 2);
                 test::expectTheSameHoweverItIsMade(volume, options);
-                options.mostJoined = 8;
+                options.mostJoined = pixels < 0.1 ? kMostJoined : 8;
                 joined += render(volume, options).stats.joined;
                 test::expectTheSameHoweverItIsMade(volume, options);
             }
@@ -521,7 +550,7 @@ TEST_F(Joined, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
             }
         }
     }
-    EXPECT_GT(joined, 100);  // of 28, most are 8
+    EXPECT_GT(joined, 300);  // of 28, most are 8 or 32
 }
 
 // From both ends of an axis, which share words where they may, and with other optics, which do so
@@ -534,7 +563,7 @@ TEST_F(Joined, preparedScenesShowTheSame) {
             for (const double pixels : {0.3, 0.05}) {
                 RenderOptions options = optionsFor(colors, pixels, kOblique);
                 options.method = method;
-                options.mostJoined = pixels < 0.1 ? 8 : 2;
+                options.mostJoined = pixels < 0.1 ? kMostJoined : 2;
                 Optics recolored = options.optics;
                 recolored.transferFunction.colors[0].rgb = {0.3, 0.6, 0};
                 Optics thinner = recolored;

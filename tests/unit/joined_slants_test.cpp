@@ -40,7 +40,7 @@ double leastRange(double shift, int count) {
 }
 
 TEST(JoinedSlants, keepSlicesAsNearToTheirPlacesAsTheyCanBe) {
-    for (const int count : {2, 4, 8}) {
+    for (const int count : {2, 4, 8, 16, kMostJoined}) {
         for (int i = -400; i <= 400; ++i) {
             const glm::dvec2 shift(i / 400.0, -i / 531.0);
             const JoinedSlants joined = joinedSlants(shift, count);
@@ -69,7 +69,7 @@ TEST(JoinedSlants, areRoundedShiftsOfPairs) {
 }
 
 TEST(JoinedSlants, moveNothingStraightOrAlongDiagonals) {
-    for (const int count : {2, 4, 8}) {
+    for (const int count : {2, 4, 8, 16, kMostJoined}) {
         for (const double shift : {0.0, 1.0, -1.0}) {
             const JoinedSlants joined = joinedSlants({shift, 0}, count);
             EXPECT_LT(joined.farthest, 1e-9);

@@ -21,6 +21,7 @@
 #include "floor_div.h"
 #include "support/make_volume.h"
 #include "support/simd_levels.h"
+#include "view/joined_slants.h"
 
 namespace deltasplat {
 namespace {
@@ -122,6 +123,12 @@ Classes joinedClassesOf(const Classes& classes, const SliceJoiner& joiner,
         join(slice, u + slant.x, v + slant.y);
     }
     return joined;
+}
+
+// Of so many slices, as lines of sight go.
+std::vector<glm::ivec2> slantsOf(int count, const glm::dvec2& shiftPerSlice) {
+    const JoinedSlants joined = joinedSlants(shiftPerSlice, count);
+    return {joined.slants.begin(), joined.slants.begin() + count};
 }
 
 const IndexBox kBox{{-19, 5, -60}, {30, 40, 2}};
@@ -296,6 +303,10 @@ TEST(PackedDeltas, JoinSlices) {
             {ofLooks(8), {{0, 0}, {1, 0}, {1, -1}, {2, -1}, {3, -1}, {4, -2}, {4, -2}, {5, -2}}});
         cases.push_back({SliceJoiner::ofSums(extinctions, 8),
                          {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}, {0, 6}, {0, 7}}});
+        // Of several blocks, and of columns that are not beside one.
+        cases.push_back({ofLooks(16), slantsOf(16, {0.45, -1})});
+        cases.push_back({ofLooks(32), slantsOf(32, {-1, 0.7})});
+        cases.push_back({SliceJoiner::ofSums(extinctions, 32), slantsOf(32, {1, 0})});
     }
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const SliceJoiner& joiner = cases[i].joiner;

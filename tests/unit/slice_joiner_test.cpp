@@ -84,14 +84,14 @@ TEST(SliceJoiner, roundsSumsToLevels) {
 
 TEST(SliceJoiner, addsUpManySlices) {
     const std::vector<double> extinctions = someExtinctions();
-    for (const int count : {4, 8}) {
+    for (const int count : {4, 8, 32}) {
         const SliceJoiner joiner = SliceJoiner::ofSums(extinctions, count);
         const std::vector<double> levels = joiner.levels();
         EXPECT_LE(levels.size(), 65536u);
         for (std::uint32_t seed = 0; seed < 30; ++seed) {
             std::vector<SliceClasses> slices;
             for (int i = 0; i < count; ++i)
-                slices.push_back(randomClasses(extinctions.size(), 8 * seed + std::uint32_t(i)));
+                slices.push_back(randomClasses(extinctions.size(), 32 * seed + std::uint32_t(i)));
             // The most that there can be, and opaque.
             for (SliceClasses& slice : slices) slice[0] = ClassIndex(extinctions.size() - 1);
             slices[1][1] = 1;
@@ -131,7 +131,7 @@ glm::dvec4 composite(const std::vector<glm::dvec4>& lights) {
 
 TEST(SliceJoiner, roundsLooks) {
     const std::vector<glm::dvec4> lights = someLights(40);
-    for (const int count : {2, 4, 8}) {
+    for (const int count : {2, 4, 8, 32}) {
         for (const bool lastInFront : {false, true}) {
             const SliceJoiner joiner = SliceJoiner::ofLooks(lights, {count, lastInFront});
             std::vector<std::vector<SliceClasses>> all;
@@ -262,7 +262,7 @@ TEST(SliceJoiner, hasLevelsThatOthersHave) {
 TEST(SliceJoiner, givesTheSameAtEverySimdLevel) {
     const std::vector<double> extinctions = someExtinctions();
     const std::vector<glm::dvec4> lights = someLights(250);
-    for (const int count : {2, 8}) {
+    for (const int count : {2, 8, 32}) {
         std::vector<SliceClasses> slices;
         for (int i = 0; i < count; ++i) slices.push_back(randomClasses(250, 7 + std::uint32_t(i)));
         // Of looks, numbers are those of the first time that they came up.
