@@ -88,11 +88,10 @@ ViewPlan::ViewPlan(const PreparedScene::Impl& scene, const Camera& camera, bool 
     // steps are nearly as long as those that pairs are mixed for.
     std::vector<Factorization> atSlopes = factorizeAll(scene, camera, true);
     constexpr double kMostRange = 1.3;
-    const bool isOneColor = scene.optics.transferFunction.colors.size() == 1;
     const bool areAlike =
         std::all_of(atSlopes.begin(), atSlopes.end(),
                     [](const Factorization& view) { return view.stepRange < kMostRange; });
-    if (isOneColor || areAlike) {
+    if (scene.hasOneColor() || areAlike) {
         views = std::move(atSlopes);
     } else {
         sheets = SheetPlan(scene, camera, views.front(), true, listener);

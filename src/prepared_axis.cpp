@@ -312,8 +312,7 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
     // Of joined ones, what they look like does; of several colours, unless they are pairs, also how
     // long steps are.
     const bool isJoined = parts.joined > 1;
-    const bool isOneColor = optics.transferFunction.colors.size() == 1;
-    const bool isOfSteps = isJoined && !isOneColor && (parts.joined > 2 || !canPairSlices());
+    const bool isOfSteps = isJoined && !hasOneColor() && (parts.joined > 2 || !canPairSlices());
     const bool fromEnd = descending || (isJoined && !view.frontToBack);
     AxisRequest request{sliceAxis, descending, parts,
                         view.frontToBack ? SeenThrough::kSecond : SeenThrough::kFirst,
@@ -370,8 +369,7 @@ bool PreparedScene::Impl::canJoinSlices() const {
 
 bool PreparedScene::Impl::canPairSlices() const {
     if (!canJoinSlices()) return false;
-    // Of one colour for sure.
-    if (optics.transferFunction.colors.size() == 1) return true;
+    if (hasOneColor()) return true;
     const std::lock_guard lock(blocksMutex_);
     if (!canPairSlices_) {
         double farthest = 0;

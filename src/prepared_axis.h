@@ -68,6 +68,9 @@ struct PreparedScene::Impl {
     std::shared_ptr<const PreparedAxis> axis(const Factorization& view, const SheetPlan& plan,
                                              const Listener& listener, const Camera* camera,
                                              bool inParts = false) const;
+    /// Returns whether voxels differ in nothing but how much light they absorb, by the transfer
+    /// function alone.
+    bool hasOneColor() const { return optics.transferFunction.colors.size() == 1; }
     /// Returns whether slices can be joined.
     bool canJoinSlices() const;
     /// Returns whether two can be for all cameras (optics/joined_classes.h), along whatever axis.

@@ -126,8 +126,8 @@ int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
         return 1;
     // Numbering looks takes what it saves, but of volumes that are larger still.
     constexpr std::uint64_t kTimesLarger = 32;
-    const bool isOneColor = scene.optics.transferFunction.colors.size() == 1;
-    const bool isWorthIt = isOneColor || volume.activeCount >= kTimesLarger * leastVoxelsJoined;
+    const bool isWorthIt =
+        scene.hasOneColor() || volume.activeCount >= kTimesLarger * leastVoxelsJoined;
     const bool canBeMany = options.mostJoined > 2 && !view.eye && isWorthIt;
     constexpr double kMostPixelsDeep = 4;
     constexpr double kMostPixelsMoved = 0.25;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "delta/joined_rows.h"
 #include "deltasplat/view/factorization.h"
 #include "portable_math.h"
 #include "simd_targets.h"
@@ -21,13 +22,6 @@
 #ifndef DELTASPLAT_LOOK_LEVELS
 #define DELTASPLAT_LOOK_LEVELS
 namespace deltasplat {
-
-// Slices, the nearest first, as LookJoiner::join takes them.
-struct LookRows {
-    const ClassIndex* const* slices;
-    std::size_t count;
-    std::size_t pitch;
-};
 
 // What looks are rounded to.
 struct LookLevels {
@@ -100,8 +94,8 @@ HWY_INLINE void roundLooks(const LookLevels& levels, const float* lights, std::u
 
 // Numbers eight voxels of which nothing is seen, or one class alone. Returns which are others.
 // @param aloneClasses  0: all others are
-HWY_INLINE unsigned numberAlone(const LookRows& rows, std::size_t first, std::uint16_t aloneClasses,
-                                ClassIndex* HWY_RESTRICT out) {
+HWY_INLINE unsigned numberAlone(const JoinedRows& rows, std::size_t first,
+                                std::uint16_t aloneClasses, ClassIndex* HWY_RESTRICT out) {
     const hn::CappedTag<std::uint16_t, 8> tag;
     unsigned others = 0;
     for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
@@ -144,10 +138,10 @@ HWY_INLINE hn::Vec<D> lightsOf(D tag, const float* lights, const ClassIndex* cla
     }
 }
 
-// What eight voxels of a row look like, their slices one behind the other: all at once, for each
-// has to wait for the slice before.
+// What eight voxels of a row look like, their slices one behind the other, the nearest first: all
+// at once, for each has to wait for the slice before.
 // @param out  [8][4]
-HWY_INLINE void joinRow(const LookRows& rows, const float* lights, std::size_t first,
+HWY_INLINE void joinRow(const JoinedRows& rows, const float* lights, std::size_t first,
                         float* HWY_RESTRICT out) {
     const hn::CappedTag<float, 8> tag;
     using V = hn::Vec<decltype(tag)>;
@@ -178,7 +172,7 @@ HWY_INLINE void joinRow(const LookRows& rows, const float* lights, std::size_t f
     }
 }
 
-void joinLooksKernel(const LookRows& rows, const LookLevels& levels, LookKeys& keys) {
+void joinLooksKernel(const JoinedRows& rows, const LookLevels& levels, LookKeys& keys) {
     for (std::size_t u = 0; u < 8; ++u) {
         const std::size_t first = u * rows.pitch;
         const unsigned others = numberAlone(rows, first, levels.aloneClasses, &keys.alone[8 * u]);

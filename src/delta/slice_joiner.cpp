@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "delta/joined_rows.h"
 #include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -28,13 +29,6 @@ struct SumLevels {
     const float* shares;  // [classes]: what is added up
     std::int32_t first;   // the bits of the least level
     std::int32_t count;   // what is above them all has a level of its own
-};
-
-// Slices, as SliceJoiner::join takes them.
-struct JoinedRows {
-    const ClassIndex* const* slices;
-    std::size_t count;
-    std::size_t pitch;
 };
 
 }  // namespace deltasplat
