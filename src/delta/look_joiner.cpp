@@ -222,9 +222,13 @@ LookJoiner LookJoiner::coarser() const {
     return other;
 }
 
-void LookJoiner::foresee() const {
+void LookJoiner::beginSample() const {
     // Of most volumes a sixteenth has a third of all looks.
     palette_->limitTo(1.0 / 3);
+}
+
+void LookJoiner::endSample() const {
+    palette_->limitTo(1);
 }
 
 // What the levels of a channel stand for: the mean of the classes that have it, or its middle.

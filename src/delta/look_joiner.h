@@ -46,8 +46,10 @@ class LookJoiner {
 
     /// Whether more came up than there are numbers for: then what was joined is nothing.
     bool hasTooMany() const { return palette_->hasTooMany(); }
-    /// Says that what came up is of a small part of all: there are too many if these are many.
-    void foresee() const;
+    /// Says that what is joined from now on is a sixteenth of all, from all over the volume: there
+    /// are too many if this has many. Then that all else follows. Not while others join.
+    void beginSample() const;
+    void endSample() const;
     /// Returns the same, rounded further, of which nothing has come up yet.
     LookJoiner coarser() const;
 

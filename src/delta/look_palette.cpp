@@ -8,7 +8,7 @@ constexpr std::size_t kPlaces = std::size_t{1} << 17;
 
 }  // namespace
 
-LookPalette::LookPalette(std::size_t most) : most_(most), places_(kPlaces) {}
+LookPalette::LookPalette(std::size_t most) : most_(most), limit_(most), places_(kPlaces) {}
 
 std::uint32_t LookPalette::numberOf(std::uint64_t key) {
     std::size_t at = hashPlace(key, kPlaces);
@@ -17,7 +17,7 @@ std::uint32_t LookPalette::numberOf(std::uint64_t key) {
         std::uint64_t there = place.key.load(std::memory_order_acquire);
         if (there == 0 && place.key.compare_exchange_strong(there, key)) {
             const std::uint32_t number = ++count_;
-            if (number > most_) hasTooMany_ = true;
+            if (number > limit_) hasTooMany_ = true;
             place.number.store(number, std::memory_order_release);
             there = key;
         }
@@ -25,13 +25,14 @@ std::uint32_t LookPalette::numberOf(std::uint64_t key) {
         // Who took the place is about to say.
         std::uint32_t number = 0;
         while (number == 0) number = place.number.load(std::memory_order_acquire);
-        return number > most_ ? 0 : number;
+        return number > limit_ ? 0 : number;
     }
     return 0;
 }
 
 void LookPalette::limitTo(double share) {
-    if (double(count_) > share * double(most_)) hasTooMany_ = true;
+    limit_ = std::size_t(share * double(most_));
+    if (count_ > limit_) hasTooMany_ = true;
 }
 
 std::vector<std::uint64_t> LookPalette::keys() const {

@@ -20,7 +20,7 @@ class LookPalette {
     /// Returns the number of a key, 1 to `most`; 0 if there are too many.
     /// @param key  not 0
     std::uint32_t numberOf(std::uint64_t key);
-    /// Takes more than a share of `most` for too many, of those that have numbers by now.
+    /// From now on takes more than a share of `most` for too many. Not while others ask.
     void limitTo(double share);
     bool hasTooMany() const { return hasTooMany_.load(std::memory_order_relaxed); }
     /// Returns the keys in the order of their numbers. Not while others ask.
@@ -33,6 +33,7 @@ class LookPalette {
     };
 
     std::size_t most_;
+    std::size_t limit_;
     std::vector<Place> places_;  // an open hash table, half full at most
     std::atomic<std::uint32_t> count_ = 0;
     std::atomic<bool> hasTooMany_ = false;

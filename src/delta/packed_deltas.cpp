@@ -228,10 +228,13 @@ struct DeltaPacker::Impl {
         // in order: neighbours read some of the same leaves.
         constexpr std::size_t kStep = 16;
         const std::size_t sample = (count + kStep - 1) / kStep;
+        if (areLooks && sample < count) joiner->looks()->beginSample();
         parallelFor(sample, [&](std::size_t i) { pack(kStep * i); });
         if (range.budget) range.budget->foresee(double(sample) / double(count));
-        if (areLooks && sample < count) joiner->looks()->foresee();
-        if (areLooks && joiner->looks()->hasTooMany()) return packers;
+        if (areLooks) {
+            joiner->looks()->endSample();
+            if (joiner->looks()->hasTooMany()) return packers;
+        }
         parallelFor(count, [&](std::size_t i) {
             if (i % kStep != 0) pack(i);
         });

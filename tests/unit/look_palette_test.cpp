@@ -50,12 +50,18 @@ TEST(LookPalette, hasNoMoreNumbersThanItMay) {
 
 TEST(LookPalette, canBeLimited) {
     LookPalette palette(8);
-    for (const std::uint64_t key : {1, 2, 3, 4}) palette.numberOf(key);
     palette.limitTo(0.5);
+    for (const std::uint64_t key : {1, 2, 3, 4}) EXPECT_GT(palette.numberOf(key), 0u);
     EXPECT_FALSE(palette.hasTooMany());
-    palette.numberOf(5);
+    palette.limitTo(1);
+    EXPECT_GT(palette.numberOf(5), 0u);
+    EXPECT_FALSE(palette.hasTooMany());
     palette.limitTo(0.5);
     EXPECT_TRUE(palette.hasTooMany());
+    LookPalette other(8);
+    other.limitTo(0.5);
+    for (const std::uint64_t key : {1, 2, 3, 4, 5}) other.numberOf(key);
+    EXPECT_TRUE(other.hasTooMany());
 }
 
 }  // namespace

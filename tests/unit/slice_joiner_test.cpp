@@ -204,7 +204,7 @@ TEST(SliceJoiner, saysWhereLooksAreTooMany) {
     }
     EXPECT_TRUE(fine.looks()->hasTooMany());
     EXPECT_FALSE(coarse.looks()->hasTooMany());
-    coarse.looks()->foresee();
+    coarse.looks()->beginSample();
     EXPECT_FALSE(coarse.looks()->hasTooMany());
     EXPECT_LE(coarse.looks()->looks().size(), 65536u);
 }
