@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "delta/joined_rows.h"
 #include "deltasplat/view/factorization.h"
@@ -33,6 +34,9 @@ struct LookLevels {
     static constexpr int kMantissaBits = 23;  // of a float
 
     const float* lights;  // [classes][4]
+    const float*
+        pairs;  // [classes][classes][4]: two of them, the nearer first; null: there is none
+    std::size_t classCount;
     std::array<float, 3> perLargest;
     int opacityBits;
     int colorBits;
@@ -138,9 +142,24 @@ HWY_INLINE hn::Vec<D> lightsOf(D tag, const float* lights, const ClassIndex* cla
     }
 }
 
+// Numbers eight pairs of voxels.
+HWY_INLINE void numberPairs(const JoinedRows& rows, std::size_t classCount, std::size_t first,
+                            ClassIndex* HWY_RESTRICT out) {
+    const hn::CappedTag<std::uint16_t, 8> tag;
+    const auto count = hn::Set(tag, std::uint16_t(classCount));
+    for (std::size_t slice = 0; slice < rows.count; slice += 2) {
+        for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
+            const auto nearer = hn::LoadU(tag, rows.slices[slice] + first + v);
+            const auto farther = hn::LoadU(tag, rows.slices[slice + 1] + first + v);
+            hn::Store(hn::Add(hn::Mul(nearer, count), farther), tag, out + 4 * slice + v);
+        }
+    }
+}
+
 // What eight voxels of a row look like, their slices one behind the other, the nearest first: all
 // at once, for each has to wait for the slice before.
-// @param out  [8][4]
+// @param rows  classes, or pairs of them, that `lights` are of
+// @param out   [8][4]
 HWY_INLINE void joinRow(const JoinedRows& rows, const float* lights, std::size_t first,
                         float* HWY_RESTRICT out) {
     const hn::CappedTag<float, 8> tag;
@@ -173,13 +192,21 @@ HWY_INLINE void joinRow(const JoinedRows& rows, const float* lights, std::size_t
 }
 
 void joinLooksKernel(const JoinedRows& rows, const LookLevels& levels, LookKeys& keys) {
+    HWY_ALIGN ClassIndex pairs[4 * kMostJoined];  // [pair][v], of a row
+    std::array<const ClassIndex*, kMostJoined / 2> ofPairs;
+    for (std::size_t i = 0; i < ofPairs.size(); ++i) ofPairs[i] = pairs + 8 * i;
     for (std::size_t u = 0; u < 8; ++u) {
         const std::size_t first = u * rows.pitch;
         const unsigned others = numberAlone(rows, first, levels.aloneClasses, &keys.alone[8 * u]);
         keys.others[u] = std::uint8_t(others);
         if (others == 0) continue;
         HWY_ALIGN float lights[8 * 4];
-        joinRow(rows, levels.lights, first, lights);
+        if (levels.pairs) {
+            numberPairs(rows, levels.classCount, first, pairs);
+            joinRow({ofPairs.data(), rows.count / 2, 8}, levels.pairs, 0, lights);
+        } else {
+            joinRow(rows, levels.lights, first, lights);
+        }
         roundLooks(levels, lights, &keys.opacities[8 * u], &keys.colors[8 * u]);
     }
 }
@@ -209,10 +236,25 @@ LookJoiner::LookJoiner(const std::vector<glm::dvec4>& lights, const LookRun& run
     }
     for (int c = 0; c < 3; ++c)
         perLargest_[std::size_t(c)] = largest_[c] > 0 ? float(1 / largest_[c]) : 0;
+    constexpr std::size_t kMostPaired = 256;
+    if (rounded_.size() <= kMostPaired) joinPairs();
     const std::size_t alone = std::size_t(run.slices) * (lights.size() - 1);
     constexpr std::size_t kMostAlone = 32768;
     if (alone <= kMostAlone) aloneClasses_ = lights.size() - 1;
     palette_ = paletteBesides(std::size_t(run.slices) * aloneClasses_);
+}
+
+// Half as many are to be put behind each other then.
+void LookJoiner::joinPairs() {
+    std::vector<Rgba> pairs;
+    pairs.reserve(rounded_.size() * rounded_.size());
+    for (const Rgba& nearer : rounded_) {
+        for (const Rgba& farther : rounded_) {
+            Rgba& pair = pairs.emplace_back(nearer);
+            for (std::size_t c = 0; c < 4; ++c) pair[c] += (1 - nearer[3]) * farther[c];
+        }
+    }
+    pairs_ = std::make_shared<const std::vector<Rgba>>(std::move(pairs));
 }
 
 LookJoiner LookJoiner::coarser() const {
@@ -287,7 +329,12 @@ void LookJoiner::join(std::span<const ClassIndex* const> slices, std::size_t pit
     std::copy(slices.begin(), slices.end(), fromFront.begin());
     if (run_.lastInFront)
         std::reverse(fromFront.begin(), fromFront.begin() + std::ptrdiff_t(slices.size()));
-    const LookLevels levels{rounded_.front().data(), perLargest_, opacityBits(), run_.bits,
+    const LookLevels levels{rounded_.front().data(),
+                            pairs_ ? pairs_->front().data() : nullptr,
+                            rounded_.size(),
+                            perLargest_,
+                            opacityBits(),
+                            run_.bits,
                             std::uint16_t(aloneClasses_)};
     LookKeys keys;
     HWY_DYNAMIC_DISPATCH(joinLooksKernel)({fromFront.data(), slices.size(), pitch}, levels, keys);

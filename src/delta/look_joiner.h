@@ -59,12 +59,16 @@ class LookJoiner {
   private:
     int opacityBits() const { return run_.bits - 1; }
     std::vector<double> channelLevels(int channel) const;
+    void joinPairs();
 
     LookRun run_;
-    std::vector<glm::dvec4> lights_;             // [classes]
-    std::vector<std::array<float, 4>> rounded_;  // the same
-    glm::dvec3 largest_{0.0};                    // of each channel of colours
-    std::array<float, 3> perLargest_{};          // 1 / that, 0 where it is 0
+    std::vector<glm::dvec4> lights_;  // [classes]
+    using Rgba = std::array<float, 4>;
+    std::vector<Rgba> rounded_;  // the same
+    // [nearer][farther]: what two of them look like; null: they are too many for 16 bits.
+    std::shared_ptr<const std::vector<Rgba>> pairs_;
+    glm::dvec3 largest_{0.0};            // of each channel of colours
+    std::array<float, 3> perLargest_{};  // 1 / that, 0 where it is 0
     // Classes that have numbers of their own where they are alone, for each time that they are
     // there: the first ones. 0: there are too many, and these are rounded as well.
     std::size_t aloneClasses_ = 0;
