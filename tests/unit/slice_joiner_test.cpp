@@ -164,8 +164,8 @@ TEST(SliceJoiner, roundsLooks) {
                     EXPECT_NEAR(look.a / expected.a, 1, ofAlpha) << i;
                     EXPECT_NEAR(1 - look.a, 1 - expected.a, 0x1p-9 * (1 - expected.a) + 1e-6);
                     // As far as floats can tell.
-                    if (expected.a > 1 - 0x1p-25) EXPECT_EQ(look.a, 1);
-                    if (expected.a < 1 - 0x1p-20) EXPECT_LT(look.a, 1) << expected.a;
+                    const double rest = 1 - expected.a;
+                    EXPECT_TRUE(look.a < 1 ? rest > 0x1p-25 : rest < 0x1p-20) << expected.a;
                     for (int c = 0; c < 3; ++c) {
                         const double color = expected[c] / expected.a;
                         const double step = 2 * std::sqrt(3 * color) / 1023 + 3.0 / (1023 * 1023);
