@@ -150,8 +150,9 @@ void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) {
     for (std::size_t i = 0; i < joined; ++i) {
         for (std::size_t k = 0; k < slants.size(); ++k)
             slices[k] = layer_.data() + placeOf(i * slants.size() + k, first - slants[k]);
-        joiner_.join(std::span(slices).first(slants.size()), std::size_t(voxels_.y),
-                     &out[kSlice * (std::size_t(layer) * joined + i)], cache_);
+        const std::size_t slice = std::size_t(layer) * joined + i;
+        joiner_.join(std::span(slices).first(slants.size()), std::size_t(voxels_.y), slice,
+                     &out[kSlice * slice], cache_);
     }
 }
 

@@ -40,6 +40,8 @@ struct LookLevels {
     std::array<float, 3> perLargest;
     int opacityBits;
     int colorBits;
+    // [64]: what is added, of a level, before what is behind the point is dropped: 0 to 1.
+    const float* thresholds;
     std::uint16_t aloneClasses;  // as LookJoiner has them
 };
 
@@ -60,9 +62,10 @@ namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Rounds eight looks.
-// @param lights  [8][4]: premultiplied, opacity last
-HWY_INLINE void roundLooks(const LookLevels& levels, const float* lights, std::uint32_t* opacities,
-                           std::uint32_t* colors) {
+// @param lights      [8][4]: premultiplied, opacity last
+// @param thresholds  of them
+HWY_INLINE void roundLooks(const LookLevels& levels, const float* lights, const float* thresholds,
+                           std::uint32_t* opacities, std::uint32_t* colors) {
     const hn::CappedTag<float, 8> tag;
     const hn::RebindToSigned<decltype(tag)> integers;
     const hn::RebindToUnsigned<decltype(tag)> numbers;
@@ -70,15 +73,17 @@ HWY_INLINE void roundLooks(const LookLevels& levels, const float* lights, std::u
     const V one = hn::Set(tag, 1.0F);
     const V steps = hn::Set(tag, float((1 << levels.colorBits) - 1));
     const int dropped = LookLevels::kMantissaBits - levels.opacityBits;
-    const auto half = hn::Set(integers, 1 << (dropped - 1));
+    const V perLevel = hn::Set(tag, float(1 << dropped));
     for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
+        const V threshold = hn::Load(tag, thresholds + v);
+        const auto below = hn::ConvertTo(integers, hn::Mul(threshold, perLevel));
         V red, green, blue, alpha;
         hn::LoadInterleaved4(tag, lights + 4 * v, red, green, blue, alpha);
         const auto isSeen = hn::Gt(alpha, hn::Zero(tag));
         const V rest = hn::Add(hn::Sub(one, alpha), hn::Set(tag, LookLevels::kLeastRest));
         const V opacity = hn::Max(hn::Div(alpha, rest), hn::Set(tag, LookLevels::kLeast));
         const auto level =
-            hn::ShiftRightSame(hn::Add(hn::BitCast(integers, opacity), half), dropped);
+            hn::ShiftRightSame(hn::Add(hn::BitCast(integers, opacity), below), dropped);
         hn::StoreU(
             hn::BitCast(numbers, hn::IfThenElseZero(hn::RebindMask(integers, isSeen), level)),
             numbers, opacities + v);
@@ -87,7 +92,7 @@ HWY_INLINE void roundLooks(const LookLevels& levels, const float* lights, std::u
             const V share = hn::Mul(hn::Mul(channel, perAlpha),
                                     hn::Set(tag, levels.perLargest[std::size_t(c)]));
             const V root = hn::Sqrt(hn::Min(hn::Max(share, hn::Zero(tag)), one));
-            return hn::ConvertTo(integers, hn::Add(hn::Mul(root, steps), hn::Set(tag, 0.5F)));
+            return hn::ConvertTo(integers, hn::Add(hn::Mul(root, steps), threshold));
         };
         auto key = shareOf(red, 0);
         key = hn::Or(hn::ShiftLeftSame(key, levels.colorBits), shareOf(green, 1));
@@ -207,7 +212,8 @@ void joinLooksKernel(const JoinedRows& rows, const LookLevels& levels, LookKeys&
         } else {
             joinRow(rows, levels.lights, first, lights);
         }
-        roundLooks(levels, lights, &keys.opacities[8 * u], &keys.colors[8 * u]);
+        roundLooks(levels, lights, levels.thresholds + 8 * u, &keys.opacities[8 * u],
+                   &keys.colors[8 * u]);
     }
 }
 
@@ -219,6 +225,34 @@ namespace deltasplat {
 namespace {
 
 HWY_EXPORT(joinLooksKernel);
+
+using Thresholds = std::array<float, 64>;  // of a slice, [u][v]
+
+// Where looks are rounded to few levels: neighbours, also along the slices, take the one above and
+// the one below as often as is right, so that what is even keeps its mean. [slice], of a block.
+std::array<Thresholds, 8> spreadThresholds() {
+    // The powers of 1 / x, x^4 = x + 1: a lattice that is even in three dimensions.
+    constexpr std::array<double, 3> kSteps{0.81917251339616444, 0.67104360670378923,
+                                           0.54970047790197024};
+    std::array<Thresholds, 8> all;
+    for (std::size_t i = 0; i < 512; ++i) {
+        const std::array<std::size_t, 3> place{i / 64, i / 8 % 8, i % 8};
+        double sum = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) sum += double(place[axis]) * kSteps[axis];
+        all[i / 64][i % 64] = float(sum - std::floor(sum));
+    }
+    return all;
+}
+
+const float* thresholdsOf(int bits, std::size_t slice) {
+    alignas(64) static const std::array<Thresholds, 8> spread = spreadThresholds();
+    alignas(64) static const Thresholds nearest = [] {
+        Thresholds halves;
+        halves.fill(0.5F);
+        return halves;
+    }();
+    return bits == LookRun::kMostBits ? nearest.data() : spread[slice].data();
+}
 
 // The palette of what is not alone.
 std::shared_ptr<LookPalette> paletteBesides(std::size_t alone) {
@@ -273,27 +307,6 @@ void LookJoiner::endSample() const {
     palette_->limitTo(1);
 }
 
-// What the levels of a channel stand for: the mean of the classes that have it, or its middle.
-std::vector<double> LookJoiner::channelLevels(int channel) const {
-    const double steps = (1 << run_.bits) - 1;
-    std::vector<double> sums(std::size_t(1) << run_.bits);
-    std::vector<int> counts(sums.size());
-    const double largest = largest_[channel];
-    for (const glm::dvec4& light : lights_) {
-        if (!(light.a > 0) || !(largest > 0)) continue;
-        const double value = std::min(light[channel] / light.a, largest);
-        const auto level = std::size_t(std::sqrt(value / largest) * steps + 0.5);
-        sums[level] += value;
-        ++counts[level];
-    }
-    std::vector<double> levels;
-    for (std::size_t level = 0; level < sums.size(); ++level) {
-        const double root = double(level) / steps;
-        levels.push_back(counts[level] > 0 ? sums[level] / counts[level] : root * root * largest);
-    }
-    return levels;
-}
-
 std::vector<glm::dvec4> LookJoiner::looks() const {
     std::vector<glm::dvec4> looks(1);
     for (int times = 1; times <= run_.slices; ++times) {
@@ -308,14 +321,14 @@ std::vector<glm::dvec4> LookJoiner::looks() const {
             looks.emplace_back(glm::dvec3(light) / light.a, alpha);
         }
     }
-    const std::array<std::vector<double>, 3> levels = {channelLevels(0), channelLevels(1),
-                                                       channelLevels(2)};
+    const std::uint64_t mostLevel = (std::uint64_t{1} << run_.bits) - 1;
     const int dropped = LookLevels::kMantissaBits - opacityBits();
     for (const std::uint64_t key : palette_->keys()) {
         glm::dvec4& look = looks.emplace_back();
         for (int c = 0; c < 3; ++c) {
-            const std::uint64_t level = key >> (run_.bits * (2 - c)) & ((1U << run_.bits) - 1);
-            look[c] = levels[std::size_t(c)][level];
+            const std::uint64_t level = key >> (run_.bits * (2 - c)) & mostLevel;
+            const double root = double(level) / double(mostLevel);
+            look[c] = root * root * largest_[c];
         }
         const double x = std::bit_cast<float>(std::uint32_t(key >> 32) << dropped);
         look.a = std::min(x * (1 + double(LookLevels::kLeastRest)) / (1 + x), 1.0);
@@ -323,8 +336,8 @@ std::vector<glm::dvec4> LookJoiner::looks() const {
     return looks;
 }
 
-void LookJoiner::join(std::span<const ClassIndex* const> slices, std::size_t pitch, ClassIndex* out,
-                      LookCache& cache) const {
+void LookJoiner::join(std::span<const ClassIndex* const> slices, std::size_t pitch,
+                      std::size_t slice, ClassIndex* out, LookCache& cache) const {
     std::array<const ClassIndex*, kMostJoined> fromFront;
     std::copy(slices.begin(), slices.end(), fromFront.begin());
     if (run_.lastInFront)
@@ -335,6 +348,7 @@ void LookJoiner::join(std::span<const ClassIndex* const> slices, std::size_t pit
                             perLargest_,
                             opacityBits(),
                             run_.bits,
+                            thresholdsOf(run_.bits, slice),
                             std::uint16_t(aloneClasses_)};
     LookKeys keys;
     HWY_DYNAMIC_DISPATCH(joinLooksKernel)({fromFront.data(), slices.size(), pitch}, levels, keys);

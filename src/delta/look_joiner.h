@@ -30,7 +30,8 @@ struct LookRun {
 
 /// Joins slices of classes of any colours, over steps of one length: numbers what voxels look like
 /// one behind the other as it comes up. One class alone, however often it is there, is what it is;
-/// others are rounded.
+/// others are rounded: to kMostBits to the nearest level, to fewer so that the mean of many voxels
+/// stays what it is.
 class LookJoiner {
   public:
     /// @param lights  of each class, premultiplied RGBA; the first, of what is empty, is 0
@@ -38,8 +39,8 @@ class LookJoiner {
 
     const LookRun& run() const { return run_; }
     /// As SliceJoiner::join.
-    void join(std::span<const ClassIndex* const> slices, std::size_t pitch, ClassIndex* out,
-              LookCache& cache) const;
+    void join(std::span<const ClassIndex* const> slices, std::size_t pitch, std::size_t slice,
+              ClassIndex* out, LookCache& cache) const;
     /// Returns what has come up so far: [number], colour, not multiplied by opacity, and opacity
     /// over a step. Not while others join.
     std::vector<glm::dvec4> looks() const;
@@ -58,7 +59,6 @@ class LookJoiner {
 
   private:
     int opacityBits() const { return run_.bits - 1; }
-    std::vector<double> channelLevels(int channel) const;
     void joinPairs();
 
     LookRun run_;

@@ -163,10 +163,10 @@ std::vector<double> SliceJoiner::levels() const {
 }
 
 void SliceJoiner::join(std::span<const ClassIndex* const> slices, std::size_t pitch,
-                       ClassIndex* out, LookCache& cache) const {
+                       std::size_t slice, ClassIndex* out, LookCache& cache) const {
     const JoinedRows rows{slices.data(), slices.size(), pitch};
     if (looks_) {
-        looks_->join(slices, pitch, out, cache);
+        looks_->join(slices, pitch, slice, out, cache);
     } else if (classCount_ > 0) {
         HWY_DYNAMIC_DISPATCH(joinPairsKernel)(rows, classCount_, out);
     } else {

@@ -38,10 +38,11 @@ class SliceJoiner {
     /// Joins 8x8 voxels of slices that lie one behind the other.
     /// @param slices  the first of them in each
     /// @param pitch   from row to row of them
+    /// @param slice   the place of what they become among the slices of its block: 0 to 7
     /// @param out     [64]
     /// @param cache   the caller's own, for all that it joins
-    void join(std::span<const ClassIndex* const> slices, std::size_t pitch, ClassIndex* out,
-              LookCache& cache) const;
+    void join(std::span<const ClassIndex* const> slices, std::size_t pitch, std::size_t slice,
+              ClassIndex* out, LookCache& cache) const;
 
     /// Whether both give the same numbers to the same classes: of looks, only if they have one
     /// numbering.

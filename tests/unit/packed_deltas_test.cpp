@@ -113,7 +113,7 @@ Classes joinedClassesOf(const Classes& classes, const SliceJoiner& joiner,
             slices.push_back(voxels[std::size_t(i)].data());
         }
         std::array<ClassIndex, 64> out;
-        joiner.join(slices, 8, out.data(), cache);
+        joiner.join(slices, 8, 0, out.data(), cache);
         joined[{slice, u, v}] = out[0];
     };
     for (const auto& [place, found] : classes) {

@@ -29,12 +29,13 @@ SliceClasses randomClasses(std::size_t count, std::uint32_t seed) {
     return classes;
 }
 
-SliceClasses joined(const SliceJoiner& joiner, const std::vector<SliceClasses>& slices) {
+SliceClasses joined(const SliceJoiner& joiner, const std::vector<SliceClasses>& slices,
+                    std::size_t slice = 0) {
     std::vector<const ClassIndex*> rows;
     for (const SliceClasses& slice : slices) rows.push_back(slice.data());
     SliceClasses out;
     LookCache cache;
-    joiner.join(rows, 8, out.data(), cache);
+    joiner.join(rows, 8, slice, out.data(), cache);
     return out;
 }
 
@@ -173,6 +174,36 @@ TEST(SliceJoiner, roundsLooks) {
                     }
                 }
             }
+        }
+    }
+}
+
+// Of few levels neighbours take different ones, and their mean is what it is.
+TEST(SliceJoiner, keepsTheMeanOfWhatIsEven) {
+    std::vector<glm::dvec4> lights = {glm::dvec4(0)};
+    for (int i = 1; i < 40; ++i) {
+        const double alpha = 0.02 * i;
+        lights.emplace_back(alpha * glm::dvec3(0.3, 1 - 0.02 * i, 0.025 * i), alpha);
+    }
+    for (int dropped = 1; dropped <= 6; ++dropped) {
+        SliceJoiner joiner = SliceJoiner::ofLooks(lights, {2});
+        for (int i = 0; i < dropped; ++i) joiner.looks() = joiner.looks()->coarser();
+        const double step = std::exp2(dropped - LookRun::kMostBits);
+        for (std::size_t n = 2; n < lights.size(); n += 5) {
+            std::vector<SliceClasses> slices(2);
+            slices[0].fill(ClassIndex(n));
+            slices[1].fill(ClassIndex(n - 1));
+            std::vector<SliceClasses> outs;
+            for (std::size_t slice = 0; slice < 8; ++slice)
+                outs.push_back(joined(joiner, slices, slice));
+            const std::vector<glm::dvec4> looks = joiner.looks()->looks();
+            glm::dvec4 mean(0.0);
+            for (const SliceClasses& out : outs)
+                for (const ClassIndex number : out) mean += looks[number] / 512.0;
+            const glm::dvec4 expected = composite({lights[n], lights[n - 1]});
+            EXPECT_NEAR(mean.a, expected.a, 0.02 * step + 0.3 * step * step);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(mean[c], expected[c] / expected.a, 0.04 * step + 0.3 * step * step);
         }
     }
 }
