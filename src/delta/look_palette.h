@@ -55,7 +55,7 @@ class LookCache {
         std::uint64_t key = 0;
         std::uint32_t number = 0;
     };
-    static constexpr std::size_t kEntries = std::size_t{1} << 12;
+    static constexpr std::size_t kEntries = std::size_t{1} << 13;
 
     std::vector<Entry> entries_;
 };

@@ -492,7 +492,8 @@ TEST_F(Joined, keepsManySlicesAsDense) {
     }
 }
 
-// So are plates of which eight joined slices have as many voxels along lines of sight as before.
+// So are those that are joined where voxels are smaller, but for the fraction of a voxel at both
+// ends of a plate, along lines of sight, by which they move.
 TEST_F(Joined, keepsMostSlicesAsDense) {
     for (int axis = 0; axis < 3; ++axis) {
         for (const glm::dvec3& direction : kDirections) {
@@ -503,7 +504,7 @@ TEST_F(Joined, keepsMostSlicesAsDense) {
                 for (const double opacity : {0.9, 0.05}) {
                     const PlateSums sums = sumsOfPlates(axis, false, opacity, direction,
                                                         Colors::kSeveral, false, most, dims);
-                    EXPECT_NEAR(sums.joined / sums.single, 1, 0.05)
+                    EXPECT_NEAR(sums.joined / sums.single, 1, 0.06)
                         << axis << ' ' << opacity << ' ' << direction.x << ' ' << direction.y << ' '
                         << most;
                 }
