@@ -114,8 +114,8 @@ JoinedSlants slantsOf(const Factorization& view, int joined) {
     return joinedSlants(view.shiftPerSlice * (1 - kSnap), joined);
 }
 
-// Returns how many slices are joined where nobody says otherwise: more than two as far as what is
-// joined is a few pixels deep, and none of them is moved by more than a quarter of a pixel.
+// Returns how many slices are joined where nobody says otherwise: more than two as far as so many
+// voxels side by side cover a few pixels, and none of them is moved by more than a quarter of one.
 int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
                   const Factorization& view) {
     const SplatOptions& options = scene.options;
@@ -129,10 +129,10 @@ int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
     const bool isWorthIt =
         scene.hasOneColor() || volume.activeCount >= kTimesLarger * leastVoxelsJoined;
     const bool canBeMany = options.mostJoined > 2 && !view.eye && isWorthIt;
-    constexpr double kMostPixelsDeep = 4;
+    constexpr double kMostPixelsOfAll = 4;
     constexpr double kMostPixelsMoved = 0.25;
     for (int joined = options.mostJoined; canBeMany && joined > 2; joined /= 2) {
-        if (joined * view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsDeep) continue;
+        if (joined * view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsOfAll) continue;
         const JoinedSlants slants = slantsOf(view, joined);
         const double moved = slants.farthest * view.pixelsPerVoxel;
         if (slants.keepsDensity && moved * (1 - kSnap) <= kMostPixelsMoved) return joined;

@@ -20,6 +20,7 @@ JoinedTileReader::JoinedTileReader(const ClassReader& classes, const SliceJoiner
       joiner_(joiner),
       tiles_(tiles),
       parts_(std::max<std::size_t>(tiles.slants().size() / kSlices, 1)),
+      sourceCount_(TileSources::numberOf(tiles.sourceColumns().x, 0)),
       voxels_(8 * tiles.sourceColumns()),
       layer_(kSlices * parts_.size() * std::size_t(voxels_.x) * std::size_t(voxels_.y)),
       joined_(kColumns) {
@@ -42,8 +43,10 @@ void JoinedTileReader::begin(const TileSources& sources, int firstPlace, int las
 bool JoinedTileReader::next() {
     constexpr int kNone = std::numeric_limits<int>::max();
     place_ = kNone;
-    for (const std::span<const CodeBlock>& column : rest_.columns)
-        if (!column.empty()) place_ = std::min(place_, column.front().position.x >> tiles_.shift());
+    for (std::size_t column = 0; column < sourceCount_; ++column) {
+        const std::span<const CodeBlock>& blocks = rest_.columns[column];
+        if (!blocks.empty()) place_ = std::min(place_, blocks.front().position.x >> tiles_.shift());
+    }
     if (place_ > lastPlace_) return false;
     has_.reset();
     // Of 8 slices of joined ones.
@@ -64,7 +67,7 @@ bool JoinedTileReader::readLayer(int layer) {
 
 bool JoinedTileReader::readPart(std::size_t number, int position) {
     Part& part = parts_[number];
-    for (std::size_t column = 0; column < rest_.columns.size(); ++column) {
+    for (std::size_t column = 0; column < sourceCount_; ++column) {
         std::span<const CodeBlock>& blocks = rest_.columns[column];
         if (!blocks.empty() && blocks.front().position.x == position) {
             fetchAhead(column);

@@ -62,7 +62,8 @@ class JoinedTileReader {
     // The fewest blocks one behind the other of which slices become whole ones, of every source
     // column: [slice][u][v].
     std::vector<Part> parts_;
-    glm::ivec2 voxels_;  // of a slice of them
+    std::size_t sourceCount_;  // columns behind these have no blocks
+    glm::ivec2 voxels_;        // of a slice of them
     std::vector<ClassIndex> layer_;
     std::vector<BlockClasses> joined_;  // [column]
     std::bitset<kColumns> has_;

@@ -229,7 +229,8 @@ HWY_EXPORT(joinLooksKernel);
 using Thresholds = std::array<float, 64>;  // of a slice, [u][v]
 
 // Where looks are rounded to few levels: neighbours, also along the slices, take the one above and
-// the one below as often as is right, so that what is even keeps its mean. [slice], of a block.
+// the one below as often as is right, so that what is even keeps its mean (but for the squares of
+// roots, which are a little more). [slice], of a block.
 std::array<Thresholds, 8> spreadThresholds() {
     // The powers of 1 / x, x^4 = x + 1: a lattice that is even in three dimensions.
     constexpr std::array<double, 3> kSteps{0.81917251339616444, 0.67104360670378923,
@@ -300,7 +301,7 @@ LookJoiner LookJoiner::coarser() const {
 
 void LookJoiner::beginSample() const {
     // Of most volumes a sixteenth has a third of all looks.
-    palette_->limitTo(1.0 / 3);
+    if (palette_->empty()) palette_->limitTo(1.0 / 3);
 }
 
 void LookJoiner::endSample() const {

@@ -31,7 +31,7 @@ struct LookRun {
 /// Joins slices of classes of any colours, over steps of one length: numbers what voxels look like
 /// one behind the other as it comes up. One class alone, however often it is there, is what it is;
 /// others are rounded: to kMostBits to the nearest level, to fewer so that the mean of many voxels
-/// stays what it is.
+/// stays what it is, to 0.0006 of the largest with 5 bits.
 class LookJoiner {
   public:
     /// @param lights  of each class, premultiplied RGBA; the first, of what is empty, is 0
@@ -48,7 +48,8 @@ class LookJoiner {
     /// Whether more came up than there are numbers for: then what was joined is nothing.
     bool hasTooMany() const { return palette_->hasTooMany(); }
     /// Says that what is joined from now on is a sixteenth of all, from all over the volume: there
-    /// are too many if this has many. Then that all else follows. Not while others join.
+    /// are too many if this has many, unless looks have come up before. Then that all else follows.
+    /// Not while others join.
     void beginSample() const;
     void endSample() const;
     /// Returns the same, rounded further, of which nothing has come up yet.

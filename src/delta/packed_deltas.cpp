@@ -395,6 +395,8 @@ PackedDeltas DeltaPacker::pack(const SlabRange& part) const {
     requireMemory("part of a delta grid", words * kBytesPerWord);
     std::vector<ColumnPacker> packers =
         impl_->run({layout, firstBlock, lastBlock, true, impl_->planned.slabs});
+    if (impl_->joiner && impl_->joiner->looks() && impl_->joiner->looks()->hasTooMany())
+        throw std::logic_error("a part has looks that the whole has not");
     collectWords(impl_->columnsOf(packers), layout, false, packed);
     return packed;
 }

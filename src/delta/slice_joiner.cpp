@@ -140,7 +140,8 @@ SliceJoiner SliceJoiner::ofSums(const std::vector<double>& extinctions, int slic
     if (largest > 0) std::frexp(largest, &exponent);
     joiner.unit_ = std::ldexp(1.0, std::min(exponent, 1023));
     // What is less than the least level looks like it: nothing that is seen becomes empty. 1024
-    // levels for each of 62 octaves are fewer than there are numbers for.
+    // levels for each of 63 octaves, up to kMostJoined times the largest, are fewer than there are
+    // numbers for.
     constexpr double kLeast = 0x1p-58;
     for (const double extinction : extinctions) {
         const double share = std::max(extinction / joiner.unit_, extinction > 0 ? kLeast : 0);

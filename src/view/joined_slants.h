@@ -20,7 +20,7 @@ struct JoinedSlants {
 
 /// Returns the slants by which slices stay nearest to their places.
 /// @param shiftPerSlice  -1 to 1 each
-/// @param count          2, 4 or kMostJoined
+/// @param count          a power of two, kMostJoined at most
 JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count);
 
 }  // namespace deltasplat

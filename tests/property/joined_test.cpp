@@ -128,7 +128,7 @@ TEST_F(Joined, joinsUpToEightWhereThatMovesLittle) {
     EXPECT_EQ(render(volume, eye).stats.joined, 2);
 }
 
-// As many as are four pixels deep.
+// As many as cover four pixels where they lie side by side.
 TEST_F(Joined, joinsTheMoreTheSmallerVoxelsAre) {
     const Volume volume = test::randomVolume(kBox, 5, 0.5);
     RenderOptions options;

@@ -337,6 +337,44 @@ TEST(PackedDeltas, JoinSlices) {
     }
 }
 
+// Parts number no looks that the whole has not, however many these are.
+TEST(PackedDeltas, JoinManyLooksInParts) {
+    // Each column has a pair of its own, nearly: the sample has few of all.
+    const Volume volume = test::makeVolume({{0, 0, 0}, {255, 255, 31}}, [](int x, int y, int z) {
+        return z % 2 == 0 ? (13 * x + 7 * y) % 199 : (5 * x + 29 * y) % 199;
+    });
+    std::vector<Slot> classes(kSlotCount, 0);
+    for (Slot slot = 1; slot < kSlotCount; ++slot) classes[slot] = slot % 200;
+    std::vector<glm::dvec4> lights(1);
+    for (std::size_t i = 1; i < 200; ++i) {
+        const double alpha = std::exp2(-0.04 * double(i));
+        const auto share = [&](int step) {
+            return alpha * double(i * std::size_t(step) % 97) / 97;
+        };
+        lights.emplace_back(share(7), share(31), share(55), alpha);
+    }
+    const SliceJoiner joiner = SliceJoiner::ofLooks(lights, {2});
+    PackOptions options = optionsOf(2, Encoding::kSmaller, classes, false);
+    const std::array<glm::ivec2, 2> slants = {glm::ivec2(0), {1, 0}};
+    options.joiner = &joiner;
+    options.slants = slants;
+    DeltaPacker packer(volume, options);
+    packer.packOrPlan(0);
+    ASSERT_GT(packer.parts().size(), 1u);
+    EXPECT_GT(packer.joiner()->looks()->looks().size(), 65536u / 3);
+    options.joiner = &*packer.joiner();
+    const PackedDeltas whole = packDeltas(volume, options);
+    EXPECT_GT(whole.visible(), 0u);
+    for (const SlabRange& range : packer.parts()) {
+        const PackedDeltas part = packer.pack(range);
+        for (int i = range.first; i < range.last; ++i) {
+            const PlannedSlab& slab = whole.slabs[std::size_t(i)];
+            for (int s = slab.firstSlice; s < slab.firstSlice + slab.sliceCount; ++s)
+                expectSameWords(part.slice(s), whole.slice(s));
+        }
+    }
+}
+
 // Of a tree's tiles, too.
 TEST(PackedDeltas, JoinSlicesOfTiles) {
     Volume volume = test::makeVolume({{0, 0, 0}, {63, 63, 63}}, [](int x, int y, int z) {

@@ -208,6 +208,28 @@ TEST(SliceJoiner, keepsTheMeanOfWhatIsEven) {
     }
 }
 
+// Of 256 classes and fewer, pairs are put behind each other: to the same.
+TEST(SliceJoiner, joinsLooksOfPairsToTheSame) {
+    const std::vector<glm::dvec4> all = someLights(257);
+    const std::vector<glm::dvec4> some(all.begin(), all.end() - 1);
+    for (const int count : {2, 8, 32}) {
+        std::vector<SliceClasses> slices;
+        for (int i = 0; i < count; ++i) slices.push_back(randomClasses(256, std::uint32_t(i)));
+        slices[0][3] = slices[1][3] = 255;
+        const SliceJoiner paired = SliceJoiner::ofLooks(some, {count});
+        const SliceJoiner single = SliceJoiner::ofLooks(all, {count});
+        const SliceClasses ofPairs = joined(paired, slices);
+        const SliceClasses ofSingles = joined(single, slices);
+        for (std::size_t i = 0; i < 64; ++i) {
+            const glm::dvec4 a = paired.looks()->looks()[ofPairs[i]];
+            const glm::dvec4 b = single.looks()->looks()[ofSingles[i]];
+            // A level, where floats are rounded differently.
+            EXPECT_NEAR(a.a, b.a, 0x1p-9 * std::min(a.a, 1 - a.a) + 1e-6);
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 6.0 / 1023);
+        }
+    }
+}
+
 // Of more classes than can be told apart alone, they are rounded as well.
 TEST(SliceJoiner, roundsLooksOfManyClasses) {
     const std::vector<glm::dvec4> lights = someLights(60000);
@@ -295,19 +317,23 @@ TEST(SliceJoiner, hasLevelsThatOthersHave) {
 TEST(SliceJoiner, givesTheSameAtEverySimdLevel) {
     const std::vector<double> extinctions = someExtinctions();
     const std::vector<glm::dvec4> lights = someLights(250);
+    const std::vector<glm::dvec4> moreLights = someLights(300);
     for (const int count : {2, 8, 32}) {
         std::vector<SliceClasses> slices;
         for (int i = 0; i < count; ++i) slices.push_back(randomClasses(250, 7 + std::uint32_t(i)));
         // Of looks, numbers are those of the first time that they came up.
         std::vector<SliceJoiner> joiners = {SliceJoiner::ofSums(extinctions, count),
                                             SliceJoiner::ofLooks(lights, {count}),
-                                            SliceJoiner::ofLooks(lights, {count, true})};
+                                            SliceJoiner::ofLooks(lights, {count, true}),
+                                            SliceJoiner::ofLooks(moreLights, {count}),
+                                            SliceJoiner::ofLooks(lights, {count, false, 5}),
+                                            SliceJoiner::ofLooks(moreLights, {count, true, 4})};
         if (count == 2) joiners.push_back(SliceJoiner::ofPairs(256));
         for (const SliceJoiner& joiner : joiners) {
-            const SliceClasses expected = joined(joiner, slices);
+            const SliceClasses expected = joined(joiner, slices, 3);
             for (const std::string& level : test::testedSimdLevels()) {
                 setSimdLevel(level);
-                EXPECT_EQ(joined(joiner, slices), expected) << level;
+                EXPECT_EQ(joined(joiner, slices, 3), expected) << level;
             }
             setSimdLevel("auto");
         }

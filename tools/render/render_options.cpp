@@ -371,8 +371,8 @@ void addSplattingOptions(CLI::App& app, PictureOptions& picture) {
         "--join", "N", picture.join, sliceCount(),
         "Slices that may be drawn as one, 1, 2, 4, 8, 16 or 32, where a\nvoxel of a large volume "
         "covers half a pixel or less, and none of\nthe splatting options but --method and "
-        "--filter is given (default:\n32, as far as they are four pixels deep together; 2 where a "
-        "camera\nmoves, frames show one volume, or parts are made with --slab-range)");
+        "--filter is given (default:\n32, as far as so many voxels in a row cover four pixels; 2 "
+        "where a\ncamera moves, frames show one volume, or parts are made with\n--slab-range)");
     group.addValue("--resolution", "R", options.resolution, resolution(),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        ", or 1/2, 1/4 or 1/8:\nvoxels share a pixel, which is softer, not faster, "
