@@ -83,9 +83,9 @@ class Scenes {
         return scenes_.back().options;
     }
     void addJoined(const std::string& name, const std::string& volume, const CameraOptions& camera,
-                   const TransferFunction& function) {
-        add(name, volume, camera, function);
-        scenes_.back().joinsSlices = true;
+                   const TransferFunction& function, int joined = 2) {
+        add(name, volume, camera, function).mostJoined = joined;
+        scenes_.back().joined = joined;
     }
     std::vector<GoldenScene> take() { return std::move(scenes_); }
 
@@ -213,6 +213,10 @@ void addJoined(Scenes& scenes) {
     camera.sizePixels = {11, 9};
     scenes.addJoined("joined", "engine", camera, colored());
     scenes.addJoined("joined-one-color", "cloud", camera, oneColor(0.3));
+    CameraOptions smaller = camera;
+    smaller.sizePixels = {8, 7};
+    scenes.addJoined("joined-many", "engine", smaller, colored(), 16);
+    scenes.addJoined("joined-many-one-color", "cloud", smaller, oneColor(0.3), 16);
     camera.projection = Projection::kPerspective;
     camera.fovDegrees = 30;
     scenes.addJoined("joined-perspective", "engine", camera, colored());

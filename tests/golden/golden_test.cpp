@@ -51,9 +51,9 @@ Hashes ofScenes() {
         for (MediumPart& part : options.optics.parts)
             part.volume = std::make_shared<const Volume>(volumes.at(scene.part));
         std::optional<SmallJoined> joined;
-        if (scene.joinsSlices) joined.emplace();
+        if (scene.joined > 1) joined.emplace();
         const RenderResult result = render(volumes.at(scene.volume), options);
-        EXPECT_EQ(result.stats.joined, scene.joinsSlices ? 2 : 1) << scene.name;
+        EXPECT_EQ(result.stats.joined, scene.joined) << scene.name;
         Hash hash;
         for (const glm::dvec3& axis : {result.camera.right, result.camera.up}) {
             for (int i = 0; i < 3; ++i) hash.add(axis[i]);
