@@ -19,13 +19,13 @@ JoinedTileReader::JoinedTileReader(const ClassReader& classes, const SliceJoiner
     : classReader_(classes),
       joiner_(joiner),
       tiles_(tiles),
-      parts_(std::max<std::size_t>(tiles.slants().size() / kSlices, 1)),
+      parts_(tiles.partCount()),
       sourceCount_(TileSources::numberOf(tiles.sourceColumns().x, 0)),
       voxels_(8 * tiles.sourceColumns()),
       layer_(kSlices * parts_.size() * std::size_t(voxels_.x) * std::size_t(voxels_.y)),
       joined_(kColumns) {
     for (std::size_t part = 0; part < parts_.size(); ++part)
-        parts_[part].sourcesOfFirst = tiles.sourcesOfFirst(int(kSlices * part));
+        parts_[part].sourcesOfFirst = tiles.sourcesOfFirst(part);
 }
 
 void JoinedTileReader::begin(const TileSources& sources, int firstPlace, int lastPlace) {

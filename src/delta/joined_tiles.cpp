@@ -2,6 +2,7 @@
 #include "delta/joined_tiles.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <glm/common.hpp>
 #include <limits>
@@ -35,6 +36,19 @@ ColumnRange columnsReadFor(std::span<const glm::ivec2> slants) {
     return {first, last - first + 1};
 }
 
+using PartCounts = std::array<std::size_t, kMostJoined / 8>;
+
+// Returns how many blocks of a column there are of each of so many that follow each other.
+PartCounts countParts(std::span<const CodeBlock> column, std::size_t parts) {
+    PartCounts counts{};
+    if (parts == 1) {
+        counts[0] = column.size();
+        return counts;
+    }
+    for (const CodeBlock& block : column) ++counts[std::size_t(block.position.x) & (parts - 1)];
+    return counts;
+}
+
 }  // namespace
 
 JoinedTiles::JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const glm::ivec2> slants)
@@ -45,6 +59,11 @@ JoinedTiles::JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const g
     const ColumnRange ofColumn = columnsReadFor(slants_);
     own_ = -ofColumn.first;
     sources_ = ofColumn.count;
+    for (std::size_t slice = 0; slice < slants.size(); slice += 8) {
+        const std::size_t count = std::min<std::size_t>(slants.size(), 8);
+        const ColumnRange ofPart = columnsReadFor(slants.subspan(slice, count));
+        ofFirst_.push_back({own_ + ofPart.first, ofPart.count});
+    }
     // A run has a share of all blocks, and no more than a row of tiles.
     const std::size_t least = std::max<std::size_t>(256, blocks.size() / 256);
     constexpr int kAny = std::numeric_limits<int>::max() >> 3;
@@ -64,13 +83,6 @@ JoinedTiles::JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const g
 glm::ivec2 JoinedTiles::placeOf(std::size_t column) const {
     const glm::ivec3& position = blocks_[begins_[column]].position;
     return {position.y, position.z};
-}
-
-ColumnRange JoinedTiles::sourcesOfFirst(int slice) const {
-    const std::size_t count = std::min<std::size_t>(slants_.size(), 8);
-    const ColumnRange sources =
-        columnsReadFor(std::span(slants_).subspan(std::size_t(slice), count));
-    return {own_ + sources.first, sources.count};
 }
 
 std::vector<JoinedTile> JoinedTiles::listTiles() const {
@@ -112,19 +124,27 @@ TileSources JoinedTiles::sourcesOf(const JoinedTile& tile) const {
 
 std::size_t JoinedTiles::mostBlocks(const TileSources& sources, int u, int firstPlace,
                                     int lastPlace) const {
+    std::vector<PartCounts> counts;  // [u][v], of the columns that these are made of
+    for (int i = 0; i < sources_.x; ++i)
+        for (int v = 0; v < TileSources::kColumns.y; ++v)
+            counts.push_back(countParts(sources.at(u + i, v), partCount()));
     std::size_t most = 0;
     for (int v = 0; v < kTileColumns.y; ++v) {
         std::size_t count = 0;
         int first = lastPlace + 1;
         int last = firstPlace - 1;
-        for (int i = 0; i < sources_.x; ++i) {
-            for (int j = 0; j < sources_.y; ++j) {
-                const std::span<const CodeBlock> column = sources.at(u + i, v + j);
-                if (column.empty()) continue;
-                count += column.size();
-                first = std::min(first, column.front().position.x >> shift_);
-                last = std::max(last, column.back().position.x >> shift_);
-            }
+        const auto add = [&](std::size_t part, const glm::ivec2& at) {
+            const std::span<const CodeBlock> column = sources.at(u + at.x, at.y);
+            const std::size_t blocks = counts[TileSources::numberOf(at.x, at.y)][part];
+            if (blocks == 0) return;
+            count += blocks;
+            first = std::min(first, column.front().position.x >> shift_);
+            last = std::max(last, column.back().position.x >> shift_);
+        };
+        for (std::size_t part = 0; part < partCount(); ++part) {
+            const ColumnRange& from = ofFirst_[part];
+            for (int i = 0; i < from.count.x; ++i)
+                for (int j = 0; j < from.count.y; ++j) add(part, from.first + glm::ivec2(i, v + j));
         }
         first = std::max(first, firstPlace);
         last = std::min(last, lastPlace);

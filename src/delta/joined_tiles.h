@@ -59,9 +59,10 @@ class JoinedTiles {
     glm::ivec2 sourceColumns() const { return kTileColumns + sources_ - 1; }
     /// Of the sources, where the tile's own first column is.
     const glm::ivec2& own() const { return own_; }
-    /// Returns which sources column (0, 0) is made of, as far as blocks go that begin at the slice
-    /// of an index, 0 to n - 1, of those that become one.
-    ColumnRange sourcesOfFirst(int slice) const;
+    /// How many blocks one behind the other have slices that become one.
+    std::size_t partCount() const { return ofFirst_.size(); }
+    /// Of so many blocks, which sources column (0, 0) is made of as far as one of them goes.
+    const ColumnRange& sourcesOfFirst(std::size_t part) const { return ofFirst_[part]; }
 
     TileSources sourcesOf(const JoinedTile& tile) const;
     /// Returns the most blocks of joined slices that a tile's columns of the same u can have.
@@ -75,6 +76,7 @@ class JoinedTiles {
 
     std::span<const CodeBlock> blocks_;
     std::vector<glm::ivec2> slants_;
+    std::vector<ColumnRange> ofFirst_;
     std::vector<std::size_t> begins_;  // of columns, and the number of all blocks
     int shift_;
     glm::ivec2 own_{0};
