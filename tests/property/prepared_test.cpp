@@ -105,6 +105,7 @@ TEST(Prepared, picturesInPartsAreThoseOfAllAtOnce) {
                 options.method = method;
                 for (std::size_t i = 0; i < smallCamerasToo().size(); ++i) {
                     options.camera = smallCamerasToo()[i];
+                    options.mostJoined = i / 2 % 2 == 0 ? 2 : kMostJoined;
                     const ThreadLimit limit(1 + int(i % 3));
                     const RenderResult whole = render(*someVolume(), options);
                     PreparedScene::Impl scene({someVolume(), options.optics}, options, true);
