@@ -19,14 +19,11 @@ JoinedTileReader::JoinedTileReader(const ClassReader& classes, const SliceJoiner
     : classReader_(classes),
       joiner_(joiner),
       tiles_(tiles),
-      parts_(tiles.partCount()),
+      isFilled_(tiles.partCount()),
       sourceCount_(TileSources::numberOf(tiles.sourceColumns().x, 0)),
       voxels_(8 * tiles.sourceColumns()),
-      layer_(kSlices * parts_.size() * std::size_t(voxels_.x) * std::size_t(voxels_.y)),
-      joined_(kColumns) {
-    for (std::size_t part = 0; part < parts_.size(); ++part)
-        parts_[part].sourcesOfFirst = tiles.sourcesOfFirst(part);
-}
+      layer_(kSlices * isFilled_.size() * std::size_t(voxels_.x) * std::size_t(voxels_.y)),
+      joined_(kColumns) {}
 
 void JoinedTileReader::begin(const TileSources& sources, int firstPlace, int lastPlace) {
     rest_ = sources;
@@ -50,7 +47,7 @@ bool JoinedTileReader::next() {
     if (place_ > lastPlace_) return false;
     has_.reset();
     // Of 8 slices of joined ones.
-    const int layers = (1 << tiles_.shift()) / int(parts_.size());
+    const int layers = (1 << tiles_.shift()) / int(isFilled_.size());
     for (int layer = 0; layer < layers; ++layer)
         if (readLayer(place_ * layers + layer)) joinLayer(layer);
     return true;
@@ -60,26 +57,26 @@ bool JoinedTileReader::next() {
 // whether there are any.
 bool JoinedTileReader::readLayer(int layer) {
     bool hasAny = false;
-    for (std::size_t part = 0; part < parts_.size(); ++part)
-        hasAny = readPart(part, layer * int(parts_.size()) + int(part)) || hasAny;
+    for (std::size_t part = 0; part < isFilled_.size(); ++part)
+        hasAny = readPart(part, layer * int(isFilled_.size()) + int(part)) || hasAny;
     return hasAny;
 }
 
-bool JoinedTileReader::readPart(std::size_t number, int position) {
-    Part& part = parts_[number];
+bool JoinedTileReader::readPart(std::size_t part, int position) {
+    std::bitset<TileSources::kCount>& isFilled = isFilled_[part];
     for (std::size_t column = 0; column < sourceCount_; ++column) {
         std::span<const CodeBlock>& blocks = rest_.columns[column];
         if (!blocks.empty() && blocks.front().position.x == position) {
             fetchAhead(column);
-            readBlock(number, column, blocks.front());
+            readBlock(part, column, blocks.front());
             blocks = blocks.subspan(1);
-            part.isFilled.set(column);
-        } else if (part.isFilled[column]) {
-            clearBlock(number, column);
-            part.isFilled.reset(column);
+            isFilled.set(column);
+        } else if (isFilled[column]) {
+            clearBlock(part, column);
+            isFilled.reset(column);
         }
     }
-    return part.isFilled.any();
+    return isFilled.any();
 }
 
 // Brings what will be read soon nearer.
@@ -136,18 +133,19 @@ void JoinedTileReader::joinLayer(int layer) {
 }
 
 bool JoinedTileReader::hasSources(int u, int v) const {
-    for (const Part& part : parts_) {
-        const glm::ivec2 first = part.sourcesOfFirst.first + glm::ivec2(u, v);
-        for (int i = 0; i < part.sourcesOfFirst.count.x; ++i)
-            for (int j = 0; j < part.sourcesOfFirst.count.y; ++j)
-                if (part.isFilled[TileSources::numberOf(first.x + i, first.y + j)]) return true;
+    for (std::size_t part = 0; part < isFilled_.size(); ++part) {
+        const ColumnRange& sources = tiles_.sourcesOfFirst(part);
+        const glm::ivec2 first = sources.first + glm::ivec2(u, v);
+        for (int i = 0; i < sources.count.x; ++i)
+            for (int j = 0; j < sources.count.y; ++j)
+                if (isFilled_[part][TileSources::numberOf(first.x + i, first.y + j)]) return true;
     }
     return false;
 }
 
 void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) {
     const std::span<const glm::ivec2> slants = tiles_.slants();
-    const std::size_t joined = kSlices * parts_.size() / slants.size();
+    const std::size_t joined = kSlices * isFilled_.size() / slants.size();
     const glm::ivec2 first = 8 * (glm::ivec2(u, v) + tiles_.own());
     std::array<const ClassIndex*, kMostJoined> slices;
     for (std::size_t i = 0; i < joined; ++i) {

@@ -36,14 +36,8 @@ class JoinedTileReader {
     const BlockClasses& classes(std::size_t column) const { return joined_[column]; }
 
   private:
-    // Of the blocks in hand, those at one position along the slices.
-    struct Part {
-        ColumnRange sourcesOfFirst;  // of columns of the tile: of (0, 0)
-        std::bitset<TileSources::kCount> isFilled;
-    };
-
     bool readLayer(int layer);
-    bool readPart(std::size_t number, int position);
+    bool readPart(std::size_t part, int position);
     void readBlock(std::size_t part, std::size_t column, const CodeBlock& block);
     void clearBlock(std::size_t part, std::size_t column);
     ClassIndex* rowsOf(std::size_t part, std::size_t column);
@@ -61,9 +55,9 @@ class JoinedTileReader {
     int place_ = 0;
     // The fewest blocks one behind the other of which slices become whole ones, of every source
     // column: [slice][u][v].
-    std::vector<Part> parts_;
-    std::size_t sourceCount_;  // columns behind these have no blocks
-    glm::ivec2 voxels_;        // of a slice of them
+    std::vector<std::bitset<TileSources::kCount>> isFilled_;  // [part][column]
+    std::size_t sourceCount_;                                 // columns behind these have no blocks
+    glm::ivec2 voxels_;                                       // of a slice of them
     std::vector<ClassIndex> layer_;
     std::vector<BlockClasses> joined_;  // [column]
     std::bitset<kColumns> has_;

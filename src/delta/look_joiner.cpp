@@ -34,8 +34,8 @@ struct LookLevels {
     static constexpr int kMantissaBits = 23;  // of a float
 
     const float* lights;  // [classes][4]
-    const float*
-        pairs;  // [classes][classes][4]: two of them, the nearer first; null: there is none
+    // [classes][classes][4]: two of them, the nearer first; null: there is none.
+    const float* pairs;
     std::size_t classCount;
     std::array<float, 3> perLargest;
     int opacityBits;

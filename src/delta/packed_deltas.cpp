@@ -233,7 +233,7 @@ struct DeltaPacker::Impl {
         if (range.budget) range.budget->foresee(double(sample) / double(count));
         if (areLooks) {
             joiner->looks()->endSample();
-            if (joiner->looks()->hasTooMany()) return packers;
+            if (hasTooManyLooks()) return packers;
         }
         parallelFor(count, [&](std::size_t i) {
             if (i % kStep != 0) pack(i);
@@ -241,9 +241,13 @@ struct DeltaPacker::Impl {
         return packers;
     }
 
+    bool hasTooManyLooks() const {
+        return joiner && joiner->looks() && joiner->looks()->hasTooMany();
+    }
+
     // Whether looks were too many, and slices are to be joined again, with looks rounded further.
     bool mustJoinAgain() {
-        if (!joiner || !joiner->looks() || !joiner->looks()->hasTooMany()) return false;
+        if (!hasTooManyLooks()) return false;
         if (joiner->looks()->run().bits == LookRun::kLeastBits)
             throw std::logic_error("looks of few levels without numbers");
         joiner->looks() = joiner->looks()->coarser();
@@ -395,8 +399,7 @@ PackedDeltas DeltaPacker::pack(const SlabRange& part) const {
     requireMemory("part of a delta grid", words * kBytesPerWord);
     std::vector<ColumnPacker> packers =
         impl_->run({layout, firstBlock, lastBlock, true, impl_->planned.slabs});
-    if (impl_->joiner && impl_->joiner->looks() && impl_->joiner->looks()->hasTooMany())
-        throw std::logic_error("a part has looks that the whole has not");
+    if (impl_->hasTooManyLooks()) throw std::logic_error("a part has looks that the whole has not");
     collectWords(impl_->columnsOf(packers), layout, false, packed);
     return packed;
 }
