@@ -8,6 +8,7 @@
 
 #include "default_floats.h"
 #include "delta/code_blocks.h"
+#include "delta/joined_density.h"
 #include "delta/slab_facts.h"
 #include "delta/value_mixer.h"
 #include "deltasplat/error.h"
@@ -100,6 +101,7 @@ struct AxisRequest {
     int sliceAxis;
     bool descending;
     Subdivision parts;
+    glm::dvec2 shiftPerSlice;
     SeenThrough seenThrough;  // of joined slices, which of two is behind
     double steps;
     Encoding encoding = Encoding::kChanges;
@@ -122,9 +124,17 @@ std::shared_ptr<const PackedDeltas> sharedWords(const AxisRequest& request,
     return takeNumbers(before->classes().classOfSlot, classes) ? before->words : nullptr;
 }
 
+// Whether a volume is seen to be denser where voxels beside each other become one.
+bool looksDenser(const DeltaPacker& packer, const ClassTable& classes, const AxisRequest& request,
+                 const JoinedRun& run) {
+    constexpr double kMost = 1.0 / 256;
+    return packer.densityGained(classes.atSteps(run.steps).alphas(),
+                                {request.shiftPerSlice, run.slices, run.within}) > kMost;
+}
+
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
                                             const AxisRequest& request, const Listener& listener) {
-    const Subdivision& parts = request.parts;
+    Subdivision parts = request.parts;
     const PreparedAxis* const before = request.before;
     const Volume& volume = *scene.scene.volume;
     const Tolerance& tolerance = scene.options.tolerance;
@@ -145,7 +155,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     Encoding encoding = request.encoding;
     if (encoding == Encoding::kSmaller && !classes.oneDigit()) encoding = Encoding::kSmallerOfSums;
     std::shared_ptr<const PackedDeltas> words = sharedWords(request, scene, classes);
-    const JoinedRun run{parts.joined, request.seenThrough, request.steps / first};
+    JoinedRun run{parts.joined, parts.joinedWithin, request.seenThrough, request.steps / first};
     std::optional<SliceJoiner> joiner;
     if (parts.joined > 1) {
         joiner.emplace(joinerOf(classes, run));
@@ -161,6 +171,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     pack.descending = request.descending;
     if (joiner) pack.joiner = &*joiner;
     pack.slants = parts.joinedSlants();
+    pack.joinedWithin = parts.joinedWithin;
     pack.seen = request.seen;
     pack.slabLength = request.slabLength;
     pack.opacities = opacities;
@@ -179,6 +190,11 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     std::shared_ptr<DeltaPacker> packer;
     if (!words) {
         packer = std::make_shared<DeltaPacker>(volume, pack);
+        if (parts.joinedWithin > 1 && looksDenser(*packer, classes, request, run)) {
+            run.within = pack.joinedWithin = parts.joinedWithin = 1;
+            joiner = joinerOf(classes, run);
+            packer = std::make_shared<DeltaPacker>(volume, pack);
+        }
         const bool inParts =
             request.mayBeParted && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
         words = std::make_shared<const PackedDeltas>(inParts ? packer->packOrPlan(scene.wordBytes)
@@ -312,9 +328,13 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
     // Of joined ones, what they look like does; of several colours, unless they are pairs, also how
     // long steps are.
     const bool isJoined = parts.joined > 1;
-    const bool isOfSteps = isJoined && !hasOneColor() && (parts.joined > 2 || !canPairSlices());
+    const bool areSums = hasOneColor() && parts.joinedWithin == 1;
+    const bool isOfSteps = isJoined && !areSums && (parts.joined > 2 || !canPairSlices());
     const bool fromEnd = descending || (isJoined && !view.frontToBack);
-    AxisRequest request{sliceAxis, descending, parts,
+    AxisRequest request{sliceAxis,
+                        descending,
+                        parts,
+                        view.shiftPerSlice,
                         view.frontToBack ? SeenThrough::kSecond : SeenThrough::kFirst,
                         isForOne || isOfSteps ? stepsOf(view, *scene.volume) : 1};
     request.encoding = encoding;
@@ -328,7 +348,7 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
     // No other region sees the same.
     if (packsSeen && isForOne) return prepare(*this, request, listener);
     Key key{sliceAxis,    int(encoding), int(fromEnd), int(request.slabLength),
-            parts.slices, parts.within,  parts.joined};
+            parts.slices, parts.within,  parts.joined, parts.joinedWithin};
     for (const glm::ivec2& slant : parts.joinedSlants()) key.insert(key.end(), {slant.x, slant.y});
     if (isOfSteps) key.push_back(std::bit_cast<std::int64_t>(request.steps));
     Key otherKey = key;

@@ -79,10 +79,10 @@ struct PreparedScene::Impl {
     std::size_t blocksSeen(int sliceAxis) const;
 
   private:
-    // Axis, encoding, from which end slices are walked, how long slabs are, parts, how many are
-    // joined; then by which slants and for which steps.
+    // Axis, encoding, from which end slices are walked, how long slabs are, parts, how many slices
+    // and voxels beside each other are joined; then by which slants and for which steps.
     using Key = std::vector<std::int64_t>;
-    static constexpr std::ptrdiff_t kKeyOfAllSlants = 7;
+    static constexpr std::ptrdiff_t kKeyOfAllSlants = 8;
     using Axes = std::map<Key, std::shared_ptr<const PreparedAxis>>;
     struct Place {
         std::mutex mutex;

@@ -288,7 +288,7 @@ class CompositeRender {
 
     void countIn(const PictureView& picture) {
         const Footprint& footprint = picture.footprint();
-        stats_.resolution = footprint.pixelsPerVoxel() * picture.axis().parts.within;
+        stats_.resolution = footprint.pixelsPerVoxel() * picture.axis().parts.per().y;
         stats_.footprint = std::max(stats_.footprint, footprint.width);
     }
 

@@ -63,7 +63,7 @@ bool dividesVoxels(const PreparedScene::Impl& scene) {
 
 // Whether voxels of a view, or what they are divided into, have a sheet pixel of their own if
 // nothing else is asked for.
-bool hasOwnPixelIn(const Factorization& view, int parts, double resolution) {
+bool hasOwnPixelIn(const Factorization& view, double parts, double resolution) {
     return hasOwnPixel(view.pixelsPerVoxel / parts * (1 + kSnap), resolution);
 }
 
@@ -140,6 +140,19 @@ int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
     return canBeMany || scene.canPairSlices() ? 2 : 1;
 }
 
+// Returns how many voxels beside each other become one of joined slices, along u and along v, as
+// far as these cover a quarter of a pixel: where slices are many, so that little goes on from some
+// to the next.
+int joinedWithinUnasked(const Factorization& view, int joined) {
+    constexpr double kMostPixels = 0.25;
+    constexpr int kLeastDepth = 8;
+    int within = kMostJoinedWithin;
+    while (within > 1 && (joined < kLeastDepth * within ||
+                          within * view.pixelsPerVoxel * (1 - kSnap) > kMostPixels))
+        within /= 2;
+    return within;
+}
+
 }  // namespace
 
 SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
@@ -174,12 +187,14 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
     if (between > 0 && !options.resolution) resolution_ = 2;
     parts_.slices = between + 1;
     parts_.within = between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1;
-    if (!keepsSlices) parts_.joined = joinedUnasked(scene, camera, view);
+    if (keepsSlices) return;
+    parts_.joined = joinedUnasked(scene, camera, view);
+    parts_.joinedWithin = joinedWithinUnasked(view, parts_.joined);
 }
 
 std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
     if (footprintWidth_ || asksForSigma_) return footprintWidth_;
-    if (!hasOwnPixelIn(view, parts_.within, resolution())) return {};
+    if (!hasOwnPixelIn(view, parts_.per().y, resolution())) return {};
     return 1;
 }
 

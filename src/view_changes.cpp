@@ -127,7 +127,7 @@ std::vector<ClassIndex> matchPairs(const ClassTable& a, const ClassTable& b) {
 }
 
 // Matches classes that look alike.
-ClassMatch matchClasses(const StepColors& before, const StepColors& now, bool areJoined) {
+ClassMatch matchClasses(const StepColors& before, const StepColors& now, const Subdivision& parts) {
     const ClassTable& a = before.classes();
     const ClassTable& b = now.classes();
     ClassMatch match{std::vector<ClassIndex>(a.size()), isSameLight(before, now)};
@@ -136,9 +136,10 @@ ClassMatch matchClasses(const StepColors& before, const StepColors& now, bool ar
         std::iota(match.nowOfBefore.begin(), match.nowOfBefore.end(), ClassIndex{0});
         return match;
     }
-    match.nowOfBefore = b.pairs     ? matchPairs(a, b)
-                        : areJoined ? (b.oneColor ? matchLevels(a, b) : matchAll(a, b))
-                                    : matchLooks(a, b);
+    const bool areLevels = b.oneColor && parts.joinedWithin == 1;
+    match.nowOfBefore = b.pairs            ? matchPairs(a, b)
+                        : parts.joined > 1 ? (areLevels ? matchLevels(a, b) : matchAll(a, b))
+                                           : matchLooks(a, b);
     if (!match.isSameLight) return match;
     for (std::size_t i = 0; i < match.nowOfBefore.size(); ++i) {
         ClassIndex& matching = match.nowOfBefore[i];
@@ -187,6 +188,7 @@ std::optional<ViewChanges> compareViews(const PictureView& before, const Picture
         !haveSameSlabs(a.splat.deltas, b.splat.deltas) ||
         (colorsBefore.own() == nullptr) != (colorsNow.own() == nullptr) ||
         before.axis().parts.joined != now.axis().parts.joined ||
+        before.axis().parts.joinedWithin != now.axis().parts.joinedWithin ||
         before.axis().parts.slants != now.axis().parts.slants ||
         colorsBefore.classes().pairs != colorsNow.classes().pairs ||
         !haveSameSteps(colorsBefore.classes(), colorsNow.classes())) {
@@ -197,7 +199,7 @@ std::optional<ViewChanges> compareViews(const PictureView& before, const Picture
     const glm::ivec2 all(reach.min.y, reach.max.y);
     // Of what is out of sight nothing is kept, either.
     if (reach.empty()) return ViewChanges{all, all, 0, 0};
-    const ClassMatch match = matchClasses(colorsBefore, colorsNow, now.axis().parts.joined > 1);
+    const ClassMatch match = matchClasses(colorsBefore, colorsNow, now.axis().parts);
     const std::vector<SlabChanges> slabs =
         compareWords(a.splat.deltas, b.splat.deltas, match.nowOfBefore);
     const glm::ivec2 none(all.y, all.x);

@@ -111,7 +111,7 @@ void ColumnPacker::run(const Columns& columns) {
 }
 
 void ColumnPacker::runJoined(const JoinedTiles& tiles, std::size_t run) {
-    rows_.resize(std::size_t(kTileColumns.x));
+    rows_.resize(std::size_t(tiles.columns().x));
     std::vector<TileSources> sources;
     for (const JoinedTile& tile : tiles.runs()[run]) sources.push_back(tiles.sourcesOf(tile));
     payForWords();
@@ -126,7 +126,7 @@ void ColumnPacker::runJoined(const JoinedTiles& tiles, std::size_t run) {
     for (std::size_t i = 0; i < sources.size(); ++i) {
         if (looks && looks->hasTooMany()) break;  // all is joined again
         reader.begin(sources[i], range_.firstBlock, range_.lastBlock);
-        addJoined(reader, tiles.runs()[run][i]);
+        addJoined(reader, tiles.runs()[run][i], tiles.columns());
         payForWords();
     }
     finish();
@@ -151,17 +151,19 @@ void ColumnPacker::finish() {
 
 // Adds the words of a tile of joined slices, from its first slice to its last: of each row of
 // columns those of a slice are in the order of v.
-void ColumnPacker::addJoined(JoinedTileReader& reader, const JoinedTile& tile) {
+// @param columns  of the tile
+void ColumnPacker::addJoined(JoinedTileReader& reader, const JoinedTile& tile,
+                             const glm::ivec2& columns) {
     constexpr int kNever = std::numeric_limits<int>::min();
-    std::array<int, JoinedTileReader::kColumns> last;  // place at which each column had a block
-    last.fill(kNever);
+    // The place at which each column had a block.
+    std::vector<int> last(std::size_t(columns.x) * std::size_t(columns.y), kNever);
     std::fill(before_.begin(), before_.end(), SliceClasses{});
     std::vector<std::size_t> firstWords;
     for (const PackedColumns& packed : rows_) firstWords.push_back(packed.words.size());
     const auto addTo = [&](std::size_t column, int place, int slices) {
-        const std::size_t u = column / std::size_t(kTileColumns.y);
-        const std::size_t v = column % std::size_t(kTileColumns.y);
-        const glm::ivec2 at = tile * kTileColumns + glm::ivec2(u, v);
+        const std::size_t u = column / std::size_t(columns.y);
+        const std::size_t v = column % std::size_t(columns.y);
+        const glm::ivec2 at = tile * columns + glm::ivec2(u, v);
         add({place, at}, column, u, slices);
     };
     // What a block showed must be taken away behind it.

@@ -93,7 +93,7 @@ class ColumnPacker {
     };
     using SliceClasses = std::array<ClassIndex, 64>;
     using BlockClasses = std::array<ClassIndex, 512>;
-    void addJoined(JoinedTileReader& reader, const JoinedTile& tile);
+    void addJoined(JoinedTileReader& reader, const JoinedTile& tile, const glm::ivec2& columns);
     static void groupByColumn(std::vector<PendingWord>& words, std::size_t first);
     void payForWords();
     void finish();

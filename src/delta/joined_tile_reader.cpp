@@ -19,11 +19,12 @@ JoinedTileReader::JoinedTileReader(const ClassReader& classes, const SliceJoiner
     : classReader_(classes),
       joiner_(joiner),
       tiles_(tiles),
+      columns_(tiles.columns()),
       isFilled_(tiles.partCount()),
       sourceCount_(TileSources::numberOf(tiles.sourceColumns().x, 0)),
       voxels_(8 * tiles.sourceColumns()),
       layer_(kSlices * isFilled_.size() * std::size_t(voxels_.x) * std::size_t(voxels_.y)),
-      joined_(kColumns) {}
+      joined_(std::size_t(columns_.x) * std::size_t(columns_.y)) {}
 
 void JoinedTileReader::begin(const TileSources& sources, int firstPlace, int lastPlace) {
     rest_ = sources;
@@ -121,10 +122,10 @@ void JoinedTileReader::clearBlock(std::size_t part, std::size_t column) {
 
 // Joins the slices of the layer in hand, a part of those that blocks at this place have.
 void JoinedTileReader::joinLayer(int layer) {
-    for (int u = 0; u < kTileColumns.x; ++u) {
-        for (int v = 0; v < kTileColumns.y; ++v) {
+    for (int u = 0; u < columns_.x; ++u) {
+        for (int v = 0; v < columns_.y; ++v) {
             if (!hasSources(u, v)) continue;
-            const std::size_t column = std::size_t(u) * kTileColumns.y + std::size_t(v);
+            const std::size_t column = std::size_t(u) * std::size_t(columns_.y) + std::size_t(v);
             if (!has_[column]) joined_[column].fill(0);
             has_.set(column);
             joinBlock(u, v, layer, joined_[column]);
@@ -135,7 +136,7 @@ void JoinedTileReader::joinLayer(int layer) {
 bool JoinedTileReader::hasSources(int u, int v) const {
     for (std::size_t part = 0; part < isFilled_.size(); ++part) {
         const ColumnRange& sources = tiles_.sourcesOfFirst(part);
-        const glm::ivec2 first = sources.first + glm::ivec2(u, v);
+        const glm::ivec2 first = sources.first + tiles_.within() * glm::ivec2(u, v);
         for (int i = 0; i < sources.count.x; ++i)
             for (int j = 0; j < sources.count.y; ++j)
                 if (isFilled_[part][TileSources::numberOf(first.x + i, first.y + j)]) return true;
@@ -146,7 +147,7 @@ bool JoinedTileReader::hasSources(int u, int v) const {
 void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) {
     const std::span<const glm::ivec2> slants = tiles_.slants();
     const std::size_t joined = kSlices * isFilled_.size() / slants.size();
-    const glm::ivec2 first = 8 * (glm::ivec2(u, v) + tiles_.own());
+    const glm::ivec2 first = 8 * (tiles_.within() * glm::ivec2(u, v) + tiles_.own());
     std::array<const ClassIndex*, kMostJoined> slices;
     for (std::size_t i = 0; i < joined; ++i) {
         for (std::size_t k = 0; k < slants.size(); ++k)

@@ -17,6 +17,7 @@ namespace deltasplat {
 /// last. Every block is read once for a tile, with those around it at hand.
 class JoinedTileReader {
   public:
+    /// Most columns that a tile has.
     static constexpr std::size_t kColumns = std::size_t{kTileColumns.x} * kTileColumns.y;
     using BlockClasses = std::array<ClassIndex, 512>;
 
@@ -30,7 +31,7 @@ class JoinedTileReader {
     /// is one.
     bool next();
     int place() const { return place_; }
-    /// Whether a column, `[u][v]` of the tile, has a block at this place.
+    /// Whether a column, `[u][v]` of JoinedTiles::columns(), has a block at this place.
     bool has(std::size_t column) const { return has_[column]; }
     /// Returns what it is, `[slice][u][v]`.
     const BlockClasses& classes(std::size_t column) const { return joined_[column]; }
@@ -50,7 +51,8 @@ class JoinedTileReader {
     const ClassReader& classReader_;
     const SliceJoiner& joiner_;
     const JoinedTiles& tiles_;
-    TileSources rest_;  // blocks that are still to come
+    glm::ivec2 columns_;  // of what slices become
+    TileSources rest_;    // blocks that are still to come
     int lastPlace_ = 0;
     int place_ = 0;
     // The fewest blocks one behind the other of which slices become whole ones, of every source

@@ -22,8 +22,8 @@ JoinedTile tileOf(const glm::ivec2& column) {
     return {floorDiv(column.x, kTileColumns.x), floorDiv(column.y, kTileColumns.y)};
 }
 
-// Returns which columns one is read from, counted from itself.
-ColumnRange columnsReadFor(std::span<const glm::ivec2> slants) {
+// Returns which columns those of so many voxels side by side are read from, counted from the first.
+ColumnRange columnsReadFor(std::span<const glm::ivec2> slants, int voxels) {
     glm::ivec2 down = slants.front();
     glm::ivec2 up = slants.front();
     for (const glm::ivec2& slant : slants) {
@@ -32,7 +32,7 @@ ColumnRange columnsReadFor(std::span<const glm::ivec2> slants) {
     }
     // What is moved up comes from a column before.
     const glm::ivec2 first(floorDiv(-up.x, 8), floorDiv(-up.y, 8));
-    const glm::ivec2 last(floorDiv(7 - down.x, 8), floorDiv(7 - down.y, 8));
+    const glm::ivec2 last(floorDiv(voxels - 1 - down.x, 8), floorDiv(voxels - 1 - down.y, 8));
     return {first, last - first + 1};
 }
 
@@ -51,17 +51,19 @@ PartCounts countParts(std::span<const CodeBlock> column, std::size_t parts) {
 
 }  // namespace
 
-JoinedTiles::JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const glm::ivec2> slants)
+JoinedTiles::JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const glm::ivec2> slants,
+                         int within)
     : blocks_(blocks),
       slants_(slants.begin(), slants.end()),
       begins_(runBegins(blocks, shareColumn)),
-      shift_(int(std::bit_width(slants.size())) - 1) {
-    const ColumnRange ofColumn = columnsReadFor(slants_);
+      shift_(int(std::bit_width(slants.size())) - 1),
+      within_(within) {
+    const ColumnRange ofColumn = columnsReadFor(slants_, 8 * within);
     own_ = -ofColumn.first;
     sources_ = ofColumn.count;
     for (std::size_t slice = 0; slice < slants.size(); slice += 8) {
         const std::size_t count = std::min<std::size_t>(slants.size(), 8);
-        const ColumnRange ofPart = columnsReadFor(slants.subspan(slice, count));
+        const ColumnRange ofPart = columnsReadFor(slants.subspan(slice, count), 8 * within);
         ofFirst_.push_back({own_ + ofPart.first, ofPart.count});
     }
     // A run has a share of all blocks, and no more than a row of tiles.
@@ -76,7 +78,7 @@ JoinedTiles::JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const g
         runs_.back().push_back(tile);
         const TileSources sources = sourcesOf(tile);
         for (const std::span<const CodeBlock>& column : sources.columns) inRun += column.size();
-        for (int u = 0; u < kTileColumns.x; ++u) mostBlocks_ += mostBlocks(sources, u, -kAny, kAny);
+        for (int u = 0; u < columns().x; ++u) mostBlocks_ += mostBlocks(sources, u, -kAny, kAny);
     }
 }
 
@@ -127,14 +129,14 @@ std::size_t JoinedTiles::mostBlocks(const TileSources& sources, int u, int first
     std::vector<PartCounts> counts;  // [u][v], of the columns that these are made of
     for (int i = 0; i < sources_.x; ++i)
         for (int v = 0; v < TileSources::kColumns.y; ++v)
-            counts.push_back(countParts(sources.at(u + i, v), partCount()));
+            counts.push_back(countParts(sources.at(within_ * u + i, v), partCount()));
     std::size_t most = 0;
-    for (int v = 0; v < kTileColumns.y; ++v) {
+    for (int v = 0; v < columns().y; ++v) {
         std::size_t count = 0;
         int first = lastPlace + 1;
         int last = firstPlace - 1;
         const auto add = [&](std::size_t part, const glm::ivec2& at) {
-            const std::span<const CodeBlock> column = sources.at(u + at.x, at.y);
+            const std::span<const CodeBlock> column = sources.at(within_ * u + at.x, at.y);
             const std::size_t blocks = counts[TileSources::numberOf(at.x, at.y)][part];
             if (blocks == 0) return;
             count += blocks;
@@ -144,7 +146,8 @@ std::size_t JoinedTiles::mostBlocks(const TileSources& sources, int u, int first
         for (std::size_t part = 0; part < partCount(); ++part) {
             const ColumnRange& from = ofFirst_[part];
             for (int i = 0; i < from.count.x; ++i)
-                for (int j = 0; j < from.count.y; ++j) add(part, from.first + glm::ivec2(i, v + j));
+                for (int j = 0; j < from.count.y; ++j)
+                    add(part, from.first + glm::ivec2(i, within_ * v + j));
         }
         first = std::max(first, firstPlace);
         last = std::min(last, lastPlace);

@@ -12,8 +12,8 @@
 
 namespace deltasplat {
 
-/// A rectangle of columns of blocks (same u and v) of joined slices: the place (u, v) of its first
-/// one is this times kTileColumns.
+/// A rectangle of kTileColumns columns of blocks (same u and v), and what their joined slices
+/// become: the place (u, v) of its first one is this times JoinedTiles::columns().
 using JoinedTile = glm::ivec2;
 
 inline constexpr glm::ivec2 kTileColumns{8, 16};
@@ -42,12 +42,14 @@ struct ColumnRange {
 };
 
 /// Where there are columns of joined slices, and what they are made of. Slices n * i to n * i + n -
-/// 1 become one, each moved by a slant of its own.
+/// 1 become one, each moved by a slant of its own, and then w x w voxels of it.
 class JoinedTiles {
   public:
     /// @param blocks  ordered by u, v and slice; must outlive this
     /// @param slants  [n, a power of two]: as Subdivision::joinedSlants
-    JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const glm::ivec2> slants);
+    /// @param within  w, as Subdivision::joinedWithin
+    JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const glm::ivec2> slants,
+                int within = 1);
 
     /// The tiles in which there may be anything, ordered by u, then v: in runs of neighbours along
     /// v, which are one task each.
@@ -55,9 +57,13 @@ class JoinedTiles {
     std::span<const glm::ivec2> slants() const { return slants_; }
     /// The power of two that slices are joined by.
     int shift() const { return shift_; }
+    /// How many voxels beside each other become one, along u and along v.
+    int within() const { return within_; }
+    /// How many columns a tile has, of what slices become.
+    glm::ivec2 columns() const { return kTileColumns / within_; }
     /// How many columns of sources there are at most: no more than TileSources::kColumns.
-    glm::ivec2 sourceColumns() const { return kTileColumns + sources_ - 1; }
-    /// Of the sources, where the tile's own first column is.
+    glm::ivec2 sourceColumns() const { return kTileColumns - within_ + sources_; }
+    /// Of the sources, where those of the tile's first column begin in the first slice.
     const glm::ivec2& own() const { return own_; }
     /// How many blocks one behind the other have slices that become one.
     std::size_t partCount() const { return ofFirst_.size(); }
@@ -79,8 +85,9 @@ class JoinedTiles {
     std::vector<ColumnRange> ofFirst_;
     std::vector<std::size_t> begins_;  // of columns, and the number of all blocks
     int shift_;
+    int within_;
     glm::ivec2 own_{0};
-    glm::ivec2 sources_{1};  // how many columns one is made of, from its own place in the tile on
+    glm::ivec2 sources_{1};  // how many columns one is made of
     std::vector<std::vector<JoinedTile>> runs_;
     std::size_t mostBlocks_ = 0;
 };

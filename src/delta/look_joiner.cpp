@@ -18,6 +18,7 @@
 #define HWY_TARGET_INCLUDE "delta/look_joiner.cpp"
 #include "hwy/foreach_target.h"
 // After foreach_target.h, as Highway asks.
+#include "delta/joined_rows-inl.h"
 #include "hwy/highway.h"
 
 #ifndef DELTASPLAT_LOOK_LEVELS
@@ -147,20 +148,6 @@ HWY_INLINE hn::Vec<D> lightsOf(D tag, const float* lights, const ClassIndex* cla
     }
 }
 
-// Numbers eight pairs of voxels.
-HWY_INLINE void numberPairs(const JoinedRows& rows, std::size_t classCount, std::size_t first,
-                            ClassIndex* HWY_RESTRICT out) {
-    const hn::CappedTag<std::uint16_t, 8> tag;
-    const auto count = hn::Set(tag, std::uint16_t(classCount));
-    for (std::size_t slice = 0; slice < rows.count; slice += 2) {
-        for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
-            const auto nearer = hn::LoadU(tag, rows.slices[slice] + first + v);
-            const auto farther = hn::LoadU(tag, rows.slices[slice + 1] + first + v);
-            hn::Store(hn::Add(hn::Mul(nearer, count), farther), tag, out + 4 * slice + v);
-        }
-    }
-}
-
 // What eight voxels of a row look like, their slices one behind the other, the nearest first: all
 // at once, for each has to wait for the slice before.
 // @param rows  classes, or pairs of them, that `lights` are of
@@ -196,23 +183,71 @@ HWY_INLINE void joinRow(const JoinedRows& rows, const float* lights, std::size_t
     }
 }
 
-void joinLooksKernel(const JoinedRows& rows, const LookLevels& levels, LookKeys& keys) {
-    HWY_ALIGN ClassIndex pairs[4 * kMostJoined];  // [pair][v], of a row
+// The same of classes, by pairs of them where there are some.
+HWY_INLINE void joinClasses(const JoinedRows& rows, const LookLevels& levels, std::size_t first,
+                            float* HWY_RESTRICT out) {
+    if (!levels.pairs) return joinRow(rows, levels.lights, first, out);
+    HWY_ALIGN ClassIndex pairs[4 * kMostJoined];  // [pair][v]
     std::array<const ClassIndex*, kMostJoined / 2> ofPairs;
-    for (std::size_t i = 0; i < ofPairs.size(); ++i) ofPairs[i] = pairs + 8 * i;
+    const std::size_t count = rows.count / 2;
+    for (std::size_t i = 0; i < count; ++i) {
+        ofPairs[i] = pairs + 8 * i;
+        numberPairs(rows.slices[2 * i] + first, rows.slices[2 * i + 1] + first, levels.classCount,
+                    pairs + 8 * i);
+    }
+    joinRow({ofPairs.data(), count, 8}, levels.pairs, 0, out);
+}
+
+void joinLooksKernel(const JoinedRows& rows, const LookLevels& levels, LookKeys& keys) {
     for (std::size_t u = 0; u < 8; ++u) {
         const std::size_t first = u * rows.pitch;
         const unsigned others = numberAlone(rows, first, levels.aloneClasses, &keys.alone[8 * u]);
         keys.others[u] = std::uint8_t(others);
         if (others == 0) continue;
         HWY_ALIGN float lights[8 * 4];
-        if (levels.pairs) {
-            numberPairs(rows, levels.classCount, first, pairs);
-            joinRow({ofPairs.data(), rows.count / 2, 8}, levels.pairs, 0, lights);
-        } else {
-            joinRow(rows, levels.lights, first, lights);
-        }
+        joinClasses(rows, levels, first, lights);
         roundLooks(levels, lights, levels.thresholds + 8 * u, &keys.opacities[8 * u],
+                   &keys.colors[8 * u]);
+    }
+}
+
+// Adds what `within` rows of as many voxels for each of eight look like to sums. Returns whether
+// any is seen.
+// @param sums  [8][4]
+HWY_INLINE bool addSquares(const JoinedRows& rows, const LookLevels& levels, std::size_t first,
+                           std::size_t within, float* HWY_RESTRICT sums) {
+    const hn::FixedTag<float, 4> tag;
+    bool isSeen = false;
+    for (std::size_t row = 0; row < within; ++row) {
+        for (std::size_t v = 0; v < 8 * within; v += 8) {
+            const std::size_t place = first + row * rows.pitch + v;
+            if (!anyClass(rows, place)) continue;
+            isSeen = true;
+            HWY_ALIGN float lights[8 * 4];
+            joinClasses(rows, levels, place, lights);
+            for (std::size_t i = 0; i < 8; ++i) {
+                float* const sum = sums + 4 * ((v + i) / within);
+                hn::Store(hn::Add(hn::Load(tag, sum), hn::Load(tag, lights + 4 * i)), tag, sum);
+            }
+        }
+    }
+    return isSeen;
+}
+
+// The same of squares of voxels, each of which becomes one: the mean of what its voxels look like.
+void joinSquaresKernel(const JoinedRows& rows, const LookLevels& levels, std::size_t within,
+                       LookKeys& keys) {
+    const hn::FixedTag<float, 4> tag;
+    const auto share = hn::Set(tag, 1.0F / float(within * within));
+    keys.alone = {};
+    for (std::size_t u = 0; u < 8; ++u) {
+        HWY_ALIGN float means[8 * 4] = {};
+        keys.others[u] = 0;
+        if (!addSquares(rows, levels, u * within * rows.pitch, within, means)) continue;
+        keys.others[u] = 0xFF;
+        for (std::size_t i = 0; i < 8 * 4; i += 4)
+            hn::Store(hn::Mul(hn::Load(tag, means + i), share), tag, means + i);
+        roundLooks(levels, means, levels.thresholds + 8 * u, &keys.opacities[8 * u],
                    &keys.colors[8 * u]);
     }
 }
@@ -225,6 +260,7 @@ namespace deltasplat {
 namespace {
 
 HWY_EXPORT(joinLooksKernel);
+HWY_EXPORT(joinSquaresKernel);
 
 using Thresholds = std::array<float, 64>;  // of a slice, [u][v]
 
@@ -275,7 +311,7 @@ LookJoiner::LookJoiner(const std::vector<glm::dvec4>& lights, const LookRun& run
     if (rounded_.size() <= kMostPaired) joinPairs();
     const std::size_t alone = std::size_t(run.slices) * (lights.size() - 1);
     constexpr std::size_t kMostAlone = 32768;
-    if (alone <= kMostAlone) aloneClasses_ = lights.size() - 1;
+    if (alone <= kMostAlone && run.within == 1) aloneClasses_ = lights.size() - 1;
     palette_ = paletteBesides(std::size_t(run.slices) * aloneClasses_);
 }
 
@@ -352,7 +388,12 @@ void LookJoiner::join(std::span<const ClassIndex* const> slices, std::size_t pit
                             thresholdsOf(run_.bits, slice),
                             std::uint16_t(aloneClasses_)};
     LookKeys keys;
-    HWY_DYNAMIC_DISPATCH(joinLooksKernel)({fromFront.data(), slices.size(), pitch}, levels, keys);
+    const JoinedRows rows{fromFront.data(), slices.size(), pitch};
+    if (run_.within > 1) {
+        HWY_DYNAMIC_DISPATCH(joinSquaresKernel)(rows, levels, std::size_t(run_.within), keys);
+    } else {
+        HWY_DYNAMIC_DISPATCH(joinLooksKernel)(rows, levels, keys);
+    }
     std::copy(keys.alone.begin(), keys.alone.end(), out);
     const std::size_t first = std::size_t(run_.slices) * aloneClasses_;
     for (std::size_t u = 0; u < 8; ++u) {

@@ -21,6 +21,9 @@ struct LookRun {
     /// To how many bits the square root of a colour's channel is rounded, kLeastBits to kMostBits;
     /// opacity, or transmittance where that is less, to 2^(bits - 1) levels an octave.
     int bits = kMostBits;
+    /// Voxels of what slices become, along u and along v, that become one: 1, 2 or 4. It looks like
+    /// their mean.
+    int within = 1;
 
     static constexpr int kMostBits = 10;
     static constexpr int kLeastBits = 2;
@@ -29,9 +32,9 @@ struct LookRun {
 };
 
 /// Joins slices of classes of any colours, over steps of one length: numbers what voxels look like
-/// one behind the other as it comes up. One class alone, however often it is there, is what it is;
-/// others are rounded: to kMostBits to the nearest level, to fewer so that the mean of many voxels
-/// stays what it is, to 0.0006 of the largest with 5 bits.
+/// one behind the other as it comes up. One class alone, however often it is there, is what it is
+/// (unless voxels become one); others are rounded: to kMostBits to the nearest level, to fewer so
+/// that the mean of many voxels stays what it is, to 0.0006 of the largest with 5 bits.
 class LookJoiner {
   public:
     /// @param lights  of each class, premultiplied RGBA; the first, of what is empty, is 0
@@ -71,7 +74,8 @@ class LookJoiner {
     glm::dvec3 largest_{0.0};            // of each channel of colours
     std::array<float, 3> perLargest_{};  // 1 / that, 0 where it is 0
     // Classes that have numbers of their own where they are alone, for each time that they are
-    // there: the first ones. 0: there are too many, and these are rounded as well.
+    // there: the first ones. 0: there are too many, or means are taken, and these are rounded as
+    // well.
     std::size_t aloneClasses_ = 0;
     std::shared_ptr<LookPalette> palette_;
 };

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "delta/column_packer.h"
+#include "delta/joined_density.h"
 #include "delta/joined_tiles.h"
 #include "delta/mixed_sight.h"
 #include "delta/slab_facts.h"
@@ -104,8 +105,11 @@ IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& part
             joined.min = glm::min(joined.min, own.min + glm::ivec3(0, slant));
             joined.max = glm::max(joined.max, own.max + glm::ivec3(0, slant));
         }
-        joined.min.x = floorDiv(joined.min.x, parts.joined);
-        joined.max.x = floorDiv(joined.max.x, parts.joined);
+        const glm::ivec3 of(parts.joined, parts.joinedWithin, parts.joinedWithin);
+        for (int axis = 0; axis < 3; ++axis) {
+            joined.min[axis] = floorDiv(joined.min[axis], of[axis]);
+            joined.max[axis] = floorDiv(joined.max[axis], of[axis]);
+        }
         return joined;
     }
     const glm::ivec3 per(parts.slices, parts.within, parts.within);
@@ -141,6 +145,7 @@ struct DeltaPacker::Impl {
             joiner = *options.joiner;
             options.joiner = &*joiner;
             divided.joined = int(options.slants.size());
+            divided.joinedWithin = options.joinedWithin;
             std::copy(options.slants.begin(), options.slants.end(), divided.slants.begin());
             options.slants = divided.joinedSlants();  // whoever gave them may be gone
         }
@@ -162,7 +167,7 @@ struct DeltaPacker::Impl {
                           [&](const CodeBlock& block) { return !seen->sees(block.position); });
         }
         if (joiner) {
-            joined.emplace(blocks, options.slants);
+            joined.emplace(blocks, options.slants, options.joinedWithin);
         } else {
             runs = cutAtColumns(blocks, divided.within > 1);
         }
@@ -325,6 +330,13 @@ DeltaPacker::DeltaPacker(DeltaPacker&&) noexcept = default;
 
 bool DeltaPacker::canBeParted() const {
     return !impl_->options.mixer && !impl_->options.painter && !impl_->holder;
+}
+
+double DeltaPacker::densityGained(std::span<const double> alphas,
+                                  const JoinedSquares& squares) const {
+    const ClassReader reader(impl_->slotMap, impl_->ramps ? &*impl_->ramps : nullptr,
+                             impl_->options.sliceAxis);
+    return deltasplat::densityGained(impl_->blocks, reader, alphas, squares);
 }
 
 double DeltaPacker::mostBytes() const {

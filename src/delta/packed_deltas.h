@@ -94,6 +94,7 @@ struct PackOptions {
     /// held.
     const SliceJoiner* joiner = nullptr;
     std::span<const glm::ivec2> slants = {};  ///< with a joiner, as Subdivision::joinedSlants
+    int joinedWithin = 1;                     ///< with one of as many, as Subdivision::joinedWithin
     /// Leaves out blocks of voxels that it does not see. Not where voxels are held.
     std::optional<SeenCone> seen = {};
     SlabLength slabLength = SlabLength::kByCounts;
@@ -108,6 +109,8 @@ IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& part
 /// as long as it may: compared with its true slot each time, so that errors never add up. Linear in
 /// the active voxels; deterministic; multi-threaded.
 PackedDeltas packDeltas(const Volume& volume, const PackOptions& options);
+
+struct JoinedSquares;
 
 /// Slabs [first, last).
 struct SlabRange {
@@ -126,6 +129,9 @@ class DeltaPacker {
 
     /// Whether parts can be made: no voxel is held, divided or painted.
     bool canBeParted() const;
+    /// Returns by how much opacity grows if voxels beside each other become one (densityGained).
+    /// @param alphas  of each class, over a slice
+    double densityGained(std::span<const double> alphas, const JoinedSquares& squares) const;
     /// The most bytes that all words may take, of what is known before they are counted.
     double mostBytes() const;
     PackedDeltas packAll();

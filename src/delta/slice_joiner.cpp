@@ -15,6 +15,7 @@
 #define HWY_TARGET_INCLUDE "delta/slice_joiner.cpp"
 #include "hwy/foreach_target.h"
 // After foreach_target.h, as Highway asks.
+#include "delta/joined_rows-inl.h"
 #include "hwy/highway.h"
 
 #ifndef DELTASPLAT_SUM_LEVELS
@@ -39,25 +40,10 @@ namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 void joinPairsKernel(const JoinedRows& rows, std::size_t classCount, ClassIndex* HWY_RESTRICT out) {
-    const hn::CappedTag<std::uint16_t, 8> tag;
-    const auto count = hn::Set(tag, std::uint16_t(classCount));
     for (std::size_t u = 0; u < 8; ++u) {
-        for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
-            const std::size_t n = u * rows.pitch + v;
-            const auto pair = hn::Mul(hn::LoadU(tag, rows.slices[0] + n), count);
-            hn::StoreU(hn::Add(pair, hn::LoadU(tag, rows.slices[1] + n)), tag, out + 8 * u + v);
-        }
+        const std::size_t n = u * rows.pitch;
+        numberPairs(rows.slices[0] + n, rows.slices[1] + n, classCount, out + 8 * u);
     }
-}
-
-// Whether any of eight voxels is seen.
-HWY_INLINE bool anyClass(const JoinedRows& rows, std::size_t first) {
-    const hn::CappedTag<std::uint16_t, 8> tag;
-    auto any = hn::Zero(tag);
-    for (std::size_t slice = 0; slice < rows.count; ++slice)
-        for (std::size_t v = 0; v < 8; v += hn::Lanes(tag))
-            any = hn::Or(any, hn::LoadU(tag, rows.slices[slice] + first + v));
-    return !hn::AllTrue(tag, hn::Eq(any, hn::Zero(tag)));
 }
 
 void joinSumsKernel(const JoinedRows& rows, const SumLevels& levels, ClassIndex* HWY_RESTRICT out) {

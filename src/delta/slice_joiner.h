@@ -35,7 +35,7 @@ class SliceJoiner {
     std::optional<LookJoiner>& looks() { return looks_; }
     const std::optional<LookJoiner>& looks() const { return looks_; }
 
-    /// Joins 8x8 voxels of slices that lie one behind the other.
+    /// Joins voxels of slices that lie one behind the other, as many as become 8x8.
     /// @param slices  the first of them in each
     /// @param pitch   from row to row of them
     /// @param slice   the place of what they become among the slices of its block: 0 to 7

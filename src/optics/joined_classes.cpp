@@ -17,12 +17,13 @@ bool areSummed(const ClassTable& classes) {
     return classes.oneColor || classes.looks.size() == 1;
 }
 
-// What each class looks like over a step, premultiplied.
+// What each class looks like over a step, premultiplied; black where all have one colour.
 std::vector<glm::dvec4> lightsOf(const ClassTable& classes) {
     std::vector<glm::dvec4> lights;
     const std::vector<double> alphas = classes.alphas();
+    const double colored = areSummed(classes) ? 0 : 1;
     for (std::size_t i = 0; i < alphas.size(); ++i)
-        lights.emplace_back(alphas[i] * classes.looks[i].color, alphas[i]);
+        lights.emplace_back(colored * alphas[i] * classes.looks[i].color, alphas[i]);
     return lights;
 }
 
@@ -42,14 +43,16 @@ bool canBePaired(const ClassTable& classes) {
 }
 
 SliceJoiner joinerOf(const ClassTable& classes, const JoinedRun& run) {
-    if (areSummed(classes)) {
+    if (areSummed(classes) && run.within == 1) {
         std::vector<double> extinctions;
         for (const Look& look : classes.looks) extinctions.push_back(look.extinction);
         return SliceJoiner::ofSums(extinctions, run.slices);
     }
     if (run.slices == 2 && canBePaired(classes)) return SliceJoiner::ofPairs(classes.size());
     return SliceJoiner::ofLooks(lightsOf(classes.atSteps(run.steps)),
-                                {run.slices, run.seenThrough == SeenThrough::kFirst});
+                                {.slices = run.slices,
+                                 .lastInFront = run.seenThrough == SeenThrough::kFirst,
+                                 .within = run.within});
 }
 
 ClassTable joinedClasses(const ClassTable& classes, const SliceJoiner& joiner,
@@ -58,8 +61,10 @@ ClassTable joinedClasses(const ClassTable& classes, const SliceJoiner& joiner,
     if (joiner.looks()) {
         joined = classes.atSteps(run.steps);
         joined.looks.clear();
-        for (const glm::dvec4& light : joiner.looks()->looks())
+        for (const glm::dvec4& light : joiner.looks()->looks()) {
             joined.looks.push_back(lookOf(light, joined));
+            if (areSummed(classes)) joined.looks.back().color = classes.looks.back().color;
+        }
         return joined.atSteps(1);
     }
     if (areSummed(classes)) {

@@ -14,12 +14,13 @@ bool canBePaired(const ClassTable& classes);
 /// What becomes one.
 struct JoinedRun {
     int slices;
+    int within;               ///< as Subdivision::joinedWithin
     SeenThrough seenThrough;  ///< of two that follow each other, which is behind
     double steps;             ///< how many times as long as those of the classes steps are
 };
 
 /// Returns what joins slices: for steps of any length if they are of one colour, or two that can be
-/// paired.
+/// paired, and no more than slices is joined.
 SliceJoiner joinerOf(const ClassTable& classes, const JoinedRun& run);
 
 /// Returns the classes that voxels of joined slices have, once these are joined.

@@ -431,15 +431,16 @@ glm::dvec2 middleOfJoined(const glm::dvec2& shiftPerSlice, const Subdivision& pa
 Factorization subdivided(const Factorization& view, const Subdivision& parts) {
     if (view.eye) return subdividedFromEye(view, parts);
     Factorization result = view;
-    const double within = parts.within;
+    const double within = parts.per().y;
     const double slices = parts.per().x;
     result.shiftPerSlice *= within / slices;
     result.sliceStepWorld /= slices;
     result.pixelsPerVoxel /= within;
-    // The first thin voxel lies before the middle of the one that it is a part of, on each axis.
-    const glm::dvec2 first =
-        parts.joined > 1 ? -middleOfJoined(view.shiftPerSlice, parts)
-                         : 0.5 * (within - 1) + within * (0.5 - 0.5 / slices) * view.shiftPerSlice;
+    // The first thin voxel lies before the middle of the one that it is a part of, on each axis; of
+    // what is joined, the first voxel before the middle of all.
+    const glm::dvec2 alongSlices = parts.joined > 1 ? -middleOfJoined(view.shiftPerSlice, parts)
+                                                    : (0.5 - 0.5 / slices) * view.shiftPerSlice;
+    const glm::dvec2 first = 0.5 * (within - 1) + within * alongSlices;
     const glm::dvec2 origin =
         glm::dvec2(parts.origin.y, parts.origin.z) + double(parts.origin.x) * view.shiftPerSlice;
     result.baseFromPixel[2] -= glm::dvec3(origin, 0);

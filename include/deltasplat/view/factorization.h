@@ -113,6 +113,8 @@ inline bool isNearSlope(int slopeStep, double along, double slices) {
 
 /// Most slices that are drawn as one: a power of two.
 inline constexpr int kMostJoined = 32;
+/// Most voxels along u, and along v, of joined slices that are drawn as one: a power of two.
+inline constexpr int kMostJoinedWithin = 4;
 
 /// What voxels are drawn as: into how many thin ones each is divided, evenly spaced and as far from
 /// its faces as from each other by half; or how many slices are joined.
@@ -122,6 +124,9 @@ struct Subdivision {
     /// Undivided slices that are drawn as one, of an index that is a multiple and those behind it:
     /// a power of two, kMostJoined at most.
     int joined = 1;
+    /// Of joined slices, voxels along u and along v that are drawn as one once each stands for all
+    /// slices, from a multiple on: a power of two, kMostJoinedWithin at most.
+    int joinedWithin = 1;
     /// [joined]: voxel (u, v) of each of them is drawn with (u, v) + slant of the first, which
     /// nearly the same line of sight meets. Along u all have one sign, and along v, and none is as
     /// long as there are slices.
@@ -136,7 +141,10 @@ struct Subdivision {
     /// Whether there is more than one.
     bool divides() const { return slices > 1 || within > 1; }
     /// Slices and voxels that are drawn for one along each axis.
-    glm::dvec3 per() const { return {double(slices) / joined, within, within}; }
+    glm::dvec3 per() const {
+        const double beside = double(within) / joinedWithin;
+        return {double(slices) / joined, beside, beside};
+    }
     /// What a voxel becomes.
     int voxels() const { return slices * within * within; }
     /// The smallest share of a voxel in a value mixed from several, as 1 / n.
