@@ -150,12 +150,32 @@ void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) {
     const glm::ivec2 first = 8 * (tiles_.within() * glm::ivec2(u, v) + tiles_.own());
     std::array<const ClassIndex*, kMostJoined> slices;
     for (std::size_t i = 0; i < joined; ++i) {
-        for (std::size_t k = 0; k < slants.size(); ++k)
-            slices[k] = layer_.data() + placeOf(i * slants.size() + k, first - slants[k]);
+        std::size_t count = 0;
+        // Two and two, for so they are joined: where nothing is in them, nothing is left out.
+        for (std::size_t k = 0; k < slants.size(); k += 2) {
+            const std::size_t place = i * slants.size() + k;
+            const glm::ivec2 nearer = first - slants[k];
+            const glm::ivec2 farther = first - slants[k + 1];
+            if (slants.size() > 2 && !mayHave(place, nearer) && !mayHave(place + 1, farther))
+                continue;
+            slices[count++] = layer_.data() + placeOf(place, nearer);
+            slices[count++] = layer_.data() + placeOf(place + 1, farther);
+        }
         const std::size_t slice = std::size_t(layer) * joined + i;
-        joiner_.join(std::span(slices).first(slants.size()), std::size_t(voxels_.y), slice,
+        if (count == 0) continue;  // it is clear
+        joiner_.join(std::span(slices).first(count), std::size_t(voxels_.y), slice,
                      &out[kSlice * slice], cache_);
     }
+}
+
+// Whether there may be anything in the layer's voxels from a place on that become 8x8.
+bool JoinedTileReader::mayHave(std::size_t slice, const glm::ivec2& first) const {
+    const std::bitset<TileSources::kCount>& isFilled = isFilled_[slice / kSlices];
+    const glm::ivec2 last = first + 8 * tiles_.within() - 1;
+    for (int u = first.x >> 3; u <= last.x >> 3; ++u)
+        for (int v = first.y >> 3; v <= last.y >> 3; ++v)
+            if (isFilled[TileSources::numberOf(u, v)]) return true;
+    return false;
 }
 
 }  // namespace deltasplat

@@ -47,6 +47,7 @@ class JoinedTileReader {
     void joinLayer(int layer);
     bool hasSources(int u, int v) const;
     void joinBlock(int u, int v, int layer, BlockClasses& out);
+    bool mayHave(std::size_t slice, const glm::ivec2& first) const;
 
     const ClassReader& classReader_;
     const SliceJoiner& joiner_;

@@ -36,7 +36,8 @@ class SliceJoiner {
     const std::optional<LookJoiner>& looks() const { return looks_; }
 
     /// Joins voxels of slices that lie one behind the other, as many as become 8x8.
-    /// @param slices  the first of them in each
+    /// @param slices  the first of them in each; of more than two, pairs may be left out in which
+    ///                nothing is seen
     /// @param pitch   from row to row of them
     /// @param slice   the place of what they become among the slices of its block: 0 to 7
     /// @param out     [64]

@@ -94,33 +94,42 @@ Classes walk(const PackedDeltas& packed) {
     return all;
 }
 
-// Classes of joined slices, voxel by voxel.
+// Classes of joined slices, and of `within` voxels beside each other, voxel by voxel.
 Classes joinedClassesOf(const Classes& classes, const SliceJoiner& joiner,
-                        std::span<const glm::ivec2> slants) {
+                        std::span<const glm::ivec2> slants, int within = 1) {
     const auto classAt = [&](int s, int u, int v) {
         const auto voxel = classes.find({s, u, v});
         return voxel == classes.end() ? ClassIndex{0} : voxel->second;
     };
     const int count = int(slants.size());
+    const std::size_t pitch = std::size_t(8 * within);
     Classes joined;
     LookCache cache;
     const auto join = [&](int slice, int u, int v) {
-        std::vector<std::array<ClassIndex, 64>> voxels(slants.size());
+        if (joined.contains({slice, u, v})) return;
+        std::vector<std::vector<ClassIndex>> voxels(slants.size());
         std::vector<const ClassIndex*> slices;
         for (int i = 0; i < count; ++i) {
             const glm::ivec2& slant = slants[std::size_t(i)];
-            voxels[std::size_t(i)][0] = classAt(count * slice + i, u - slant.x, v - slant.y);
-            slices.push_back(voxels[std::size_t(i)].data());
+            std::vector<ClassIndex>& square = voxels[std::size_t(i)];
+            square.resize(pitch * pitch);
+            for (int n = 0; n < within * within; ++n) {
+                const glm::ivec2 beside(n / within, n % within);
+                square[std::size_t(beside.x) * pitch + std::size_t(beside.y)] =
+                    classAt(count * slice + i, within * u + beside.x - slant.x,
+                            within * v + beside.y - slant.y);
+            }
+            slices.push_back(square.data());
         }
         std::array<ClassIndex, 64> out;
-        joiner.join(slices, 8, 0, out.data(), cache);
+        joiner.join(slices, pitch, 0, out.data(), cache);
         joined[{slice, u, v}] = out[0];
     };
     for (const auto& [place, found] : classes) {
         const auto [s, u, v] = place;
         const int slice = floorDiv(s, count);
         const glm::ivec2& slant = slants[std::size_t(s - count * slice)];
-        join(slice, u + slant.x, v + slant.y);
+        join(slice, floorDiv(u + slant.x, within), floorDiv(v + slant.y, within));
     }
     return joined;
 }
@@ -286,6 +295,7 @@ TEST(PackedDeltas, JoinSlices) {
     struct Case {
         SliceJoiner joiner;
         std::vector<glm::ivec2> slants;
+        int within = 1;
     };
     std::vector<Case> cases;
     for (int i = 0; i < 18; ++i) {
@@ -307,18 +317,28 @@ TEST(PackedDeltas, JoinSlices) {
         cases.push_back({ofLooks(16), slantsOf(16, {0.45, -1})});
         cases.push_back({ofLooks(32), slantsOf(32, {-1, 0.7})});
         cases.push_back({SliceJoiner::ofSums(extinctions, 32), slantsOf(32, {1, 0})});
+        // Voxels beside each other as well.
+        const auto ofMeans = [&](int slices, int within) {
+            return SliceJoiner::ofLooks(
+                lights, {.slices = slices, .lastInFront = lastInFront, .within = within});
+        };
+        cases.push_back({ofMeans(4, 2), slantsOf(4, {1, 1}), 2});
+        cases.push_back({ofMeans(16, 2), slantsOf(16, {0.45, -1}), 2});
+        cases.push_back({ofMeans(32, 2), slantsOf(32, {1, 0.2}), 2});
+        cases.push_back({ofMeans(32, 4), slantsOf(32, {-1, 0.7}), 4});
     }
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const SliceJoiner& joiner = cases[i].joiner;
         // Some of them.
         if (test::kIsSanitized && i % 4 != 0) continue;
         for (int axis = 0; axis < 3; ++axis) {
-            const Classes expected =
-                joinedClassesOf(classesOf(volume, axis, classes), joiner, cases[i].slants);
+            const Classes expected = joinedClassesOf(classesOf(volume, axis, classes), joiner,
+                                                     cases[i].slants, cases[i].within);
             for (const auto& [encoding, descending] : kWays) {
                 PackOptions options = optionsOf(axis, encoding, classes, descending);
                 options.joiner = &joiner;
                 options.slants = cases[i].slants;
+                options.joinedWithin = cases[i].within;
                 const PackedDeltas whole = packDeltas(volume, options);
                 EXPECT_EQ(walk(whole), expected) << i << ", axis " << axis;
                 EXPECT_EQ(whole.visible(), expected.size());

@@ -243,6 +243,78 @@ TEST(SliceJoiner, roundsLooksOfManyClasses) {
         EXPECT_NEAR(looks[out[i]].a / lights[900 * i].a, 1, 0x1p-9) << i;
 }
 
+// Rows of as many voxels as become eight, and as many rows.
+std::vector<ClassIndex> wideClasses(std::size_t count, std::uint32_t seed, std::size_t within) {
+    std::vector<ClassIndex> all;
+    while (all.size() < 64 * within * within) {
+        const SliceClasses some = randomClasses(count, seed + 1000 * std::uint32_t(all.size()));
+        all.insert(all.end(), some.begin(), some.end());
+    }
+    return all;
+}
+
+SliceClasses joinedWide(const SliceJoiner& joiner, const std::vector<std::vector<ClassIndex>>& wide,
+                        std::size_t within) {
+    std::vector<const ClassIndex*> rows;
+    for (const std::vector<ClassIndex>& slice : wide) rows.push_back(slice.data());
+    SliceClasses out;
+    LookCache cache;
+    joiner.join(rows, 8 * within, 0, out.data(), cache);
+    return out;
+}
+
+// Voxels beside each other look like the mean of what each is, all slices of it.
+TEST(SliceJoiner, takesMeansOfVoxelsBesideEachOther) {
+    for (const std::size_t classCount : {std::size_t{40}, std::size_t{300}}) {
+        const std::vector<glm::dvec4> lights = someLights(classCount);
+        for (const std::size_t within : {std::size_t{2}, std::size_t{4}}) {
+            for (const bool lastInFront : {false, true}) {
+                const SliceJoiner joiner = SliceJoiner::ofLooks(
+                    lights, {.slices = 16, .lastInFront = lastInFront, .within = int(within)});
+                std::vector<std::vector<ClassIndex>> wide;
+                for (std::uint32_t i = 0; i < 16; ++i) {
+                    wide.push_back(wideClasses(classCount, 17 * i + 3, within));
+                    // In some, nothing; in one, a single voxel.
+                    for (std::size_t n = 0; n < 8 * within * within; ++n) wide.back()[n] = 0;
+                }
+                wide[5][3 * within + 1] = 9;
+                const SliceClasses out = joinedWide(joiner, wide, within);
+                const std::vector<glm::dvec4> looks = joiner.looks()->looks();
+                for (std::size_t u = 0; u < 8; ++u) {
+                    for (std::size_t v = 0; v < 8; ++v) {
+                        glm::dvec4 expected(0.0);
+                        for (std::size_t i = 0; i < within * within; ++i) {
+                            const std::size_t row = within * u + i / within;
+                            const std::size_t place = 8 * within * row + within * v + i % within;
+                            std::vector<glm::dvec4> ofSlices;
+                            for (const auto& slice : wide) ofSlices.push_back(lights[slice[place]]);
+                            if (lastInFront) std::reverse(ofSlices.begin(), ofSlices.end());
+                            expected += composite(ofSlices) / double(within * within);
+                        }
+                        const ClassIndex number = out[8 * u + v];
+                        EXPECT_EQ(number > 0, expected.a > 0) << u << ' ' << v;
+                        if (expected.a == 0) continue;
+                        EXPECT_EQ(u == 0, v == 3 && u == 0);
+                        const glm::dvec4& look = looks[number];
+                        EXPECT_NEAR(look.a / expected.a, 1, 0x1p-10 + 1e-6);
+                        for (int c = 0; c < 3; ++c) {
+                            const double color = expected[c] / expected.a;
+                            const double step =
+                                2 * std::sqrt(3 * color) / 1023 + 3.0 / (1023 * 1023);
+                            EXPECT_NEAR(look[c], color, 1.05 * step);
+                        }
+                    }
+                }
+                for (const std::string& level : test::testedSimdLevels()) {
+                    setSimdLevel(level);
+                    EXPECT_EQ(joinedWide(joiner, wide, within), out) << level;
+                }
+                setSimdLevel("auto");
+            }
+        }
+    }
+}
+
 TEST(SliceJoiner, saysWhereLooksAreTooMany) {
     const std::vector<glm::dvec4> lights = someLights(200);
     const SliceJoiner fine = SliceJoiner::ofLooks(lights, {8});
