@@ -122,14 +122,18 @@ void ColumnPacker::runJoined(const JoinedTiles& tiles, std::size_t run) {
         reserveWords(rows_[u], kMostWordsOfBlock * blocks);
     }
     JoinedTileReader reader(classReader_, *options_.joiner, tiles);
-    const std::optional<LookJoiner>& looks = options_.joiner->looks();
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-        if (looks && looks->hasTooMany()) break;  // all is joined again
+    for (std::size_t i = 0; i < sources.size() && !mustJoinAgain(); ++i) {
         reader.begin(sources[i], range_.firstBlock, range_.lastBlock);
         addJoined(reader, tiles.runs()[run][i], tiles.columns());
         payForWords();
     }
     finish();
+}
+
+// Whether looks are too many already, so that nothing of what is packed will be used.
+bool ColumnPacker::mustJoinAgain() const {
+    const std::optional<LookJoiner>& looks = options_.joiner->looks();
+    return looks && looks->hasTooMany();
 }
 
 // Where all packers have more words than they may, there are to be none.
@@ -176,7 +180,7 @@ void ColumnPacker::addJoined(JoinedTileReader& reader, const JoinedTile& tile,
     const auto endAll = [&] {
         for (std::size_t column = 0; column < last.size(); ++column) endBefore(column, place + 1);
     };
-    while (reader.next()) {
+    while (!mustJoinAgain() && reader.next()) {
         if (place != kNever && place + 1 < reader.place()) endAll();
         place = reader.place();
         for (std::size_t column = 0; column < last.size(); ++column) {

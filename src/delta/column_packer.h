@@ -95,6 +95,7 @@ class ColumnPacker {
     using BlockClasses = std::array<ClassIndex, 512>;
     void addJoined(JoinedTileReader& reader, const JoinedTile& tile, const glm::ivec2& columns);
     static void groupByColumn(std::vector<PendingWord>& words, std::size_t first);
+    bool mustJoinAgain() const;
     void payForWords();
     void finish();
     void dropUnneeded(std::vector<PendingWord>& words) const;
