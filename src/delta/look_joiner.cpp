@@ -183,19 +183,29 @@ HWY_INLINE void joinRow(const JoinedRows& rows, const float* lights, std::size_t
     }
 }
 
-// The same of classes, by pairs of them where there are some.
-HWY_INLINE void joinClasses(const JoinedRows& rows, const LookLevels& levels, std::size_t first,
+// What eight voxels look like: as joinRow, of classes, where any is seen. By pairs of slices, for
+// which there may be a table. Returns whether any is.
+HWY_INLINE bool joinClasses(const JoinedRows& rows, const LookLevels& levels, std::size_t first,
                             float* HWY_RESTRICT out) {
-    if (!levels.pairs) return joinRow(rows, levels.lights, first, out);
     HWY_ALIGN ClassIndex pairs[4 * kMostJoined];  // [pair][v]
-    std::array<const ClassIndex*, kMostJoined / 2> ofPairs;
-    const std::size_t count = rows.count / 2;
-    for (std::size_t i = 0; i < count; ++i) {
-        ofPairs[i] = pairs + 8 * i;
-        numberPairs(rows.slices[2 * i] + first, rows.slices[2 * i + 1] + first, levels.classCount,
-                    pairs + 8 * i);
+    std::array<const ClassIndex*, kMostJoined> seen;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < rows.count; i += 2) {
+        if (!anyClass({rows.slices + i, 2, rows.pitch}, first)) continue;
+        const ClassIndex* const nearer = rows.slices[i] + first;
+        const ClassIndex* const farther = rows.slices[i + 1] + first;
+        if (levels.pairs) {
+            ClassIndex* const pair = pairs + 8 * count;
+            numberPairs(nearer, farther, levels.classCount, pair);
+            seen[count++] = pair;
+        } else {
+            seen[count++] = nearer;
+            seen[count++] = farther;
+        }
     }
-    joinRow({ofPairs.data(), count, 8}, levels.pairs, 0, out);
+    if (count == 0) return false;
+    joinRow({seen.data(), count, 8}, levels.pairs ? levels.pairs : levels.lights, 0, out);
+    return true;
 }
 
 void joinLooksKernel(const JoinedRows& rows, const LookLevels& levels, LookKeys& keys) {
@@ -220,11 +230,9 @@ HWY_INLINE bool addSquares(const JoinedRows& rows, const LookLevels& levels, std
     bool isSeen = false;
     for (std::size_t row = 0; row < within; ++row) {
         for (std::size_t v = 0; v < 8 * within; v += 8) {
-            const std::size_t place = first + row * rows.pitch + v;
-            if (!anyClass(rows, place)) continue;
-            isSeen = true;
             HWY_ALIGN float lights[8 * 4];
-            joinClasses(rows, levels, place, lights);
+            if (!joinClasses(rows, levels, first + row * rows.pitch + v, lights)) continue;
+            isSeen = true;
             for (std::size_t i = 0; i < 8; ++i) {
                 float* const sum = sums + 4 * ((v + i) / within);
                 hn::Store(hn::Add(hn::Load(tag, sum), hn::Load(tag, lights + 4 * i)), tag, sum);
