@@ -140,15 +140,18 @@ int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
     return canBeMany || scene.canPairSlices() ? 2 : 1;
 }
 
-// Returns how many voxels beside each other become one of joined slices, along u and along v, as
-// far as these cover a quarter of a pixel: where slices are many, so that little goes on from some
-// to the next.
+// How many slices become one, at least, for each voxel beside another that does: so that little
+// goes on from some to the next.
+constexpr int kLeastDepth = 8;
+
+// Returns how many voxels beside each other become one of joined slices, along u and along v: as
+// far as an edge, which may move from one to the other end of them, moves by less than a fifth of a
+// pixel.
 int joinedWithinUnasked(const Factorization& view, int joined) {
-    constexpr double kMostPixels = 0.25;
-    constexpr int kLeastDepth = 8;
+    constexpr double kMostPixels = 0.1875;
     int within = kMostJoinedWithin;
     while (within > 1 && (joined < kLeastDepth * within ||
-                          within * view.pixelsPerVoxel * (1 - kSnap) > kMostPixels))
+                          (within - 1) * view.pixelsPerVoxel * (1 - kSnap) > kMostPixels))
         within /= 2;
     return within;
 }
@@ -190,6 +193,8 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
     if (keepsSlices) return;
     parts_.joined = joinedUnasked(scene, camera, view);
     parts_.joinedWithin = joinedWithinUnasked(view, parts_.joined);
+    // More would take longer to join than they save.
+    if (parts_.joinedWithin > 1) parts_.joined = kLeastDepth * parts_.joinedWithin;
 }
 
 std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
