@@ -190,8 +190,8 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     std::shared_ptr<DeltaPacker> packer;
     if (!words) {
         packer = std::make_shared<DeltaPacker>(volume, pack);
-        if (parts.joinedWithin > 1 && looksDenser(*packer, classes, request, run)) {
-            run.within = pack.joinedWithin = parts.joinedWithin = 1;
+        while (run.within > 1 && looksDenser(*packer, classes, request, run)) {
+            run.within = pack.joinedWithin = parts.joinedWithin = run.within / 2;
             joiner = joinerOf(classes, run);
             packer = std::make_shared<DeltaPacker>(volume, pack);
         }

@@ -132,14 +132,54 @@ TEST_F(Joined, joinsUpToEightWhereThatMovesLittle) {
 TEST_F(Joined, joinsTheMoreTheSmallerVoxelsAre) {
     const Volume volume = test::randomVolume(kBox, 5, 0.5);
     RenderOptions options;
+    struct Joint {
+        double pixels;
+        int slices;
+        int within;
+    };
     for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
-        for (int joined = kMostJoined; joined >= 16; joined /= 2) {
-            options = optionsFor(colors, 4.0 / joined, {0, 0, 1});
+        for (const Joint& joint : {Joint{0.51, 1, 1},
+                                   {0.5, 8, 1},
+                                   {0.251, 8, 1},
+                                   {0.25, 16, 1},
+                                   {0.188, 16, 1},
+                                   {0.1875, 16, 2},
+                                   {0.063, 16, 2},
+                                   {0.0625, 32, 4},
+                                   {0.01, 32, 4}}) {
+            options = optionsFor(colors, joint.pixels, {0, 0, 1});
             options.mostJoined = kMostJoined;
-            EXPECT_EQ(render(volume, options).stats.joined, joined);
-            options = optionsFor(colors, 4.01 / joined, {0, 0, 1});
+            const RenderStats stats = render(volume, options).stats;
+            EXPECT_EQ(stats.joined, joint.slices) << joint.pixels;
+            EXPECT_EQ(stats.resolution, 1.0 / joint.within) << joint.pixels;
+            // Of fewer slices no voxels beside each other become one.
+            options.mostJoined = 8;
+            EXPECT_EQ(render(volume, options).stats.resolution, 1);
+        }
+    }
+}
+
+// Threads of one voxel along the line of sight, every eighth voxel, would be four times as thick:
+// so only slices are joined. Plates across it are as dense, whatever becomes one.
+TEST_F(Joined, keepsThreadsAlongTheLineOfSightAsThin) {
+    const auto isThread = [](int x, int y) { return (x & 7) == 3 && (y & 7) == 2; };
+    const Volume threads = test::makeVolume({{0, 0, 0}, {63, 63, 127}}, [&](int x, int y, int) {
+        return isThread(x, y) ? 200 : test::kInactive;
+    });
+    const Volume plates = test::makeVolume({{0, 0, 0}, {63, 63, 127}}, [&](int, int, int z) {
+        return z % 16 == 3 ? 100 : test::kInactive;
+    });
+    for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+        for (const double pixels : {0.1875, 0.0625}) {
+            RenderOptions options = optionsFor(colors, pixels, {0, 0, 1});
             options.mostJoined = kMostJoined;
-            EXPECT_EQ(render(volume, options).stats.joined, joined / 2);
+            for (const bool areThreads : {false, true}) {
+                const Volume& volume = areThreads ? threads : plates;
+                const RenderResult joined = render(volume, options);
+                EXPECT_GE(joined.stats.joined, 16);
+                EXPECT_EQ(joined.stats.resolution == 1, areThreads);
+                EXPECT_NEAR(sumOf(joined.image) / sumOf(unjoined(volume, options).image), 1, 4e-3);
+            }
         }
     }
 }
