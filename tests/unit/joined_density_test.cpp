@@ -66,7 +66,7 @@ TEST(JoinedDensity, growsWithPlatesAlongTheLinesOfSight) {
     }
     // Along slopes as well.
     const auto slanted = [](int s, int u, int) {
-        return denseIf((u + int(std::floor(0.5 * s + 0.5)) & 1) != 0);
+        return denseIf(((u + int(std::floor(0.5 * s + 0.5))) & 1) != 0);
     };
     EXPECT_GT(gainedBy(slanted, {{0.5, 0}, 16, 2}), 0.9);
     EXPECT_LT(gainedBy(slanted, {{0, 0}, 16, 2}), 0.01);
