@@ -114,8 +114,19 @@ JoinedSlants slantsOf(const Factorization& view, int joined) {
     return joinedSlants(view.shiftPerSlice * (1 - kSnap), joined);
 }
 
-// Returns how many slices are joined where nobody says otherwise: more than two as far as so many
-// voxels side by side cover a few pixels, and none of them is moved by more than a quarter of one.
+// Whether so many slices may be joined, more than two: as far as so many voxels side by side cover
+// a few pixels, none of them is moved by more than a quarter of one, and what is thin stays as
+// dense.
+bool mayJoin(const Factorization& view, int joined) {
+    constexpr double kMostPixelsOfAll = 4;
+    constexpr double kMostPixelsMoved = 0.25;
+    if (joined * view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsOfAll) return false;
+    const JoinedSlants slants = slantsOf(view, joined);
+    const double moved = slants.farthest * view.pixelsPerVoxel;
+    return slants.keepsDensity && moved * (1 - kSnap) <= kMostPixelsMoved;
+}
+
+// Returns how many slices are joined at most where nobody says otherwise.
 int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
                   const Factorization& view) {
     const SplatOptions& options = scene.options;
@@ -129,14 +140,8 @@ int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
     const bool isWorthIt =
         scene.hasOneColor() || volume.activeCount >= kTimesLarger * leastVoxelsJoined;
     const bool canBeMany = options.mostJoined > 2 && !view.eye && isWorthIt;
-    constexpr double kMostPixelsOfAll = 4;
-    constexpr double kMostPixelsMoved = 0.25;
-    for (int joined = options.mostJoined; canBeMany && joined > 2; joined /= 2) {
-        if (joined * view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsOfAll) continue;
-        const JoinedSlants slants = slantsOf(view, joined);
-        const double moved = slants.farthest * view.pixelsPerVoxel;
-        if (slants.keepsDensity && moved * (1 - kSnap) <= kMostPixelsMoved) return joined;
-    }
+    for (int joined = options.mostJoined; canBeMany && joined > 2; joined /= 2)
+        if (mayJoin(view, joined)) return joined;
     return canBeMany || scene.canPairSlices() ? 2 : 1;
 }
 
@@ -194,7 +199,9 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
     parts_.joined = joinedUnasked(scene, camera, view);
     parts_.joinedWithin = joinedWithinUnasked(view, parts_.joined);
     // More would take longer to join than they save.
+    const int most = parts_.joined;
     if (parts_.joinedWithin > 1) parts_.joined = kLeastDepth * parts_.joinedWithin;
+    while (parts_.joined < most && !mayJoin(view, parts_.joined)) parts_.joined *= 2;
 }
 
 std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
