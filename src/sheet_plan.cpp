@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <string>
 
 #include "deltasplat/error.h"
@@ -105,60 +106,67 @@ bool areSmall(const Camera& camera, const Volume& volume, const Factorization& v
 }
 
 // Returns how so many slices are moved along lines of sight, by whole voxels.
-JoinedSlants slantsOf(const Factorization& view, int joined) {
+JoinedSlants slantsOf(const Factorization& view, int joined, int within) {
     if (view.eye) {
         JoinedSlants slants;
         slants.slants[1] = view.frontToBack ? -*view.slopeStep : *view.slopeStep;
         return slants;
     }
-    return joinedSlants(view.shiftPerSlice * (1 - kSnap), joined);
+    return joinedSlants(view.shiftPerSlice * (1 - kSnap), joined, within);
 }
+
+// What becomes one, where nobody says otherwise.
+struct Joined {
+    int slices = 1;
+    int within = 1;  // as Subdivision::joinedWithin
+};
 
 // Whether so many slices may be joined, more than two: as far as so many voxels side by side cover
 // a few pixels, none of them is moved by more than a quarter of one, and what is thin stays as
 // dense.
-bool mayJoin(const Factorization& view, int joined) {
+bool mayJoin(const Factorization& view, const Joined& joined) {
     constexpr double kMostPixelsOfAll = 4;
     constexpr double kMostPixelsMoved = 0.25;
-    if (joined * view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsOfAll) return false;
-    const JoinedSlants slants = slantsOf(view, joined);
+    if (joined.slices * view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsOfAll) return false;
+    const JoinedSlants slants = slantsOf(view, joined.slices, joined.within);
     const double moved = slants.farthest * view.pixelsPerVoxel;
     return slants.keepsDensity && moved * (1 - kSnap) <= kMostPixelsMoved;
 }
 
-// Returns how many slices are joined at most where nobody says otherwise.
-int joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
-                  const Factorization& view) {
+// Returns what is joined of more than two slices, if these may be. Voxels beside each other become
+// one as far as an edge, which may move from one of them to another, moves by less than a fifth of
+// a pixel; and of so many slices that little goes on from some to the next, but no more, which
+// would take longer to join than they save.
+std::optional<Joined> manyJoined(const Factorization& view, int most) {
+    constexpr double kMostPixelsBeside = 0.1875;
+    constexpr int kDepth = 8;
+    for (int within = kMostJoinedWithin; within > 1; within /= 2) {
+        if ((within - 1) * view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsBeside) continue;
+        for (int slices = kDepth * within; slices <= most; slices *= 2)
+            if (mayJoin(view, {slices, within})) return Joined{slices, within};
+    }
+    for (int slices = most; slices > 2; slices /= 2)
+        if (mayJoin(view, {slices, 1})) return Joined{slices, 1};
+    return {};
+}
+
+Joined joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
+                     const Factorization& view) {
     const SplatOptions& options = scene.options;
     const Volume& volume = *scene.scene.volume;
     if (options.mostJoined < 2 || options.resolution || options.between || options.sigma ||
         options.footprintWidth || !scene.canJoinSlices() ||
         volume.activeCount < leastVoxelsJoined || !areSmall(camera, volume, view))
-        return 1;
+        return {};
     // Numbering looks takes what it saves, but of volumes that are larger still.
     constexpr std::uint64_t kTimesLarger = 32;
     const bool isWorthIt =
         scene.hasOneColor() || volume.activeCount >= kTimesLarger * leastVoxelsJoined;
     const bool canBeMany = options.mostJoined > 2 && !view.eye && isWorthIt;
-    for (int joined = options.mostJoined; canBeMany && joined > 2; joined /= 2)
-        if (mayJoin(view, joined)) return joined;
-    return canBeMany || scene.canPairSlices() ? 2 : 1;
-}
-
-// How many slices become one, at least, for each voxel beside another that does: so that little
-// goes on from some to the next.
-constexpr int kLeastDepth = 8;
-
-// Returns how many voxels beside each other become one of joined slices, along u and along v: as
-// far as an edge, which may move from one to the other end of them, moves by less than a fifth of a
-// pixel.
-int joinedWithinUnasked(const Factorization& view, int joined) {
-    constexpr double kMostPixels = 0.1875;
-    int within = kMostJoinedWithin;
-    while (within > 1 && (joined < kLeastDepth * within ||
-                          (within - 1) * view.pixelsPerVoxel * (1 - kSnap) > kMostPixels))
-        within /= 2;
-    return within;
+    if (canBeMany) {
+        if (const std::optional<Joined> many = manyJoined(view, options.mostJoined)) return *many;
+    }
+    return {canBeMany || scene.canPairSlices() ? 2 : 1};
 }
 
 }  // namespace
@@ -196,12 +204,9 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
     parts_.slices = between + 1;
     parts_.within = between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1;
     if (keepsSlices) return;
-    parts_.joined = joinedUnasked(scene, camera, view);
-    parts_.joinedWithin = joinedWithinUnasked(view, parts_.joined);
-    // More would take longer to join than they save.
-    const int most = parts_.joined;
-    if (parts_.joinedWithin > 1) parts_.joined = kLeastDepth * parts_.joinedWithin;
-    while (parts_.joined < most && !mayJoin(view, parts_.joined)) parts_.joined *= 2;
+    const Joined joined = joinedUnasked(scene, camera, view);
+    parts_.joined = joined.slices;
+    parts_.joinedWithin = joined.within;
 }
 
 std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
@@ -212,7 +217,7 @@ std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
 
 Subdivision SheetPlan::partsIn(const Factorization& view) const {
     Subdivision parts = parts_;
-    if (parts.joined > 1) parts.slants = slantsOf(view, parts.joined).slants;
+    if (parts.joined > 1) parts.slants = slantsOf(view, parts.joined, 1).slants;
     // Whole blocks are divided.
     if (parts.divides()) parts.origin = toSliceOrder(firstVoxel_, view.sliceAxis) & ~7;
     return parts;

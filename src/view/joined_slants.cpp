@@ -36,7 +36,7 @@ double beginOfShortest(double shift, int count) {
 
 }  // namespace
 
-JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count) {
+JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count, int within) {
     JoinedSlants joined;
     glm::dvec2 range(0.0);
     for (int axis = 0; axis < 2; ++axis) {
@@ -55,7 +55,7 @@ JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count) {
         // Else what lies beside a joined voxel is seen through its reading alone, which takes the
         // more of it the farther its slices are off: up to a tenth with four, a fifth with eight.
         constexpr double kHardly = 0.2;
-        const bool goesOn = count * shift >= 1 || (count - 1) * shift <= kHardly;
+        const bool goesOn = count * shift >= within || (count - 1) * shift <= kHardly;
         joined.keepsDensity = joined.keepsDensity && goesOn;
     }
     joined.farthest = 0.5 * glm::length(range);

@@ -14,13 +14,14 @@ struct JoinedSlants {
     /// How far what is joined lies from where it is drawn, in voxels: at most.
     double farthest = 0;
     /// Whether what is thin, and seen nearly edge-on, stays as dense as it is: along u and along v,
-    /// lines of sight go on by a voxel within these slices, or hardly at all.
+    /// lines of sight go on by what becomes one within these slices, or hardly at all.
     bool keepsDensity = true;
 };
 
 /// Returns the slants by which slices stay nearest to their places.
 /// @param shiftPerSlice  -1 to 1 each
 /// @param count          a power of two, kMostJoined at most
-JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count);
+/// @param within         as Subdivision::joinedWithin
+JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count, int within = 1);
 
 }  // namespace deltasplat
