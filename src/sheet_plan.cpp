@@ -217,7 +217,7 @@ std::optional<int> SheetPlan::footprintWidth(const Factorization& view) const {
 
 Subdivision SheetPlan::partsIn(const Factorization& view) const {
     Subdivision parts = parts_;
-    if (parts.joined > 1) parts.slants = slantsOf(view, parts.joined, 1).slants;
+    if (parts.joined > 1) parts.slants = slantsOf(view, parts.joined, parts.joinedWithin).slants;
     // Whole blocks are divided.
     if (parts.divides()) parts.origin = toSliceOrder(firstVoxel_, view.sliceAxis) & ~7;
     return parts;

@@ -83,9 +83,10 @@ class Scenes {
         return scenes_.back().options;
     }
     void addJoined(const std::string& name, const std::string& volume, const CameraOptions& camera,
-                   const TransferFunction& function, int joined = 2) {
+                   const TransferFunction& function, int joined = 2, int within = 1) {
         add(name, volume, camera, function).mostJoined = joined;
         scenes_.back().joined = joined;
+        scenes_.back().joinedWithin = within;
     }
     std::vector<GoldenScene> take() { return std::move(scenes_); }
 
@@ -214,9 +215,12 @@ void addJoined(Scenes& scenes) {
     scenes.addJoined("joined", "engine", camera, colored());
     scenes.addJoined("joined-one-color", "cloud", camera, oneColor(0.3));
     CameraOptions smaller = camera;
-    smaller.sizePixels = {8, 7};
+    smaller.sizePixels = {9, 8};
     scenes.addJoined("joined-many", "engine", smaller, colored(), 16);
     scenes.addJoined("joined-many-one-color", "cloud", smaller, oneColor(0.3), 16);
+    smaller.sizePixels = {7, 6};
+    scenes.addJoined("joined-squares", "engine", smaller, colored(), 16, 2);
+    scenes.addJoined("joined-squares-one-color", "cloud", smaller, oneColor(0.3), 16, 2);
     camera.projection = Projection::kPerspective;
     camera.fovDegrees = 30;
     scenes.addJoined("joined-perspective", "engine", camera, colored());

@@ -54,6 +54,9 @@ Hashes ofScenes() {
         if (scene.joined > 1) joined.emplace();
         const RenderResult result = render(volumes.at(scene.volume), options);
         EXPECT_EQ(result.stats.joined, scene.joined) << scene.name;
+        if (scene.joined > 1) {
+            EXPECT_EQ(result.stats.resolution, 1.0 / scene.joinedWithin) << scene.name;
+        }
         Hash hash;
         for (const glm::dvec3& axis : {result.camera.right, result.camera.up}) {
             for (int i = 0; i < 3; ++i) hash.add(axis[i]);
