@@ -215,8 +215,9 @@ void addJoined(Scenes& scenes) {
     scenes.addJoined("joined", "engine", camera, colored());
     scenes.addJoined("joined-one-color", "cloud", camera, oneColor(0.3));
     CameraOptions smaller = camera;
-    smaller.sizePixels = {9, 8};
+    smaller.sizePixels = {10, 9};
     scenes.addJoined("joined-many", "engine", smaller, colored(), 16);
+    smaller.sizePixels = {8, 7};
     scenes.addJoined("joined-many-one-color", "cloud", smaller, oneColor(0.3), 16);
     smaller.sizePixels = {7, 6};
     scenes.addJoined("joined-squares", "engine", smaller, colored(), 16, 2);
