@@ -215,7 +215,7 @@ void addJoined(Scenes& scenes) {
     scenes.addJoined("joined", "engine", camera, colored());
     scenes.addJoined("joined-one-color", "cloud", camera, oneColor(0.3));
     CameraOptions smaller = camera;
-    smaller.sizePixels = {12, 10};
+    smaller.sizePixels = {15, 13};
     scenes.addJoined("joined-many", "engine", smaller, colored(), 16);
     smaller.sizePixels = {8, 7};
     scenes.addJoined("joined-many-one-color", "cloud", smaller, oneColor(0.3), 16);
