@@ -57,9 +57,9 @@ struct SplatOptions {
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: 1 (hasOwnPixel) or by sigma
     PictureFilter filter = PictureFilter::kCatmullRom;
-    /// How many slices may be drawn as one: a power of two, kMostJoined at most. More than 2 are
-    /// joined anew for every direction that is looked along, which is worth it for one camera, and
-    /// only in parallel projection; of several colours, in volumes of 2^28 active voxels or more.
+    /// How many slices may be drawn as one, a power of two, kMostJoined at most; from 16 on also
+    /// voxels beside each other. More than 2 are joined anew for every direction, which is worth it
+    /// for one camera, only in parallel projection, and of colours from 2^28 active voxels on.
     int mostJoined = 2;
 };
 
