@@ -2,6 +2,7 @@
 #include "prepared_axis.h"
 
 #include <bit>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -124,12 +125,15 @@ std::shared_ptr<const PackedDeltas> sharedWords(const AxisRequest& request,
     return takeNumbers(before->classes().classOfSlot, classes) ? before->words : nullptr;
 }
 
-// Whether a volume is seen to be denser where voxels beside each other become one.
-bool looksDenser(const DeltaPacker& packer, const ClassTable& classes, const AxisRequest& request,
+// Whether it can be seen that voxels beside each other become one: it changes opacity by a 256th on
+// average, or by less than 42 dB from place to place.
+bool showSquares(const DeltaPacker& packer, const ClassTable& classes, const AxisRequest& request,
                  const JoinedRun& run) {
-    constexpr double kMost = 1.0 / 256;
-    return packer.densityGained(classes.atSteps(run.steps).alphas(),
-                                {request.shiftPerSlice, run.slices, run.within}) > kMost;
+    constexpr double kMostGained = 1.0 / 256;
+    constexpr double kMostRms = 1.0 / 128;
+    const DensityChange change = packer.densityChange(
+        classes.atSteps(run.steps).alphas(), {request.shiftPerSlice, run.slices, run.within});
+    return std::abs(change.gained) > kMostGained || change.rms > kMostRms;
 }
 
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
@@ -190,7 +194,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     std::shared_ptr<DeltaPacker> packer;
     if (!words) {
         packer = std::make_shared<DeltaPacker>(volume, pack);
-        while (run.within > 1 && looksDenser(*packer, classes, request, run)) {
+        while (run.within > 1 && showSquares(*packer, classes, request, run)) {
             run.within = pack.joinedWithin = parts.joinedWithin = run.within / 2;
             joiner = joinerOf(classes, run);
             packer = std::make_shared<DeltaPacker>(volume, pack);

@@ -179,9 +179,10 @@ class LineTracer {
 
 }  // namespace
 
-double densityGained(const std::vector<CodeBlock>& blocks, const ClassReader& classes,
-                     std::span<const double> alphas, const JoinedSquares& squares) {
-    if (blocks.empty()) return 0;
+DensityChange densityChange(const std::vector<CodeBlock>& blocks, const ClassReader& classes,
+                            std::span<const double> alphas, const JoinedSquares& squares) {
+    DensityChange change;
+    if (blocks.empty()) return change;
     const ColumnFinder columns(blocks);
     const LineTracer tracer(columns, classes, alphas, squares);
     std::vector<Transmittance> lines(kLines);
@@ -191,13 +192,16 @@ double densityGained(const std::vector<CodeBlock>& blocks, const ClassReader& cl
             0.5 + double(i) * glm::dvec2(0.75487766624669276, 0.56984029099805327);
         lines[i] = tracer.trace(glm::fract(place));
     });
-    double gained = 0;
     double seen = 0;
     for (const Transmittance& through : lines) {
-        gained += through.exact - through.squares;
+        const double gained = through.exact - through.squares;
+        change.gained += gained;
+        change.rms += gained * gained;
         seen += 1 - through.exact;
     }
-    return seen > 0 ? gained / seen : 0;
+    change.rms = std::sqrt(change.rms / kLines);
+    if (seen > 0) change.gained /= seen;
+    return change;
 }
 
 }  // namespace deltasplat

@@ -18,13 +18,20 @@ struct JoinedSquares {
     int within;  ///< as Subdivision::joinedWithin
 };
 
-/// Returns by how much opacity grows where voxels beside each other become one, as a share of all
-/// opacity that is seen: the mean of a few hundred lines of sight all over the volume, each with
-/// those beside it. Nothing grows but what goes on along lines of sight for several times `slices`,
-/// and is narrower than `within`, or ends between two of them. Deterministic; multi-threaded.
+/// What becomes of opacity, 0 to 1, where voxels beside each other become one.
+struct DensityChange {
+    double gained = 0;  ///< on average, as a share of all that is seen; below 0: lost
+    double rms = 0;     ///< the root of the mean square of what squares gain, or lose
+};
+
+/// Finds out by some hundred lines of sight all over the volume, each with those of its square.
+/// Little changes but by what goes on along lines of sight for several times `slices`, and is
+/// narrower than `within`, or ends between two of them: walls seen edge-on gain, and what is seen
+/// nearly so, where it is behind itself but beside it in the next slices, loses. Deterministic;
+/// multi-threaded.
 /// @param blocks  ordered by u, v and slice
 /// @param alphas  of each class, over a slice
-double densityGained(const std::vector<CodeBlock>& blocks, const ClassReader& classes,
-                     std::span<const double> alphas, const JoinedSquares& squares);
+DensityChange densityChange(const std::vector<CodeBlock>& blocks, const ClassReader& classes,
+                            std::span<const double> alphas, const JoinedSquares& squares);
 
 }  // namespace deltasplat

@@ -332,11 +332,11 @@ bool DeltaPacker::canBeParted() const {
     return !impl_->options.mixer && !impl_->options.painter && !impl_->holder;
 }
 
-double DeltaPacker::densityGained(std::span<const double> alphas,
-                                  const JoinedSquares& squares) const {
+DensityChange DeltaPacker::densityChange(std::span<const double> alphas,
+                                         const JoinedSquares& squares) const {
     const ClassReader reader(impl_->slotMap, impl_->ramps ? &*impl_->ramps : nullptr,
                              impl_->options.sliceAxis);
-    return deltasplat::densityGained(impl_->blocks, reader, alphas, squares);
+    return deltasplat::densityChange(impl_->blocks, reader, alphas, squares);
 }
 
 double DeltaPacker::mostBytes() const {

@@ -110,6 +110,7 @@ IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& part
 /// the active voxels; deterministic; multi-threaded.
 PackedDeltas packDeltas(const Volume& volume, const PackOptions& options);
 
+struct DensityChange;
 struct JoinedSquares;
 
 /// Slabs [first, last).
@@ -129,9 +130,9 @@ class DeltaPacker {
 
     /// Whether parts can be made: no voxel is held, divided or painted.
     bool canBeParted() const;
-    /// Returns by how much opacity grows if voxels beside each other become one (densityGained).
+    /// Returns what becomes of opacity if voxels beside each other become one.
     /// @param alphas  of each class, over a slice
-    double densityGained(std::span<const double> alphas, const JoinedSquares& squares) const;
+    DensityChange densityChange(std::span<const double> alphas, const JoinedSquares& squares) const;
     /// The most bytes that all words may take, of what is known before they are counted.
     double mostBytes() const;
     PackedDeltas packAll();
