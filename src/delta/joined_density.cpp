@@ -8,7 +8,7 @@
 #include <glm/common.hpp>
 #include <limits>
 #include <optional>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "delta/class_index.h"
@@ -26,7 +26,12 @@ constexpr std::size_t kLines = 256;
 class ColumnFinder {
   public:
     explicit ColumnFinder(const std::vector<CodeBlock>& blocks)
-        : blocks_(blocks), begins_(runBegins(blocks, shareColumn)) {}
+        : blocks_(blocks), begins_(runBegins(blocks, shareColumn)) {
+        for (std::size_t i = 0; i < count(); ++i) {
+            const glm::ivec3& position = column(i).front().position;
+            places_.emplace_back(position.y, position.z);
+        }
+    }
 
     std::size_t count() const { return begins_.size() - 1; }
     std::span<const CodeBlock> column(std::size_t i) const {
@@ -34,22 +39,20 @@ class ColumnFinder {
     }
     // Returns the block at a place, or null.
     const CodeBlock* find(const glm::ivec3& position) const {
-        CodeBlock wanted;
-        wanted.position = position;
-        const auto column = std::lower_bound(
-            begins_.begin(), begins_.end() - 1, wanted, [&](std::size_t begin, const auto& block) {
-                return std::tie(blocks_[begin].position.y, blocks_[begin].position.z) <
-                       std::tie(block.position.y, block.position.z);
-            });
-        if (column == begins_.end() - 1 || !shareColumn(blocks_[*column], wanted)) return nullptr;
-        const std::span<const CodeBlock> of = this->column(std::size_t(column - begins_.begin()));
-        const auto block = std::lower_bound(of.begin(), of.end(), wanted, comesBefore);
-        return block != of.end() && block->position == position ? &*block : nullptr;
+        const std::pair wanted(position.y, position.z);
+        const auto place = std::lower_bound(places_.begin(), places_.end(), wanted);
+        if (place == places_.end() || *place != wanted) return nullptr;
+        const std::span<const CodeBlock> of = column(std::size_t(place - places_.begin()));
+        const auto block = std::partition_point(of.begin(), of.end(), [&](const CodeBlock& one) {
+            return one.position.x < position.x;
+        });
+        return block != of.end() && block->position.x == position.x ? &*block : nullptr;
     }
 
   private:
     std::span<const CodeBlock> blocks_;
     std::vector<std::size_t> begins_;
+    std::vector<std::pair<int, int>> places_;  // u and v of columns
 };
 
 // Reads single voxels, most of which lie in blocks of those before.
