@@ -9,8 +9,8 @@
 
 #include "default_floats.h"
 #include "delta/code_blocks.h"
-#include "delta/joined_density.h"
 #include "delta/slab_facts.h"
+#include "delta/square_change.h"
 #include "delta/value_mixer.h"
 #include "deltasplat/error.h"
 #include "medium/room.h"
@@ -125,15 +125,16 @@ std::shared_ptr<const PackedDeltas> sharedWords(const AxisRequest& request,
     return takeNumbers(before->classes().classOfSlot, classes) ? before->words : nullptr;
 }
 
-// Whether it can be seen that voxels beside each other become one: it changes opacity by a 256th on
-// average, or by less than 42 dB from place to place.
+// Whether it may be seen that voxels beside each other become one: if it changes light or opacity
+// by more than a 256th on average, or by more than a 128th (42 dB) from place to place.
 bool showSquares(const DeltaPacker& packer, const ClassTable& classes, const AxisRequest& request,
                  const JoinedRun& run) {
     constexpr double kMostGained = 1.0 / 256;
     constexpr double kMostRms = 1.0 / 128;
-    const DensityChange change = packer.densityChange(
-        classes.atSteps(run.steps).alphas(), {request.shiftPerSlice, run.slices, run.within});
-    return std::abs(change.gained) > kMostGained || change.rms > kMostRms;
+    const std::optional<SquareChange> change = packer.squareChange(
+        lightsOf(classes.atSteps(run.steps)),
+        {request.shiftPerSlice, run.seenThrough == SeenThrough::kFirst, run.slices, run.within});
+    return !change || std::abs(change->gained) > kMostGained || change->rms > kMostRms;
 }
 
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
@@ -197,6 +198,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
         while (run.within > 1 && showSquares(*packer, classes, request, run)) {
             run.within = pack.joinedWithin = parts.joinedWithin = run.within / 2;
             joiner = joinerOf(classes, run);
+            packer.reset();
             packer = std::make_shared<DeltaPacker>(volume, pack);
         }
         const bool inParts =
@@ -355,6 +357,9 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
             parts.slices, parts.within,  parts.joined, parts.joinedWithin};
     for (const glm::ivec2& slant : parts.joinedSlants()) key.insert(key.end(), {slant.x, slant.y});
     if (isOfSteps) key.push_back(std::bit_cast<std::int64_t>(request.steps));
+    // Whether they may be seen depends on where lines of sight go.
+    for (int i = 0; i < 2 && parts.joinedWithin > 1; ++i)
+        key.push_back(std::bit_cast<std::int64_t>(view.shiftPerSlice[i]));
     Key otherKey = key;
     otherKey[2] = int(!fromEnd);
     std::shared_ptr<Place> otherWay;

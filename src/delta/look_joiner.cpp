@@ -344,12 +344,17 @@ LookJoiner LookJoiner::coarser() const {
 }
 
 void LookJoiner::beginSample() const {
-    // Of most volumes a sixteenth has a third of all looks.
-    if (palette_->empty()) palette_->limitTo(1.0 / 3);
+    if (palette_->count() == 0) palette_->limitTo(1.0 / 3);
 }
 
-void LookJoiner::endSample() const {
-    palette_->limitTo(1);
+void LookJoiner::endSample(std::size_t ofHalf) const {
+    const bool isSample = palette_->isLimited() && ofHalf > 0 && run_.bits > LookRun::kLeastBits;
+    const auto found = double(palette_->count());
+    const double growth = isSample ? std::min(found / double(ofHalf), 2.0) : 1;
+    // All is twice that, four times over; and some more, lest all be joined twice.
+    constexpr double kMargin = 1.33;
+    const double expected = kMargin * found * growth * growth * growth * growth;
+    palette_->limitTo(isSample && expected > double(palette_->most()) ? 0 : 1);
 }
 
 std::vector<glm::dvec4> LookJoiner::looks() const {

@@ -50,11 +50,15 @@ class LookJoiner {
 
     /// Whether more came up than there are numbers for: then what was joined is nothing.
     bool hasTooMany() const { return palette_->hasTooMany(); }
+    /// How many have come up so far, but for those that are alone. Not while others join.
+    std::size_t count() const { return palette_->count(); }
     /// Says that what is joined from now on is a sixteenth of all, from all over the volume: there
-    /// are too many if this has many, unless looks have come up before. Then that all else follows.
-    /// Not while others join.
+    /// are too many if this has many, unless looks have come up before. Not while others join.
     void beginSample() const;
-    void endSample() const;
+    /// Says that all else follows: there are too many if so many would come up in all, as many more
+    /// each time that what is joined doubles. Not while others join.
+    /// @param ofHalf  what count() was when half of the sample had been joined
+    void endSample(std::size_t ofHalf) const;
     /// Returns the same, rounded further, of which nothing has come up yet.
     LookJoiner coarser() const;
 

@@ -22,7 +22,9 @@ class LookPalette {
     std::uint32_t numberOf(std::uint64_t key);
     /// From now on takes more than a share of `most` for too many. Not while others ask.
     void limitTo(double share);
-    bool empty() const { return count_ == 0; }
+    bool isLimited() const { return limit_ < most_; }
+    std::size_t most() const { return most_; }
+    std::size_t count() const { return count_; }
     bool hasTooMany() const { return hasTooMany_.load(std::memory_order_relaxed); }
     /// Returns the keys in the order of their numbers. Not while others ask.
     std::vector<std::uint64_t> keys() const;

@@ -13,12 +13,12 @@
 #include <utility>
 
 #include "delta/column_packer.h"
-#include "delta/joined_density.h"
 #include "delta/joined_tiles.h"
 #include "delta/mixed_sight.h"
 #include "delta/slab_facts.h"
 #include "delta/slice_joiner.h"
 #include "delta/slot_holder.h"
+#include "delta/square_change.h"
 #include "deltasplat/error.h"
 #include "floor_div.h"
 #include "memory.h"
@@ -234,10 +234,13 @@ struct DeltaPacker::Impl {
         constexpr std::size_t kStep = 16;
         const std::size_t sample = (count + kStep - 1) / kStep;
         if (areLooks && sample < count) joiner->looks()->beginSample();
-        parallelFor(sample, [&](std::size_t i) { pack(kStep * i); });
+        // Every other one, and then those between them.
+        parallelFor((sample + 1) / 2, [&](std::size_t i) { pack(kStep * 2 * i); });
+        const std::size_t ofHalf = areLooks ? joiner->looks()->count() : 0;
+        parallelFor(sample / 2, [&](std::size_t i) { pack(kStep * (2 * i + 1)); });
         if (range.budget) range.budget->foresee(double(sample) / double(count));
         if (areLooks) {
-            joiner->looks()->endSample();
+            joiner->looks()->endSample(ofHalf);
             if (hasTooManyLooks()) return packers;
         }
         parallelFor(count, [&](std::size_t i) {
@@ -332,11 +335,11 @@ bool DeltaPacker::canBeParted() const {
     return !impl_->options.mixer && !impl_->options.painter && !impl_->holder;
 }
 
-DensityChange DeltaPacker::densityChange(std::span<const double> alphas,
-                                         const JoinedSquares& squares) const {
+std::optional<SquareChange> DeltaPacker::squareChange(std::span<const glm::dvec4> lights,
+                                                      const JoinedSquares& squares) const {
     const ClassReader reader(impl_->slotMap, impl_->ramps ? &*impl_->ramps : nullptr,
                              impl_->options.sliceAxis);
-    return deltasplat::densityChange(impl_->blocks, reader, alphas, squares);
+    return deltasplat::squareChange(impl_->blocks, reader, lights, squares);
 }
 
 double DeltaPacker::mostBytes() const {

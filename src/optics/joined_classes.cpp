@@ -17,16 +17,6 @@ bool areSummed(const ClassTable& classes) {
     return classes.oneColor || classes.looks.size() == 1;
 }
 
-// What each class looks like over a step, premultiplied; black where all have one colour.
-std::vector<glm::dvec4> lightsOf(const ClassTable& classes) {
-    std::vector<glm::dvec4> lights;
-    const std::vector<double> alphas = classes.alphas();
-    const double colored = areSummed(classes) ? 0 : 1;
-    for (std::size_t i = 0; i < alphas.size(); ++i)
-        lights.emplace_back(colored * alphas[i] * classes.looks[i].color, alphas[i]);
-    return lights;
-}
-
 // The look that is this over a step of the classes.
 Look lookOf(const glm::dvec4& light, const ClassTable& classes) {
     const double unitDistances =
@@ -37,6 +27,15 @@ Look lookOf(const glm::dvec4& light, const ClassTable& classes) {
 }
 
 }  // namespace
+
+std::vector<glm::dvec4> lightsOf(const ClassTable& classes) {
+    std::vector<glm::dvec4> lights;
+    const std::vector<double> alphas = classes.alphas();
+    const double colored = areSummed(classes) ? 0 : 1;
+    for (std::size_t i = 0; i < alphas.size(); ++i)
+        lights.emplace_back(colored * alphas[i] * classes.looks[i].color, alphas[i]);
+    return lights;
+}
 
 bool canBePaired(const ClassTable& classes) {
     return areSummed(classes) || classes.size() * classes.size() <= ClassTable::kMaxClasses;

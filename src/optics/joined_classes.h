@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <glm/vec4.hpp>
+#include <vector>
+
 #include "delta/slice_joiner.h"
 #include "deltasplat/optics/class_table.h"
 
@@ -18,6 +21,9 @@ struct JoinedRun {
     SeenThrough seenThrough;  ///< of two that follow each other, which is behind
     double steps;             ///< how many times as long as those of the classes steps are
 };
+
+/// Returns what each class looks like over a step, premultiplied; black where all have one colour.
+std::vector<glm::dvec4> lightsOf(const ClassTable& classes);
 
 /// Returns what joins slices: for steps of any length if they are of one colour, or two that can be
 /// paired, and no more than slices is joined.

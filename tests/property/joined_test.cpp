@@ -593,6 +593,57 @@ TEST_F(Joined, keepsOnePlateAsNearToTheTruth) {
     }
 }
 
+// A ball that is thin, which hardly changes where voxels beside each other become one.
+Volume thinBall() {
+    return test::makeVolume({{-19, 5, -41}, {60, 83, 38}}, [](int x, int y, int z) {
+        const double radius = std::hypot(x - 20.3, y - 44.1, z + 2.2);
+        return radius < 30 ? 100 + int(50 * std::sin(0.2 * radius)) : test::kInactive;
+    });
+}
+
+RenderOptions ofSquares(Colors colors, int within, const glm::dvec3& direction) {
+    RenderOptions options = optionsFor(colors, within == 2 ? 0.18 : 0.06, direction);
+    options.camera.sizePixels = {24, 24};
+    options.camera.frameWidthWorld = within == 2 ? 24 / 0.18 : 24 / 0.06;
+    options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, 0.04, 0.5, 0}};
+    options.mostJoined = kMostJoined;
+    return options;
+}
+
+// Voxels beside each other that become one are drawn in their middle, wherever the volume begins.
+TEST_F(Joined, squaresAreDrawnInTheirMiddle) {
+    const Volume ball = thinBall();
+    for (const int within : {2, 4}) {
+        for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+            for (const glm::dvec3& direction : kDirections) {
+                RenderOptions options = ofSquares(colors, within, direction);
+                options.filter = PictureFilter::kGauss;
+                const RenderResult squares = render(ball, options);
+                if (squares.stats.joined == 2) continue;
+                EXPECT_EQ(squares.stats.resolution, 1.0 / within)
+                    << direction.x << ' ' << direction.y << ' ' << direction.z;
+                const Middle now = middleOf(squares.image);
+                const Middle expected = middleOf(unjoined(ball, options).image);
+                EXPECT_NEAR(now.sum / expected.sum, 1, 0.01);
+                EXPECT_LT(glm::length(now.place - expected.place), 0.02);
+            }
+        }
+    }
+}
+
+TEST_F(Joined, squaresAreTheSameHoweverTheyAreMade) {
+    const Volume ball = thinBall();
+    for (const int within : {2, 4}) {
+        for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
+            for (const glm::dvec3& direction : {glm::dvec3(1, 0.7, 0.5), glm::dvec3(0, 0, -1)}) {
+                const RenderOptions options = ofSquares(colors, within, direction);
+                EXPECT_EQ(render(ball, options).stats.resolution, 1.0 / within);
+                test::expectTheSameHoweverItIsMade(ball, options);
+            }
+        }
+    }
+}
+
 TEST_F(Joined, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
     const Volume volume = test::randomVolume(kBox, 8, 0.5, {1, 1.2, 0.8});
     int joined = 0;
