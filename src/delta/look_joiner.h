@@ -21,8 +21,8 @@ struct LookRun {
     /// To how many bits the square root of a colour's channel is rounded, kLeastBits to kMostBits;
     /// opacity, or transmittance where that is less, to 2^(bits - 1) levels an octave.
     int bits = kMostBits;
-    /// Voxels of what slices become, along u and along v, that become one: 1, 2 or 4. It looks like
-    /// their mean.
+    /// Voxels of what slices become, along u and along v, that become one: 1, 2 or 4. That looks
+    /// like their mean.
     int within = 1;
 
     static constexpr int kMostBits = 10;

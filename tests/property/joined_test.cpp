@@ -613,15 +613,17 @@ RenderOptions ofSquares(Colors colors, int within, const glm::dvec3& direction) 
 // Voxels beside each other that become one are drawn in their middle, wherever the volume begins.
 TEST_F(Joined, squaresAreDrawnInTheirMiddle) {
     const Volume ball = thinBall();
+    int drawn = 0;
     for (const int within : {2, 4}) {
         for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
             for (const glm::dvec3& direction : kDirections) {
                 RenderOptions options = ofSquares(colors, within, direction);
                 options.filter = PictureFilter::kGauss;
                 const RenderResult squares = render(ball, options);
-                if (squares.stats.joined == 2) continue;
-                EXPECT_EQ(squares.stats.resolution, 1.0 / within)
-                    << direction.x << ' ' << direction.y << ' ' << direction.z;
+                // Not where lines of sight pass on by fewer voxels than become one.
+                if (squares.stats.resolution == 1) continue;
+                EXPECT_EQ(squares.stats.resolution, 1.0 / within);
+                ++drawn;
                 const Middle now = middleOf(squares.image);
                 const Middle expected = middleOf(unjoined(ball, options).image);
                 EXPECT_NEAR(now.sum / expected.sum, 1, 0.01);
@@ -629,6 +631,7 @@ TEST_F(Joined, squaresAreDrawnInTheirMiddle) {
             }
         }
     }
+    EXPECT_GE(drawn, 20);  // of 28
 }
 
 TEST_F(Joined, squaresAreTheSameHoweverTheyAreMade) {

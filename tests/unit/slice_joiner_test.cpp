@@ -294,7 +294,7 @@ TEST(SliceJoiner, takesMeansOfVoxelsBesideEachOther) {
                         const ClassIndex number = out[8 * u + v];
                         EXPECT_EQ(number > 0, expected.a > 0) << u << ' ' << v;
                         if (expected.a == 0) continue;
-                        EXPECT_EQ(u == 0, v == 3 && u == 0);
+                        EXPECT_TRUE(u > 0 || v == 3);
                         const glm::dvec4& look = looks[number];
                         EXPECT_NEAR(look.a / expected.a, 1, 0x1p-10 + 1e-6);
                         for (int c = 0; c < 3; ++c) {

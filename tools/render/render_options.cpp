@@ -373,8 +373,8 @@ void addSplattingOptions(CLI::App& app, PictureOptions& picture) {
         "covers half a pixel or less, and none of\nthe splatting options but --method and "
         "--filter is given (default:\n32, as far as so many voxels in a row cover four pixels; 2 "
         "where a\ncamera moves, frames show one volume, or parts are made with\n--slab-range); of "
-        "16 or more also 2x2 or 4x4 voxels beside each other,\nwhere one covers 3/16 or 1/16 of a "
-        "pixel or less");
+        "16 or more also 2x2 voxels beside each other where one covers\n3/16 of a pixel or less, "
+        "of 32 4x4 of at most 1/16, if it hardly shows");
     group.addValue("--resolution", "R", options.resolution, resolution(),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        ", or 1/2, 1/4 or 1/8:\nvoxels share a pixel, which is softer, not faster, "
