@@ -151,7 +151,7 @@ void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) {
     std::array<const ClassIndex*, kMostJoined> slices;
     for (std::size_t i = 0; i < joined; ++i) {
         std::size_t count = 0;
-    XX
+        // Two and two, for so they are joined; pairs in which nothing is are left out.
         for (std::size_t k = 0; k < slants.size(); k += 2) {
             const std::size_t place = i * slants.size() + k;
             const glm::ivec2 nearer = first - slants[k];
