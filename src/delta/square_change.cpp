@@ -68,7 +68,7 @@ class VoxelReader {
     ClassIndex classOf(const glm::ivec3& at) {
         const glm::ivec3 position = at >> 3;
         // Neighbours along u and v have places of their own.
-        Kept& kept = kept_[std::size_t(2 * (position.y & 1) + (position.z & 1))];
+        Kept& kept = kept_[2 * std::size_t(position.y & 1) + std::size_t(position.z & 1)];
         if (kept.position != position) {
             kept.position = position;
             const CodeBlock* const block = columns_.find(position);
@@ -76,7 +76,8 @@ class VoxelReader {
             if (block) classes_.read(*block, std::span(kept.classes));
         }
         const glm::ivec3 within = at & 7;
-        return kept.isThere ? kept.classes[std::size_t(64 * within.x + 8 * within.y + within.z)]
+        return kept.isThere ? kept.classes[64 * std::size_t(within.x) + 8 * std::size_t(within.y) +
+                                           std::size_t(within.z)]
                             : ClassIndex{0};
     }
 
@@ -167,7 +168,9 @@ class LineTracer {
         return sight;
     }
 
-    std::size_t lineCount() const { return std::size_t(squares_.within * squares_.within); }
+    std::size_t lineCount() const {
+        return std::size_t(squares_.within) * std::size_t(squares_.within);
+    }
     // By how many voxels a slice lies beside its place on the base plane.
     glm::ivec2 movedAt(int slice) const {
         return glm::ivec2(glm::floor(double(slice) * squares_.shiftPerSlice + 0.5));
@@ -251,7 +254,7 @@ std::optional<SquareChange> squareChange(const std::vector<CodeBlock>& blocks,
         ++count;
     }
     // Of too few, nothing is known.
-    if (count < kPatches / 4 || !(most > 0)) return {};
+    if (4 * count < kPatches || !(most > 0)) return {};
     SquareChange result;
     for (int c = 0; c < 4; ++c) {
         const double share = gained[c] / largestOf(seen);
