@@ -348,13 +348,15 @@ void LookJoiner::beginSample() const {
 }
 
 void LookJoiner::endSample(std::size_t ofHalf) const {
-    const bool isSample = palette_->isLimited() && ofHalf > 0 && run_.bits > LookRun::kLeastBits;
+    // Means are of more kinds, of which a sixteenth may have few.
+    const bool mayForesee =
+        palette_->isLimited() && ofHalf > 0 && run_.within > 1 && run_.bits > LookRun::kLeastBits;
     const auto found = double(palette_->count());
-    const double growth = isSample ? std::min(found / double(ofHalf), 2.0) : 1;
+    const double growth = mayForesee ? std::min(found / double(ofHalf), 2.0) : 1;
     // All is twice that, four times over; and some more, lest all be joined twice.
     constexpr double kMargin = 1.33;
     const double expected = kMargin * found * growth * growth * growth * growth;
-    palette_->limitTo(isSample && expected > double(palette_->most()) ? 0 : 1);
+    palette_->limitTo(mayForesee && expected > double(palette_->most()) ? 0 : 1);
 }
 
 std::vector<glm::dvec4> LookJoiner::looks() const {

@@ -55,8 +55,8 @@ class LookJoiner {
     /// Says that what is joined from now on is a sixteenth of all, from all over the volume: there
     /// are too many if this has many, unless looks have come up before. Not while others join.
     void beginSample() const;
-    /// Says that all else follows: there are too many if so many would come up in all, as many more
-    /// each time that what is joined doubles. Not while others join.
+    /// Says that all else follows. Of means, there are too many if so many would come up in all, as
+    /// many more each time that what is joined doubles. Not while others join.
     /// @param ofHalf  what count() was when half of the sample had been joined
     void endSample(std::size_t ofHalf) const;
     /// Returns the same, rounded further, of which nothing has come up yet.
