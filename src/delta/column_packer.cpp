@@ -122,18 +122,12 @@ void ColumnPacker::runJoined(const JoinedTiles& tiles, std::size_t run) {
         reserveWords(rows_[u], kMostWordsOfBlock * blocks);
     }
     JoinedTileReader reader(classReader_, *options_.joiner, tiles);
-    for (std::size_t i = 0; i < sources.size() && !mustJoinAgain(); ++i) {
+    for (std::size_t i = 0; i < sources.size(); ++i) {
         reader.begin(sources[i], range_.firstBlock, range_.lastBlock);
-        addJoined(reader, tiles.runs()[run][i], tiles.columns());
+        addJoined(reader, tiles.runs()[run][i]);
         payForWords();
     }
     finish();
-}
-
-// Whether looks are too many already, so that nothing of what is packed will be used.
-bool ColumnPacker::mustJoinAgain() const {
-    const std::optional<LookJoiner>& looks = options_.joiner->looks();
-    return looks && looks->hasTooMany();
 }
 
 // Where all packers have more words than they may, there are to be none.
@@ -155,9 +149,8 @@ void ColumnPacker::finish() {
 
 // Adds the words of a tile of joined slices, from its first slice to its last: of each row of
 // columns those of a slice are in the order of v.
-// @param columns  of the tile
-void ColumnPacker::addJoined(JoinedTileReader& reader, const JoinedTile& tile,
-                             const glm::ivec2& columns) {
+void ColumnPacker::addJoined(JoinedTileReader& reader, const JoinedTile& tile) {
+    const glm::ivec2 columns = reader.columns();
     constexpr int kNever = std::numeric_limits<int>::min();
     // The place at which each column had a block.
     std::vector<int> last(std::size_t(columns.x) * std::size_t(columns.y), kNever);
@@ -180,7 +173,8 @@ void ColumnPacker::addJoined(JoinedTileReader& reader, const JoinedTile& tile,
     const auto endAll = [&] {
         for (std::size_t column = 0; column < last.size(); ++column) endBefore(column, place + 1);
     };
-    while (!mustJoinAgain() && reader.next()) {
+    // Of too many looks nothing will be used: all is joined again.
+    while (!options_.joiner->hasTooManyLooks() && reader.next()) {
         if (place != kNever && place + 1 < reader.place()) endAll();
         place = reader.place();
         for (std::size_t column = 0; column < last.size(); ++column) {

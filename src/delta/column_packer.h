@@ -93,9 +93,8 @@ class ColumnPacker {
     };
     using SliceClasses = std::array<ClassIndex, 64>;
     using BlockClasses = std::array<ClassIndex, 512>;
-    void addJoined(JoinedTileReader& reader, const JoinedTile& tile, const glm::ivec2& columns);
+    void addJoined(JoinedTileReader& reader, const JoinedTile& tile);
     static void groupByColumn(std::vector<PendingWord>& words, std::size_t first);
-    bool mustJoinAgain() const;
     void payForWords();
     void finish();
     void dropUnneeded(std::vector<PendingWord>& words) const;

@@ -31,7 +31,9 @@ class JoinedTileReader {
     /// is one.
     bool next();
     int place() const { return place_; }
-    /// Whether a column, `[u][v]` of JoinedTiles::columns(), has a block at this place.
+    /// How many columns a tile has, as JoinedTiles says.
+    const glm::ivec2& columns() const { return columns_; }
+    /// Whether a column, `[u][v]`, has a block at this place.
     bool has(std::size_t column) const { return has_[column]; }
     /// Returns what it is, `[slice][u][v]`.
     const BlockClasses& classes(std::size_t column) const { return joined_[column]; }

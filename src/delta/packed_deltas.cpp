@@ -249,9 +249,7 @@ struct DeltaPacker::Impl {
         return packers;
     }
 
-    bool hasTooManyLooks() const {
-        return joiner && joiner->looks() && joiner->looks()->hasTooMany();
-    }
+    bool hasTooManyLooks() const { return joiner && joiner->hasTooManyLooks(); }
 
     // Whether looks were too many, and slices are to be joined again, with looks rounded further.
     bool mustJoinAgain() {

@@ -34,6 +34,8 @@ class SliceJoiner {
     /// What joins looks; empty: pairs or sums are joined.
     std::optional<LookJoiner>& looks() { return looks_; }
     const std::optional<LookJoiner>& looks() const { return looks_; }
+    /// Whether more looks came up than there are numbers for: then what was joined is nothing.
+    bool hasTooManyLooks() const { return looks_ && looks_->hasTooMany(); }
 
     /// Joins voxels of slices that lie one behind the other, as many as become 8x8.
     /// @param slices  the first of them in each; of more than two, pairs may be left out in which

@@ -115,12 +115,9 @@ struct Sight {
 class LineTracer {
   public:
     LineTracer(const ColumnFinder& columns, const ClassReader& classes,
-               std::span<const glm::dvec4> lights, const JoinedSquares& squares)
-        : columns_(columns),
-          classes_(classes),
-          lights_(lights),
-          squares_(squares),
-          range_(columns) {}
+               std::span<const glm::dvec4> lights, const JoinedSquares& squares,
+               const SliceRange& range)
+        : columns_(columns), classes_(classes), lights_(lights), squares_(squares), range_(range) {}
 
     // Returns what is seen by squares beside each other, about as many as a pixel averages at
     // least, one of which a voxel is in.
@@ -229,7 +226,7 @@ std::optional<SquareChange> squareChange(const std::vector<CodeBlock>& blocks,
     constexpr int kMostSlices = 8192;
     const SliceRange range(columns);
     if (double(range.last) - range.first >= kMostSlices) return {};
-    const LineTracer tracer(columns, classes, lights, squares);
+    const LineTracer tracer(columns, classes, lights, squares, range);
     std::vector<std::optional<Sight>> patches(kPatches);
     parallelFor(kPatches, [&](std::size_t i) {
         // From every part of the volume as many as it has blocks.
