@@ -285,11 +285,12 @@ std::vector<CodeBlock> listBlocks(const CodeTree& codes, int sliceAxis,
         return codesSeen.hasAny(block.lowest, block.highest) &&
                (!seen || seen->sees(block.position));
     };
-    const auto count = std::count_if(along->blocks().begin(), along->blocks().end(), isSeen);
+    const auto all = along->blocksWith(codesSeen);
+    const auto count = std::count_if(all->begin(), all->end(), isSeen);
     requireMemory("list of voxel blocks", double(count) * kBytesPerBlock);
     std::vector<CodeBlock> blocks;
     blocks.reserve(std::size_t(count));
-    for (const SlotBlock& block : along->blocks()) {
+    for (const SlotBlock& block : *all) {
         if (!isSeen(block)) continue;
         const Slot tile = block.slots ? kEmptySlot : slotMap[std::size_t(block.tileSlot)];
         blocks.push_back(

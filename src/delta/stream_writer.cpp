@@ -5,14 +5,18 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include "delta/bit_writer.h"
 #include "delta/rice_writer.h"
+#include "delta/stream_codes.h"
 #include "ingest/delta/delta_stream.h"
 #include "ingest/delta/rice_code.h"
+#include "ingest/delta/stream_index.h"
 #include "parallel.h"
 #include "run_begins.h"
 
@@ -93,7 +97,7 @@ class Places {
 };
 
 template <typename Leaf>
-BitWriter columnOf(std::span<const Leaf* const> leaves, int firstBlock, RiceCode code) {
+BitWriter packColumn(std::span<const Leaf* const> leaves, int firstBlock, RiceCode code) {
     BitWriter out;
     out.putNumber(leaves.size() - 1);
     int next = firstBlock;
@@ -140,15 +144,42 @@ std::vector<std::uint64_t> wordsOf(const Tree& deltas, const DeltaHeader& header
     parallelForChunks(count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::span<const Leaf* const> own(&leaves[begins[i]], begins[i + 1] - begins[i]);
-            columns[i] = columnOf<Leaf>(own, places.firstBlockOf(places.columnOf(*own[0])), code);
+            columns[i] = packColumn<Leaf>(own, places.firstBlockOf(places.columnOf(*own[0])), code);
         }
     });
-    BitWriter out;
-    out.putNumber(count);
-    glm::ivec3 before(0, 0, -1);
-    for (std::size_t i = 0; i < count; ++i)
-        putColumn(places.columnOf(*leaves[begins[i]]), before, columns[i].words().size(), out);
-    std::vector<std::uint64_t> words = out.words();
+    std::optional<StreamCodes> codes;
+    if constexpr (std::is_same_v<Tree, openvdb::Int32Tree>)
+        if (header.mayKnowCodes()) codes = streamCodes(leaves, begins, header);
+    const auto index = [&](const StreamCodes* known) {
+        BitWriter out;
+        out.putNumber(count);
+        if (header.mayKnowCodes()) out.put(known ? 1 : 0, 1);
+        glm::ivec3 before(0, 0, -1);
+        for (std::size_t i = 0; i < count; ++i) {
+            putColumn(places.columnOf(*leaves[begins[i]]), before, columns[i].words().size(), out);
+            if (known) known->putRange(i, out);
+        }
+        if (known) {
+            known->putHistogram(out);
+            known->putBox({toSliceOrder(header.box.min, header.sliceAxis),
+                           toSliceOrder(header.box.max, header.sliceAxis)},
+                          out);
+        }
+        std::vector<std::uint64_t> words = out.words();
+        if (known) words.push_back(streamSum(words.data(), words.size()));
+        return words;
+    };
+    std::vector<std::uint64_t> words = index(nullptr);
+    std::size_t packed = 0;
+    for (const BitWriter& column : columns) packed += column.words().size();
+    if (codes) {
+        // So a file is hardly larger.
+        constexpr std::size_t kLeastShare = 50;
+        std::vector<std::uint64_t> knowing = index(&*codes);
+        if (knowing.size() <= words.size() + (words.size() + packed) / kLeastShare)
+            words = std::move(knowing);
+    }
+    words.reserve(words.size() + packed);
     for (const BitWriter& column : columns)
         words.insert(words.end(), column.words().begin(), column.words().end());
     return words;

@@ -27,9 +27,41 @@ void makePieces(openvdb::GridBase& grid) {
         grid.insertMeta("delta_version", openvdb::Int32Metadata(2));
 }
 
-// Half, table, linear, pieces, float32 and float64; as voxels, and packed.
+// Half, table, linear, pieces, float32 and float64; as voxels, and packed; and a volume whose
+// packed deltas say which codes they add up to.
 constexpr int kBooks = 6;
-constexpr int kKinds = 2 * kBooks;
+constexpr int kKnown = 2 * kBooks;
+constexpr int kKinds = kKnown + 1;
+
+// Returns the delta grid of a volume of several columns.
+openvdb::GridBase::Ptr writeDeltas(const Volume& volume, const DeltaFileOptions& options) {
+    const std::string path = fileWith(".seed.vdb", nullptr, 0);
+    DeltaFile file;
+    file.add(volume, options);
+    file.write(path);
+    openvdb::io::File input(path);
+    input.open();
+    const openvdb::GridBase::Ptr grid = input.readGrid("density");
+    input.close();
+    std::remove(path.c_str());
+    return grid;
+}
+
+openvdb::GridBase::Ptr knownDeltaGrid() {
+    openvdb::initialize();
+    auto source = openvdb::Int32Grid::create();
+    source->setName("density");
+    for (int i = 0; i < 24 * 24 * 24; ++i) {
+        const openvdb::Coord at(i % 24 - 5, i / 24 % 24 + 3, i / 576);
+        source->tree().setValueOn(at, at.x() > 9 ? 1 : 1 + i * i % 7);
+    }
+    const std::string path = fileWith(".seed.vdb", nullptr, 0);
+    openvdb::io::File(path).write({source});
+    DeltaFileOptions options;
+    options.pack = true;
+    options.keyInterval = 8;
+    return writeDeltas(readVolume(path), options);
+}
 
 // Returns the delta grid of a small volume of each kind of code book.
 template <typename Grid>
@@ -59,14 +91,7 @@ openvdb::GridBase::Ptr deltaGrid(int kind) {
     DeltaFileOptions options;
     options.codesOnly = kind < 4;
     options.pack = isPacked;
-    DeltaFile file;
-    file.add(readVolume(path, reading), options);
-    file.write(path);
-    openvdb::io::File input(path);
-    input.open();
-    const openvdb::GridBase::Ptr grid = input.readGrid("density");
-    input.close();
-    std::remove(path.c_str());
+    const openvdb::GridBase::Ptr grid = writeDeltas(readVolume(path, reading), options);
     if (kind == 3) makePieces(*grid);
     return grid;
 }
@@ -167,7 +192,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         fuzz::deltaGrid<FloatGrid>(4),  fuzz::deltaGrid<DoubleGrid>(5),
         fuzz::deltaGrid<FloatGrid>(6),  fuzz::deltaGrid<FloatGrid>(7),
         fuzz::deltaGrid<FloatGrid>(8),  fuzz::deltaGrid<FloatGrid>(9),
-        fuzz::deltaGrid<FloatGrid>(10), fuzz::deltaGrid<DoubleGrid>(11)};
+        fuzz::deltaGrid<FloatGrid>(10), fuzz::deltaGrid<DoubleGrid>(11),
+        fuzz::knownDeltaGrid()};
     const openvdb::GridBase::Ptr grid = grids[data[0] % fuzz::kKinds]->deepCopyGrid();
     fuzz::Input input(data + 2, size - 2);
     for (int n = data[1] % 4; n > 0; --n) fuzz::damageMetadata(input, *grid);
@@ -176,15 +202,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         while (!input.empty()) fuzz::damageVoxels(input, deltas.tree());
     });
     const std::string path = fuzz::fileWith(".vdb", nullptr, 0);
-    // As a whole grid, and straight from the file.
-    for (const bool keepSource : {true, false}) {
+    // As a whole grid, straight from the file, and what is asked for of it.
+    ReadOptions whole;
+    whole.keepSource = true;
+    ReadOptions later;
+    later.readLater = true;
+    for (const ReadOptions& options : {whole, ReadOptions(), later}) {
         try {
             openvdb::io::File(path).write({grid});
         } catch (const openvdb::Exception&) {
             return 0;  // OpenVDB itself writes no such file
         }
-        ReadOptions options;
-        options.keepSource = keepSource;
         fuzz::readAndCheck(path, options);
     }
     return 0;

@@ -132,6 +132,13 @@ void expectSameAsWhole(const Volume& quick) {
         expectSameWords(packDeltas(quick, {other, Encoding::kChanges, classes, {}}),
                         packDeltas(whole, {other, Encoding::kChanges, classes, {}}));
     expectSameCodes(quick, whole);
+    ReadOptions asked;
+    asked.readLater = true;
+    const Volume later = readVolume(kDeltas, asked);
+    expectSameOfDeltas(later, whole);
+    expectSameWords(packDeltas(later, {axis, Encoding::kSmaller, classes, {}}),
+                    packDeltas(whole, {axis, Encoding::kSmaller, classes, {}}));
+    expectSameCodes(later, whole);
     const ThreadLimit one(1);
     const Volume alone = readVolume(kDeltas);
     expectSameOfDeltas(alone, whole);

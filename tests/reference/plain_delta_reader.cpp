@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference/plain_delta_reader.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace deltasplat::testing {
@@ -53,6 +56,17 @@ class Bits {
     }
     int takeParameter(int width) { return int(take(width > 32 ? 6 : 5)); }
     void skipToWord() { next_ = (next_ + 63) / 64 * 64; }
+    // The CRC-32 of all words so far.
+    std::uint64_t sum() {
+        std::uint32_t sum = 0xffffffff;
+        for (std::uint64_t i = 0; i < next_ / 64; ++i) {
+            for (int bit = 0; bit < 64; ++bit) {
+                const bool isOdd = ((word(i) >> bit ^ sum) & 1) != 0;
+                sum = sum >> 1 ^ (isOdd ? 0xedb88320 : 0);
+            }
+        }
+        return std::uint64_t(~sum);
+    }
 
   private:
     std::uint64_t word(std::uint64_t i) {
@@ -151,11 +165,22 @@ class PackedDeltas {
                             std::size_t(size_.z()) +
                         std::size_t(place.z())];
     }
-    void take(Bits& bits, int interval, int width) {
+    // What the stream says of codes, if it does: of columns (slab, u, v) of blocks, lowest and
+    // highest; how many active voxels have each; and the box of these.
+    struct Said {
+        bool isThere = false;
+        std::map<openvdb::Coord, std::pair<int, int>> ranges;
+        std::map<int, std::uint64_t> counts;
+        openvdb::Coord first = openvdb::Coord::max();
+        openvdb::Coord last = openvdb::Coord::min();
+    };
+    void take(Bits& bits, int interval, int width, bool maySay) {
         std::vector<openvdb::Coord> columns;
         std::uint64_t slab = 0, u = 0, next = 0;
         const auto block = [](int low, std::uint64_t more) { return (low >> 3) + int(more); };
-        for (std::uint64_t left = bits.takeNumber(); left > 0; --left) {
+        const std::uint64_t number = bits.takeNumber();
+        said.isThere = maySay && bits.take(1) == 1;
+        for (std::uint64_t left = number; left > 0; --left) {
             const std::uint64_t moreSlabs = bits.takeNumber();
             slab += moreSlabs;
             if (moreSlabs > 0) u = next = 0;
@@ -166,6 +191,23 @@ class PackedDeltas {
             bits.takeNumber();  // its words: for those who read several at a time
             columns.push_back({block(first_.x(), slab * std::uint64_t(interval / 8)),
                                block(first_.y(), u), block(first_.z(), next - 1)});
+            if (!said.isThere) continue;
+            const int lowest = int(bits.takeNumber());
+            said.ranges[columns.back()] = {lowest, lowest + int(bits.takeNumber())};
+        }
+        if (said.isThere) {
+            int code = 0;
+            for (std::uint64_t left = bits.takeNumber(); left > 0; --left, ++code) {
+                code += int(bits.takeNumber());
+                said.counts[code] = bits.takeNumber() + 1;
+            }
+            for (int axis = 0; axis < 3; ++axis) {
+                said.first[axis] = first_[axis] + int(bits.takeNumber());
+                said.last[axis] = first_[axis] + size_[axis] - 1 - int(bits.takeNumber());
+            }
+            bits.skipToWord();
+            const std::uint64_t sum = bits.sum();
+            if (bits.take(64) != sum) throw std::runtime_error("another sum");
         }
         for (const openvdb::Coord& column : columns) {
             bits.skipToWord();
@@ -176,6 +218,8 @@ class PackedDeltas {
             }
         }
     }
+
+    Said said;
 
   private:
     void takeBlock(Bits& bits, const openvdb::Coord& corner, int width) {
@@ -226,7 +270,8 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
     const auto narrow = openvdb::gridPtrCast<openvdb::Int32Grid>(deltas);
     const auto wide = openvdb::gridPtrCast<openvdb::Int64Grid>(deltas);
     const int version = entry<std::int32_t>(*deltas, "delta_version");
-    if (version < 1 || version > 6) throw std::runtime_error("version");
+    if (version < 1 || version > 7) throw std::runtime_error("version");
+    const bool isPacked = version == 5 || version == 7;
 
     // Axis of the source that slices, u and v run along.
     const int axis = entry<std::string>(*deltas, "delta_slice_axis", "z")[0] - 'x';
@@ -264,15 +309,27 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
     const bool isExact = exact.isOne();
     PackedDeltas packed({low[order[0]], low[order[1]], low[order[2]]},
                         {high[order[0]], high[order[1]], high[order[2]]});
-    if (version == 5 && !wide->empty()) {
+    if (isPacked && !wide->empty()) {
         const std::size_t codes =
             isExact ? 0 : std::size_t(entry<std::int32_t>(*deltas, "delta_code_count", 1));
         const std::size_t largest = inactive.empty() ? codes : 65536 + inactive.size();
         int width = isExact ? (exact.is32() ? 32 : 64) : 0;
         while (!isExact && 2 * largest >> width != 0) ++width;
         Bits bits(*wide);
-        packed.take(bits, interval, width);
+        packed.take(bits, interval, width, version == 7);
     }
+    PackedDeltas::Said found;
+    const auto note = [&](const openvdb::Coord& suv, int code) {
+        ++found.counts[code];
+        found.first.minComponent(suv);
+        found.last.maxComponent(suv);
+        const int slab = (suv.x() - firstSlab) / interval;
+        const openvdb::Coord column((firstSlab + slab * interval) >> 3, suv.y() >> 3, suv.z() >> 3);
+        auto& range = found.ranges.try_emplace(column, code, code).first->second;
+        range = {std::min(range.first, code), std::max(range.second, code)};
+    };
+    int rest = 0;
+    while (restActive && packed.said.isThere && book.value(rest) != volume.background) ++rest;
     for (int u = low[order[1]]; u <= high[order[1]]; ++u) {
         for (int v = low[order[2]]; v <= high[order[2]]; ++v) {
             std::uint64_t slot = 0;  // of exact books modulo 2^32 or 2^64
@@ -282,7 +339,7 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
                 const openvdb::Coord place(s, u, v);
                 std::int32_t delta = 0;
                 std::int64_t wideDelta = 0;
-                if (version == 5) {
+                if (isPacked) {
                     const std::uint64_t z = packed.at(place);
                     slot += z % 2 == 0 ? z / 2 : ~(z / 2);
                 } else if (narrow && narrow->tree().probeValue(place, delta)) {
@@ -311,9 +368,17 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
                 };
                 volume.values[at] = value();
                 volume.active[at] = slot == 0 ? restActive : slot < first;
+                if (packed.said.isThere && volume.active[at])
+                    note(place, slot == 0 ? rest : int(slot - 1));
             }
         }
     }
+    if (!packed.said.isThere) return volume;
+    if (found.first != packed.said.first || found.last != packed.said.last)
+        throw std::runtime_error("another box");
+    if (found.counts != packed.said.counts) throw std::runtime_error("other numbers of codes");
+    for (const auto& [column, range] : packed.said.ranges)
+        if (found.ranges.at(column) != range) throw std::runtime_error("other codes in a column");
     return volume;
 }
 

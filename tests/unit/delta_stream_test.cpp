@@ -17,6 +17,7 @@
 
 #include "delta/bit_writer.h"
 #include "delta/rice_writer.h"
+#include "delta/stream_writer.h"
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
@@ -27,6 +28,7 @@
 #include "ingest/delta/word_tree.h"
 #include "ingest/vdb/vdb_file.h"
 #include "support/error_of.h"
+#include "support/same_volume.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {
@@ -345,6 +347,7 @@ Damage column(std::uint64_t slab, std::uint64_t u, std::uint64_t v, std::uint64_
               const std::function<void(BitWriter&)>& write = {}) {
     return rewritten([=](BitWriter& out) {
         out.putNumber(1);
+        out.put(0, 1);
         for (const std::uint64_t number : {slab, u, v, words - 1}) out.putNumber(number);
         out.put(0, 64 - int(out.bits() % 64));
         if (write) write(out);
@@ -410,6 +413,186 @@ TEST(DeltaStreamError, BlocksThatAreNone) {
     EXPECT_EQ(refusalOf(column(0, 0, 0, 2, one(1))), damaged("(0, 0, 0)"));
 }
 
+// One column, of the codes 1 and 2 of 2160 voxels.
+Damage codes(std::uint64_t lowest, std::uint64_t more,
+             const std::vector<std::uint64_t>& histogram) {
+    return rewritten([=](BitWriter& out) {
+        out.putNumber(1);
+        out.put(1, 1);
+        for (const std::uint64_t number : {0, 0, 0, 0}) out.putNumber(number);
+        out.putNumber(lowest);
+        out.putNumber(more);
+        out.putNumber(histogram.size() / 2);
+        for (const std::uint64_t number : histogram) out.putNumber(number);
+        for (int side = 0; side < 6; ++side) out.putNumber(0);
+        const std::vector<std::uint64_t> words = out.words();
+        out.put(0, int(64 * words.size() - out.bits()));
+        out.put(streamSum(words.data(), words.size()), 64);
+        out.put(0, 64);
+    });
+}
+
+TEST(DeltaStreamError, CodesThatThereAreNot) {
+    const std::string beyond =
+        kWhere + "got codes beyond those of the code book; expected codes below 250";
+    EXPECT_EQ(refusalOf(codes(250, 0, {})), beyond);
+    EXPECT_EQ(refusalOf(codes(249, 1, {})), beyond);
+    EXPECT_EQ(refusalOf(codes(0, std::uint64_t{1} << 62, {})), beyond);
+    const std::string none = kWhere +
+                             "got numbers of codes that go together with no volume; expected 2160 "
+                             "voxels of 250 codes";
+    EXPECT_EQ(refusalOf(codes(0, 249, {250, 1})), none);
+    EXPECT_EQ(refusalOf(codes(0, 249, {3, 1, 246, 1})), none);
+    EXPECT_EQ(refusalOf(codes(0, 249, {3, 2160})), none);
+    EXPECT_EQ(refusalOf(codes(0, 249, {3, 999, 4, 1160})), none);
+    EXPECT_EQ(refusalOf(codes(0, 249, {3, 999, 4, 1158})),
+              kWhere + "got codes of 2159 voxels; expected of 2160");
+    // Of the column's ends one.
+    EXPECT_EQ(refusalOf(codes(3, 4, {3, 999, 4, 1159})),
+              kWhere + "got columns of codes that no voxel has; expected those of some voxel");
+}
+
+// Of a volume that says which codes it has, the words and what they are of.
+struct Known {
+    openvdb::Int64Grid::Ptr grid;
+    DeltaHeader header;
+    std::vector<std::uint64_t> words;
+};
+
+Known knownCodes() {
+    std::string voxels;
+    std::mt19937 random(3);
+    for (int i = 0; i < 64 * 64 * 16; ++i) voxels += char(random() % 64);
+    testing::writeBytes("a_64x64x16_uint8.raw", voxels);
+    Known known{packedGrid("a_64x64x16_uint8.raw", "a.vdb"), {}, {}};
+    known.header = takeDeltaHeader(*known.grid, "a");
+    known.words = wordsOfTree(known.grid->tree(), kStreamPadding, "a");
+    return known;
+}
+
+void writeWords(const std::vector<std::uint64_t>& words, const openvdb::Int64Grid& like,
+                const std::string& file, int version = DeltaHeader::kPackedVersion) {
+    const auto grid = gridOfWords(words);
+    grid->insertMeta(like);
+    grid->insertMeta("delta_version", openvdb::Int32Metadata(version));
+    grid->setTransform(like.transform().copy());
+    openvdb::io::File(file).write({grid});
+}
+
+TEST(DeltaStreamError, AnIndexThatIsDamaged) {
+    const TempFolder folder;
+    const Known known = knownCodes();
+    const std::size_t count = known.words.size() - kStreamPadding;
+    const StreamIndex index =
+        readStreamIndex(known.words.data(), count, count, known.header, "a").value();
+    ASSERT_FALSE(index.histogram.empty());
+    // Wherever a bit of it is another, codes among them, somebody says so.
+    for (std::size_t bit = 0; bit < 64 * index.parts.front().begin; ++bit) {
+        std::vector<std::uint64_t> words = known.words;
+        words[bit / 64] ^= std::uint64_t{1} << bit % 64;
+        EXPECT_ANY_THROW(readStreamIndex(words.data(), count, count, known.header, "a")) << bit;
+    }
+}
+
+// What says which codes there are has to be right, whoever reads it.
+TEST(DeltaStreamError, CodesThatDeltasDoNotAddUpTo) {
+    const TempFolder folder;
+    const Known known = knownCodes();
+    const std::size_t count = known.words.size() - kStreamPadding;
+    const StreamIndex index =
+        readStreamIndex(known.words.data(), count, count, known.header, "a").value();
+    const auto rewrite = [&](const StreamIndex& changed) {
+        BitWriter out;
+        out.putNumber(changed.parts.size());
+        out.put(1, 1);
+        glm::ivec3 before(0, 0, -1);
+        for (const StreamPart& part : changed.parts) {
+            if (part.first.x != before.x) before = {before.x, 0, -1};
+            if (part.first.y != before.y) before.z = -1;
+            for (const int number : {part.first.x - before.x, part.first.y - before.y,
+                                     part.first.z - before.z - 1, int(part.end - part.begin) - 1,
+                                     int(part.lowest), int(part.highest - part.lowest)})
+                out.putNumber(std::uint64_t(number));
+            before = part.first;
+        }
+        const std::size_t used = 64 - std::size_t(std::count(changed.histogram.begin(),
+                                                             changed.histogram.begin() + 64, 0));
+        out.putNumber(used);
+        std::size_t next = 0;
+        for (std::size_t code = 0; code < 64; ++code) {
+            if (changed.histogram[code] == 0) continue;
+            out.putNumber(code - next);
+            out.putNumber(changed.histogram[code] - 1);
+            next = code + 1;
+        }
+        for (int side = 0; side < 5; ++side) out.putNumber(0);
+        out.putNumber(std::uint64_t(63 - changed.active.max.z));
+        std::vector<std::uint64_t> words = out.words();
+        words.push_back(streamSum(words.data(), words.size()));
+        words.insert(words.end(), known.words.begin() + std::ptrdiff_t(index.parts.front().begin),
+                     known.words.begin() + std::ptrdiff_t(count));
+        writeWords(words, *known.grid, "a.vdb");
+    };
+    const auto refusals = [&] {
+        ReadOptions whole;
+        whole.keepSource = true;
+        ReadOptions later;
+        later.readLater = true;
+        return std::vector<std::string>{
+            test::errorOf([] { readVolume("a.vdb"); }),
+            test::errorOf([&] { readVolume("a.vdb", whole); }),
+            test::errorOf([&] { readVolume("a.vdb", later).codes->tree(); })};
+    };
+    rewrite(index);
+    EXPECT_EQ(refusals(), std::vector<std::string>(3, "no error"));
+    const std::string where = "input: a.vdb: grid \"a_64x64x16_uint8\": ";
+    StreamIndex other = index;
+    ++other.histogram[5];
+    --other.histogram[6];
+    rewrite(other);
+    const std::string counts =
+        where +
+        "got voxels of other codes, or other numbers of them; expected those "
+        "that the stream says";
+    EXPECT_EQ(refusals()[0], counts);
+    EXPECT_EQ(refusals()[1], counts);
+    other = index;
+    --other.active.max.z;
+    rewrite(other);
+    const std::string box = where +
+                            "got another box of active voxels; expected the one that the stream "
+                            "says";
+    EXPECT_EQ(refusals()[0], box);
+    EXPECT_EQ(refusals()[1], box);
+    other = index;
+    ASSERT_EQ(other.parts[70].highest, 63);
+    other.parts[70].highest = 62;
+    rewrite(other);
+    const std::string range =
+        where + "got codes 0..63 from (8, 0, 48) on; expected 0..62, as the stream says";
+    EXPECT_EQ(refusals()[0], range);
+    EXPECT_EQ(refusals()[2], range);
+}
+
+// As files had it before they said which codes there are.
+TEST(DeltaStream, OlderStreamsAreRead) {
+    const TempFolder folder;
+    Known known = knownCodes();
+    const Volume volume = readVolume("a.vdb");
+    TreeGrid grid = VdbFile("a.vdb").read(VdbFile("a.vdb").grids().front(), {});
+    const UnpackedDeltas unpacked = unpackDeltas(grid, known.header, "a", {});
+    known.header.version = DeltaHeader::kOldPackedVersion;
+    const std::vector<std::uint64_t> older = streamOf(*unpacked.grid.tree, known.header);
+    EXPECT_LT(older.size(), known.words.size() - kStreamPadding);
+    writeWords(older, *known.grid, "older.vdb", DeltaHeader::kOldPackedVersion);
+    Volume read = readVolume("older.vdb");
+    test::expectSameVolume(read, volume);
+    ReadOptions later;
+    later.readLater = true;
+    read = readVolume("older.vdb", later);
+    test::expectSameVolume(read, volume);
+}
+
 // Nothing is filled before it shows that it cannot be all.
 TEST(DeltaStreamError, ABoxThatIsLargerThanItsVoxels) {
     const auto widened = [](openvdb::MetaMap& metadata, std::vector<std::uint64_t>&) {
@@ -461,21 +644,25 @@ TEST(DeltaStream, TheIndexIsReadFromTheFirstWords) {
     const std::size_t count = words.size() - kStreamPadding;
     const auto whole = readStreamIndex(words.data(), count, count, header, "a");
     ASSERT_TRUE(whole);
-    EXPECT_EQ(whole->size(), 2u * 8 * 8);
+    EXPECT_EQ(whole->parts.size(), 2u * 8 * 8);
     bool isFound = false;
-    for (std::size_t some = 0; some <= 100; ++some) {
+    EXPECT_EQ(whole->histogram.size(), std::size_t(kCodeCount));
+    for (std::size_t some = 0; some <= 300; ++some) {
         std::vector<std::uint64_t> first(words.begin(), words.begin() + std::ptrdiff_t(some));
         first.resize(some + kStreamPadding);
         const auto found = readStreamIndex(first.data(), some, count, header, "a");
         EXPECT_TRUE(found || !isFound) << some;
         isFound = found.has_value();
         if (!found) continue;
-        ASSERT_EQ(found->size(), whole->size());
-        for (std::size_t i = 0; i < whole->size(); ++i) {
-            EXPECT_EQ((*found)[i].first, (*whole)[i].first);
-            EXPECT_EQ((*found)[i].begin, (*whole)[i].begin);
-            EXPECT_EQ((*found)[i].end, (*whole)[i].end);
+        ASSERT_EQ(found->parts.size(), whole->parts.size());
+        for (std::size_t i = 0; i < whole->parts.size(); ++i) {
+            EXPECT_EQ(found->parts[i].first, whole->parts[i].first);
+            EXPECT_EQ(found->parts[i].begin, whole->parts[i].begin);
+            EXPECT_EQ(found->parts[i].end, whole->parts[i].end);
+            EXPECT_EQ(found->parts[i].lowest, whole->parts[i].lowest);
+            EXPECT_EQ(found->parts[i].highest, whole->parts[i].highest);
         }
+        EXPECT_EQ(found->histogram, whole->histogram);
     }
     EXPECT_TRUE(isFound);
 }

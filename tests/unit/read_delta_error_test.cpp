@@ -84,8 +84,8 @@ Damage without(const std::string& key) {
 }
 
 TEST(ReadDeltaError, UnknownVersion) {
-    expectRefused(": metadata \"delta_version\": got 7; expected an int32 within 1..6",
-                  with<std::int32_t>("delta_version", 7));
+    expectRefused(": metadata \"delta_version\": got 8; expected an int32 within 1..7",
+                  with<std::int32_t>("delta_version", 8));
     expectRefused(": got deltas of type int32; expected int64 for packed deltas",
                   with<std::int32_t>("delta_version", 5));
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A raw volume whose voxels are read when they are asked for is the volume that is read at once,
-// shows the same pictures, and says so if its file is not what it was.
+// shows the same pictures, and says so if its file is not what it was; so are packed deltas.
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -15,11 +16,17 @@
 #include <vector>
 
 #include "delta/code_blocks.h"
+#include "deltasplat/convert/write_volume.h"
 #include "deltasplat/cut/cut_volume.h"
+#include "deltasplat/delta/delta_file.h"
+#include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/render.h"
 #include "ingest/codes/code_tree.h"
+#include "ingest/codes/seen_codes.h"
+#include "ingest/codes/slot_blocks.h"
+#include "ingest/delta/word_tree.h"
 #include "support/same_volume.h"
 #include "support/some_scene.h"
 #include "unit/ingest_helpers.h"
@@ -292,6 +299,194 @@ TEST(ReadLater, othersAreReadAtOnce) {
     keeping.keepSource = true;
     EXPECT_FALSE(readVolume(file, keeping).codes->lacksLeaves());
     expectSameVolume(readVolume(file, later()), readVolume(file));
+}
+
+// Packed deltas say which codes their columns have, and are unpacked when these are asked for.
+
+constexpr const char* kPacked = "packed.vdb";
+
+Volume packedLater(const std::string& source, int sliceAxis, int keyInterval = 8) {
+    DeltaFileOptions options;
+    options.sliceAxis = sliceAxis;
+    options.keyInterval = keyInterval;
+    options.pack = true;
+    DeltaFile file;
+    file.add(readVolume(source), options);
+    file.write(kPacked);
+    return readVolume(kPacked, later());
+}
+
+// A volume whose columns are many, so that it may say of itself what they have.
+std::string writeLarge(bool isSparse = false) {
+    constexpr glm::ivec3 kLarge{120, 88, 100};
+    std::vector<std::uint8_t> values(std::size_t(kLarge.x * kLarge.y * kLarge.z), 0);
+    std::mt19937 random(3);
+    std::size_t i = 0;
+    for (int z = 0; z < kLarge.z; ++z) {
+        for (int y = 0; y < kLarge.y; ++y) {
+            for (int x = 0; x < kLarge.x; ++x, ++i) {
+                const double radius = std::hypot(x - 50, y - 40, z - 50);
+                if (radius < 30) values[i] = std::uint8_t(200 - 3 * radius + double(random() % 32));
+                if (!isSparse && radius >= 30) values[i] = std::uint8_t(random() % 16);
+            }
+        }
+    }
+    const std::string file = "v_120x88x100_uint8.raw";
+    writeBytes(file, bytesOf(values));
+    if (!isSparse) return file;
+    WriteOptions options;
+    options.dropBackground = true;
+    options.background = 0;
+    writeVolumes("sparse.vdb", {readVolume(file)}, options);
+    return "sparse.vdb";
+}
+
+const SlotBlocks& blocksOf(const Volume& volume) {
+    return *volume.codes->blocksAlong(volume.origin->sliceAxis);
+}
+
+std::size_t countMade(const Volume& volume) {
+    return blocksOf(volume).blocksWith(SeenCodes([](int) { return false; }))->size();
+}
+
+void expectSameBlocks(const Volume& a, const Volume& b, int least) {
+    const int axis = a.origin->sliceAxis;
+    const std::vector<CodeBlock> blocks = listBlocks(*a.codes, axis, codesFrom(least));
+    const std::vector<CodeBlock> expected = listBlocks(*b.codes, axis, codesFrom(least));
+    ASSERT_EQ(blocks.size(), expected.size());
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        ASSERT_EQ(blocks[i].position, expected[i].position);
+        ASSERT_EQ(blocks[i].tileSlot, expected[i].tileSlot);
+        ASSERT_EQ(blocks[i].lowest, expected[i].lowest);
+        ASSERT_EQ(blocks[i].highest, expected[i].highest);
+        ASSERT_EQ(bool(blocks[i].slots), bool(expected[i].slots));
+        if (blocks[i].slots) {
+            ASSERT_TRUE(std::equal(blocks[i].slots, blocks[i].slots + 512, expected[i].slots));
+        }
+    }
+}
+
+TEST(ReadLater, columnsOfPackedDeltasAreUnpackedWhenTheirCodesAreAskedFor) {
+    const TempFolder folder;
+    for (const bool isSparse : {false, true}) {
+        const std::string source = writeLarge(isSparse);
+        for (const int axis : {0, 1, 2}) {
+            for (const int keyInterval : {8, 32, 128}) {
+                SCOPED_TRACE(std::to_string(axis) + " " + std::to_string(keyInterval));
+                const Volume volume = packedLater(source, axis, keyInterval);
+                const Volume whole = readVolume(kPacked);
+                test::expectSameFacts(volume, whole);
+                EXPECT_EQ(countMade(volume), 0u);
+                expectSameBlocks(volume, whole, volume.codeBook.codeOf(200));
+                const std::size_t few = countMade(volume);
+                EXPECT_GT(few, 0u);
+                expectSameBlocks(volume, whole, volume.codeBook.codeOf(170));
+                EXPECT_GT(countMade(volume), few);
+                EXPECT_LT(countMade(volume), blocksOf(whole).blocks().size());
+                expectSameBlocks(volume, whole, 0);
+                EXPECT_EQ(countMade(volume), blocksOf(whole).blocks().size());
+                expectSameVolume(volume, whole);
+                expectSameVolume(volume, readVolume(kPacked, later()));
+            }
+        }
+    }
+}
+
+TEST(ReadLater, packedDeltasOfAllTypesAreTheSameVolume) {
+    const TempFolder folder;
+    const auto isSame = [](const std::string& source) {
+        const Volume volume = packedLater(source, 0, 128);
+        expectSameVolume(volume, readVolume(kPacked));
+    };
+    isSame(writeValues<std::uint8_t>("uint8"));
+    isSame(writeValues<std::int8_t>("int8"));
+    isSame(writeValues<std::uint16_t>("uint16"));
+    isSame(writeValues<std::int16_t>("int16"));
+}
+
+TEST(ReadLater, packedDeltasShowTheSamePictures) {
+    const TempFolder folder;
+    RenderOptions options;
+    options.camera.direction = {-0.3, 0.4, -0.8};
+    options.camera.sizePixels = {40, 40};
+    options.optics = test::someOptics(test::Colors::kSeveral);
+    std::vector<RenderOptions> some(6, options);
+    some[1].camera.projection = Projection::kPerspective;
+    some[2].mode = Mode::kXray;
+    some[3].optics = test::someOptics(test::Colors::kLit);
+    some[4].optics = test::someOptics(test::Colors::kFog);
+    some[5].camera.sizePixels = {500, 400};  // voxels are divided
+    const std::string source = writeLarge();
+    packedLater(source, 2);
+    const Volume whole = readVolume(kPacked);
+    for (const RenderOptions& one : some) {
+        EXPECT_EQ(render(readVolume(kPacked, later()), one).image.rgba,
+                  render(whole, one).image.rgba);
+    }
+}
+
+TEST(ReadLater, manyThreadsAskForColumnsAtOnce) {
+    const TempFolder folder;
+    const Volume volume = packedLater(writeLarge(), 2);
+    const Volume whole = readVolume(kPacked);
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 8; ++i) {
+        threads.emplace_back([&, i] {
+            if (i % 4 == 3) return void(volume.codes->tree());
+            expectSameBlocks(volume, whole, 190 - 20 * i);
+        });
+    }
+    for (std::thread& thread : threads) thread.join();
+    expectSameVolume(volume, whole);
+}
+
+// Damage is found where it is read: the last column has none of the ball's codes.
+TEST(ReadLater, damagedColumnsAreRefusedWhenTheyAreAskedFor) {
+    const TempFolder folder;
+    packedLater(writeLarge(), 2);
+    openvdb::initialize();
+    openvdb::io::File input(kPacked);
+    input.open();
+    const auto grid =
+        openvdb::gridPtrCast<openvdb::Int64Grid>(input.readGrid(input.beginName().gridName()));
+    std::vector<std::uint64_t> words = wordsOfTree(grid->tree(), 0, "words");
+    words[words.size() - 3] ^= 0x123456789abcdef;
+    const auto damaged = openvdb::Int64Grid::create(treeOfWords(words));
+    damaged->insertMeta(*grid);
+    damaged->setTransform(grid->transform().copy());
+    openvdb::io::File("damaged.vdb").write({damaged});
+    const auto codeOf = [](const auto& read) {
+        try {
+            read();
+        } catch (const Error& error) {
+            return error.code();
+        }
+        ADD_FAILURE() << "no error";
+        return ErrorCode::kUsage;
+    };
+    EXPECT_EQ(codeOf([] { readVolume("damaged.vdb"); }), ErrorCode::kInput);
+    const Volume volume = readVolume("damaged.vdb", later());
+    const Volume whole = readVolume(kPacked);
+    expectSameBlocks(volume, whole, 100);
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_EQ(codeOf([&] { listBlocks(*volume.codes, 2, codesFrom(0)); }), ErrorCode::kInput);
+        EXPECT_EQ(codeOf([&] { volume.codes->tree(); }), ErrorCode::kInput);
+    }
+    expectSameBlocks(volume, whole, 100);
+}
+
+TEST(ReadLater, memoryForColumnsIsAskedForBeforeItIsTaken) {
+    const TempFolder folder;
+    const Volume volume = packedLater(writeLarge(), 2);
+    setMemoryLimit(1);
+    try {
+        volume.codes->tree();
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::kFailed);
+    }
+    setMemoryLimit(0);
+    expectSameVolume(volume, readVolume(kPacked));
 }
 
 }  // namespace

@@ -57,8 +57,9 @@ struct ReadOptions {
     bool keepInexact = false;
     /// Read voxels of a plain raw file (.raw, .npy, .nii of whole numbers of 8 and 16 bits) when
     /// they are first asked for: a picture of some of them takes less time and memory. The file
-    /// stays open and must stay as it is: else what asks throws Error(kInput). Of no use where all
-    /// voxels are asked for, and without effect with keepSource.
+    /// stays open and must stay as it is: else what asks throws Error(kInput). Packed delta grids,
+    /// whose file is read at once, are unpacked so: damage is found, and thrown, by who asks. Of no
+    /// use where all voxels are asked for, and without effect with keepSource.
     bool readLater = false;
     /// With readLater: whether voxels of a value will probably be asked for, where a volume has
     /// such a Volume::type. They are then read while the file is gone over anyway. Null: nobody

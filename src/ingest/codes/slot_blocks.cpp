@@ -3,8 +3,14 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <glm/vec2.hpp>
+#include <iterator>
 #include <tuple>
 #include <utility>
+
+#include "ingest/codes/seen_codes.h"
+#include "memory.h"
+#include "parallel.h"
 
 namespace deltasplat {
 namespace {
@@ -13,45 +19,58 @@ auto keyOf(const glm::ivec3& position) {
     return std::tuple(position.y, position.z, position.x);
 }
 
+bool liesBefore(const SlotBlock& a, const SlotBlock& b) {
+    return keyOf(a.position) < keyOf(b.position);
+}
+
 }  // namespace
 
-SlotBlocks::SlotBlocks(int sliceAxis, std::vector<SlotBlock> blocks,
-                       std::vector<std::unique_ptr<ShortSlot[]>> storage)
-    : sliceAxis_(sliceAxis), blocks_(std::move(blocks)), storage_(std::move(storage)) {
-    if (blocks_.empty()) return;
-    glm::ivec2 first(blocks_.front().position.y, blocks_.front().position.z), last = first;
-    for (const SlotBlock& block : blocks_) {
+struct SlotBlocks::Columns {
+    explicit Columns(const std::vector<SlotBlock>& of);
+    const SlotBlock* find(const glm::ivec3& position) const;
+
+    const std::vector<SlotBlock>& blocks;
+    // Empty if the rectangle is mostly empty.
+    std::vector<std::size_t> begins;  // [u][v], and one more
+    glm::ivec2 first{0};
+    glm::ivec2 count{0};
+};
+
+SlotBlocks::Columns::Columns(const std::vector<SlotBlock>& of) : blocks(of) {
+    if (blocks.empty()) return;
+    first = glm::ivec2(blocks.front().position.y, blocks.front().position.z);
+    glm::ivec2 last = first;
+    for (const SlotBlock& block : blocks) {
         const glm::ivec2 column(block.position.y, block.position.z);
         first = glm::min(first, column);
         last = glm::max(last, column);
     }
     const glm::dvec2 sides = glm::dvec2(last) - glm::dvec2(first) + 1.0;
-    if (sides.x * sides.y > 4.0 * double(blocks_.size()) + 1024) return;
-    firstColumn_ = first;
-    columns_ = last - first + 1;
-    begins_.reserve(std::size_t(columns_.x) * std::size_t(columns_.y) + 1);
+    if (sides.x * sides.y > 4.0 * double(blocks.size()) + 1024) return;
+    count = last - first + 1;
+    begins.reserve(std::size_t(count.x) * std::size_t(count.y) + 1);
     std::size_t next = 0;
     for (int u = first.x; u <= last.x; ++u) {
         for (int v = first.y; v <= last.y; ++v) {
-            begins_.push_back(next);
+            begins.push_back(next);
             const auto isHere = [&](const SlotBlock& block) {
                 return block.position.y == u && block.position.z == v;
             };
-            while (next < blocks_.size() && isHere(blocks_[next])) ++next;
+            while (next < blocks.size() && isHere(blocks[next])) ++next;
         }
     }
-    begins_.push_back(next);
+    begins.push_back(next);
 }
 
-const SlotBlock* SlotBlocks::find(const glm::ivec3& position) const {
-    auto begin = blocks_.begin(), end = blocks_.end();
-    if (!begins_.empty()) {
-        const glm::ivec2 column = glm::ivec2(position.y, position.z) - firstColumn_;
-        if (column.x < 0 || column.y < 0 || column.x >= columns_.x || column.y >= columns_.y)
+const SlotBlock* SlotBlocks::Columns::find(const glm::ivec3& position) const {
+    auto begin = blocks.begin(), end = blocks.end();
+    if (!begins.empty()) {
+        const glm::ivec2 column = glm::ivec2(position.y, position.z) - first;
+        if (column.x < 0 || column.y < 0 || column.x >= count.x || column.y >= count.y)
             return nullptr;
-        const auto i = std::size_t(column.x) * std::size_t(columns_.y) + std::size_t(column.y);
-        begin = blocks_.begin() + std::ptrdiff_t(begins_[i]);
-        end = blocks_.begin() + std::ptrdiff_t(begins_[i + 1]);
+        const auto i = std::size_t(column.x) * std::size_t(count.y) + std::size_t(column.y);
+        begin = blocks.begin() + std::ptrdiff_t(begins[i]);
+        end = blocks.begin() + std::ptrdiff_t(begins[i + 1]);
         // Mostly none is missing.
         const int behind = begin == end ? -1 : position.x - begin->position.x;
         if (behind >= 0 && behind < end - begin && (begin + behind)->position == position)
@@ -64,11 +83,77 @@ const SlotBlock* SlotBlocks::find(const glm::ivec3& position) const {
     return found != end && found->position == position ? &*found : nullptr;
 }
 
+SlotBlocks::SlotBlocks(int sliceAxis, std::vector<SlotBlock> blocks, SlotStorage storage)
+    : sliceAxis_(sliceAxis),
+      storage_(std::move(storage)),
+      blocks_(std::make_shared<const std::vector<SlotBlock>>(std::move(blocks))),
+      columns_(std::make_unique<const Columns>(*blocks_)),
+      all_(columns_.get()) {}
+
+SlotBlocks::SlotBlocks(int sliceAxis, std::unique_ptr<const BlockMaker> maker)
+    : sliceAxis_(sliceAxis),
+      blocks_(std::make_shared<const std::vector<SlotBlock>>()),
+      maker_(std::move(maker)),
+      isMade_(maker_->parts().size()) {}
+
+SlotBlocks::~SlotBlocks() = default;
+
+// Makes parts that are not made yet; who calls holds the lock.
+SlotBlocks::Blocks SlotBlocks::withParts(const std::vector<std::size_t>& parts) const {
+    if (parts.empty()) return blocks_;
+    std::vector<SlotBlock> made;
+    // Work taken on while waiting here might want the same blocks.
+    isolated([&] { made = maker_->make(parts, storage_); });
+    requireMemory("list of voxel blocks",
+                  double(blocks_->size() + made.size()) * sizeof(SlotBlock));
+    std::vector<SlotBlock> both;
+    both.reserve(blocks_->size() + made.size());
+    std::merge(blocks_->begin(), blocks_->end(), made.begin(), made.end(), std::back_inserter(both),
+               liesBefore);
+    for (const std::size_t part : parts) isMade_[part] = true;
+    blocks_ = std::make_shared<const std::vector<SlotBlock>>(std::move(both));
+    return blocks_;
+}
+
+const SlotBlocks::Columns& SlotBlocks::all() const {
+    if (const Columns* const all = all_.load(std::memory_order_acquire)) return *all;
+    const std::lock_guard lock(mutex_);
+    if (maker_) {
+        std::vector<std::size_t> missing;
+        for (std::size_t part = 0; part < isMade_.size(); ++part)
+            if (!isMade_[part]) missing.push_back(part);
+        withParts(missing);
+        columns_ = std::make_unique<const Columns>(*blocks_);
+        maker_.reset();
+        all_.store(columns_.get(), std::memory_order_release);
+    }
+    return *columns_;
+}
+
+const std::vector<SlotBlock>& SlotBlocks::blocks() const {
+    return all().blocks;
+}
+
+std::shared_ptr<const std::vector<SlotBlock>> SlotBlocks::blocksWith(const SeenCodes& seen) const {
+    const std::lock_guard lock(mutex_);
+    if (!maker_) return blocks_;
+    const std::vector<BlockMaker::Part>& parts = maker_->parts();
+    std::vector<std::size_t> missing;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (!isMade_[i] && seen.hasAny(parts[i].lowest, parts[i].highest)) missing.push_back(i);
+    return withParts(missing);
+}
+
+const SlotBlock* SlotBlocks::find(const glm::ivec3& position) const {
+    return all().find(position);
+}
+
 std::size_t SlotBlocks::memoryBytes() const {
+    const std::lock_guard lock(mutex_);
     std::size_t stored = 0;
-    for (const SlotBlock& block : blocks_) stored += block.slots ? 1 : 0;
-    return stored * 512 * sizeof(ShortSlot) + blocks_.size() * sizeof(SlotBlock) +
-           begins_.size() * sizeof(std::size_t);
+    for (const SlotBlock& block : *blocks_) stored += block.slots ? 1 : 0;
+    return stored * 512 * sizeof(ShortSlot) + blocks_->size() * sizeof(SlotBlock) +
+           (columns_ ? columns_->begins.size() * sizeof(std::size_t) : 0);
 }
 
 }  // namespace deltasplat

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <mutex>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,6 +15,7 @@
 
 namespace deltasplat {
 
+class SeenCodes;
 struct SlabFacts;
 
 /// A slot in 16 bits: 0 = empty, else code + 1; for codes below 65535.
@@ -27,19 +30,52 @@ struct SlotBlock {
     Code highest = 0;
 };
 
+/// Where the slots of blocks lie.
+using SlotStorage = std::vector<std::unique_ptr<ShortSlot[]>>;
+
+/// Makes blocks of a volume, in parts of which it is known beforehand which codes they have.
+class BlockMaker {
+  public:
+    /// Blocks one behind the other along the slices.
+    struct Part {
+        glm::ivec3 first{0};  ///< place of the first, as SlotBlock::position
+        Code lowest = 0;      ///< range of the active voxels' codes
+        Code highest = 0;
+    };
+
+    BlockMaker() = default;
+    BlockMaker(const BlockMaker&) = delete;
+    BlockMaker& operator=(const BlockMaker&) = delete;
+    virtual ~BlockMaker() = default;
+
+    /// By u, then v, then slice; no block lies in two of them.
+    virtual const std::vector<Part>& parts() const = 0;
+    /// Makes the blocks of some parts, in their order, on all threads. One call at a time.
+    /// @param parts  their numbers, in order; each is made once
+    /// @throw Error(kInput) if they are not what was known of them; Error(kFailed) if memory does
+    ///        not hold them
+    virtual std::vector<SlotBlock> make(std::span<const std::size_t> parts,
+                                        SlotStorage& storage) const = 0;
+};
+
 /// The codes of a volume as they lie along a slice axis: what words are made of, block by block,
-/// without a tree.
+/// without a tree. Blocks may be made when they are first asked for. Thread-safe.
 class SlotBlocks {
   public:
     /// @param blocks   by u, then v, then slice; each has active voxels
     /// @param storage  what they point into
-    SlotBlocks(int sliceAxis, std::vector<SlotBlock> blocks,
-               std::vector<std::unique_ptr<ShortSlot[]>> storage);
+    SlotBlocks(int sliceAxis, std::vector<SlotBlock> blocks, SlotStorage storage);
+    SlotBlocks(int sliceAxis, std::unique_ptr<const BlockMaker> maker);
+    ~SlotBlocks();
 
     int sliceAxis() const { return sliceAxis_; }
-    const std::vector<SlotBlock>& blocks() const { return blocks_; }
-    /// Returns a block by its position, or null if there is none. Thread-safe.
+    /// All blocks; what BlockMaker::make throws.
+    const std::vector<SlotBlock>& blocks() const;
+    /// Returns blocks in the same order, of which there are all that have codes which are seen.
+    std::shared_ptr<const std::vector<SlotBlock>> blocksWith(const SeenCodes& seen) const;
+    /// Returns a block by its position, or null if there is none.
     const SlotBlock* find(const glm::ivec3& position) const;
+    /// Returns how much memory blocks take, without making any.
     std::size_t memoryBytes() const;
 
     /// What is known of the whole volume, if these are the blocks of some slices only; else null.
@@ -47,15 +83,22 @@ class SlotBlocks {
     void setFacts(std::shared_ptr<const SlabFacts> facts) { facts_ = std::move(facts); }
 
   private:
+    // Blocks, and where columns of a rectangle of u and v begin among them.
+    struct Columns;
+    using Blocks = std::shared_ptr<const std::vector<SlotBlock>>;
+
+    const Columns& all() const;
+    Blocks withParts(const std::vector<std::size_t>& parts) const;
+
     int sliceAxis_;
     std::shared_ptr<const SlabFacts> facts_;
-    std::vector<SlotBlock> blocks_;
-    std::vector<std::unique_ptr<ShortSlot[]>> storage_;
-    // Where the columns of a rectangle of u and v begin among the blocks; empty if it is mostly
-    // empty.
-    glm::ivec2 firstColumn_{0};
-    glm::ivec2 columns_{0};
-    std::vector<std::size_t> begins_;  // [u][v], and one more
+    mutable std::mutex mutex_;
+    mutable SlotStorage storage_;
+    mutable Blocks blocks_;                            // those made so far
+    mutable std::unique_ptr<const BlockMaker> maker_;  // null once all are made
+    mutable std::vector<bool> isMade_;                 // of its parts
+    mutable std::unique_ptr<const Columns> columns_;
+    mutable std::atomic<const Columns*> all_ = nullptr;  // null until all are made
 };
 
 }  // namespace deltasplat

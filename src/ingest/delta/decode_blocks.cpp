@@ -1,309 +1,144 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: "Accelerating Footprint Method Based on Comparability of Consecutive Image Slices",
-// equation 6, read backwards: a slice is the sum of all changes since the last key slice.
 #include "ingest/delta/decode_blocks.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <bit>
-#include <cmath>
-#include <glm/common.hpp>
 #include <iterator>
 #include <numeric>
 #include <span>
 #include <utility>
 
+#include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "ingest/codes/code_counts.h"
-#include "ingest/delta/leaf_kernels.h"
+#include "ingest/delta/column_decoder.h"
+#include "ingest/delta/place_text.h"
+#include "ingest/delta/restored_grid.h"
 #include "memory.h"
 #include "parallel.h"
 #include "shared_progress.h"
+#include "view/affine.h"
 
 namespace deltasplat {
 namespace {
 
-// What a grid's blocks have in common.
-struct Layout {
-    Layout(const DeltaHeader& header, const std::optional<glm::ivec2>& wanted)
-        : first(toSliceOrder(header.box.min, header.sliceAxis)),
-          last(toSliceOrder(header.box.max, header.sliceAxis)),
-          firstBlock(first >> 3),
-          lastBlock(last >> 3),
-          blocksPerSlab(header.keyInterval / 8) {
-        const int firstWanted = wanted ? std::max(wanted->x, firstBlock.x) : firstBlock.x;
-        readFirst = firstBlock.x + slabOf(firstWanted) * blocksPerSlab;
-        keptFirst = firstWanted;
-        keptLast = wanted ? std::min(wanted->y, lastBlock.x) : lastBlock.x;
-    }
-
-    int slabOf(int block) const { return (block - firstBlock.x) / blocksPerSlab; }
-    // Whether all of a slab is read.
-    bool isRead(int slab) const {
-        const int begin = firstBlock.x + slab * blocksPerSlab;
-        return begin >= readFirst && std::min(begin + blocksPerSlab - 1, lastBlock.x) <= keptLast;
-    }
-    bool startsSlab(int block) const { return (block - firstBlock.x) % blocksPerSlab == 0; }
-    int slabs() const { return slabOf(lastBlock.x) + 1; }
-    double columns() const {
-        const glm::dvec3 blocks = lastBlock - firstBlock + 1;
-        return blocks.y * blocks.z;
-    }
-    bool hasColumn(const glm::ivec2& place) const {
-        return glm::all(glm::greaterThanEqual(place, glm::ivec2(firstBlock.y, firstBlock.z))) &&
-               glm::all(glm::lessThanEqual(place, glm::ivec2(lastBlock.y, lastBlock.z)));
-    }
-    // The voxels of a slice of a block that are in the box, as a mask word.
-    std::uint64_t insideOf(const glm::ivec2& place) const {
-        std::uint64_t mask = 0;
-        for (int n = 0; n < 64; ++n) {
-            const int u = 8 * place.x + (n >> 3), v = 8 * place.y + (n & 7);
-            if (u >= first.y && u <= last.y && v >= first.z && v <= last.z)
-                mask |= std::uint64_t{1} << n;
-        }
-        return mask;
-    }
-    bool isWhole() const { return keptFirst == firstBlock.x && keptLast == lastBlock.x; }
-    bool hasSlice(int slice) const { return slice >= first.x && slice <= last.x; }
-
-    glm::ivec3 first, last;  // voxels of the box, inclusive
-    glm::ivec3 firstBlock, lastBlock;
-    int blocksPerSlab;
-    int readFirst;  // block of slices that reading begins with
-    int keptFirst;  // of those that are kept
-    int keptLast;
+// A column to be decoded, or what of it one slab has.
+struct Task {
+    DeltaColumn column;
+    glm::ivec2 range;                 // first and last block of slices
+    const DeltaPart* part = nullptr;  // what the file says of it; null: nothing
 };
 
-SlotRules rulesOf(const DeltaHeader& header) {
-    SlotRules rules;
-    rules.lowest = 1;
-    rules.highest = std::uint32_t(header.codeCount);
-    if (header.book.kind == CodeBook::Kind::kHalf) {
-        // Codes are in the order of values, so that the finite ones are neighbours.
-        const auto isFinite = [&](std::uint32_t slot) {
-            return std::isfinite(header.book.valueOf(Code(slot - 1)));
-        };
-        while (rules.lowest <= rules.highest && !isFinite(rules.lowest)) ++rules.lowest;
-        while (rules.lowest <= rules.highest && !isFinite(rules.highest)) --rules.highest;
-    }
-    rules.firstInactive = std::uint32_t(kSlotCount);
-    rules.inactiveCount = std::uint32_t(header.inactiveValues.size());
-    if (header.restActive) rules.rest = ShortSlot(header.book.codeOf(header.background) + 1);
-    return rules;
-}
-
-// What one thread makes of some columns.
-class StripDecoder {
-  public:
-    StripDecoder(std::unique_ptr<DeltaWalker> walker, const DeltaHeader& header,
-                 const Layout& layout, const SlotRules& rules, const std::string& where,
-                 CodeCounts& counts, std::size_t worker)
-        : walker_(std::move(walker)),
-          header_(header),
-          layout_(layout),
-          where_(where),
-          rules_(rules),
-          counts_(counts),
-          worker_(worker),
-          slabDeltas_(std::size_t(layout.slabs())) {}
-
-    // Adds the blocks of a column; returns whether it is sound.
-    bool decode(const DeltaColumn& column, std::vector<SlotBlock>& blocks) {
-        slots_.fill(0);
-        inside_ = layout_.insideOf(column.place);
-        if (!walker_->start(column) || walker_->block() < layout_.readFirst) return false;
-        bool isZero = true;
-        for (int block = layout_.readFirst; block <= layout_.keptLast; ++block) {
-            if (layout_.startsSlab(block) && !isZero) {
-                slots_.fill(0);
-                isZero = true;
-            }
-            const int next = walker_->block();
-            const bool changes = next == block;
-            if (!changes && isZero && !header_.restActive) {
-                if (next > layout_.keptLast) break;
-                block = next - 1;
-                continue;
-            }
-            const BlockDeltas* const deltas = changes ? walker_->take() : nullptr;
-            if (changes && !deltas) return false;
-            const glm::ivec3 position(block, column.place);
-            if (!decodeBlock(position, deltas, blocks)) return false;
-            isZero = changes ? isEmpty() : isZero;
-        }
-        return walker_->block() == DeltaWalker::kNoBlock || !layout_.isWhole();
-    }
-
-    std::span<const std::uint64_t> slabDeltas() const { return slabDeltas_; }
-    const IndexBox& active() const { return active_; }
-    std::vector<std::unique_ptr<ShortSlot[]>>& storage() { return storage_; }
-
-  private:
-    static constexpr std::size_t kChunk = 64;  // blocks whose slots are asked for at once
-
-    bool isEmpty() const {
-        return std::all_of(slots_.begin(), slots_.end(), [](std::uint32_t s) { return s == 0; });
-    }
-
-    bool decodeBlock(const glm::ivec3& position, const BlockDeltas* deltas,
-                     std::vector<SlotBlock>& blocks) {
-        const bool isWhole = inside_ == ~std::uint64_t{0} && layout_.hasSlice(8 * position.x) &&
-                             layout_.hasSlice(8 * position.x + 7);
-        if (!deltas && isWhole && isConstant()) {
-            const ShortSlot slot = shown(slots_[0]);
-            if (slot == 0 || position.x < layout_.keptFirst) return true;
-            return addTile(position, slot, blocks);
-        }
-        ShortSlot* out = room();
-        if (deltas) {
-            if (!addBlock(position, *deltas, out)) return false;
-        } else {
-            for (int s = 0; s < 8; ++s)
-                if (!writeSlice(position, s, out + 64 * s)) return false;
-        }
-        if (position.x < layout_.keptFirst) return true;
-        const SlotRange range = rangeOf(out);
-        if (range.highest == 0) return true;
-        const auto tile = ShortSlot(range.highest);
-        if (range.lowest == range.highest && !range.hasEmpty) {
-            return addTile(position, tile, blocks);
-        }
-        counts_.add(worker_, std::span<const ShortSlot>(out, 512),
-                    range.hasEmpty ? kEmptySlot : range.lowest, range.highest);
-        extend(position, out);
-        const auto empty = range.hasEmpty ? std::count(out, out + 512, ShortSlot{0}) : 0;
-        ++used_;
-        return add({position, out, kEmptySlot, Code(range.lowest - 1), Code(range.highest - 1)},
-                   std::uint64_t(512 - empty), blocks);
-    }
-
-    bool isConstant() const {
-        return std::all_of(slots_.begin(), slots_.end(),
-                           [&](std::uint32_t slot) { return slot == slots_[0]; });
-    }
-
-    // What a block shows of a slot: a code, or what rests.
-    ShortSlot shown(std::uint32_t slot) const {
-        if (slot == 0) return rules_.rest;
-        return slot < rules_.firstInactive ? ShortSlot(slot) : ShortSlot{0};
-    }
-
-    // Adds a block's deltas, slice by slice.
-    bool addBlock(const glm::ivec3& position, const BlockDeltas& deltas, ShortSlot* out) {
-        std::uint64_t& count = slabDeltas_[std::size_t(layout_.slabOf(position.x))];
-        const std::int32_t* next = deltas.numbers;
-        for (int s = 0; s < 8; ++s) {
-            const std::uint64_t changed = deltas.changed[std::size_t(s)];
-            if (changed != 0 &&
-                ((changed & ~inside_) != 0 || !layout_.hasSlice(8 * position.x + s)))
-                return false;
-            const std::uint64_t given = deltas.given[std::size_t(s)];
-            addDeltas(given, next, slots_.data());
-            next += std::popcount(given);
-            count += std::uint64_t(std::popcount(changed));
-            if (!writeSlice(position, s, out + 64 * s)) return false;
-        }
-        return true;
-    }
-
-    // Writes what a slice of a block shows, behind the last slice nothing; returns whether it is
-    // sound.
-    bool writeSlice(const glm::ivec3& position, int s, ShortSlot* out) const {
-        if (!layout_.hasSlice(8 * position.x + s)) {
-            std::fill_n(out, 64, ShortSlot{0});
-            return true;
-        }
-        if (!shortenSlots(slots_.data(), rules_, out)) return false;
-        for (std::uint64_t outside = ~inside_; outside != 0; outside &= outside - 1)
-            out[std::countr_zero(outside)] = 0;
-        return true;
-    }
-
-    ShortSlot* room() {
-        if (storage_.empty() || used_ == kChunk) {
-            requireMemory(where_, kChunk * 512.0 * sizeof(ShortSlot));
-            storage_.push_back(std::make_unique_for_overwrite<ShortSlot[]>(kChunk * 512));
-            used_ = 0;
-        }
-        return storage_.back().get() + 512 * used_;
-    }
-
-    bool addTile(const glm::ivec3& position, ShortSlot slot, std::vector<SlotBlock>& blocks) {
-        counts_.add(worker_, slot, 512);
-        include(position, glm::ivec3(0), glm::ivec3(7));
-        return add({position, nullptr, slot, Code(slot - 1), Code(slot - 1)}, 512, blocks);
-    }
-
-    // One delta can stand for as many blocks as there are slices until the next key slice: what is
-    // more than the file says is not waited for.
-    bool add(const SlotBlock& block, std::uint64_t active, std::vector<SlotBlock>& blocks) {
-        constexpr std::size_t kAskEvery = 1024;
-        if (blocks.size() % kAskEvery == 0)
-            requireMemory(where_, 2.0 * kAskEvery * sizeof(SlotBlock));
-        blocks.push_back(block);
-        activeCount_ += active;
-        return activeCount_ <= header_.active;
-    }
-
-    // Widens the box by a block's active voxels.
-    void extend(const glm::ivec3& position, const ShortSlot* out) {
-        if (header_.restActive || contains(position)) return;
-        glm::ivec3 low(7), high(0);
-        for (int n = 0; n < 512; ++n) {
-            if (out[n] == 0) continue;
-            const glm::ivec3 place(n >> 6, n >> 3 & 7, n & 7);
-            low = glm::min(low, place);
-            high = glm::max(high, place);
-        }
-        include(position, low, high);
-    }
-    bool contains(const glm::ivec3& position) const {
-        return !active_.empty() && glm::all(glm::lessThanEqual(active_.min, 8 * position)) &&
-               glm::all(glm::greaterThanEqual(active_.max, 8 * position + 7));
-    }
-    void include(const glm::ivec3& position, const glm::ivec3& low, const glm::ivec3& high) {
-        const IndexBox box{8 * position + low, 8 * position + high};
-        active_ = active_.empty()
-                      ? box
-                      : IndexBox{glm::min(active_.min, box.min), glm::max(active_.max, box.max)};
-    }
-
-    std::unique_ptr<DeltaWalker> walker_;
-    const DeltaHeader& header_;
-    const Layout& layout_;
-    const std::string& where_;
-    SlotRules rules_;
-    CodeCounts& counts_;  // of slots
-    std::size_t worker_;  // of them
-    std::vector<std::uint64_t> slabDeltas_;
-    IndexBox active_;  // in (slice, u, v) order
-    std::uint64_t activeCount_ = 0;
-    std::vector<std::unique_ptr<ShortSlot[]>> storage_;
-    std::size_t used_ = 0;  // blocks of the last of it
-
-    // Of the column in hand.
-    std::array<std::uint32_t, 64> slots_{};
-    std::uint64_t inside_ = 0;
-};
-
-// Returns all columns of the box, those without deltas too.
-std::vector<DeltaColumn> allColumns(const std::vector<DeltaColumn>& columns, const Layout& layout) {
-    std::vector<DeltaColumn> all;
-    auto next = columns.begin();
+// Returns parts of so many slabs and all u and v of the box: those without deltas rest at `rest`.
+std::vector<DeltaPart> withRest(const std::vector<DeltaPart>& parts, const BlockLayout& layout,
+                                int slabs, Code rest) {
+    std::vector<DeltaPart> all;
+    auto next = parts.begin();
     for (int u = layout.firstBlock.y; u <= layout.lastBlock.y; ++u) {
         for (int v = layout.firstBlock.z; v <= layout.lastBlock.z; ++v) {
-            const bool isNext = next != columns.end() && next->place == glm::ivec2(u, v);
-            all.push_back(isNext ? *next++ : DeltaColumn{{u, v}});
+            for (int slab = 0; slab < slabs; ++slab) {
+                const bool isNext = next != parts.end() && next->slab == slab &&
+                                    next->column.place == glm::ivec2(u, v);
+                all.push_back(isNext ? *next++ : DeltaPart{{{u, v}}, slab, rest, rest});
+            }
         }
     }
     return all;
 }
 
-// Of what rests active, all blocks of the box are listed.
-bool canListRest(const Layout& layout, std::size_t changed) {
-    const double slices = layout.keptLast - layout.readFirst + 1;
-    return slices * layout.columns() <= 16.0 * double(changed) + 65536;
+std::string beginText(const BlockLayout& layout, const DeltaPart& part) {
+    return placeText(8 * glm::ivec3(layout.blocksOf(part.slab).x, part.column.place));
+}
+
+// Returns what is wrong with blocks that do not have the codes which the file says that they have.
+std::optional<std::string> problemOf(std::span<const SlotBlock> blocks, const DeltaPart& part) {
+    std::optional<std::pair<Code, Code>> range;
+    for (const SlotBlock& block : blocks) {
+        if (!range) range.emplace(block.lowest, block.highest);
+        range = {std::min(range->first, block.lowest), std::max(range->second, block.highest)};
+    }
+    if (range == std::pair(part.lowest, part.highest)) return std::nullopt;
+    return range ? "codes " + std::to_string(range->first) + ".." + std::to_string(range->second)
+                 : "no codes";
+}
+
+// Decodes columns on all threads.
+// @param counts  null, or counts slots
+class TaskDecoder {
+  public:
+    TaskDecoder(const DeltaColumns& deltas, const ColumnDecoder::Grid& grid, std::size_t tasks,
+                bool counts)
+        : grid_(grid) {
+        // What a thread keeps is large: one for each, not for each piece of work.
+        pieces_ = (tasks + kPiece - 1) / kPiece;
+        const std::size_t threads = std::min(std::size_t(std::max(1, threadCount())), pieces_);
+        if (counts) counts_.emplace(std::max<std::size_t>(1, threads));
+        decoders_.reserve(threads);
+        for (std::size_t i = 0; i < threads; ++i)
+            decoders_.emplace_back(deltas.walker(), grid, counts_ ? &*counts_ : nullptr, i);
+    }
+
+    // Returns the blocks in the order of tasks; nothing where deltas are not sound.
+    std::optional<std::vector<SlotBlock>> decode(std::span<const Task> tasks,
+                                                 const Listener& listener);
+    const std::vector<ColumnDecoder>& decoders() const { return decoders_; }
+    CodeCounts* counts() { return counts_ ? &*counts_ : nullptr; }
+    void moveStorage(SlotStorage& storage) {
+        for (ColumnDecoder& decoder : decoders_) {
+            std::move(decoder.storage().begin(), decoder.storage().end(),
+                      std::back_inserter(storage));
+        }
+    }
+
+  private:
+    static constexpr std::size_t kPiece = 8;  // columns
+
+    ColumnDecoder::Grid grid_;
+    std::size_t pieces_;
+    std::optional<CodeCounts> counts_;
+    std::vector<ColumnDecoder> decoders_;
+};
+
+std::optional<std::vector<SlotBlock>> TaskDecoder::decode(std::span<const Task> tasks,
+                                                          const Listener& listener) {
+    std::vector<std::vector<SlotBlock>> blocks(pieces_);
+    // Of each piece the first that is not as the file says: which is told does not hang on threads.
+    std::vector<std::pair<const DeltaPart*, std::string>> problems(pieces_);
+    std::atomic<bool> isSound = true;
+    std::atomic<std::size_t> next = 0;
+    SharedProgress progress(listener);
+    const auto decodeOne = [&](ColumnDecoder& decoder, const Task& task, std::size_t piece) {
+        const std::size_t before = blocks[piece].size();
+        if (!decoder.decode(task.column, task.range, blocks[piece])) return false;
+        if (!task.part || problems[piece].first) return true;
+        if (auto problem = problemOf(std::span(blocks[piece]).subspan(before), *task.part))
+            problems[piece] = {task.part, std::move(*problem)};
+        return true;
+    };
+    parallelFor(decoders_.size(), [&](std::size_t thread) {
+        for (std::size_t piece = next++; piece < pieces_ && isSound; piece = next++) {
+            const std::size_t end = std::min(tasks.size(), (piece + 1) * kPiece);
+            for (std::size_t i = piece * kPiece; i < end; ++i)
+                if (!decodeOne(decoders_[thread], tasks[i], piece)) isSound = false;
+            progress.report(double(piece) / double(pieces_));
+        }
+    });
+    if (!isSound) return std::nullopt;
+    for (const auto& [part, problem] : problems) {
+        if (!part) continue;
+        throw Error(
+            ErrorCode::kInput,
+            gotExpected(grid_.where, problem + " from " + beginText(grid_.layout, *part) + " on",
+                        std::to_string(part->lowest) + ".." + std::to_string(part->highest) +
+                            ", as the stream says"));
+    }
+    std::size_t count = 0;
+    for (const auto& some : blocks) count += some.size();
+    requireMemory(grid_.where, double(count) * sizeof(SlotBlock));
+    std::vector<SlotBlock> all;
+    all.reserve(count);
+    for (const auto& some : blocks) all.insert(all.end(), some.begin(), some.end());
+    return all;
 }
 
 IndexBox inVolume(const IndexBox& box, int sliceAxis) {
@@ -311,10 +146,10 @@ IndexBox inVolume(const IndexBox& box, int sliceAxis) {
     return {fromSliceOrder(box.min, sliceAxis), fromSliceOrder(box.max, sliceAxis)};
 }
 
-// Puts together what the strips found; returns whether it is what the header says.
-bool collect(std::vector<StripDecoder>& strips, CodeCounts& counts, const DeltaHeader& header,
-             const Layout& layout, DecodedBlocks& decoded) {
-    decoded.histogram = counts.take();
+// Puts together what the threads found; returns whether it is what the header says.
+bool collect(TaskDecoder& decoder, const DeltaHeader& header, const BlockLayout& layout,
+             DecodedBlocks& decoded) {
+    decoded.histogram = decoder.counts()->take();
     // Of codes, not of slots.
     decoded.histogram.erase(decoded.histogram.begin());
     decoded.histogram.push_back(0);
@@ -322,14 +157,10 @@ bool collect(std::vector<StripDecoder>& strips, CodeCounts& counts, const DeltaH
     IndexBox active;
     const std::uint64_t count =
         std::accumulate(decoded.histogram.begin(), decoded.histogram.end(), std::uint64_t{0});
-    for (StripDecoder& strip : strips) {
-        if (strip.slabDeltas().size() != slabDeltas.size()) return false;
-        for (std::size_t i = 0; i < slabDeltas.size(); ++i) slabDeltas[i] += strip.slabDeltas()[i];
-        if (!strip.active().empty()) {
-            active = active.empty() ? strip.active()
-                                    : IndexBox{glm::min(active.min, strip.active().min),
-                                               glm::max(active.max, strip.active().max)};
-        }
+    for (const ColumnDecoder& one : decoder.decoders()) {
+        if (one.slabDeltas().size() != slabDeltas.size()) return false;
+        for (std::size_t i = 0; i < slabDeltas.size(); ++i) slabDeltas[i] += one.slabDeltas()[i];
+        active = boxOfBoth(active, one.active());
     }
     decoded.active = inVolume(active, header.sliceAxis);
     for (int slab = 0; slab < layout.slabs(); ++slab) {
@@ -339,10 +170,119 @@ bool collect(std::vector<StripDecoder>& strips, CodeCounts& counts, const DeltaH
     return !layout.isWhole() || count == header.active;
 }
 
+// Whether a header and the places of deltas go together.
+bool mayBeSound(const DeltaColumns& deltas, const DeltaHeader& header, const BlockLayout& layout,
+                const SlotRules& rules) {
+    const auto isInside = [&](const DeltaColumn& column) { return layout.hasColumn(column.place); };
+    return layout.keptFirst <= layout.keptLast &&
+           header.slabDeltas.size() == std::size_t(layout.slabs()) &&
+           (!header.restActive || std::uint64_t(header.box.voxels()) == header.active) &&
+           (!header.restActive || layout.canListRest(deltas.blocks())) &&
+           rules.lowest <= rules.highest &&
+           std::all_of(deltas.columns().begin(), deltas.columns().end(), isInside);
+}
+
+std::vector<Task> tasksOf(const std::vector<DeltaPart>& parts, const BlockLayout& layout) {
+    std::vector<Task> tasks;
+    tasks.reserve(parts.size());
+    for (const DeltaPart& part : parts)
+        tasks.push_back({part.column, layout.blocksOf(part.slab), &part});
+    return tasks;
+}
+
+// What the file says of columns, those at rest too if what rests is active: by slabs if it says
+// which codes they have.
+std::vector<DeltaPart> allParts(const DeltaColumns& deltas, const DeltaHeader& header,
+                                const BlockLayout& layout, const SlotRules& rules,
+                                const std::string& where) {
+    const KnownCodes* const known = deltas.knownCodes();
+    const int slabs = known ? layout.slabs() : 1;
+    const double count = header.restActive
+                             ? layout.columns() * slabs
+                             : double(known ? known->parts.size() : deltas.columns().size());
+    requireMemory(where, count * (sizeof(DeltaPart) + sizeof(Task)));
+    std::vector<DeltaPart> parts;
+    if (known) {
+        parts = known->parts;
+    } else {
+        parts.reserve(deltas.columns().size());
+        for (const DeltaColumn& column : deltas.columns()) parts.push_back({column});
+    }
+    return header.restActive ? withRest(parts, layout, slabs, Code(rules.rest - 1)) : parts;
+}
+
+// Decodes what a file says the codes of, when it is asked for.
+class PartMaker : public BlockMaker {
+  public:
+    PartMaker(std::shared_ptr<const DeltaHeader> header, std::unique_ptr<const DeltaColumns> deltas,
+              const std::string& where)
+        : header_(std::move(header)),
+          deltas_(std::move(deltas)),
+          where_(where),
+          layout_(*header_, std::nullopt),
+          rules_(slotRulesOf(*header_)),
+          deltaParts_(allParts(*deltas_, *header_, layout_, rules_, where)) {
+        requireMemory(where, double(deltaParts_.size()) * sizeof(Part));
+        parts_.reserve(deltaParts_.size());
+        for (const DeltaPart& part : deltaParts_) {
+            const glm::ivec3 first(layout_.blocksOf(part.slab).x, part.column.place);
+            parts_.push_back({first, part.lowest, part.highest});
+        }
+        // Of other columns the index has been checked.
+        if (header_->restActive && deltas_->knownCodes()->all.histogram[rules_.rest - 1] == 0)
+            throw Error(ErrorCode::kInput, gotExpected(where, "no voxels that rest", "some"));
+    }
+
+    const std::vector<Part>& parts() const override { return parts_; }
+    std::vector<SlotBlock> make(std::span<const std::size_t> parts,
+                                SlotStorage& storage) const override {
+        std::vector<DeltaPart> some;
+        some.reserve(parts.size());
+        for (const std::size_t part : parts) some.push_back(deltaParts_[part]);
+        TaskDecoder decoder(*deltas_, {*header_, layout_, rules_, where_}, some.size(), false);
+        auto blocks = decoder.decode(tasksOf(some, layout_), {});
+        if (!blocks) fail(some);
+        std::uint64_t active = active_;
+        for (const ColumnDecoder& one : decoder.decoders()) active += one.activeCount();
+        const bool areAll = made_ + parts.size() == parts_.size();
+        if (areAll || active > header_->active) requireActiveCount(active, *header_, where_);
+        active_ = active;
+        made_ += parts.size();
+        decoder.moveStorage(storage);
+        return std::move(*blocks);
+    }
+
+  private:
+    // Says which part is damaged, the first of them.
+    [[noreturn]] void fail(const std::vector<DeltaPart>& parts) const {
+        const auto isDamaged = [&](const DeltaPart& part) {
+            TaskDecoder decoder(*deltas_, {*header_, layout_, rules_, where_}, 1, false);
+            const Task task{part.column, layout_.blocksOf(part.slab)};
+            return !decoder.decode({&task, 1}, {});
+        };
+        const auto first = std::find_if(parts.begin(), parts.end(), isDamaged);
+        // Together they may have more voxels than each alone.
+        const DeltaPart& part = first == parts.end() ? parts.front() : *first;
+        throw Error(ErrorCode::kInput,
+                    gotExpected(where_, "damaged deltas from " + beginText(layout_, part) + " on",
+                                "deltas that add up to codes"));
+    }
+
+    std::shared_ptr<const DeltaHeader> header_;
+    std::unique_ptr<const DeltaColumns> deltas_;
+    std::string where_;
+    BlockLayout layout_;
+    SlotRules rules_;
+    std::vector<DeltaPart> deltaParts_;
+    std::vector<Part> parts_;           // of each the same
+    mutable std::size_t made_ = 0;      // of them
+    mutable std::uint64_t active_ = 0;  // voxels of those
+};
+
 }  // namespace
 
 int slabStart(const DeltaHeader& header, int block) {
-    return Layout(header, glm::ivec2(block)).readFirst;
+    return BlockLayout(header, glm::ivec2(block)).readFirst;
 }
 
 bool mayDecodeBlocks(const DeltaHeader& header) {
@@ -350,62 +290,55 @@ bool mayDecodeBlocks(const DeltaHeader& header) {
            !header.box.empty() && (!header.restActive || header.inactiveValues.empty());
 }
 
+void requireKnownCodes(const CodesInUse& said, const CodesInUse& found, const std::string& where) {
+    const auto refuse = [&](const std::string& got, const std::string& expected) {
+        throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
+    };
+    if (found.histogram != said.histogram)
+        refuse("voxels of other codes, or other numbers of them", "those that the stream says");
+    if (found.active != said.active)
+        refuse("another box of active voxels", "the one that the stream says");
+}
+
 std::optional<DecodedBlocks> decodeBlocks(const DeltaColumns& deltas, const DeltaHeader& header,
                                           const std::string& where,
                                           const std::optional<glm::ivec2>& wanted,
                                           const Listener& listener) {
-    const Layout layout(header, wanted);
-    if (layout.keptFirst > layout.keptLast) return std::nullopt;
-    if (header.slabDeltas.size() != std::size_t(layout.slabs())) return std::nullopt;
-    if (header.restActive && std::uint64_t(header.box.voxels()) != header.active)
-        return std::nullopt;
-    if (header.restActive && !canListRest(layout, deltas.blocks())) return std::nullopt;
-    const SlotRules rules = rulesOf(header);
-    if (rules.lowest > rules.highest) return std::nullopt;
-    for (const DeltaColumn& column : deltas.columns())
-        if (!layout.hasColumn(column.place)) return std::nullopt;
-    if (header.restActive) requireMemory(where, layout.columns() * sizeof(DeltaColumn));
-    const std::vector<DeltaColumn> columns =
-        header.restActive ? allColumns(deltas.columns(), layout) : deltas.columns();
+    const BlockLayout layout(header, wanted);
+    const SlotRules rules = slotRulesOf(header);
+    if (!mayBeSound(deltas, header, layout, rules)) return std::nullopt;
+    const KnownCodes* const known = deltas.knownCodes();
+    const std::vector<DeltaPart> parts = allParts(deltas, header, layout, rules, where);
+    std::vector<Task> tasks = tasksOf(parts, layout);
+    if (!known) {
+        for (Task& task : tasks) task = {task.column, {layout.readFirst, layout.keptLast}};
+    }
     // Nearly all of them become blocks; how many more there are is seen on the way.
     requireMemory(where, double(deltas.blocks()) * 512 * sizeof(ShortSlot));
-
-    // What a thread keeps is large: one for each, not for each piece of work.
-    constexpr std::size_t kPiece = 8;  // columns
-    const std::size_t pieces = (columns.size() + kPiece - 1) / kPiece;
-    const std::size_t threads = std::min(std::size_t(std::max(1, threadCount())), pieces);
-    CodeCounts counts(std::max<std::size_t>(1, threads));
-    std::vector<StripDecoder> strips;
-    strips.reserve(threads);
-    for (std::size_t i = 0; i < threads; ++i)
-        strips.emplace_back(deltas.walker(), header, layout, rules, where, counts, i);
-    std::vector<std::vector<SlotBlock>> blocks(pieces);
-    std::atomic<bool> isSound = true;
-    std::atomic<std::size_t> next = 0;
-    SharedProgress progress(listener);
-    parallelFor(threads, [&](std::size_t strip) {
-        for (std::size_t piece = next++; piece < pieces && isSound; piece = next++) {
-            const std::size_t end = std::min(columns.size(), (piece + 1) * kPiece);
-            for (std::size_t i = piece * kPiece; i < end; ++i) {
-                if (!strips[strip].decode(columns[i], blocks[piece])) isSound = false;
-            }
-            progress.report(double(piece) / double(pieces));
-        }
-    });
+    TaskDecoder decoder(deltas, {header, layout, rules, where}, tasks.size(), true);
+    std::optional<std::vector<SlotBlock>> blocks = decoder.decode(tasks, listener);
     DecodedBlocks decoded;
-    if (!isSound || !collect(strips, counts, header, layout, decoded)) return std::nullopt;
-    std::size_t count = 0;
-    for (const auto& some : blocks) count += some.size();
-    requireMemory(where, double(count) * sizeof(SlotBlock));
-    std::vector<SlotBlock> all;
-    all.reserve(count);
-    for (const auto& some : blocks) all.insert(all.end(), some.begin(), some.end());
-    std::vector<std::unique_ptr<ShortSlot[]>> storage;
-    for (StripDecoder& strip : strips)
-        std::move(strip.storage().begin(), strip.storage().end(), std::back_inserter(storage));
+    if (!blocks || !collect(decoder, header, layout, decoded)) return std::nullopt;
+    if (known) {
+        const IndexBox& active = header.restActive ? header.box : decoded.active;
+        requireKnownCodes(known->all, {decoded.histogram, active}, where);
+    }
+    SlotStorage storage;
+    decoder.moveStorage(storage);
     decoded.blocks =
-        std::make_shared<SlotBlocks>(header.sliceAxis, std::move(all), std::move(storage));
+        std::make_shared<SlotBlocks>(header.sliceAxis, std::move(*blocks), std::move(storage));
     return decoded;
+}
+
+std::shared_ptr<SlotBlocks> decodeLater(std::shared_ptr<const DeltaHeader> header,
+                                        std::unique_ptr<const DeltaColumns> deltas,
+                                        const std::string& where) {
+    if (!deltas->knownCodes() ||
+        !mayBeSound(*deltas, *header, BlockLayout(*header, std::nullopt), slotRulesOf(*header)))
+        return nullptr;
+    const int sliceAxis = header->sliceAxis;
+    return std::make_shared<SlotBlocks>(
+        sliceAxis, std::make_unique<PartMaker>(std::move(header), std::move(deltas), where));
 }
 
 }  // namespace deltasplat

@@ -35,11 +35,27 @@ bool mayDecodeBlocks(const DeltaHeader& header);
 ///                checked.
 /// @return nothing where the grid is not sound, or has little in a large box that rests active:
 ///         decodeDeltas then reads it, or says what is wrong
-/// @throw Error(kFailed) if the codes do not fit into memory; whatever the listener throws
+/// @throw Error(kInput) if codes are not what DeltaColumns::knownCodes says; Error(kFailed) if they
+/// do not
+///        fit into memory; whatever the listener throws
 std::optional<DecodedBlocks> decodeBlocks(const DeltaColumns& deltas, const DeltaHeader& header,
                                           const std::string& where,
                                           const std::optional<glm::ivec2>& wanted,
                                           const Listener& listener);
+
+/// Returns blocks that are decoded when they are first asked for: of each slab's columns, those
+/// that have codes which are seen.
+/// @return null where the file does not say which codes there are, or decodeBlocks would return
+///         nothing without looking at deltas
+/// @throw Error(kFailed) if what the file says does not fit into memory
+std::shared_ptr<SlotBlocks> decodeLater(std::shared_ptr<const DeltaHeader> header,
+                                        std::unique_ptr<const DeltaColumns> deltas,
+                                        const std::string& where);
+
+/// Refuses deltas that do not add up to what a stream says, which who unpacks some of them relies
+/// on.
+/// @throw Error(kInput)
+void requireKnownCodes(const CodesInUse& said, const CodesInUse& found, const std::string& where);
 
 /// Returns the block of 8 slices that the slab of one begins with; within the box.
 int slabStart(const DeltaHeader& header, int block);

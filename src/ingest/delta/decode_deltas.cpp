@@ -14,6 +14,7 @@
 #include "deltasplat/error.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/delta/exact_slots.h"
+#include "ingest/delta/place_text.h"
 #include "ingest/delta/restored_grid.h"
 #include "ingest/delta/zigzag.h"
 #include "ingest/grids/leaf_bytes.h"
@@ -28,11 +29,6 @@ namespace {
 [[noreturn]] void fail(const std::string& where, const std::string& got,
                        const std::string& expected) {
     throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
-}
-
-std::string placeText(const glm::ivec3& v) {
-    return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) +
-           ")";
 }
 
 // A block's place in (slice, u, v) order, divided by 8.

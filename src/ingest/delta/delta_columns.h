@@ -9,6 +9,8 @@
 #include <memory>
 #include <vector>
 
+#include "deltasplat/ingest/volume.h"
+
 namespace deltasplat {
 
 /// Deltas of a block of 8x8x8 voxels, as numbers without sign (zigzag.h).
@@ -43,14 +45,39 @@ class DeltaWalker {
     virtual const BlockDeltas* take() = 0;
 };
 
+/// The blocks of one slab with the same u and v, and which codes their deltas add up to.
+struct DeltaPart {
+    DeltaColumn column;
+    int slab = 0;
+    Code lowest = 0;  ///< of the active voxels
+    Code highest = 0;
+};
+
+/// Which codes the voxels of a volume have, and where these are.
+struct CodesInUse {
+    std::vector<std::uint64_t> histogram;  ///< as Volume::histogram
+    IndexBox active;  ///< box of the active voxels, in the volume's index space
+};
+
+/// What a file says of the codes that its deltas add up to.
+struct KnownCodes {
+    std::vector<DeltaPart> parts;  ///< those that have deltas, by u, v and slab
+    CodesInUse all;
+};
+
 /// The deltas of a volume as a file has them, packed.
 class DeltaColumns {
   public:
+    DeltaColumns() = default;
+    DeltaColumns(DeltaColumns&&) = default;
+    DeltaColumns& operator=(DeltaColumns&&) = default;
     virtual ~DeltaColumns() = default;
     /// Those that have deltas, by u and v.
     virtual const std::vector<DeltaColumn>& columns() const = 0;
     /// How many blocks have deltas, at most.
     virtual std::size_t blocks() const = 0;
+    /// Null if the file does not say, or not all of it was read.
+    virtual const KnownCodes* knownCodes() const { return nullptr; }
     /// Returns what one thread unpacks columns with. Thread-safe.
     virtual std::unique_ptr<DeltaWalker> walker() const = 0;
 };

@@ -339,7 +339,7 @@ std::uint64_t DeltaHeader::deltas() const {
 
 DeltaHeader takeDeltaHeader(const VdbMetadata& stored, const std::string& where) {
     DeltaHeader header;
-    header.version = Entries(stored, where).whole(kVersionKey, 1, DeltaHeader::kVersion);
+    header.version = Entries(stored, where).whole(kVersionKey, 1, DeltaHeader::kLastVersion);
     const VdbMetadata whole = header.leavesOutUsual() ? withUsualEntries(stored) : VdbMetadata();
     const VdbMetadata& metadata = header.leavesOutUsual() ? whole : stored;
     const Entries entries(metadata, where);

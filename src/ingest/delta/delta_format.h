@@ -16,13 +16,16 @@ namespace deltasplat {
 
 /// What a delta grid's metadata says; docs/delta-grid.md specifies it.
 struct DeltaHeader {
-    /// The one that is written of deltas as voxels, and the largest that is read. Of 1 and 2 (books
-    /// of pieces) deltas are plain numbers; from 3 on they are without sign
-    /// (ingest/delta/zigzag.h); from 4 on there may be exact values, and from 5 on what is usual is
-    /// left out.
+    /// The one that is written of deltas as voxels. Of 1 and 2 (books of pieces) deltas are plain
+    /// numbers; from 3 on they are without sign (ingest/delta/zigzag.h); from 4 on there may be
+    /// exact values, and from 5 on what is usual is left out.
     static constexpr int kVersion = 6;
     /// The one that is written of packed deltas.
-    static constexpr int kPackedVersion = 5;
+    static constexpr int kPackedVersion = 7;
+    /// Of packed deltas that do not say which codes they add up to.
+    static constexpr int kOldPackedVersion = 5;
+    /// The largest that is read.
+    static constexpr int kLastVersion = 7;
 
     int version = kVersion;
     int sliceAxis = 2;
@@ -51,7 +54,9 @@ struct DeltaHeader {
     /// Whether deltas take 64 bits.
     bool isWide() const { return exact && *exact != ExactValues::kFloat32; }
     /// Whether the grid's voxels are words of a stream (delta_stream.h) in place of deltas.
-    bool isPacked() const { return version == kPackedVersion; }
+    bool isPacked() const { return version == kPackedVersion || version == kOldPackedVersion; }
+    /// Whether a stream may say which codes it adds up to.
+    bool mayKnowCodes() const { return version == kPackedVersion; }
     bool leavesOutUsual() const { return version >= 5; }
 };
 

@@ -13,6 +13,7 @@
 #include "deltasplat/ingest/slot.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/part_walker.h"
+#include "ingest/delta/place_text.h"
 #include "ingest/delta/stream_index.h"
 #include "ingest/delta/word_tree.h"
 #include "ingest/grids/leaf_bytes.h"
@@ -21,11 +22,6 @@
 
 namespace deltasplat {
 namespace {
-
-std::string placeText(const glm::ivec3& v) {
-    return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) +
-           ")";
-}
 
 template <typename Leaf>
 void fillLeaf(const BlockDeltasOf<typename Leaf::ValueType>& deltas, Leaf& leaf) {
@@ -43,7 +39,12 @@ void fillLeaf(const BlockDeltasOf<typename Leaf::ValueType>& deltas, Leaf& leaf)
 class Unpacker {
   public:
     Unpacker(const openvdb::Int64Tree& tree, const DeltaHeader& header, const std::string& where)
-        : header_(header), where_(where), words_(wordsOfTree(tree, kStreamPadding, where)) {}
+        : header_(header), where_(where), words_(wordsOfTree(tree, kStreamPadding, where)) {
+        const std::size_t count = words_.size() - kStreamPadding;
+        if (count > 0) index_ = readStreamIndex(words_.data(), count, count, header, where).value();
+    }
+
+    const StreamIndex& index() const { return index_; }
 
     template <typename Tree>
     std::shared_ptr<Tree> takeDeltas(const Listener& listener) const;
@@ -52,17 +53,13 @@ class Unpacker {
     template <typename Leaf>
     using Leaves = std::vector<std::unique_ptr<Leaf>>;
 
-    std::vector<StreamPart> parts() const {
-        const std::size_t count = words_.size() - kStreamPadding;
-        if (count == 0) return {};
-        return readStreamIndex(words_.data(), count, count, header_, where_).value();
-    }
     template <typename Leaf>
     Leaves<Leaf> takePart(const StreamPart& part) const;
 
     const DeltaHeader& header_;
     const std::string& where_;
     std::vector<std::uint64_t> words_;
+    StreamIndex index_;
 };
 
 template <typename Leaf>
@@ -89,7 +86,7 @@ Unpacker::Leaves<Leaf> Unpacker::takePart(const StreamPart& part) const {
 template <typename Tree>
 std::shared_ptr<Tree> Unpacker::takeDeltas(const Listener& listener) const {
     using Leaf = typename Tree::LeafNodeType;
-    const std::vector<StreamPart> parts = this->parts();
+    const std::vector<StreamPart>& parts = index_.parts;
     requireMemory(where_, double(countBlocks(words_.data(), parts)) * leafBytes<Leaf>());
     auto tree = std::make_shared<Tree>(0);
     openvdb::tree::ValueAccessor<Tree> accessor(*tree);
@@ -111,14 +108,14 @@ std::shared_ptr<Tree> Unpacker::takeDeltas(const Listener& listener) const {
 
 }  // namespace
 
-TreeGrid unpackDeltas(const TreeGrid& grid, const DeltaHeader& header, const std::string& where,
-                      const Listener& listener) {
+UnpackedDeltas unpackDeltas(const TreeGrid& grid, const DeltaHeader& header,
+                            const std::string& where, const Listener& listener) {
     const Unpacker unpacker(*grid.as<openvdb::Int64Tree>(), header, where);
-    TreeGrid deltas{nullptr, grid.metadata, grid.map};
+    UnpackedDeltas deltas{{nullptr, grid.metadata, grid.map}, codesInUse(unpacker.index(), header)};
     if (header.isWide()) {
-        deltas.tree = unpacker.takeDeltas<openvdb::Int64Tree>(listener);
+        deltas.grid.tree = unpacker.takeDeltas<openvdb::Int64Tree>(listener);
     } else {
-        deltas.tree = unpacker.takeDeltas<openvdb::Int32Tree>(listener);
+        deltas.grid.tree = unpacker.takeDeltas<openvdb::Int32Tree>(listener);
     }
     return deltas;
 }

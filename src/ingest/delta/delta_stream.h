@@ -4,6 +4,7 @@
 #include <string>
 
 #include "deltasplat/progress.h"
+#include "ingest/delta/delta_columns.h"
 #include "ingest/grids/tree_grid.h"
 
 namespace deltasplat {
@@ -17,6 +18,12 @@ enum class SliceForm {
     kRows = 2   ///< the same with 8 bits for rows and 8 for each row that is not empty
 };
 
+/// Deltas as voxels.
+struct UnpackedDeltas {
+    TreeGrid grid;
+    CodesInUse said;  ///< what they are to add up to; without a histogram if that is not known
+};
+
 /// Unpacks a delta grid whose voxels are the words of a stream: numbers of few bits, one behind the
 /// other, first where its columns are, then the columns; docs/delta-grid.md specifies them.
 /// Multi-threaded.
@@ -25,8 +32,8 @@ enum class SliceForm {
 ///         them, within the header's box; what they say may contradict the header
 /// @throw Error(kInput) if the words have gaps, or the stream ends early or late or says what it
 ///        cannot; Error(kFailed) if memory does not hold the deltas
-TreeGrid unpackDeltas(const TreeGrid& grid, const DeltaHeader& header, const std::string& where,
-                      const Listener& listener);
+UnpackedDeltas unpackDeltas(const TreeGrid& grid, const DeltaHeader& header,
+                            const std::string& where, const Listener& listener);
 /// Returns how many bits a delta without sign takes at most.
 int deltaWidth(const DeltaHeader& header);
 

@@ -142,10 +142,10 @@ Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const st
                      const ReadOptions& options, const Listener& all) {
     const DeltaHeader header = takeDeltaHeader(stored.metadata, where);
     requireType(stored, header, where);
-    TreeGrid unpacked;
+    UnpackedDeltas unpacked;
     if (header.isPacked()) unpacked = unpackDeltas(stored, header, where, partOf(all, 0, 0.3));
     const Listener listener = partOf(all, header.isPacked() ? 0.3 : 0, 1);
-    TreeGrid& grid = header.isPacked() ? unpacked : stored;
+    TreeGrid& grid = header.isPacked() ? unpacked.grid : stored;
     Volume volume = describe(header, grid.metadata, *grid.map);
     volume.name = grid.name();
     if (header.exact) {
@@ -154,6 +154,10 @@ Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const st
         return volume;
     }
     DecodedDeltas decoded = decodeDeltas(grid, header, where, listener);
+    if (!unpacked.said.histogram.empty()) {
+        const CodeTree::Tree& codes = decoded.codes->tree();
+        requireKnownCodes(unpacked.said, {histogramOf(codes), activeBox(codes)}, where);
+    }
     const bool fog = options.levelSetToFog && volume.gridClass == kLevelSetClass;
     TreeGrid source;
     if (!header.sourceTree.empty() && (options.keepSource || fog)) {
@@ -184,7 +188,8 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
                                       const std::string& where, const ReadOptions& options,
                                       const Listener& listener, const SlicesWanted* wanted) {
     if (grid.type != "int32" && grid.type != "int64") return std::nullopt;
-    DeltaHeader header;
+    const auto known = std::make_shared<DeltaHeader>();
+    DeltaHeader& header = *known;
     std::optional<VdbLeaves> leaves;
     std::unique_ptr<const DeltaColumns> columns;
     Volume volume;
@@ -210,6 +215,14 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
         // What is wrong is said by who reads the grid as a whole.
         if (error.code() != ErrorCode::kInput) throw;
         return std::nullopt;
+    }
+    if (options.readLater && !options.keepSource && columns->knownCodes()) {
+        CodesInUse all = columns->knownCodes()->all;
+        auto later = decodeLater(known, std::move(columns), where);
+        if (!later) return std::nullopt;
+        fillVolume(header, std::make_shared<const CodeTree>(std::move(later)),
+                   std::move(all.histogram), all.active, volume);
+        return volume;
     }
     const std::optional<glm::ivec2> blocks = wanted ? std::optional(wanted->blocks) : std::nullopt;
     std::optional<DecodedBlocks> decoded = decodeBlocks(*columns, header, where, blocks, listener);

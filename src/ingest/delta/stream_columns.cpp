@@ -7,6 +7,7 @@
 #include "ingest/delta/column_order.h"
 #include "ingest/delta/part_walker.h"
 #include "ingest/delta/word_tree.h"
+#include "memory.h"
 
 namespace deltasplat {
 namespace {
@@ -45,11 +46,22 @@ class StreamWalker : public DeltaWalker {
 
 }  // namespace
 
-StreamColumns::StreamColumns(std::vector<std::uint64_t> words, std::vector<StreamPart> parts,
+StreamColumns::StreamColumns(std::vector<std::uint64_t> words, StreamIndex index,
                              const DeltaHeader& header)
-    : header_(&header), words_(std::move(words)), parts_(std::move(parts)) {
+    : header_(&header), words_(std::move(words)), parts_(std::move(index.parts)) {
     columns_ = orderByColumns(parts_, [](const StreamPart& part) { return part.first; });
     blocks_ = countBlocks(words_.data(), parts_);
+    if (index.histogram.empty()) return;
+    knownCodes_.emplace();
+    knownCodes_->all = codesInUse(index, header);
+    knownCodes_->parts.reserve(parts_.size());
+    const int first = toSliceOrder(header.box.min, header.sliceAxis).x >> 3;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const StreamPart& part = parts_[i];
+        const glm::ivec2 place(part.first.y, part.first.z);
+        const int slab = (part.first.x - first) / (header.keyInterval / 8);
+        knownCodes_->parts.push_back({{place, i, i + 1}, slab, part.lowest, part.highest});
+    }
 }
 
 std::optional<StreamColumns> StreamColumns::read(const VdbLeaves& leaves, const DeltaHeader& header,
@@ -58,7 +70,7 @@ std::optional<StreamColumns> StreamColumns::read(const VdbLeaves& leaves, const 
     const std::optional<std::size_t> count = countWords(leaves);
     if (!count) return std::nullopt;
     constexpr std::size_t kFirstWords = 1024;
-    std::vector<StreamPart> parts;
+    StreamIndex index;
     std::vector<std::uint64_t> words;
     for (std::size_t some = slices ? kFirstWords : *count;; some *= 4) {
         some = std::min(some, *count);
@@ -68,10 +80,12 @@ std::optional<StreamColumns> StreamColumns::read(const VdbLeaves& leaves, const 
         if (*count == 0) break;
         auto found = readStreamIndex(words.data(), some, *count, header, where);
         if (!found) continue;
-        parts = std::move(*found);
+        index = std::move(*found);
         break;
     }
     if (slices) {
+        std::vector<StreamPart>& parts = index.parts;
+        index.histogram.clear();  // that of all
         std::erase_if(parts, [&](const StreamPart& part) {
             return part.first.x < slices->x || part.first.x > slices->y;
         });
@@ -86,7 +100,8 @@ std::optional<StreamColumns> StreamColumns::read(const VdbLeaves& leaves, const 
             part.end -= begin;
         }
     }
-    return StreamColumns(std::move(words), std::move(parts), header);
+    requireMemory(where, double(index.parts.size()) * (sizeof(DeltaColumn) + sizeof(DeltaPart)));
+    return StreamColumns(std::move(words), std::move(index), header);
 }
 
 std::unique_ptr<DeltaWalker> StreamColumns::walker() const {

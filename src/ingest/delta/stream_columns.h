@@ -33,17 +33,18 @@ class StreamColumns : public DeltaColumns {
 
     const std::vector<DeltaColumn>& columns() const override { return columns_; }
     std::size_t blocks() const override { return blocks_; }
+    const KnownCodes* knownCodes() const override { return knownCodes_ ? &*knownCodes_ : nullptr; }
     std::unique_ptr<DeltaWalker> walker() const override;
 
   private:
-    StreamColumns(std::vector<std::uint64_t> words, std::vector<StreamPart> parts,
-                  const DeltaHeader& header);
+    StreamColumns(std::vector<std::uint64_t> words, StreamIndex index, const DeltaHeader& header);
 
     const DeltaHeader* header_;
     std::vector<std::uint64_t> words_;
     std::vector<StreamPart> parts_;  // by u, v and slab
     std::vector<DeltaColumn> columns_;
     std::size_t blocks_ = 0;
+    std::optional<KnownCodes> knownCodes_;
 };
 
 }  // namespace deltasplat

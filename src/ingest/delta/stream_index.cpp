@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/delta/stream_index.h"
 
+#include <zlib.h>
+
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <utility>
 
 #include "deltasplat/error.h"
 #include "ingest/delta/bit_reader.h"
@@ -17,9 +21,14 @@ class IndexReader {
   public:
     IndexReader(const std::uint64_t* words, std::size_t some, std::size_t count,
                 const DeltaHeader& header, const std::string& where)
-        : header_(header), where_(where), some_(some), count_(count), in_(words, 0) {}
+        : header_(header),
+          where_(where),
+          words_(words),
+          some_(some),
+          count_(count),
+          in_(words, 0) {}
 
-    std::optional<std::vector<StreamPart>> read();
+    std::optional<StreamIndex> read();
 
   private:
     [[noreturn]] void fail(const std::string& got, const std::string& expected) const {
@@ -35,17 +44,25 @@ class IndexReader {
         if (in_.position() <= 64 * count_) return;
         fail("a stream of " + std::to_string(count_) + " words that ends early", "the rest of it");
     }
-    // Whether the next part's four numbers are there.
+    // Whether the next part's six numbers are there, or two of the histogram.
     bool mayGoOn() const {
-        constexpr std::size_t kMostBits = 4 * 128;
+        constexpr std::size_t kMostBits = 6 * 128;
         return some_ == count_ || in_.position() + kMostBits <= 64 * some_;
     }
     // Of each of slab, u and v there is what is more than in the part before, as far as those
     // before it are the same.
     void takePlace(glm::i64vec3& place, const glm::i64vec3& most);
+    void takeRange(StreamPart& part);
+    // Takes the box of the active voxels, by how far its sides lie within the grid's.
+    IndexBox takeBox();
+    void requireSum();
+    void requireCounted(const StreamIndex& index) const;
+    // Returns nothing if it goes on behind the words.
+    std::optional<std::vector<std::uint64_t>> takeHistogram();
 
     const DeltaHeader& header_;
     const std::string& where_;
+    const std::uint64_t* words_;
     std::size_t some_;
     std::size_t count_;
     BitReader in_;
@@ -63,7 +80,77 @@ void IndexReader::takePlace(glm::i64vec3& place, const glm::i64vec3& most) {
     }
 }
 
-std::optional<std::vector<StreamPart>> IndexReader::read() {
+void IndexReader::takeRange(StreamPart& part) {
+    const std::uint64_t lowest = in_.takeNumber();
+    const std::uint64_t more = in_.takeNumber();
+    const auto codes = std::uint64_t(header_.codeCount);
+    if (lowest >= codes || more >= codes - lowest) {
+        fail("codes beyond those of the code book",
+             "codes below " + std::to_string(header_.codeCount));
+    }
+    part.lowest = Code(lowest);
+    part.highest = Code(lowest + more);
+}
+
+std::optional<std::vector<std::uint64_t>> IndexReader::takeHistogram() {
+    const auto codes = std::uint64_t(header_.codeCount);
+    std::vector<std::uint64_t> histogram(kCodeCount);
+    std::uint64_t code = 0;
+    std::uint64_t left = header_.active;
+    const std::uint64_t number = in_.takeNumber();
+    for (std::uint64_t i = 0; i < number; ++i, ++code) {
+        if (!mayGoOn()) return std::nullopt;
+        requireBits();
+        const std::uint64_t gap = in_.takeNumber();
+        const std::uint64_t count = in_.takeNumber();
+        if (code >= codes || gap >= codes - code || count >= left) {
+            fail("numbers of codes that go together with no volume",
+                 std::to_string(header_.active) + " voxels of " +
+                     std::to_string(header_.codeCount) + " codes");
+        }
+        code += gap;
+        histogram[std::size_t(code)] = count + 1;
+        left -= count + 1;
+    }
+    if (left > 0) {
+        fail("codes of " + std::to_string(header_.active - left) + " voxels",
+             "of " + std::to_string(header_.active));
+    }
+    return histogram;
+}
+
+IndexBox IndexReader::takeBox() {
+    IndexBox box{toSliceOrder(header_.box.min, header_.sliceAxis),
+                 toSliceOrder(header_.box.max, header_.sliceAxis)};
+    const glm::i64vec3 size = glm::i64vec3(box.max) - glm::i64vec3(box.min);
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::uint64_t low = in_.takeNumber();
+        const std::uint64_t high = in_.takeNumber();
+        const auto most = std::uint64_t(size[axis]);
+        if (header_.box.empty() || low > most || high > most - low)
+            fail("a box of active voxels outside of that of the grid", "one within it");
+        box.min[axis] += int(low);
+        box.max[axis] -= int(high);
+    }
+    return box;
+}
+
+// What is not unpacked cannot show that the index is damaged.
+void IndexReader::requireSum() {
+    const std::uint64_t sum = streamSum(words_, in_.position() / 64);
+    if (in_.take(64) != sum)
+        fail("a stream whose beginning is damaged", "one with the sum it says");
+}
+
+// The codes that columns begin and end with are there.
+void IndexReader::requireCounted(const StreamIndex& index) const {
+    for (const StreamPart& part : index.parts) {
+        if (index.histogram[part.lowest] == 0 || index.histogram[part.highest] == 0)
+            fail("columns of codes that no voxel has", "those of some voxel");
+    }
+}
+
+std::optional<StreamIndex> IndexReader::read() {
     const int blocksPerSlab = header_.keyInterval / 8;
     const glm::ivec3 first = toSliceOrder(header_.box.min, header_.sliceAxis) >> 3;
     const glm::ivec3 last = toSliceOrder(header_.box.max, header_.sliceAxis) >> 3;
@@ -75,7 +162,10 @@ std::optional<std::vector<StreamPart>> IndexReader::read() {
     requireBits();
     if (number > count_) failTooMany(number);
     requireMemory(where_, double(number) * sizeof(StreamPart));
-    std::vector<StreamPart> parts;
+    const bool knowsCodes = header_.mayKnowCodes() && in_.take(1) == 1;
+    if (knowsCodes && header_.exact) fail("a stream of exact values that says its codes", "none");
+    StreamIndex index;
+    std::vector<StreamPart>& parts = index.parts;
     parts.reserve(std::size_t(number));
     constexpr std::uint64_t kMostNumber = std::uint64_t{1} << 62;
     std::size_t words = 0;
@@ -88,7 +178,21 @@ std::optional<std::vector<StreamPart>> IndexReader::read() {
         const std::size_t end = words + std::size_t(size) + 1;
         const glm::i64vec3 blocks(place.x * blocksPerSlab, place.y, place.z);
         parts.push_back({first + glm::ivec3(blocks), words, end});
+        if (knowsCodes) takeRange(parts.back());
         words = end;
+    }
+    if (knowsCodes) {
+        if (!mayGoOn()) return std::nullopt;
+        requireBits();
+        auto histogram = takeHistogram();
+        if (!histogram) return std::nullopt;
+        index.histogram = std::move(*histogram);
+        if (!mayGoOn()) return std::nullopt;
+        index.active = takeBox();
+        in_.skipToWord();
+        if (!mayGoOn()) return std::nullopt;
+        requireSum();
+        requireCounted(index);
     }
     requireBits();
     in_.skipToWord();
@@ -99,15 +203,32 @@ std::optional<std::vector<StreamPart>> IndexReader::read() {
         part.begin += before;
         part.end += before;
     }
-    return parts;
+    return index;
 }
 
 }  // namespace
 
-std::optional<std::vector<StreamPart>> readStreamIndex(const std::uint64_t* words, std::size_t some,
-                                                       std::size_t count, const DeltaHeader& header,
-                                                       const std::string& where) {
+std::optional<StreamIndex> readStreamIndex(const std::uint64_t* words, std::size_t some,
+                                           std::size_t count, const DeltaHeader& header,
+                                           const std::string& where) {
     return IndexReader(words, some, count, header, where).read();
+}
+
+CodesInUse codesInUse(const StreamIndex& index, const DeltaHeader& header) {
+    return {index.histogram,
+            {fromSliceOrder(index.active.min, header.sliceAxis),
+             fromSliceOrder(index.active.max, header.sliceAxis)}};
+}
+
+std::uint64_t streamSum(const std::uint64_t* words, std::size_t count) {
+    uLong sum = ::crc32_z(0, nullptr, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::array<Bytef, 8> bytes;
+        for (std::size_t byte = 0; byte < bytes.size(); ++byte)
+            bytes[byte] = Bytef(words[i] >> 8 * byte & 0xff);
+        sum = ::crc32_z(sum, bytes.data(), bytes.size());
+    }
+    return std::uint64_t(sum);
 }
 
 std::size_t countBlocks(const std::uint64_t* words, const std::vector<StreamPart>& parts) {

@@ -8,6 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "deltasplat/ingest/code_book.h"
+#include "deltasplat/ingest/volume.h"
+#include "ingest/delta/delta_columns.h"
+
 namespace deltasplat {
 
 struct DeltaHeader;
@@ -18,21 +22,40 @@ struct StreamPart {
     glm::ivec3 first{0};    ///< the slab's first block, in (slice, u, v) order, divided by 8
     std::size_t begin = 0;  ///< of its words
     std::size_t end = 0;
+    /// Range of the active voxels' codes, if the stream says which there are.
+    Code lowest = 0;
+    Code highest = 0;
+};
+
+/// What a stream begins with.
+struct StreamIndex {
+    std::vector<StreamPart> parts;  ///< by slab, u and v
+    /// As Volume::histogram; empty if the stream does not say which codes there are.
+    std::vector<std::uint64_t> histogram;
+    /// Of the active voxels, in (slice, u, v) order, if it says so.
+    IndexBox active;
 };
 
 /// More words than any block takes, of 512 numbers of 8 + 64 bits: so what is read behind the end
 /// of damaged words is there.
 inline constexpr std::size_t kStreamPadding = 1024;
 
-/// Reads where the parts of a stream are, by slab, u and v: what it begins with.
+/// Reads what a stream begins with.
 /// @param words   the first of the stream, `some` of them, with kStreamPadding behind them
 /// @param count   of all words
 /// @return nothing if it goes on behind these words
 /// @throw Error(kInput) if the stream says what it cannot; Error(kFailed) if memory does not hold
 /// it
-std::optional<std::vector<StreamPart>> readStreamIndex(const std::uint64_t* words, std::size_t some,
-                                                       std::size_t count, const DeltaHeader& header,
-                                                       const std::string& where);
+std::optional<StreamIndex> readStreamIndex(const std::uint64_t* words, std::size_t some,
+                                           std::size_t count, const DeltaHeader& header,
+                                           const std::string& where);
+
+/// Returns what a stream says of all its codes.
+CodesInUse codesInUse(const StreamIndex& index, const DeltaHeader& header);
+
+/// Returns the CRC-32 of words, each from its lowest byte on: what a stream that says which codes
+/// there are has behind that.
+std::uint64_t streamSum(const std::uint64_t* words, std::size_t count);
 
 /// Returns how many blocks parts say that they have, at most as many as their words can hold.
 /// Multi-threaded.
