@@ -7,9 +7,11 @@ namespace deltasplat {
 
 BlockFinder::BlockFinder(const CodeTree& codes, int sliceAxis)
     : blocks_(codes.blocksAlong(sliceAxis)), sliceAxis_(sliceAxis) {
-    if (!blocks_) accessor_.emplace(codes.tree());
-    // Those that are not made yet are made by all threads.
-    if (blocks_) blocks_->blocks();
+    if (blocks_) {
+        blocks_->blocks();  // those that are not made yet are made by all threads
+    } else {
+        accessor_.emplace(codes.tree());
+    }
 }
 
 std::optional<CodeBlock> BlockFinder::find(const glm::ivec3& position) const {

@@ -125,21 +125,14 @@ std::optional<StreamCodes> streamCodes(const std::vector<const Leaf*>& leaves,
                 isSound = false;
                 break;
             }
-            auto& [lowest, highest] = found.ranges[i];
-            lowest = blocks[0].lowest;
-            for (const SlotBlock& block : blocks) {
-                lowest = std::min(lowest, block.lowest);
-                highest = std::max(highest, block.highest);
-            }
+            found.ranges[i] = *rangeOf(blocks);
         }
         active[worker] = decoder.active();
     });
     if (!isSound) return std::nullopt;
     for (const IndexBox& box : active) found.active = boxOfBoth(found.active, box);
     if (header.restActive) found.active = {layout.first, layout.last};
-    found.histogram = counts.take();
-    found.histogram.erase(found.histogram.begin());  // of codes, not of slots
-    found.histogram.push_back(0);
+    found.histogram = takeHistogram(counts);
     if (!addRest(header, rules, found)) return std::nullopt;
     return found;
 }

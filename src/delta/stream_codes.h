@@ -29,9 +29,8 @@ struct StreamCodes {
 };
 
 /// Adds deltas up. Multi-threaded; deterministic.
-/// @param leaves  of deltas without sign, column by column: those of one slab, u and v, in the
-/// order
-///                of slices
+/// @param leaves  of deltas without sign, column by column (one slab, u and v), in the order of
+///                slices
 /// @param begins  of columns, and the end
 /// @return nothing of values that stand for themselves, or if inactive voxels have others than the
 ///         background

@@ -81,6 +81,22 @@ SlotRules slotRulesOf(const DeltaHeader& header) {
     return rules;
 }
 
+std::optional<std::pair<Code, Code>> rangeOf(std::span<const SlotBlock> blocks) {
+    std::optional<std::pair<Code, Code>> range;
+    for (const SlotBlock& block : blocks) {
+        if (!range) range.emplace(block.lowest, block.highest);
+        range = {std::min(range->first, block.lowest), std::max(range->second, block.highest)};
+    }
+    return range;
+}
+
+std::vector<std::uint64_t> takeHistogram(CodeCounts& slots) {
+    std::vector<std::uint64_t> histogram = slots.take();
+    histogram.erase(histogram.begin());
+    histogram.push_back(0);
+    return histogram;
+}
+
 ColumnDecoder::ColumnDecoder(std::unique_ptr<DeltaWalker> walker, const Grid& grid,
                              CodeCounts* counts, std::size_t worker)
     : walker_(std::move(walker)),

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "deltasplat/ingest/volume.h"
@@ -57,6 +58,12 @@ class BlockLayout {
 
 /// Returns which slots a delta grid of codes may have.
 SlotRules slotRulesOf(const DeltaHeader& header);
+
+/// Returns the range of the active voxels' codes in blocks; nothing if there are none.
+std::optional<std::pair<Code, Code>> rangeOf(std::span<const SlotBlock> blocks);
+
+/// Returns what decoders have counted, as Volume::histogram: of codes, not of slots.
+std::vector<std::uint64_t> takeHistogram(CodeCounts& slots);
 
 /// Adds up deltas to blocks, column by column. For one thread at a time.
 class ColumnDecoder {

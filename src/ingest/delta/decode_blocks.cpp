@@ -52,11 +52,7 @@ std::string beginText(const BlockLayout& layout, const DeltaPart& part) {
 
 // Returns what is wrong with blocks that do not have the codes which the file says that they have.
 std::optional<std::string> problemOf(std::span<const SlotBlock> blocks, const DeltaPart& part) {
-    std::optional<std::pair<Code, Code>> range;
-    for (const SlotBlock& block : blocks) {
-        if (!range) range.emplace(block.lowest, block.highest);
-        range = {std::min(range->first, block.lowest), std::max(range->second, block.highest)};
-    }
+    const std::optional<std::pair<Code, Code>> range = rangeOf(blocks);
     if (range == std::pair(part.lowest, part.highest)) return std::nullopt;
     return range ? "codes " + std::to_string(range->first) + ".." + std::to_string(range->second)
                  : "no codes";
@@ -149,10 +145,7 @@ IndexBox inVolume(const IndexBox& box, int sliceAxis) {
 // Puts together what the threads found; returns whether it is what the header says.
 bool collect(TaskDecoder& decoder, const DeltaHeader& header, const BlockLayout& layout,
              DecodedBlocks& decoded) {
-    decoded.histogram = decoder.counts()->take();
-    // Of codes, not of slots.
-    decoded.histogram.erase(decoded.histogram.begin());
-    decoded.histogram.push_back(0);
+    decoded.histogram = takeHistogram(*decoder.counts());
     std::vector<std::uint64_t> slabDeltas(header.slabDeltas.size());
     IndexBox active;
     const std::uint64_t count =
