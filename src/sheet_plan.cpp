@@ -82,6 +82,8 @@ bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
         listener.warn("the volume is too wide for voxels to be divided: drawn as they are");
         return false;
     }
+    const glm::dvec3 places = (volume.box.max >> 3) - (volume.box.min >> 3) + 1;
+    if (places.x * places.y * places.z <= double(kMostDivided)) return true;
     const std::size_t blocks = scene.blocksSeen(view.sliceAxis);
     if (blocks <= kMostDivided) return true;
     listener.warn("voxels are too many to be divided (" + std::to_string(blocks) +

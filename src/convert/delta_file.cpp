@@ -142,7 +142,7 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
                                 "a largest error of " + numberText(entry.maxError),
                                 "at most " + numberText(*options.maxError) + " (`maxError`)"));
     }
-    impl_->grids.push_back(options.pack ? writtenGrid(grid) : writtenDeltas(grid));
+    impl_->grids.push_back(options.pack ? writtenWords(grid) : writtenDeltas(grid));
     listener.report(1);
     return entry;
 }

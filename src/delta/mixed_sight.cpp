@@ -35,11 +35,11 @@ std::vector<glm::ivec3> widened(const std::vector<glm::ivec3>& places, const glm
 }
 
 // Without any code if the lowest is above the highest.
-struct CodeRange {
+struct Range {
     Code lowest = std::numeric_limits<Code>::max();
     Code highest = 0;
 
-    void add(const CodeRange& other) {
+    void add(const Range& other) {
         lowest = std::min(lowest, other.lowest);
         highest = std::max(highest, other.highest);
     }
@@ -47,8 +47,8 @@ struct CodeRange {
 
 // Adds to the range of each block, in order, those of its neighbours on both sides along an axis.
 void addNeighbours(const std::vector<CodeBlock>& blocks, const glm::ivec3& step,
-                   std::vector<CodeRange>& ranges) {
-    const std::vector<CodeRange> own = ranges;
+                   std::vector<Range>& ranges) {
+    const std::vector<Range> own = ranges;
     std::size_t next = 0;  // the first block that does not lie before the place looked for
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const glm::ivec3 place = blocks[i].position + step;
@@ -115,10 +115,12 @@ std::vector<Slot> MixedSight::seenCodes(std::span<const std::uint64_t> histogram
 std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAxis,
                                               std::span<const std::uint64_t> histogram) const {
     const std::vector<Slot> map = seenCodes(histogram);
+    // Before others ask for some of the blocks: it wants all.
+    const BlockFinder finder(codes, sliceAxis);
     const std::vector<CodeBlock> seen = deltasplat::listBlocks(codes, sliceAxis, map);
     constexpr double kMostNeighbours = 3;
     constexpr double kBytesPerBlock =
-        sizeof(CodeBlock) + 4 * sizeof(glm::ivec3) + 2 * sizeof(CodeRange);
+        sizeof(CodeBlock) + 4 * sizeof(glm::ivec3) + 2 * sizeof(Range);
     requireMemory("list of voxel blocks", kMostNeighbours * kBytesPerBlock * double(seen.size()));
     std::vector<glm::ivec3> places;
     places.reserve(seen.size());
@@ -127,9 +129,8 @@ std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAx
     const bool alongAll = byAllSides_ || mixer_.parts().within > 1;
     if (alongAll) places = widened(widened(places, {0, 0, 1}), {0, 1, 0});
 
-    const BlockFinder finder(codes, sliceAxis);
     std::vector<CodeBlock> blocks;
-    std::vector<CodeRange> ranges;
+    std::vector<Range> ranges;
     blocks.reserve(places.size());
     ranges.reserve(places.size());
     auto next = seen.begin();
@@ -145,15 +146,15 @@ std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAx
             blocks.push_back(*found);
         } else if (byAllSides_) {
             blocks.push_back({place});
-            ranges.push_back(CodeRange());
+            ranges.push_back(Range());
             continue;
         } else {
             continue;
         }
         const CodeBlock& block = blocks.back();
         const auto tile = Code(block.tileSlot - 1);
-        ranges.push_back(block.leaf || block.slots ? CodeRange{block.lowest, block.highest}
-                                                   : CodeRange{tile, tile});
+        ranges.push_back(block.leaf || block.slots ? Range{block.lowest, block.highest}
+                                                   : Range{tile, tile});
     }
     addNeighbours(blocks, {1, 0, 0}, ranges);
     if (alongAll) {

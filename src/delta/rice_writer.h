@@ -38,15 +38,28 @@ RiceChoice bestRice(RiceCode code, std::span<const Number> numbers) {
     return best;
 }
 
-/// Writes a number for RiceCode::take.
-inline void putRice(BitWriter& out, RiceCode code, int parameter, std::uint64_t number) {
-    const std::uint64_t quotient = number >> parameter;
-    if (quotient >= RiceCode::kMostOnes) {
-        out.put(BitReader::lowBits(RiceCode::kMostOnes), RiceCode::kMostOnes);
-        out.put(number, code.width);
-    } else {
-        out.put(BitReader::lowBits(int(quotient)), int(quotient) + 1);
-        out.put(number & BitReader::lowBits(parameter), parameter);
+/// Writes at most 64 numbers for takePlanes.
+template <typename Number>
+void putPlanes(BitWriter& out, RiceCode code, int parameter, std::span<const Number> numbers) {
+    const auto putPlane = [&](const auto& hasBit, const auto& bitOf) {
+        std::uint64_t plane = 0;
+        int bits = 0;
+        for (const Number number : numbers)
+            if (hasBit(number)) plane |= std::uint64_t{bitOf(number)} << bits++;
+        out.put(plane, bits);
+    };
+    const auto quotientOf = [&](Number number) { return std::uint64_t(number) >> parameter; };
+    for (std::uint64_t level = 0; level < RiceCode::kMostOnes; ++level) {
+        putPlane([&](Number number) { return quotientOf(number) >= level; },
+                 [&](Number number) { return quotientOf(number) > level; });
+    }
+    for (int bit = 0; bit < parameter; ++bit) {
+        putPlane([](Number) { return true; },
+                 [&](Number number) { return (number >> bit & 1) != 0; });
+    }
+    for (const Number number : numbers) {
+        if (quotientOf(number) >= RiceCode::kMostOnes)
+            out.put(quotientOf(number), code.width - parameter);
     }
 }
 

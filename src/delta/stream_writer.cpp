@@ -57,8 +57,8 @@ void putSlice(std::uint64_t changed, const Number* numbers, RiceCode code, BitWr
         for (std::uint64_t left = rows; left != 0; left &= left - 1)
             out.put(changed >> (8 * std::countr_zero(left)) & 0xff, 8);
     }
-    for (const Number number : isMask ? std::span(less.data(), count) : std::span<Number>(all))
-        putRice(out, code, parameter, number);
+    putPlanes<Number>(out, code, parameter,
+                      isMask ? std::span(less.data(), count) : std::span<Number>(all));
 }
 
 template <typename Leaf>
@@ -149,11 +149,11 @@ std::vector<std::uint64_t> wordsOf(const Tree& deltas, const DeltaHeader& header
     });
     std::optional<StreamCodes> codes;
     if constexpr (std::is_same_v<Tree, openvdb::Int32Tree>)
-        if (header.mayKnowCodes()) codes = streamCodes(leaves, begins, header);
+        codes = streamCodes(leaves, begins, header);
     const auto index = [&](const StreamCodes* known) {
         BitWriter out;
         out.putNumber(count);
-        if (header.mayKnowCodes()) out.put(known ? 1 : 0, 1);
+        out.put(known ? 1 : 0, 1);
         glm::ivec3 before(0, 0, -1);
         for (std::size_t i = 0; i < count; ++i) {
             putColumn(places.columnOf(*leaves[begins[i]]), before, columns[i].words().size(), out);

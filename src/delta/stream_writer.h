@@ -11,7 +11,8 @@
 
 namespace deltasplat {
 
-/// Returns the words that unpackDeltas reads; none if there are no deltas. Multi-threaded;
+/// Returns the words that unpackDeltas reads, of DeltaHeader::kPackedVersion; none if there are no
+/// deltas. Multi-threaded;
 /// deterministic.
 /// @param deltas  without sign, in (slice, u, v) order in leaves, of type int32 or int64 as
 ///                versions 3 and 4 have them; within the header's box

@@ -19,11 +19,11 @@ constexpr std::size_t kLeastPacked = 128;
 
 // Appends an array: how many bytes it is packed in, 0 if it is not, and those.
 template <typename T>
-void appendArray(const std::vector<T>& values, std::string& to) {
+void appendArray(const std::vector<T>& values, bool mayPack, std::string& to) {
     const std::size_t bytes = values.size() * sizeof(T);
     const std::size_t place = to.size();
     appendBytes(std::uint32_t{0}, to);
-    if (bytes > kLeastBytes && bytes <= BLOSC_MAX_BUFFERSIZE - BLOSC_MAX_OVERHEAD) {
+    if (mayPack && bytes > kLeastBytes && bytes <= BLOSC_MAX_BUFFERSIZE - BLOSC_MAX_OVERHEAD) {
         std::string padded(reinterpret_cast<const char*>(values.data()), bytes);
         if (bytes < kLeastPacked) padded.resize(kLeastPacked);
         const auto size = std::uint32_t(appendBlosc(padded.data(), padded.size(), to));
@@ -38,13 +38,13 @@ void appendArray(const std::vector<T>& values, std::string& to) {
 
 }  // namespace
 
-std::string leafNotes(const std::vector<std::int8_t>& kinds,
-                      const std::vector<std::int64_t>& sizes) {
+std::string leafNotes(const std::vector<std::int8_t>& kinds, const std::vector<std::int64_t>& sizes,
+                      bool mayPack) {
     std::string notes;
     if (kinds.empty()) return notes;
     appendBytes(std::uint32_t(kinds.size()), notes);
-    appendArray(kinds, notes);
-    appendArray(sizes, notes);
+    appendArray(kinds, mayPack, notes);
+    appendArray(sizes, mayPack, notes);
     return notes;
 }
 

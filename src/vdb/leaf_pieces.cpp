@@ -54,8 +54,8 @@ void LeafPieces::pack(std::uint64_t& room, const std::function<void(double)>& st
     });
 }
 
-std::string LeafPieces::notes() const {
-    return leafNotes(kinds_, sizes_);
+std::string LeafPieces::notes(bool mayPack) const {
+    return leafNotes(kinds_, sizes_, mayPack);
 }
 
 void LeafPieces::take(const std::function<void(const std::string&)>& use) {

@@ -25,7 +25,7 @@ class LeafPieces {
     void pack(std::uint64_t& room, const std::function<void(double)>& step);
     std::uint64_t bytes() const { return bytes_; }
     /// Returns OpenVDB's notes of all leaves, as leafNotes() has them.
-    std::string notes() const;
+    std::string notes(bool mayPack) const;
     /// Calls use(bytes) for what pack() has packed, in order, and lets go of it.
     void take(const std::function<void(const std::string&)>& use);
 

@@ -103,7 +103,8 @@ class GridPacker {
         metadata.insert(GridBase::META_FILE_MEM_BYTES, std::int64_t(facts.memoryBytes));
         metadata.insert(GridBase::META_FILE_VOXEL_COUNT, std::int64_t(facts.activeVoxels));
         if (grid_.tree->notesLeaves())
-            metadata.insert(GridBase::META_FILE_DELAYED_LOAD, {"__delayedload", leaves_.notes()});
+            metadata.insert(GridBase::META_FILE_DELAYED_LOAD,
+                            {"__delayedload", leaves_.notes(grid_.packsNotes)});
         return metadata;
     }
 

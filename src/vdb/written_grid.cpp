@@ -37,6 +37,12 @@ WrittenGrid writtenGrid(const TreeGrid& grid) {
     return written;
 }
 
+WrittenGrid writtenWords(const TreeGrid& grid) {
+    WrittenGrid written = writtenGrid(grid);
+    written.packsNotes = false;
+    return written;
+}
+
 WrittenGrid writtenDeltas(const TreeGrid& grid) {
     WrittenGrid written{grid.name(), grid.metadata, grid.map, nullptr};
     grid.apply<TreeTypes<openvdb::Int32Tree, openvdb::Int64Tree>>([&](const auto& tree) {

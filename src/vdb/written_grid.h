@@ -18,6 +18,7 @@ struct WrittenGrid {
     VdbMetadata metadata;  ///< what is noted anew whenever a file is written does not count
     openvdb::math::MapBase::ConstPtr map;
     std::shared_ptr<const WrittenTree> tree;
+    bool packsNotes = true;  ///< whether what is noted of leaves' sizes is packed, as OpenVDB does
 
     /// Whether the metadata say that real values are stored as halves.
     bool isHalf() const;
@@ -26,6 +27,10 @@ struct WrittenGrid {
 /// Returns what is written of a scalar grid, or of one of vec3s: itself, which must not change.
 /// @throw Error(kFailed) if it is of another type
 WrittenGrid writtenGrid(const TreeGrid& grid);
+
+/// Returns what is written of a grid of words (word_tree.h). These do not pack, so the notes of its
+/// leaves are not packed either: Blosc takes longer to load than words take to read.
+WrittenGrid writtenWords(const TreeGrid& grid);
 
 /// Returns what is written of a grid of deltas, of int32 or int64: active values, on a background
 /// of 0, sooner than writtenGrid() has it.

@@ -54,6 +54,19 @@ class Bits {
         if (ones == 8) return take(width);
         return (ones << parameter) + take(parameter);
     }
+    // Numbers of so many places, in planes.
+    std::vector<std::uint64_t> takePlanes(std::size_t count, int parameter, int width) {
+        std::vector<std::uint64_t> quotients(count), numbers(count);
+        for (std::uint64_t level = 0; level < 8; ++level)
+            for (std::uint64_t& quotient : quotients) quotient += quotient == level ? take(1) : 0;
+        for (int bit = 0; bit < parameter; ++bit)
+            for (std::uint64_t& number : numbers) number |= take(1) << bit;
+        for (std::size_t i = 0; i < count; ++i) {
+            const bool isLarge = quotients[i] == 8;
+            numbers[i] += (isLarge ? take(width - parameter) : quotients[i]) << parameter;
+        }
+        return numbers;
+    }
     int takeParameter(int width) { return int(take(width > 32 ? 6 : 5)); }
     void skipToWord() { next_ = (next_ + 63) / 64 * 64; }
     // The CRC-32 of all words so far.
@@ -174,12 +187,12 @@ class PackedDeltas {
         openvdb::Coord first = openvdb::Coord::max();
         openvdb::Coord last = openvdb::Coord::min();
     };
-    void take(Bits& bits, int interval, int width, bool maySay) {
+    void take(Bits& bits, int interval, int width, bool isOld) {
         std::vector<openvdb::Coord> columns;
         std::uint64_t slab = 0, u = 0, next = 0;
         const auto block = [](int low, std::uint64_t more) { return (low >> 3) + int(more); };
         const std::uint64_t number = bits.takeNumber();
-        said.isThere = maySay && bits.take(1) == 1;
+        said.isThere = !isOld && bits.take(1) == 1;
         for (std::uint64_t left = number; left > 0; --left) {
             const std::uint64_t moreSlabs = bits.takeNumber();
             slab += moreSlabs;
@@ -214,7 +227,8 @@ class PackedDeltas {
             int s = column.x();
             for (std::uint64_t left = bits.takeNumber() + 1; left > 0; --left, ++s) {
                 s += int(bits.takeNumber());
-                takeBlock(bits, openvdb::Coord(8 * s, 8 * column.y(), 8 * column.z()), width);
+                takeBlock(bits, openvdb::Coord(8 * s, 8 * column.y(), 8 * column.z()), width,
+                          isOld);
             }
         }
     }
@@ -222,7 +236,7 @@ class PackedDeltas {
     Said said;
 
   private:
-    void takeBlock(Bits& bits, const openvdb::Coord& corner, int width) {
+    void takeBlock(Bits& bits, const openvdb::Coord& corner, int width, bool isOld) {
         for (int s = 0; s < 8; ++s) {
             if (bits.take(1) == 0) continue;
             const int form = int(bits.take(2)), parameter = bits.takeParameter(width);
@@ -232,10 +246,16 @@ class PackedDeltas {
                 for (int row = 0; row < 8; ++row)
                     mask |= (rows >> row & 1) == 0 ? 0 : bits.take(8) << 8 * row;
             }
-            for (int n = 0; n < 64; ++n) {
-                if (form != 0 && (mask >> n & 1) == 0) continue;
-                const std::uint64_t number = bits.takeRice(parameter, width) + (form != 0);
-                if (number != 0) at(corner + openvdb::Coord(s, n / 8, n % 8)) = number;
+            std::vector<int> places;
+            for (int n = 0; n < 64; ++n)
+                if (form == 0 || (mask >> n & 1) != 0) places.push_back(n);
+            std::vector<std::uint64_t> numbers(places.size());
+            if (!isOld) numbers = bits.takePlanes(places.size(), parameter, width);
+            for (std::size_t i = 0; i < places.size(); ++i) {
+                if (isOld) numbers[i] = bits.takeRice(parameter, width);
+                const std::uint64_t number = numbers[i] + (form != 0);
+                if (number != 0)
+                    at(corner + openvdb::Coord(s, places[i] / 8, places[i] % 8)) = number;
             }
         }
     }
@@ -316,7 +336,7 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
         int width = isExact ? (exact.is32() ? 32 : 64) : 0;
         while (!isExact && 2 * largest >> width != 0) ++width;
         Bits bits(*wide);
-        packed.take(bits, interval, width, version == 7);
+        packed.take(bits, interval, width, version == 5);
     }
     PackedDeltas::Said found;
     const auto note = [&](const openvdb::Coord& suv, int code) {

@@ -167,24 +167,6 @@ TEST(CodeCounts, addUpBeyond32Bits) {
     EXPECT_EQ(sums.size(), std::size_t(kCodeCount));
 }
 
-template <typename T>
-void changesWhereverTheyAre() {
-    for (std::size_t n = 0; n < 64; ++n) {
-        std::array<T, 64> deltas{};
-        EXPECT_EQ(changedOf(deltas.data()), 0u);
-        deltas[n] = std::numeric_limits<T>::min();
-        deltas[63 - n] = 1;
-        EXPECT_EQ(changedOf(deltas.data()), std::uint64_t{1} << n | std::uint64_t{1} << (63 - n));
-    }
-}
-
-TEST(LeafKernels, changedOf) {
-    test::atEveryLevel([] {
-        changesWhereverTheyAre<std::int32_t>();
-        changesWhereverTheyAre<std::int64_t>();
-    });
-}
-
 // Returns what a slot is shown as, or nothing if the rules do not allow it.
 std::optional<ShortSlot> shownAs(std::uint32_t slot, const SlotRules& rules) {
     if (slot == 0) return rules.rest;

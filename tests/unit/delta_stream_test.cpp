@@ -7,11 +7,15 @@
 #include <openvdb/tools/Prune.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
+#include <map>
 #include <random>
 #include <set>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -23,12 +27,14 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
 #include "ingest/delta/delta_format.h"
+#include "ingest/delta/plane_kernels.h"
 #include "ingest/delta/rice_code.h"
 #include "ingest/delta/stream_index.h"
 #include "ingest/delta/word_tree.h"
 #include "ingest/vdb/vdb_file.h"
 #include "support/error_of.h"
 #include "support/same_volume.h"
+#include "support/simd_levels.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {
@@ -72,9 +78,21 @@ TEST(BitStream, NumbersOfAnySizeComeBack) {
     EXPECT_EQ(readerOf(none).takeNumber(), kMost);
 }
 
-// With every parameter, the smallest and largest numbers among them.
+// Writes a number as RiceCode::take reads it: as streams had them before they had planes.
+void putRice(BitWriter& out, RiceCode code, int parameter, std::uint64_t number) {
+    const std::uint64_t quotient = number >> parameter;
+    if (quotient >= RiceCode::kMostOnes) {
+        out.put(BitReader::lowBits(RiceCode::kMostOnes), RiceCode::kMostOnes);
+        out.put(number, code.width);
+    } else {
+        out.put(BitReader::lowBits(int(quotient)), int(quotient) + 1);
+        out.put(number & BitReader::lowBits(parameter), parameter);
+    }
+}
+
+// With every parameter, the smallest and largest numbers among them: one by one, and in planes.
 template <typename Number>
-void expectRiceComesBack(int width) {
+void expectNumbersComeBack(int width) {
     SCOPED_TRACE(width);
     std::mt19937_64 random{unsigned(width)};
     const RiceCode code{width};
@@ -88,50 +106,96 @@ void expectRiceComesBack(int width) {
         BitReader in = readerOf(words);
         for (const Number number : numbers) ASSERT_EQ(code.take(in, parameter), number);
         const std::size_t end = in.position();
-        for (const std::size_t count : {numbers.size(), std::size_t{1}, std::size_t{63}}) {
+        for (const std::size_t count : {64, 1, 63}) {
+            BitWriter planes;
+            const auto part = [&](std::size_t i) {
+                return std::span<const Number>(numbers).subspan(
+                    i, std::min(count, numbers.size() - i));
+            };
+            for (std::size_t i = 0; i < numbers.size(); i += count)
+                putPlanes(planes, code, parameter, part(i));
+            words = planes.words();
             in = readerOf(words);
-            std::vector<Number> taken(numbers.size());
-            for (std::size_t i = 0; i < taken.size(); i += count)
-                code.takeSome(in, parameter, std::min(count, taken.size() - i), &taken[i]);
-            ASSERT_EQ(taken, numbers);
+            for (std::size_t i = 0; i < numbers.size(); i += count) {
+                std::array<Number, 64> taken;
+                taken.fill(77);
+                const std::uint64_t any =
+                    takePlanes(in, code, parameter, part(i).size(), taken.data());
+                for (std::size_t n = 0; n < 64; ++n) {
+                    ASSERT_EQ(taken[n], n < part(i).size() ? part(i)[n] : 0);
+                    ASSERT_EQ(any >> n & 1, taken[n] != 0 ? 1u : 0u);
+                }
+            }
+            // The same bits, in another order.
             ASSERT_EQ(in.position(), end);
         }
     }
 }
 
 TEST(BitStream, RiceCodesComeBack) {
-    expectRiceComesBack<std::uint32_t>(1);
-    expectRiceComesBack<std::uint32_t>(10);
-    expectRiceComesBack<std::uint32_t>(18);
-    expectRiceComesBack<std::uint32_t>(32);
-    expectRiceComesBack<std::uint64_t>(64);
+    test::atEveryLevel([] {
+        expectNumbersComeBack<std::uint32_t>(1);
+        expectNumbersComeBack<std::uint32_t>(10);
+        expectNumbersComeBack<std::uint32_t>(18);
+        expectNumbersComeBack<std::uint32_t>(32);
+        expectNumbersComeBack<std::uint64_t>(64);
+    });
 }
 
-// Whatever bits there are, several numbers at once are those that are taken one by one.
-TEST(BitStream, SomeNumbersAreThoseThatAreTakenOneByOne) {
+// Takes numbers from planes bit by bit.
+std::vector<std::uint64_t> plainPlanes(BitReader& in, RiceCode code, int parameter,
+                                       std::size_t count) {
+    std::vector<std::uint64_t> numbers(count), ones(count);
+    for (std::uint64_t level = 0; level < RiceCode::kMostOnes; ++level) {
+        for (std::uint64_t& quotient : ones)
+            if (quotient == level) quotient += in.take(1);
+    }
+    for (int bit = 0; bit < parameter; ++bit)
+        for (std::uint64_t& number : numbers) number |= in.take(1) << bit;
+    for (std::size_t n = 0; n < count; ++n) {
+        const bool isLarge = ones[n] == RiceCode::kMostOnes;
+        numbers[n] |= (isLarge ? in.take(code.width - parameter) : ones[n]) << parameter;
+    }
+    return numbers;
+}
+
+// Whatever bits there are, numbers are those that are taken bit by bit.
+TEST(BitStream, NumbersOfPlanesAreThoseThatAreTakenBitByBit) {
     std::mt19937_64 random(7);
-    std::vector<std::uint64_t> words(300);
+    std::vector<std::uint64_t> words(400);
     for (std::uint64_t& word : words) word = random();
     // Few zeros, and few ones.
     for (std::size_t i = 0; i < 100; ++i) words[i] |= random() | random();
     for (std::size_t i = 100; i < 200; ++i) words[i] &= random() & random();
-    for (const int width : {2, 10, 32, 64}) {
-        const RiceCode code{width};
-        for (int parameter = 0; parameter < 1 << code.parameterBits(); ++parameter) {
-            for (int i = 0; i < 200; ++i) {
-                const std::size_t begin = random() % (150 * 64);
-                const std::size_t count = random() % 65;
-                BitReader some(words.data(), begin);
-                BitReader single(words.data(), begin);
-                std::vector<std::uint64_t> taken(count + 1, 77);
-                code.takeSome(some, parameter, count, taken.data());
-                for (std::size_t n = 0; n < count; ++n)
-                    ASSERT_EQ(taken[n], code.take(single, parameter));
-                ASSERT_EQ(some.position(), single.position());
-                ASSERT_EQ(taken.back(), 77u);
+    test::atEveryLevel([&] {
+        for (const int width : {2, 10, 32, 64}) {
+            const RiceCode code{width};
+            for (int i = 0; i < 5000; ++i) {
+                const int parameter = int(random() % unsigned(width));
+                const std::size_t begin = random() % (200 * 64);
+                const std::size_t count = 1 + random() % 64;
+                BitReader plain(words.data(), begin);
+                const auto expected = plainPlanes(plain, code, parameter, count);
+                BitReader in(words.data(), begin);
+                std::array<std::uint64_t, 64> wide;
+                std::uint64_t any = takePlanes(in, code, parameter, count, wide.data());
+                ASSERT_EQ(in.position(), plain.position());
+                for (std::size_t n = 0; n < 64; ++n) {
+                    ASSERT_EQ(wide[n], n < count ? expected[n] : 0);
+                    ASSERT_EQ(any >> n & 1, wide[n] != 0 ? 1u : 0u);
+                }
+                if (width > 32) continue;
+                in = BitReader(words.data(), begin);
+                std::array<std::uint32_t, 64> narrow;
+                any = takePlanes(in, code, parameter, count, narrow.data());
+                ASSERT_EQ(in.position(), plain.position());
+                for (std::size_t n = 0; n < 64; ++n) {
+                    ASSERT_EQ(narrow[n], n < count ? std::uint32_t(expected[n]) : 0);
+                    ASSERT_EQ(any >> n & 1, narrow[n] != 0 ? 1u : 0u);
+                }
             }
         }
-    }
+    });
 }
 
 // The parameter that is chosen takes as many bits as it says, and no other takes fewer.
@@ -148,13 +212,10 @@ TEST(BitStream, TheBestParameterIsChosen) {
             std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();
             for (int parameter = 0; parameter < width; ++parameter) {
                 BitWriter out;
-                for (const std::uint32_t number : numbers) putRice(out, code, parameter, number);
-                std::vector<std::uint64_t> words = out.words();
-                BitReader in = readerOf(words);
-                for (std::size_t i = 0; i < numbers.size(); ++i) code.take(in, parameter);
-                fewest = std::min<std::uint64_t>(fewest, in.position());
+                putPlanes<std::uint32_t>(out, code, parameter, numbers);
+                fewest = std::min<std::uint64_t>(fewest, out.bits());
                 if (parameter == best.parameter) {
-                    EXPECT_EQ(in.position(), best.bits);
+                    EXPECT_EQ(out.bits(), best.bits);
                 }
             }
             EXPECT_EQ(best.bits, fewest);
@@ -224,7 +285,9 @@ TEST(TreeOfWords, WordsComeBackFromAFile) {
             std::vector<std::uint64_t> expected(words.begin() + std::ptrdiff_t(begin),
                                                 words.begin() + std::ptrdiff_t(end));
             expected.resize(end - begin + 3);
-            EXPECT_EQ(wordsOfLeaves(leaves, begin, end, 3, "words"), expected);
+            const auto taken = wordsOfLeaves(leaves, begin, end, 3, "words");
+            ASSERT_TRUE(taken);
+            EXPECT_EQ(std::vector<std::uint64_t>(taken->begin(), taken->end()), expected);
         }
     }
 }
@@ -383,6 +446,18 @@ TEST(DeltaStreamError, BlocksThatAreNone) {
         out.put(0, 50);
     };
     EXPECT_EQ(refusalOf(column(1, 2, 1, 1, form)), damaged("(8, 16, 8)"));
+    // With a parameter as large as the width of numbers (9 bits).
+    const auto wide = [](BitWriter& out) {
+        out.putNumber(0);
+        out.putNumber(0);
+        out.put(1, 1);
+        out.put(std::uint64_t(SliceForm::kRows), 2);
+        out.put(9, 5);
+        out.put(1, 8);
+        out.put(1, 8);
+        out.put(0, 38);
+    };
+    EXPECT_EQ(refusalOf(column(1, 2, 1, 1, wide)), damaged("(8, 16, 8)"));
     // Without deltas.
     const auto empty = [](BitWriter& out) {
         out.putNumber(0);
@@ -574,7 +649,72 @@ TEST(DeltaStreamError, CodesThatDeltasDoNotAddUpTo) {
     EXPECT_EQ(refusals()[2], range);
 }
 
-// As files had it before they said which codes there are.
+// Writes a slice of a block as streams had it before there were planes.
+void putOldSlice(SliceForm form, const std::int32_t* numbers, std::uint64_t changed, RiceCode code,
+                 BitWriter& out) {
+    const int parameter = 3;
+    out.put(1, 1);
+    out.put(std::uint64_t(form), 2);
+    out.put(parameter, code.parameterBits());
+    if (form == SliceForm::kMask) out.put(changed, 64);
+    if (form == SliceForm::kRows) {
+        std::uint64_t rows = 0;
+        for (int u = 0; u < 8; ++u) rows |= std::uint64_t{(changed >> 8 * u & 0xff) != 0} << u;
+        out.put(rows, 8);
+        for (int u = 0; u < 8; ++u)
+            if ((rows >> u & 1) != 0) out.put(changed >> 8 * u & 0xff, 8);
+    }
+    for (int n = 0; n < 64; ++n) {
+        const std::uint64_t number = std::uint32_t(numbers[n]);
+        if (form == SliceForm::kAll) {
+            putRice(out, code, parameter, number);
+        } else if ((changed >> n & 1) != 0) {
+            putRice(out, code, parameter, number - 1);
+        }
+    }
+}
+
+// Writes a stream as version 5 has it, of columns of one block each.
+std::vector<std::uint64_t> oldStreamOf(const openvdb::Int32Tree& deltas,
+                                       const DeltaHeader& header) {
+    const RiceCode code{deltaWidth(header)};
+    std::map<std::tuple<int, int, int>, const openvdb::Int32Tree::LeafNodeType*> leaves;
+    for (auto leaf = deltas.cbeginLeaf(); leaf; ++leaf) {
+        const Coord block = leaf->origin() >> 3;
+        leaves[{block.x(), block.y(), block.z()}] = leaf.getLeaf();
+    }
+    BitWriter index;
+    index.putNumber(leaves.size());
+    std::vector<std::uint64_t> columns;
+    std::tuple<int, int, int> before(0, 0, -1);
+    for (const auto& [place, leaf] : leaves) {
+        BitWriter out;
+        out.putNumber(0);
+        out.putNumber(0);
+        for (int s = 0; s < 8; ++s) {
+            const auto changed = leaf->getValueMask().getWord<std::uint64_t>(openvdb::Index(s));
+            if (changed == 0) {
+                out.put(0, 1);
+            } else {
+                putOldSlice(SliceForm(s % 3), leaf->buffer().data() + 64 * s, changed, code, out);
+            }
+        }
+        auto [slab, u, v] = before;
+        if (slab != std::get<0>(place)) u = 0, v = -1;
+        if (u != std::get<1>(place)) v = -1;
+        index.putNumber(std::uint64_t(std::get<0>(place) - slab));
+        index.putNumber(std::uint64_t(std::get<1>(place) - u));
+        index.putNumber(std::uint64_t(std::get<2>(place) - v - 1));
+        index.putNumber(out.words().size() - 1);
+        before = place;
+        columns.insert(columns.end(), out.words().begin(), out.words().end());
+    }
+    std::vector<std::uint64_t> words = index.words();
+    words.insert(words.end(), columns.begin(), columns.end());
+    return words;
+}
+
+// As files had it before they said which codes there are, and had planes.
 TEST(DeltaStream, OlderStreamsAreRead) {
     const TempFolder folder;
     Known known = knownCodes();
@@ -582,8 +722,8 @@ TEST(DeltaStream, OlderStreamsAreRead) {
     TreeGrid grid = VdbFile("a.vdb").read(VdbFile("a.vdb").grids().front(), {});
     const UnpackedDeltas unpacked = unpackDeltas(grid, known.header, "a", {});
     known.header.version = DeltaHeader::kOldPackedVersion;
-    const std::vector<std::uint64_t> older = streamOf(*unpacked.grid.tree, known.header);
-    EXPECT_LT(older.size(), known.words.size() - kStreamPadding);
+    const auto deltas = openvdb::DynamicPtrCast<openvdb::Int32Tree>(unpacked.grid.tree);
+    const std::vector<std::uint64_t> older = oldStreamOf(*deltas, known.header);
     writeWords(older, *known.grid, "older.vdb", DeltaHeader::kOldPackedVersion);
     Volume read = readVolume("older.vdb");
     test::expectSameVolume(read, volume);

@@ -380,6 +380,10 @@ TEST(ReadLater, columnsOfPackedDeltasAreUnpackedWhenTheirCodesAreAskedFor) {
                 expectSameBlocks(volume, whole, volume.codeBook.codeOf(200));
                 const std::size_t few = countMade(volume);
                 EXPECT_GT(few, 0u);
+                // Of their columns no others are kept.
+                const auto seen =
+                    listBlocks(*whole.codes, axis, codesFrom(volume.codeBook.codeOf(200)));
+                EXPECT_EQ(few, seen.size());
                 expectSameBlocks(volume, whole, volume.codeBook.codeOf(170));
                 EXPECT_GT(countMade(volume), few);
                 EXPECT_LT(countMade(volume), blocksOf(whole).blocks().size());

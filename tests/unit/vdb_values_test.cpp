@@ -7,15 +7,18 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
+#include "ingest/vdb/packed_values.h"
 #include "ingest/vdb/vdb_file.h"
 #include "support/same_volume.h"
 #include "unit/ingest_helpers.h"
 #include "unit/vdb_helpers.h"
+#include "vdb/pack_values.h"
 
 namespace deltasplat {
 namespace {
@@ -339,6 +342,30 @@ TEST(VdbValues, ChunksOfAnySize) {
 }
 
 // OpenVDB takes zipped values that have the right size, whatever their checksum says.
+// What does not pack stands in a chunk as it is.
+TEST(VdbValues, ChunksThatAreStored) {
+    std::mt19937 random(3);
+    std::vector<std::uint32_t> words(1024);
+    for (std::uint32_t& word : words) word = std::uint32_t(random());
+    const std::size_t bytes = words.size() * sizeof words[0];
+    std::string chunk;
+    ASSERT_EQ(appendBlosc(words.data(), bytes, chunk), std::int64_t(bytes + 16));
+    std::vector<char> values(bytes + kUnpackBytes);
+    ASSERT_TRUE(unpackBlosc(chunk, values, bytes));
+    EXPECT_EQ(std::memcmp(values.data(), words.data(), bytes), 0);
+    EXPECT_FALSE(unpackBlosc(chunk, values, bytes - 1));
+    EXPECT_FALSE(unpackBlosc({chunk.data(), chunk.size() - 1}, values, bytes));
+    EXPECT_FALSE(unpackBlosc(chunk, {values.data(), bytes - 1}, bytes));
+    // One byte less, of which the chunk says nothing but its size.
+    std::string shorter = chunk.substr(0, chunk.size() - 1);
+    const auto size = std::uint32_t(shorter.size());
+    std::memcpy(&shorter[12], &size, sizeof size);
+    EXPECT_FALSE(unpackBlosc(shorter, values, bytes));
+    // Of another version.
+    chunk[0] = 7;
+    EXPECT_FALSE(unpackBlosc(chunk, values, bytes));
+}
+
 TEST(VdbValues, DamagedZipIsRefusedByWhoeverReadsIt) {
     const TempFolder folder;
     openvdb::initialize();

@@ -13,9 +13,12 @@
 #include <random>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
+#include "ingest/delta/word_tree.h"
+#include "ingest/vdb/vdb_file.h"
 #include "unit/convert_helpers.h"
 #include "unit/random_grid.h"
 #include "vdb/leaf_pieces.h"
@@ -208,6 +211,33 @@ void expectSameDeltas() {
 TEST(WriteVdb, DeltasAreWrittenAsAnyGridIs) {
     expectSameDeltas<openvdb::Int32Grid>();
     expectSameDeltas<openvdb::Int64Grid>();
+}
+
+TEST(WriteVdb, NotesOfWordsAreNotPacked) {
+    const TempFolder folder;
+    std::mt19937_64 random(5);
+    std::vector<std::uint64_t> words(200 * 512 + 7);
+    for (std::uint64_t& word : words) word = random();
+    const auto grid = openvdb::Int64Grid::create(treeOfWords(words));
+    grid->setName("words");
+    writeVdb("packed.vdb", {writtenGrid(fromOpenVdb(grid))});
+    writeVdb("words.vdb", {writtenWords(fromOpenVdb(grid))});
+    EXPECT_GT(testing::readBytes("words.vdb").size(), testing::readBytes("packed.vdb").size());
+    for (const char* const name : {"packed.vdb", "words.vdb"}) {
+        SCOPED_TRACE(name);
+        const VdbFile file(name);
+        const auto leaves = file.readLeaves(file.grids().front(), VdbFile::Find::kByNotesAlone);
+        ASSERT_TRUE(leaves);
+        EXPECT_EQ(leaves->leaves().size(), grid->tree().leafCount());
+        openvdb::io::File theirs(name);
+        theirs.open(/*delayLoad=*/true);
+        const auto read = openvdb::gridPtrCast<openvdb::Int64Grid>(theirs.readGrid("words"));
+        ASSERT_EQ(read->activeVoxelCount(), grid->activeVoxelCount());
+        std::size_t wrong = 0;
+        for (auto value = grid->cbeginValueOn(); value; ++value)
+            wrong += read->tree().getValue(value.getCoord()) == *value ? 0 : 1;
+        EXPECT_EQ(wrong, 0u);
+    }
 }
 
 TEST(WriteVdb, OtherGridsAreRefused) {

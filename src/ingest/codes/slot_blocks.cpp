@@ -94,35 +94,54 @@ SlotBlocks::SlotBlocks(int sliceAxis, std::unique_ptr<const BlockMaker> maker)
     : sliceAxis_(sliceAxis),
       blocks_(std::make_shared<const std::vector<SlotBlock>>()),
       maker_(std::move(maker)),
-      isMade_(maker_->parts().size()) {}
+      isMade_(maker_->parts().size()),
+      leftOut_(maker_->parts().size()) {}
 
 SlotBlocks::~SlotBlocks() = default;
 
-// Makes parts that are not made yet; who calls holds the lock.
-SlotBlocks::Blocks SlotBlocks::withParts(const std::vector<std::size_t>& parts) const {
-    if (parts.empty()) return blocks_;
-    std::vector<SlotBlock> made;
+// Makes parts, as BlockMaker::make does; who calls holds the lock. Those that were made without
+// some of their blocks are made again as a whole, others' slots too.
+void SlotBlocks::makeParts(const std::vector<std::size_t>& parts, const SeenCodes* seen) const {
+    if (parts.empty()) return;
+    BlockMaker::Made made;
     // Work taken on while waiting here might want the same blocks.
-    isolated([&] { made = maker_->make(parts, storage_); });
+    isolated([&] { made = maker_->make(parts, seen); });
     requireMemory("list of voxel blocks",
-                  double(blocks_->size() + made.size()) * sizeof(SlotBlock));
+                  double(blocks_->size() + made.blocks.size()) * sizeof(SlotBlock));
     std::vector<SlotBlock> both;
-    both.reserve(blocks_->size() + made.size());
-    std::merge(blocks_->begin(), blocks_->end(), made.begin(), made.end(), std::back_inserter(both),
-               liesBefore);
-    for (const std::size_t part : parts) isMade_[part] = true;
-    blocks_ = std::make_shared<const std::vector<SlotBlock>>(std::move(both));
-    return blocks_;
+    both.reserve(blocks_->size() + made.blocks.size());
+    std::merge(blocks_->begin(), blocks_->end(), made.blocks.begin(), made.blocks.end(),
+               std::back_inserter(both), liesBefore);
+    // Of a part that is made again some are there.
+    const auto areOne = [](const SlotBlock& a, const SlotBlock& b) {
+        return a.position == b.position;
+    };
+    both.erase(std::unique(both.begin(), both.end(), areOne), both.end());
+    auto blocks = std::make_shared<const std::vector<SlotBlock>>(std::move(both));
+    storage_.reserve(storage_.size() + made.storage.size());
+    // Nothing fails from here on.
+    std::move(made.storage.begin(), made.storage.end(), std::back_inserter(storage_));
+    blocks_ = std::move(blocks);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        isMade_[parts[i]] = true;
+        leftOut_[parts[i]] = made.leftOut[i];
+    }
 }
 
 const SlotBlocks::Columns& SlotBlocks::all() const {
     if (const Columns* const all = all_.load(std::memory_order_acquire)) return *all;
     const std::lock_guard lock(mutex_);
     if (maker_) {
-        std::vector<std::size_t> missing;
-        for (std::size_t part = 0; part < isMade_.size(); ++part)
-            if (!isMade_[part]) missing.push_back(part);
-        withParts(missing);
+        std::vector<std::size_t> missing, again;
+        for (std::size_t part = 0; part < isMade_.size(); ++part) {
+            if (!isMade_[part]) {
+                missing.push_back(part);
+            } else if (leftOut_[part]) {
+                again.push_back(part);
+            }
+        }
+        makeParts(again, nullptr);
+        makeParts(missing, nullptr);
         columns_ = std::make_unique<const Columns>(*blocks_);
         maker_.reset();
         all_.store(columns_.get(), std::memory_order_release);
@@ -138,10 +157,17 @@ std::shared_ptr<const std::vector<SlotBlock>> SlotBlocks::blocksWith(const SeenC
     const std::lock_guard lock(mutex_);
     if (!maker_) return blocks_;
     const std::vector<BlockMaker::Part>& parts = maker_->parts();
-    std::vector<std::size_t> missing;
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        if (!isMade_[i] && seen.hasAny(parts[i].lowest, parts[i].highest)) missing.push_back(i);
-    return withParts(missing);
+    std::vector<std::size_t> missing, again;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (!isMade_[i]) {
+            if (seen.hasAny(parts[i].lowest, parts[i].highest)) missing.push_back(i);
+        } else if (leftOut_[i] && seen.hasAny(leftOut_[i]->first, leftOut_[i]->second)) {
+            again.push_back(i);
+        }
+    }
+    makeParts(again, nullptr);
+    makeParts(missing, &seen);
+    return blocks_;
 }
 
 const SlotBlock* SlotBlocks::find(const glm::ivec3& position) const {

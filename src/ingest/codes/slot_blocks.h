@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,6 +31,9 @@ struct SlotBlock {
     Code highest = 0;
 };
 
+/// The lowest and the highest of some codes; nothing if there are none.
+using CodeRange = std::optional<std::pair<Code, Code>>;
+
 /// Where the slots of blocks lie.
 using SlotStorage = std::vector<std::unique_ptr<ShortSlot[]>>;
 
@@ -43,6 +47,13 @@ class BlockMaker {
         Code highest = 0;
     };
 
+    /// What make() has made.
+    struct Made {
+        std::vector<SlotBlock> blocks;   ///< in the order of the parts
+        std::vector<CodeRange> leftOut;  ///< of each part, the codes of the blocks left out
+        SlotStorage storage;             ///< of the blocks' slots
+    };
+
     BlockMaker() = default;
     BlockMaker(const BlockMaker&) = delete;
     BlockMaker& operator=(const BlockMaker&) = delete;
@@ -50,12 +61,12 @@ class BlockMaker {
 
     /// By u, then v, then slice; no block lies in two of them.
     virtual const std::vector<Part>& parts() const = 0;
-    /// Makes the blocks of some parts, in their order, on all threads. One call at a time.
-    /// @param parts  their numbers, in order; each is made once
+    /// Makes the blocks of some parts, on all threads. One call at a time.
+    /// @param parts  their numbers, in order
+    /// @param seen   null, or leaves blocks out that have none of these codes
     /// @throw Error(kInput) if they are not what was known of them; Error(kFailed) if memory does
     ///        not hold them
-    virtual std::vector<SlotBlock> make(std::span<const std::size_t> parts,
-                                        SlotStorage& storage) const = 0;
+    virtual Made make(std::span<const std::size_t> parts, const SeenCodes* seen) const = 0;
 };
 
 /// The codes of a volume as they lie along a slice axis: what words are made of, block by block,
@@ -88,7 +99,7 @@ class SlotBlocks {
     using Blocks = std::shared_ptr<const std::vector<SlotBlock>>;
 
     const Columns& all() const;
-    Blocks withParts(const std::vector<std::size_t>& parts) const;
+    void makeParts(const std::vector<std::size_t>& parts, const SeenCodes* seen) const;
 
     int sliceAxis_;
     std::shared_ptr<const SlabFacts> facts_;
@@ -97,6 +108,7 @@ class SlotBlocks {
     mutable Blocks blocks_;                            // those made so far
     mutable std::unique_ptr<const BlockMaker> maker_;  // null once all are made
     mutable std::vector<bool> isMade_;                 // of its parts
+    mutable std::vector<CodeRange> leftOut_;           // likewise, of blocks that are not made
     mutable std::unique_ptr<const Columns> columns_;
     mutable std::atomic<const Columns*> all_ = nullptr;  // null until all are made
 };

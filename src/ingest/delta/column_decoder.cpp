@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "heap_growth.h"
+#include "ingest/codes/seen_codes.h"
 #include "ingest/delta/delta_format.h"
 #include "memory.h"
 #include "view/affine.h"
@@ -81,13 +82,16 @@ SlotRules slotRulesOf(const DeltaHeader& header) {
     return rules;
 }
 
-std::optional<std::pair<Code, Code>> rangeOf(std::span<const SlotBlock> blocks) {
-    std::optional<std::pair<Code, Code>> range;
-    for (const SlotBlock& block : blocks) {
-        if (!range) range.emplace(block.lowest, block.highest);
-        range = {std::min(range->first, block.lowest), std::max(range->second, block.highest)};
-    }
+CodeRange rangeOf(std::span<const SlotBlock> blocks) {
+    CodeRange range;
+    for (const SlotBlock& block : blocks)
+        range = rangeOfBoth(range, std::pair(block.lowest, block.highest));
     return range;
+}
+
+CodeRange rangeOfBoth(const CodeRange& a, const CodeRange& b) {
+    if (!a || !b) return a ? a : b;
+    return std::pair(std::min(a->first, b->first), std::max(a->second, b->second));
 }
 
 std::vector<std::uint64_t> takeHistogram(CodeCounts& slots) {
@@ -108,6 +112,7 @@ ColumnDecoder::ColumnDecoder(std::unique_ptr<DeltaWalker> walker, const Grid& gr
 bool ColumnDecoder::decode(const DeltaColumn& column, const glm::ivec2& range,
                            std::vector<SlotBlock>& blocks) {
     slots_.fill(0);
+    leftOut_.reset();
     inside_ = grid_.layout.insideOf(column.place);
     if (!walker_->start(column) || walker_->block() < range.x) return false;
     bool isZero = true;
@@ -162,9 +167,13 @@ bool ColumnDecoder::decodeBlock(const glm::ivec3& position, const BlockDeltas* d
         extend(position, out);
     }
     const auto empty = range.hasEmpty ? std::count(out, out + 512, ShortSlot{0}) : 0;
-    ++used_;
-    return add({position, out, kEmptySlot, Code(range.lowest - 1), Code(range.highest - 1)},
-               std::uint64_t(512 - empty), blocks);
+    const SlotBlock block{position, out, kEmptySlot, Code(range.lowest - 1),
+                          Code(range.highest - 1)};
+    const std::size_t before = blocks.size();
+    const bool isSound = add(block, std::uint64_t(512 - empty), blocks);
+    // If it is left out, the next takes its room.
+    used_ += blocks.size() - before;
+    return isSound;
 }
 
 bool ColumnDecoder::isConstant() const {
@@ -230,14 +239,18 @@ bool ColumnDecoder::addTile(const glm::ivec3& position, ShortSlot slot,
     return add({position, nullptr, slot, Code(slot - 1), Code(slot - 1)}, 512, blocks);
 }
 
-// One delta can stand for as many blocks as there are slices until the next key slice: what is more
-// than the file says is not waited for.
+// Adds a block, unless it is to be left out. One delta can stand for as many blocks as there are
+// slices until the next key slice: what is more than the file says is not waited for.
 bool ColumnDecoder::add(const SlotBlock& block, std::uint64_t active,
                         std::vector<SlotBlock>& blocks) {
     constexpr std::size_t kAskEvery = 1024;
-    if (blocks.size() % kAskEvery == 0)
-        requireMemory(grid_.where, 2.0 * kAskEvery * sizeof(SlotBlock));
-    blocks.push_back(block);
+    if (!grid_.seen || grid_.seen->hasAny(block.lowest, block.highest)) {
+        if (blocks.size() % kAskEvery == 0)
+            requireMemory(grid_.where, 2.0 * kAskEvery * sizeof(SlotBlock));
+        blocks.push_back(block);
+    } else {
+        leftOut_ = rangeOfBoth(leftOut_, std::pair(block.lowest, block.highest));
+    }
     activeCount_ += active;
     return activeCount_ <= grid_.header.active;
 }

@@ -21,6 +21,7 @@
 
 namespace deltasplat {
 
+class SeenCodes;
 struct DeltaHeader;
 
 /// Where the blocks of a delta grid lie, in (slice, u, v) order, and which of them are read.
@@ -60,7 +61,9 @@ class BlockLayout {
 SlotRules slotRulesOf(const DeltaHeader& header);
 
 /// Returns the range of the active voxels' codes in blocks; nothing if there are none.
-std::optional<std::pair<Code, Code>> rangeOf(std::span<const SlotBlock> blocks);
+CodeRange rangeOf(std::span<const SlotBlock> blocks);
+/// Returns the range of the codes of both.
+CodeRange rangeOfBoth(const CodeRange& a, const CodeRange& b);
 
 /// Returns what decoders have counted, as Volume::histogram: of codes, not of slots.
 std::vector<std::uint64_t> takeHistogram(CodeCounts& slots);
@@ -74,6 +77,8 @@ class ColumnDecoder {
         const BlockLayout& layout;
         SlotRules rules;
         const std::string& where;  ///< for messages
+        /// Null, or leaves blocks out that have none of these codes.
+        const SeenCodes* seen = nullptr;
     };
 
     /// @param counts  null, or counts slots
@@ -86,11 +91,13 @@ class ColumnDecoder {
     /// @throw Error(kFailed) if memory does not hold them
     bool decode(const DeltaColumn& column, const glm::ivec2& range, std::vector<SlotBlock>& blocks);
 
+    /// The codes of those blocks of the last column that were left out.
+    const CodeRange& leftOut() const { return leftOut_; }
     /// How many deltas each slab had so far.
     std::span<const std::uint64_t> slabDeltas() const { return slabDeltas_; }
     /// The box of active voxels so far, in (slice, u, v) order; not of what rests.
     const IndexBox& active() const { return active_; }
-    /// How many active voxels the blocks so far have.
+    /// How many active voxels the blocks so far have, those left out too.
     std::uint64_t activeCount() const { return activeCount_; }
     /// What the blocks' slots lie in.
     SlotStorage& storage() { return storage_; }
@@ -129,6 +136,7 @@ class ColumnDecoder {
     // Of the column in hand.
     std::array<std::uint32_t, 64> slots_{};
     std::uint64_t inside_ = 0;
+    CodeRange leftOut_;
 };
 
 }  // namespace deltasplat

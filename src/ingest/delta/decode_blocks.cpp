@@ -50,9 +50,8 @@ std::string beginText(const BlockLayout& layout, const DeltaPart& part) {
     return placeText(8 * glm::ivec3(layout.blocksOf(part.slab).x, part.column.place));
 }
 
-// Returns what is wrong with blocks that do not have the codes which the file says that they have.
-std::optional<std::string> problemOf(std::span<const SlotBlock> blocks, const DeltaPart& part) {
-    const std::optional<std::pair<Code, Code>> range = rangeOf(blocks);
+// Returns what is wrong with blocks of these codes, if the file says that they have others.
+std::optional<std::string> problemOf(const CodeRange& range, const DeltaPart& part) {
     if (range == std::pair(part.lowest, part.highest)) return std::nullopt;
     return range ? "codes " + std::to_string(range->first) + ".." + std::to_string(range->second)
                  : "no codes";
@@ -77,6 +76,10 @@ class TaskDecoder {
     // Returns the blocks in the order of tasks; nothing where deltas are not sound.
     std::optional<std::vector<SlotBlock>> decode(std::span<const Task> tasks,
                                                  const Listener& listener);
+    // Of each task the codes of blocks that were left out.
+    std::vector<CodeRange> takeLeftOut() { return std::move(leftOut_); }
+    // Of each task how many active voxels it has.
+    const std::vector<std::uint64_t>& active() const { return active_; }
     const std::vector<ColumnDecoder>& decoders() const { return decoders_; }
     CodeCounts* counts() { return counts_ ? &*counts_ : nullptr; }
     void moveStorage(SlotStorage& storage) {
@@ -93,6 +96,8 @@ class TaskDecoder {
     std::size_t pieces_;
     std::optional<CodeCounts> counts_;
     std::vector<ColumnDecoder> decoders_;
+    std::vector<CodeRange> leftOut_;
+    std::vector<std::uint64_t> active_;
 };
 
 std::optional<std::vector<SlotBlock>> TaskDecoder::decode(std::span<const Task> tasks,
@@ -103,11 +108,18 @@ std::optional<std::vector<SlotBlock>> TaskDecoder::decode(std::span<const Task> 
     std::atomic<bool> isSound = true;
     std::atomic<std::size_t> next = 0;
     SharedProgress progress(listener);
-    const auto decodeOne = [&](ColumnDecoder& decoder, const Task& task, std::size_t piece) {
+    leftOut_.assign(tasks.size(), {});
+    active_.assign(tasks.size(), 0);
+    const auto decodeOne = [&](ColumnDecoder& decoder, std::size_t i, std::size_t piece) {
+        const Task& task = tasks[i];
         const std::size_t before = blocks[piece].size();
+        const std::uint64_t activeBefore = decoder.activeCount();
         if (!decoder.decode(task.column, task.range, blocks[piece])) return false;
+        leftOut_[i] = decoder.leftOut();
+        active_[i] = decoder.activeCount() - activeBefore;
         if (!task.part || problems[piece].first) return true;
-        if (auto problem = problemOf(std::span(blocks[piece]).subspan(before), *task.part))
+        const CodeRange made = rangeOf(std::span(blocks[piece]).subspan(before));
+        if (auto problem = problemOf(rangeOfBoth(made, leftOut_[i]), *task.part))
             problems[piece] = {task.part, std::move(*problem)};
         return true;
     };
@@ -115,7 +127,7 @@ std::optional<std::vector<SlotBlock>> TaskDecoder::decode(std::span<const Task> 
         for (std::size_t piece = next++; piece < pieces_ && isSound; piece = next++) {
             const std::size_t end = std::min(tasks.size(), (piece + 1) * kPiece);
             for (std::size_t i = piece * kPiece; i < end; ++i)
-                if (!decodeOne(decoders_[thread], tasks[i], piece)) isSound = false;
+                if (!decodeOne(decoders_[thread], i, piece)) isSound = false;
             progress.report(double(piece) / double(pieces_));
         }
     });
@@ -216,6 +228,7 @@ class PartMaker : public BlockMaker {
           rules_(slotRulesOf(*header_)),
           deltaParts_(allParts(*deltas_, *header_, layout_, rules_, where)) {
         requireMemory(where, double(deltaParts_.size()) * sizeof(Part));
+        active_.resize(deltaParts_.size());
         parts_.reserve(deltaParts_.size());
         for (const DeltaPart& part : deltaParts_) {
             const glm::ivec3 first(layout_.blocksOf(part.slab).x, part.column.place);
@@ -227,25 +240,32 @@ class PartMaker : public BlockMaker {
     }
 
     const std::vector<Part>& parts() const override { return parts_; }
-    std::vector<SlotBlock> make(std::span<const std::size_t> parts,
-                                SlotStorage& storage) const override {
+    Made make(std::span<const std::size_t> parts, const SeenCodes* seen) const override {
         std::vector<DeltaPart> some;
         some.reserve(parts.size());
         for (const std::size_t part : parts) some.push_back(deltaParts_[part]);
-        TaskDecoder decoder(*deltas_, {*header_, layout_, rules_, where_}, some.size(), false);
+        TaskDecoder decoder(*deltas_, {*header_, layout_, rules_, where_, seen}, some.size(),
+                            false);
         auto blocks = decoder.decode(tasksOf(some, layout_), {});
         if (!blocks) fail(some);
-        std::uint64_t active = active_;
-        for (const ColumnDecoder& one : decoder.decoders()) active += one.activeCount();
-        const bool areAll = made_ + parts.size() == parts_.size();
-        if (areAll || active > header_->active) requireActiveCount(active, *header_, where_);
-        active_ = active;
-        made_ += parts.size();
+        for (std::size_t i = 0; i < parts.size(); ++i) active_[parts[i]] = decoder.active()[i];
+        checkActive();
+        SlotStorage storage;
         decoder.moveStorage(storage);
-        return std::move(*blocks);
+        return {std::move(*blocks), decoder.takeLeftOut(), std::move(storage)};
     }
 
   private:
+    // Compares how many voxels the parts made so far have.
+    void checkActive() const {
+        std::uint64_t sum = 0;
+        bool areAll = true;
+        for (const std::optional<std::uint64_t>& active : active_) {
+            sum += active.value_or(0);
+            areAll = areAll && active;
+        }
+        if (areAll || sum > header_->active) requireActiveCount(sum, *header_, where_);
+    }
     // Says which part is damaged, the first of them.
     [[noreturn]] void fail(const std::vector<DeltaPart>& parts) const {
         const auto isDamaged = [&](const DeltaPart& part) {
@@ -267,9 +287,8 @@ class PartMaker : public BlockMaker {
     BlockLayout layout_;
     SlotRules rules_;
     std::vector<DeltaPart> deltaParts_;
-    std::vector<Part> parts_;           // of each the same
-    mutable std::size_t made_ = 0;      // of them
-    mutable std::uint64_t active_ = 0;  // voxels of those
+    std::vector<Part> parts_;                                   // of each the same
+    mutable std::vector<std::optional<std::uint64_t>> active_;  // voxels of those made so far
 };
 
 }  // namespace

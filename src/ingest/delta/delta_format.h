@@ -22,7 +22,7 @@ struct DeltaHeader {
     static constexpr int kVersion = 6;
     /// The one that is written of packed deltas.
     static constexpr int kPackedVersion = 7;
-    /// Of packed deltas that do not say which codes they add up to.
+    /// Of packed deltas that do not say which codes they add up to, and lie in no planes.
     static constexpr int kOldPackedVersion = 5;
     /// The largest that is read.
     static constexpr int kLastVersion = 7;
@@ -57,6 +57,8 @@ struct DeltaHeader {
     bool isPacked() const { return version == kPackedVersion || version == kOldPackedVersion; }
     /// Whether a stream may say which codes it adds up to.
     bool mayKnowCodes() const { return version == kPackedVersion; }
+    /// Whether numbers of a stream lie in planes (plane_kernels.h), not one behind the other.
+    bool hasPlanes() const { return version == kPackedVersion; }
     bool leavesOutUsual() const { return version >= 5; }
 };
 

@@ -24,8 +24,8 @@ struct UnpackedDeltas {
     CodesInUse said;  ///< what they are to add up to; without a histogram if that is not known
 };
 
-/// Unpacks a delta grid whose voxels are the words of a stream: numbers of few bits, one behind the
-/// other, first where its columns are, then the columns; docs/delta-grid.md specifies them.
+/// Unpacks a delta grid whose voxels are the words of a stream: numbers of few bits, first
+/// where its columns are, then the columns; docs/delta-grid.md specifies them.
 /// Multi-threaded.
 /// @param grid  of type int64
 /// @return a grid with the same metadata and transform whose voxels are deltas, as version 4 has

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 #include "ingest/delta/zigzag.h"
 #include "simd_targets.h"
@@ -34,29 +33,6 @@ void addDeltasKernel(std::uint64_t word, const std::int32_t* HWY_RESTRICT deltas
     }
     for (; word != 0; word &= word - 1)
         slots[std::countr_zero(word)] += std::uint32_t(fromZigzag(*deltas++));
-}
-
-template <typename T>
-HWY_INLINE std::uint64_t changedOfSlice(const T* HWY_RESTRICT deltas) {
-    const hn::CappedTag<T, 64 / sizeof(T)> tag;
-    std::uint64_t changed = 0;
-    for (std::size_t n = 0; n < 64; n += hn::Lanes(tag)) {
-        std::uint8_t bits[8] = {};
-        const auto isChanged = hn::Ne(hn::LoadU(tag, deltas + n), hn::Zero(tag));
-        hn::StoreMaskBits(tag, isChanged, bits);
-        std::uint64_t some = 0;
-        std::memcpy(&some, bits, sizeof some);
-        changed |= some << n;
-    }
-    return changed;
-}
-
-std::uint64_t changedOfKernel(const std::int32_t* deltas) {
-    return changedOfSlice(deltas);
-}
-
-std::uint64_t changedOfWideKernel(const std::int64_t* deltas) {
-    return changedOfSlice(deltas);
 }
 
 // Of slots that all have values up to the highest.
@@ -134,21 +110,11 @@ HWY_AFTER_NAMESPACE();
 namespace deltasplat {
 
 HWY_EXPORT(addDeltasKernel);
-HWY_EXPORT(changedOfKernel);
-HWY_EXPORT(changedOfWideKernel);
 HWY_EXPORT(shortenSlotsKernel);
 HWY_EXPORT(rangeOfKernel);
 
 void addDeltas(std::uint64_t word, const std::int32_t* deltas, std::uint32_t* slots) {
     HWY_DYNAMIC_DISPATCH(addDeltasKernel)(word, deltas, slots);
-}
-
-std::uint64_t changedOf(const std::int32_t* deltas) {
-    return HWY_DYNAMIC_DISPATCH(changedOfKernel)(deltas);
-}
-
-std::uint64_t changedOf(const std::int64_t* deltas) {
-    return HWY_DYNAMIC_DISPATCH(changedOfWideKernel)(deltas);
 }
 
 bool shortenSlots(const std::uint32_t* slots, const SlotRules& rules, ShortSlot* out) {

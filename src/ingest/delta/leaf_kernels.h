@@ -22,10 +22,6 @@ struct SlotRules {
 /// @param slots   [64]
 void addDeltas(std::uint64_t word, const std::int32_t* deltas, std::uint32_t* slots);
 
-/// Returns which deltas of a slice of a block are not 0: bit n is that of the n-th of [64].
-std::uint64_t changedOf(const std::int32_t* deltas);
-std::uint64_t changedOf(const std::int64_t* deltas);
-
 /// Writes what 64 slots are shown as: those of inactive voxels as empty. Returns whether all of
 /// them are empty, or what the rules allow. The same at every SIMD level, as all of these.
 bool shortenSlots(const std::uint32_t* slots, const SlotRules& rules, ShortSlot* out);

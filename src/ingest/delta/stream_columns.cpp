@@ -14,9 +14,9 @@ namespace {
 
 class StreamWalker : public DeltaWalker {
   public:
-    StreamWalker(const std::vector<std::uint64_t>& words, const std::vector<StreamPart>& parts,
+    StreamWalker(const std::uint64_t* words, const std::vector<StreamPart>& parts,
                  const DeltaHeader& header)
-        : parts_(parts), part_(words.data(), header) {}
+        : parts_(parts), part_(words, header) {}
 
     bool start(const DeltaColumn& column) override {
         next_ = column.begin;
@@ -46,7 +46,7 @@ class StreamWalker : public DeltaWalker {
 
 }  // namespace
 
-StreamColumns::StreamColumns(std::vector<std::uint64_t> words, StreamIndex index,
+StreamColumns::StreamColumns(UnclearedVector<std::uint64_t> words, StreamIndex index,
                              const DeltaHeader& header)
     : header_(&header), words_(std::move(words)), parts_(std::move(index.parts)) {
     columns_ = orderByColumns(parts_, [](const StreamPart& part) { return part.first; });
@@ -71,7 +71,7 @@ std::optional<StreamColumns> StreamColumns::read(const VdbLeaves& leaves, const 
     if (!count) return std::nullopt;
     constexpr std::size_t kFirstWords = 1024;
     StreamIndex index;
-    std::vector<std::uint64_t> words;
+    UnclearedVector<std::uint64_t> words;
     for (std::size_t some = slices ? kFirstWords : *count;; some *= 4) {
         some = std::min(some, *count);
         auto begin = wordsOfLeaves(leaves, 0, some, kStreamPadding, where);
@@ -105,7 +105,7 @@ std::optional<StreamColumns> StreamColumns::read(const VdbLeaves& leaves, const 
 }
 
 std::unique_ptr<DeltaWalker> StreamColumns::walker() const {
-    return std::make_unique<StreamWalker>(words_, parts_, *header_);
+    return std::make_unique<StreamWalker>(words_.data(), parts_, *header_);
 }
 
 }  // namespace deltasplat

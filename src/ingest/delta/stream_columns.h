@@ -12,6 +12,7 @@
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/stream_index.h"
 #include "ingest/vdb/vdb_leaves.h"
+#include "uncleared_vector.h"
 
 namespace deltasplat {
 
@@ -37,10 +38,11 @@ class StreamColumns : public DeltaColumns {
     std::unique_ptr<DeltaWalker> walker() const override;
 
   private:
-    StreamColumns(std::vector<std::uint64_t> words, StreamIndex index, const DeltaHeader& header);
+    StreamColumns(UnclearedVector<std::uint64_t> words, StreamIndex index,
+                  const DeltaHeader& header);
 
     const DeltaHeader* header_;
-    std::vector<std::uint64_t> words_;
+    UnclearedVector<std::uint64_t> words_;
     std::vector<StreamPart> parts_;  // by u, v and slab
     std::vector<DeltaColumn> columns_;
     std::size_t blocks_ = 0;

@@ -115,11 +115,13 @@ std::optional<std::size_t> countWords(const VdbLeaves& leaves) {
     return last * kLeafWords + words->size();
 }
 
-std::optional<std::vector<std::uint64_t>> wordsOfLeaves(const VdbLeaves& leaves, std::size_t begin,
-                                                        std::size_t end, std::size_t padding,
-                                                        const std::string& where) {
+std::optional<UnclearedVector<std::uint64_t>> wordsOfLeaves(const VdbLeaves& leaves,
+                                                            std::size_t begin, std::size_t end,
+                                                            std::size_t padding,
+                                                            const std::string& where) {
     requireMemory(where, double(end - begin + padding) * sizeof(std::uint64_t));
-    std::vector<std::uint64_t> words(end - begin + padding);
+    UnclearedVector<std::uint64_t> words(end - begin + padding);
+    std::fill(words.end() - std::ptrdiff_t(padding), words.end(), 0);
     if (begin == end) return words;
     constexpr std::size_t kLeaves = VdbLeaves::kRun;
     const std::size_t firstLeaf = begin / kLeafWords;

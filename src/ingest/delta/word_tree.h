@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ingest/vdb/vdb_leaves.h"
+#include "uncleared_vector.h"
 
 namespace deltasplat {
 
@@ -30,8 +31,9 @@ std::optional<std::size_t> countWords(const VdbLeaves& leaves);
 /// Returns the words [begin, end) of such leaves, with `padding` zeros behind them. Multi-threaded.
 /// @return nothing if there is a gap between them
 /// @throw Error(kFailed) if memory does not hold them
-std::optional<std::vector<std::uint64_t>> wordsOfLeaves(const VdbLeaves& leaves, std::size_t begin,
-                                                        std::size_t end, std::size_t padding,
-                                                        const std::string& where);
+std::optional<UnclearedVector<std::uint64_t>> wordsOfLeaves(const VdbLeaves& leaves,
+                                                            std::size_t begin, std::size_t end,
+                                                            std::size_t padding,
+                                                            const std::string& where);
 
 }  // namespace deltasplat

@@ -77,6 +77,14 @@ bool unpackBlosc(std::span<const char> chunk, std::span<char> values, std::size_
     std::memcpy(words.data(), chunk.data(), sizeof words);
     if (words[1] != size || words[3] != chunk.size()) return false;
     if (size == 0) return true;
+    // What does not pack stands behind these words as it is, which the third byte says (the first
+    // is the format's version): Blosc, which would be loaded first, is not needed for it.
+    constexpr std::uint32_t kIsStored = std::uint32_t{BLOSC_MEMCPYED} << 16;
+    if ((words[0] & kIsStored) != 0 && (words[0] & 0xff) == BLOSC_VERSION_FORMAT) {
+        if (chunk.size() != sizeof words + size || values.size() < size) return false;
+        std::memcpy(values.data(), chunk.data() + sizeof words, size);
+        return true;
+    }
     const int count = blosc_decompress_ctx(chunk.data(), values.data(), values.size(), 1);
     return count > 0 && std::size_t(count) == size;
 }
