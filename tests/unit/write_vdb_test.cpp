@@ -215,6 +215,7 @@ TEST(WriteVdb, DeltasAreWrittenAsAnyGridIs) {
 
 TEST(WriteVdb, NotesOfWordsAreNotPacked) {
     const TempFolder folder;
+    openvdb::initialize();
     std::mt19937_64 random(5);
     std::vector<std::uint64_t> words(200 * 512 + 7);
     for (std::uint64_t& word : words) word = random();

@@ -85,15 +85,16 @@ HWY_INLINE std::uint64_t takeNumbers(BitReader& in, RiceCode code, int parameter
         addPlanes<false>(remainders.data() + bit, std::min(parameter - bit, 8), bytes);
         for (std::size_t n = 0; n < 64; ++n) numbers[n] |= Number(bytes[n]) << bit;
     }
-    // Of damaged ones some may be 0 all the same: an escape that says so, or a quotient too large.
-    const bool mayBeZero = larger != 0 || parameter > int(8 * sizeof(Number)) - 4;
-    // Those that are too large for a quotient.
+    // Those that are too large for a quotient. Damaged ones may be 0 all the same.
     for (; larger != 0; larger &= larger - 1) {
-        Number& number = numbers[std::countr_zero(larger)];
-        number = Number((number & BitReader::lowBits(parameter)) | in.take(code.width - parameter)
-                                                                       << parameter);
+        const int n = std::countr_zero(larger);
+        numbers[n] = Number((numbers[n] & BitReader::lowBits(parameter)) |
+                            in.take(code.width - parameter) << parameter);
+        if (numbers[n] == 0) any &= ~(std::uint64_t{1} << n);
     }
-    for (std::size_t n = 0; mayBeZero && n < 64; ++n)
+    // So may those whose quotient does not go into a number.
+    constexpr int kBits = int(8 * sizeof(Number));
+    for (std::size_t n = 0; parameter > kBits - 4 && n < 64; ++n)
         if (numbers[n] == 0) any &= ~(std::uint64_t{1} << n);
     return any;
 }
