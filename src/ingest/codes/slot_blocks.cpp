@@ -23,6 +23,25 @@ bool liesBefore(const SlotBlock& a, const SlotBlock& b) {
     return keyOf(a.position) < keyOf(b.position);
 }
 
+// Parts that are missing, and those that are to be made again.
+struct Wanted {
+    std::vector<std::size_t> missing;
+    std::vector<std::size_t> again;
+};
+
+// Returns what lacks blocks that have codes which are seen; null: that lacks any.
+Wanted wantedParts(const std::vector<BlockMaker::Part>& parts, const std::vector<bool>& isMade,
+                   const std::vector<CodeRange>& leftOut, const SeenCodes* seen) {
+    Wanted wanted;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const CodeRange lacks =
+            isMade[i] ? leftOut[i] : std::pair(parts[i].lowest, parts[i].highest);
+        if (!lacks || (seen && !seen->hasAny(lacks->first, lacks->second))) continue;
+        (isMade[i] ? wanted.again : wanted.missing).push_back(i);
+    }
+    return wanted;
+}
+
 }  // namespace
 
 struct SlotBlocks::Columns {
@@ -132,16 +151,9 @@ const SlotBlocks::Columns& SlotBlocks::all() const {
     if (const Columns* const all = all_.load(std::memory_order_acquire)) return *all;
     const std::lock_guard lock(mutex_);
     if (maker_) {
-        std::vector<std::size_t> missing, again;
-        for (std::size_t part = 0; part < isMade_.size(); ++part) {
-            if (!isMade_[part]) {
-                missing.push_back(part);
-            } else if (leftOut_[part]) {
-                again.push_back(part);
-            }
-        }
-        makeParts(again, nullptr);
-        makeParts(missing, nullptr);
+        const Wanted wanted = wantedParts(maker_->parts(), isMade_, leftOut_, nullptr);
+        makeParts(wanted.again, nullptr);
+        makeParts(wanted.missing, nullptr);
         columns_ = std::make_unique<const Columns>(*blocks_);
         maker_.reset();
         all_.store(columns_.get(), std::memory_order_release);
@@ -156,17 +168,9 @@ const std::vector<SlotBlock>& SlotBlocks::blocks() const {
 std::shared_ptr<const std::vector<SlotBlock>> SlotBlocks::blocksWith(const SeenCodes& seen) const {
     const std::lock_guard lock(mutex_);
     if (!maker_) return blocks_;
-    const std::vector<BlockMaker::Part>& parts = maker_->parts();
-    std::vector<std::size_t> missing, again;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (!isMade_[i]) {
-            if (seen.hasAny(parts[i].lowest, parts[i].highest)) missing.push_back(i);
-        } else if (leftOut_[i] && seen.hasAny(leftOut_[i]->first, leftOut_[i]->second)) {
-            again.push_back(i);
-        }
-    }
-    makeParts(again, nullptr);
-    makeParts(missing, &seen);
+    const Wanted wanted = wantedParts(maker_->parts(), isMade_, leftOut_, &seen);
+    makeParts(wanted.again, nullptr);
+    makeParts(wanted.missing, &seen);
     return blocks_;
 }
 
