@@ -9,6 +9,7 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/slab_part.h"
+#include "image/clear_image.h"
 #include "memory.h"
 #include "part_header.h"
 #include "picture_part.h"
@@ -163,7 +164,7 @@ void FoldedPicture::show(const PixelBox& part, Image& image) {
     const DefaultFloats floats;
     const glm::ivec2 size = camera().sizePixels;
     requirePart(part, size, image);
-    std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
+    clearImage(image);
     RenderStats& stats = impl_->stats;
     for (const Impl::View& view : impl_->views) {
         const double gain = view.plane.showPart(view.layer, PicturePart(image, part.min, size));

@@ -8,6 +8,7 @@
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
+#include "image/clear_image.h"
 #include "layered_views.h"
 #include "memory.h"
 
@@ -141,7 +142,7 @@ void LayeredPicture::fold(std::span<const SlabLayer> layers, Image& image) const
         const Impl::Place& place = picture.slabs[slab];
         requireFits(*all[slab], picture.reachOf(place), picture.inputOf(place).layout.channels);
     }
-    std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
+    clearImage(image);
     std::size_t next = 0;
     for (std::size_t view = 0; view < picture.views.size(); ++view) {
         const SlabInput& input = picture.views[view]->slabs();

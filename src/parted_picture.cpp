@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "default_floats.h"
+#include "image/clear_image.h"
 #include "kept_memory.h"
 #include "kept_view.h"
 #include "picture_part.h"
@@ -44,7 +45,7 @@ void PartedPicture::show(const PixelBox& part, Image& image) {
     const DefaultFloats floats;
     requirePart(part, impl_->camera.sizePixels, image);
     const Clock::time_point start = Clock::now();
-    std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
+    clearImage(image);
     RenderStats& stats = impl_->stats;
     for (const KeptView& view : impl_->views) {
         const double gain = view.picture->showPart(

@@ -11,6 +11,7 @@
 #include "default_floats.h"
 #include "deltasplat/prepared_scene.h"
 #include "empty_picture.h"
+#include "image/clear_image.h"
 #include "kept_memory.h"
 #include "kept_view.h"
 #include "listener_part.h"
@@ -130,7 +131,7 @@ class CompositeRender {
             if (!merged) {
                 merged.emplace(PlaneBox{}, input.layout.channels, memory_);
                 merged->setBox(reachOfAll(input, seen));
-                merged->clear();
+                merged->clearRest();
             }
             std::erase_if(seen, [&](const SeenSlab& one) {
                 const auto number = one.slab - input.splat.deltas.slabs.data();
@@ -360,7 +361,7 @@ Renderer::~Renderer() = default;
 RenderStats Renderer::render(const PreparedScene& scene, const Camera& camera, Image& image,
                              const Listener& listener) {
     requireSize(camera, image);
-    std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
+    clearImage(image);
     const RenderStats stats = renderComposite(scene.impl(), camera, impl_->memory, image, listener);
     impl_->memory.endPicture();
     return stats;

@@ -12,6 +12,7 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "dims_text.h"
+#include "image/clear_image.h"
 #include "image/deep_builder.h"
 #include "kept_memory.h"
 #include "memory.h"
@@ -121,7 +122,7 @@ RenderStats renderDeep(const PreparedScene& scene, const Camera& camera,
     requireBefore(camera, *scene.scene().volume);
     const glm::ivec2 size = camera.sizePixels;
     requireMemory("`sizePixels` " + dimsText(size), 0.5 * kBytesPerPixel * size.x * size.y);
-    std::fill(flat.rgba.begin(), flat.rgba.end(), 0.0f);
+    clearImage(flat);
     return renderSamples(scene.impl(), camera, deepOptions, deep, flat, listener);
 }
 

@@ -7,33 +7,40 @@
 
 namespace deltasplat {
 
-void Layer::reset(const PlaneBox& planeBox) {
-    for (std::size_t row = 0; row < spans.size(); ++row) {
-        if (spans[row].x >= spans[row].y) continue;
-        float* first = &values[channels * (row * box.size().x + spans[row].x)];
-        std::fill_n(first, channels * (spans[row].y - spans[row].x), 0.0f);
-    }
-    const std::size_t known = values.size();
-    setBox(planeBox);
-    if (values.size() > known)
-        std::fill(values.begin() + std::ptrdiff_t(known), values.end(), 0.0f);
-}
-
 void Layer::setBox(const PlaneBox& planeBox) {
     box = planeBox;
     values.resize(std::size_t(channels) * box.size().x * box.size().y);
     spans.assign(std::size_t(box.size().y), kNothing);
 }
 
-void Layer::clearRows(int first, int last) {
-    const std::size_t width = std::size_t(channels) * std::size_t(box.size().x);
-    std::fill_n(values.data() + width * std::size_t(first - box.min.y),
-                width * std::size_t(last - first), 0.0f);
+// Makes columns [first, last) of the box zero, in a row.
+void Layer::fillZero(int y, int first, int last) {
+    if (first >= last) return;
+    std::fill_n(pixel({box.min.x + first, y}), std::size_t(channels) * (last - first), 0.0f);
 }
 
-void Layer::clear() {
+void Layer::widen(int y, glm::ivec2 columns) {
+    glm::ivec2& span = spans[std::size_t(y - box.min.y)];
+    if (span.x >= span.y) {
+        fillZero(y, columns.x, columns.y);
+        span = columns;
+    } else {
+        fillZero(y, columns.x, span.x);
+        fillZero(y, span.y, columns.y);
+        span = {std::min(span.x, columns.x), std::max(span.y, columns.y)};
+    }
+}
+
+void Layer::clearRest(int y) {
+    glm::ivec2 span = spans[std::size_t(y - box.min.y)];
+    if (span.x >= span.y) span = glm::ivec2(box.size().x);
+    fillZero(y, 0, span.x);
+    fillZero(y, span.y, box.size().x);
+}
+
+void Layer::clearRest() {
     parallelForChunks(std::size_t(box.size().y), [&](std::size_t begin, std::size_t end) {
-        clearRows(box.min.y + int(begin), box.min.y + int(end));
+        for (std::size_t row = begin; row < end; ++row) clearRest(box.min.y + int(row));
     });
 }
 

@@ -16,7 +16,7 @@ namespace deltasplat {
 
 /// The composited light of one slab on the base plane: float `[row][width][channels]`, rows along
 /// u as those of sheets; premultiplied RGBA, or opacity alone where all that is seen has one
-/// colour.
+/// colour. While it is made, a row has values in its span alone.
 struct Layer {
     PlaneBox box;
     int channels;
@@ -25,29 +25,31 @@ struct Layer {
     /// [rows]: columns [x, y) of the box, outside of which a row is zero.
     std::vector<glm::ivec2> spans;
 
+    /// A finished layer, all zero.
     /// @param memory  for the values
     explicit Layer(const PlaneBox& planeBox, int channelCount = 4,
                    std::pmr::memory_resource& memory = *std::pmr::get_default_resource())
         : box(planeBox), channels(channelCount), values(&memory) {
         setBox(planeBox);
-        clearRows(box.min.y, box.max.y);
+        for (int y = box.min.y; y < box.max.y; ++y) clearRest(y);
     }
 
-    /// Makes an empty layer of the same number of channels, in the memory that this one has.
-    void reset(const PlaneBox& planeBox);
-    /// Becomes a layer of a box, whose rows have no values before clearRows().
+    /// Becomes a layer of a box, with empty spans, in the memory that it has.
     void setBox(const PlaneBox& planeBox);
-    /// Makes rows [first, last) zero.
-    void clearRows(int first, int last);
-    /// Makes all zero, on all threads.
-    void clear();
+    /// Says that columns [first, last) of a row of the base plane may not be zero, and makes zero
+    /// what comes to its span by that.
+    void extend(int y, int first, int last) {
+        first -= box.min.x;
+        last -= box.min.x;
+        const glm::ivec2 span = spans[std::size_t(y - box.min.y)];
+        if (first < span.x || last > span.y) widen(y, {first, last});
+    }
+    /// Makes zero what lies outside of a row's span.
+    void clearRest(int y);
+    /// The same of all rows, on all threads.
+    void clearRest();
     /// Takes rows [first, last), all zero here, from a layer of the same box and channels.
     void takeRows(const Layer& other, int first, int last);
-    /// Says that columns [first, last) of a row of the base plane may not be zero.
-    void extend(int y, int first, int last) {
-        glm::ivec2& span = spans[std::size_t(y - box.min.y)];
-        span = {std::min(span.x, first - box.min.x), std::max(span.y, last - box.min.x)};
-    }
     float* pixel(glm::ivec2 b) {
         const glm::ivec2 p = b - box.min;
         return &values[channels * (std::size_t(p.y) * box.size().x + p.x)];
@@ -56,6 +58,8 @@ struct Layer {
 
   private:
     static constexpr glm::ivec2 kNothing{std::numeric_limits<int>::max(), 0};
+    void widen(int y, glm::ivec2 columns);
+    void fillZero(int y, int first, int last);
 };
 
 /// Bytes that the values of a layer take.

@@ -21,7 +21,7 @@ Layer LayerFold::take(const PlaneBox& box) {
         idle_.pop_back();
         lock.unlock();
     }
-    layer.reset(box);
+    layer.setBox(box);
     return layer;
 }
 

@@ -64,7 +64,6 @@ SlabRenderer::SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, g
     cutIntoStrips();
     findLargest();
     requireSlabMemory();
-    // Strips clear their rows.
     if (!hasFront_) merged_.setBox(reach_);
     if (!input.plane.isParallel() && channels_ == 4)
         steps_.emplace(input.plane, reach_, input.memory);
@@ -101,17 +100,13 @@ std::optional<SlabRenderer::Piece> SlabRenderer::takePiece(Strip*& own) {
 }
 
 Layer SlabRenderer::merge() {
-    if (!hasFront_ && !reach_.empty()) {
-        // What lies outside of all strips nobody has cleared.
-        merged_.clearRows(reach_.min.y, strips_.empty() ? reach_.max.y : rows_.x);
-        if (!strips_.empty()) merged_.clearRows(rows_.y, reach_.max.y);
-    }
     parallelForChunks(std::size_t(merged_.box.size().y), [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
             const int y = merged_.box.min.y + int(row);
             for (Strip& strip : strips_) {
                 if (y >= strip.first && y < strip.last) strip.layers->finishRow(y);
             }
+            if (!hasFront_) merged_.clearRest(y);
         }
     });
     return std::move(merged_);
@@ -292,7 +287,6 @@ void SlabRenderer::renderPiece(const Piece& piece, Splatter& splatter) {
         compositeSeconds += secondsSince(before);
     };
     if (number == 0 && !hasFront_) {
-        timed([&] { merged_.clearRows(strip.first, strip.last); });
         compositeSeconds += renderSlab(seen, strip, box, splatter, merged_);
         timed([&] { strip.layers->addFront(); });
     } else {

@@ -40,4 +40,11 @@ Image clearImage(glm::ivec2 size) {
     return image;
 }
 
+void clearImage(Image& image) {
+    const std::size_t ofRow = std::size_t{4} * std::size_t(image.size.x);
+    parallelForChunks(std::size_t(image.size.y), [&](std::size_t begin, std::size_t end) {
+        std::fill_n(image.rgba.data() + ofRow * begin, ofRow * (end - begin), 0.0f);
+    });
+}
+
 }  // namespace deltasplat

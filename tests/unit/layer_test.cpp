@@ -209,14 +209,37 @@ TEST_P(LayerOfChannels, SameBitsAtEverySimdLevel) {
     }
 }
 
-TEST(Layer, ResetLeavesAnEmptyLayerOfAnotherBox) {
+// Rows have values in their spans alone until they are finished, whatever lay there before.
+TEST(Layer, IsZeroWhereNothingHasBeenPut) {
     Layer layer = compositeSlices({0.37, -0.81}, 4);
     const PlaneBox box{{-3, 8}, {40, 19}};
-    layer.reset(box);
+    layer.setBox(box);
     EXPECT_EQ(layer.box.min, box.min);
     EXPECT_EQ(layer.values.size(), std::size_t(4 * 43 * 11));
-    for (const float value : layer.values) ASSERT_EQ(value, 0);
     for (const glm::ivec2 span : layer.spans) EXPECT_GE(span.x, span.y);
+    std::fill(layer.values.begin(), layer.values.end(), NAN);
+    const auto expectZero = [&](int y, int first, int last) {
+        for (float* value = layer.pixel({first, y});
+             value != layer.pixel({first, y}) + 4 * (last - first); ++value)
+            ASSERT_EQ(*value, 0) << y;
+    };
+    for (const auto& [y, first, last] :
+         {std::array{10, 5, 9}, {10, 7, 8}, {10, -1, 6}, {10, 12, 40}, {12, -3, 1}, {12, 30, 31}}) {
+        layer.extend(y, first, last);
+        expectZero(y, first, last);
+        layer.pixel({first, y})[3] = 0.5f;
+        layer.extend(y, first, first + 1);
+        EXPECT_EQ(layer.pixel({first, y})[3], 0.5f);
+        layer.pixel({first, y})[3] = 0;
+    }
+    expectZero(10, -1, 40);
+    expectZero(12, -3, 31);
+    EXPECT_EQ(layer.spans[2], glm::ivec2(2, 43));
+    EXPECT_EQ(layer.spans[4], glm::ivec2(0, 34));
+    EXPECT_TRUE(std::isnan(layer.pixel({31, 12})[0]));
+    layer.clearRest();
+    for (int y = 8; y < 19; ++y) expectZero(y, -3, 40);
+    EXPECT_EQ(layer.spans[2], glm::ivec2(2, 43));
 }
 
 // A layer full of random numbers, those of each row in a span of its own.
@@ -268,7 +291,7 @@ TEST(LayerFold, IsOverFromTheFront) {
                     ++taken;
                     const Layer empty =
                         takeAllFirst ? Layer(boxes[i], channels) : fold.take(boxes[i]);
-                    for (const float value : empty.values) ASSERT_EQ(value, 0);
+                    for (const glm::ivec2 span : empty.spans) ASSERT_GE(span.x, span.y);
                     fold.add(i, randomLayer(boxes[i], channels, std::uint32_t(i)));
                 }
                 for (int y = all.min.y; y < all.max.y; ++y) fold.finishRow(y);
