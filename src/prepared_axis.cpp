@@ -122,7 +122,7 @@ std::shared_ptr<const PackedDeltas> sharedWords(const AxisRequest& request,
     const PreparedAxis* before = request.before;
     const bool areOfClasses = !scene.painter && scene.options.tolerance.isExact();
     if (!before || !areOfClasses || before->packer || before->seen != request.seen) return {};
-    return takeNumbers(before->classes().classOfSlot, classes) ? before->words : nullptr;
+    return takeNumbers(before->classes(), classes) ? before->words : nullptr;
 }
 
 // Whether it may be seen that voxels beside each other become one: if it changes light or opacity
@@ -171,7 +171,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
         opacities = opacitiesOf(volume, classes);
         if (words && opacities != opacitiesOf(volume, before->classes())) words = nullptr;
     }
-    PackOptions pack{request.sliceAxis, encoding, classes.classOfSlot,
+    PackOptions pack{request.sliceAxis, encoding, classes.classOfSlot(),
                      holdRule(levels, classes, tolerance), mixer ? &*mixer : nullptr};
     pack.descending = request.descending;
     if (joiner) pack.joiner = &*joiner;
@@ -236,7 +236,7 @@ std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
     if (blocks && blocks->facts()) return blocks->facts()->blocksSeen;
     const ClassTable classes =
         classify(volume, scene.optics, planeDistance(volume.worldFromIndex, sliceAxis));
-    return listBlocks(*volume.codes, sliceAxis, classes.classOfSlot).size();
+    return listBlocks(*volume.codes, sliceAxis, classes.classOfSlot()).size();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -64,10 +65,12 @@ bool isSameLight(const StepColors& before, const StepColors& now) {
 // Matches those of one slice. Slots that stand for other values than before match less.
 std::vector<ClassIndex> matchLooks(const ClassTable& a, const ClassTable& b) {
     std::vector<ClassIndex> nowOfBefore(a.looks.size());
-    const std::size_t slots = std::min(a.classOfSlot.size(), b.classOfSlot.size());
+    const std::span<const Slot> before = a.classOfSlot();
+    const std::span<const Slot> now = b.classOfSlot();
+    const std::size_t slots = std::min(before.size(), now.size());
     for (std::size_t slot = 0; slot < slots; ++slot) {
-        const Slot classBefore = a.classOfSlot[slot];
-        const Slot classNow = b.classOfSlot[slot];
+        const Slot classBefore = before[slot];
+        const Slot classNow = now[slot];
         if (classBefore == 0 || classNow == 0) continue;
         ClassIndex& matching = nowOfBefore[std::size_t(classBefore)];
         if (matching == 0 && a.looks[std::size_t(classBefore)] == b.looks[std::size_t(classNow)])

@@ -16,7 +16,7 @@
 namespace deltasplat {
 
 LitBlocks::LitBlocks(const Volume& volume, const ClassTable& classes)
-    : classOfSlot_(classes.classOfSlot) {
+    : classOfSlot_(classes.classOfSlot()) {
     // Along x, positions are (x, y, z).
     const BlockReader reader(*volume.codes, nullptr, 0, classOfSlot_);
     // A node of the map, and its place in it.

@@ -44,7 +44,7 @@ PartLooks lookUpAbsorption(const MediumPart& part, const Volume& levels) {
     optics.extinctionScale = part.strength;
     const ClassTable classes = classify(levels, optics, 1);
     PartLooks result;
-    result.ofSlot.assign(classes.classOfSlot.begin(), classes.classOfSlot.end());
+    result.ofSlot.assign(classes.slots->begin(), classes.slots->end());
     for (const Look& look : classes.looks)
         result.looks.push_back({look.extinction * part.strength, look.color, {}});
     return result;

@@ -3,20 +3,23 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace deltasplat {
 namespace {
 
 // Returns what each class is called by the others, or nothing if they are not one to one.
-std::optional<std::vector<Slot>> othersNumbers(const std::vector<Slot>& others,
+std::optional<std::vector<Slot>> othersNumbers(std::span<const Slot> others,
                                                const ClassTable& table) {
     constexpr Slot kNone = ClassTable::kMaxClasses;
-    if (others.size() != table.classOfSlot.size()) return {};
+    const std::span<const Slot> owns = table.classOfSlot();
+    if (others.size() != owns.size()) return {};
     std::vector<Slot> numbers(table.size(), kNone);
     std::vector<Slot> back(table.size(), kNone);
     numbers[0] = back[0] = 0;
     for (std::size_t slot = 0; slot < others.size(); ++slot) {
-        const Slot own = table.classOfSlot[slot];
+        const Slot own = owns[slot];
         const Slot other = others[slot];
         if (std::size_t(other) >= back.size()) return {};
         Slot& number = numbers[std::size_t(own)];
@@ -51,11 +54,11 @@ bool noteUse(ClassTable::Digit& digit) {
     return true;
 }
 
-bool takeNumbers(const std::vector<Slot>& classOfSlot, ClassTable& table) {
-    if (table.classOfSlot == classOfSlot) return true;
-    const std::optional<std::vector<Slot>> numbers = othersNumbers(classOfSlot, table);
+bool takeNumbers(const ClassTable& others, ClassTable& table) {
+    if (std::ranges::equal(table.classOfSlot(), others.classOfSlot())) return true;
+    const std::optional<std::vector<Slot>> numbers = othersNumbers(others.classOfSlot(), table);
     if (!numbers) return false;
-    table.classOfSlot = classOfSlot;
+    table.slots = others.slots;
     permute(*numbers, table.looks);
     for (ClassTable::Plane& plane : table.planes) {
         for (ClassTable::Digit* digit : {&plane.high, &plane.low}) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
 #include "deltasplat/optics/class_table.h"
 
 namespace deltasplat {
@@ -12,8 +10,7 @@ namespace deltasplat {
 bool noteUse(ClassTable::Digit& digit);
 
 /// Gives classes the numbers that others have, if both tell the same codes apart.
-/// @param classOfSlot  of the others
 /// @return whether they do; if not, nothing is changed
-bool takeNumbers(const std::vector<Slot>& classOfSlot, ClassTable& table);
+bool takeNumbers(const ClassTable& others, ClassTable& table);
 
 }  // namespace deltasplat

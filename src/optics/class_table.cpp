@@ -10,6 +10,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -312,21 +313,23 @@ void takeDigits(const std::vector<ColorDigits>& colors, ClassTable& table) {
 void numberByLook(const std::vector<CodeLook>& visible, const std::vector<ColorDigits>& digits,
                   bool hasClear, ClassTable& table) {
     LookNumbers numbers(visible, hasClear);
+    std::vector<Slot> classOfSlot(kSlotCount, kEmptySlot);
     std::vector<ColorDigits> colors(hasClear ? 2 : 1);
     colors.reserve(visible.size() + colors.size());
     for (std::size_t i = 0; i < visible.size(); ++i) {
         // What lets all light through shows nothing.
         if (usedDigits(digits[i]) == 0) continue;
         const Slot number = numbers.numberOf(visible[i].look);
-        table.classOfSlot[visible[i].code + 1] = number;
+        classOfSlot[visible[i].code + 1] = number;
         if (std::size_t(number) == colors.size()) colors.push_back(digits[i]);
     }
     table.looks = numbers.take();
     const std::vector<Slot> numberOf = orderByDigits(colors, table.looks);
     for (const CodeLook& one : visible) {
-        Slot& number = table.classOfSlot[one.code + 1];
+        Slot& number = classOfSlot[one.code + 1];
         number = numberOf[std::size_t(number)];
     }
+    table.slots = std::make_shared<const std::vector<Slot>>(std::move(classOfSlot));
     takeDigits(colors, table);
 }
 
@@ -361,13 +364,13 @@ std::vector<double> ClassTable::alphas() const {
 }
 
 glm::dvec4 ClassTable::lightOfCode(Code code) const {
-    return unitsOf(classOfSlot[code + 1]) * scale;
+    return unitsOf(classOfSlot()[code + 1]) * scale;
 }
 
 ClassTable ClassTable::atSteps(double steps) const {
     const DefaultFloats floats;
     ClassTable table;
-    table.classOfSlot = classOfSlot;
+    table.slots = slots;
     table.looks = looks;
     table.pairs = pairs;
     table.unitDistanceWorld = unitDistanceWorld;
@@ -401,7 +404,6 @@ ClassTable classify(const Volume& volume, const Optics& optics, double sliceStep
     const std::vector<ColorDigits> digits = roundColors(lights, rounded);
     table.scale = rounded.scale();
     table.oneColor = rounded.oneColor();
-    table.classOfSlot.assign(kSlotCount, kEmptySlot);
     const unsigned used = digitsInUse(digits);
     table.planes.resize(used < 4 ? 1 : 2);
     numberByLook(visible, digits, !optics.parts.empty(), table);

@@ -60,7 +60,7 @@ std::function<bool(Slot, Slot)> holdRule(const Volume& volume, const ClassTable&
     checkTolerance(tolerance);
     if (tolerance.isExact()) return {};
     const auto looksAlike = [&classes, t = tolerance.relative](Slot held, Slot slot) {
-        const auto colorOf = [&](Slot s) { return classes.unitsOf(classes.classOfSlot[s]); };
+        const auto colorOf = [&](Slot s) { return classes.unitsOf(classes.classOfSlot()[s]); };
         return looksWithin(colorOf(held), colorOf(slot), t);
     };
     if (tolerance.value == 0) return looksAlike;

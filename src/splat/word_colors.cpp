@@ -52,7 +52,6 @@ WordColors::WordColors(const PackedDeltas& deltas, const ClassTable& classes,
     const VoxelUnits& units = light_->units();
     table_.scale = units.scale();
     table_.looks.resize(1);
-    table_.classOfSlot.assign(kSlotCount, kEmptySlot);
     table_.planes.resize(needsTwoPlanes(classes, *light_) ? 2 : 1);
     for (ClassTable::Plane& plane : table_.planes) plane.low.colors.resize(1);
 }

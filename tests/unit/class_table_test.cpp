@@ -41,7 +41,7 @@ double channel(const ClassTable& table, int code, int c) {
 
 // The high digits of the first plane.
 ClassTable::Color colorOf(const ClassTable& table, int code) {
-    return table.planes.front().high.colors[table.classOfSlot[code + 1]];
+    return table.planes.front().high.colors[table.classOfSlot()[code + 1]];
 }
 
 TEST(Classify, followsTheFormulaWithinHalfAUnit) {
@@ -51,7 +51,7 @@ TEST(Classify, followsTheFormulaWithinHalfAUnit) {
     optics.extinctionScale = 3;
     const double step = 1.25;
     const ClassTable table = classify(volume, optics, step);
-    ASSERT_EQ(table.classOfSlot.size(), std::size_t(kSlotCount));
+    ASSERT_EQ(table.classOfSlot().size(), std::size_t(kSlotCount));
     EXPECT_FALSE(table.oneColor);
     for (const int code : {0, 10, 30, 60}) {
         const double extinction = -std::log(1 - code / 100.0) / 2 * 3;
@@ -69,7 +69,7 @@ TEST(Classify, leavesCodesThatDoNotOccurEmpty) {
     const ClassTable table = classify(volumeWithCodes({10, 30}), ramp(), 1);
     for (int slot = 0; slot < kSlotCount; ++slot) {
         const bool occurs = slot == 11 || slot == 31;
-        EXPECT_EQ(table.classOfSlot[slot] != kEmptySlot, occurs) << slot;
+        EXPECT_EQ(table.classOfSlot()[slot] != kEmptySlot, occurs) << slot;
     }
 }
 
@@ -94,7 +94,7 @@ TEST(Classify, isClearWithoutExtinction) {
     optics.extinctionScale = 0;
     const ClassTable table = classify(volumeWithCodes({50, 100}), optics, 1);
     EXPECT_EQ(table.scale, glm::dvec4(0));
-    for (const Slot slot : table.classOfSlot) EXPECT_EQ(slot, kEmptySlot);
+    for (const Slot slot : table.classOfSlot()) EXPECT_EQ(slot, kEmptySlot);
 }
 
 TEST(Classify, keepsPrecisionInThinFog) {
@@ -159,10 +159,10 @@ TEST(Classify, codesThatLookAlikeShareAClass) {
     EXPECT_TRUE(table.oneDigit());
     const std::vector<ClassTable::Color>& colors = table.planes.front().high.colors;
     EXPECT_EQ(colors[0], ClassTable::Color{});
-    EXPECT_EQ(table.classOfSlot[6], kEmptySlot);
-    EXPECT_EQ(table.classOfSlot[102], table.classOfSlot[7001]);
-    EXPECT_EQ(table.classOfSlot[30002], table.classOfSlot[40001]);
-    EXPECT_EQ(table.classOfSlot[60001], table.classOfSlot[65536]);
+    EXPECT_EQ(table.classOfSlot()[6], kEmptySlot);
+    EXPECT_EQ(table.classOfSlot()[102], table.classOfSlot()[7001]);
+    EXPECT_EQ(table.classOfSlot()[30002], table.classOfSlot()[40001]);
+    EXPECT_EQ(table.classOfSlot()[60001], table.classOfSlot()[65536]);
     for (std::size_t i = 0; i < table.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) EXPECT_NE(colors[i], colors[j]);
     }
@@ -208,7 +208,7 @@ TEST(Classify, lastTwoOfAllCodesShareAClass) {
     optics.transferFunction.opacities = {{0, 0.5, 0.5, 0}, {65535, 0.9, 0.5, 0}};
     const ClassTable table = classify(volume, optics, 1);
     EXPECT_LE(table.size(), std::size_t(ClassTable::kMaxClasses));
-    for (const Slot slot : table.classOfSlot) ASSERT_LT(slot, ClassTable::kMaxClasses);
+    for (const Slot slot : table.classOfSlot()) ASSERT_LT(slot, ClassTable::kMaxClasses);
     for (int code = 0; code < kCodeCount; ++code) {
         const double alpha = 0.5 + 0.4 * code / 65535;
         ASSERT_NEAR(channel(table, code, 3), alpha, table.scale.a * 1.01);
@@ -246,7 +246,7 @@ void expectLooks(const std::vector<TestLook>& looks, const ClassTable& table) {
             EXPECT_NEAR(light[c], alpha * color, alpha * color / 256) << alpha << ' ' << color;
             EXPECT_NEAR(light[c] / light.a, color, color / 256 * 1.0001) << alpha << ' ' << color;
         }
-        const Slot number = table.classOfSlot[i + 2];
+        const Slot number = table.classOfSlot()[i + 2];
         ASSERT_NE(number, kEmptySlot);
         for (const ClassTable::Plane& plane : table.planes) {
             for (const ClassTable::Digit* digit : {&plane.high, &plane.low}) {
@@ -294,7 +294,7 @@ TEST(Classify, letsGoOfWhatIsNextToNothing) {
     const ClassTable table =
         classifyLooks({{1, {1, 1, 1}}, {1e-11, {1, 1, 1}}, {1e-17, {1, 1, 1}}});
     EXPECT_NEAR(table.lightOfCode(2).a, 1e-11, 1e-14);
-    EXPECT_EQ(table.classOfSlot[4], kEmptySlot);
+    EXPECT_EQ(table.classOfSlot()[4], kEmptySlot);
 }
 
 TEST(Classify, refusesWhatIsNoTransferFunction) {

@@ -19,7 +19,7 @@ struct Scene {
     Scene(const Volume& volume, Encoding encoding, const Footprint& print, bool oneColor,
           Range range = Range::kOneDigit)
         : classes(classesOf(volume, oneColor, range)),
-          deltas(packDeltas(volume, {0, encoding, classes.classOfSlot, {}})),
+          deltas(packDeltas(volume, {0, encoding, classes.classOfSlot(), {}})),
           colors(deltas, classes, nullptr),
           footprint(print),
           layout(layoutSheet(deltas.box, footprint, oneColor ? 1 : 4)),

@@ -20,7 +20,7 @@ std::vector<Slot> seenSlots(const GridReport& report, const DescribeOptions& opt
         Optics optics;
         optics.transferFunction = *options.transferFunction;
         if (options.preset) fitPreset(*options.preset, volume, optics);
-        return classify(volume, optics, volume.voxelSize()[axis]).classOfSlot;
+        return *classify(volume, optics, volume.voxelSize()[axis]).slots;
     }
     if (!report.backgroundGuess) return {};
     return slotsWithout(volume.codeBook, *report.backgroundGuess);

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -63,15 +65,14 @@ struct ClassTable {
     };
     /// One or two, the coarser first.
     std::vector<Plane> planes = std::vector<Plane>(1);
-    /// [kSlotCount]: the class of every slot, the map that `DeltaOptions::slotMap` takes. 0 for
-    /// slot 0, for codes that do not occur and for clear ones.
-    std::vector<Slot> classOfSlot;
+    /// What `classOfSlot` returns, shared by tables for steps of other lengths; null: of no codes.
+    std::shared_ptr<const std::vector<Slot>> slots;
     /// [classes]: what each looks like exactly. No two are alike, but where all 65536 codes are
     /// not. Of pairs, [classes of one slice].
     std::vector<Look> looks;
     /// Of pairs of slices that are drawn as one (Subdivision::joined), which is seen through the
     /// other. Colours, and `size` and `unitsOf`, are then those of pairs of classes, `first *
-    /// looks.size() + second`; `classOfSlot` and `looks` stay those of one slice, of which
+    /// looks.size() + second`; `slots` and `looks` stay those of one slice, of which
     /// `lightOfCode` and `alphas` are not to be asked. Empty: of voxels.
     std::optional<SeenThrough> pairs;
     double unitDistanceWorld = 1;  ///< over which `looks` have their extinction
@@ -84,6 +85,11 @@ struct ClassTable {
     /// scale is not 0.
     bool oneColor = false;
 
+    /// [kSlotCount]: the class of every slot, the map that `DeltaOptions::slotMap` takes. 0 for
+    /// slot 0, for codes that do not occur and for clear ones.
+    std::span<const Slot> classOfSlot() const {
+        return slots ? std::span<const Slot>(*slots) : std::span<const Slot>();
+    }
     std::size_t size() const { return planes.front().high.colors.size(); }
     /// Whether one digit says all.
     bool oneDigit() const { return planes.size() == 1 && planes.front().low.colors.empty(); }
