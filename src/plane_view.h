@@ -40,7 +40,8 @@ class PlaneView {
     void finish(Layer& layer) const;
     /// Whether finish() changes the layer.
     bool finishChangesLayer() const { return place_.view.eye && place_.color; }
-    /// Writes what is seen of a finished layer into a part of the picture.
+    /// Writes what is seen of a finished layer into a part of the picture: into all pixels of a
+    /// parallel view, and into those of the region, where it is not empty, of one from an eye.
     /// @return the most that this can enlarge a difference of layers
     double showPart(const Layer& finished, const PicturePart& part) const;
 

@@ -361,7 +361,10 @@ Renderer::~Renderer() = default;
 RenderStats Renderer::render(const PreparedScene& scene, const Camera& camera, Image& image,
                              const Listener& listener) {
     requireSize(camera, image);
-    clearImage(image);
+    // A parallel view writes every pixel.
+    const bool isWritten =
+        camera.projection == Projection::kOrtho && !scene.scene().volume->empty();
+    if (!isWritten) clearImage(image);
     const RenderStats stats = renderComposite(scene.impl(), camera, impl_->memory, image, listener);
     impl_->memory.endPicture();
     return stats;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "image/clear_image.h"
 #include "image/raster_reader.h"
 #include "image/warp_kernels.h"
 #include "parallel.h"
@@ -131,7 +132,8 @@ class Warper {
     }
 
     void warpRow(int y, const std::vector<Columns>& stretches) {
-        if (stretches.empty()) return;
+        const Columns all{part_.first.x, part_.last().x};
+        if (stretches.empty()) return clearColumns(y, all);
         const glm::dvec2 last = raster_.size - 1;
         const glm::dvec2 reach(filterX_.taps() / 2, filterY_.taps() / 2);
         const Columns reached = columnsWithin(y, {0, part_.size.x}, -reach, last + reach);
@@ -139,12 +141,22 @@ class Warper {
         const glm::dvec2 padded(filterX_.paddedTaps() - filterX_.taps(), 0);
         Columns inner = columnsWithin(y, reached, reach - 0.999, last - reach - padded - 0.001);
         if (inner.first >= inner.last) inner = {reached.last, reached.last};
+        int written = all.first;
         for (const Columns& stretch : stretches) {
             const Columns columns = bothOf(stretch, reached);
+            if (columns.first >= columns.last) continue;
+            clearColumns(y, {written, columns.first});
+            written = columns.last;
             sampleSingly(y, bothOf(columns, {reached.first, inner.first}));
             sampleColumns(y, inner, bothOf(columns, inner));
             sampleSingly(y, bothOf(columns, {inner.last, reached.last}));
         }
+        clearColumns(y, {written, all.last});
+    }
+
+    void clearColumns(int y, const Columns& columns) {
+        if (columns.first >= columns.last) return;
+        std::fill_n(part_.pixel(columns.first, y), 4 * (columns.last - columns.first), 0.0f);
     }
 
     void sampleSingly(int y, const Columns& columns) {
@@ -180,7 +192,10 @@ class Warper {
 
 void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
           const PicturePart& part) {
-    if (raster.size.x > 0 && raster.size.y > 0) Warper(raster, rasterFromPixel, filter, part).run();
+    if (raster.size.x > 0 && raster.size.y > 0)
+        Warper(raster, rasterFromPixel, filter, part).run();
+    else
+        clearImage(part.image);
 }
 
 double warpGain(const glm::dmat3& rasterFromPixel, WarpFilter filter) {

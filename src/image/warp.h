@@ -38,9 +38,9 @@ struct PicturePart {
     float* pixel(int x, int y) const { return image.pixel(x - first.x, y - first.y); }
 };
 
-/// Resamples a raster under an affine map with a filter that is widened where the picture is
-/// coarser than the raster. No value leaves the range of those around it, what lies outside of the
-/// raster (0) among them. Deterministic; multi-threaded.
+/// Resamples a raster under an affine map, into every pixel of a part, with a filter that is
+/// widened where the picture is coarser than the raster. No value leaves the range of those around
+/// it, what lies outside of the raster (0) among them. Deterministic; multi-threaded.
 /// @param rasterFromPixel  continuous picture coordinates (pixel centres at half-integers) to
 /// lattice positions
 void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,

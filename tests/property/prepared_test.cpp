@@ -346,14 +346,23 @@ TEST(Prepared, renderersKeepMemoryAndNothingElse) {
 
 // What was in the picture before makes no difference.
 TEST(Prepared, picturesAreCleared) {
-    const PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, SplatOptions());
-    CameraOptions options;
-    options.sizePixels = {60, 50};
-    const Camera camera = cameraOf(*scene.scene().volume, options);
-    Image image(camera.sizePixels);
-    std::fill(image.rgba.begin(), image.rgba.end(), 7.0f);
-    renderComposite(scene, camera, image);
-    EXPECT_EQ(image.rgba, pictureOf(scene, options).rgba);
+    const auto nothing = std::make_shared<const Volume>(
+        test::makeVolume({{0, 0, 0}, {7, 7, 7}}, [](int, int, int) { return test::kInactive; }));
+    for (const auto& volume : {someVolume(), nothing}) {
+        const PreparedScene scene({volume, someOptics(Colors::kSeveral)}, SplatOptions());
+        std::vector<CameraOptions> cameras = smallCamerasToo();
+        CameraOptions beside;
+        beside.targetWorld = glm::dvec3(500, 500, 500);
+        beside.sizePixels = {60, 50};
+        cameras.push_back(beside);
+        for (const CameraOptions& options : cameras) {
+            const Camera camera = cameraOf(*volume, options);
+            Image image(camera.sizePixels);
+            std::fill(image.rgba.begin(), image.rgba.end(), 7.0f);
+            renderComposite(scene, camera, image);
+            EXPECT_EQ(image.rgba, pictureOf(scene, options).rgba);
+        }
+    }
 }
 
 TEST(Prepared, refusesWhatCannotBeMeant) {

@@ -33,6 +33,13 @@ struct OwnedRaster {
 constexpr WarpFilter kFilters[] = {WarpFilter::kSharp,    WarpFilter::kSmooth, WarpFilter::kLinear,
                                    WarpFilter::kMitchell, WarpFilter::kGauss,  WarpFilter::kBox};
 
+// A picture with something in it, of which a warp must leave nothing.
+Image usedPicture(glm::ivec2 size) {
+    Image picture(size);
+    std::fill(picture.rgba.begin(), picture.rgba.end(), 7.0f);
+    return picture;
+}
+
 glm::dmat3 affine(double xx, double xy, double x0, double yx, double yy, double y0) {
     return {xx, yx, 0, xy, yy, 0, x0, y0, 1};
 }
@@ -221,7 +228,7 @@ TEST(Warp, SmoothKeepsEveryPointsMass) {
 
 TEST(Warp, OutsideOfTheRasterIsTransparent) {
     const OwnedRaster raster({0, 0}, {4, 4}, [](int, int) { return 1.0f; });
-    Image picture({64, 64});
+    Image picture = usedPicture({64, 64});
     warp(raster.raster(), affine(1, 0, -30, 0, 1, -30), WarpFilter::kSharp, picture);
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {
@@ -238,7 +245,7 @@ TEST(Warp, OutsideOfTheRasterIsTransparent) {
 TEST(Warp, FilterWiderThanTheRasterReadsNothingOutside) {
     const OwnedRaster raster({0, 0}, {48, 48}, [](int, int) { return 1.0f; });
     for (const double stretch : {10.0, 22.0, 47.0, 500.0, 1e6, 1e12}) {
-        Image picture({16, 16});
+        Image picture = usedPicture({16, 16});
         const double c = 0.8 * stretch;
         const double s = 0.6 * stretch;
         warp(raster.raster(), affine(c, -s, 24 - 8 * (c - s), s, c, 24 - 8 * (c + s)),
@@ -287,7 +294,7 @@ TEST(Warp, FindsASinglePixelWherever) {
         });
         for (const auto& map : {affine(0.5, 0, 0, 0, 0.5, 0), affine(0, 0.4, 3, -0.4, 0, 60),
                                 affine(3, 1, -60, -1, 3, -20)}) {
-            Image picture({150, 150});
+            Image picture = usedPicture({150, 150});
             warp(raster.raster(), map, WarpFilter::kSharp, picture);
             double sum = 0;
             bool hit = false;  // a pixel's centre lies close to the raster's
@@ -314,8 +321,8 @@ TEST(Warp, FindsASinglePixelWherever) {
     EXPECT_GT(hits, 8);
 }
 
-TEST(Warp, EmptyRasterLeavesThePictureAlone) {
-    Image picture({3, 2});
+TEST(Warp, EmptyRasterIsTransparent) {
+    Image picture = usedPicture({3, 2});
     warp({}, glm::dmat3(1), WarpFilter::kSharp, picture);
     for (const float value : picture.rgba) EXPECT_EQ(value, 0.0f);
 }
