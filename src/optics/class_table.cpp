@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -27,6 +28,7 @@
 #include "optics/unit_distance.h"
 #include "parallel.h"
 #include "portable_math.h"
+#include "uncleared_vector.h"
 #include "view/affine.h"
 
 namespace deltasplat {
@@ -43,6 +45,21 @@ double alphaOf(double extinction, double unitDistancesPerSlice) {
     if (extinction <= 0 || unitDistancesPerSlice <= 0) return 0;
     if (std::isinf(extinction)) return 1;
     return -portable::expm1(-extinction * unitDistancesPerSlice);
+}
+
+// Codes, classes and pairs of these are gone over in runs: of floats there may be tens of
+// thousands.
+constexpr std::size_t kRun = 1024;
+
+std::size_t runsOf(std::size_t count) {
+    return (count + kRun - 1) / kRun;
+}
+
+// Calls body(run, begin, end) for runs that cover [0, count), on all threads.
+template <typename Body>
+void forRuns(std::size_t count, const Body& body) {
+    parallelFor(runsOf(count),
+                [&](std::size_t run) { body(run, run * kRun, std::min((run + 1) * kRun, count)); });
 }
 
 // What a code looks like; those of codes that cannot be seen are left out.
@@ -75,11 +92,8 @@ std::vector<CodeLook> lookUp(const Volume& volume, const Optics& optics) {
     for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
         if (volume.histogram[code] != 0) codes.push_back({Code(code), {}});
     }
-    // A volume of floats may have tens of thousands.
-    constexpr std::size_t kRun = 4096;
-    parallelFor((codes.size() + kRun - 1) / kRun, [&](std::size_t run) {
-        const std::size_t end = std::min((run + 1) * kRun, codes.size());
-        for (std::size_t i = run * kRun; i < end; ++i) {
+    forRuns(codes.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
             const double value = volume.codeBook.valueOf(codes[i].code);
             const double x = placeOf(value);
             const double extinction =
@@ -94,15 +108,16 @@ std::vector<CodeLook> lookUp(const Volume& volume, const Optics& optics) {
 
 // A look's light for one step, before it is rounded.
 struct StepLight {
-    double alpha = 0;
-    glm::dvec3 color{0.0};  // not multiplied by alpha
+    double alpha;
+    glm::dvec3 color;  // not multiplied by alpha
 };
+using StepLights = UnclearedVector<StepLight>;
 
 // Of an index, what it stands for looks like.
 template <typename LookOf>
-std::vector<StepLight> lightOf(std::size_t count, const LookOf& lookOf, double unitDistances) {
-    std::vector<StepLight> lights(count);
-    parallelForChunks(count, [&](std::size_t begin, std::size_t end) {
+StepLights lightOf(std::size_t count, const LookOf& lookOf, double unitDistances) {
+    StepLights lights(count);
+    forRuns(count, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             lights[i] = {alphaOf(lookOf(i).extinction, unitDistances), lookOf(i).color};
     });
@@ -120,8 +135,8 @@ StepLight behind(const StepLight& front, const StepLight& back) {
 }
 
 // Of all pairs, as ClassTable::pairs says.
-std::vector<StepLight> lightOfPairs(const std::vector<StepLight>& lights, SeenThrough seenThrough) {
-    std::vector<StepLight> pairs;
+StepLights lightOfPairs(const StepLights& lights, SeenThrough seenThrough) {
+    StepLights pairs;
     pairs.reserve(lights.size() * lights.size());
     for (const StepLight& first : lights)
         for (const StepLight& second : lights)
@@ -133,16 +148,15 @@ std::vector<StepLight> lightOfPairs(const std::vector<StepLight>& lights, SeenTh
 // Rounds the colours of all visible codes with one scale a channel.
 class ColorRounder {
   public:
-    explicit ColorRounder(const std::vector<StepLight>& lights) {
-        const StepLight* first = nullptr;
-        oneColor_ = true;
-        for (const StepLight& one : lights) {
-            if (!(one.alpha > 0)) continue;
-            if (!first) first = &one;
-            largest_ = glm::max(largest_, premultiplied(one));
-            oneColor_ = oneColor_ && one.color == first->color;
-        }
-        oneColor_ = oneColor_ && first;
+    explicit ColorRounder(const StepLights& lights) {
+        std::vector<Seen> runs(runsOf(lights.size()));
+        forRuns(lights.size(), [&](std::size_t run, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) runs[run].add(lights[i]);
+        });
+        Seen all;
+        for (const Seen& run : runs) all.add(run);
+        oneColor_ = all.first && all.oneColor;
+        largest_ = all.largest;
         // What is too small for a scale is nothing.
         scale_ = largest_ / double(ClassTable::kMax);
     }
@@ -171,19 +185,49 @@ class ColorRounder {
         return {one.alpha * one.color, one.alpha};
     }
 
-    glm::dvec4 largest_{0.0};
-    glm::dvec4 scale_{0.0};
+    // What is not clear, of some lights.
+    struct Seen {
+        const StepLight* first = nullptr;
+        bool oneColor = true;
+        glm::dvec4 largest{0.0};
+
+        void add(const StepLight& one) {
+            if (one.alpha > 0) add(one, true, premultiplied(one));
+        }
+        void add(const Seen& others) {
+            if (others.first) add(*others.first, others.oneColor, others.largest);
+        }
+
+      private:
+        void add(const StepLight& other, bool otherIsOneColor, const glm::dvec4& otherLargest) {
+            if (!first) first = &other;
+            oneColor = oneColor && otherIsOneColor && other.color == first->color;
+            largest = glm::max(largest, otherLargest);
+        }
+    };
+
+    glm::dvec4 largest_;
+    glm::dvec4 scale_;
     bool oneColor_;
 };
 
-// Returns lights in digits, in their order. A volume of floats may have tens of thousands.
-std::vector<ColorDigits> roundColors(const std::vector<StepLight>& lights,
-                                     const ColorRounder& rounded) {
-    std::vector<ColorDigits> digits(lights.size());
-    parallelForChunks(lights.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) digits[i] = rounded(lights[i]);
+// Lights in digits, in their order, and which digits any has.
+struct RoundedLights {
+    UnclearedVector<ColorDigits> digits;
+    unsigned used = 0;
+};
+
+RoundedLights roundColors(const StepLights& lights, const ColorRounder& rounder) {
+    RoundedLights rounded{UnclearedVector<ColorDigits>(lights.size())};
+    std::vector<unsigned> used(runsOf(lights.size()));
+    forRuns(lights.size(), [&](std::size_t run, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            rounded.digits[i] = rounder(lights[i]);
+            used[run] |= usedDigits(rounded.digits[i]);
+        }
     });
-    return digits;
+    for (const unsigned ofRun : used) rounded.used |= ofRun;
+    return rounded;
 }
 
 // Whether looks of codes in order become ever more or ever less opaque, but for those that are as
@@ -294,23 +338,28 @@ std::vector<Slot> orderByDigits(std::vector<ColorDigits>& colors, std::vector<Lo
 }
 
 // Takes a digit of all classes. None are kept if all are zero, unless they must be.
-void takeDigit(const std::vector<ColorDigits>& colors, std::size_t i, bool always,
+void takeDigit(std::span<const ColorDigits> colors, std::size_t i, bool always,
                ClassTable::Digit& digit) {
     digit.colors.resize(colors.size());
     for (std::size_t n = 0; n < colors.size(); ++n) digit.colors[n] = colors[n][i];
     if (!noteUse(digit) && !always) digit.colors.clear();
 }
 
-void takeDigits(const std::vector<ColorDigits>& colors, ClassTable& table) {
-    for (std::size_t p = 0; p < table.planes.size(); ++p) {
-        takeDigit(colors, 2 * p, true, table.planes[p].high);
-        takeDigit(colors, 2 * p + 1, false, table.planes[p].low);
-    }
+void takeDigits(std::span<const ColorDigits> colors, ClassTable& table) {
+    parallelFor(2 * table.planes.size(), [&](std::size_t i) {
+        ClassTable::Plane& plane = table.planes[i / 2];
+        takeDigit(colors, i, i % 2 == 0, i % 2 == 0 ? plane.high : plane.low);
+    });
+}
+
+// How many planes digits need.
+std::size_t planesOf(unsigned usedDigits) {
+    return usedDigits < 4 ? 1 : 2;
 }
 
 // @param digits    of the visible codes
 // @param hasClear  whether kClearClass is among the classes
-void numberByLook(const std::vector<CodeLook>& visible, const std::vector<ColorDigits>& digits,
+void numberByLook(const std::vector<CodeLook>& visible, std::span<const ColorDigits> digits,
                   bool hasClear, ClassTable& table) {
     LookNumbers numbers(visible, hasClear);
     std::vector<Slot> classOfSlot(kSlotCount, kEmptySlot);
@@ -331,13 +380,6 @@ void numberByLook(const std::vector<CodeLook>& visible, const std::vector<ColorD
     }
     table.slots = std::make_shared<const std::vector<Slot>>(std::move(classOfSlot));
     takeDigits(colors, table);
-}
-
-// Returns which digits any code has.
-unsigned digitsInUse(const std::vector<ColorDigits>& digits) {
-    unsigned used = 0;
-    for (const ColorDigits& one : digits) used |= usedDigits(one);
-    return used;
 }
 
 }  // namespace
@@ -371,21 +413,26 @@ ClassTable ClassTable::atSteps(double steps) const {
     const DefaultFloats floats;
     ClassTable table;
     table.slots = slots;
-    table.looks = looks;
     table.pairs = pairs;
     table.unitDistanceWorld = unitDistanceWorld;
     table.extinctionScale = extinctionScale;
     table.stepWorld = stepWorld * steps;
     table.oneColor = oneColor;
-    std::vector<StepLight> lights = lightOf(
+    StepLights lights = lightOf(
         looks.size(), [&](std::size_t i) { return looks[i]; },
         extinctionScale * (table.stepWorld / unitDistanceWorld));
     if (pairs) lights = lightOfPairs(lights, *pairs);
-    const ColorRounder rounded(lights);
-    const std::vector<ColorDigits> digits = roundColors(lights, rounded);
-    table.scale = rounded.scale();
-    table.planes.resize(digitsInUse(digits) < 4 ? 1 : 2);
-    takeDigits(digits, table);
+    const ColorRounder rounder(lights);
+    const RoundedLights rounded = roundColors(lights, rounder);
+    table.scale = rounder.scale();
+    table.planes.resize(planesOf(rounded.used));
+    parallelFor(2, [&](std::size_t part) {
+        if (part == 0) {
+            table.looks = looks;
+        } else {
+            takeDigits(rounded.digits, table);
+        }
+    });
     return table;
 }
 
@@ -397,16 +444,15 @@ ClassTable classify(const Volume& volume, const Optics& optics, double sliceStep
     table.unitDistanceWorld = unitDistanceOf(volume, optics);
     table.extinctionScale = optics.extinctionScale;
     table.stepWorld = sliceStepWorld;
-    const std::vector<StepLight> lights = lightOf(
+    const StepLights lights = lightOf(
         visible.size(), [&](std::size_t i) { return visible[i].look; },
         table.extinctionScale * (sliceStepWorld / table.unitDistanceWorld));
-    const ColorRounder rounded(lights);
-    const std::vector<ColorDigits> digits = roundColors(lights, rounded);
-    table.scale = rounded.scale();
-    table.oneColor = rounded.oneColor();
-    const unsigned used = digitsInUse(digits);
-    table.planes.resize(used < 4 ? 1 : 2);
-    numberByLook(visible, digits, !optics.parts.empty(), table);
+    const ColorRounder rounder(lights);
+    const RoundedLights rounded = roundColors(lights, rounder);
+    table.scale = rounder.scale();
+    table.oneColor = rounder.oneColor();
+    table.planes.resize(planesOf(rounded.used));
+    numberByLook(visible, rounded.digits, !optics.parts.empty(), table);
     return table;
 }
 
