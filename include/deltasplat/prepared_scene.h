@@ -55,7 +55,7 @@ class Renderer {
     /// picture of the caller's. Same scene, same camera: the same pixels as `render`, bit for bit,
     /// and on any number of threads. Times in the stats are those of this call: what was prepared
     /// before costs nothing.
-    /// @param image  of the camera's size; cleared first
+    /// @param image  of the camera's size; all of it is written, unless something is thrown
     /// @throw Error(kUsage) if the image has another size or an option is out of range;
     ///        Error(kFailed) for a picture that does not fit this machine's memory; whatever
     ///        `listener.progress` throws

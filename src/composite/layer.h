@@ -22,7 +22,7 @@ struct Layer {
     int channels;
     pmr::UnclearedVector<float> values;
 
-    /// [rows]: columns [x, y) of the box, outside of which a row is zero.
+    /// [rows]: columns [x, y) of the box, outside of which a finished row is zero.
     std::vector<glm::ivec2> spans;
 
     /// A finished layer, all zero.

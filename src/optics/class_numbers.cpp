@@ -55,7 +55,10 @@ bool noteUse(ClassTable::Digit& digit) {
 }
 
 bool takeNumbers(const ClassTable& others, ClassTable& table) {
-    if (std::ranges::equal(table.classOfSlot(), others.classOfSlot())) return true;
+    if (std::ranges::equal(table.classOfSlot(), others.classOfSlot())) {
+        table.slots = others.slots;
+        return true;
+    }
     const std::optional<std::vector<Slot>> numbers = othersNumbers(others.classOfSlot(), table);
     if (!numbers) return false;
     table.slots = others.slots;

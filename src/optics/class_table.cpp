@@ -47,8 +47,7 @@ double alphaOf(double extinction, double unitDistancesPerSlice) {
     return -portable::expm1(-extinction * unitDistancesPerSlice);
 }
 
-// Codes, classes and pairs of these are gone over in runs: of floats there may be tens of
-// thousands.
+// Codes and classes are gone over in runs: of floats there may be tens of thousands.
 constexpr std::size_t kRun = 1024;
 
 std::size_t runsOf(std::size_t count) {
@@ -151,7 +150,9 @@ class ColorRounder {
     explicit ColorRounder(const StepLights& lights) {
         std::vector<Seen> runs(runsOf(lights.size()));
         forRuns(lights.size(), [&](std::size_t run, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) runs[run].add(lights[i]);
+            Seen seen;
+            for (std::size_t i = begin; i < end; ++i) seen.add(lights[i]);
+            runs[run] = seen;
         });
         Seen all;
         for (const Seen& run : runs) all.add(run);
@@ -221,10 +222,12 @@ RoundedLights roundColors(const StepLights& lights, const ColorRounder& rounder)
     RoundedLights rounded{UnclearedVector<ColorDigits>(lights.size())};
     std::vector<unsigned> used(runsOf(lights.size()));
     forRuns(lights.size(), [&](std::size_t run, std::size_t begin, std::size_t end) {
+        unsigned ofRun = 0;
         for (std::size_t i = begin; i < end; ++i) {
             rounded.digits[i] = rounder(lights[i]);
-            used[run] |= usedDigits(rounded.digits[i]);
+            ofRun |= usedDigits(rounded.digits[i]);
         }
+        used[run] = ofRun;
     });
     for (const unsigned ofRun : used) rounded.used |= ofRun;
     return rounded;
@@ -353,8 +356,8 @@ void takeDigits(std::span<const ColorDigits> colors, ClassTable& table) {
 }
 
 // How many planes digits need.
-std::size_t planesOf(unsigned usedDigits) {
-    return usedDigits < 4 ? 1 : 2;
+std::size_t planesOf(unsigned used) {
+    return used < 4 ? 1 : 2;
 }
 
 // @param digits    of the visible codes

@@ -348,15 +348,19 @@ TEST(Prepared, renderersKeepMemoryAndNothingElse) {
 TEST(Prepared, picturesAreCleared) {
     const auto nothing = std::make_shared<const Volume>(
         test::makeVolume({{0, 0, 0}, {7, 7, 7}}, [](int, int, int) { return test::kInactive; }));
-    for (const auto& volume : {someVolume(), nothing}) {
-        const PreparedScene scene({volume, someOptics(Colors::kSeveral)}, SplatOptions());
+    const Optics optics = someOptics(Colors::kSeveral);
+    Optics clear = optics;
+    clear.transferFunction.opacities = {{0, 0, 0.5, 0}};
+    for (const Scene& seen :
+         {Scene{someVolume(), optics}, Scene{nothing, optics}, Scene{someVolume(), clear}}) {
+        const PreparedScene scene(seen, SplatOptions());
         std::vector<CameraOptions> cameras = smallCamerasToo();
         CameraOptions beside;
         beside.targetWorld = glm::dvec3(500, 500, 500);
         beside.sizePixels = {60, 50};
         cameras.push_back(beside);
         for (const CameraOptions& options : cameras) {
-            const Camera camera = cameraOf(*volume, options);
+            const Camera camera = cameraOf(*seen.volume, options);
             Image image(camera.sizePixels);
             std::fill(image.rgba.begin(), image.rgba.end(), 7.0f);
             renderComposite(scene, camera, image);

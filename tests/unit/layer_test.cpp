@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -260,6 +262,19 @@ Layer randomLayer(const PlaneBox& box, int channels, std::uint32_t seed) {
 }
 
 // In whatever order they are done: the same bits as folding from the front.
+// A layer as it is while it is made: with anything outside of its spans.
+Layer unfinished(Layer layer) {
+    for (int y = layer.box.min.y; y < layer.box.max.y; ++y) {
+        const glm::ivec2 span = layer.spans[std::size_t(y - layer.box.min.y)];
+        float* row = layer.pixel({layer.box.min.x, y});
+        for (int x = 0; x < layer.box.size().x; ++x) {
+            if (x < span.x || x >= span.y)
+                std::fill_n(row + layer.channels * x, layer.channels, NAN);
+        }
+    }
+    return layer;
+}
+
 TEST(LayerFold, IsOverFromTheFront) {
     const PlaneBox all{{-4, -5}, {30, 70}};
     const PlaneBox boxes[] = {{{0, 0}, {9, 70}}, {{-4, 3}, {6, 12}}, {{2, -5}, {30, 20}}, all};
@@ -292,7 +307,7 @@ TEST(LayerFold, IsOverFromTheFront) {
                     const Layer empty =
                         takeAllFirst ? Layer(boxes[i], channels) : fold.take(boxes[i]);
                     for (const glm::ivec2 span : empty.spans) ASSERT_GE(span.x, span.y);
-                    fold.add(i, randomLayer(boxes[i], channels, std::uint32_t(i)));
+                    fold.add(i, unfinished(randomLayer(boxes[i], channels, std::uint32_t(i))));
                 }
                 for (int y = all.min.y; y < all.max.y; ++y) fold.finishRow(y);
                 std::vector<Layer> layers = {randomLayer(all, channels, 99)};
