@@ -261,7 +261,6 @@ Layer randomLayer(const PlaneBox& box, int channels, std::uint32_t seed) {
     return layer;
 }
 
-// In whatever order they are done: the same bits as folding from the front.
 // A layer as it is while it is made: with anything outside of its spans.
 Layer unfinished(Layer layer) {
     for (int y = layer.box.min.y; y < layer.box.max.y; ++y) {
@@ -275,6 +274,7 @@ Layer unfinished(Layer layer) {
     return layer;
 }
 
+// In whatever order they are done: the same bits as folding from the front.
 TEST(LayerFold, IsOverFromTheFront) {
     const PlaneBox all{{-4, -5}, {30, 70}};
     const PlaneBox boxes[] = {{{0, 0}, {9, 70}}, {{-4, 3}, {6, 12}}, {{2, -5}, {30, 20}}, all};
