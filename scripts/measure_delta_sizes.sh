@@ -13,7 +13,7 @@ shift
 program=$(dirname "${BASH_SOURCE[0]}")/../build/release/bin/deltasplat
 [[ -x $program ]] || program=$(command -v deltasplat)
 expected_key=delta_bytes
-[[ " $* " != *" --pack "* ]] || expected_key=packed_bytes
+[[ " $* " != *" --no-pack "* ]] || expected_key=voxel_bytes
 made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT
 

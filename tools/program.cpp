@@ -19,6 +19,7 @@
 #include "listener.h"
 #include "printable.h"
 #include "process/interrupt.h"
+#include "process/large_pages.h"
 #include "process/print_out.h"
 #include "process/reuse_memory.h"
 #include "process/run_log.h"
@@ -334,7 +335,10 @@ int execute(const std::vector<std::string>& arguments,
     setSyncFiles(session.common.fsync);
     setMemoryLimit(session.common.maxMemory);
     // What is kept counts as taken.
-    if (session.common.maxMemory == 0) reuseMemory();
+    if (session.common.maxMemory == 0) {
+        reuseMemory();
+        useLargePages();
+    }
     subcommand->run(session);
     return subcommand->exitCode ? subcommand->exitCode() : 0;
 }

@@ -160,15 +160,16 @@ std::optional<DeltaEstimate> estimateFrom(const Volume& volume, int sliceAxis) {
         sample->source = std::make_shared<const SourceGrid>(SourceGrid{plain});
     DeltaFileOptions options;
     options.sliceAxis = sliceAxis;
+    options.pack = false;
     const TakenDeltas voxels = takeDeltas(*sample, options);
     // Of what inactive voxels hold a sample says little.
     if (voxels.inactive.numbers || voxels.inactive.tooMany) return {};
-    estimate.deltaBytes = scaledBytes(deltaGrid(voxels.deltas, voxels.header), 1 / share,
+    estimate.voxelBytes = scaledBytes(deltaGrid(voxels.deltas, voxels.header), 1 / share,
                                       share == 1 ? nodeBytes(*voxels.deltas) : nodes);
     estimate.readsByBlocks =
         mayDecodeBlocks(voxels.header) && volume.gridClass != kLevelSetClass;  // made fog first
     options.pack = true;
-    estimate.packedBytes = packedBytes(takeDeltas(*sample, options), share);
+    estimate.deltaBytes = packedBytes(takeDeltas(*sample, options), share);
     return estimate;
 }
 

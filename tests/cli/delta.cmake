@@ -7,10 +7,10 @@ deltasplat_cli_test(delta.fine.empty ARGS delta empty.vdb d.vdb CREATES d.vdb
     STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels")
 deltasplat_cli_test(delta.fine.mixed ARGS delta mixed.vdb d.vdb CREATES d.vdb
     STDERR "deltasplat: warning: mixed.vdb: left out velocity (vec3s)")
-deltasplat_cli_test(delta.fine.pack ARGS delta two.vdb d.vdb --pack CREATES d.vdb)
-deltasplat_cli_test(delta.fine.pack_empty ARGS delta empty.vdb d.vdb --pack CREATES d.vdb
+deltasplat_cli_test(delta.fine.voxels ARGS delta two.vdb d.vdb --no-pack CREATES d.vdb)
+deltasplat_cli_test(delta.fine.voxels_empty ARGS delta empty.vdb d.vdb --no-pack CREATES d.vdb
     STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels")
-deltasplat_cli_test(delta.fine.pack_options ARGS delta ${cube} d.vdb --pack --axis y --key-interval 16
+deltasplat_cli_test(delta.fine.voxel_options ARGS delta ${cube} d.vdb --no-pack --axis y --key-interval 16
     --tolerance 0.9 --tolerance-value 50 --codes --max-error 50 CREATES d.vdb
     STDOUT_MATCHES "^largest error [1-9][0-9]*")
 deltasplat_cli_test(delta.fine.options ARGS delta ${cube} d.vdb --axis y --key-interval 16

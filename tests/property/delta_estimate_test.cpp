@@ -50,8 +50,8 @@ void expectNear(const std::string& file, bool readsByBlocks, bool isSampled) {
     EXPECT_LE(estimate->sampled, 1);
     writeVolumes("plain.vdb", {volume});
     EXPECT_NEAR(estimate->plainBytes / double(fs::file_size("plain.vdb")), 1, 0.07);
-    EXPECT_NEAR(estimate->deltaBytes / deltaBytes(volume, false), 1, 0.07);
-    EXPECT_NEAR(estimate->packedBytes / deltaBytes(volume, true), 1, 0.07);
+    EXPECT_NEAR(estimate->voxelBytes / deltaBytes(volume, false), 1, 0.07);
+    EXPECT_NEAR(estimate->deltaBytes / deltaBytes(volume, true), 1, 0.07);
 }
 
 TEST(DeltaEstimate, DenseVolumesOfBytes) {

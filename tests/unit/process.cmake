@@ -4,6 +4,8 @@ deltasplat_test(unit/paired_files_test.cpp)
 deltasplat_test(unit/commit_pair_test.cpp)
 set(tools ${PROJECT_SOURCE_DIR}/tools)
 deltasplat_test(unit/flag_names_test.cpp SOURCES ${tools}/flag_names.cpp)
+deltasplat_test(unit/large_pages_test.cpp SOURCES ${tools}/process/large_pages.cpp
+                ${tools}/process/reuse_memory.cpp)
 deltasplat_test(unit/interrupt_test.cpp SOURCES ${tools}/process/interrupt.cpp)
 if(DELTASPLAT_ITK)
     deltasplat_test(unit/in_child_test.cpp SOURCES ${tools}/process/interrupt.cpp)

@@ -23,8 +23,9 @@ using testing::TempFolder;
 
 using Damage = std::function<void(openvdb::Int32Grid&)>;
 
-// Reads NAME.raw, writes its delta grid, and that damaged as a.vdb.
-void writeDamaged(const std::string& name, const DeltaFileOptions& options, const Damage& damage) {
+// Reads NAME.raw, writes its delta grid of voxels, and that damaged as a.vdb.
+void writeDamaged(const std::string& name, DeltaFileOptions options, const Damage& damage) {
+    options.pack = false;
     ReadOptions reading;
     reading.keepSource = true;
     DeltaFile file;
@@ -305,6 +306,7 @@ TEST(ReadDeltaError, ChainsThatMemoryCannotHold) {
         DeltaFileOptions options;
         options.sliceAxis = 2;
         options.keyInterval = slices;
+        options.pack = false;
         DeltaFile file;
         file.add(readVolume("source.vdb"), options);
         file.write("whole.vdb");

@@ -31,6 +31,8 @@ constexpr double kBytesPerHeldBlock = 1200 + kBytesPerInexactBlock;
 
 // What packed deltas take beside those that they are packed from: most bits of noise, twice.
 constexpr double kBytesPerPackedBlock = 1600;
+// And of values by their own bits, up to 64 of them.
+constexpr double kBytesPerPackedInexactBlock = 1200;
 
 // Share of the progress up to writing.
 constexpr double kTakeShare = 0.8;
@@ -40,6 +42,7 @@ struct DeltaCommand {
     FrameChoice frames;
     ReadOptions read;
     DeltaFileOptions file;
+    std::optional<bool> packs;
 };
 
 Parser<std::optional<int>> sliceAxis() {
@@ -94,9 +97,9 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
                     withDefault("Keep a voxel's value while the true one stays within V data\n"
                                 "units",
                                 numberText(command.file.tolerance.value)));
-    deltas.addFlag("--pack", command.file.pack,
-                   "Store deltas as a stream of bits: about half of the bytes, in which\n"
-                   "other programs see nothing");
+    deltas.addSwitch("--pack", "--no-pack", command.packs,
+                     "Store deltas as a stream of bits (default), or each as a voxel, which\n"
+                     "other programs see: mostly twice the bytes, and read more slowly");
     addConversionOptions(app, "sizes, deltas, largest error, seconds", command.files,
                          command.frames);
     addInputOptions(app, command.read);
@@ -143,7 +146,11 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
     const double relative = command.file.tolerance.relative;
     if (relative > 0) reading.relativeError = relative / 2;
     if (!command.file.tolerance.isExact()) reading.bytesPerBlock += kBytesPerHeldBlock;
-    if (command.file.pack) reading.bytesPerBlock += kBytesPerPackedBlock;
+    const bool packs = command.packs.value_or(command.file.pack);
+    if (packs) {
+        reading.bytesPerBlock += kBytesPerPackedBlock;
+        reading.bytesPerInexactBlock += kBytesPerPackedInexactBlock;
+    }
     warnOfUnusedInputOptions(app, {files.input}, listener);
     ConversionStats stats;
     DeltaFile file;
@@ -155,6 +162,7 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
             if (isOfCodes(volume) && reading.bits)
                 remarks.warn("--bits: has no effect on deltas of codes, which keep their book");
             DeltaFileOptions writing = command.file;
+            writing.pack = packs;
             if (reading.bits && !isWhole(volume.type)) writing.codesOnly = true;
             const DeltaFileEntry entry = file.add(volume, writing, remarks);
             stats.add(volume, entry.codeBook);

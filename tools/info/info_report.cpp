@@ -55,7 +55,7 @@ Json toJson(const DeltaOrigin& origin) {
 Json toJson(const DeltaEstimate& estimate) {
     return {{"plain_bytes", std::round(estimate.plainBytes)},
             {"delta_bytes", std::round(estimate.deltaBytes)},
-            {"packed_bytes", std::round(estimate.packedBytes)},
+            {"voxel_bytes", std::round(estimate.voxelBytes)},
             {"faster", isRenderedFaster(estimate)},
             {"sampled", estimate.sampled}};
 }
@@ -133,8 +133,9 @@ std::string jsonText(const std::vector<FileReport>& reports, const std::string& 
     return dumpJson(json);
 }
 
+// By their voxels: where there are few changes, there is little to add up.
 bool isRenderedFaster(const DeltaEstimate& estimate) {
-    return estimate.readsByBlocks && estimate.deltaBytes < 0.95 * estimate.plainBytes;
+    return estimate.readsByBlocks && estimate.voxelBytes < 0.95 * estimate.plainBytes;
 }
 
 }  // namespace deltasplat

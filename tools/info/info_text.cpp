@@ -86,7 +86,7 @@ std::string estimateText(const DeltaEstimate& estimate, int axis) {
                              : share > 1.05 ? "larger than"
                                             : "about as large as";
     return std::string(size) + " an ordinary .vdb, " + ratio(estimate.deltaBytes) + " of its " +
-           humanBytes(estimate.plainBytes) + ", packed " + ratio(estimate.packedBytes) +
+           humanBytes(estimate.plainBytes) + ", as voxels " + ratio(estimate.voxelBytes) +
            "; rendered " +
            (isRenderedFaster(estimate) ? "faster " + alongText(axis) + " where voxels are divided"
                                        : "no faster") +

@@ -9,9 +9,9 @@ namespace deltasplat {
 
 /// What a volume is expected to take in a file, in bytes.
 struct DeltaEstimate {
-    double plainBytes = 0;   ///< as an ordinary grid (writeVolume)
-    double deltaBytes = 0;   ///< as a delta grid (DeltaFile)
-    double packedBytes = 0;  ///< likewise, with DeltaFileOptions::pack
+    double plainBytes = 0;  ///< as an ordinary grid (writeVolume)
+    double deltaBytes = 0;  ///< as a delta grid (DeltaFile)
+    double voxelBytes = 0;  ///< likewise, without DeltaFileOptions::pack
     /// Whether the delta grid, packed or not, is read straight from the file, block by block, for
     /// pictures along its slices.
     bool readsByBlocks = false;

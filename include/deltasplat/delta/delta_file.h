@@ -21,9 +21,9 @@ struct DeltaFileOptions {
     /// Stores the volume's codes even where they are not exact: what pictures are made of, in a
     /// smaller file.
     bool codesOnly = false;
-    /// Writes deltas as a stream of bits in place of voxels: fewer bytes, of which other programs
-    /// see nothing.
-    bool pack = false;
+    /// Writes deltas as a stream of bits: mostly half the bytes of voxels, and read more quickly.
+    /// As voxels, each change is one, which other programs see.
+    bool pack = true;
     /// The largest error that is let through, in data units; empty: any.
     std::optional<double> maxError;
 };

@@ -7,6 +7,7 @@
 #include <malloc.h>
 #endif
 
+#include <atomic>
 #include <mutex>
 
 namespace deltasplat {
@@ -31,7 +32,7 @@ std::mutex& guard() {
     static std::mutex mutex;
     return mutex;
 }
-int lives = 0;
+std::atomic<int> lives = 0;
 
 }  // namespace
 
@@ -43,6 +44,10 @@ ClearedMemory::ClearedMemory() {
 ClearedMemory::~ClearedMemory() {
     const std::lock_guard lock(guard());
     if (--lives == 0) fillBy(usualByte());
+}
+
+bool ClearedMemory::isWritten() {
+    return lives > 0 || usualByte() != 0;
 }
 
 }  // namespace deltasplat

@@ -12,6 +12,10 @@ class ClearedMemory {
     ~ClearedMemory();
     ClearedMemory(const ClearedMemory&) = delete;
     ClearedMemory& operator=(const ClearedMemory&) = delete;
+
+    /// Whether one lives, or the environment has malloc write to all memory (MALLOC_PERTURB_): then
+    /// no more should be taken than is used.
+    static bool isWritten();
 };
 
 }  // namespace deltasplat

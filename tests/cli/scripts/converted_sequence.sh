@@ -17,11 +17,11 @@ grep -q '"lossless": true' d.03.json || fail "d.03.json: got no lossless frame"
 "$program" delta in.0002.vdb alone.vdb -qq
 cmp <("$program" info d.0002.vdb | tail -n +2) <("$program" info alone.vdb | tail -n +2) ||
     fail "frame 2 is another one by itself"
-"$program" delta in.####.vdb p.####.vdb --frames 1-3 --pack -qq --threads 2
+"$program" delta in.####.vdb v.####.vdb --frames 1-3 --no-pack -qq --threads 2
 for frame in 1 2 3; do
-    (($(stat -c %s p.000$frame.vdb) < $(stat -c %s d.000$frame.vdb))) ||
-        fail "frame $frame: got no less bytes with --pack"
-    expect_code 0 "$program" diff d.000$frame.vdb p.000$frame.vdb
+    (($(stat -c %s d.000$frame.vdb) < $(stat -c %s v.000$frame.vdb))) ||
+        fail "frame $frame: got no more bytes with --no-pack"
+    expect_code 0 "$program" diff d.000$frame.vdb v.000$frame.vdb
 done
 "$program" restore d.####.vdb r.####.vdb --frames 1-3 -qq --threads 1
 "$program" convert 'r.$F4.vdb' 'c.@.nrrd' --frames 3-1 -qq

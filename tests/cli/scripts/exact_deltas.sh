@@ -40,18 +40,26 @@ for source in "$raw" noise.vdb; do
     "$program" diff plain.vdb again.vdb --fail 0 --warn 0 -q
     "$program" info one.vdb | grep -q 'delta grid .* exact' || fail "info: got no exact delta grid"
 
-    "$program" delta "$source" packed.vdb --pack -q
-    "$program" restore packed.vdb again.vdb -q
+    "$program" delta "$source" voxels.vdb --no-pack -q --threads 1
+    "$program" delta "$source" two.vdb --no-pack -q --threads 3
+    cmp voxels.vdb two.vdb
+    "$program" render "$source" -o source.exr --float -q
+    "$program" render voxels.vdb -o delta.exr --float -q
+    idiff -fail 0 -failpercent 0 -hardfail 0 -warn 0 source.exr delta.exr >/dev/null ||
+        fail "got another picture of the voxels of $source"
+    "$program" restore voxels.vdb again.vdb -q
     "$program" diff plain.vdb again.vdb --fail 0 --warn 0 -q
-    (($(stat -c %s packed.vdb) < $(stat -c %s one.vdb))) || fail "delta --pack: got no less bytes"
+    (($(stat -c %s one.vdb) < $(stat -c %s voxels.vdb))) || fail "delta --no-pack: got no more bytes"
 
     # Less is smaller, and says so.
-    for less in --codes "--bits 12"; do
+    for less in --codes "--bits 12" "--codes --no-pack"; do
         # shellcheck disable=SC2086
         "$program" delta "$source" less.vdb $less --stats stats.json >said.txt
         grep -q '^largest error ' said.txt || fail "delta $less: said no largest error"
         grep -q '"lossless": false' stats.json || fail "delta $less: got a lossless delta grid"
-        (($(stat -c %s less.vdb) < $(stat -c %s one.vdb))) || fail "delta $less: got no less bytes"
+        exact=one.vdb
+        [[ $less != *--no-pack ]] || exact=voxels.vdb
+        (($(stat -c %s less.vdb) < $(stat -c %s $exact))) || fail "delta $less: got no less bytes"
         # shellcheck disable=SC2086
         if "$program" delta "$source" none.vdb $less --max-error 0 -q 2>said.txt; then
             fail "delta $less --max-error 0: got exit code 0; expected 1"
@@ -74,7 +82,7 @@ grep -q '"lossless": true' stats.json || fail "$few --codes: got no lossless del
 (($(stat -c %s few.vdb) < $(stat -c %s table.vdb))) || fail "$few: got no less bytes than a table"
 
 # What it takes is known before it is taken.
-peak() { "$program" delta "$1" peak.vdb --threads 1 --stats stats.json -q && number peak_bytes <stats.json; }
+peak() { "$program" delta "$@" peak.vdb --threads 1 --stats stats.json -q && number peak_bytes <stats.json; }
 number() { grep -o "\"$1\": *[0-9]*" | grep -o '[0-9]*$'; }
 "$program" synth engine small_8x8x8_uint8.raw --dims 8x8x8 -qq
 program_bytes=$(peak small_8x8x8_uint8.raw)
@@ -82,12 +90,14 @@ program_bytes=$(peak small_8x8x8_uint8.raw)
 # The same bits are doubles, or whole numbers.
 for large in noise_256x128x128_float32.raw noise_128x128x128_float64.raw noise_256x128x128_uint32.raw; do
     [[ -e $large ]] || cp noise_256x128x128_float32.raw "$large"
-    taken=$(($(peak "$large") - program_bytes))
-    "$program" delta "$large" none.vdb --max-memory $((program_bytes + (16 << 20))) 2>said.txt &&
-        fail "$large: got within 16 MiB"
-    needed=$(sed -n 's/.*needs \([0-9]*\)[.0-9]* MiB.*/\1/p' said.txt)
-    # A tenth is for what allocators do not give back.
-    ((taken <= (needed + needed / 10 + 1) << 20)) ||
-        fail "$large: took $((taken >> 20)) MiB; expected about $needed, as was said before"
+    for form in --pack --no-pack; do
+        taken=$(($(peak "$large" $form) - program_bytes))
+        "$program" delta "$large" none.vdb $form --max-memory $((program_bytes + (16 << 20))) 2>said.txt &&
+            fail "$large $form: got within 16 MiB"
+        needed=$(sed -n 's/.*needs \([0-9]*\)[.0-9]* MiB.*/\1/p' said.txt)
+        # A tenth is for what allocators do not give back.
+        ((taken <= (needed + needed / 10 + 1) << 20)) ||
+            fail "$large $form: took $((taken >> 20)) MiB; expected about $needed, as was said before"
+    done
 done
 echo "Exact: raw volumes and a grid"

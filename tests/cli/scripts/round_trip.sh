@@ -28,13 +28,13 @@ for file in "$@"; do
         done
         cmp floats.txt floats_again.txt
     fi
-    "$program" delta "$name" packed.vdb --pack --threads 1 -q
-    "$program" delta "$name" two.vdb --pack --threads 3 -q
-    cmp packed.vdb two.vdb
+    "$program" delta "$name" voxels.vdb --no-pack --threads 1 -q
+    "$program" delta "$name" two.vdb --no-pack --threads 3 -q
+    cmp voxels.vdb two.vdb
     options=()
     [[ $name == *.raw ]] && options=(--dims 8x8x8 --type uint8)
     "$program" render "$name" -o source.exr --float -q
-    for deltas in one packed; do
+    for deltas in one voxels; do
         "$program" restore $deltas.vdb "restored.${name##*.}" --stats stats.json -q
         "$program" diff "$name" "restored.${name##*.}" "${options[@]}" -q
         "$program" diff one.vdb $deltas.vdb -q

@@ -73,6 +73,9 @@ noted tall1 tall.vdb --tf viridis --size 60x50 --view front
 noted tall2 tall.vdb --tf viridis --size 300x200 --view back --azimuth 10
 noted tall3 tall.vdb --tf viridis --size 60x50 --view left
 noted tall4 tall.vdb --tf viridis --size 60x50 --view front --shade
+"$program" delta tall_64x64x128_uint8.raw voxels.vdb --axis z --key-interval 16 --no-pack -q
+noted voxels1 voxels.vdb --tf viridis --size 60x50 --view front
+noted voxels2 voxels.vdb --tf viridis --size 300x200 --view back --azimuth 10
 noted tall5 tall_64x64x128_uint8.raw --tf viridis --size 60x50 --view front
 expect_code 3 "$program" render tall.vdb -o p.slabs --slab-range 1/3 --first-pass tall1.json --size 60x50
 expect_said "deltasplat: tall1.json: got facts for --view front; expected those for pictures without --view front"
@@ -84,13 +87,16 @@ bytes_read() { # ARGUMENTS...
         if [[ $name == rchar: ]]; then echo "$count"; fi; done < "/proc/$$/io"' bash "$program" "$@"
 }
 if [[ -r /proc/$$/io ]]; then
-    part=(render tall.vdb --tf viridis --size 60x50 --view front --between 0 -o p.slabs -qq)
-    all=$(bytes_read "${part[@]}" --slab-range 1/8 --first-pass few.json)
-    size=$(stat -c %s tall.vdb)
-    for i in 1 4 8; do
-        few=$(bytes_read "${part[@]}" --slab-range "$i/8" --first-pass few.json)
-        ((all - few > size * 2 / 5)) ||
-            fail "part $i/8: got $few bytes read instead of $all; expected 2/5 of $size fewer"
+    for deltas in tall voxels; do
+        part=(render $deltas.vdb --tf viridis --size 60x50 --view front --between 0 -o p.slabs -qq)
+        all=$(bytes_read "${part[@]}" --slab-range 1/8 --first-pass few.json)
+        size=$(stat -c %s $deltas.vdb)
+        for i in 1 4 8; do
+            few=$(bytes_read "${part[@]}" --slab-range "$i/8" --first-pass few.json)
+            ((all - few > size * 2 / 5)) || fail "$deltas, part $i/8: got $few bytes read instead of\
+ $all; expected 2/5 of $size fewer"
+        done
+        rm few.json
     done
 fi
 

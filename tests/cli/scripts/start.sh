@@ -34,7 +34,7 @@ expect_said "deltasplat: subcommand: got nothing; expected info, convert, delta,
 "$program" synth cloud cloud.vdb --dims 24x24x24 -qq
 "$program" synth explosion colored.vdb --dims 16x16x16 -qq
 "$program" delta engine_24x24x24_uint8.raw deltas.vdb -qq
-"$program" delta engine_24x24x24_uint8.raw packed.vdb --pack -qq
+"$program" delta engine_24x24x24_uint8.raw voxels.vdb --no-pack -qq
 loads_openvdb() { # whatever the exit code is
     local loaded
     loaded=$(LD_DEBUG=files "$@" 2>&1 >/dev/null) || true
@@ -46,14 +46,14 @@ for command in --version "render --version" --help "render --help" "render --no-
     "render engine.npy -o x.exr --size 32x32 --mode mip" \
     "render engine.npy -o x.exr --size 32x32 --shade --aov depth" \
     "render engine.vdb -o x.png --size 32x32" "render cloud.vdb -o x.exr --size 32x32 --lighting scatter" \
-    "render deltas.vdb -o x.exr --size 32x32" "render packed.vdb -o x.exr --size 32x32" \
-    "info --list cloud.vdb" "info cloud.vdb" "info engine.npy" "info packed.vdb" "bench engine.vdb --size 32x32 --repeats 1 --threads 1" \
+    "render deltas.vdb -o x.exr --size 32x32" "render voxels.vdb -o x.exr --size 32x32" \
+    "info --list cloud.vdb" "info cloud.vdb" "info engine.npy" "info voxels.vdb" "info deltas.vdb" "bench engine.vdb --size 32x32 --repeats 1 --threads 1" \
     "diff engine.npy engine_24x24x24_uint8.raw" "diff engine.vdb engine.npy" "diff cloud.vdb cloud.vdb" \
     "convert engine.npy engine.nii" "convert engine.npy x.vdb" "convert engine.npy x.vdb --background auto" \
     "convert colored.vdb x.vdb --grid Cd.x" "render colored.vdb -o x.png --size 32x32 --grid Cd.y" \
     "convert cloud.vdb x.vdb" "convert cloud.vdb x.npy" "convert cloud.vdb x.vdb --background 0" \
     "delta cloud.vdb x.vdb" "delta engine.npy x.vdb" \
-    "delta engine.npy x.vdb --pack" "restore deltas.vdb x.vdb" "restore packed.vdb x.npy" \
+    "delta engine.npy x.vdb --no-pack" "restore deltas.vdb x.vdb" "restore voxels.vdb x.npy" "restore deltas.vdb x.npy" \
     "synth engine x.raw --dims 8x8x8" "synth explosion x.vdb --dims 8x8x8"; do
     # shellcheck disable=SC2086
     ! loads_openvdb "$program" $command || fail "$command: loads OpenVDB"
