@@ -29,6 +29,13 @@ void fetchAhead(const CodeBlock* next, const CodeBlock* end) {
     if (next->leaf) fetchCodes(*next->leaf);
 }
 
+// Takes all words out, and keeps their memory.
+void clear(PackedColumns& packed) {
+    packed.words.clear();
+    packed.storage.clear();
+    packed.looks.clear();
+}
+
 }  // namespace
 
 bool choosesClasses(const PackOptions& options) {
@@ -62,8 +69,8 @@ void ColumnPacker::forParts(const Use& use) const {
         for (int v = 0; v < parts_.within; ++v) use(glm::ivec2(u, v));
 }
 
-void ColumnPacker::run(const Columns& columns) {
-    rows_.resize(std::size_t(parts_.within));
+void ColumnPacker::run(const Columns& columns, std::vector<PackedColumns>& room) {
+    begin(std::size_t(parts_.within), room);
     reserve(columns);
     if (options_.painter) {
         own_ = std::make_unique<BlockLooks>(*options_.painter, *tools_.uncut, options_.sliceAxis,
@@ -107,11 +114,12 @@ void ColumnPacker::run(const Columns& columns) {
     }
     own_.reset();
     painted_ = {};
-    finish();
+    finish(room);
 }
 
-void ColumnPacker::runJoined(const JoinedTiles& tiles, std::size_t run) {
-    rows_.resize(std::size_t(tiles.columns().x));
+void ColumnPacker::runJoined(const JoinedTiles& tiles, std::size_t run,
+                             std::vector<PackedColumns>& room) {
+    begin(std::size_t(tiles.columns().x), room);
     std::vector<TileSources> sources;
     for (const JoinedTile& tile : tiles.runs()[run]) sources.push_back(tiles.sourcesOf(tile));
     payForWords();
@@ -127,7 +135,13 @@ void ColumnPacker::runJoined(const JoinedTiles& tiles, std::size_t run) {
         addJoined(reader, tiles.runs()[run][i]);
         payForWords();
     }
-    finish();
+    finish(room);
+}
+
+void ColumnPacker::begin(std::size_t rows, std::vector<PackedColumns>& room) {
+    rows_.swap(room);
+    rows_.resize(rows);
+    std::for_each(rows_.begin(), rows_.end(), clear);
 }
 
 // Where all packers have more words than they may, there are to be none.
@@ -137,14 +151,17 @@ void ColumnPacker::payForWords() {
     for (const PackedColumns& packed : rows_) words += packed.words.size();
     if (range_.budget->take(words - std::exchange(paidWords_, words))) return;
     range_.storesWords = false;
-    std::fill(rows_.begin(), rows_.end(), PackedColumns());
+    std::for_each(rows_.begin(), rows_.end(), clear);
 }
 
-void ColumnPacker::finish() {
+void ColumnPacker::finish(std::vector<PackedColumns>& room) {
+    std::vector<PackedColumns> sorted;
     for (PackedColumns& packed : rows_) {
         if (options_.descending) dropUnneeded(packed.words);
-        sortClasses(box_, packed);
+        sorted.push_back(sortClasses(box_, packed));
     }
+    rows_.swap(sorted);
+    room.swap(sorted);
 }
 
 // Adds the words of a tile of joined slices, from its first slice to its last: of each row of
@@ -243,7 +260,7 @@ void ColumnPacker::reserve(const Columns& columns) {
     for (PackedColumns& packed : rows_) reserveWords(packed, most);
 }
 
-// What is not used of it takes no memory.
+// What is not used of it takes no memory, but for the rest of a large page.
 void ColumnPacker::reserveWords(PackedColumns& packed, std::size_t most) {
     packed.words.reserve(most);
     packed.storage.reserve(64 * most);
@@ -329,8 +346,7 @@ void ColumnPacker::addMixed(const CodeBlock& block) {
     const bool isSeen = tools_.sight->canBeSeen(window_->window);
     const bool isPainted = choosesClasses(options_);
     if (isSeen && isPainted) paintMixed(block);
-    if (isSeen && !isPainted)
-        tools_.mixer->mix(window_->window, slotMap_, tools_.opacities, mixed_);
+    if (isSeen && !isPainted) tools_.mixer->mix(window_->window, *tools_.mixMap, mixed_);
     forMixed(block,
              [&](const glm::ivec3& position, int number, const glm::ivec2& part, int slices) {
                  const BlockSlots& slots = mixed_[std::size_t(number)];

@@ -34,9 +34,9 @@ struct PackTools {
     const SlotHolder* holder = nullptr;
     const ValueMixer* mixer = nullptr;
     const MixedSight* sight = nullptr;
-    const CodeTree* codes = nullptr;        ///< that values are mixed from
-    const CodeTree* uncut = nullptr;        ///< that gradients are taken of
-    std::span<const float> opacities = {};  ///< as ValueMixer::mix takes them
+    const CodeTree* codes = nullptr;  ///< that values are mixed from
+    const CodeTree* uncut = nullptr;  ///< that gradients are taken of
+    const MixMap* mixMap = nullptr;   ///< with a mixer, of the map
 };
 
 /// What a packer packs: columns of blocks (same u and v), slices in increasing order.
@@ -75,9 +75,11 @@ class ColumnPacker {
     ColumnPacker(const IndexBox& box, const PackOptions& options, const PackTools& tools,
                  std::span<const Slot> slotMap, const PackRange& range);
 
-    void run(const Columns& columns);
+    /// @param room  memory for words that are not in order yet, which another packer may have used;
+    ///              what is in it does not matter
+    void run(const Columns& columns, std::vector<PackedColumns>& room);
     /// The same of a run of tiles whose slices are joined.
-    void runJoined(const JoinedTiles& tiles, std::size_t run);
+    void runJoined(const JoinedTiles& tiles, std::size_t run, std::vector<PackedColumns>& room);
 
     /// What it packed: of columns that are halved along u, the first halves and the second ones;
     /// of tiles, each row of columns.
@@ -95,8 +97,9 @@ class ColumnPacker {
     using BlockClasses = std::array<ClassIndex, 512>;
     void addJoined(JoinedTileReader& reader, const JoinedTile& tile);
     static void groupByColumn(std::vector<PendingWord>& words, std::size_t first);
+    void begin(std::size_t rows, std::vector<PackedColumns>& room);
     void payForWords();
-    void finish();
+    void finish(std::vector<PackedColumns>& room);
     void dropUnneeded(std::vector<PendingWord>& words) const;
     bool mayBeWhole(int slice) const;
     static void sortParts(std::vector<PendingWord>& words, std::size_t first);

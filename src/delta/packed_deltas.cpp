@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <iterator>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -58,6 +59,27 @@ std::vector<Columns> cutAtColumns(const std::vector<CodeBlock>& blocks, bool atR
     }
     return runs;
 }
+
+// Room for words that are not in order yet: there is as much as packers use at once, for each takes
+// what another one is done with. New memory takes the system longer than words take to be made.
+class WordRooms {
+  public:
+    std::vector<PackedColumns> take() {
+        const std::lock_guard lock(mutex_);
+        if (rooms_.empty()) return {};
+        std::vector<PackedColumns> room = std::move(rooms_.back());
+        rooms_.pop_back();
+        return room;
+    }
+    void give(std::vector<PackedColumns> room) {
+        const std::lock_guard lock(mutex_);
+        rooms_.push_back(std::move(room));
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<std::vector<PackedColumns>> rooms_;
+};
 
 // Returns the packed columns ordered by u, then v.
 // @param rowOf  rowOf(i): what tells packers of one row of columns from those of others; these have
@@ -154,7 +176,8 @@ struct DeltaPacker::Impl {
         options.classOfSlot = classOfSlot;
         if (options.holds) holder.emplace(mixer ? mixer->levels() : volume, options);
         slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
-        if (mixer && !options.opacities.empty()) noteOpacities();
+        if (mixer) mixMap.emplace(slotMap, opacitiesOfMapped());
+        options.opacities = {};
         if (mixer) sight.emplace(*mixer, slotMap, choosesClasses(options));
         const SeenCone* const seen = options.seen ? &*options.seen : nullptr;
         // What is mixed is listed with what lies beside it.
@@ -185,13 +208,15 @@ struct DeltaPacker::Impl {
         if (lowest <= highest) ramps.emplace(slotMap, lowest, highest);
     }
 
-    void noteOpacities() {
+    // Returns the opacities of what the slot map makes of slots; none if they are not known.
+    std::vector<float> opacitiesOfMapped() const {
+        if (options.opacities.empty()) return {};
         const Slot last = *std::max_element(slotMap.begin(), slotMap.end());
-        opacities.resize(std::size_t(last) + 1);
+        std::vector<float> opacities(std::size_t(last) + 1);
         for (std::size_t slot = 0; slot < slotMap.size(); ++slot)
             opacities[std::size_t(slotMap[slot])] =
                 options.opacities[std::size_t(classOfSlot[slot])];
-        options.opacities = {};
+        return opacities;
     }
 
     PackedDeltas noWords() const {
@@ -215,14 +240,17 @@ struct DeltaPacker::Impl {
                               sight ? &*sight : nullptr,
                               volume.codes.get(),
                               volume.uncut ? volume.uncut.get() : volume.codes.get(),
-                              opacities};
+                              mixMap ? &*mixMap : nullptr};
         std::vector<ColumnPacker> packers;
         const std::size_t count = joined ? joined->runs().size() : runs.size();
         packers.reserve(count);
         for (std::size_t i = 0; i < count; ++i)
             packers.emplace_back(box, options, tools, slotMap, range);
+        WordRooms rooms;
         const auto pack = [&](std::size_t i) {
-            joined ? packers[i].runJoined(*joined, i) : packers[i].run(runs[i]);
+            std::vector<PackedColumns> room = rooms.take();
+            joined ? packers[i].runJoined(*joined, i, room) : packers[i].run(runs[i], room);
+            rooms.give(std::move(room));
         };
         const bool areLooks = joiner && joiner->looks();
         if (!range.budget && !areLooks) {
@@ -315,7 +343,7 @@ struct DeltaPacker::Impl {
     std::optional<SlotHolder> holder;
     std::span<const Slot> slotMap;
     std::optional<ClassRamps> ramps;
-    std::vector<float> opacities;  // [what slotMap makes of slots]
+    std::optional<MixMap> mixMap;
     std::optional<MixedSight> sight;
     std::vector<CodeBlock> blocks;
     std::vector<Columns> runs;

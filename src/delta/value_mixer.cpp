@@ -152,52 +152,60 @@ int ValueMixer::levelOfValue(double value) const {
     return rung.level + int(share * rung.steps + 0.5);
 }
 
+MixMap::MixMap(std::span<const Slot> ofSlots, std::span<const float> opacitiesOfMapped)
+    : slots(ofSlots),
+      opacities(ofSlots.size()),
+      ofMapped(opacitiesOfMapped.begin(), opacitiesOfMapped.end()) {
+    if (ofMapped.empty()) {
+        ofMapped.assign(std::size_t(*std::max_element(slots.begin(), slots.end())) + 1, 1.0f);
+    }
+    ofMapped[kEmptySlot] = 0;
+    for (std::size_t slot = 0; slot < slots.size(); ++slot)
+        opacities[slot] = ofMapped[std::size_t(slots[slot])];
+}
+
 namespace {
 
-// Values of a window's slots, NaN where there are none.
-template <typename T, typename ValueOf>
-auto valuesOf(const MixWindow& window, const ValueOf& valueOf) {
-    std::array<T, MixWindow::kSide * MixWindow::kPlane> values;
+// The values of a window's slots, NaN where there are none.
+std::array<double, MixWindow::kSide * MixWindow::kPlane> valuesOf(
+    const MixWindow& window, const std::vector<double>& valueOfCode) {
+    std::array<double, MixWindow::kSide * MixWindow::kPlane> values;
     for (std::size_t n = 0; n < values.size(); ++n) {
         const Slot slot = window.slots[n];
-        values[n] =
-            slot == kEmptySlot ? std::numeric_limits<T>::quiet_NaN() : valueOf(Code(slot - 1));
+        values[n] = slot == kEmptySlot ? std::numeric_limits<double>::quiet_NaN()
+                                       : valueOfCode[std::size_t(slot - 1)];
     }
     return values;
 }
 
+constexpr VoxelMasks everyVoxel() {
+    VoxelMasks masks{};
+    masks.fill(~std::uint64_t{0});
+    return masks;
+}
+
 }  // namespace
 
-void ValueMixer::mix(const MixWindow& window, std::span<const Slot> slotMap,
-                     std::span<const float> opacities, std::span<BlockSlots> mixed) const {
+void ValueMixer::mix(const MixWindow& window, const MixMap& map,
+                     std::span<BlockSlots> mixed) const {
     if (window.slots[0] != kEmptySlot && window.isUniform()) {
-        const Slot slot = slotMap[std::size_t(levelOf(Code(window.slots[0] - 1))) + 1];
+        const Slot slot = map.slots[std::size_t(levelOf(Code(window.slots[0] - 1))) + 1];
         for (BlockSlots& block : mixed) block.fill(slot);
         return;
     }
-    const auto mixThem = [&](const auto& values, const auto& levelOf) {
-        mixRows(values, parts_, [&](int part, int place, const auto* row) {
-            Slot* out = &mixed[std::size_t(part)][std::size_t(place)];
-            std::array<int, 8> levels;
-            for (int v = 0; v < 8; ++v) {
-                const bool isThere = row[v] == row[v];
-                const int level = levelOf(isThere ? row[v] : 0) + 1;
-                levels[std::size_t(v)] = isThere ? level : int(kEmptySlot);
-            }
-            for (int v = 0; v < 8; ++v) out[v] = slotMap[std::size_t(levels[std::size_t(v)])];
-        });
-    };
     if (even_.perCode != 0) {
-        // Steps above the lowest code: floats hold the quarters of quarters of 16 bits exactly.
-        const auto stepsOf = [&](Code code) { return float(code - even_.lowest); };
-        const auto perCode = float(even_.perCode);
-        mixThem(valuesOf<float>(window, stepsOf),
-                [&](float steps) { return int(steps * perCode + 0.5f); });
-    } else {
-        mixThem(valuesOf<double>(window, [&](Code code) { return table_.ofCode[code]; }),
-                [&](double value) { return levelOfValue(value); });
+        const VoxelMasks lost = mixEvenLevels(window, parts_, even_, map.slots.data(),
+                                              map.opacities.data(), mixed.data());
+        return keepSeen(window, map, lost, mixed);
     }
-    keepSeen(window, slotMap, opacities, mixed);
+    mixRows(valuesOf(window, table_.ofCode), parts_, [&](int part, int place, const double* row) {
+        Slot* out = &mixed[std::size_t(part)][std::size_t(place)];
+        for (int v = 0; v < 8; ++v) {
+            const bool isThere = row[v] == row[v];
+            out[v] = isThere ? map.slots[std::size_t(levelOfValue(row[v])) + 1] : kEmptySlot;
+        }
+    });
+    keepSeen(window, map, everyVoxel(), mixed);
 }
 
 namespace {
@@ -237,34 +245,35 @@ std::array<float, 512> leastAround(const MixWindow& window, bool alongSlicesOnly
 
 // Lets voxels be what they are of whose opacity, above what is around them, nothing is left in what
 // they become.
-void ValueMixer::keepSeen(const MixWindow& window, std::span<const Slot> slotMap,
-                          std::span<const float> opacities, std::span<BlockSlots> mixed) const {
+// @param places  of voxels that this may be true of
+void ValueMixer::keepSeen(const MixWindow& window, const MixMap& map, const VoxelMasks& places,
+                          std::span<BlockSlots> mixed) const {
     constexpr float kLeast = 1.0f / 32;
-    const auto opacityOf = [&](Slot slot) {
-        return opacities.empty() ? (slot == kEmptySlot ? 0.0f : 1.0f)
-                                 : opacities[std::size_t(slot)];
-    };
-    const auto seenOf = [&](Slot own) { return slotMap[std::size_t(levelOf(Code(own - 1))) + 1]; };
+    const auto levelSlotOf = [&](Slot own) { return std::size_t(levelOf(Code(own - 1))) + 1; };
     std::optional<std::array<float, 512>> around;  // for the few that need it
-    for (int n = 0; n < 512; ++n) {
-        const glm::ivec3 place(n / 64, n / 8 % 8, n % 8);
-        const Slot own = window.at(place);
-        if (own == kEmptySlot) continue;
-        const Slot seen = seenOf(own);
-        if (seen == kEmptySlot) continue;
-        const float opacity = opacityOf(seen);
-        float most = 0;
-        forPartsOf(place, [&](std::size_t part, std::size_t slot) {
-            most = std::max(most, opacityOf(mixed[part][slot]));
-        });
-        if (most >= 0.5f * opacity) continue;
-        if (!around)
-            around = leastAround(window, parts_.within == 1,
-                                 [&](Slot slot) { return opacityOf(seenOf(slot)); });
-        const float least = (*around)[std::size_t(n)];
-        const bool isShown = most > 0 && most - least >= kLeast * (opacity - least);
-        if (isShown) continue;
-        forPartsOf(place, [&](std::size_t part, std::size_t slot) { mixed[part][slot] = seen; });
+    for (std::size_t s = 0; s < places.size(); ++s) {
+        for (std::uint64_t left = places[s]; left != 0; left &= left - 1) {
+            const int n = std::countr_zero(left);
+            const glm::ivec3 place(s, n / 8, n % 8);
+            const Slot own = window.at(place);
+            if (own == kEmptySlot) continue;
+            const Slot seen = map.slots[levelSlotOf(own)];
+            if (seen == kEmptySlot) continue;
+            const float opacity = map.opacities[levelSlotOf(own)];
+            float most = 0;
+            forPartsOf(place, [&](std::size_t part, std::size_t slot) {
+                most = std::max(most, map.ofMapped[std::size_t(mixed[part][slot])]);
+            });
+            if (most >= 0.5f * opacity) continue;
+            if (!around)
+                around = leastAround(window, parts_.within == 1,
+                                     [&](Slot slot) { return map.opacities[levelSlotOf(slot)]; });
+            const float least = (*around)[64 * s + std::size_t(n)];
+            const bool isShown = most > 0 && most - least >= kLeast * (opacity - least);
+            if (isShown) continue;
+            forPartsOf(place,
+                       [&](std::size_t part, std::size_t slot) { mixed[part][slot] = seen; });
+        }
     }
 }
 

@@ -6,11 +6,24 @@
 #include <vector>
 
 #include "delta/code_blocks.h"
+#include "delta/mix_kernels.h"
 #include "delta/mix_window.h"
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/view/factorization.h"
 
 namespace deltasplat {
+
+/// What levels become, and how opaque that is.
+struct MixMap {
+    /// @param ofSlots    [kSlotCount]: what becomes of the slots of levels; must outlive this
+    /// @param opacities  [what becomes of them]: of a voxel, above 0 for all that can be seen; if
+    ///                   there are none, they are alike
+    MixMap(std::span<const Slot> ofSlots, std::span<const float> opacities);
+
+    std::span<const Slot> slots;
+    std::vector<float> opacities;  ///< [kSlotCount]: of the slots of levels, 0 of what is not seen
+    std::vector<float> ofMapped;   ///< [what becomes of them]
+};
 
 /// Divides voxels into thin ones. Their values are mixed from the voxels they lie between,
 /// linearly along each axis. What is not active has no value: a voxel beside it keeps its own, and
@@ -32,12 +45,8 @@ class ValueMixer {
     Code levelOf(Code code) const { return ownLevel_[code]; }
 
     /// Mixes the blocks that a block becomes.
-    /// @param slotMap    [kSlotCount]: what becomes of the slots of levels
-    /// @param opacities  [what becomes of them]: of a voxel, above 0 for all that can be seen; if
-    ///                   there are none, they are alike
-    /// @param mixed      [parts.within along u][parts.slices][parts.within along v]
-    void mix(const MixWindow& window, std::span<const Slot> slotMap,
-             std::span<const float> opacities, std::span<BlockSlots> mixed) const;
+    /// @param mixed  [parts.within along u][parts.slices][parts.within along v]
+    void mix(const MixWindow& window, const MixMap& map, std::span<BlockSlots> mixed) const;
 
     /// Calls use(part, n) for what the voxel at `place` (0..7 each) of a block becomes: voxel n of
     /// one of the blocks of `mixed`.
@@ -45,12 +54,7 @@ class ValueMixer {
     void forPartsOf(const glm::ivec3& place, const Use& use) const;
 
   private:
-    // Levels of evenly spaced codes are evenly spaced themselves.
-    struct EvenLevels {
-        Code lowest = 0;
-        int perCode = 0;  // a power of two; 0 if codes are not even
-    };
-    // Others lie between values that the volume has.
+    // Levels of codes that are not even lie between values that the volume has.
     struct TableLevels {
         struct Rung {
             double value;
@@ -72,8 +76,8 @@ class ValueMixer {
     std::vector<int> levelsBetween(const std::vector<double>& values) const;
     void makeBuckets();
     int levelOfValue(double value) const;
-    void keepSeen(const MixWindow& window, std::span<const Slot> slotMap,
-                  std::span<const float> opacities, std::span<BlockSlots> mixed) const;
+    void keepSeen(const MixWindow& window, const MixMap& map, const VoxelMasks& places,
+                  std::span<BlockSlots> mixed) const;
 
     Subdivision parts_;
     Volume levels_;

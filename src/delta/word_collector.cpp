@@ -146,7 +146,7 @@ std::uint64_t changedBehind(const std::vector<PendingWord>& words, std::size_t w
     return isLast ? 0 : words[word + 1].changed;
 }
 
-void sortClasses(const IndexBox& box, PackedColumns& columns) {
+PackedColumns sortClasses(const IndexBox& box, const PackedColumns& columns) {
     // [slice]: how many words it has; then where its next one goes.
     std::vector<std::size_t> next(std::size_t(box.dims().x));
     const auto ofSlice = [&](const PendingWord& word) -> std::size_t& {
@@ -163,9 +163,10 @@ void sortClasses(const IndexBox& box, PackedColumns& columns) {
     places.reserve(columns.words.size());
     for (const PendingWord& word : columns.words)
         places.push_back(word.classes == kNoClasses ? kNoClasses : 64 * ofSlice(word)++);
-    columns.storage = sorted(columns.storage, columns.words, places, count);
-    if (!columns.looks.empty()) columns.looks = sorted(columns.looks, columns.words, places, count);
-    for (std::size_t i = 0; i < places.size(); ++i) columns.words[i].classes = places[i];
+    PackedColumns result{columns.words, sorted(columns.storage, columns.words, places, count), {}};
+    if (!columns.looks.empty()) result.looks = sorted(columns.looks, columns.words, places, count);
+    for (std::size_t i = 0; i < places.size(); ++i) result.words[i].classes = places[i];
+    return result;
 }
 
 void collectWords(std::vector<PackedColumns*> columns, const SlabLayout& layout, bool hasLooks,

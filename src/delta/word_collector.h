@@ -36,9 +36,9 @@ struct PackedColumns {
 /// changes.
 std::uint64_t changedBehind(const std::vector<PendingWord>& words, std::size_t word);
 
-/// Lays what words point to in the order of slices, as it is walked, and in no more memory than it
-/// takes; the words stay where they are.
-void sortClasses(const IndexBox& box, PackedColumns& columns);
+/// Returns them with what words point to in the order of slices, as it is walked, and in no more
+/// memory than they take; the words stay in their order.
+PackedColumns sortClasses(const IndexBox& box, const PackedColumns& columns);
 
 /// Puts the words of columns in the order of slices, those that slabs need, and takes over their
 /// storage. Multi-threaded.

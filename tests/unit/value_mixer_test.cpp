@@ -8,6 +8,10 @@
 #include <glm/common.hpp>
 #include <numeric>
 #include <random>
+#include <string>
+
+#include "deltasplat/simd.h"
+#include "support/simd_levels.h"
 
 namespace deltasplat {
 namespace {
@@ -41,7 +45,7 @@ std::vector<double> mixed(const Volume& volume, int perVoxel, Slot here, Slot be
             window.at({s, n / 8, n % 8}) = s < 0 ? before : s > 7 ? behind : here;
     }
     std::vector<BlockSlots> parts(static_cast<std::size_t>(perVoxel));
-    mixer.mix(window, sameSlots(), {}, parts);
+    mixer.mix(window, MixMap(sameSlots(), {}), parts);
     std::vector<double> values;
     for (const BlockSlots& slots : parts) {
         for (std::size_t t = 0; t < 8; ++t) {
@@ -116,7 +120,7 @@ TEST(ValueMixer, WithinSlicesValuesAreTrilinear) {
         for (int i = 0; !full && i < 1000; i += 2)
             window.slots[std::size_t(i)] = (i / 100 + i / 10) % 4 == 0 ? kEmptySlot : Slot(7);
         std::vector<BlockSlots> blocks(8);
-        mixer.mix(window, sameSlots(), {}, blocks);
+        mixer.mix(window, MixMap(sameSlots(), {}), blocks);
         const auto place = [](int thin) { return 0.5 * thin - 0.25; };
         for (int s = 0; s < 16; ++s) {
             for (int u = 0; u < 16; ++u) {
@@ -154,7 +158,7 @@ TEST(ValueMixer, WithinSlicesAloneIsUnmixed) {
     MixWindow window;
     window.at({4, 3, 7}) = 78;
     std::vector<BlockSlots> parts(12);
-    mixer.mix(window, sameSlots(), {}, parts);
+    mixer.mix(window, MixMap(sameSlots(), {}), parts);
     int found = 0;
     for (const BlockSlots& block : parts) {
         for (const Slot slot : block) {
@@ -182,7 +186,7 @@ TEST(ValueMixer, NothingThatCanBeSeenVanishes) {
         for (int v = -1; v <= 8; ++v) window.at({0, 0, v}) = 101;                    // a line,
         for (int n = 0; n < 100; ++n) window.at({6, n / 10 - 1, n % 10 - 1}) = 101;  // a plate
         std::vector<BlockSlots> blocks(8);
-        mixer.mix(window, map, {}, blocks);
+        mixer.mix(window, MixMap(map, {}), blocks);
         const auto seenOf = [&](const glm::ivec3& place) {
             int seen = 0;
             for (int part = 0; part < 8; ++part) {
@@ -221,7 +225,7 @@ TEST(ValueMixer, NothingVanishesInHaze) {
         window.at({3, 4, 5}) = 101;
         for (int n = 0; n < 100; ++n) window.at({6, n / 10 - 1, n % 10 - 1}) = 101;
         std::vector<BlockSlots> blocks(8);
-        mixer.mix(window, all, opacities, blocks);
+        mixer.mix(window, MixMap(all, opacities), blocks);
         std::size_t opaque = 0;
         for (const BlockSlots& block : blocks)
             for (const Slot slot : block) opaque += opacities[std::size_t(slot)] == 1;
@@ -249,11 +253,121 @@ TEST(ValueMixer, NothingVanishesInHazeBesideAnything) {
     window.at({3, 4, 5}) = 101;
     window.at({3, 4, 6}) = 1;  // clear
     std::vector<BlockSlots> blocks(2);
-    mixer.mix(window, map, opacities, blocks);
+    mixer.mix(window, MixMap(map, opacities), blocks);
     int opaque = 0;
     for (const BlockSlots& block : blocks)
         for (const Slot slot : block) opaque += opacities[std::size_t(slot)] == 1;
     EXPECT_EQ(opaque, 2);
+}
+
+// What the blocks of a window become, voxel by voxel: mixed along one axis after the other, and
+// what would vanish as it is.
+struct PlainMix {
+    const ValueMixer& mixer;
+    const MixWindow& window;
+    const MixMap& map;
+
+    // Of what is not active there is none.
+    double codeAt(const glm::ivec3& place) const {
+        const Slot slot = window.at(place);
+        return slot == kEmptySlot ? NAN : slot - 1;
+    }
+    double between(double here, double other, double share) const {
+        return std::isnan(other) ? here : here + share * (other - here);
+    }
+    // `thin` is a place of parts.
+    double at(const glm::ivec3& thin) const {
+        const glm::ivec3 per = perVoxel();
+        const glm::ivec3 place = thin / per;
+        const auto alongSlices = [&](const glm::ivec3& from) {
+            const int offset = 2 * (thin.x % per.x) + 1 - per.x;
+            const glm::ivec3 next = from + glm::ivec3(offset < 0 ? -1 : 1, 0, 0);
+            return between(codeAt(from), codeAt(next), std::abs(offset) / (2.0 * per.x));
+        };
+        if (per.y == 1) return alongSlices(place);
+        const auto alongU = [&](const glm::ivec3& from) {
+            const glm::ivec3 next = from + glm::ivec3(0, thin.y % 2 == 0 ? -1 : 1, 0);
+            return between(alongSlices(from), alongSlices(next), 0.25);
+        };
+        const glm::ivec3 next = place + glm::ivec3(0, 0, thin.z % 2 == 0 ? -1 : 1);
+        return between(alongU(place), alongU(next), 0.25);
+    }
+    std::size_t levelSlot(double code) const {
+        const CodeBook& levels = mixer.levels().codeBook;
+        return std::isnan(code) ? 0 : std::size_t(levels.codeOf(code)) + 1;
+    }
+    glm::ivec3 perVoxel() const {
+        const Subdivision& parts = mixer.parts();
+        return {parts.slices, parts.within, parts.within};
+    }
+    // Whether a voxel stays what it is, whose parts are as opaque as that at most.
+    bool wouldVanish(const glm::ivec3& place, float most) const {
+        const float own = map.opacities[levelSlot(codeAt(place))];
+        if (own == 0 || most >= own / 2) return false;
+        float least = 1;
+        for (int n = 0; n < 27; ++n) {
+            const glm::ivec3 side = glm::ivec3(n / 9, n / 3 % 3, n % 3) - 1;
+            if (perVoxel().y == 1 && (side.y != 0 || side.z != 0)) continue;
+            const double code = codeAt(place + side);
+            if (!std::isnan(code)) least = std::min(least, map.opacities[levelSlot(code)]);
+        }
+        return most == 0 || most - least < (own - least) / 32;
+    }
+    std::vector<BlockSlots> blocks() const {
+        const glm::ivec3 per = perVoxel();
+        std::vector<BlockSlots> blocks(std::size_t(per.x * per.y * per.z));
+        for (int n = 0; n < 512; ++n) {
+            const glm::ivec3 place(n / 64, n / 8 % 8, n % 8);
+            std::vector<Slot*> parts;
+            float most = 0;
+            for (int i = 0; i < per.x * per.y * per.z; ++i) {
+                const glm::ivec3 thin =
+                    place * per + glm::ivec3(i / (per.y * per.z), i / per.z % per.y, i % per.z);
+                const int block = (thin.y / 8 * per.x + thin.x / 8) * per.z + thin.z / 8;
+                const int voxel = 64 * (thin.x % 8) + 8 * (thin.y % 8) + thin.z % 8;
+                parts.push_back(&blocks[std::size_t(block)][std::size_t(voxel)]);
+                const std::size_t level = levelSlot(at(thin));
+                *parts.back() = map.slots[level];
+                most = std::max(most, map.opacities[level]);
+            }
+            if (!wouldVanish(place, most)) continue;
+            for (Slot* part : parts) *part = map.slots[levelSlot(codeAt(place))];
+        }
+        return blocks;
+    }
+};
+
+// Clear and opaque classes of a few levels each, and voxels that are not active here and there.
+TEST(ValueMixer, EvenLevelsAreAsAPlainMixOnEverySimdLevel) {
+    std::mt19937 random(11);
+    std::vector<Code> codes(200);
+    std::iota(codes.begin(), codes.end(), Code{3});
+    const Volume volume = volumeOf(CodeBook::integer(), codes);
+    for (const Subdivision& parts : {Subdivision{2, 2}, Subdivision{2, 1}, Subdivision{4, 1},
+                                     Subdivision{1, 2}, Subdivision{4, 2}}) {
+        const ValueMixer mixer(volume, parts);
+        std::vector<Slot> slots(kSlotCount, kEmptySlot);
+        for (std::size_t level = 0; level < kCodeCount; ++level)
+            slots[level + 1] = level % 30 < 10 ? kEmptySlot : Slot(1 + level / 7 % 199);
+        std::vector<float> opacities{0};
+        for (int i = 1; i < 200; ++i)
+            opacities.push_back(i % 3 == 0 ? 1.0f : float(random() % 1000 + 1) / 8000);
+        const MixMap map(slots, opacities);
+        for (const unsigned empty : {0u, 2u, 7u}) {
+            SCOPED_TRACE(empty);
+            MixWindow window;
+            for (Slot& slot : window.slots)
+                slot = random() % 8 < empty ? kEmptySlot : Slot(4 + random() % 200);
+            const auto expected = PlainMix{mixer, window, map}.blocks();
+            for (const std::string& level : test::testedSimdLevels()) {
+                setSimdLevel(level);
+                std::vector<BlockSlots> blocks(expected.size());
+                mixer.mix(window, map, blocks);
+                EXPECT_EQ(blocks, expected) << level;
+            }
+            setSimdLevel("auto");
+        }
+    }
 }
 
 // However values lie, none that the volume has is rounded, and those between are near.
@@ -269,7 +383,7 @@ TEST(ValueMixer, OwnValuesAreKeptExactly) {
         std::mt19937 random(3);
         for (Slot& slot : window.slots) slot = Slot(random() % values.size() + 1);
         std::vector<BlockSlots> blocks(8);
-        mixer.mix(window, sameSlots(), {}, blocks);
+        mixer.mix(window, MixMap(sameSlots(), {}), blocks);
         const auto at = [&](int s, int u, int v) {
             return values[std::size_t(window.at({s, u, v})) - 1];
         };
