@@ -33,7 +33,7 @@ namespace {
 Encoding encodingOf(Method method, bool hasLooks, bool hasPixels) {
     switch (method) {
         case Method::kAuto:
-            return hasLooks || hasPixels ? Encoding::kFewerWords : Encoding::kSmaller;
+            return hasLooks || hasPixels ? Encoding::kFewerWords : Encoding::kFewerWordsOrStamps;
         case Method::kDelta:
             return Encoding::kChanges;
         default:
@@ -158,7 +158,8 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     listener.report(0.05);
     // Small footprints of two digits are never stamped.
     Encoding encoding = request.encoding;
-    if (encoding == Encoding::kSmaller && !classes.oneDigit()) encoding = Encoding::kSmallerOfSums;
+    if (encoding == Encoding::kFewerWordsOrStamps && !classes.oneDigit())
+        encoding = Encoding::kFewerWords;
     std::shared_ptr<const PackedDeltas> words = sharedWords(request, scene, classes);
     JoinedRun run{parts.joined, parts.joinedWithin, request.seenThrough, request.steps / first};
     std::optional<SliceJoiner> joiner;

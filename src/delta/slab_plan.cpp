@@ -16,14 +16,17 @@ constexpr int kShortSlab = 4;  // blocks of 8 slices: slabs up to this length ma
 // The most deltas that key slices may add, as a share of all others, as long as there may be fewer.
 constexpr double kMostKeyDeltas = 0.03;
 
-// At equal numbers whole slices cost a little less: nobody has to keep account of what waits. Where
-// few voxels change, they may be stamped, which is faster still; from how many on depends on the
-// footprint (TileSplatter::leastStamps), which is not known here: the least is right for the
-// smallest ones.
-bool isSmallerWhole(const PlannedSlab& slab, bool stampsFew) {
-    constexpr std::uint64_t kFew = 12;
-    return stampsFew && slab.changesFewerThan(kFew) ? 8 * slab.visible < 5 * slab.deltas
-                                                    : 4 * slab.visible < 5 * slab.deltas;
+// Slabs take as long as they have words to splat, however many voxels of these change, and whole
+// ones a tenth less: nobody has to keep account of what waits.
+bool hasFewerWordsWhole(const PlannedSlab& slab) {
+    return 10 * slab.seenWords < 11 * slab.words;
+}
+
+// Where few voxels of a word change, they may be stamped, which is faster than to sum all of them.
+// From how many on depends on the footprint (TileSplatter::leastStamps), which is not known here:
+// the least is right for the smallest ones.
+bool changesFew(const PlannedSlab& slab) {
+    return slab.deltas < 12 * slab.words;
 }
 
 bool isWhole(const PlannedSlab& slab, Encoding encoding) {
@@ -32,12 +35,10 @@ bool isWhole(const PlannedSlab& slab, Encoding encoding) {
             return false;
         case Encoding::kWhole:
             return true;
-        case Encoding::kSmaller:
-            return isSmallerWhole(slab, true);
-        case Encoding::kSmallerOfSums:
-            return isSmallerWhole(slab, false);
         case Encoding::kFewerWords:
-            return 4 * slab.seenWords < 5 * slab.words;
+            return hasFewerWordsWhole(slab);
+        case Encoding::kFewerWordsOrStamps:
+            return changesFew(slab) ? 8 * slab.visible < 5 * slab.deltas : hasFewerWordsWhole(slab);
     }
     return false;
 }

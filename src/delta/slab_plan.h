@@ -14,11 +14,11 @@ namespace deltasplat {
 enum class Encoding {
     kChanges,  ///< as one key slice a slab, then deltas (method `delta`)
     kWhole,    ///< every slice anew (`sparse` and `traditional`)
-    kSmaller,  ///< for each slab kWhole unless kChanges takes fewer stamps by a fifth; where few
-               ///< voxels of a block change, only if it takes fewer itself by three eighths
-    kSmallerOfSums,  ///< the same where few voxels are nothing else, for they are not stamped
-    /// For each slab kWhole unless kChanges has something to stamp in fewer words by a fifth.
-    kFewerWords
+    /// For each slab kWhole unless kChanges has something to splat in fewer words by a tenth.
+    kFewerWords,
+    /// The same; but where few voxels of words change, kWhole only if it takes fewer stamps by
+    /// three eighths.
+    kFewerWordsOrStamps
 };
 
 /// How long slabs are.
@@ -44,8 +44,6 @@ struct PlannedSlab : Slab {
     std::uint64_t stamps() const { return whole ? visible : deltas; }
     /// Words that have any.
     std::uint64_t stampedWords() const { return whole ? seenWords : words; }
-    /// Whether there are fewer deltas than so many voxels for each of `words`.
-    bool changesFewerThan(std::uint64_t voxels) const { return deltas < voxels * words; }
 };
 
 /// The slabs that a picture is rendered from.

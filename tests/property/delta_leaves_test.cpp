@@ -118,7 +118,8 @@ void expectSameAsWhole(const Volume& quick) {
     expectSameOfDeltas(quick, whole);
     const int axis = quick.origin->sliceAxis;
     const auto holds = [](Slot held, Slot slot) { return std::abs(held - slot) < 40; };
-    for (const Encoding encoding : {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller}) {
+    for (const Encoding encoding :
+         {Encoding::kChanges, Encoding::kWhole, Encoding::kFewerWordsOrStamps}) {
         for (const unsigned step : {1u, 7u}) {
             const std::vector<Slot> classes = someClasses(step);
             expectSameWords(packDeltas(quick, {axis, encoding, classes, {}}),
@@ -136,8 +137,8 @@ void expectSameAsWhole(const Volume& quick) {
     asked.readLater = true;
     const Volume later = readVolume(kDeltas, asked);
     expectSameOfDeltas(later, whole);
-    expectSameWords(packDeltas(later, {axis, Encoding::kSmaller, classes, {}}),
-                    packDeltas(whole, {axis, Encoding::kSmaller, classes, {}}));
+    expectSameWords(packDeltas(later, {axis, Encoding::kFewerWordsOrStamps, classes, {}}),
+                    packDeltas(whole, {axis, Encoding::kFewerWordsOrStamps, classes, {}}));
     expectSameCodes(later, whole);
     const ThreadLimit one(1);
     const Volume alone = readVolume(kDeltas);

@@ -50,8 +50,8 @@ Classes classesOf(const Volume& volume, int axis, const std::vector<Slot>& class
     return classes;
 }
 
-constexpr Encoding kEncodings[] = {Encoding::kChanges, Encoding::kWhole, Encoding::kSmaller,
-                                   Encoding::kFewerWords};
+constexpr Encoding kEncodings[] = {Encoding::kChanges, Encoding::kWhole,
+                                   Encoding::kFewerWordsOrStamps, Encoding::kFewerWords};
 
 // Encodings, and whether slices are walked from the last one on.
 const std::vector<std::pair<Encoding, bool>> kWays = [] {
@@ -374,7 +374,7 @@ TEST(PackedDeltas, JoinManyLooksInParts) {
         lights.emplace_back(share(7), share(31), share(55), alpha);
     }
     const SliceJoiner joiner = SliceJoiner::ofLooks(lights, {2});
-    PackOptions options = optionsOf(2, Encoding::kSmaller, classes, false);
+    PackOptions options = optionsOf(2, Encoding::kFewerWordsOrStamps, classes, false);
     const std::array<glm::ivec2, 2> slants = {glm::ivec2(0), {1, 0}};
     options.joiner = &joiner;
     options.slants = slants;

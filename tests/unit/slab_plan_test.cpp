@@ -51,9 +51,9 @@ TEST(SlabPlan, HasFewerWhereTheyCostMuch) {
 }
 
 TEST(SlabPlan, IsTheSameForEveryEncodingButForWhatIsWhole) {
-    const SlabPlanner planner = planned(-5, 200, 60, 30);
+    const SlabPlanner planner = planned(-5, 200, 60, 2);
     const SlabPlan changes = planner.plan(Encoding::kChanges);
-    for (const Encoding encoding : {Encoding::kWhole, Encoding::kSmaller}) {
+    for (const Encoding encoding : {Encoding::kWhole, Encoding::kFewerWordsOrStamps}) {
         const SlabPlan plan = planner.plan(encoding);
         ASSERT_EQ(plan.slabs.size(), changes.slabs.size());
         for (std::size_t i = 0; i < plan.slabs.size(); ++i) {
@@ -78,7 +78,7 @@ TEST(SlabPlan, CoversTheBoxAndCountsKeySlices) {
     EXPECT_EQ(next, 195);
 }
 
-TEST(SlabPlan, TakesTheEncodingWithFewerStamps) {
+TEST(SlabPlan, TakesWhatIsLessForEachSlab) {
     // The first half never changes; of the other, all voxels of a quarter go and come.
     SlabPlanner planner({{0, 0, 0}, {15, 7, 7}});
     constexpr std::uint64_t kQuarter = 0x1111111111111111;
@@ -90,7 +90,7 @@ TEST(SlabPlan, TakesTheEncodingWithFewerStamps) {
                                                    : visible | kQuarter << (slice - 1) % 4;
         add(planner, slice, visible, changed);
     }
-    const SlabPlan plan = planner.plan(Encoding::kSmaller);
+    const SlabPlan plan = planner.plan(Encoding::kFewerWordsOrStamps);
     ASSERT_EQ(plan.slabs.size(), 2u);
     EXPECT_FALSE(plan.slabs[0].whole);
     EXPECT_TRUE(plan.slabs[1].whole);
@@ -98,21 +98,35 @@ TEST(SlabPlan, TakesTheEncodingWithFewerStamps) {
     EXPECT_EQ(plan.slabs[1].visible, 128u);
 }
 
-// Changes have to save a fifth; of few in a block whole slices have to save more, unless these are
-// summed like others.
-TEST(SlabPlan, TakesChangesThatSaveAFifthAndFewUnlessWholeSlicesSaveMuch) {
+TEST(SlabPlan, TakesChangesOfFewVoxelsUnlessWholeSlicesSaveMuch) {
     const auto isWhole = [](int visible, int changed, Encoding encoding) {
         return planned(0, 16, visible, changed).plan(encoding).slabs.back().whole;
     };
-    EXPECT_FALSE(isWhole(5, 7, Encoding::kSmaller));
-    EXPECT_TRUE(isWhole(5, 9, Encoding::kSmaller));
-    for (const Encoding encoding : {Encoding::kSmaller, Encoding::kSmallerOfSums}) {
+    EXPECT_FALSE(isWhole(5, 7, Encoding::kFewerWordsOrStamps));
+    EXPECT_TRUE(isWhole(5, 9, Encoding::kFewerWordsOrStamps));
+    EXPECT_FALSE(isWhole(60, 5, Encoding::kFewerWordsOrStamps));
+    EXPECT_TRUE(isWhole(60, 5, Encoding::kFewerWords));
+    EXPECT_TRUE(isWhole(5, 7, Encoding::kFewerWords));
+    for (const Encoding encoding : {Encoding::kFewerWords, Encoding::kFewerWordsOrStamps}) {
         EXPECT_TRUE(isWhole(20, 28, encoding));
-        EXPECT_TRUE(isWhole(20, 17, encoding));
-        EXPECT_FALSE(isWhole(20, 15, encoding));
+        EXPECT_TRUE(isWhole(60, 15, encoding));
+        EXPECT_FALSE(isWhole(20, 0, encoding));
     }
-    EXPECT_TRUE(isWhole(5, 7, Encoding::kSmallerOfSums));
-    EXPECT_FALSE(isWhole(8, 5, Encoding::kSmallerOfSums));
+}
+
+TEST(SlabPlan, TakesChangesThatSaveATenthOfTheWords) {
+    // Of 80 full blocks, some do not change from slice to slice.
+    const auto isWhole = [](int unchanged) {
+        SlabPlanner planner({{0, 0, 0}, {7, 7, 639}});
+        for (int block = 0; block < 80; ++block)
+            for (int slice = 0; slice < 8; ++slice)
+                add(planner, slice, ~std::uint64_t{0},
+                    block < unchanged && slice > 0 ? 0 : ~std::uint64_t{0});
+        return planner.plan(Encoding::kFewerWords).slabs.front().whole;
+    };
+    EXPECT_TRUE(isWhole(0));
+    EXPECT_TRUE(isWhole(8));   // 640 words, 584 of changes
+    EXPECT_FALSE(isWhole(9));  // 577
 }
 
 TEST(SlabPlan, TakesWholeSlicesWhereTheyHaveNoMoreWords) {
