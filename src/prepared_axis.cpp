@@ -29,11 +29,12 @@ namespace deltasplat {
 namespace {
 
 // A word costs much where voxels have looks of their own, for it is lit, and more than its voxels
-// do where these are written to pixels of their own.
+// do where these are written to pixels of their own, but they do cost.
 Encoding encodingOf(Method method, bool hasLooks, bool hasPixels) {
     switch (method) {
         case Method::kAuto:
-            return hasLooks || hasPixels ? Encoding::kFewerWords : Encoding::kFewerWordsOrStamps;
+            if (hasLooks) return Encoding::kFewerWords;
+            return hasPixels ? Encoding::kFewerWordsOrVoxels : Encoding::kFewerWordsOrStamps;
         case Method::kDelta:
             return Encoding::kChanges;
         default:

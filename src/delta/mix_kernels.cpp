@@ -84,7 +84,7 @@ VoxelMasks mixEvenLevelsKernel(const MixWindow& window, const Subdivision& parts
     std::fill(std::end(steps) - kBeyond, std::end(steps), 0.0f);
 
     HWY_ALIGN float most[512] = {};  // opacity of what a voxel becomes
-    HWY_ALIGN float plane[kPlane + kBeyond];
+    HWY_ALIGN float plane[kPlane + kBeyond] = {};
     HWY_ALIGN float row[kSide + kBeyond];
     HWY_ALIGN Slot thin[16];
     const FloatVec half = hn::Set(Floats(), 0.5f);

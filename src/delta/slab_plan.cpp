@@ -19,7 +19,7 @@ constexpr double kMostKeyDeltas = 0.03;
 // Slabs take as long as they have words to splat, however many voxels of these change, and whole
 // ones a tenth less: nobody has to keep account of what waits.
 bool hasFewerWordsWhole(const PlannedSlab& slab) {
-    return 10 * slab.seenWords < 11 * slab.words;
+    return 9 * slab.seenWords < 10 * slab.words;
 }
 
 // Where few voxels of a word change, they may be stamped, which is faster than to sum all of them.
@@ -37,6 +37,8 @@ bool isWhole(const PlannedSlab& slab, Encoding encoding) {
             return true;
         case Encoding::kFewerWords:
             return hasFewerWordsWhole(slab);
+        case Encoding::kFewerWordsOrVoxels:
+            return hasFewerWordsWhole(slab) && 5 * slab.visible < 6 * slab.deltas;
         case Encoding::kFewerWordsOrStamps:
             return changesFew(slab) ? 8 * slab.visible < 5 * slab.deltas : hasFewerWordsWhole(slab);
     }

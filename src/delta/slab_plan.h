@@ -16,6 +16,8 @@ enum class Encoding {
     kWhole,    ///< every slice anew (`sparse` and `traditional`)
     /// For each slab kWhole unless kChanges has something to splat in fewer words by a tenth.
     kFewerWords,
+    /// The same, or of fewer voxels by a sixth.
+    kFewerWordsOrVoxels,
     /// The same; but where few voxels of words change, kWhole only if it takes fewer stamps by
     /// three eighths.
     kFewerWordsOrStamps

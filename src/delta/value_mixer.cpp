@@ -152,9 +152,9 @@ int ValueMixer::levelOfValue(double value) const {
     return rung.level + int(share * rung.steps + 0.5);
 }
 
-MixMap::MixMap(std::span<const Slot> ofSlots, std::span<const float> opacitiesOfMapped)
-    : slots(ofSlots),
-      opacities(ofSlots.size()),
+MixMap::MixMap(std::span<const Slot> slotMap, std::span<const float> opacitiesOfMapped)
+    : slots(slotMap),
+      opacities(slotMap.size()),
       ofMapped(opacitiesOfMapped.begin(), opacitiesOfMapped.end()) {
     if (ofMapped.empty()) {
         ofMapped.assign(std::size_t(*std::max_element(slots.begin(), slots.end())) + 1, 1.0f);

@@ -15,10 +15,12 @@ namespace deltasplat {
 
 /// What levels become, and how opaque that is.
 struct MixMap {
-    /// @param ofSlots    [kSlotCount]: what becomes of the slots of levels; must outlive this
-    /// @param opacities  [what becomes of them]: of a voxel, above 0 for all that can be seen; if
-    ///                   there are none, they are alike
-    MixMap(std::span<const Slot> ofSlots, std::span<const float> opacities);
+    /// @param slotMap           [kSlotCount]: what becomes of the slots of levels; must outlive
+    /// this
+    /// @param opacitiesOfMapped  [what becomes of them]: of a voxel, above 0 for all that can be
+    /// seen;
+    ///                           if there are none, they are alike
+    MixMap(std::span<const Slot> slotMap, std::span<const float> opacitiesOfMapped);
 
     std::span<const Slot> slots;
     std::vector<float> opacities;  ///< [kSlotCount]: of the slots of levels, 0 of what is not seen

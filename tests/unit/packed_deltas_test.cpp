@@ -51,7 +51,8 @@ Classes classesOf(const Volume& volume, int axis, const std::vector<Slot>& class
 }
 
 constexpr Encoding kEncodings[] = {Encoding::kChanges, Encoding::kWhole,
-                                   Encoding::kFewerWordsOrStamps, Encoding::kFewerWords};
+                                   Encoding::kFewerWordsOrStamps, Encoding::kFewerWords,
+                                   Encoding::kFewerWordsOrVoxels};
 
 // Encodings, and whether slices are walked from the last one on.
 const std::vector<std::pair<Encoding, bool>> kWays = [] {

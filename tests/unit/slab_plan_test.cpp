@@ -114,6 +114,18 @@ TEST(SlabPlan, TakesChangesOfFewVoxelsUnlessWholeSlicesSaveMuch) {
     }
 }
 
+TEST(SlabPlan, TakesChangesThatSaveASixthOfTheVoxelsWhereTheseAreWritten) {
+    const auto isWhole = [](int visible, int changed) {
+        return planned(0, 16, visible, changed)
+            .plan(Encoding::kFewerWordsOrVoxels)
+            .slabs.back()
+            .whole;
+    };
+    EXPECT_TRUE(isWhole(48, 40));   // 384 voxels, 328 of changes and the key slice
+    EXPECT_FALSE(isWhole(48, 38));  // 314
+    EXPECT_FALSE(isWhole(48, 0));
+}
+
 TEST(SlabPlan, TakesChangesThatSaveATenthOfTheWords) {
     // Of 80 full blocks, some do not change from slice to slice.
     const auto isWhole = [](int unchanged) {
@@ -125,8 +137,8 @@ TEST(SlabPlan, TakesChangesThatSaveATenthOfTheWords) {
         return planner.plan(Encoding::kFewerWords).slabs.front().whole;
     };
     EXPECT_TRUE(isWhole(0));
-    EXPECT_TRUE(isWhole(8));   // 640 words, 584 of changes
-    EXPECT_FALSE(isWhole(9));  // 577
+    EXPECT_TRUE(isWhole(9));    // 640 words, 577 of changes
+    EXPECT_FALSE(isWhole(10));  // 570
 }
 
 TEST(SlabPlan, TakesWholeSlicesWhereTheyHaveNoMoreWords) {

@@ -151,17 +151,19 @@ TEST(SliceCounts, EmptyVolumeHasNone) {
 }
 
 TEST(StampCounts, KnownInClosedForm) {
-    // Slices 0 to 7 never change; 8 to 15 change everywhere and are a quarter full.
-    const Volume volume = test::makeVolume({{0, 0, 0}, {7, 7, 15}}, [](int x, int y, int z) {
+    // Slices 0 to 7 never change; 8 to 15 change everywhere and are a quarter full; of 16 to 23,
+    // five eighths change.
+    const Volume volume = test::makeVolume({{0, 0, 0}, {7, 7, 23}}, [](int x, int y, int z) {
         if (z < 8) return 40;
+        if (z >= 16) return x < 5 ? 50 + z % 2 : 50;
         return (x + y + z) % 4 == 0 ? 7 : test::kInactive;
     });
     const StampCounts stamps = predictStamps(volume, 2);
-    EXPECT_EQ(stamps.traditional, 8u * 8 * 16);
-    EXPECT_EQ(stamps.sparse, 8u * 64 + 8 * 16);
-    // Key slices of 64 and 16, then 7 slices in which 16 voxels go and 16 come.
-    EXPECT_EQ(stamps.delta, 64u + 16 + 7 * 32);
-    EXPECT_EQ(stamps.automatic, 64u + 8 * 16);
+    EXPECT_EQ(stamps.traditional, 8u * 8 * 24);
+    EXPECT_EQ(stamps.sparse, 8u * 64 + 8 * 16 + 8 * 64);
+    // Key slices of 64, 16 and 64; of the second slab 16 voxels go and 16 come in 7 slices.
+    EXPECT_EQ(stamps.delta, 64u + 16 + 7 * 32 + 64 + 7 * 40);
+    EXPECT_EQ(stamps.automatic, 64u + 8 * 16 + 64 + 7 * 40);
 }
 
 TEST(StampCounts, OneValueCanBeMadeEmpty) {

@@ -14,8 +14,9 @@ struct StampCounts {
     std::uint64_t traditional = 0;  ///< voxels of the box
     std::uint64_t sparse = 0;       ///< visible voxels
     std::uint64_t delta = 0;        ///< deltas, those of key slices included
-    /// For each slab `delta` if fewer of its slices of 8x8x8 blocks have any to stamp, by a fifth,
-    /// else `sparse`: what `render` takes where footprints have one pixel (hasOwnPixel).
+    /// For each slab `delta` if fewer of its slices of 8x8x8 blocks have any to stamp, by a tenth,
+    /// or if it has fewer stamps by a sixth, else `sparse`: what `render` takes where footprints
+    /// have one pixel (hasOwnPixel).
     std::uint64_t automatic = 0;
 };
 
