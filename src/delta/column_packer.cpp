@@ -139,7 +139,7 @@ void ColumnPacker::runJoined(const JoinedTiles& tiles, std::size_t run,
 }
 
 void ColumnPacker::begin(std::size_t rows, std::vector<PackedColumns>& room) {
-    rows_.swap(room);
+    rows_ = std::move(room);
     rows_.resize(rows);
     std::for_each(rows_.begin(), rows_.end(), clear);
 }
@@ -160,8 +160,7 @@ void ColumnPacker::finish(std::vector<PackedColumns>& room) {
         if (options_.descending) dropUnneeded(packed.words);
         sorted.push_back(sortClasses(box_, packed));
     }
-    rows_.swap(sorted);
-    room.swap(sorted);
+    room = std::exchange(rows_, std::move(sorted));
 }
 
 // Adds the words of a tile of joined slices, from its first slice to its last: of each row of

@@ -37,7 +37,7 @@ HWY_INLINE FloatVec mixedVector(FloatVec here, FloatVec other, FloatVec twice) {
     return hn::Add(here, hn::IfThenElseZero(hn::Eq(difference, difference), step));
 }
 
-// What steps above the lowest code become, and where they lie.
+// What becomes of steps above the lowest code.
 struct LevelLooks {
     FloatVec perCode;
     const Slot* slotMap;

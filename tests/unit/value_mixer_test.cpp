@@ -8,9 +8,7 @@
 #include <glm/common.hpp>
 #include <numeric>
 #include <random>
-#include <string>
 
-#include "deltasplat/simd.h"
 #include "support/simd_levels.h"
 
 namespace deltasplat {
