@@ -85,13 +85,71 @@ double weightAt(WarpFilter filter, double x, double stretch) {
     return 0;
 }
 
+// Weights of lattice points from `first` on.
+struct Weights {
+    int first;
+    std::vector<double> values;
+
+    double at(int point) const {
+        const int i = point - first;
+        return i >= 0 && i < int(values.size()) ? values[std::size_t(i)] : 0;
+    }
+};
+
+Weights weightsOf(WarpFilter filter, double position, double stretch, int first, int count) {
+    Weights weights{first, std::vector<double>(std::size_t(count))};
+    for (int i = 0; i < count; ++i)
+        weights.values[std::size_t(i)] = weightAt(filter, first + i - position, stretch);
+    return weights;
+}
+
+// Returns weights of half as many points, `count` from `first` on. Each stands for the four that it
+// was made of: of all sums of these it is the one with the least square difference.
+Weights halvedWeights(const Weights& whole, int first, int count) {
+    // The products of two points' makings, and of one with itself, times 64.
+    constexpr double kWithNext = 1 * 3 + 3 * 1;
+    constexpr double kWithItself = 1 * 1 + 3 * 3 + 3 * 3 + 1 * 1;
+    Weights halved{first, std::vector<double>(std::size_t(count))};
+    // Gauss's elimination of a matrix of three diagonals.
+    std::vector<double> pivots(std::size_t(count), kWithItself);
+    for (int i = 0; i < count; ++i) {
+        const int source = 2 * (first + i) - 1;
+        halved.values[i] = 8 * (whole.at(source) + 3 * whole.at(source + 1) +
+                                3 * whole.at(source + 2) + whole.at(source + 3));
+        if (i == 0) continue;
+        const double factor = kWithNext / pivots[i - 1];
+        pivots[i] -= factor * kWithNext;
+        halved.values[i] -= factor * halved.values[i - 1];
+    }
+    for (int i = count - 1; i >= 0; --i) {
+        if (i + 1 < count) halved.values[i] -= kWithNext * halved.values[i + 1];
+        halved.values[i] /= pivots[i];
+    }
+    return halved;
+}
+
+// Halvings that weights make up for. Those before soften a picture's finest details by a thirtieth.
+constexpr int kMostMadeUpFor = 2;
+
+// Weights of `count` points from `first` on, of which so many halvings left a part.
+Weights weightsAfter(int halvings, WarpFilter filter, double position, double stretch, int first,
+                     int count) {
+    if (halvings == 0) return weightsOf(filter, position, stretch, first, count);
+    // What these points were made of, and what the filter reaches besides.
+    const double before = 2 * position + 0.5;
+    const int reach = int(std::ceil(reachOf(filter, 2 * stretch)));
+    const Weights whole = weightsAfter(halvings - 1, filter, before, 2 * stretch,
+                                       int(std::floor(before)) - (reach - 1), 2 * reach);
+    return halvedWeights(whole, first, count);
+}
+
 // A raster that is smaller than a pixel by more than this adds nothing to it that could be seen.
 constexpr double kMaxStretch = 16384;
 
 }  // namespace
 
-FilterTable::FilterTable(WarpFilter filter, double wantedStretch) {
-    const double stretch = std::min(wantedStretch, kMaxStretch);
+FilterTable::FilterTable(WarpFilter filter, double wantedStretch, int halvings) {
+    const double stretch = std::min(wantedStretch, kMaxStretch) / std::exp2(halvings);
     taps_ = 2 * int(std::ceil(reachOf(filter, stretch)));
     paddedTaps_ = (taps_ + 3) / 4 * 4;
     innerTaps_ = filter == WarpFilter::kMitchell ? taps_ : 2 * int(std::ceil(stretch));
@@ -99,23 +157,20 @@ FilterTable::FilterTable(WarpFilter filter, double wantedStretch) {
     const int steps = int(std::bit_floor(unsigned(std::max(4.0, kStepsPerWidth / stretch))));
     shift_ = 32 - std::countr_zero(unsigned(steps));
     ownWeights_.resize(std::size_t(steps + 1) * paddedTaps_);
-    ownWide_.resize(4 * ownWeights_.size());
     weights_ = ownWeights_.data();
-    wide_ = ownWide_.data();
-    std::vector<double> exact(taps_);
     for (int step = 0; step <= steps; ++step) {
+        const std::vector<double> exact =
+            weightsAfter(std::min(halvings, kMostMadeUpFor), filter, double(step) / steps, stretch,
+                         firstTap(0), taps_)
+                .values;
         double sum = 0;
-        for (int tap = 0; tap < taps_; ++tap) {
-            exact[tap] = weightAt(filter, firstTap(0) + tap - double(step) / steps, stretch);
-            sum += exact[tap];
-        }
+        for (const double weight : exact) sum += weight;
         double magnitude = 0;
         for (const double weight : exact) magnitude += std::abs(weight / sum);
         gain_ = std::max(gain_, magnitude);
         for (int tap = 0; tap < taps_; ++tap) {
             const std::size_t place = std::size_t(step) * paddedTaps_ + tap;
             ownWeights_[place] = float(exact[tap] / sum);
-            std::fill_n(&ownWide_[4 * place], 4, ownWeights_[place]);
         }
     }
 }

@@ -40,10 +40,6 @@ class FilterView {
     }
     /// Most that the filter can enlarge a value: the largest sum of its weights' magnitudes.
     double gain() const { return gain_; }
-    /// Returns the same weights, each repeated for four channels.
-    const float* wideWeights(std::uint32_t fraction) const {
-        return &wide_[4 * stepOf(fraction) * paddedTaps_];
-    }
 
   protected:
     std::size_t stepOf(std::uint32_t fraction) const {
@@ -57,7 +53,6 @@ class FilterView {
     double gain_ = 1;
     int shift_ = 0;                   // there are 2^(32 - shift_) steps
     const float* weights_ = nullptr;  // [steps + 1][paddedTaps_]
-    const float* wide_ = nullptr;     // [steps + 1][paddedTaps_][4]
 };
 
 /// A filter and its weights.
@@ -65,13 +60,14 @@ class FilterTable : public FilterView {
   public:
     /// @param wantedStretch  lattice points a picture pixel, at least 1: the filter is that much
     /// wider, up to 16384 times
-    FilterTable(WarpFilter filter, double wantedStretch);
+    /// @param halvings  how often the lattice's points were halved (halved_raster.h): weights are
+    /// of what is left of them, those that come closest to the filter
+    FilterTable(WarpFilter filter, double wantedStretch, int halvings = 0);
     FilterTable(const FilterTable&) = delete;
     FilterTable& operator=(const FilterTable&) = delete;
 
   private:
     std::vector<float> ownWeights_;
-    std::vector<float> ownWide_;
 };
 
 }  // namespace deltasplat

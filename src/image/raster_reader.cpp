@@ -39,10 +39,9 @@ bool RasterTiles::anyIn(glm::ivec2 first, glm::ivec2 last) const {
 void RasterTiles::findRow(const Raster& raster, int row) {
     const int lastY = std::min((row + 1) * kTile, raster.size.y);
     for (int y = row * kTile; y < lastY; ++y) {
-        const glm::ivec2 span =
-            raster.spans.empty() ? glm::ivec2(0, raster.size.x) : raster.spans[std::size_t(y)];
+        const glm::ivec2 span = raster.span(y);
         if (span.x >= span.y) continue;
-        const float* pixels = raster.values + std::size_t(raster.channels) * raster.size.x * y;
+        const float* pixels = raster.row(y);
         for (int column = span.x / kTile; column <= (span.y - 1) / kTile; ++column) {
             const int first = raster.channels * column * kTile;
             const int last = raster.channels * std::min((column + 1) * kTile, raster.size.x);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Filters (filter_table.cpp) are applied along the raster's own axes. OpenImageIO's warp gives a
-// like picture about 40 times slower (docs/decisions.md).
+// Filters (filter_table.cpp) are applied along the raster's own axes; where it is much finer than
+// the picture, to one of half as many pixels (halved_raster.h). OpenImageIO's warp gives a like
+// picture about 40 times slower (docs/decisions.md).
 #include "image/warp.h"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "image/clear_image.h"
+#include "image/halved_raster.h"
 #include "image/raster_reader.h"
 #include "image/warp_kernels.h"
 #include "parallel.h"
@@ -40,21 +42,116 @@ Columns bothOf(const Columns& a, const Columns& b) {
     return {std::max(a.first, b.first), std::min(a.last, b.last)};
 }
 
+// Positions on a raster: those of a box of pixels' centres lie within it.
+struct PositionBox {
+    glm::dvec2 low, high;
+};
+
+PositionBox positionsOf(const glm::dmat3& map, glm::ivec2 first, glm::ivec2 last) {
+    PositionBox box{glm::dvec2(std::numeric_limits<double>::infinity()), -box.low};
+    for (const glm::ivec2 corner : {first, {last.x, first.y}, {first.x, last.y}, last}) {
+        const glm::dvec2 position = map * glm::dvec3(glm::dvec2(corner) + 0.5, 1);
+        box = {glm::min(box.low, position), glm::max(box.high, position)};
+    }
+    return box;
+}
+
+// The filter along an axis of a raster that a map puts into a picture.
+class AxisFilter {
+  public:
+    // @param alongX, alongY  what a step of one picture pixel moves along the axis
+    AxisFilter(WarpFilter filter, double alongX, double alongY)
+        : AxisFilter(filter, portable::hypot(alongX, alongY)) {}
+
+    // How often the raster is halved along the axis first.
+    int halvings() const { return halvings_; }
+    const FilterTable& table() const { return wide_ ? *wide_ : *narrow_; }
+
+  private:
+    // Pixels of a halved raster for each of the picture's: fewer would not hold what that shows.
+    static constexpr double kLeastHalved = 1.5;
+    static constexpr int kMostHalvings = 12;
+
+    AxisFilter(WarpFilter filter, double stretch) : narrow_(&narrowestFilter(filter)) {
+        if (!(stretch > 1)) return;
+        if (filter == WarpFilter::kSharp) {
+            while (halvings_ < kMostHalvings && stretch >= std::ldexp(2 * kLeastHalved, halvings_))
+                ++halvings_;
+        }
+        wide_.emplace(filter, stretch, halvings_);
+    }
+
+    int halvings_ = 0;
+    const FilterTable* narrow_;
+    std::optional<FilterTable> wide_;
+};
+
+struct AxisFilters {
+    AxisFilter x, y;
+
+    AxisFilters(const glm::dmat3& rasterFromPixel, WarpFilter filter)
+        : x(filter, rasterFromPixel[0].x, rasterFromPixel[1].x),
+          y(filter, rasterFromPixel[0].y, rasterFromPixel[1].y) {}
+    double gain() const { return x.table().gain() * y.table().gain(); }
+    // Lattice points that are read around a place, to either side.
+    glm::ivec2 reach() const { return glm::ivec2(x.table().taps(), y.table().taps()) / 2 + 1; }
+};
+
+// A raster, halved as often as filters ask for, and the map to its lattice.
+class FilteredRaster {
+  public:
+    FilteredRaster(const Raster& raster, const glm::dmat3& rasterFromPixel,
+                   const AxisFilters& filters, const PicturePart& part)
+        : raster_(raster), map_(rasterFromPixel) {
+        const int most = std::max(filters.x.halvings(), filters.y.halvings());
+        for (int done = 0; done < most; ++done) {
+            const glm::bvec2 along(done < filters.x.halvings(), done < filters.y.halvings());
+            for (int axis = 0; axis < 2; ++axis) {
+                if (!along[axis]) continue;
+                for (int column = 0; column < 2; ++column) map_[column][axis] /= 2;
+                map_[2][axis] = HalvedRaster::halved(map_[2][axis]);
+            }
+            // What is halved once more is made of twice as many, and four beside them.
+            const glm::ivec2 beside = (filters.reach() + 4) << (most - done - 1);
+            HalvedRaster halved(raster_, along, pointsBehind(part, beside));
+            halved_ = std::move(halved);
+            raster_ = halved_.raster();
+        }
+    }
+    FilteredRaster(const FilteredRaster&) = delete;
+    FilteredRaster& operator=(const FilteredRaster&) = delete;
+
+    const Raster& raster() const { return raster_; }
+    const glm::dmat3& map() const { return map_; }
+
+  private:
+    // The lattice points that a part shows, and so many beside them.
+    LatticeBox pointsBehind(const PicturePart& part, glm::ivec2 beside) const {
+        const PositionBox shown = positionsOf(map_, part.first, part.last() - 1);
+        // Far outside of any raster.
+        const glm::dvec2 far(1 << 28);
+        const glm::dvec2 first = glm::clamp(glm::floor(shown.low), -far, far);
+        const glm::dvec2 last = glm::clamp(glm::ceil(shown.high), -far, far);
+        return {glm::ivec2(first) - beside, glm::ivec2(last) + beside + 1};
+    }
+
+    Raster raster_;
+    glm::dmat3 map_;
+    HalvedRaster halved_;
+};
+
 class Warper {
   public:
-    Warper(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
+    Warper(const Raster& raster, const glm::dmat3& rasterFromPixel, const AxisFilters& filters,
            const PicturePart& part)
         : raster_(raster),
           tiles_(raster),
           map_(rasterFromPixel),
           part_(part),
-          wideX_(tableFor(filter, stretchOf(map_[0].x, map_[1].x))),
-          wideY_(tableFor(filter, stretchOf(map_[0].y, map_[1].y))),
-          filterX_(wideX_ ? *wideX_ : narrowestFilter(filter)),
-          filterY_(wideY_ ? *wideY_ : narrowestFilter(filter)),
+          filterX_(filters.x.table()),
+          filterY_(filters.y.table()),
           sampler_(raster, filterX_, filterY_) {}
 
-    double gain() const { return filterX_.gain() * filterY_.gain(); }
     void run() {
         const int first = part_.first.y / kBand;
         const int end = (part_.last().y + kBand - 1) / kBand;
@@ -66,17 +163,6 @@ class Warper {
     // What is looked at at once to find out whether the raster is empty there.
     static constexpr int kBand = 8;
     static constexpr int kStretch = 16;
-
-    // How far a step of one picture pixel, in whichever direction is worst, moves along one raster
-    // axis.
-    static double stretchOf(double alongX, double alongY) {
-        return portable::hypot(alongX, alongY);
-    }
-
-    static std::optional<FilterTable> tableFor(WarpFilter filter, double stretch) {
-        if (!(stretch > 1)) return std::nullopt;
-        return std::optional<FilterTable>(std::in_place, filter, stretch);
-    }
 
     glm::dvec2 step() const { return map_[0]; }
     // Positions run relative to the raster's first pixel, so that large index offsets cost no
@@ -181,8 +267,6 @@ class Warper {
     RasterTiles tiles_;
     const glm::dmat3& map_;
     const PicturePart& part_;
-    std::optional<FilterTable> wideX_;
-    std::optional<FilterTable> wideY_;
     const FilterTable& filterX_;
     const FilterTable& filterY_;
     EdgeSampler sampler_;
@@ -192,17 +276,14 @@ class Warper {
 
 void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
           const PicturePart& part) {
-    if (raster.size.x > 0 && raster.size.y > 0)
-        Warper(raster, rasterFromPixel, filter, part).run();
-    else
-        clearImage(part.image);
+    if (raster.size.x <= 0 || raster.size.y <= 0) return clearImage(part.image);
+    const AxisFilters filters(rasterFromPixel, filter);
+    const FilteredRaster filtered(raster, rasterFromPixel, filters, part);
+    Warper(filtered.raster(), filtered.map(), filters, part).run();
 }
 
 double warpGain(const glm::dmat3& rasterFromPixel, WarpFilter filter) {
-    const Raster none;
-    Image picture;
-    const PicturePart part(picture);
-    return Warper(none, rasterFromPixel, filter, part).gain();
+    return AxisFilters(rasterFromPixel, filter).gain();
 }
 
 }  // namespace deltasplat

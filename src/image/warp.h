@@ -21,6 +21,12 @@ struct Raster {
     glm::vec3 color{1.0f};
     /// [size.y], or empty: columns [x, y) outside of which a row is zero.
     std::span<const glm::ivec2> spans{};
+
+    /// Columns [x, y) outside of which row `i` is zero.
+    glm::ivec2 span(int i) const {
+        return spans.empty() ? glm::ivec2(0, size.x) : spans[std::size_t(i)];
+    }
+    const float* row(int i) const { return values + std::size_t(channels) * size.x * i; }
 };
 
 /// Pixels of a picture of `size` that are written: those of `image`, from `first` on. What is

@@ -21,25 +21,53 @@ using PixelTag = hn::FixedTag<float, 4>;
 
 using PixelVector = hn::Vec<PixelTag>;
 
-// What a sum along one axis is clamped to: the range of its inner taps.
+// The taps in the middle of an axis, to whose range sums are clamped.
 struct Inner {
     int first, end;
+
+    static Inner of(const FilterView& filter) {
+        return {filter.firstInnerTap(), filter.firstInnerTap() + filter.innerTaps()};
+    }
 };
 
-// Weighs columns by all rows; kTaps is 0 where it is not known. With kClamp, each is clamped to the
-// range of its inner rows.
-template <int kTaps, bool kClamp, class Tag>
-HWY_INLINE auto sumRows(Tag tag, const float* corner, std::size_t pitch, const float* weightY,
-                        int rows, const Inner& inner) {
+// How many taps of a filter are known, 0 if none: columns with those that pad them, and rows.
+template <int kColumnTaps, int kRowTaps>
+struct KnownTaps {
+    // Of so many taps of a sharp filter.
+    static constexpr int kInnerRows = kRowTaps == 4 ? 2 : 4;
+
+    static constexpr bool kFourColumns = kColumnTaps == 4;
+
+    static bool areThoseOf(const FilterView& filterX, const FilterView& filterY) {
+        const auto isSharp = [](const FilterView& filter, int inner) {
+            return !filter.overshoots() || filter.innerTaps() == inner;
+        };
+        return filterX.paddedTaps() == kColumnTaps && isSharp(filterX, kFourColumns ? 2 : 4) &&
+               filterY.taps() == kRowTaps && isSharp(filterY, kInnerRows);
+    }
+    static int columns(const FilterView& filterX) {
+        return kColumnTaps ? kColumnTaps : filterX.paddedTaps();
+    }
+    static int rows(const FilterView& filterY) { return kRowTaps ? kRowTaps : filterY.taps(); }
+    static Inner innerRows(const FilterView& filterY) {
+        return kRowTaps ? Inner{(kRowTaps - kInnerRows) / 2, (kRowTaps + kInnerRows) / 2}
+                        : Inner::of(filterY);
+    }
+};
+
+// Weighs columns by all rows. With kClamp, each is clamped to the range of its inner rows.
+template <class Known, bool kClamp, class Tag>
+HWY_INLINE hn::Vec<Tag> sumRows(Tag tag, const float* corner, std::size_t pitch,
+                                const FilterView& filterY, const float* weightY) {
     auto sum = hn::Mul(hn::LoadU(tag, corner), hn::Set(tag, weightY[0]));
-    for (int j = 1; j < (kTaps ? kTaps : rows); ++j) {
+    for (int j = 1; j < Known::rows(filterY); ++j) {
         sum = hn::Add(sum, hn::Mul(hn::LoadU(tag, corner + j * pitch), hn::Set(tag, weightY[j])));
     }
     if constexpr (kClamp) {
-        const int first = kTaps == 4 ? 1 : inner.first;
-        auto low = hn::LoadU(tag, corner + first * pitch);
+        const Inner inner = Known::innerRows(filterY);
+        auto low = hn::LoadU(tag, corner + inner.first * pitch);
         auto high = low;
-        for (int j = first + 1; j < (kTaps == 4 ? 3 : inner.end); ++j) {
+        for (int j = inner.first + 1; j < inner.end; ++j) {
             const auto row = hn::LoadU(tag, corner + j * pitch);
             low = hn::Min(low, row);
             high = hn::Max(high, row);
@@ -49,72 +77,131 @@ HWY_INLINE auto sumRows(Tag tag, const float* corner, std::size_t pitch, const f
     return sum;
 }
 
-// Sums along a row, tap by tap, the range of the inner taps beside it.
-struct ColumnSum {
-    PixelVector even, odd, low, high;
-
-    HWY_INLINE void add(PixelVector tap, float weight, bool isOdd, bool isInner) {
-        PixelVector& sum = isOdd ? odd : even;
-        sum = hn::Add(sum, hn::Mul(tap, hn::Set(PixelTag(), weight)));
-        if (!isInner) return;
-        low = hn::Min(low, tap);
-        high = hn::Max(high, tap);
-    }
-};
-
-// A pixel of RGBA, or a value in all lanes.
-template <int kChannels>
-HWY_INLINE PixelVector loadPixel(const float* pixel) {
-    const PixelTag tag;
-    if constexpr (kChannels == 4) {
-        return hn::Load(tag, pixel);
-    } else {
-        return hn::Set(tag, *pixel);
-    }
-}
-
 // What becomes of a raster's only channel.
 HWY_INLINE PixelVector colorOf(const Raster& raster) {
     HWY_ALIGN const float rgba[4] = {raster.color.x, raster.color.y, raster.color.z, 1};
     return hn::Load(PixelTag(), rgba);
 }
 
-// Weighs `kColumns` taps' columns and puts them in a buffer, whatever a vector's width.
-template <int kTaps, int kChannels, bool kClamp>
-HWY_INLINE void sumColumns(const float* corner, std::size_t pitch, const float* weightY, int rows,
-                           const Inner& innerY, float* HWY_RESTRICT columns) {
+// Four columns of a raster beside each other, in as many vectors as they take.
+template <int kChannels>
+struct FourColumns {
     using Tag = hn::CappedTag<float, 4 * kChannels>;
-    const Tag tag;
-    for (int i = 0; i < 4 * kChannels; i += int(hn::Lanes(tag)))
-        hn::Store(sumRows<kTaps, kClamp>(tag, corner + i, pitch, weightY, rows, innerY), tag,
-                  columns + i);
-}
+    static constexpr int kLanes = int(hn::MaxLanes(Tag()));
+    static constexpr int kParts = 4 * kChannels / kLanes;
 
-// Returns one pixel: RGBA, or the sum of a single channel in all lanes. kTaps are those along both
-// axes, or 0 if they are not four. With kClamp, sums are clamped to their inner taps' range, along
-// one axis after the other: so the picture has no jump where inner taps change.
-template <int kTaps, int kChannels, bool kClamp>
-HWY_INLINE PixelVector samplePixel(const FilterView& filterX, std::uint32_t x, const float* corner,
-                                   std::size_t pitch, const float* weightY, int rows,
-                                   const Inner& innerX, const Inner& innerY) {
-    HWY_ALIGN float columns[4 * kChannels];
-    const float* weightX = filterX.weights(x);
-    const PixelTag tag;
-    const float infinity = std::numeric_limits<float>::infinity();
-    ColumnSum sum{hn::Zero(tag), hn::Zero(tag), hn::Set(tag, infinity), hn::Set(tag, -infinity)};
-    for (int first = 0; first < (kTaps ? kTaps : filterX.paddedTaps()); first += 4) {
-        sumColumns<kTaps, kChannels, kClamp>(corner + kChannels * first, pitch, weightY, rows,
-                                             innerY, columns);
-        for (int tap = 0; tap < 4; ++tap) {
-            const int at = first + tap;
-            const bool isInner =
-                kClamp && (kTaps == 4 ? at == 1 || at == 2 : at >= innerX.first && at < innerX.end);
-            sum.add(loadPixel<kChannels>(columns + kChannels * tap), weightX[at], tap % 2 != 0,
-                    isInner);
+    hn::Vec<Tag> parts[kParts];
+
+    HWY_INLINE explicit FourColumns(float value) {
+        for (auto& part : parts) part = hn::Set(Tag(), value);
+    }
+
+    // Puts four columns' weights into all lanes of theirs.
+    HWY_INLINE static hn::Vec<Tag> spread(const float* weights, int part) {
+        const Tag tag;
+        const auto four = hn::LoadDup128(tag, weights);
+        if constexpr (kChannels == 1) return four;
+        HWY_ALIGN std::int32_t columns[kLanes];
+        for (int lane = 0; lane < kLanes; ++lane)
+            columns[lane] = (part * kLanes + lane) / kChannels;
+        return hn::TableLookupLanes(four, hn::SetTableIndices(tag, columns));
+    }
+
+    // Joins the first column with the third, the second with the fourth, and then both, whatever a
+    // vector's width. Of a single channel the result is in all lanes.
+    template <class Join>
+    HWY_INLINE PixelVector joined(const Join& join) const {
+        if constexpr (kChannels == 1) {
+            const PixelVector pairs = join(parts[0], hn::Shuffle1032(parts[0]));
+            return join(pairs, hn::Shuffle2301(pairs));
+        } else if constexpr (kParts == 4) {
+            return join(join(parts[0], parts[2]), join(parts[1], parts[3]));
+        } else if constexpr (kParts == 2) {
+            return joinedHalves(Tag(), join(parts[0], parts[1]), join);
+        } else {
+            return joinedHalves(hn::Half<Tag>(), joinedHalves(Tag(), parts[0], join), join);
         }
     }
-    const PixelVector all = hn::Add(sum.even, sum.odd);
-    return kClamp ? hn::Min(hn::Max(all, sum.low), sum.high) : all;
+
+    // Returns the second or the third of them.
+    template <int kColumn>
+    HWY_INLINE PixelVector inner() const {
+        static_assert(kColumn == 1 || kColumn == 2);
+        if constexpr (kChannels == 1) {
+            return hn::Broadcast<kColumn>(parts[0]);
+        } else if constexpr (kParts == 4) {
+            return parts[kColumn];
+        } else if constexpr (kParts == 2) {
+            return kColumn == 1 ? upperHalf(Tag(), parts[0]) : lowerHalf(Tag(), parts[1]);
+        } else {
+            const hn::Half<Tag> two;
+            return kColumn == 1 ? upperHalf(two, lowerHalf(Tag(), parts[0]))
+                                : lowerHalf(two, upperHalf(Tag(), parts[0]));
+        }
+    }
+
+  private:
+    template <class Whole>
+    HWY_INLINE static auto lowerHalf(Whole, hn::Vec<Whole> both) {
+        return hn::LowerHalf(hn::Half<Whole>(), both);
+    }
+    template <class Whole>
+    HWY_INLINE static auto upperHalf(Whole, hn::Vec<Whole> both) {
+        return hn::UpperHalf(hn::Half<Whole>(), both);
+    }
+    template <class Whole, class Join>
+    HWY_INLINE static auto joinedHalves(Whole whole, hn::Vec<Whole> both, const Join& join) {
+        return join(lowerHalf(whole, both), upperHalf(whole, both));
+    }
+};
+
+// Returns one pixel: RGBA, or the sum of a single channel in all lanes. With kClamp, sums are
+// clamped to their inner taps' range, along one axis after the other: so the picture has no jump
+// where inner taps change.
+template <class Known, int kChannels, bool kClamp>
+HWY_INLINE PixelVector samplePixel(const FilterView& filterX, std::uint32_t x,
+                                   const FilterView& filterY, std::uint32_t y, const float* corner,
+                                   std::size_t pitch) {
+    using Columns = FourColumns<kChannels>;
+    const typename Columns::Tag tag;
+    const float* weightX = filterX.weights(x);
+    const float* weightY = filterY.weights(y);
+    const Inner inner = Inner::of(filterX);
+    const auto firstInner = hn::Set(tag, float(kChannels * inner.first));
+    const auto endInner = hn::Set(tag, float(kChannels * inner.end));
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    Columns columns(0);
+    Columns sum(0);
+    Columns low(kInfinity);
+    Columns high(-kInfinity);
+    for (int first = 0; first < Known::columns(filterX); first += 4) {
+        for (int part = 0; part < Columns::kParts; ++part) {
+            const int at = kChannels * first + part * Columns::kLanes;
+            const auto column = sumRows<Known, kClamp>(tag, corner + at, pitch, filterY, weightY);
+            const auto weighted = hn::Mul(column, Columns::spread(weightX + first, part));
+            columns.parts[part] = column;
+            sum.parts[part] = hn::Add(sum.parts[part], weighted);
+            if constexpr (!kClamp || Known::kFourColumns) continue;
+            const auto lane = hn::Iota(tag, float(at));
+            const auto isInner = hn::And(hn::Ge(lane, firstInner), hn::Lt(lane, endInner));
+            const auto orLess = hn::IfThenElse(isInner, column, hn::Set(tag, kInfinity));
+            const auto orMore = hn::IfThenElse(isInner, column, hn::Set(tag, -kInfinity));
+            low.parts[part] = hn::Min(low.parts[part], orLess);
+            high.parts[part] = hn::Max(high.parts[part], orMore);
+        }
+    }
+    const auto all = sum.joined([](auto a, auto b) { return hn::Add(a, b); });
+    if constexpr (!kClamp) {
+        return all;
+    } else if constexpr (Known::kFourColumns) {
+        const PixelVector one = columns.template inner<1>();
+        const PixelVector other = columns.template inner<2>();
+        return hn::Min(hn::Max(all, hn::Min(one, other)), hn::Max(one, other));
+    } else {
+        const auto lowest = low.joined([](auto a, auto b) { return hn::Min(a, b); });
+        const auto highest = high.joined([](auto a, auto b) { return hn::Max(a, b); });
+        return hn::Min(hn::Max(all, lowest), highest);
+    }
 }
 
 // Positions of a run of pixels: evenly spaced ones, and any.
@@ -143,53 +230,53 @@ struct Sampling {
     float* out;
 };
 
-template <int kTaps, int kChannels, bool kClamp, class Positions>
+template <class Known, int kChannels, bool kClamp, class Positions>
 void sampleOf(const Sampling& what, Positions positions) {
-    const PixelTag tag;
     const Raster& raster = what.raster;
     const std::size_t pitch = std::size_t(kChannels) * raster.size.x;
     // Copies, so that what is written cannot be thought to change them.
     const FilterView filterX(what.filterX);
     const FilterView filterY(what.filterY);
-    const auto innerOf = [](const FilterView& filter) {
-        return Inner{filter.firstInnerTap(), filter.firstInnerTap() + filter.innerTaps()};
-    };
-    const Inner innerX = innerOf(filterX);
-    const Inner innerY = innerOf(filterY);
     const PixelVector color = colorOf(raster);
     float* out = what.out;
     for (int i = 0; i < what.pixels; ++i, out += 4) {
         const FixedPosition position = positions.next();
         const float* corner = raster.values + filterY.firstTap(int(position.y >> 32)) * pitch +
                               kChannels * filterX.firstTap(int(position.x >> 32));
-        PixelVector sum = samplePixel<kTaps, kChannels, kClamp>(
-            filterX, std::uint32_t(position.x), corner, pitch,
-            filterY.weights(std::uint32_t(position.y)), filterY.taps(), innerX, innerY);
+        PixelVector sum = samplePixel<Known, kChannels, kClamp>(
+            filterX, std::uint32_t(position.x), filterY, std::uint32_t(position.y), corner, pitch);
         if constexpr (kChannels == 1) sum = hn::Mul(sum, color);
-        hn::StoreU(sum, tag, out);
+        hn::StoreU(sum, PixelTag(), out);
     }
 }
 
-template <int kChannels, bool kClamp, class Positions>
+template <class Known, class Positions>
 void sampleOf(const Sampling& what, Positions positions) {
-    // Of four, two are inner ones.
-    const auto isFour = [](const FilterView& filter) {
-        return filter.taps() == 4 && filter.innerTaps() == 2;
-    };
-    const bool four = isFour(what.filterX) && isFour(what.filterY);
-    return four ? sampleOf<4, kChannels, kClamp>(what, positions)
-                : sampleOf<0, kChannels, kClamp>(what, positions);
+    const bool isColored = what.raster.channels == 4;
+    if (what.filterX.overshoots())
+        isColored ? sampleOf<Known, 4, true>(what, positions)
+                  : sampleOf<Known, 1, true>(what, positions);
+    else
+        isColored ? sampleOf<Known, 4, false>(what, positions)
+                  : sampleOf<Known, 1, false>(what, positions);
 }
 
-template <int kChannels, class Positions>
-void sampleOf(const Sampling& what, Positions positions) {
-    return what.filterX.overshoots() ? sampleOf<kChannels, true>(what, positions)
-                                     : sampleOf<kChannels, false>(what, positions);
+// Samples by filters of so many taps, if they have so many.
+template <int kColumnTaps, int kRowTaps, class Positions>
+bool sampleBy(const Sampling& what, const Positions& positions) {
+    using Known = KnownTaps<kColumnTaps, kRowTaps>;
+    if (!Known::areThoseOf(what.filterX, what.filterY)) return false;
+    sampleOf<Known>(what, positions);
+    return true;
 }
 
 template <class Positions>
-void sampleOf(const Sampling& what, Positions positions) {
-    return what.raster.channels == 4 ? sampleOf<4>(what, positions) : sampleOf<1>(what, positions);
+void sampleOf(const Sampling& what, const Positions& positions) {
+    // Of sharp filters that are not widened, or are up to twice as wide.
+    const bool isDone = sampleBy<4, 4>(what, positions) || sampleBy<4, 6>(what, positions) ||
+                        sampleBy<4, 8>(what, positions) || sampleBy<8, 4>(what, positions) ||
+                        sampleBy<8, 6>(what, positions) || sampleBy<8, 8>(what, positions);
+    if (!isDone) sampleOf<KnownTaps<0, 0>>(what, positions);
 }
 
 void sampleRunKernel(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY,

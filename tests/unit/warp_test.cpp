@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "deltasplat/threads.h"
+#include "support/simd_levels.h"
 
 namespace deltasplat {
 namespace {
@@ -72,6 +73,95 @@ TEST(Warp, ReproducesLinearRampsUnderAnyAffineMap) {
     }
 }
 
+// The same where the raster is halved, once or more often, for the picture is much coarser.
+TEST(Warp, ReproducesLinearRampsWhereMuchCoarser) {
+    const auto ramp = [](double x, double y) { return 0.3 + 0.0003 * x - 0.0004 * y; };
+    const OwnedRaster raster({-401, -300}, {800, 701},
+                             [&](int x, int y) { return float(ramp(x, y)); });
+    for (const auto& map : {affine(3.1, 0.7, -40, -0.9, 3.3, -10), affine(0, 7.1, -70, -6.4, 0, 60),
+                            affine(4, 0, -44, 0, 1.2, -20), affine(13, 0, -130, 0, -14, 140)}) {
+        Image picture({20, 20});
+        warp(raster.raster(), map, WarpFilter::kSharp, picture);
+        for (int y = 0; y < 20; ++y) {
+            for (int x = 0; x < 20; ++x) {
+                const glm::dvec3 p = map * glm::dvec3(x + 0.5, y + 0.5, 1);
+                ASSERT_NEAR(picture.pixel(x, y)[3], ramp(p.x, p.y), 5e-5) << x << "," << y;
+            }
+        }
+    }
+}
+
+// A wave of three pixels keeps its height and place, whether the raster is halved or not.
+TEST(Warp, FineWavesStayWhereMuchCoarser) {
+    double before = 0;
+    for (const double step : {2.9, 3.1, 5.9, 6.1, 11.0}) {
+        const double period = 3 * step;
+        const OwnedRaster waves({0, 0}, {700, 60}, [&](int x, int) {
+            return float(0.5 + 0.5 * std::cos(2 * M_PI * x / period));
+        });
+        Image picture({30, 1});
+        const double first = 20 * step;
+        warp(waves.raster(), affine(step, 0, first, 0, step, 30), WarpFilter::kSharp, picture);
+        // The part of the wave that is in step with it, and the one that is not.
+        double in = 0;
+        double out = 0;
+        for (int x = 0; x < 30; ++x) {
+            const double phase = 2 * M_PI * (first + step * (x + 0.5)) / period;
+            in += (picture.pixel(x, 0)[3] - 0.5) * std::cos(phase) / 15;
+            out += (picture.pixel(x, 0)[3] - 0.5) * std::sin(phase) / 15;
+        }
+        EXPECT_NEAR(out, 0, 0.01) << step;
+        EXPECT_GT(in, 0.3) << step;
+        if (before > 0) {
+            EXPECT_NEAR(in, before, 0.04) << step;
+        }
+        before = in;
+    }
+}
+
+// What is written to a pixel does not depend on which others are.
+TEST(Warp, PartsHaveTheSameBits) {
+    const OwnedRaster raster({-7, 3}, {1000, 900},
+                             [](int x, int y) { return float((x * x + 3 * y) % 17) / 17; });
+    for (const double step : {0.7, 1.6, 3.4, 7.3, 26.0}) {
+        const glm::dmat3 map = affine(step, 0.3 * step, -9, -0.4 * step, step, 40);
+        Image whole({90, 70});
+        warp(raster.raster(), map, WarpFilter::kSharp, whole);
+        for (const glm::ivec2 first : {glm::ivec2(0, 0), glm::ivec2(13, 9), glm::ivec2(61, 44)}) {
+            Image part = usedPicture({29, 26});
+            warp(raster.raster(), map, WarpFilter::kSharp, PicturePart(part, first, whole.size));
+            for (int y = 0; y < part.size.y; ++y) {
+                for (int i = 0; i < 4 * part.size.x; ++i) {
+                    ASSERT_EQ(part.pixel(0, y)[i], whole.pixel(first.x, first.y + y)[i])
+                        << step << " " << i / 4 << "," << y;
+                }
+            }
+        }
+    }
+}
+
+TEST(Warp, SameBitsAtEverySimdLevel) {
+    const OwnedRaster all({0, 0}, {200, 150},
+                          [](int x, int y) { return float((x * x + 3 * y) % 17) / 17; });
+    std::vector<float> values;
+    for (std::size_t i = 0; i < all.rgba.size(); i += 4) values.push_back(all.rgba[i]);
+    const Raster one{all.min, all.size, values.data(), 1, {0.5f, 2.0f, 0.3f}};
+    for (const Raster& raster : {all.raster(), one}) {
+        for (const WarpFilter filter : kFilters) {
+            for (const double step : {0.6, 1.3, 1.8, 2.6, 3.7, 9.0}) {
+                std::vector<float> ofFirstLevel;
+                test::atEveryLevel([&] {
+                    Image picture({70, 50});
+                    const glm::dmat3 map = affine(step, 0.4, -2, -0.2, 0.8 * step, 4);
+                    warp(raster, map, filter, picture);
+                    if (ofFirstLevel.empty()) ofFirstLevel = picture.rgba;
+                    EXPECT_EQ(picture.rgba, ofFirstLevel) << int(filter) << " " << step;
+                });
+            }
+        }
+    }
+}
+
 // A picture coarser than the raster must average it, not sample it.
 TEST(Warp, MinificationAveragesFineStripes) {
     const OwnedRaster stripes({0, 0}, {256, 256}, [](int x, int) { return x % 2 ? 1.0f : 0.0f; });
@@ -86,7 +176,7 @@ TEST(Warp, NoFilterOvershoots) {
     const OwnedRaster edges({0, 0}, {120, 120},
                             [&](int x, int y) { return high(x, y) ? 3.0f : 0.75f; });
     for (const WarpFilter filter : kFilters) {
-        for (const double step : {0.1, 0.41, 0.7, 0.97, 1.3, 2.2}) {
+        for (const double step : {0.1, 0.41, 0.7, 0.97, 1.3, 2.2, 3.3}) {
             Image picture({25, 25});
             const double first = 60 - 12.5 * step;
             warp(edges.raster(), affine(step, 0.2, first, -0.15, step, first), filter, picture);
@@ -270,7 +360,7 @@ TEST(Warp, OneChannelIsOpacityTimesColour) {
     std::vector<float> values;
     for (std::size_t i = 0; i < all.rgba.size(); i += 4) values.push_back(all.rgba[i]);
     const Raster one{all.min, all.size, values.data(), 1, {0.5f, 2.0f, 0.0f}};
-    for (const double scale : {0.6, 2.5}) {
+    for (const double scale : {0.6, 2.5, 3.8}) {
         Image expected({90, 70});
         Image picture({90, 70});
         warp(all.raster(), affine(scale, 0.1, -2, -0.2, 0.7, 4), WarpFilter::kSharp, expected);

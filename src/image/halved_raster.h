@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <vector>
+
+#include "image/warp.h"
+#include "uncleared_vector.h"
+
+namespace deltasplat {
+
+/// Lattice points [min, max).
+struct LatticeBox {
+    glm::ivec2 min;
+    glm::ivec2 max;
+};
+
+/// A raster of half as many pixels along an axis or both. Pixel i lies in the middle between 2 i
+/// and 2 i + 1, and is 1/8, 3/8, 3/8, 1/8 of the four from 2 i - 1 on: linear ramps stay what they
+/// are, every pixel keeps its mass, and of details that half as many pixels cannot hold little is
+/// left.
+class HalvedRaster {
+  public:
+    /// Where lattice points of the raster lie on the halved one's axes.
+    static constexpr double halved(double position) { return (position - 0.5) / 2; }
+
+    HalvedRaster() = default;
+    /// Multi-threaded.
+    /// @param along   the axes
+    /// @param wanted  of the halved lattice: others have no value
+    HalvedRaster(const Raster& raster, glm::bvec2 along, const LatticeBox& wanted);
+    HalvedRaster(HalvedRaster&&) = default;
+    HalvedRaster& operator=(HalvedRaster&&) = default;
+
+    /// Of all pixels, also those that have no value.
+    const Raster& raster() const { return halved_; }
+
+  private:
+    float* pixel(glm::ivec2 point);
+
+    Raster halved_;
+    UnclearedVector<float> values_;
+    std::vector<glm::ivec2> spans_;
+};
+
+}  // namespace deltasplat
