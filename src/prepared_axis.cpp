@@ -29,12 +29,14 @@ namespace deltasplat {
 namespace {
 
 // A word costs much where voxels have looks of their own, for it is lit, and more than its voxels
-// do where these are written to pixels of their own, but they do cost.
-Encoding encodingOf(Method method, bool hasLooks, bool hasPixels) {
+// do where these are written to pixels of their own, but they do cost: those of divided ones, whose
+// sheets are large, one by one.
+Encoding encodingOf(Method method, bool hasLooks, bool hasPixels, bool isDivided) {
     switch (method) {
         case Method::kAuto:
             if (hasLooks) return Encoding::kFewerWords;
-            return hasPixels ? Encoding::kFewerWordsOrVoxels : Encoding::kFewerWordsOrStamps;
+            if (!hasPixels) return Encoding::kFewerWordsOrStamps;
+            return isDivided ? Encoding::kFewerWordsOrVoxels : Encoding::kFewerWordsOrWrites;
         case Method::kDelta:
             return Encoding::kChanges;
         default:
@@ -330,7 +332,8 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
         painter && (painter->isEverywhereOther() || (view.eye && painter->dependsOnCamera()));
     const bool hasPixels = plan.footprintWidth(view) == 1;
     const Encoding encoding =
-        isWhole ? Encoding::kWhole : encodingOf(options.method, painter != nullptr, hasPixels);
+        isWhole ? Encoding::kWhole
+                : encodingOf(options.method, painter != nullptr, hasPixels, parts.divides());
     // Slices are walked from the front on. Whole ones do not depend on it.
     const bool descending = !view.frontToBack && encoding != Encoding::kWhole;
     // Of joined ones, what they look like does; of several colours, unless they are pairs, also how

@@ -2,6 +2,7 @@
 // The inner loops of packing deltas, compiled once for each SIMD level.
 #include "delta/block_kernels.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -51,6 +52,22 @@ std::uint64_t countBitsKernel(std::span<const std::uint64_t> masks) {
     std::uint64_t count = 0;
     for (const std::uint64_t mask : masks) count += std::uint64_t(std::popcount(mask));
     return count;
+}
+
+MaskCounts countMasksKernel(std::span<const std::uint64_t> masks) {
+    MaskCounts counts;
+    for (const std::uint64_t mask : masks) {
+        // The lowest bit of a row is set where any is.
+        std::uint64_t rows = mask | mask >> 4;
+        rows |= rows >> 2;
+        rows |= rows >> 1;
+        rows &= 0x0101010101010101;
+        const auto voxels = std::uint64_t(std::popcount(mask));
+        counts.voxels += voxels;
+        counts.words += mask != 0;
+        counts.writes += std::min(voxels, std::uint64_t(kVoxelsOfRow * std::popcount(rows)));
+    }
+    return counts;
 }
 
 // Writes the classes of 512 codes in their order, of numbers that are so much more than their
@@ -113,6 +130,7 @@ namespace deltasplat {
 HWY_EXPORT(differingSlotsKernel);
 HWY_EXPORT(compareClassesKernel);
 HWY_EXPORT(countBitsKernel);
+HWY_EXPORT(countMasksKernel);
 HWY_EXPORT(classesOfLeafKernel);
 HWY_EXPORT(classesOfSlotsKernel);
 
@@ -127,6 +145,10 @@ void compareClasses(const std::uint16_t* before, const std::uint16_t* classes,
 
 std::uint64_t countBits(std::span<const std::uint64_t> masks) {
     return HWY_DYNAMIC_DISPATCH(countBitsKernel)(masks);
+}
+
+MaskCounts countMasks(std::span<const std::uint64_t> masks) {
+    return HWY_DYNAMIC_DISPATCH(countMasksKernel)(masks);
 }
 
 void classesOfLeaf(const ClassRamp& ramp, const Code* codes, int sliceAxis, ClassIndex* classes) {

@@ -22,6 +22,19 @@ void compareClasses(const std::uint16_t* before, const std::uint16_t* classes,
 /// Returns how many bits are set in all masks together.
 std::uint64_t countBits(std::span<const std::uint64_t> masks);
 
+/// A row of eight voxels takes as long to be written as so many voxels one by one.
+inline constexpr int kVoxelsOfRow = 3;
+
+/// What masks of 64 voxels have.
+struct MaskCounts {
+    std::uint64_t voxels = 0;
+    std::uint64_t words = 0;  ///< masks that have any
+    /// How long they take to be written to pixels of their own: as long as so many that are
+    /// written one by one, which all of a mask are, or, if it is less, the rows that have any.
+    std::uint64_t writes = 0;
+};
+MaskCounts countMasks(std::span<const std::uint64_t> masks);
+
 /// Writes the classes of the 512 codes of a leaf, `[x][y][z]`, as they lie along a slice axis,
 /// `[slice][u][v]`.
 void classesOfLeaf(const ClassRamp& ramp, const Code* codes, int sliceAxis, ClassIndex* classes);

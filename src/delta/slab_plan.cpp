@@ -29,7 +29,8 @@ bool changesFew(const PlannedSlab& slab) {
     return slab.deltas < 12 * slab.words;
 }
 
-bool isWhole(const PlannedSlab& slab, Encoding encoding) {
+// @param writes  MaskCounts::writes of all that is visible, and of changes
+bool isWhole(const PlannedSlab& slab, const SliceCounts& writes, Encoding encoding) {
     switch (encoding) {
         case Encoding::kChanges:
             return false;
@@ -39,6 +40,8 @@ bool isWhole(const PlannedSlab& slab, Encoding encoding) {
             return hasFewerWordsWhole(slab);
         case Encoding::kFewerWordsOrVoxels:
             return hasFewerWordsWhole(slab) && 5 * slab.visible < 6 * slab.deltas;
+        case Encoding::kFewerWordsOrWrites:
+            return hasFewerWordsWhole(slab) && 3 * writes.visible < 4 * writes.deltas;
         case Encoding::kFewerWordsOrStamps:
             return changesFew(slab) ? 8 * slab.visible < 5 * slab.deltas : hasFewerWordsWhole(slab);
     }
@@ -54,13 +57,12 @@ SlabPlanner::SlabPlanner(const IndexBox& box) : box_(box), shortest_(layoutOf(bo
 
 void SlabPlanner::add(int slice, std::span<const std::uint64_t> visible,
                       std::span<const std::uint64_t> changed) {
-    const auto wordsOf = [](std::span<const std::uint64_t> masks) {
-        return masks.size() - std::size_t(std::count(masks.begin(), masks.end(), 0));
-    };
     const auto count = [&](std::size_t slices) {
-        const auto seen = visible.first(slices);
-        const auto differing = changed.first(slices);
-        return Counts{{countBits(seen), countBits(differing)}, {wordsOf(seen), wordsOf(differing)}};
+        const MaskCounts seen = countMasks(visible.first(slices));
+        const MaskCounts differing = countMasks(changed.first(slices));
+        return Counts{{seen.voxels, differing.voxels},
+                      {seen.words, differing.words},
+                      {seen.writes, differing.writes}};
     };
     SlabCounts& counts = counts_[shortest_.slabOf(slice >> 3)];
     counts.all += count(visible.size());
@@ -78,23 +80,29 @@ SlabPlan SlabPlanner::plan(Encoding encoding, SlabLength slabLength) const {
     const int length = slabLength == SlabLength::kShortest ? 1 : chooseLength();
     SlabPlan plan{shortest_, {}};
     plan.layout.blocksPerSlab *= length;
+    std::vector<SliceCounts> writes;  // [slab]
     for (std::size_t i = 0; i < counts_.size(); ++i) {
         const auto& [all, first] = counts_[i];
         const bool begins = i % length == 0;
-        if (begins) plan.slabs.emplace_back();
+        if (begins) {
+            plan.slabs.emplace_back();
+            writes.emplace_back();
+        }
         PlannedSlab& slab = plan.slabs.back();
         slab.visible += all.voxels.visible;
         slab.deltas += all.voxels.deltas;
         slab.seenWords += all.words.visible;
         slab.words += all.words.deltas;
+        writes.back() += all.writes;
         if (!begins) continue;
         slab.deltas += first.voxels.visible - first.voxels.deltas;
         slab.words += first.words.visible - first.words.deltas;
+        writes.back().deltas += first.writes.visible - first.writes.deltas;
     }
     for (int i = 0; i < plan.layout.count(); ++i) {
         PlannedSlab& slab = plan.slabs[i];
         placeSlab(box_, plan.layout, i, slab);
-        slab.whole = isWhole(slab, encoding);
+        slab.whole = isWhole(slab, writes[std::size_t(i)], encoding);
     }
     return plan;
 }

@@ -18,6 +18,8 @@ enum class Encoding {
     kFewerWords,
     /// The same, or of fewer voxels by a sixth.
     kFewerWordsOrVoxels,
+    /// The same, or in less writing by a quarter (MaskCounts::writes).
+    kFewerWordsOrWrites,
     /// The same; but where few voxels of words change, kWhole only if it takes fewer stamps by
     /// three eighths.
     kFewerWordsOrStamps
@@ -76,13 +78,15 @@ class SlabPlanner {
     SlabPlan plan(Encoding encoding, SlabLength length = SlabLength::kByCounts) const;
 
   private:
-    // What is in slices: voxels, and mask words with any.
+    // What is in slices: voxels, mask words with any, and what writing them takes.
     struct Counts {
         SliceCounts voxels;
         SliceCounts words;
+        SliceCounts writes;
         void operator+=(const Counts& other) {
             voxels += other.voxels;
             words += other.words;
+            writes += other.writes;
         }
     };
     // What is in one of the shortest slabs, as if no key slice began it.

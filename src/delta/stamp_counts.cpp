@@ -22,7 +22,7 @@ StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const S
         planner.add(8 * block, std::span(changes[i].visible).first(slices),
                     std::span(changes[i].changed).first(slices));
     }
-    for (const PlannedSlab& slab : planner.plan(Encoding::kFewerWordsOrVoxels).slabs) {
+    for (const PlannedSlab& slab : planner.plan(Encoding::kFewerWordsOrWrites).slabs) {
         stamps.sparse += slab.visible;
         stamps.delta += slab.deltas;
         stamps.automatic += slab.stamps();

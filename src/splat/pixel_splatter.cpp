@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "bit_matrix.h"
+#include "delta/block_kernels.h"
 
 namespace deltasplat {
 
@@ -114,9 +115,7 @@ void PixelSplatter::writeValues(std::int32_t* tile, std::uint64_t voxels, unsign
                                 const ClassIndex* classes, const Value* values) {
     const std::size_t pitch = sheet_.pitch();
     constexpr std::size_t kNumbers = std::is_same_v<Value, Pixel> ? 4 : 1;
-    // A whole row takes as long as some voxels one by one.
-    constexpr int kFew = 3;
-    if (std::popcount(voxels) <= kFew * std::popcount(rows)) {
+    if (std::popcount(voxels) <= kVoxelsOfRow * std::popcount(rows)) {
         for (; voxels != 0; voxels &= voxels - 1) {
             const unsigned n = unsigned(std::countr_zero(voxels));
             std::memcpy(tile + pitch * (n >> 3) + kNumbers * (n & 7), &values[classes[n]],

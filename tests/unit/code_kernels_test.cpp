@@ -93,6 +93,25 @@ TEST(CodeKernels, countBits) {
     });
 }
 
+TEST(CodeKernels, countMasks) {
+    using Masks = std::vector<std::uint64_t>;
+    const auto expectCounts = [](const Masks& masks, const MaskCounts& expected) {
+        const MaskCounts counts = countMasks(masks);
+        EXPECT_EQ(counts.voxels, expected.voxels);
+        EXPECT_EQ(counts.words, expected.words);
+        EXPECT_EQ(counts.writes, expected.writes);
+    };
+    test::atEveryLevel([&] {
+        expectCounts({}, {0, 0, 0});
+        expectCounts({0}, {0, 0, 0});
+        expectCounts({~std::uint64_t{0}}, {64, 1, 24});
+        // A voxel in each corner; full rows of two masks and none of one; one voxel and four.
+        expectCounts({0x8100000000000081}, {4, 1, 4});
+        expectCounts({0x00FF000000000000, 0, 0xFF}, {16, 2, 6});
+        expectCounts({0x0000000F00000001}, {5, 1, 5});
+    });
+}
+
 // A block of rows that lie anywhere.
 template <typename T>
 void encodesAsOneByOne(RawType type) {

@@ -50,9 +50,12 @@ Classes classesOf(const Volume& volume, int axis, const std::vector<Slot>& class
     return classes;
 }
 
-constexpr Encoding kEncodings[] = {Encoding::kChanges, Encoding::kWhole,
-                                   Encoding::kFewerWordsOrStamps, Encoding::kFewerWords,
-                                   Encoding::kFewerWordsOrVoxels};
+constexpr Encoding kEncodings[] = {Encoding::kChanges,
+                                   Encoding::kWhole,
+                                   Encoding::kFewerWordsOrStamps,
+                                   Encoding::kFewerWords,
+                                   Encoding::kFewerWordsOrVoxels,
+                                   Encoding::kFewerWordsOrWrites};
 
 // Encodings, and whether slices are walked from the last one on.
 const std::vector<std::pair<Encoding, bool>> kWays = [] {

@@ -126,6 +126,22 @@ TEST(SlabPlan, TakesChangesThatSaveASixthOfTheVoxelsWhereTheseAreWritten) {
     EXPECT_FALSE(isWhole(48, 0));
 }
 
+TEST(SlabPlan, TakesChangesThatSaveAQuarterOfTheWritingOfWholeRows) {
+    const auto isWhole = [](int visible, int changed) {
+        return planned(0, 16, visible, changed)
+            .plan(Encoding::kFewerWordsOrWrites)
+            .slabs.back()
+            .whole;
+    };
+    // Rows of eight voxels: 192 of whole slices, 150 of changes and the key slice.
+    EXPECT_TRUE(isWhole(64, 48));
+    EXPECT_FALSE(isWhole(64, 40));  // 129
+    EXPECT_FALSE(isWhole(64, 0));
+    // Single voxels: 24 to 3 and 2 a slice.
+    EXPECT_TRUE(isWhole(3, 3));
+    EXPECT_FALSE(isWhole(3, 2));
+}
+
 TEST(SlabPlan, TakesChangesThatSaveATenthOfTheWords) {
     // Of 80 full blocks, some do not change from slice to slice.
     const auto isWhole = [](int unchanged) {
