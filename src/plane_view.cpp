@@ -49,9 +49,8 @@ double PlaneView::showPart(const Layer& finished, const PicturePart& part) const
     const WarpFilter filter = warpFilterOf(place_.filter);
     if (place_.view.eye)
         return warpRegion(raster, camera_, place_.view, thin_, plane_, filter, part);
-    const glm::dmat3& map = plane_.pixelFromPicture();
-    warp(raster, map, filter, part);
-    return warpGain(map, filter);
+    return warp(raster, plane_.pixelFromPicture(), filter, part,
+                *finished.values.get_allocator().resource());
 }
 
 // Opacities are those of ways straight through the slices: makes them those of the lines of sight.

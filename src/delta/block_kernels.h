@@ -29,8 +29,10 @@ inline constexpr int kVoxelsOfRow = 3;
 struct MaskCounts {
     std::uint64_t voxels = 0;
     std::uint64_t words = 0;  ///< masks that have any
-    /// How long they take to be written to pixels of their own: as long as so many that are
+    /// About how long they take to be written to pixels of their own: as long as so many that are
     /// written one by one, which all of a mask are, or, if it is less, the rows that have any.
+    /// (Whole slices are written in rows always, but those of few voxels measure as if they were
+    /// not: docs/decisions.md.)
     std::uint64_t writes = 0;
 };
 MaskCounts countMasks(std::span<const std::uint64_t> masks);

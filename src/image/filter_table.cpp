@@ -128,8 +128,12 @@ Weights halvedWeights(const Weights& whole, int first, int count) {
     return halved;
 }
 
-// Halvings that weights make up for. Those before soften a picture's finest details by a thirtieth.
+// Halvings that weights make up for. Earlier ones leave out what is far finer than a picture's
+// pixels, and soften what is as fine as these by a thirtieth.
 constexpr int kMostMadeUpFor = 2;
+// Points beside those that a filter reads that are looked at too, lest weights change where others
+// come to be read.
+constexpr int kBeside = 4;
 
 // Weights of `count` points from `first` on, of which so many halvings left a part.
 Weights weightsAfter(int halvings, WarpFilter filter, double position, double stretch, int first,
@@ -137,10 +141,54 @@ Weights weightsAfter(int halvings, WarpFilter filter, double position, double st
     if (halvings == 0) return weightsOf(filter, position, stretch, first, count);
     // What these points were made of, and what the filter reaches besides.
     const double before = 2 * position + 0.5;
-    const int reach = int(std::ceil(reachOf(filter, 2 * stretch)));
+    const int reach = int(std::ceil(reachOf(filter, 2 * stretch))) + kBeside;
     const Weights whole = weightsAfter(halvings - 1, filter, before, 2 * stretch,
                                        int(std::floor(before)) - (reach - 1), 2 * reach);
     return halvedWeights(whole, first, count);
+}
+
+// Makes weights fade from where the filter ends to where points are no longer read.
+void fade(Weights& weights, double position, double end) {
+    const double last = 0.5 * double(weights.values.size());
+    for (std::size_t i = 0; i < weights.values.size(); ++i) {
+        const double distance = std::abs(weights.first + int(i) - position);
+        weights.values[i] *= std::clamp((last - distance) / (last - end), 0.0, 1.0);
+    }
+}
+
+// Changes weights a little, in proportion, so that linear ramps stay where they are.
+void balance(Weights& weights, double position) {
+    double moment = 0;
+    double sizes[3] = {};  // sums of magnitudes, times distance, times its square
+    for (std::size_t i = 0; i < weights.values.size(); ++i) {
+        const double distance = weights.first + int(i) - position;
+        const double size = std::abs(weights.values[i]);
+        moment += weights.values[i] * distance;
+        sizes[0] += size;
+        sizes[1] += size * distance;
+        sizes[2] += size * distance * distance;
+    }
+    // The sum stays, and the moment becomes 0.
+    const double slope = -moment * sizes[0] / (sizes[0] * sizes[2] - sizes[1] * sizes[1]);
+    const double middle = sizes[1] / sizes[0];
+    for (std::size_t i = 0; i < weights.values.size(); ++i) {
+        const double distance = weights.first + int(i) - position;
+        weights.values[i] += std::abs(weights.values[i]) * slope * (distance - middle);
+    }
+}
+
+// Weights of `taps` points of a raster that was halved so often: as close as can be to the filter's
+// of all, but that they fade where the last of these lie, and keep linear ramps.
+Weights halvedFilter(WarpFilter filter, double position, double stretch, int halvings, int taps) {
+    const int first = -(taps / 2 - 1);
+    Weights weights = weightsAfter(std::min(halvings, kMostMadeUpFor), filter, position, stretch,
+                                   first - kBeside, taps + 2 * kBeside);
+    weights.values.erase(weights.values.begin(), weights.values.begin() + kBeside);
+    weights.values.resize(std::size_t(taps));
+    weights.first = first;
+    fade(weights, position, reachOf(filter, stretch));
+    balance(weights, position);
+    return weights;
 }
 
 // A raster that is smaller than a pixel by more than this adds nothing to it that could be seen.
@@ -149,8 +197,10 @@ constexpr double kMaxStretch = 16384;
 }  // namespace
 
 FilterTable::FilterTable(WarpFilter filter, double wantedStretch, int halvings) {
-    const double stretch = std::min(wantedStretch, kMaxStretch) / std::exp2(halvings);
-    taps_ = 2 * int(std::ceil(reachOf(filter, stretch)));
+    const double stretch = std::ldexp(std::min(wantedStretch, kMaxStretch), -halvings);
+    // Room for weights to fade in.
+    const double beyond = halvings > 0 ? 0.25 : 0;
+    taps_ = 2 * int(std::ceil(reachOf(filter, stretch) + beyond));
     paddedTaps_ = (taps_ + 3) / 4 * 4;
     innerTaps_ = filter == WarpFilter::kMitchell ? taps_ : 2 * int(std::ceil(stretch));
     overshoots_ = filter == WarpFilter::kSharp || filter == WarpFilter::kMitchell;
@@ -159,9 +209,10 @@ FilterTable::FilterTable(WarpFilter filter, double wantedStretch, int halvings) 
     ownWeights_.resize(std::size_t(steps + 1) * paddedTaps_);
     weights_ = ownWeights_.data();
     for (int step = 0; step <= steps; ++step) {
+        const double position = double(step) / steps;
         const std::vector<double> exact =
-            weightsAfter(std::min(halvings, kMostMadeUpFor), filter, double(step) / steps, stretch,
-                         firstTap(0), taps_)
+            (halvings > 0 ? halvedFilter(filter, position, stretch, halvings, taps_)
+                          : weightsOf(filter, position, stretch, firstTap(0), taps_))
                 .values;
         double sum = 0;
         for (const double weight : exact) sum += weight;

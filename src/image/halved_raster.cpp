@@ -106,22 +106,25 @@ class RowHalver {
 
 }  // namespace
 
-HalvedRaster::HalvedRaster(const Raster& raster, glm::bvec2 along, const LatticeBox& wanted)
+HalvedRaster::HalvedRaster(const Raster& raster, glm::bvec2 along, const LatticeBox& wanted,
+                           std::pmr::memory_resource& memory)
     : halved_(raster) {
     const glm::ivec2 end = raster.min + raster.size;
     const Range columns = madeOf({raster.min.x, end.x}, along.x);
     const Range rows = madeOf({raster.min.y, end.y}, along.y);
     halved_.min = {columns.first, rows.first};
     halved_.size = {columns.size(), rows.size()};
-    values_.resize(std::size_t(raster.channels) * columns.size() * rows.size());
+    const std::size_t rowFloats = std::size_t(raster.channels) * columns.size();
+    values_ = UnclearedArray<float>(rowFloats * rows.size(), memory);
     spans_.resize(std::size_t(rows.size()));
-    halved_.values = values_.data();
+    halved_.values = &values_[0];
     halved_.spans = spans_;
     const Range wantedColumns = overlapOf(columns, {wanted.min.x, wanted.max.x});
     const Range wantedRows = overlapOf(rows, {wanted.min.y, wanted.max.y});
-    parallelForChunks(std::size_t(wantedRows.size()), [&](std::size_t begin, std::size_t end) {
+    if (wantedColumns.size() == 0) return;
+    parallelForChunks(std::size_t(wantedRows.size()), [&](std::size_t begin, std::size_t last) {
         RowHalver halver(raster, along, wantedColumns);
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t i = begin; i < last; ++i) {
             const int y = wantedRows.first + int(i);
             const Range filled = halver.makeRow(y, pixel({wantedColumns.first, y}));
             if (filled.size() == 0) continue;

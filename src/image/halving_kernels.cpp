@@ -16,9 +16,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 template <class Tag, class Vector = hn::Vec<Tag>>
 HWY_INLINE Vector sumOfFour(Tag tag, Vector first, Vector second, Vector third, Vector fourth) {
-    const auto outer = hn::Add(first, fourth);
-    const auto inner = hn::Mul(hn::Add(second, third), hn::Set(tag, 3.0f));
-    return hn::Mul(hn::Add(outer, inner), hn::Set(tag, 0.125f));
+    const auto outer = hn::Mul(hn::Add(first, fourth), hn::Set(tag, 0.125f));
+    const auto inner = hn::Mul(hn::Add(second, third), hn::Set(tag, 0.375f));
+    return hn::Add(outer, inner);
 }
 
 template <class Tag>

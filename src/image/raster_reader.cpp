@@ -43,8 +43,8 @@ void RasterTiles::findRow(const Raster& raster, int row) {
         if (span.x >= span.y) continue;
         const float* pixels = raster.row(y);
         for (int column = span.x / kTile; column <= (span.y - 1) / kTile; ++column) {
-            const int first = raster.channels * column * kTile;
-            const int last = raster.channels * std::min((column + 1) * kTile, raster.size.x);
+            const int first = raster.channels * std::max(column * kTile, span.x);
+            const int last = raster.channels * std::min((column + 1) * kTile, span.y);
             std::uint32_t bits = 0;  // of all values: faster than comparing each
             for (int i = first; i < last; ++i) bits |= std::bit_cast<std::uint32_t>(pixels[i]);
             full_[std::size_t(words_) * row + column / 64] |= std::uint64_t{bits != 0}

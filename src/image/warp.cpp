@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -101,7 +102,8 @@ struct AxisFilters {
 class FilteredRaster {
   public:
     FilteredRaster(const Raster& raster, const glm::dmat3& rasterFromPixel,
-                   const AxisFilters& filters, const PicturePart& part)
+                   const AxisFilters& filters, const PicturePart& part,
+                   std::pmr::memory_resource& memory)
         : raster_(raster), map_(rasterFromPixel) {
         const int most = std::max(filters.x.halvings(), filters.y.halvings());
         for (int done = 0; done < most; ++done) {
@@ -111,11 +113,11 @@ class FilteredRaster {
                 for (int column = 0; column < 2; ++column) map_[column][axis] /= 2;
                 map_[2][axis] = HalvedRaster::halved(map_[2][axis]);
             }
-            // What is halved once more is made of twice as many, and four beside them.
+            // Of n points beside what is shown, (n - 3.5) / 2 are left that are made of such.
             const glm::ivec2 beside = (filters.reach() + 4) << (most - done - 1);
-            HalvedRaster halved(raster_, along, pointsBehind(part, beside));
-            halved_ = std::move(halved);
-            raster_ = halved_.raster();
+            HalvedRaster halved(raster_, along, pointsBehind(part, beside), memory);
+            halved_.emplace(std::move(halved));
+            raster_ = halved_->raster();
         }
     }
     FilteredRaster(const FilteredRaster&) = delete;
@@ -128,8 +130,7 @@ class FilteredRaster {
     // The lattice points that a part shows, and so many beside them.
     LatticeBox pointsBehind(const PicturePart& part, glm::ivec2 beside) const {
         const PositionBox shown = positionsOf(map_, part.first, part.last() - 1);
-        // Far outside of any raster.
-        const glm::dvec2 far(1 << 28);
+        const glm::dvec2 far(1 << 30);
         const glm::dvec2 first = glm::clamp(glm::floor(shown.low), -far, far);
         const glm::dvec2 last = glm::clamp(glm::ceil(shown.high), -far, far);
         return {glm::ivec2(first) - beside, glm::ivec2(last) + beside + 1};
@@ -137,7 +138,7 @@ class FilteredRaster {
 
     Raster raster_;
     glm::dmat3 map_;
-    HalvedRaster halved_;
+    std::optional<HalvedRaster> halved_;
 };
 
 class Warper {
@@ -181,8 +182,8 @@ class Warper {
         return columns;
     }
 
-    // Warps kBand rows, but for stretches where the raster is empty. These lie alike, whatever the
-    // part.
+    // Warps kBand rows, but for stretches where the raster is empty. Bands and stretches lie alike,
+    // whatever the part.
     void warpBand(int firstRow) {
         const int lastRow = std::min(firstRow + kBand, part_.size.y);
         std::vector<Columns> stretches;
@@ -274,16 +275,16 @@ class Warper {
 
 }  // namespace
 
-void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
-          const PicturePart& part) {
-    if (raster.size.x <= 0 || raster.size.y <= 0) return clearImage(part.image);
+double warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
+            const PicturePart& part, std::pmr::memory_resource& memory) {
     const AxisFilters filters(rasterFromPixel, filter);
-    const FilteredRaster filtered(raster, rasterFromPixel, filters, part);
-    Warper(filtered.raster(), filtered.map(), filters, part).run();
-}
-
-double warpGain(const glm::dmat3& rasterFromPixel, WarpFilter filter) {
-    return AxisFilters(rasterFromPixel, filter).gain();
+    if (raster.size.x > 0 && raster.size.y > 0) {
+        const FilteredRaster filtered(raster, rasterFromPixel, filters, part, memory);
+        Warper(filtered.raster(), filtered.map(), filters, part).run();
+    } else {
+        clearImage(part.image);
+    }
+    return filters.gain();
 }
 
 }  // namespace deltasplat

@@ -3,6 +3,7 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <memory_resource>
 #include <span>
 
 #include "deltasplat/image/image.h"
@@ -47,16 +48,17 @@ struct PicturePart {
 /// Resamples a raster under an affine map, into every pixel of a part, with a filter that is
 /// widened where the picture is coarser than the raster. No value leaves the range of those around
 /// it, what lies outside of the raster (0) among them. Deterministic; multi-threaded.
+/// @param raster  within 2^30 of lattice point 0
 /// @param rasterFromPixel  continuous picture coordinates (pixel centres at half-integers) to
 /// lattice positions
-void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
-          const PicturePart& part);
-inline void warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
-                 Image& picture) {
-    warp(raster, rasterFromPixel, filter, PicturePart(picture));
+/// @param memory  for a raster of fewer pixels, if the picture is much coarser
+/// @return the most that it can enlarge a difference of rasters
+double warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
+            const PicturePart& part,
+            std::pmr::memory_resource& memory = *std::pmr::get_default_resource());
+inline double warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
+                   Image& picture) {
+    return warp(raster, rasterFromPixel, filter, PicturePart(picture));
 }
-
-/// Returns the most that `warp` with the same filter and map can enlarge a difference of rasters.
-double warpGain(const glm::dmat3& rasterFromPixel, WarpFilter filter);
 
 }  // namespace deltasplat

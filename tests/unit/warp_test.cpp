@@ -85,7 +85,7 @@ TEST(Warp, ReproducesLinearRampsWhereMuchCoarser) {
         for (int y = 0; y < 20; ++y) {
             for (int x = 0; x < 20; ++x) {
                 const glm::dvec3 p = map * glm::dvec3(x + 0.5, y + 0.5, 1);
-                ASSERT_NEAR(picture.pixel(x, y)[3], ramp(p.x, p.y), 5e-5) << x << "," << y;
+                ASSERT_NEAR(picture.pixel(x, y)[3], ramp(p.x, p.y), 5e-6) << x << "," << y;
             }
         }
     }
@@ -119,21 +119,39 @@ TEST(Warp, FineWavesStayWhereMuchCoarser) {
     }
 }
 
-// What is written to a pixel does not depend on which others are.
+// What is written to a pixel does not depend on which others are: of rasters that are full, or hold
+// a few discs, of one channel, in spans.
 TEST(Warp, PartsHaveTheSameBits) {
-    const OwnedRaster raster({-7, 3}, {1000, 900},
-                             [](int x, int y) { return float((x * x + 3 * y) % 17) / 17; });
-    for (const double step : {0.7, 1.6, 3.4, 7.3, 26.0}) {
-        const glm::dmat3 map = affine(step, 0.3 * step, -9, -0.4 * step, step, 40);
-        Image whole({90, 70});
-        warp(raster.raster(), map, WarpFilter::kSharp, whole);
-        for (const glm::ivec2 first : {glm::ivec2(0, 0), glm::ivec2(13, 9), glm::ivec2(61, 44)}) {
-            Image part = usedPicture({29, 26});
-            warp(raster.raster(), map, WarpFilter::kSharp, PicturePart(part, first, whole.size));
-            for (int y = 0; y < part.size.y; ++y) {
-                for (int i = 0; i < 4 * part.size.x; ++i) {
-                    ASSERT_EQ(part.pixel(0, y)[i], whole.pixel(first.x, first.y + y)[i])
-                        << step << " " << i / 4 << "," << y;
+    const glm::ivec2 size(1000, 900);
+    const OwnedRaster full({-7, 3}, size,
+                           [](int x, int y) { return float((x * x + 3 * y) % 17) / 17; });
+    std::vector<float> values(std::size_t(size.x) * size.y);
+    std::vector<glm::ivec2> spans;
+    for (int y = 0; y < size.y; ++y) {
+        glm::ivec2 span(size.x, 0);
+        for (int x = 0; x < size.x; ++x) {
+            const glm::ivec2 place = glm::ivec2(x, y) % 300 - 150;
+            if (place.x * place.x + place.y * place.y > 40 * 40) continue;
+            values[std::size_t(y) * size.x + x] = float((x * x + 3 * y) % 17 + 1) / 18;
+            span = {std::min(span.x, x), std::max(span.y, x + 1)};
+        }
+        spans.push_back(span.x < span.y ? span : glm::ivec2(0));
+    }
+    const Raster discs{{-7, 3}, size, values.data(), 1, glm::vec3(0.5f), spans};
+    for (const Raster& raster : {full.raster(), discs}) {
+        for (const double step : {0.7, 1.6, 3.4, 7.3, 26.0}) {
+            const glm::dmat3 map = affine(step, 0.3 * step, -9, -0.4 * step, step, 40);
+            Image whole({90, 70});
+            warp(raster, map, WarpFilter::kSharp, whole);
+            for (const glm::ivec2 first :
+                 {glm::ivec2(0, 0), glm::ivec2(13, 9), glm::ivec2(61, 44)}) {
+                Image part = usedPicture({29, 26});
+                warp(raster, map, WarpFilter::kSharp, PicturePart(part, first, whole.size));
+                for (int y = 0; y < part.size.y; ++y) {
+                    for (int i = 0; i < 4 * part.size.x; ++i) {
+                        ASSERT_EQ(part.pixel(0, y)[i], whole.pixel(first.x, first.y + y)[i])
+                            << step << " " << i / 4 << "," << y;
+                    }
                 }
             }
         }
@@ -229,6 +247,50 @@ TEST(Warp, NoFilterJumps) {
                     << int(filter) << " " << stretch << " at " << x;
             }
         }
+    }
+}
+
+// The same where the raster is halved: stripes that move slowly do not jump where the filter comes
+// to read other points.
+TEST(Warp, HalvedDoesNotJump) {
+    const OwnedRaster raster({0, 0}, {200, 200},
+                             [](int x, int) { return x / 6 % 2 == 0 ? 1.0f : 0.0f; });
+    const auto largestStep = [&](double stretch) {
+        Image fine({12000, 1});
+        // Along x in steps of a thousandth; what y's step is makes the filter along it wide.
+        warp(raster.raster(), affine(0.001, stretch, 100 - stretch / 2, 0, stretch, 100),
+             WarpFilter::kSharp, fine);
+        double largest = 0;
+        for (int x = 1; x < 12000; ++x) {
+            const double step = fine.pixel(x, 0)[3] - fine.pixel(x - 1, 0)[3];
+            largest = std::max(largest, std::abs(step));
+        }
+        return largest;
+    };
+    EXPECT_GT(largestStep(2.95), 1e-3);
+    for (const double stretch : {2.95, 3.0, 3.01, 3.05, 3.3, 4.0, 5.9, 6.0, 6.02, 7.0, 12.0})
+        EXPECT_LT(largestStep(stretch), 0.0025) << stretch;
+}
+
+// The largest sum of the magnitudes by which single points show in a pixel.
+TEST(Warp, ReturnsHowMuchItCanEnlarge) {
+    const OwnedRaster raster({0, 0}, {8, 8}, [](int, int) { return 1.0f; });
+    for (const double step : {0.5, 1.0, 1.1, 2.0, 3.0, 6.0, 20.0}) {
+        Image picture({4, 4});
+        const double gain =
+            warp(raster.raster(), affine(step, 0, 0, 0, step, 0), WarpFilter::kSharp, picture);
+        const int halvings = step < 3 ? 0 : 1 + int(std::floor(std::log2(step / 3)));
+        const FilterTable filter(WarpFilter::kSharp, std::max(1.0, step), halvings);
+        double most = 0;
+        for (int i = 0; i < 4096; ++i) {
+            const float* weights = filter.weights(std::uint32_t(i) << 20);
+            double sum = 0;
+            for (int tap = 0; tap < filter.taps(); ++tap) sum += std::abs(weights[tap]);
+            most = std::max(most, sum);
+        }
+        EXPECT_NEAR(gain, most * most, 1e-5) << step;
+        EXPECT_GT(gain, 1.2 * 1.2 - (step > 1 ? 0.1 : 0)) << step;
+        EXPECT_LT(gain, 1.45 * 1.45) << step;
     }
 }
 
@@ -418,19 +480,18 @@ TEST(Warp, EmptyRasterIsTransparent) {
 }
 
 TEST(Warp, SameBitsOnEveryNumberOfThreads) {
-    const OwnedRaster raster({0, 0}, {50, 50},
+    const OwnedRaster raster({0, 0}, {300, 250},
                              [](int x, int y) { return float((x * x + 3 * y) % 17) / 17; });
-    Image one({90, 70});
-    Image two({90, 70});
-    {
-        const ThreadLimit limit(1);
-        warp(raster.raster(), affine(0.6, 0.1, -2, -0.2, 0.7, 4), WarpFilter::kSharp, one);
+    for (const double step : {0.6, 4.0, 7.0}) {
+        const glm::dmat3 map = affine(step, 0.1, -2, -0.2, 0.7 * step, 4);
+        const auto warped = [&](int threads) {
+            const ThreadLimit limit(threads);
+            Image picture({90, 70});
+            warp(raster.raster(), map, WarpFilter::kSharp, picture);
+            return picture.rgba;
+        };
+        EXPECT_EQ(warped(1), warped(2)) << step;
     }
-    {
-        const ThreadLimit limit(2);
-        warp(raster.raster(), affine(0.6, 0.1, -2, -0.2, 0.7, 4), WarpFilter::kSharp, two);
-    }
-    EXPECT_EQ(one.rgba, two.rgba);
 }
 
 // Values that are no opacity come back as they are, in all four channels.

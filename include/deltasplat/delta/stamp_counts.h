@@ -15,13 +15,14 @@ struct StampCounts {
     std::uint64_t sparse = 0;       ///< visible voxels
     std::uint64_t delta = 0;        ///< deltas, those of key slices included
     /// For each slab `delta` if fewer of its slices of 8x8x8 blocks have any to stamp, by a tenth,
-    /// or if it has fewer stamps by a sixth, else `sparse`: what `render` takes where footprints
-    /// have one pixel (hasOwnPixel).
+    /// or if these take less writing by a quarter (stamps, or thrice the rows of eight voxels that
+    /// have any, if that is less), else `sparse`: what `render` takes of undivided voxels where
+    /// footprints have one pixel (hasOwnPixel).
     std::uint64_t automatic = 0;
 };
 
 /// Returns what `render` takes for a picture along a slice axis, without rendering or storing
-/// deltas: exact (but for `automatic` of wider footprints) for the slot map of its transfer
+/// deltas: exact (but for `automatic` of others) for the slot map of its transfer
 /// function (see ClassTable::classOfSlot).
 /// @param slotMap  as DeltaOptions::slotMap
 StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap = {});
