@@ -147,12 +147,16 @@ Weights weightsAfter(int halvings, WarpFilter filter, double position, double st
     return halvedWeights(whole, first, count);
 }
 
-// Makes weights fade from where the filter ends to where points are no longer read.
-void fade(Weights& weights, double position, double end) {
+// Makes weights fade from where the filter ends to where points are no longer read, and those that
+// are positive from its first zero on, for it has none there: edges would show beyond it.
+void fade(Weights& weights, double position, double stretch, double end) {
+    constexpr double kFade = 0.5;
     const double last = 0.5 * double(weights.values.size());
     for (std::size_t i = 0; i < weights.values.size(); ++i) {
         const double distance = std::abs(weights.first + int(i) - position);
-        weights.values[i] *= std::clamp((last - distance) / (last - end), 0.0, 1.0);
+        double& weight = weights.values[i];
+        weight *= std::clamp((last - distance) / (last - end), 0.0, 1.0);
+        if (weight > 0) weight *= std::clamp((stretch - distance) / kFade + 1, 0.0, 1.0);
     }
 }
 
@@ -186,7 +190,7 @@ Weights halvedFilter(WarpFilter filter, double position, double stretch, int hal
     weights.values.erase(weights.values.begin(), weights.values.begin() + kBeside);
     weights.values.resize(std::size_t(taps));
     weights.first = first;
-    fade(weights, position, reachOf(filter, stretch));
+    fade(weights, position, stretch, reachOf(filter, stretch));
     balance(weights, position);
     return weights;
 }
