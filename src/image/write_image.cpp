@@ -32,7 +32,7 @@ void checkRegion(const ImageFileOptions& options, glm::ivec2 size) {
                 gotExpected("`region`",
                             dimsText(part.size()) + " pixels from " + std::to_string(part.min.x) +
                                 "," + std::to_string(part.min.y) + " on",
-                            "some of the picture's " + dimsText(size)));
+                            "all of them among the picture's " + dimsText(size)));
 }
 
 void checkOptions(const std::filesystem::path& file, glm::ivec2 size,

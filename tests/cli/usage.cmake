@@ -274,10 +274,10 @@ foreach(region 8x8 8x8+1 0x3+1+1 1,2,0,3 8x8+1+1+1 a 3000000000x1+0+0 0,0,214748
         --region ${region})
 endforeach()
 deltasplat_refusal(region_beyond
-    "--region: got pixels 500,0 to 512,9; expected some of the picture's, 0,0 to 511,511"
+    "--region: got pixels 500,0 to 512,9; expected all of them among the picture's, 0,0 to 511,511"
     --region 13x10+500+0)
 deltasplat_refusal(region_beyond_overscan
-    "--region: got pixels -5,0 to 4,9; expected some of the picture's, -4,-3 to 515,514"
+    "--region: got pixels -5,0 to 4,9; expected all of them among the picture's, -4,-3 to 515,514"
     --overscan 4,3 --region 10x10-5+0)
 foreach(overscan -1 1,2,3 1001% x)
     string(MAKE_C_IDENTIFIER ${overscan} name)

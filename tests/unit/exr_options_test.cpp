@@ -289,7 +289,8 @@ TEST(ExrOptions, refusesWhatCannotBe) {
     EXPECT_EQ(message([](auto& o) {
                   o.region = PixelBox{{1, 0}, {5, 2}};
               }),
-              "usage: `region`: got 4x2 pixels from 1,0 on; expected some of the picture's 4x3");
+              "usage: `region`: got 4x2 pixels from 1,0 on; expected all of them among the "
+              "picture's 4x3");
     EXPECT_EQ(message([](auto& o) { o.exr.displaySize = glm::ivec2(2'000'000'000, 3); }),
               "output: out.exr: cannot be encoded: Cannot open image file \"out.exr\". Invalid "
               "display window in image header.");

@@ -153,7 +153,7 @@ void checkExr(const RenderCommand& command) {
     throw Error(
         ErrorCode::kUsage,
         gotExpected("--region", "pixels " + text(region.min) + " to " + text(region.max - 1),
-                    "some of the picture's, " + text(min) + " to " + text(max - 1)));
+                    "all of them among the picture's, " + text(min) + " to " + text(max - 1)));
 }
 
 void warnOfUnusedExrOptions(const CLI::App& app, const RenderCommand& command,

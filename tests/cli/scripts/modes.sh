@@ -17,7 +17,8 @@ render xray.exr --mode xray --spacing 1,1,2.5
 expect_pixel xray.exr 8 8 "2550.000000 2550.000000 2550.000000 2550.000000"
 expect_pixel xray.exr 0 0 "0.000000 0.000000 0.000000 0.000000"
 render fine.exr --mode xray --spacing 1,1,1.001
-expect_pixel fine.exr 8 8 "1021.020020 1021.020020 1021.020020 1021.020020"
+# To a unit in the last place of 1020 x 1.001.
+expect_pixel fine.exr 8 8 "1021.020081 1021.020081 1021.020081 1021.020081"
 expect_metadata xray.exr mode xray
 expect_metadata xray.exr xrayScale ""
 expect_metadata xray.exr method ""
