@@ -80,29 +80,23 @@ SlabPlan SlabPlanner::plan(Encoding encoding, SlabLength slabLength) const {
     const int length = slabLength == SlabLength::kShortest ? 1 : chooseLength();
     SlabPlan plan{shortest_, {}};
     plan.layout.blocksPerSlab *= length;
-    std::vector<SliceCounts> writes;  // [slab]
+    std::vector<Counts> counts;  // [slab]
     for (std::size_t i = 0; i < counts_.size(); ++i) {
-        const auto& [all, first] = counts_[i];
         const bool begins = i % length == 0;
-        if (begins) {
-            plan.slabs.emplace_back();
-            writes.emplace_back();
-        }
-        PlannedSlab& slab = plan.slabs.back();
-        slab.visible += all.voxels.visible;
-        slab.deltas += all.voxels.deltas;
-        slab.seenWords += all.words.visible;
-        slab.words += all.words.deltas;
-        writes.back() += all.writes;
-        if (!begins) continue;
-        slab.deltas += first.voxels.visible - first.voxels.deltas;
-        slab.words += first.words.visible - first.words.deltas;
-        writes.back().deltas += first.writes.visible - first.writes.deltas;
+        if (begins) counts.emplace_back();
+        counts.back() += counts_[i].all;
+        if (begins) counts.back().addKeySlice(counts_[i].firstSlice);
     }
+    plan.slabs.resize(counts.size());
     for (int i = 0; i < plan.layout.count(); ++i) {
-        PlannedSlab& slab = plan.slabs[i];
+        PlannedSlab& slab = plan.slabs[std::size_t(i)];
+        const auto& [voxels, words, writes] = counts[std::size_t(i)];
         placeSlab(box_, plan.layout, i, slab);
-        slab.whole = isWhole(slab, writes[std::size_t(i)], encoding);
+        slab.visible = voxels.visible;
+        slab.deltas = voxels.deltas;
+        slab.seenWords = words.visible;
+        slab.words = words.deltas;
+        slab.whole = isWhole(slab, writes, encoding);
     }
     return plan;
 }

@@ -88,6 +88,12 @@ class SlabPlanner {
             words += other.words;
             writes += other.writes;
         }
+        // Makes deltas of all that is visible in a slice that is counted: it becomes a key slice.
+        void addKeySlice(const Counts& slice) {
+            voxels.deltas += slice.voxels.visible - slice.voxels.deltas;
+            words.deltas += slice.words.visible - slice.words.deltas;
+            writes.deltas += slice.writes.visible - slice.writes.deltas;
+        }
     };
     // What is in one of the shortest slabs, as if no key slice began it.
     struct SlabCounts {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -48,10 +47,12 @@ struct PositionBox {
     glm::dvec2 low, high;
 };
 
-PositionBox positionsOf(const glm::dmat3& map, glm::ivec2 first, glm::ivec2 last) {
-    PositionBox box{glm::dvec2(std::numeric_limits<double>::infinity()), -box.low};
-    for (const glm::ivec2 corner : {first, {last.x, first.y}, {first.x, last.y}, last}) {
-        const glm::dvec2 position = map * glm::dvec3(glm::dvec2(corner) + 0.5, 1);
+template <class PositionOf>
+PositionBox positionsOf(glm::ivec2 first, glm::ivec2 last, const PositionOf& positionOf) {
+    const glm::dvec2 corner = positionOf(first);
+    PositionBox box{corner, corner};
+    for (const glm::ivec2 other : {glm::ivec2(last.x, first.y), {first.x, last.y}, last}) {
+        const glm::dvec2 position = positionOf(other);
         box = {glm::min(box.low, position), glm::max(box.high, position)};
     }
     return box;
@@ -76,8 +77,9 @@ class AxisFilter {
     AxisFilter(WarpFilter filter, double stretch) : narrow_(&narrowestFilter(filter)) {
         if (!(stretch > 1)) return;
         if (filter == WarpFilter::kSharp) {
-            while (halvings_ < kMostHalvings && stretch >= std::ldexp(2 * kLeastHalved, halvings_))
-                ++halvings_;
+            for (double halved = stretch / 2; halved >= kLeastHalved; halved /= 2) {
+                if (++halvings_ == kMostHalvings) break;
+            }
         }
         wide_.emplace(filter, stretch, halvings_);
     }
@@ -129,7 +131,9 @@ class FilteredRaster {
   private:
     // The lattice points that a part shows, and so many beside them.
     LatticeBox pointsBehind(const PicturePart& part, glm::ivec2 beside) const {
-        const PositionBox shown = positionsOf(map_, part.first, part.last() - 1);
+        const PositionBox shown = positionsOf(part.first, part.last() - 1, [&](glm::ivec2 pixel) {
+            return glm::dvec2(map_ * glm::dvec3(glm::dvec2(pixel) + 0.5, 1));
+        });
         const glm::dvec2 far(1 << 30);
         const glm::dvec2 first = glm::clamp(glm::floor(shown.low), -far, far);
         const glm::dvec2 last = glm::clamp(glm::ceil(shown.high), -far, far);
@@ -151,6 +155,7 @@ class Warper {
           part_(part),
           filterX_(filters.x.table()),
           filterY_(filters.y.table()),
+          reach_(filters.reach()),
           sampler_(raster, filterX_, filterY_) {}
 
     void run() {
@@ -202,18 +207,11 @@ class Warper {
     }
 
     bool isEmpty(glm::ivec2 first, glm::ivec2 last) const {
-        const glm::dvec2 corners[] = {positionOf(first.x, first.y), positionOf(last.x, first.y),
-                                      positionOf(first.x, last.y), positionOf(last.x, last.y)};
-        glm::dvec2 low = corners[0];
-        glm::dvec2 high = corners[0];
-        for (const glm::dvec2& corner : corners) {
-            low = glm::min(low, corner);
-            high = glm::max(high, corner);
-        }
-        const glm::dvec2 reach(filterX_.taps() / 2 + 1, filterY_.taps() / 2 + 1);
+        const PositionBox shown = positionsOf(
+            first, last, [&](glm::ivec2 pixel) { return positionOf(pixel.x, pixel.y); });
         const glm::dvec2 edge = raster_.size - 1;
-        low = glm::max(glm::floor(low) - reach, glm::dvec2(0));
-        high = glm::min(glm::floor(high) + reach, edge);
+        const glm::dvec2 low = glm::max(glm::floor(shown.low) - reach_, glm::dvec2(0));
+        const glm::dvec2 high = glm::min(glm::floor(shown.high) + reach_, edge);
         return !(low.x <= high.x && low.y <= high.y) ||
                !tiles_.anyIn(glm::ivec2(low), glm::ivec2(high));
     }
@@ -270,6 +268,7 @@ class Warper {
     const PicturePart& part_;
     const FilterTable& filterX_;
     const FilterTable& filterY_;
+    const glm::dvec2 reach_;
     EdgeSampler sampler_;
 };
 

@@ -22,6 +22,11 @@ SlabPlanner planned(int firstSlice, int slices, int visible, int changed) {
     return planner;
 }
 
+// Whether the last slab of such a planner of 16 slices is whole.
+bool isWhole(int visible, int changed, Encoding encoding) {
+    return planned(0, 16, visible, changed).plan(encoding).slabs.back().whole;
+}
+
 std::size_t slabCount(int slices, int visible, int changed) {
     return planned(0, slices, visible, changed).plan(Encoding::kChanges).slabs.size();
 }
@@ -99,9 +104,6 @@ TEST(SlabPlan, TakesWhatIsLessForEachSlab) {
 }
 
 TEST(SlabPlan, TakesChangesOfFewVoxelsUnlessWholeSlicesSaveMuch) {
-    const auto isWhole = [](int visible, int changed, Encoding encoding) {
-        return planned(0, 16, visible, changed).plan(encoding).slabs.back().whole;
-    };
     EXPECT_FALSE(isWhole(5, 7, Encoding::kFewerWordsOrStamps));
     EXPECT_TRUE(isWhole(5, 9, Encoding::kFewerWordsOrStamps));
     EXPECT_FALSE(isWhole(60, 5, Encoding::kFewerWordsOrStamps));
@@ -115,31 +117,21 @@ TEST(SlabPlan, TakesChangesOfFewVoxelsUnlessWholeSlicesSaveMuch) {
 }
 
 TEST(SlabPlan, TakesChangesThatSaveASixthOfTheVoxelsWhereTheseAreWritten) {
-    const auto isWhole = [](int visible, int changed) {
-        return planned(0, 16, visible, changed)
-            .plan(Encoding::kFewerWordsOrVoxels)
-            .slabs.back()
-            .whole;
-    };
-    EXPECT_TRUE(isWhole(48, 40));   // 384 voxels, 328 of changes and the key slice
-    EXPECT_FALSE(isWhole(48, 38));  // 314
-    EXPECT_FALSE(isWhole(48, 0));
+    constexpr Encoding kEncoding = Encoding::kFewerWordsOrVoxels;
+    EXPECT_TRUE(isWhole(48, 40, kEncoding));   // 384 voxels, 328 of changes and the key slice
+    EXPECT_FALSE(isWhole(48, 38, kEncoding));  // 314
+    EXPECT_FALSE(isWhole(48, 0, kEncoding));
 }
 
 TEST(SlabPlan, TakesChangesThatSaveAQuarterOfTheWritingOfWholeRows) {
-    const auto isWhole = [](int visible, int changed) {
-        return planned(0, 16, visible, changed)
-            .plan(Encoding::kFewerWordsOrWrites)
-            .slabs.back()
-            .whole;
-    };
+    constexpr Encoding kEncoding = Encoding::kFewerWordsOrWrites;
     // Rows of eight voxels: 192 of whole slices, 150 of changes and the key slice.
-    EXPECT_TRUE(isWhole(64, 48));
-    EXPECT_FALSE(isWhole(64, 40));  // 129
-    EXPECT_FALSE(isWhole(64, 0));
+    EXPECT_TRUE(isWhole(64, 48, kEncoding));
+    EXPECT_FALSE(isWhole(64, 40, kEncoding));  // 129
+    EXPECT_FALSE(isWhole(64, 0, kEncoding));
     // Single voxels: 24 to 3 and 2 a slice.
-    EXPECT_TRUE(isWhole(3, 3));
-    EXPECT_FALSE(isWhole(3, 2));
+    EXPECT_TRUE(isWhole(3, 3, kEncoding));
+    EXPECT_FALSE(isWhole(3, 2, kEncoding));
 }
 
 TEST(SlabPlan, TakesChangesThatSaveATenthOfTheWords) {
