@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <thread>
 #include <vector>
 
@@ -17,15 +17,22 @@
 namespace deltasplat {
 namespace {
 
-// The threads that take part in work of many pieces.
+// The most threads that take part in work of many pieces at one time. Over time there may be more:
+// one leaves, and another takes its place.
 std::size_t threadsAtWork() {
     std::mutex mutex;
-    std::set<std::thread::id> ids;
+    std::size_t now = 0;
+    std::size_t most = 0;
     parallelFor(200, [&](std::size_t) {
+        {
+            const std::lock_guard lock(mutex);
+            most = std::max(most, ++now);
+        }
+        std::this_thread::yield();
         const std::lock_guard lock(mutex);
-        ids.insert(std::this_thread::get_id());
+        --now;
     });
-    return ids.size();
+    return most;
 }
 
 TEST(ThreadLimit, TheLastOneMadeCounts) {
