@@ -184,15 +184,19 @@ std::vector<double> SlabRenderer::workOfRows() const {
 }
 
 // The rows that strips begin at, and the last one's end. Several threads get strips of the same
-// work, as far as strips do not get so low that most of their rows lie at edges.
+// work, as far as strips do not get so low that most of their rows lie at edges. Where each thread
+// takes many, these make up for each other, and even ones have the fewest such rows where there is
+// most to do.
 std::vector<int> SlabRenderer::edgesOfStrips() const {
+    constexpr int kManyForThread = 8;
     const int leastRows = std::max(32, travel());
     const int count = stripCount();
     const int rows = rows_.y - rows_.x;
     std::vector<int> edges(std::size_t(count) + 1, rows_.y);
     for (int i = 0; i < count; ++i)
         edges[std::size_t(i)] = rows_.x + int(std::int64_t{rows} * i / count);
-    if (count == 1 || threadCount() == 1) return edges;
+    const int threads = threadCount();
+    if (count == 1 || threads == 1 || count >= kManyForThread * threads) return edges;
     const std::vector<double> work = workOfRows();
     double left = std::accumulate(work.begin(), work.end(), 0.0);
     int row = rows_.x;

@@ -32,19 +32,32 @@ class CoveredCells {
 
     bool any() const { return open_.back() < covered_.size(); }
     bool all() const { return open_.back() == 0; }
-    /// Whether all cells are covered of columns [x, y) and rows [x, y); so are none at all.
-    bool cover(glm::ivec2 columns, glm::ivec2 rows) const {
-        if (columns.x >= columns.y || rows.x >= rows.y) return true;
-        return openBefore(columns.y, rows.y) + openBefore(columns.x, rows.x) ==
-               openBefore(columns.x, rows.y) + openBefore(columns.y, rows.x);
-    }
+    /// Some rows of cells.
+    class Rows {
+      public:
+        /// @param before  [columns + 1]: how many cells before a column are open above the first
+        /// row
+        /// @param after   likewise, above the row behind the last
+        Rows(const std::uint32_t* before, const std::uint32_t* after)
+            : before_(before), after_(after) {}
+        /// Whether all cells of columns [x, y), x <= y, are covered; so are none at all.
+        bool cover(glm::ivec2 columns) const {
+            return after_[columns.y] - after_[columns.x] == before_[columns.y] - before_[columns.x];
+        }
+
+      private:
+        const std::uint32_t* before_;
+        const std::uint32_t* after_;
+    };
+    /// Rows [x, y), x <= y. To be used before anything else is covered.
+    Rows rows(glm::ivec2 rows) const { return {openAbove(rows.x), openAbove(rows.y)}; }
 
   private:
     std::size_t placeOf(glm::ivec2 cell) const {
         return std::size_t(cell.y) * std::size_t(size_.x) + std::size_t(cell.x);
     }
-    std::uint32_t openBefore(int column, int row) const {
-        return open_[std::size_t(row) * std::size_t(size_.x + 1) + std::size_t(column)];
+    const std::uint32_t* openAbove(int row) const {
+        return &open_[std::size_t(row) * std::size_t(size_.x + 1)];
     }
 
     PlaneBox box_;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <type_traits>
 
 #include "bit_matrix.h"
 #include "delta/block_kernels.h"
@@ -63,27 +62,39 @@ void PixelSplatter::splat(int slice, bool whole, const NeededPixels& needed) {
 }
 
 void PixelSplatter::splatChanges(int slice, const NeededPixels& needed) {
-    blocks_.forChanges(slice, needed,
-                       [&](glm::ivec2 block, std::uint64_t changed, const SeenWord& word) {
-                           const Sheet::Tile tile = sheet_.tileOf(block);
-                           write(tile.pixels, changed, rowsWithAny(changed), word);
-                           tile.full = rowsWithAny(word.visible);
-                       });
+    blocks_.forChanges(
+        slice, needed, [&](glm::ivec2 block, std::uint64_t changed, const SeenWord& word) {
+            const Sheet::Tile tile = sheet_.tileOf(block);
+            tile.full = rowsWithAny(word.visible);
+            const unsigned rows = rowsWithAny(changed);
+            const bool byVoxel = std::popcount(changed) <= kVoxelsOfRow * std::popcount(rows);
+            withValues(word, [&](const auto* values) {
+                if (byVoxel) {
+                    writeVoxels(tile.pixels, changed, word.classes, values);
+                } else {
+                    writeRows(tile.pixels, rows, word.classes, values);
+                }
+            });
+        });
 }
 
-// Rows that the slice before showed are written over, or taken away with their block.
+// Rows that the slice before showed are written over, or taken away with their block. Those that
+// nobody reads stay as they are: at the edges of parts, most of a block.
 void PixelSplatter::splatWhole(int slice, const NeededPixels& needed) {
     before_.swap(shownBlocks_);
     shownBlocks_.clear();
-    blocks_.forWhole(slice, needed,
-                     [&](glm::ivec2 block, std::uint64_t voxels, const SeenWord& word) {
-                         const Sheet::Tile tile = sheet_.tileOf(block);
-                         constexpr std::uint64_t kAll = ~std::uint64_t{0};
-                         write(tile.pixels, kAll, rowsWithAny(voxels) | tile.full, word);
-                         tile.full = rowsWithAny(word.visible);
-                         slices_[blocks_.placeOf(block)] = slice;
-                         shownBlocks_.push_back(block);
-                     });
+    blocks_.forWhole(
+        slice, needed, [&](glm::ivec2 block, std::uint64_t voxels, const SeenWord& word) {
+            const Sheet::Tile tile = sheet_.tileOf(block);
+            const unsigned read = sheet_.rowsOfTile(block, needed.firstRow, needed.lastRow);
+            const unsigned rows = (rowsWithAny(voxels) | tile.full) & read;
+            withValues(word, [&](const auto* values) {
+                writeRows(tile.pixels, rows, word.classes, values);
+            });
+            tile.full = std::uint8_t((rowsWithAny(word.visible) & read) | (tile.full & ~read));
+            slices_[blocks_.placeOf(block)] = slice;
+            shownBlocks_.push_back(block);
+        });
     for (const glm::ivec2 block : before_) {
         if (slices_[blocks_.placeOf(block)] != slice) sheet_.clear(sheet_.tileOf(block));
     }
@@ -95,39 +106,48 @@ void PixelSplatter::clear() {
     shownBlocks_.clear();
 }
 
-// Writes voxels of a block, or all of the rows that have any of them.
-void PixelSplatter::write(std::int32_t* tile, std::uint64_t voxels, unsigned rows,
-                          const SeenWord& word) {
+// Calls use(values) with the pixels, or opacities, of a word's classes.
+template <typename Use>
+void PixelSplatter::withValues(const SeenWord& word, const Use& use) {
     if (word.hasOwn) {
         // Which are not all the same, and have a low digit.
         for (std::size_t n = 0; n < own_.size(); ++n)
             own_[n] = pixelOf(word.colors[n], word.lowColors + n);
-        writeValues(tile, voxels, rows, word.classes, own_.data());
+        use(own_.data());
     } else if (sheet_.layout().channels == 4) {
-        writeValues(tile, voxels, rows, word.classes, pixels_.data());
+        use(pixels_.data());
     } else {
-        writeValues(tile, voxels, rows, word.classes, opacities_.data());
+        use(opacities_.data());
+    }
+}
+
+namespace {
+
+template <typename Value>
+constexpr std::size_t kNumbersOf = sizeof(Value) / sizeof(std::int32_t);
+
+}  // namespace
+
+template <typename Value>
+void PixelSplatter::writeVoxels(std::int32_t* tile, std::uint64_t voxels, const ClassIndex* classes,
+                                const Value* values) const {
+    const std::size_t pitch = sheet_.pitch();
+    for (; voxels != 0; voxels &= voxels - 1) {
+        const auto n = std::size_t(std::countr_zero(voxels));
+        std::memcpy(tile + pitch * (n >> 3) + kNumbersOf<Value> * (n & 7), &values[classes[n]],
+                    sizeof(Value));
     }
 }
 
 template <typename Value>
-void PixelSplatter::writeValues(std::int32_t* tile, std::uint64_t voxels, unsigned rows,
-                                const ClassIndex* classes, const Value* values) {
+void PixelSplatter::writeRows(std::int32_t* tile, unsigned rows, const ClassIndex* classes,
+                              const Value* values) const {
     const std::size_t pitch = sheet_.pitch();
-    constexpr std::size_t kNumbers = std::is_same_v<Value, Pixel> ? 4 : 1;
-    if (std::popcount(voxels) <= kVoxelsOfRow * std::popcount(rows)) {
-        for (; voxels != 0; voxels &= voxels - 1) {
-            const unsigned n = unsigned(std::countr_zero(voxels));
-            std::memcpy(tile + pitch * (n >> 3) + kNumbers * (n & 7), &values[classes[n]],
-                        sizeof(Value));
-        }
-        return;
-    }
     for (; rows != 0; rows &= rows - 1) {
-        const unsigned u = unsigned(std::countr_zero(rows));
+        const auto u = std::size_t(std::countr_zero(rows));
         std::int32_t* const row = tile + pitch * u;
         for (std::size_t v = 0; v < 8; ++v)
-            std::memcpy(row + kNumbers * v, &values[classes[8 * u + v]], sizeof(Value));
+            std::memcpy(row + kNumbersOf<Value> * v, &values[classes[8 * u + v]], sizeof(Value));
     }
 }
 

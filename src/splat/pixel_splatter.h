@@ -42,10 +42,15 @@ class PixelSplatter {
 
     void splatWhole(int slice, const NeededPixels& needed);
     void splatChanges(int slice, const NeededPixels& needed);
-    void write(std::int32_t* tile, std::uint64_t voxels, unsigned rows, const SeenWord& word);
+    template <typename Use>
+    void withValues(const SeenWord& word, const Use& use);
+    // Of a block.
     template <typename Value>
-    void writeValues(std::int32_t* tile, std::uint64_t voxels, unsigned rows,
-                     const ClassIndex* classes, const Value* values);
+    void writeVoxels(std::int32_t* tile, std::uint64_t voxels, const ClassIndex* classes,
+                     const Value* values) const;
+    template <typename Value>
+    void writeRows(std::int32_t* tile, unsigned rows, const ClassIndex* classes,
+                   const Value* values) const;
     Pixel pixelOf(const ClassTable::Color& high, const ClassTable::Color* low) const;
 
     SliceBlocks blocks_;

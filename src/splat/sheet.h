@@ -135,6 +135,10 @@ class Sheet {
         std::int32_t* pixels;
     };
     Tile tileOf(glm::ivec2 block) { return tileAt(block + layout_.marginPixels / kTilePixels); }
+    /// Returns a bit for each row of a block's tile that is one of the pixel rows [first, last).
+    unsigned rowsOfTile(glm::ivec2 block, int first, int last) const {
+        return rowsOfTile(block.y + layout_.marginPixels / kTilePixels, first, last);
+    }
     /// Makes a tile zero.
     void clear(const Tile& tile);
     /// Returns where a row of tiles lies.

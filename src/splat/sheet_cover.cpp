@@ -6,35 +6,59 @@
 
 namespace deltasplat {
 
+namespace {
+
+// The cells that read runs of sheet pixels: the given one, and each `step` behind the one before.
+void findCells(const EvenReaders& readers, glm::ivec2 pixels, int step,
+               std::span<glm::ivec2> cells) {
+    constexpr int kCell = CoveredCells::kCellPixels;
+    for (glm::ivec2& place : cells) {
+        const glm::ivec2 read = readers.of(pixels.x, pixels.y);
+        const int any = read.x < read.y ? -1 : 0;
+        place = {any & read.x / kCell, any & (read.y + kCell - 1) / kCell};
+        pixels += step;
+    }
+}
+
+}  // namespace
+
 void SheetCover::set(const CoveredCells& cells, const SheetReading& first, const SheetReading& last,
                      const SheetLayout& layout) {
     cells_ = &cells;
+    const PlaneBox& box = cells.box();
     for (int axis = 0; axis < 2; ++axis) {
-        const auto cellsReading = [&](glm::ivec2 pixels) {
-            glm::ivec2 readers = readersOf(first, axis, pixels.x, pixels.y, cells.box());
-            if (&first != &last) {
-                const glm::ivec2 others = readersOf(last, axis, pixels.x, pixels.y, cells.box());
-                readers = {std::min(readers.x, others.x), std::max(readers.y, others.y)};
+        const auto find = [&](glm::ivec2 pixels, int step, std::vector<glm::ivec2>& places) {
+            if (first.scale == 1 && last.scale == 1) {
+                EvenReaders readers(first, axis, box);
+                readers.add(EvenReaders(last, axis, box));
+                return findCells(readers, pixels, step, places);
             }
-            return cells.cellsOf(axis, readers);
+            for (glm::ivec2& place : places) {
+                glm::ivec2 readers = readersOf(first, axis, pixels.x, pixels.y, box);
+                if (&first != &last) {
+                    const glm::ivec2 others = readersOf(last, axis, pixels.x, pixels.y, box);
+                    readers = {std::min(readers.x, others.x), std::max(readers.y, others.y)};
+                }
+                place = cells.cellsOf(axis, readers);
+                pixels += step;
+            }
         };
-        blocks_[axis].clear();
-        for (int i = 0; i < layout.blocks[axis]; ++i)
-            blocks_[axis].push_back(cellsReading(pixelsReached(layout, i)));
-        tiles_[axis].clear();
-        for (int i = 0; i < layout.tiles()[axis]; ++i)
-            tiles_[axis].push_back(cellsReading({kTilePixels * i, kTilePixels * (i + 1)}));
+        blocks_[axis].resize(std::size_t(layout.blocks[axis]));
+        find(pixelsReached(layout, 0), layout.blockPixels(), blocks_[axis]);
+        tiles_[axis].resize(std::size_t(layout.tiles()[axis]));
+        find({0, kTilePixels}, kTilePixels, tiles_[axis]);
     }
 }
 
 void SheetCover::clearHidden(int tileRow, std::size_t words, std::span<std::uint64_t> rows) const {
+    const Row hiding = this->tileRow(tileRow);
     for (std::size_t i = 0; i < words; ++i) {
         std::uint64_t any = 0;
         for (std::size_t place = i; place < rows.size(); place += words) any |= rows[place];
         std::uint64_t hidden = 0;
         for (std::uint64_t rest = any; rest != 0; rest &= rest - 1) {
             const int bit = std::countr_zero(rest);
-            if (hidesTile({int(64 * i) + bit, tileRow})) hidden |= std::uint64_t{1} << bit;
+            if (hiding.hides(int(64 * i) + bit)) hidden |= std::uint64_t{1} << bit;
         }
         if (hidden == 0) continue;
         for (std::size_t place = i; place < rows.size(); place += words) rows[place] &= ~hidden;

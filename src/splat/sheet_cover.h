@@ -20,23 +20,31 @@ class SheetCover {
     void set(const CoveredCells& cells, const SheetReading& first, const SheetReading& last,
              const SheetLayout& layout);
 
-    /// Whether all readers are covered of what the voxels of a block (v, u) reach.
-    bool hidesBlock(glm::ivec2 block) const {
-        return cells_->cover(blocks_[0][std::size_t(block.x)], blocks_[1][std::size_t(block.y)]);
-    }
-    /// The same of all blocks of a row from column `first` to `last`; false where that takes more
-    /// than a look.
-    bool hidesBlocks(int first, int last, int row) const {
-        const glm::ivec2 begin = blocks_[0][std::size_t(first)];
-        const glm::ivec2 end = blocks_[0][std::size_t(last)];
-        // What nobody reads has no place among the others.
-        if (begin.x >= begin.y || end.x >= end.y) return false;
-        return cells_->cover({begin.x, end.y}, blocks_[1][std::size_t(row)]);
-    }
-    /// The same of a tile's pixels.
-    bool hidesTile(glm::ivec2 tile) const {
-        return cells_->cover(tiles_[0][std::size_t(tile.x)], tiles_[1][std::size_t(tile.y)]);
-    }
+    /// A row of blocks, or of tiles.
+    class Row {
+      public:
+        /// Whether all readers are covered of what the voxels of the block in a column reach, or of
+        /// the tile's pixels.
+        bool hides(int column) const { return cells_.cover(columns_[column]); }
+        /// The same of all from column `first` to `last`; false where that takes more than a look.
+        bool hides(int first, int last) const {
+            const glm::ivec2 begin = columns_[first];
+            const glm::ivec2 end = columns_[last];
+            // What nobody reads has no place among the others.
+            if (begin.x >= begin.y || end.x >= end.y) return false;
+            return cells_.cover({begin.x, end.y});
+        }
+
+      private:
+        friend class SheetCover;
+        Row(const CoveredCells& cells, const std::vector<glm::ivec2> (&axes)[2], int row)
+            : cells_(cells.rows(axes[1][std::size_t(row)])), columns_(axes[0].data()) {}
+
+        CoveredCells::Rows cells_;
+        const glm::ivec2* columns_;
+    };
+    Row blockRow(int row) const { return {*cells_, blocks_, row}; }
+    Row tileRow(int row) const { return {*cells_, tiles_, row}; }
     /// Clears in rows of bits, a bit for each tile of a row of tiles, those of hidden ones.
     /// @param rows   [any number][words]
     void clearHidden(int tileRow, std::size_t words, std::span<std::uint64_t> rows) const;

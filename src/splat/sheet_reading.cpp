@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <glm/common.hpp>
 
 namespace deltasplat {
@@ -80,15 +79,7 @@ SheetBox readBox(const SheetReading& reading, const PlaneBox& box, const SheetLa
 
 glm::ivec2 readersOf(const SheetReading& reading, int axis, int first, int last,
                      const PlaneBox& box) {
-    // The same in whole numbers, for it is asked for each row and column of blocks of every slice.
-    if (reading.scale == 1) {
-        const std::int64_t low =
-            std::int64_t{first} - reading.offset[axis] - (reading.fraction[axis] > 0 ? 2 : 1);
-        const std::int64_t high = std::int64_t{last} - reading.offset[axis] + 1;
-        const std::int64_t least = box.min[axis];
-        const std::int64_t most = box.max[axis];
-        return {int(std::clamp(low, least, most)), int(std::clamp(high, least, most))};
-    }
+    if (reading.scale == 1) return box.min[axis] + EvenReaders(reading, axis, box).of(first, last);
     const double start = reading.offset[axis] + reading.fraction[axis];
     const double reach = readingReach(reading);
     const auto bounded = [&](double pixel) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <glm/vec2.hpp>
 
 #include "splat/sheet.h"
@@ -34,6 +36,32 @@ SheetBox readBox(const SheetReading& reading, const PlaneBox& box, const SheetLa
 /// sheet pixels [first, last).
 glm::ivec2 readersOf(const SheetReading& reading, int axis, int first, int last,
                      const PlaneBox& box);
+
+/// What readersOf() returns at scale 1, for many runs of sheet pixels: those that read [first,
+/// last) are the box's pixels [first + before, last + after), counted from its first.
+struct EvenReaders {
+    EvenReaders(const SheetReading& reading, int axis, const PlaneBox& box)
+        : count(box.size()[axis]) {
+        // Where pixels lie farther away than that, the box has none of them.
+        constexpr std::int64_t kFar = 1 << 29;
+        const std::int64_t shift = std::int64_t{reading.offset[axis]} + box.min[axis];
+        before = int(std::clamp(-shift - (reading.fraction[axis] > 0 ? 2 : 1), -kFar, kFar));
+        after = int(std::clamp(1 - shift, -kFar, kFar));
+    }
+    /// Becomes those that read at either place.
+    void add(const EvenReaders& other) {
+        before = std::min(before, other.before);
+        after = std::max(after, other.after);
+    }
+    /// Returns those of the box, [x, y).
+    glm::ivec2 of(int first, int last) const {
+        return {std::clamp(first + before, 0, count), std::clamp(last + after, 0, count)};
+    }
+
+    int before;
+    int after;
+    int count;  ///< the box's
+};
 
 /// How far a reading reaches to both sides of a position, in sheet pixels: to the neighbours, or,
 /// where base pixels lie farther apart, to the next of those.

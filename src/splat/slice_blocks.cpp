@@ -3,14 +3,13 @@
 
 #include <algorithm>
 
-#include "hwy/cache_control.h"
-
 namespace deltasplat {
 
 SliceBlocks::SliceBlocks(const SplatInput& input, const SheetLayout& layout, DigitPlace digit,
                          bool withLow)
     : input_(input),
       layout_(layout),
+      firstBlock_(layout.firstVoxel / 8),
       stampEmptyVoxels_(input.stampEmptyVoxels && digit.plane == 0 && !digit.low),
       digit_(digit),
       colors_(digit.of(input.colors.table()).colors.data()) {
@@ -27,23 +26,18 @@ SliceBlocks::SliceBlocks(const SplatInput& input, const SheetLayout& layout, Dig
 // The words of a slice in rows of blocks; they are ordered by u.
 std::span<const DeltaWord> SliceBlocks::wordsOf(int slice, glm::ivec2 rows) const {
     const std::span<const DeltaWord> words = input_.deltas.slice(slice);
-    const int firstU = layout_.firstVoxel.y / 8;
     const auto before = [](const DeltaWord& word, int u) { return word.block.x < u; };
-    const auto first = std::lower_bound(words.begin(), words.end(), firstU + rows.x, before);
-    return {first, std::lower_bound(first, words.end(), firstU + std::max(rows.x, rows.y), before)};
-}
-
-// Sheets run along v.
-glm::ivec2 SliceBlocks::blockOf(const DeltaWord& word) const {
-    return glm::ivec2(word.block.y, word.block.x) - layout_.firstVoxel / 8;
+    const auto first = std::lower_bound(words.begin(), words.end(), firstBlock_.y + rows.x, before);
+    // Rows are few: the last one's words are near.
+    const int end = firstBlock_.y + std::max(rows.x, rows.y);
+    std::ptrdiff_t step = 1;
+    while (step < words.end() - first && before(first[step], end)) step *= 2;
+    return {first, std::lower_bound(first + step / 2, first + std::min(step, words.end() - first),
+                                    end, before)};
 }
 
 // Own colours lie in the order of voxels.
-SeenWord SliceBlocks::seenOf(const DeltaWord& word) const {
-    if (!input_.lit) {
-        return {word.visible, word.changed,      word.classes, colors_,
-                false,        lowVoxelsOf(word), lowColors_};
-    }
+SeenWord SliceBlocks::litOf(const DeltaWord& word) const {
     static constexpr auto kInOrder = [] {
         std::array<ClassIndex, 64> places{};
         for (std::size_t n = 0; n < places.size(); ++n) places[n] = ClassIndex(n);
@@ -100,17 +94,11 @@ std::uint64_t SliceBlocks::voxelsInBox(glm::ivec2 block) const {
     return word;
 }
 
-// Whether words of a row are all covered, or lie between such.
-bool SliceBlocks::hidesAll(const SheetCover& cover, std::span<const DeltaWord> words) const {
+// Whether words from one of the row in hand on are all covered, or lie between such.
+bool SliceBlocks::hidesAll(const SheetCover::Row& row, std::span<const DeltaWord> words) const {
     const glm::ivec2 first = blockOf(words.front());
     const glm::ivec2 last = blockOf(words.back());
-    return first.y == last.y && hasColumn(first) && hasColumn(last) &&
-           cover.hidesBlocks(first.x, last.x, first.y);
-}
-
-void SliceBlocks::fetchClasses(const DeltaWord& word) {
-    hwy::Prefetch(word.classes);
-    hwy::Prefetch(word.classes + 32);
+    return first.y == last.y && hasColumn(first) && hasColumn(last) && row.hides(first.x, last.x);
 }
 
 }  // namespace deltasplat

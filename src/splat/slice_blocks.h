@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <memory_resource>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "delta/packed_deltas.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/splat/footprint.h"
+#include "hwy/cache_control.h"
 #include "splat/digit_voxels.h"
 #include "splat/lit_slice.h"
 #include "splat/sheet.h"
@@ -58,7 +60,10 @@ class SliceBlocks {
     SliceBlocks(const SplatInput& input, const SheetLayout& layout, DigitPlace digit = {},
                 bool withLow = false);
 
-    void setLayout(const SheetLayout& layout) { layout_ = layout; }
+    void setLayout(const SheetLayout& layout) {
+        layout_ = layout;
+        firstBlock_ = layout.firstVoxel / 8;
+    }
     const SheetLayout& layout() const { return layout_; }
 
     /// Calls `use(block, voxels, word)` for the blocks (v, u) of a slice that reach what is needed
@@ -104,11 +109,22 @@ class SliceBlocks {
 
     template <typename Use>
     void forWords(int slice, bool whole, const NeededPixels& needed, const Use& use);
+    template <typename Use>
+    void forEachBlock(std::span<const DeltaWord> words, glm::ivec2 rows, const SheetCover* cover,
+                      const Use& use) const;
     std::span<const DeltaWord> wordsOf(int slice, glm::ivec2 rows) const;
-    glm::ivec2 blockOf(const DeltaWord& word) const;
+    // Sheets run along v.
+    glm::ivec2 blockOf(const DeltaWord& word) const {
+        return glm::ivec2(word.block.y, word.block.x) - firstBlock_;
+    }
     // Rows are found by wordsOf().
     bool hasColumn(glm::ivec2 block) const { return block.x >= 0 && block.x < layout_.blocks.x; }
-    SeenWord seenOf(const DeltaWord& word) const;
+    SeenWord seenOf(const DeltaWord& word) const {
+        if (input_.lit) return litOf(word);
+        return {word.visible, word.changed,      word.classes, colors_,
+                false,        lowVoxelsOf(word), lowColors_};
+    }
+    SeenWord litOf(const DeltaWord& word) const;
     std::uint64_t voxelsOfDigit(const DeltaWord& word) const;
     std::uint64_t lowVoxelsOf(const DeltaWord& word) const;
     void takeDigit(const DeltaWord& word, bool whole, SeenWord& seen);
@@ -116,11 +132,15 @@ class SliceBlocks {
         return std::size_t(&word - input_.deltas.words.data());
     }
     std::uint64_t voxelsInBox(glm::ivec2 block) const;
-    bool hidesAll(const SheetCover& cover, std::span<const DeltaWord> words) const;
-    static void fetchClasses(const DeltaWord& word);
+    bool hidesAll(const SheetCover::Row& row, std::span<const DeltaWord> words) const;
+    static void fetchClasses(const DeltaWord& word) {
+        hwy::Prefetch(word.classes);
+        hwy::Prefetch(word.classes + 32);
+    }
 
     const SplatInput& input_;
     SheetLayout layout_;
+    glm::ivec2 firstBlock_;
     // Empty voxels are stamped once.
     bool stampEmptyVoxels_;
     DigitPlace digit_;
@@ -145,44 +165,58 @@ void SliceBlocks::forWords(int slice, bool whole, const NeededPixels& needed, co
     const SheetCover* cover = whole ? needed.cover : needed.fromNowOn;
     const std::span<const DeltaWord> words = wordsOf(slice, rows);
     if (input_.lit) input_.lit->begin(slice);
-    if (!stampEmptyVoxels_) {
-        const auto useWord = [&](const DeltaWord& word) {
-            SeenWord seen = seenOf(word);
-            if (takesDigit_) takeDigit(word, whole, seen);
-            const std::uint64_t voxels = whole ? seen.visible : seen.changed;
-            if (voxels != 0) use(blockOf(word), voxels, seen);
-        };
-        // Words that come next: what they point to is on its way meanwhile.
-        std::array<const DeltaWord*, kFetched> next;
-        std::size_t count = 0;
-        std::size_t looked = 0;
-        for (std::size_t i = 0; i < words.size(); ++i) {
-            if (cover && i == looked) {
-                looked = std::min(i + kLookedAt, words.size());
-                if (hidesAll(*cover, words.subspan(i, looked - i))) {
-                    i = looked - 1;
-                    continue;
-                }
-            }
-            const DeltaWord& word = words[i];
-            const glm::ivec2 block = blockOf(word);
-            if (!hasColumn(block) || (cover && cover->hidesBlock(block))) continue;
-            if (!input_.lit && block.y >= now.x && block.y < now.y) fetchClasses(word);
-            const DeltaWord*& place = next[count++ % next.size()];
-            if (count > next.size()) useWord(*place);
-            place = &word;
+    if (stampEmptyVoxels_) return forEachBlock(words, rows, cover, use);
+    const auto useWord = [&](const DeltaWord& word) {
+        SeenWord seen = seenOf(word);
+        if (takesDigit_) takeDigit(word, whole, seen);
+        const std::uint64_t voxels = whole ? seen.visible : seen.changed;
+        if (voxels != 0) use(blockOf(word), voxels, seen);
+    };
+    // Words that come next: what they point to is on its way meanwhile.
+    std::array<const DeltaWord*, kFetched> next;
+    std::size_t count = 0;
+    std::size_t looked = 0;
+    int row = -1;
+    std::optional<SheetCover::Row> hiding;  // of the row in hand
+    bool fetches = false;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const DeltaWord& word = words[i];
+        const glm::ivec2 block = blockOf(word);
+        if (block.y != row) {
+            row = block.y;
+            if (cover) hiding = cover->blockRow(row);
+            fetches = !input_.lit && row >= now.x && row < now.y;
         }
-        for (std::size_t i = count - std::min(count, next.size()); i < count; ++i)
-            useWord(*next[i % next.size()]);
-        return;
+        if (hiding && i == looked) {
+            looked = std::min(i + kLookedAt, words.size());
+            if (hidesAll(*hiding, words.subspan(i, looked - i))) {
+                i = looked - 1;
+                continue;
+            }
+        }
+        if (!hasColumn(block) || (hiding && hiding->hides(block.x))) continue;
+        if (fetches) fetchClasses(word);
+        const DeltaWord*& place = next[count++ % next.size()];
+        if (count > next.size()) useWord(*place);
+        place = &word;
     }
+    for (std::size_t i = count - std::min(count, next.size()); i < count; ++i)
+        useWord(*next[i % next.size()]);
+}
+
+// All blocks of rows, with the voxels that lie in the volume's box.
+template <typename Use>
+void SliceBlocks::forEachBlock(std::span<const DeltaWord> words, glm::ivec2 rows,
+                               const SheetCover* cover, const Use& use) const {
     const SeenWord nothing = nothingSeen();
     auto word = words.begin();
     for (int u = rows.x; u < rows.y; ++u) {
+        std::optional<SheetCover::Row> hiding;
+        if (cover) hiding = cover->blockRow(u);
         for (int v = 0; v < layout_.blocks.x; ++v) {
             while (word != words.end() && !hasColumn(blockOf(*word))) ++word;
             const bool has = word != words.end() && blockOf(*word) == glm::ivec2(v, u);
-            if (!cover || !cover->hidesBlock({v, u}))
+            if (!hiding || !hiding->hides(v))
                 use(glm::ivec2(v, u), voxelsInBox({v, u}), has ? seenOf(*word) : nothing);
             if (has) ++word;
         }

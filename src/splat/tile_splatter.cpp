@@ -82,7 +82,9 @@ void TileSplatter::splat(int slice, bool whole, const NeededPixels& needed, cons
         if (low) addLow(*low, row, touched, full);
     };
     if (!needed.cover) return sheet_.refillTouched(needed.firstRow, needed.lastRow, refill);
-    const auto isHidden = [&](glm::ivec2 tile) { return needed.cover->hidesTile(tile); };
+    const auto isHidden = [&](glm::ivec2 tile) {
+        return needed.cover->tileRow(tile.y).hides(tile.x);
+    };
     sheet_.refillTouched(needed.firstRow, needed.lastRow, isHidden, refill);
 }
 

@@ -36,13 +36,13 @@ TEST(CoveredCells, CoverWhatAllCellsOfABoxCover) {
     EXPECT_TRUE(cells.any());
     EXPECT_FALSE(cells.all());
     for (int y0 = 0; y0 <= cells.size().y; ++y0) {
-        for (int y1 = 0; y1 <= cells.size().y; ++y1) {
+        for (int y1 = y0; y1 <= cells.size().y; ++y1) {
             for (int x0 = 0; x0 <= cells.size().x; ++x0) {
-                for (int x1 = 0; x1 <= cells.size().x; ++x1) {
+                for (int x1 = x0; x1 <= cells.size().x; ++x1) {
                     bool expected = true;
                     for (int y = y0; y < y1; ++y)
                         for (int x = x0; x < x1; ++x) expected &= cells.isCovered({x, y});
-                    ASSERT_EQ(cells.cover(glm::ivec2(x0, x1), {y0, y1}), expected);
+                    ASSERT_EQ(cells.rows({y0, y1}).cover({x0, x1}), expected);
                 }
             }
         }
@@ -126,8 +126,8 @@ void expectRunsHideTheirBlocks(const SheetCover& cover, const SheetLayout& layou
         for (int first = 0; first < layout.blocks.x; ++first) {
             bool hidesEach = true;
             for (int last = first; last < layout.blocks.x; ++last) {
-                hidesEach = hidesEach && cover.hidesBlock({last, v});
-                ASSERT_TRUE(hidesEach || !cover.hidesBlocks(first, last, v));
+                hidesEach = hidesEach && cover.blockRow(v).hides(last);
+                ASSERT_TRUE(hidesEach || !cover.blockRow(v).hides(first, last));
             }
         }
     }
@@ -153,7 +153,7 @@ TEST(SheetCover, HidesWhatCoveredPixelsAloneRead) {
                 for (int u = 0; u < layout.blocks.x; ++u) {
                     const glm::ivec2 first = 8 * resolution * glm::ivec2(u, v) + 14;
                     const glm::ivec2 last = first + 7 * resolution + 5;
-                    const bool hides = cover.hidesBlock({u, v});
+                    const bool hides = cover.blockRow(v).hides(u);
                     hidden += hides;
                     ASSERT_TRUE(!hides || isHidden(cells, reading, first, last, 0));
                     // It is not much more careful than it has to be: a cell is not more.
@@ -164,7 +164,7 @@ TEST(SheetCover, HidesWhatCoveredPixelsAloneRead) {
             for (int v = 0; v < layout.tiles().y; ++v) {
                 for (int u = 0; u < layout.tiles().x; ++u) {
                     const glm::ivec2 first = kTilePixels * glm::ivec2(u, v);
-                    const bool hides = cover.hidesTile({u, v});
+                    const bool hides = cover.tileRow(v).hides(u);
                     ASSERT_TRUE(!hides || isHidden(cells, reading, first, first + kTilePixels, 0));
                     ASSERT_TRUE(hides || !isHidden(cells, reading, first, first + kTilePixels, 10));
                 }
@@ -196,10 +196,10 @@ TEST(SheetCover, HidesFromNowOnWhatEachSliceHides) {
         one.set(cells, readingOfSlice(slice), readingOfSlice(slice), layout);
         for (int v = 0; v < layout.blocks.y; ++v) {
             for (int u = 0; u < layout.blocks.x; ++u) {
-                runs += u > 0 && all.hidesBlocks(u - 1, u, v);
-                if (!all.hidesBlock({u, v})) continue;
+                runs += u > 0 && all.blockRow(v).hides(u - 1, u);
+                if (!all.blockRow(v).hides(u)) continue;
                 ++hidden;
-                ASSERT_TRUE(one.hidesBlock({u, v})) << slice;
+                ASSERT_TRUE(one.blockRow(v).hides(u)) << slice;
             }
         }
     }
@@ -226,7 +226,7 @@ TEST(SheetCover, ClearsBitsOfHiddenTiles) {
             for (std::size_t y = 0; y < 8; ++y) {
                 const std::size_t place = 2 * y + std::size_t(tile / 64);
                 const bool was = bits[place] >> tile % 64 & 1;
-                ASSERT_EQ(left[place] >> tile % 64 & 1, was && !cover.hidesTile({tile, row}));
+                ASSERT_EQ(left[place] >> tile % 64 & 1, was && !cover.tileRow(row).hides(tile));
             }
         }
     }
