@@ -113,24 +113,43 @@ Layer SlabRenderer::merge() {
 }
 
 // Into how many strips rows of the base plane are cut: enough pieces for every thread to take some,
-// and enough for a strip's part of sheet and layer to stay in a second-level cache; but not so many
-// that strips get much smaller than the rows at their edges, which belong to two. If all of sheet
-// and layer hardly overflow that cache, such rows cost more than they help.
+// and enough for what a slice of a strip touches of sheet and layer to stay in a second-level
+// cache; but not so many that strips get much smaller than the rows at their edges, which belong to
+// two. If all of sheet and layer hardly overflow that cache, such rows cost more than they help; no
+// strip has more of both than that, for each thread clears its part of the sheet.
 int SlabRenderer::stripCount() const {
     constexpr std::size_t kPiecesPerThread = 4;
     constexpr int kLeastRows = 48;
-    constexpr double kStripBytes = 1.5e6;
-    constexpr double kMostWholeBytes = 6e6;
+    constexpr double kTouchedBytes = 0.75e6;
+    constexpr double kMostBytes = 6e6;
     const auto threads = std::size_t(threadCount());
     const std::size_t slabs = seen_.size();
     const std::size_t forThreads =
         threads == 1 ? 1 : (kPiecesPerThread * threads + slabs / 2) / slabs;
     const int rows = rows_.y - rows_.x;
     const double bytes = 2.0 * sizeof(float) * channels_ * input_.layout.sizePixels.x * rows;
-    const double forCache = bytes > kMostWholeBytes ? bytes / kStripBytes : 1;
+    const double forCache =
+        bytes > kMostBytes
+            ? std::max(std::min(bytes, bytesOfSlice()) / kTouchedBytes, bytes / kMostBytes)
+            : 1;
     const double wanted = std::min(std::max(double(forThreads), forCache), 1024.0);
     return std::clamp(int(std::lround(wanted)), 1,
                       std::max(1, rows / std::max(kLeastRows, travel())));
+}
+
+// How much a slice touches of sheet and layer, in the mean of all words that are seen.
+double SlabRenderer::bytesOfSlice() const {
+    if (input_.splat.stampEmptyVoxels) return std::numeric_limits<double>::infinity();
+    double words = 0;
+    double weighted = 0;
+    for (const SeenSlab& seen : seen_) {
+        const auto ofSlab = double(seen.slab->seenWords);
+        words += ofSlab;
+        weighted += ofSlab * ofSlab / seen.slab->sliceCount;
+    }
+    if (words == 0) return 0;
+    const double edge = input_.layout.blockPixels();
+    return 2.0 * sizeof(float) * channels_ * edge * edge * weighted / words;
 }
 
 // How many rows a strip moves along the sheet in a slab of changes: all that it comes to is looked
@@ -185,8 +204,8 @@ std::vector<double> SlabRenderer::workOfRows() const {
 
 // The rows that strips begin at, and the last one's end. Several threads get strips of the same
 // work, as far as strips do not get so low that most of their rows lie at edges. Where each thread
-// takes many, these make up for each other, and even ones have the fewest such rows where there is
-// most to do.
+// takes many, work evens out by itself, and all strips are as high: of the same work, they would be
+// lowest, and have most rows at edges, where there is most to do.
 std::vector<int> SlabRenderer::edgesOfStrips() const {
     constexpr int kManyForThread = 8;
     const int leastRows = std::max(32, travel());

@@ -88,9 +88,11 @@ void PixelSplatter::splatWhole(int slice, const NeededPixels& needed) {
             const Sheet::Tile tile = sheet_.tileOf(block);
             const unsigned read = sheet_.rowsOfTile(block, needed.firstRow, needed.lastRow);
             const unsigned rows = (rowsWithAny(voxels) | tile.full) & read;
-            withValues(word, [&](const auto* values) {
-                writeRows(tile.pixels, rows, word.classes, values);
-            });
+            if (rows != 0) {
+                withValues(word, [&](const auto* values) {
+                    writeRows(tile.pixels, rows, word.classes, values);
+                });
+            }
             tile.full = std::uint8_t((rowsWithAny(word.visible) & read) | (tile.full & ~read));
             slices_[blocks_.placeOf(block)] = slice;
             shownBlocks_.push_back(block);

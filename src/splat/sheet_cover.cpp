@@ -8,14 +8,15 @@ namespace deltasplat {
 
 namespace {
 
-// The cells that read runs of sheet pixels: the given one, and each `step` behind the one before.
+// The cells that read runs of sheet pixels: the given one, and each `step` behind the one before;
+// as CoveredCells::cellsOf() has them, without a branch.
 void findCells(const EvenReaders& readers, glm::ivec2 pixels, int step,
                std::span<glm::ivec2> cells) {
     constexpr int kCell = CoveredCells::kCellPixels;
     for (glm::ivec2& place : cells) {
         const glm::ivec2 read = readers.of(pixels.x, pixels.y);
-        const int any = read.x < read.y ? -1 : 0;
-        place = {any & read.x / kCell, any & (read.y + kCell - 1) / kCell};
+        const int mask = read.x < read.y ? ~0 : 0;
+        place = {mask & read.x / kCell, mask & (read.y + kCell - 1) / kCell};
         pixels += step;
     }
 }
@@ -50,8 +51,8 @@ void SheetCover::set(const CoveredCells& cells, const SheetReading& first, const
     }
 }
 
-void SheetCover::clearHidden(int tileRow, std::size_t words, std::span<std::uint64_t> rows) const {
-    const Row hiding = this->tileRow(tileRow);
+void SheetCover::clearHidden(int row, std::size_t words, std::span<std::uint64_t> rows) const {
+    const Row hiding = tileRow(row);
     for (std::size_t i = 0; i < words; ++i) {
         std::uint64_t any = 0;
         for (std::size_t place = i; place < rows.size(); place += words) any |= rows[place];

@@ -20,7 +20,7 @@ class SheetCover {
     void set(const CoveredCells& cells, const SheetReading& first, const SheetReading& last,
              const SheetLayout& layout);
 
-    /// A row of blocks, or of tiles.
+    /// A row of blocks, or of tiles. Valid until the next set(), while the cells stay as they are.
     class Row {
       public:
         /// Whether all readers are covered of what the voxels of the block in a column reach, or of
@@ -47,7 +47,7 @@ class SheetCover {
     Row tileRow(int row) const { return {*cells_, tiles_, row}; }
     /// Clears in rows of bits, a bit for each tile of a row of tiles, those of hidden ones.
     /// @param rows   [any number][words]
-    void clearHidden(int tileRow, std::size_t words, std::span<std::uint64_t> rows) const;
+    void clearHidden(int row, std::size_t words, std::span<std::uint64_t> rows) const;
 
   private:
     const CoveredCells* cells_ = nullptr;

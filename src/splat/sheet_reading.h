@@ -42,7 +42,8 @@ glm::ivec2 readersOf(const SheetReading& reading, int axis, int first, int last,
 struct EvenReaders {
     EvenReaders(const SheetReading& reading, int axis, const PlaneBox& box)
         : count(box.size()[axis]) {
-        // Where pixels lie farther away than that, the box has none of them.
+        // Where the plane lies farther away than that, the box has none of the pixels: neither it
+        // nor a sheet has as many along an axis.
         constexpr std::int64_t kFar = 1 << 29;
         const std::int64_t shift = std::int64_t{reading.offset[axis]} + box.min[axis];
         before = int(std::clamp(-shift - (reading.fraction[axis] > 0 ? 2 : 1), -kFar, kFar));

@@ -301,6 +301,28 @@ TEST(Identity, AlsoWhereMuchIsCovered) {
     }
 }
 
+// Sheet and layer are cut into so many strips that two threads get strips of even rows, three
+// strips of the same work; most of that lies in a few rows.
+TEST(Identity, AlsoOfManyStrips) {
+    const Volume volume = test::makeVolume({{0, 0, 0}, {999, 899, 9}}, [](int x, int y, int z) {
+        const bool isDense = y > 200 && y < 700 && x > 200;
+        return isDense || (x / 30 + y / 50) % 9 == 0 ? 60 + (x + 3 * y + 7 * z) % 190
+                                                     : test::kInactive;
+    });
+    RenderOptions options = optionsFor({0.3, 0.4, -1});
+    options.between = 0;
+    const Image expected = render(volume, options).image;
+    EXPECT_GT(mean(expected), 0.02);
+    for (const Method method : kMethods) {
+        options.method = method;
+        for (const int threads : {1, 2, 3}) {
+            const ThreadLimit limit(threads);
+            EXPECT_EQ(render(volume, options).image.rgba, expected.rgba)
+                << methodName(method) << ", " << threads << " threads";
+        }
+    }
+}
+
 // Opacity times a colour is what the four channels give, but for rounding.
 TEST(Identity, OneColorIsTheSameAsFourChannels) {
     const Volume volume = test::randomVolume(kBoxes[0], 19, 0.5);

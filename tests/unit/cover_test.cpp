@@ -120,6 +120,36 @@ bool isHidden(const CoveredCells& cells, const SheetReading& reading, glm::ivec2
     return true;
 }
 
+// Who reads some sheet pixels at scale 1, by asking each pixel of the box: those to which they lie
+// nearer than a pixel.
+TEST(SheetReading, ReadersAtOnePixelAreThoseThatReachIt) {
+    for (const double fraction : {0.0, 0.25}) {
+        for (const int offset : {-40, -3, 0, 5, 60}) {
+            const SheetReading reading{{offset, -offset}, {fraction, fraction}, 1};
+            const PlaneBox box{{-20, -7}, {30, 25}};
+            for (int axis = 0; axis < 2; ++axis) {
+                for (int first = -5; first < 20; first += 4) {
+                    const glm::ivec2 found = readersOf(reading, axis, first, first + 6, box);
+                    for (int pixel = box.min[axis]; pixel < box.max[axis]; ++pixel) {
+                        const double at = pixel + reading.offset[axis] + fraction;
+                        const bool reads = at > first - 1 && at < first + 6;
+                        const bool isFound = pixel >= found.x && pixel < found.y;
+                        ASSERT_TRUE(!reads || isFound) << offset << ' ' << first << ' ' << pixel;
+                        // One pixel more to each side is none too many.
+                        ASSERT_TRUE(!isFound || (at > first - 2.5 && at < first + 7.5));
+                    }
+                }
+            }
+        }
+    }
+    // A plane that lies far away has none.
+    for (const int offset : {-2'000'000'000, 2'000'000'000}) {
+        const glm::ivec2 found = readersOf({{offset, 0}, {0.5, 0}, 1}, 0, 0, 100'000,
+                                           PlaneBox{{-100'000, 0}, {100'000, 1}});
+        EXPECT_EQ(found.x, found.y);
+    }
+}
+
 // A run of blocks in a row is hidden where each of them is, unless nobody reads its ends.
 void expectRunsHideTheirBlocks(const SheetCover& cover, const SheetLayout& layout) {
     for (int v = 0; v < layout.blocks.y; ++v) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -28,7 +29,8 @@ std::size_t threadsAtWork() {
             const std::lock_guard lock(mutex);
             most = std::max(most, ++now);
         }
-        std::this_thread::yield();
+        // Long enough for others to come, who then are seen.
+        std::this_thread::sleep_for(std::chrono::microseconds(100));
         const std::lock_guard lock(mutex);
         --now;
     });
