@@ -127,18 +127,18 @@ int SlabRenderer::stripCount() const {
     const std::size_t forThreads =
         threads == 1 ? 1 : (kPiecesPerThread * threads + slabs / 2) / slabs;
     const int rows = rows_.y - rows_.x;
-    const double bytes = 2.0 * sizeof(float) * channels_ * input_.layout.sizePixels.x * rows;
-    const double forCache =
-        bytes > kMostBytes
-            ? std::max(std::min(bytes, bytesOfSlice()) / kTouchedBytes, bytes / kMostBytes)
-            : 1;
+    const double pixels = double(input_.layout.sizePixels.x) * rows;
+    const double pixelBytes = 2.0 * sizeof(float) * channels_;
+    const double parts = pixelBytes * pixels / kMostBytes;
+    const double touched = pixelBytes * std::min(pixels, pixelsOfSlice());
+    const double forCache = parts > 1 ? std::max(touched / kTouchedBytes, parts) : 1;
     const double wanted = std::min(std::max(double(forThreads), forCache), 1024.0);
     return std::clamp(int(std::lround(wanted)), 1,
                       std::max(1, rows / std::max(kLeastRows, travel())));
 }
 
-// How much a slice touches of sheet and layer, in the mean of all words that are seen.
-double SlabRenderer::bytesOfSlice() const {
+// How many pixels a slice touches of its sheet, in the mean of all words that are seen.
+double SlabRenderer::pixelsOfSlice() const {
     if (input_.splat.stampEmptyVoxels) return std::numeric_limits<double>::infinity();
     double words = 0;
     double weighted = 0;
@@ -149,7 +149,7 @@ double SlabRenderer::bytesOfSlice() const {
     }
     if (words == 0) return 0;
     const double edge = input_.layout.blockPixels();
-    return 2.0 * sizeof(float) * channels_ * edge * edge * weighted / words;
+    return edge * edge * weighted / words;
 }
 
 // How many rows a strip moves along the sheet in a slab of changes: all that it comes to is looked

@@ -90,7 +90,7 @@ class SlabRenderer {
     int stripCount() const;
     std::vector<int> edgesOfStrips() const;
     std::vector<double> workOfRows() const;
-    double bytesOfSlice() const;
+    double pixelsOfSlice() const;
     int travel() const;
     SheetLayout layoutOf(const Strip& strip, const SeenSlab& seen) const;
     PlaneBox boxOf(const Strip& strip, const SeenSlab& seen) const;

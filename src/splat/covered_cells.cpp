@@ -23,10 +23,7 @@ glm::ivec2 CoveredCells::cellsOf(int axis, glm::ivec2 pixels) const {
     const auto placeOf = [&](int pixel) {
         return std::clamp(pixel, box_.min[axis], box_.max[axis]) - box_.min[axis];
     };
-    const int first = placeOf(pixels.x);
-    const int last = placeOf(pixels.y);
-    if (last <= first) return {0, 0};
-    return {first / kCellPixels, (last - 1) / kCellPixels + 1};
+    return cellsOf({placeOf(pixels.x), placeOf(pixels.y)});
 }
 
 void CoveredCells::settle() {

@@ -24,6 +24,12 @@ class CoveredCells {
     PlaneBox pixelsOf(glm::ivec2 cell) const;
     /// The cells [x, y) along an axis that have any of the pixels [x, y), of those of the box.
     glm::ivec2 cellsOf(int axis, glm::ivec2 pixels) const;
+    /// The same of pixels of the box, counted from its first. Without a branch, for it is asked for
+    /// each row and column of every slice.
+    static glm::ivec2 cellsOf(glm::ivec2 pixels) {
+        const int mask = pixels.x < pixels.y ? ~0 : 0;
+        return {mask & pixels.x / kCellPixels, mask & (pixels.y + kCellPixels - 1) / kCellPixels};
+    }
 
     bool isCovered(glm::ivec2 cell) const { return covered_[placeOf(cell)] != 0; }
     /// Says that a cell is covered. Call settle() before asking for any but cells by themselves.

@@ -11,6 +11,12 @@
 #include "delta/block_kernels.h"
 
 namespace deltasplat {
+namespace {
+
+template <typename Value>
+constexpr std::size_t kNumbersOf = sizeof(Value) / sizeof(std::int32_t);
+
+}  // namespace
 
 double PixelSplatter::bytes(const SplatInput& input, const SheetLayout& layout) {
     // Which slice blocks show, which of them do, twice, and what waits.
@@ -122,13 +128,6 @@ void PixelSplatter::withValues(const SeenWord& word, const Use& use) {
         use(opacities_.data());
     }
 }
-
-namespace {
-
-template <typename Value>
-constexpr std::size_t kNumbersOf = sizeof(Value) / sizeof(std::int32_t);
-
-}  // namespace
 
 template <typename Value>
 void PixelSplatter::writeVoxels(std::int32_t* tile, std::uint64_t voxels, const ClassIndex* classes,

@@ -8,15 +8,11 @@ namespace deltasplat {
 
 namespace {
 
-// The cells that read runs of sheet pixels: the given one, and each `step` behind the one before;
-// as CoveredCells::cellsOf() has them, without a branch.
+// The cells that read runs of sheet pixels: the given one, and each `step` behind the one before.
 void findCells(const EvenReaders& readers, glm::ivec2 pixels, int step,
                std::span<glm::ivec2> cells) {
-    constexpr int kCell = CoveredCells::kCellPixels;
     for (glm::ivec2& place : cells) {
-        const glm::ivec2 read = readers.of(pixels.x, pixels.y);
-        const int mask = read.x < read.y ? ~0 : 0;
-        place = {mask & read.x / kCell, mask & (read.y + kCell - 1) / kCell};
+        place = CoveredCells::cellsOf(readers.of(pixels.x, pixels.y));
         pixels += step;
     }
 }

@@ -28,12 +28,8 @@ std::span<const DeltaWord> SliceBlocks::wordsOf(int slice, glm::ivec2 rows) cons
     const std::span<const DeltaWord> words = input_.deltas.slice(slice);
     const auto before = [](const DeltaWord& word, int u) { return word.block.x < u; };
     const auto first = std::lower_bound(words.begin(), words.end(), firstBlock_.y + rows.x, before);
-    // Rows are few: the last one's words are near.
     const int end = firstBlock_.y + std::max(rows.x, rows.y);
-    std::ptrdiff_t step = 1;
-    while (step < words.end() - first && before(first[step], end)) step *= 2;
-    return {first, std::lower_bound(first + step / 2, first + std::min(step, words.end() - first),
-                                    end, before)};
+    return {first, std::lower_bound(first, words.end(), end, before)};
 }
 
 // Own colours lie in the order of voxels.

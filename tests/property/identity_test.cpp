@@ -302,7 +302,7 @@ TEST(Identity, AlsoWhereMuchIsCovered) {
 }
 
 // Sheet and layer are cut into so many strips that two threads get strips of even rows, three
-// strips of the same work; most of that lies in a few rows.
+// strips of the same work.
 TEST(Identity, AlsoOfManyStrips) {
     const Volume volume = test::makeVolume({{0, 0, 0}, {999, 899, 9}}, [](int x, int y, int z) {
         const bool isDense = y > 200 && y < 700 && x > 200;
