@@ -68,21 +68,24 @@ bool hasOwnPixelIn(const Factorization& view, double parts, double resolution) {
     return hasOwnPixel(view.pixelsPerVoxel / parts * (1 + kSnap), resolution);
 }
 
-// Whether voxels are divided where the screen asks for it and nobody says otherwise.
-bool dividesUnasked(const PreparedScene::Impl& scene, const Factorization& view,
-                    const Listener& listener) {
-    const Volume& volume = *scene.scene.volume;
+// Whether the screen asks for values between voxels, and nobody says otherwise.
+bool wantsDivided(const PreparedScene::Impl& scene, const Factorization& view) {
     const SplatOptions& options = scene.options;
     if (view.resolution < 2 || options.resolution || options.footprintWidth) return false;
     // Of the transfer function that was asked for, whatever colours are by.
     const Optics& optics = scene.scene.optics;
     if (!optics.surface && optics.transferFunction.colorsJump()) return false;
-    if (volume.empty() || scene.isThin || !dividesVoxels(scene)) return false;
-    if (!canBeDivided(volume.box, 1)) {
+    return !scene.scene.volume->empty() && !scene.isThin && dividesVoxels(scene);
+}
+
+// Whether voxels are few enough to be divided unasked.
+bool areFew(const PreparedScene::Impl& scene, const Factorization& view, const Listener& listener) {
+    const IndexBox& box = scene.scene.volume->box;
+    if (!canBeDivided(box, 1)) {
         listener.warn("the volume is too wide for voxels to be divided: drawn as they are");
         return false;
     }
-    const glm::dvec3 places = (volume.box.max >> 3) - (volume.box.min >> 3) + 1;
+    const glm::dvec3 places = (box.max >> 3) - (box.min >> 3) + 1;
     if (places.x * places.y * places.z <= double(kMostDivided)) return true;
     const std::size_t blocks = scene.blocksSeen(view.sliceAxis);
     if (blocks <= kMostDivided) return true;
@@ -183,9 +186,10 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
     const SplatOptions& options = scene.options;
     checkKernel(options);
     checkMostJoined(options.mostJoined);
-    // What is thin shows nothing else with more sheet pixels, while it is not smoothed.
-    if (!options.resolution && scene.isThin && hasOwnPixelIn(view, 1, 1)) resolution_ = 1;
     int between = 0;
+    // Thin fog, and what is too large to be divided, show nothing else with more sheet pixels than
+    // voxels, while these are not smoothed.
+    bool staysWhole = scene.isThin;
     if (options.between) {
         between = *options.between;
         checkBetween(between);
@@ -199,10 +203,13 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
                                     "voxels"));
         }
         if (between > 0 && !canBeDivided(box, between)) throwTooWide(box, between);
-    } else if (dividesUnasked(scene, view, listener)) {
-        between = 1;
+    } else if (wantsDivided(scene, view)) {
+        between = areFew(scene, view, listener) ? 1 : 0;
+        staysWhole = between == 0;
     }
-    if (between > 0 && !options.resolution) resolution_ = 2;
+    if (!options.resolution && between > 0) resolution_ = 2;
+    if (!options.resolution && between == 0 && staysWhole && hasOwnPixelIn(view, 1, 1))
+        resolution_ = 1;
     parts_.slices = between + 1;
     parts_.within = between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1;
     if (keepsSlices) return;

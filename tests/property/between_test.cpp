@@ -9,6 +9,8 @@
 #include <glm/geometric.hpp>
 #include <optional>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "deltasplat/error.h"
 #include "deltasplat/render.h"
@@ -128,6 +130,42 @@ TEST(Between, isOneWhereTheScreenAsksForTwoPixelsAVoxel) {
     options.optics.transferFunction.colors = {
         {0, {1, 0, 0}}, {100, {1, 0, 0}}, {100, {0, 1, 0}}, {255, {0, 1, 0}}};
     EXPECT_EQ(statsAt(1.6).between, 0);
+}
+
+// More than 65536 blocks with something to see stay whole. They have a sheet pixel each, until
+// edges would show them as steps.
+TEST(Between, isNotChosenWhereThereAreTooManyBlocks) {
+    for (const int edge : {40, 41}) {
+        const bool areTooMany = edge > 40;
+        const Volume volume = makeVolume(
+            {{0, 0, 0}, glm::ivec3(8 * edge - 1)},
+            [](int x, int y, int z) { return ((x | y | z) & 7) == 0 ? 255 : kInactive; });
+        std::vector<std::string> warnings;
+        Listener listener;
+        listener.warning = [&](const std::string& line) { warnings.push_back(line); };
+        RenderOptions options;
+        options.optics.transferFunction = testTransferFunction(0.7);
+        options.camera.frameWidthWorld = 30;
+        const auto statsAt = [&](double pixelsPerVoxel) {
+            options.camera.sizePixels = glm::ivec2(int(30 * pixelsPerVoxel));
+            return render(volume, options, listener).stats;
+        };
+        for (const double pixels : {1.6, 2.9}) {
+            const RenderStats stats = statsAt(pixels);
+            EXPECT_EQ(stats.between, areTooMany ? 0 : 1) << pixels;
+            EXPECT_EQ(stats.resolution, areTooMany ? 1 : 2) << pixels;
+            EXPECT_EQ(stats.footprint, 1) << pixels;
+        }
+        const RenderStats stats = statsAt(3.2);
+        EXPECT_EQ(stats.resolution, 2);
+        EXPECT_EQ(stats.footprint > 1, areTooMany);
+        ASSERT_EQ(warnings.size(), areTooMany ? 3u : 0u);
+        if (areTooMany) {
+            EXPECT_EQ(warnings[0],
+                      "voxels are too many to be divided (68921 blocks of 8x8x8 can be seen, at "
+                      "most 65536 are): drawn as they are; `between` 1 divides them");
+        }
+    }
 }
 
 // No voxel changes how others are drawn: only the transfer function tells what is thin.
