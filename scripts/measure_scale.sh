@@ -86,17 +86,30 @@ for factor in 1 2 4; do
 done
 
 echo
-echo "Milliseconds of \`auto\` of engine enlarged twice by the picture's edge:"
+echo "Milliseconds of \`auto\` on two threads by the picture's edge, and with \`prepare\`:"
 echo
-echo "| threads | 128 | 256 | 512 | 1024 | 2048 | 4096 | exponent, 256 to 4096 |"
+echo "| volume | 128 | 256 | 512 | 1024 | 2048 | 4096 | exponents, 256 to 4096 |"
 echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
-file=$(enlarged 2 "$data/engine/engine_256x256x128_uint8.raw.gz")
-for threads in 1 2; do
-    times=()
+for file in "$(enlarged 2 "$data/engine/engine_256x256x128_uint8.raw.gz")" \
+    "$(enlarged 4 "$data/engine/engine_256x256x128_uint8.raw.gz")" \
+    "$(enlarged 2 "$data/ct_head/cthead_256x256x225_uint8.raw.gz")" \
+    "$(enlarged 4 "$data/ct_head/cthead_256x256x225_uint8.raw.gz")" \
+    "$(enlarged 4 "$data/aneurism/aneurism_256x256x256_uint8.raw.gz")" \
+    "$(sampled engine 1024)" "$(sampled cloud 1024)" "$(sampled vessels 1024)"; do
+    runs=()
     for size in 128 256 512 1024 2048 4096; do
-        measure "$file" $threads $size
-        times+=("$(milliseconds "$folder/bench.json" auto)")
+        measure "$file" 2 $size
+        runs+=("$(milliseconds "$folder/bench.json" auto),$(joined "$folder/bench.json")")
     done
-    echo "| $threads | ${times[*]} |" | sed 's/\([0-9]\) \([0-9]\)/\1 | \2/g; s/\([0-9]\) \([0-9]\)/\1 | \2/g' |
-        awk -v a="${times[1]}" -v b="${times[5]}" '{ printf "%s %.2f |\n", $0, log(b / a) / log(16) }'
+    python3 -c 'import math, sys
+name, *runs = sys.argv[1:]
+drawn, whole = [], []
+for run in runs:
+    render, _, prepare = run.split(",")
+    drawn.append(float(render))
+    whole.append(float(render) + float(prepare))
+exponent = lambda times: math.log(times[5] / times[1]) / math.log(16)
+cells = ["%.3g, %.3g" % both for both in zip(drawn, whole)]
+print("| %s | %s | %.2f, %.2f |" % (name, " | ".join(cells), exponent(drawn), exponent(whole)))' \
+        "$(basename "$file" _uint8.raw)" "${runs[@]}"
 done

@@ -19,6 +19,11 @@ namespace {
 // What a turning camera rounds must not decide.
 constexpr double kSnap = 1e-9;
 
+// Where voxels cover fewer pixels of the screen, one sheet pixel for each and the footprint that
+// goes with it blur less than two with theirs: sigma grows with the screen at one (defaultSigma),
+// and is widest at two from three pixels on.
+constexpr double kMostPixelsOfOne = 5;
+
 // What whole blocks are divided into is counted with 32 bits, and some more voxels around it.
 bool canBeDivided(const IndexBox& box, int between) {
     constexpr std::int64_t kMost = std::int64_t{1} << 30;
@@ -187,9 +192,8 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
     checkKernel(options);
     checkMostJoined(options.mostJoined);
     int between = 0;
-    // Thin fog, and what is too large to be divided, show nothing else with more sheet pixels than
-    // voxels, while these are not smoothed.
-    bool staysWhole = scene.isThin;
+    // What is thin shows nothing else with more sheet pixels, while it is not smoothed.
+    bool hasOnePixelEach = scene.isThin && hasOwnPixelIn(view, 1, 1);
     if (options.between) {
         between = *options.between;
         checkBetween(between);
@@ -205,10 +209,11 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
         if (between > 0 && !canBeDivided(box, between)) throwTooWide(box, between);
     } else if (wantsDivided(scene, view)) {
         between = areFew(scene, view, listener) ? 1 : 0;
-        staysWhole = between == 0;
+        hasOnePixelEach = !asksForSigma_ && view.pixelsPerVoxel * (1 + kSnap) < kMostPixelsOfOne;
     }
-    if (!options.resolution && between > 0) resolution_ = 2;
-    if (!options.resolution && between == 0 && staysWhole && hasOwnPixelIn(view, 1, 1))
+    if (!options.resolution && between > 0)
+        resolution_ = 2;
+    else if (!options.resolution && hasOnePixelEach)
         resolution_ = 1;
     parts_.slices = between + 1;
     parts_.within = between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1;

@@ -156,10 +156,10 @@ TEST(Between, isNotChosenWhereThereAreTooManyBlocks) {
             EXPECT_EQ(stats.resolution, areTooMany ? 1 : 2) << pixels;
             EXPECT_EQ(stats.footprint, 1) << pixels;
         }
-        const RenderStats stats = statsAt(3.2);
-        EXPECT_EQ(stats.resolution, 2);
-        EXPECT_EQ(stats.footprint > 1, areTooMany);
-        ASSERT_EQ(warnings.size(), areTooMany ? 3u : 0u);
+        EXPECT_EQ(statsAt(4.9).resolution, areTooMany ? 1 : 2);
+        EXPECT_EQ(statsAt(4.9).footprint > 1, areTooMany);
+        EXPECT_EQ(statsAt(5.1).resolution, 2);
+        ASSERT_EQ(warnings.size(), areTooMany ? 5u : 0u);
         if (areTooMany) {
             EXPECT_EQ(warnings[0],
                       "voxels are too many to be divided (68921 blocks of 8x8x8 can be seen, at "
